@@ -1,0 +1,51 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#
+# Defines `manycore_ros`: the headers and libraries of the user's ROS 2.
+#
+# In a colcon workspace the packages are found as ament exports them. The wheels' exports name the
+# machine that built them, so there (and wherever ament_cmake is absent) plain paths are used.
+add_library(manycore_ros INTERFACE)
+
+set(ros_packages rmw rcutils rcpputils rosidl_runtime_c rosidl_runtime_cpp
+  rosidl_typesupport_interface rosidl_typesupport_fastrtps_c rosidl_typesupport_fastrtps_cpp
+  rosidl_dynamic_typesupport tracetools)
+set(ros_libraries rmw rcutils rosidl_runtime_c rosidl_typesupport_fastrtps_c
+  rosidl_typesupport_fastrtps_cpp rosidl_dynamic_typesupport fastcdr)
+
+find_package(ament_cmake QUIET)
+if(ament_cmake_FOUND)
+  find_package(fastcdr REQUIRED)
+  target_link_libraries(manycore_ros INTERFACE fastcdr)
+  foreach(package rmw rcutils rosidl_runtime_c rosidl_dynamic_typesupport
+      rosidl_typesupport_fastrtps_c rosidl_typesupport_fastrtps_cpp)
+    find_package(${package} REQUIRED)
+    target_link_libraries(manycore_ros INTERFACE ${package}::${package})
+  endforeach()
+  return()
+endif()
+
+# A prefix is what holds lib/pythonX.Y/site-packages; build front ends hand us the latter only.
+set(ros_prefixes ${MANYCORE_ROS_PREFIX} ${CMAKE_PREFIX_PATH} $ENV{VIRTUAL_ENV})
+foreach(path IN LISTS CMAKE_PREFIX_PATH)
+  list(APPEND ros_prefixes ${path}/../../..)
+endforeach()
+find_path(MANYCORE_ROS_INCLUDE rmw/rmw/rmw.h
+  PATHS ${ros_prefixes} PATH_SUFFIXES include NO_DEFAULT_PATH NO_CMAKE_FIND_ROOT_PATH)
+if(NOT MANYCORE_ROS_INCLUDE)
+  message(FATAL_ERROR "No ROS 2 found: expected include/rmw/rmw/rmw.h under one of "
+    "'${ros_prefixes}'. Pass -DCMAKE_PREFIX_PATH=<venv with ros-rclpy[fastrtps]>, source the "
+    "setup file of a ROS 2 install, or build without the RMW (-DMANYCORE_BUILD_RMW=OFF).")
+endif()
+get_filename_component(ros_prefix ${MANYCORE_ROS_INCLUDE} DIRECTORY)
+message(STATUS "ROS 2: ${ros_prefix}")
+
+target_include_directories(manycore_ros SYSTEM INTERFACE ${ros_prefix}/include)
+foreach(package IN LISTS ros_packages)
+  target_include_directories(manycore_ros SYSTEM INTERFACE ${ros_prefix}/include/${package})
+endforeach()
+foreach(library IN LISTS ros_libraries)
+  target_link_libraries(manycore_ros INTERFACE ${ros_prefix}/lib/lib${library}.so)
+endforeach()
+# The ROS libraries need further ones of the prefix; only the loader of the final program looks.
+target_link_options(manycore_ros INTERFACE
+  -Wl,--allow-shlib-undefined -Wl,-rpath-link,${ros_prefix}/lib)

@@ -1,0 +1,63 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#
+# How every native target is compiled and where it is installed.
+
+if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
+  set(CMAKE_BUILD_TYPE RelWithDebInfo CACHE STRING "Build type" FORCE)
+endif()
+
+# A wheel has two roots: site-packages, and the prefix (the "data" scheme).
+if(SKBUILD)
+  set(MANYCORE_PREFIX ${SKBUILD_DATA_DIR})
+  set(MANYCORE_SITE_PACKAGES ${SKBUILD_PLATLIB_DIR})
+else()
+  set(MANYCORE_PREFIX ${CMAKE_INSTALL_PREFIX})
+endif()
+
+# The build tree has the layout of the installed prefix, so that everything runs from both.
+set(CMAKE_LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib)
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+# Nothing may name the build machine; a library that needs a path sets its own $ORIGIN.
+set(CMAKE_BUILD_WITH_INSTALL_RPATH ON)
+
+add_library(manycore_options INTERFACE)
+target_compile_features(manycore_options INTERFACE cxx_std_17)
+target_include_directories(manycore_options INTERFACE
+  ${CMAKE_CURRENT_SOURCE_DIR}/rmw_manycore_py/native)
+target_compile_options(manycore_options INTERFACE
+  -Wall -Wextra -fvisibility=hidden $<$<COMPILE_LANGUAGE:CXX>:-fvisibility-inlines-hidden>
+  $<$<BOOL:${MANYCORE_WERROR}>:-Werror>)
+if(MANYCORE_SANITIZE)
+  target_compile_options(manycore_options INTERFACE
+    -fsanitize=${MANYCORE_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  target_link_options(manycore_options INTERFACE -fsanitize=${MANYCORE_SANITIZE})
+endif()
+
+# manycore_library(NAME STATIC|SHARED DIRECTORY [EXCLUDE FILE...]): all *.cpp of one directory.
+function(manycore_library name kind directory)
+  cmake_parse_arguments(PARSE_ARGV 3 arg "" "" "EXCLUDE")
+  file(GLOB sources CONFIGURE_DEPENDS ${directory}/*.cpp)
+  foreach(excluded IN LISTS arg_EXCLUDE)
+    list(REMOVE_ITEM sources ${directory}/${excluded})
+  endforeach()
+  if(NOT sources)
+    file(WRITE ${CMAKE_BINARY_DIR}/empty.cpp "")
+    set(sources ${CMAKE_BINARY_DIR}/empty.cpp)
+  endif()
+  add_library(${name} ${kind} ${sources})
+  target_link_libraries(${name} PUBLIC manycore_options)
+endfunction()
+
+function(manycore_executable name)
+  add_executable(${name} ${ARGN})
+  target_link_libraries(${name} PRIVATE manycore_options)
+endfunction()
+
+# Puts a target under <prefix>/lib/rmw_manycore, out of the way of linkers and PATH.
+function(manycore_install_private name directory)
+  set(private lib/rmw_manycore/${directory})
+  set_target_properties(${name} PROPERTIES
+    RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/${private}
+    LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/${private})
+  install(TARGETS ${name} DESTINATION ${MANYCORE_PREFIX}/${private})
+endfunction()
