@@ -1,0 +1,38 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Inverts the pictures of `image_raw` and publishes them on `image_inverted`."""
+
+import numpy as np
+import rclpy
+from rclpy.executors import ExternalShutdownException
+from rclpy.node import Node
+from sensor_msgs.msg import Image
+
+
+class ImageFilter(Node):
+    """Makes a negative of every picture."""
+
+    def __init__(self) -> None:
+        super().__init__("image_filter")
+        self._publisher = self.create_publisher(Image, "image_inverted", 10)
+        self._subscription = self.create_subscription(Image, "image_raw", self._invert, 10)
+
+    def _invert(self, image: Image) -> None:
+        pixels = np.frombuffer(image.data, dtype=np.uint8)
+        np.invert(pixels, out=pixels)
+        self._publisher.publish(image)
+        self.get_logger().info(f"inverted frame {image.header.frame_id}")
+
+
+def main() -> None:
+    """Run the node until it is interrupted."""
+    rclpy.init()
+    try:
+        rclpy.spin(ImageFilter())
+    except (KeyboardInterrupt, ExternalShutdownException):
+        pass
+    finally:
+        rclpy.try_shutdown()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,38 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""A lamp with the service `switch_lamp`."""
+
+import rclpy
+from rclpy.executors import ExternalShutdownException
+from rclpy.node import Node
+from std_srvs.srv import SetBool
+
+
+class Lamp(Node):
+    """Is on or off, as it was last told."""
+
+    def __init__(self) -> None:
+        super().__init__("lamp")
+        self._is_on = False
+        self._service = self.create_service(SetBool, "switch_lamp", self._switch)
+
+    def _switch(self, request: SetBool.Request, response: SetBool.Response) -> SetBool.Response:
+        response.success = self._is_on != request.data
+        self._is_on = request.data
+        response.message = f"the lamp is {'on' if self._is_on else 'off'}"
+        self.get_logger().info(response.message)
+        return response
+
+
+def main() -> None:
+    """Run the node until it is interrupted."""
+    rclpy.init()
+    try:
+        rclpy.spin(Lamp())
+    except (KeyboardInterrupt, ExternalShutdownException):
+        pass
+    finally:
+        rclpy.try_shutdown()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,33 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Prints what it hears on `chatter`."""
+
+import rclpy
+from rclpy.executors import ExternalShutdownException
+from rclpy.node import Node
+from std_msgs.msg import String
+
+
+class Listener(Node):
+    """Repeats every message in the log."""
+
+    def __init__(self) -> None:
+        super().__init__("listener")
+        self._subscription = self.create_subscription(String, "chatter", self._hear, 10)
+
+    def _hear(self, message: String) -> None:
+        self.get_logger().info(f"I heard: '{message.data}'")
+
+
+def main() -> None:
+    """Run the node until it is interrupted."""
+    rclpy.init()
+    try:
+        rclpy.spin(Listener())
+    except (KeyboardInterrupt, ExternalShutdownException):
+        pass
+    finally:
+        rclpy.try_shutdown()
+
+
+if __name__ == "__main__":
+    main()
