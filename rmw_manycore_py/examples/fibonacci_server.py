@@ -1,8 +1,6 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 """The action `fibonacci`: computes the sequence, one step each `1 / rate_hz` seconds."""
 
-from collections.abc import Generator
-
 import rclpy
 from rclpy.action import ActionServer, CancelResponse
 from rclpy.action.server import ServerGoalHandle
