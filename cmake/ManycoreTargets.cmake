@@ -11,7 +11,14 @@ if(SKBUILD)
   set(MANYCORE_PREFIX ${SKBUILD_DATA_DIR})
   set(MANYCORE_SITE_PACKAGES ${SKBUILD_PLATLIB_DIR})
 else()
+  find_package(Python 3.10 REQUIRED COMPONENTS Interpreter)
   set(MANYCORE_PREFIX ${CMAKE_INSTALL_PREFIX})
+  set(MANYCORE_SITE_PACKAGES
+    ${CMAKE_INSTALL_PREFIX}/lib/python${Python_VERSION_MAJOR}.${Python_VERSION_MINOR}/site-packages)
+  install(DIRECTORY rmw_manycore_py DESTINATION ${MANYCORE_SITE_PACKAGES}
+    FILES_MATCHING REGEX "\\.(py|pyi|json)$" PATTERN native EXCLUDE)
+  install(DIRECTORY bridge/ DESTINATION ${MANYCORE_SITE_PACKAGES}/rmw_manycore_py/bridge
+    OPTIONAL FILES_MATCHING PATTERN "*.py")
 endif()
 
 # The build tree has the layout of the installed prefix, so that everything runs from both.

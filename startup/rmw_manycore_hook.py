@@ -1,0 +1,90 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Puts librmw_manycore.so in the place of Fast DDS when python starts.
+
+In the ROS 2 wheels librcl.so is linked to librmw_fastrtps_cpp.so by name. The dynamic loader reads
+its search path once, at program start, so the only way in is a process whose LD_LIBRARY_PATH names
+our stand-ins first. `rmw_manycore.pth` calls `substitute()` in every python process that has
+RMW_IMPLEMENTATION=rmw_manycore; a launcher calls `substituted_environment()` instead and saves the
+second start. See docs/design/substitution.md.
+
+Imports nothing but os and sys: this runs before everything else.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+
+TYPE_CHECKING = False  # as typing has it, without importing typing
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+LIBRARY_PATH = "LD_LIBRARY_PATH"
+# The wheels' own start-up hook does the same trick without keeping an order; this tells it not to.
+WHEELS_BOOTSTRAPPED = "_ROS_WHEELS_BOOTSTRAP_COMPLETE"
+# Holds the id of the process that replaced itself, so that it cannot do so a second time.
+REPLACED = "_RMW_MANYCORE_REPLACED"
+
+
+def substitute() -> None:
+    """Restart this process with the stand-ins in front, unless it already has them."""
+    stand_ins = stand_in_directory(sys.prefix)
+    replaced = os.environ.pop(REPLACED, None) == str(os.getpid())
+    if stand_ins in library_path(os.environ):
+        rest = [path for path in library_path(os.environ) if path != stand_ins]
+        os.environ[LIBRARY_PATH] = os.pathsep.join(rest)  # child processes start afresh
+    elif replaced:
+        sys.stderr.write(
+            f"rmw_manycore: {LIBRARY_PATH} was lost when {sys.executable} restarted itself, so ROS 2 "
+            f"would use another middleware; start it with {LIBRARY_PATH}={stand_ins} first\n"
+        )
+    elif needs_stand_ins(sys.prefix) and _is_python_program():
+        environment = substituted_environment(os.environ, sys.prefix)
+        environment[REPLACED] = str(os.getpid())
+        os.execve(sys.executable, [sys.executable, *sys.orig_argv[1:]], environment)
+
+
+def substituted_environment(environment: Mapping[str, str], prefix: str) -> dict[str, str]:
+    """Return `environment` as a program of the python `prefix` needs it to get rmw_manycore.
+
+    An ordinary ROS 2 install selects the middleware by itself: there nothing changes.
+    """
+    result = dict(environment)
+    if needs_stand_ins(prefix):
+        first = [stand_in_directory(prefix), *_wheel_library_directories(prefix)]
+        rest = [path for path in library_path(environment) if path not in first]
+        result[LIBRARY_PATH] = os.pathsep.join(first + rest)
+        result[WHEELS_BOOTSTRAPPED] = "1"
+    return result
+
+
+def needs_stand_ins(prefix: str) -> bool:
+    """Tell whether `prefix` holds the ROS 2 wheels, with the middleware fixed at link time."""
+    return os.path.exists(f"{prefix}/lib/librmw_fastrtps_cpp.so") and os.path.isdir(
+        stand_in_directory(prefix)
+    )
+
+
+def stand_in_directory(prefix: str) -> str:
+    """Return where the libraries lie that bear the names of Fast DDS's."""
+    return f"{prefix}/lib/rmw_manycore/standin"
+
+
+def library_path(environment: Mapping[str, str]) -> list[str]:
+    """Return the directories of the loader's search path."""
+    return [path for path in environment.get(LIBRARY_PATH, "").split(os.pathsep) if path]
+
+
+def _wheel_library_directories(prefix: str) -> list[str]:
+    site_packages = f"{prefix}/lib/python{sys.version_info[0]}.{sys.version_info[1]}/site-packages"
+    bundled = sorted(
+        name
+        for name in os.listdir(site_packages)
+        if name.startswith("ros_") and name.endswith(".libs")
+    )
+    return [f"{prefix}/lib", *(f"{site_packages}/{name}" for name in bundled)]
+
+
+def _is_python_program() -> bool:
+    """Tell a python interpreter from a program that embeds one and cannot be restarted as python."""
+    return bool(sys.executable) and os.path.samefile("/proc/self/exe", sys.executable)
