@@ -1,0 +1,60 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Fixtures of all tests, and one process for each test of the rmw interface."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+
+# Test files import `support` by name, from whatever directory pytest is started in.
+sys.path.insert(0, str(Path(__file__).parent))
+
+import isolation
+from support import IS_MANYCORE, Program, environment, leftovers, unique_platform, wait_until
+
+StartProgram = Callable[..., Program]
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    # The wheels of rosidl bring an old parser along, which uses modules that Python gave up.
+    config.addinivalue_line("filterwarnings", "ignore:module 'sre_:DeprecationWarning")
+    if report_path := os.environ.get(isolation.REPORT_VARIABLE):
+        config.pluginmanager.register(isolation.ReportWriter(config, Path(report_path)))
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_runtest_protocol(item: pytest.Item) -> bool | None:
+    if isolation.is_inside() or not item.get_closest_marker("rmw"):
+        return None
+    isolation.run(item)
+    return True
+
+
+@pytest.fixture
+def platform() -> Iterator[str]:
+    """Yield the name of the test's platform; afterwards nothing of it may be left."""
+    if isolation.is_inside():
+        yield os.environ["MANYCORE_PLATFORM"]
+        return
+    name = unique_platform()
+    yield name
+    if IS_MANYCORE:
+        wait_until(lambda: not leftovers(name), f"{name} leaves nothing in /dev/shm")
+
+
+@pytest.fixture
+def start(platform: str) -> Iterator[StartProgram]:
+    """Yield a function that starts a program on the test's platform; none outlives the test."""
+    programs: list[Program] = []
+
+    def start_program(command: list[str], cluster: int = 1, **env: str) -> Program:
+        programs.append(Program(command, environment(platform, cluster, **env)))
+        return programs[-1]
+
+    yield start_program
+    for program in programs:
+        program.kill()

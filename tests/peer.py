@@ -1,0 +1,23 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Calls a function of a test file: peer.py FILE FUNCTION JSON-ARGUMENTS."""
+
+import importlib.util
+import json
+import sys
+from types import ModuleType
+
+
+def load(path: str) -> ModuleType:
+    """Import a test file by its path."""
+    spec = importlib.util.spec_from_file_location("peer_source", path)
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+if __name__ == "__main__":
+    path, function, arguments = sys.argv[1:4]
+    del sys.argv[1:]
+    getattr(load(path), function)(*json.loads(arguments))

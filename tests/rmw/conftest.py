@@ -1,0 +1,48 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Fixtures of the tests that use rclpy in their own process."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+import rclpy
+from rclpy.node import Node
+
+from support import Program, peer_command
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    for item in items:
+        if Path(__file__).parent in item.path.parents:
+            item.add_marker("rmw")
+
+
+@pytest.fixture
+def node() -> Iterator[Node]:
+    """Yield a node of this process, which runs in cluster 1."""
+    rclpy.init()
+    node = rclpy.create_node("tester")
+    yield node
+    node.destroy_node()
+    rclpy.shutdown()
+
+
+@pytest.fixture
+def start_peer(start: Callable[..., Program]) -> Callable[..., Program]:
+    """Return a function that starts a function of the test file in a process of its own."""
+
+    def start_peer(
+        function: Callable[..., None], *arguments: Any, cluster: int = 1, **env: str
+    ) -> Program:
+        return start(peer_command(function, *arguments), cluster, **env)
+
+    return start_peer
+
+
+@pytest.fixture(params=[1, 2], ids=["same_cluster", "other_cluster"])
+def peer_cluster(request: pytest.FixtureRequest) -> int:
+    """Return the cluster of the peer: the test's own, or another one."""
+    return int(request.param)

@@ -1,0 +1,46 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Small helpers around rclpy, for tests and their peers."""
+
+from __future__ import annotations
+
+import importlib
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from typing import Any
+
+import rclpy
+from rclpy.executors import ExternalShutdownException
+from rclpy.node import Node
+from support import PATIENCE_S
+
+
+def spin_until(node: Node, condition: Callable[[], Any], timeout_s: float = PATIENCE_S) -> None:
+    """Spin a node until a condition holds that its callbacks bring about."""
+    deadline = time.monotonic() + timeout_s
+    while not condition():
+        if time.monotonic() > deadline:
+            raise AssertionError(f"not within {timeout_s:g} s of spinning")
+        rclpy.spin_once(node, timeout_sec=0.05)
+
+
+@contextmanager
+def peer_node(name: str = "peer", **options: Any) -> Iterator[Node]:
+    """Give a peer process its node; it ends quietly when it is interrupted."""
+    rclpy.init()
+    node = rclpy.create_node(name, **options)
+    with suppress(KeyboardInterrupt, ExternalShutdownException):
+        yield node
+    node.destroy_node()
+    rclpy.try_shutdown()
+
+
+def announce(line: str) -> None:
+    """Print a line for the test that waits for it."""
+    print(line, flush=True)
+
+
+def type_of(name: str) -> Any:
+    """Return the class of a type, for example "std_msgs/msg/String"."""
+    package, kind, type_name = name.split("/")
+    return getattr(importlib.import_module(f"{package}.{kind}"), type_name)

@@ -1,0 +1,181 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Starting real programs and waiting for what they print."""
+
+from __future__ import annotations
+
+import itertools
+import json
+import os
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Callable, Iterable
+from pathlib import Path
+from typing import Any
+
+TESTS = Path(__file__).parent
+REPOSITORY = TESTS.parent
+MAPFILES = REPOSITORY / "mapfiles"
+
+# The middleware under test; the tests that are about ROS 2 itself also pass with rmw_fastrtps_cpp.
+RMW = os.environ.get("MANYCORE_TEST_RMW", "rmw_manycore")
+IS_MANYCORE = RMW == "rmw_manycore"
+
+# How long a thing may take that should take milliseconds: only ever waited for by a failing test.
+PATIENCE_S = float(os.environ.get("MANYCORE_TEST_PATIENCE", "30"))
+
+PLATFORMS = Path(f"/dev/shm/manycore-{os.getuid()}")
+
+_numbers = itertools.count()
+
+
+def unique_platform() -> str:
+    """Return a platform name that no other test uses."""
+    return f"test-{os.getpid()}-{next(_numbers)}"
+
+
+def environment(platform: str, cluster: int = 1, **more: str) -> dict[str, str]:
+    """Return the environment of a node in a cluster of a platform.
+
+    Other middlewares have no platforms, so there each platform is a ROS domain of its own.
+    """
+    domain = sum(platform.encode()) * 7 % 100 + 1
+    return {
+        **os.environ,
+        "RMW_IMPLEMENTATION": RMW,
+        "MANYCORE_PLATFORM": platform,
+        "MANYCORE_CLUSTER": str(cluster),
+        "ROS_DOMAIN_ID": str(domain),
+        "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
+        "PYTHONUNBUFFERED": "1",
+        **more,
+    }
+
+
+def leftovers(platform: str) -> list[Path]:
+    """Return what a platform has left behind in shared memory."""
+    directory = PLATFORMS / platform
+    return [directory, *directory.rglob("*")] if directory.exists() else []
+
+
+def wait_until(condition: Callable[[], Any], what: str, timeout_s: float = PATIENCE_S) -> None:
+    """Look at a condition that nobody announces until it holds."""
+    deadline = time.monotonic() + timeout_s
+    while not condition():
+        if time.monotonic() > deadline:
+            raise AssertionError(f"not within {timeout_s:g} s: {what}")
+        time.sleep(0.01)
+
+
+class Program:
+    """A started process; its output, errors included, is read line by line."""
+
+    def __init__(self, command: Iterable[str | Path], env: dict[str, str]) -> None:
+        self.command = [str(word) for word in command]
+        self.lines: list[str] = []
+        self._next_line = 0
+        self._ended = False
+        self._changed = threading.Condition()
+        self._process = subprocess.Popen(
+            self.command,
+            env=env,
+            cwd=REPOSITORY,
+            text=True,
+            errors="replace",
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+        )
+        self._reader = threading.Thread(target=self._read, daemon=True)
+        self._reader.start()
+
+    def _read(self) -> None:
+        assert self._process.stdout is not None
+        for line in self._process.stdout:
+            with self._changed:
+                self.lines.append(line.rstrip("\n"))
+                self._changed.notify_all()
+        with self._changed:
+            self._ended = True
+            self._changed.notify_all()
+
+    @property
+    def pid(self) -> int:
+        return self._process.pid
+
+    @property
+    def output(self) -> str:
+        return "\n".join(self.lines)
+
+    def __str__(self) -> str:
+        return f"{' '.join(self.command)} (exit status {self._process.poll()}):\n{self.output}"
+
+    def wait_for(self, pattern: str, timeout_s: float = PATIENCE_S) -> re.Match[str]:
+        """Return the match in the next line that has one; earlier lines are then done with."""
+        deadline = time.monotonic() + timeout_s
+        with self._changed:
+            while True:
+                while self._next_line < len(self.lines):
+                    self._next_line += 1
+                    if match := re.search(pattern, self.lines[self._next_line - 1]):
+                        return match
+                left_s = deadline - time.monotonic()
+                if self._ended or not self._changed.wait(max(left_s, 0)):
+                    raise AssertionError(f"no line matches {pattern!r} in the output of {self}")
+
+    def say(self, line: str) -> None:
+        """Write a line to the program's standard input."""
+        assert self._process.stdin is not None
+        self._process.stdin.write(line + "\n")
+        self._process.stdin.flush()
+
+    def signal(self, number: signal.Signals) -> None:
+        self._process.send_signal(number)
+
+    def is_running(self) -> bool:
+        return self._process.poll() is None
+
+    def wait(self, timeout_s: float = PATIENCE_S) -> int:
+        """Return the exit status, once all output has been read."""
+        try:
+            status = self._process.wait(timeout_s)
+        except subprocess.TimeoutExpired:
+            raise AssertionError(f"still running after {timeout_s:g} s: {self}") from None
+        self._reader.join(timeout_s)
+        return status
+
+    def stop(self) -> int:
+        """Interrupt the program as Ctrl-C does; return its exit status."""
+        self.signal(signal.SIGINT)
+        return self.wait()
+
+    def kill(self) -> None:
+        """End the program at once, whatever state it is in, and close our ends of its pipes."""
+        self._process.kill()
+        self._process.wait()
+        self._reader.join()
+        for stream in (self._process.stdin, self._process.stdout):
+            assert stream is not None
+            stream.close()
+
+
+def peer_command(function: Callable[..., None], *arguments: Any) -> list[str]:
+    """Return the command that calls a function of a test file in a process of its own."""
+    source = function.__code__.co_filename
+    peer = str(TESTS / "peer.py")
+    return [sys.executable, peer, source, function.__name__, json.dumps(arguments)]
+
+
+def example_command(name: str, *arguments: str) -> list[str]:
+    """Return the command that runs one of the example nodes."""
+    return [sys.executable, "-m", f"rmw_manycore_py.examples.{name}", *arguments]
+
+
+def manycore_command(*arguments: str | Path) -> list[str | Path]:
+    """Return a call of the command line tool that is installed beside this python."""
+    beside = Path(sys.executable).with_name("manycore")
+    return [beside if beside.exists() else shutil.which("manycore") or "manycore", *arguments]
