@@ -1,0 +1,42 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""The errors a user can cause, each with the exit status the command line ends with."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+EXIT_FAILURE = 1
+EXIT_BAD_INPUT = 2
+
+
+class ManycoreError(Exception):
+    """Root of all errors that are reported to the user without a traceback."""
+
+    def __init__(self, message: str, exit_status: int = EXIT_FAILURE) -> None:
+        super().__init__(message)
+        self.exit_status = exit_status
+
+
+@dataclass(frozen=True)
+class Problem:
+    """One thing wrong in a file; `line` counts from 1, and 0 means the file as a whole."""
+
+    file: Path
+    line: int
+    key: str
+    expected: str
+    found: str
+
+    def __str__(self) -> str:
+        place = f"{self.file}:{self.line}" if self.line else f"{self.file}"
+        key = f" {self.key}:" if self.key else ""
+        return f"{place}:{key} expected {self.expected}, found {self.found}"
+
+
+class MapfileError(ManycoreError):
+    """Everything wrong with a mapfile or a file it refers to, in the order of the lines."""
+
+    def __init__(self, *problems: Problem) -> None:
+        self.problems = tuple(sorted(problems, key=lambda p: (str(p.file), p.line)))
+        super().__init__("\n".join(str(problem) for problem in self.problems), EXIT_BAD_INPUT)

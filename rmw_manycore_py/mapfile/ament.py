@@ -1,0 +1,71 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Where installed ROS packages are: the ament index of an ordinary ROS 2, or of PyPI wheels."""
+
+from __future__ import annotations
+
+import os
+import re
+import sys
+from collections.abc import Iterator
+from functools import cache
+from pathlib import Path
+
+
+def prefixes() -> list[Path]:
+    """Return the install prefixes in order: those of the environment, then the own one."""
+    environment = os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep)
+    named = [*filter(None, environment), sys.prefix]
+    return [Path(prefix) for prefix in dict.fromkeys(named)]
+
+
+def find_resource(kind: str, name: str) -> tuple[Path, Path] | None:
+    """Return the prefix and the file of an entry of the resource index."""
+    for prefix in prefixes():
+        entry = prefix / "share/ament_index/resource_index" / kind / name
+        if entry.is_file():
+            return prefix, entry
+    return None
+
+
+def package_prefix(package: str) -> Path | None:
+    """Return the prefix a package is installed in."""
+    found = find_resource("packages", package)
+    return found[0] if found else None
+
+
+def package_share(package: str) -> Path | None:
+    """Return the share directory of a package."""
+    prefix = package_prefix(package)
+    return prefix / "share" / package if prefix else None
+
+
+def interfaces(package: str) -> frozenset[str]:
+    """Return the message and service types of a package: std_msgs/msg/String."""
+    found = find_resource("rosidl_interfaces", package)
+    return _interfaces(package, found[1]) if found else frozenset()
+
+
+@cache
+def _interfaces(package: str, entry: Path) -> frozenset[str]:
+    return frozenset(f"{package}/{Path(line).with_suffix('')}" for line in _lines(entry))
+
+
+def _lines(entry: Path) -> Iterator[str]:
+    return (line.strip() for line in entry.read_text().splitlines() if line.strip())
+
+
+def canonical_type(name: str) -> str:
+    """Return a type in the form package/msg/Name; the spellings of ROS 1 and of papers are read."""
+    parts = [part for part in re.split(r"/|::", name.strip()) if part]
+    if len(parts) == 2:
+        parts.insert(1, "msg")
+    if len(parts) != 3:
+        return name
+    wanted = "/".join(parts)
+    folded = wanted.replace("_", "").lower()
+    installed = interfaces(parts[0])
+    if wanted in installed:
+        return wanted
+    alike = [known for known in installed if known.replace("_", "").lower() == folded]
+    parts[2] = parts[2][:1].upper() + parts[2][1:]
+    return alike[0] if len(alike) == 1 else "/".join(parts)

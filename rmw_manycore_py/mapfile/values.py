@@ -1,0 +1,128 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""The kinds of value a mapfile holds; each says what was expected when it refuses one."""
+
+from __future__ import annotations
+
+import re
+import shlex
+from typing import Annotated, Any
+
+from pydantic import BeforeValidator, StringConstraints, WithJsonSchema
+from pydantic_core import PydanticCustomError
+
+_UNITS = {"": 1, "B": 1, "KB": 10**3, "MB": 10**6, "KIB": 2**10, "MIB": 2**20, "GIB": 2**30}
+_SIZE = re.compile(r"(\d+)\s*([KMG]?I?B?)", re.IGNORECASE)
+_SCALARS = (bool, int, float, str)
+
+
+def _expected(text: str) -> PydanticCustomError:
+    return PydanticCustomError("expected", "{expected}", {"expected": text})
+
+
+def _size(value: Any) -> int:
+    if isinstance(value, int) and not isinstance(value, bool) and value > 0:
+        return value
+    match = _SIZE.fullmatch(value.strip()) if isinstance(value, str) else None
+    unit = _UNITS.get(match[2].upper()) if match else None
+    if match is None or unit is None or int(match[1]) == 0:
+        raise _expected("a positive number of bytes, or one with a unit such as 64KiB or 4MiB")
+    return int(match[1]) * unit
+
+
+def _environment_value(value: Any) -> str:
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if not isinstance(value, (str, int, float)):
+        raise _expected("a string or a number")
+    return str(value)
+
+
+def _arguments(value: Any) -> tuple[str, ...]:
+    if isinstance(value, str):
+        return _nonempty(tuple(shlex.split(value)))
+    if isinstance(value, (list, tuple)):
+        return tuple(_environment_value(item) for item in value)
+    raise _expected("a list of strings, or one string as typed in a shell")
+
+
+def _nonempty(words: tuple[str, ...]) -> tuple[str, ...]:
+    if not words:
+        raise _expected("at least one word")
+    return words
+
+
+def _one_or_more(value: Any) -> tuple[str, ...]:
+    names = (value,) if isinstance(value, str) else value
+    if not isinstance(names, (list, tuple)) or not all(isinstance(n, str) and n for n in names):
+        raise _expected("a file name or a list of file names")
+    return tuple(names)
+
+
+def _is_array(value: Any) -> bool:
+    """ROS knows arrays of one kind of scalar; integers among floats are floats."""
+    if not isinstance(value, (list, tuple)) or not value:
+        return False
+    kinds = {type(item) for item in value}
+    return kinds <= set(_SCALARS) and (len(kinds) == 1 or kinds == {int, float})
+
+
+def flatten_parameters(value: Any, prefix: str = "") -> dict[str, Any]:
+    """Return nested parameters under their dotted names."""
+    if not isinstance(value, dict):
+        raise _expected("a mapping from parameter names to values")
+    flat: dict[str, Any] = {}
+    for name, item in value.items():
+        if isinstance(item, dict):
+            flat |= flatten_parameters(item, f"{prefix}{name}.")
+        elif isinstance(item, _SCALARS) or _is_array(item):
+            flat[f"{prefix}{name}"] = list(item) if isinstance(item, tuple) else item
+        else:
+            raise _expected(
+                f"parameter '{prefix}{name}' to be a bool, a number, a string or a non-empty list "
+                "of one of these"
+            )
+    return flat
+
+
+_SCALAR_SCHEMA: dict[str, Any] = {"type": ["string", "number", "boolean"]}
+Size = Annotated[
+    int,
+    BeforeValidator(_size),
+    WithJsonSchema(
+        {
+            "anyOf": [
+                {"type": "integer", "minimum": 1},
+                {"type": "string", "pattern": r"^\d+\s*([KkMmGg]?[Ii]?[Bb]?)$"},
+            ]
+        }
+    ),
+]
+EnvironmentValue = Annotated[
+    str,
+    BeforeValidator(_environment_value),
+    WithJsonSchema(_SCALAR_SCHEMA),
+]
+Arguments = Annotated[
+    tuple[str, ...],
+    BeforeValidator(_arguments),
+    WithJsonSchema(
+        {
+            "anyOf": [
+                {"type": "string"},
+                {"type": "array", "items": _SCALAR_SCHEMA},
+            ]
+        }
+    ),
+]
+OneOrMore = Annotated[
+    tuple[str, ...],
+    BeforeValidator(_one_or_more),
+    WithJsonSchema({"anyOf": [{"type": "string"}, {"type": "array", "items": {"type": "string"}}]}),
+]
+Parameters = Annotated[
+    dict[str, Any], BeforeValidator(flatten_parameters), WithJsonSchema({"type": "object"})
+]
+MessageType = Annotated[str, StringConstraints(pattern=r"^[A-Za-z]\w*/msg/[A-Z][A-Za-z0-9]*$")]
+InterfaceType = Annotated[
+    str, StringConstraints(pattern=r"^[A-Za-z]\w*/(msg|srv)/[A-Z][A-Za-z0-9]*$")
+]

@@ -1,0 +1,128 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Shapes of platforms: clusters, cores, reserved cores, and the host CPU of each core."""
+
+from __future__ import annotations
+
+import os
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import NamedTuple
+
+MIB = 1024 * 1024
+RECEIVE_THREAD_CORE = 0
+# An I/O cluster has no core for the OS tasks of its own: Linux runs on it anyway.
+IO_CLUSTER_CORES = 4
+
+
+class Core(NamedTuple):
+    """A virtual core; clusters count from 1, cores from 0."""
+
+    cluster: int
+    core: int
+
+    def __str__(self) -> str:
+        return f"cluster {self.cluster} core {self.core}"
+
+
+@dataclass(frozen=True)
+class Cluster:
+    """One cluster with its local memory (SMEM)."""
+
+    id: int
+    cores: int
+    smem_size: int
+
+    @property
+    def reserved(self) -> frozenset[int]:
+        """The cores of the receive thread and of the OS tasks; no node runs there."""
+        if self.cores <= IO_CLUSTER_CORES:
+            return frozenset({RECEIVE_THREAD_CORE})
+        return frozenset({RECEIVE_THREAD_CORE, self.cores - 1})
+
+    @property
+    def free(self) -> tuple[int, ...]:
+        """The cores nodes may run on."""
+        return tuple(core for core in range(self.cores) if core not in self.reserved)
+
+
+@dataclass(frozen=True)
+class Topology:
+    """The clusters of a platform."""
+
+    profile: str
+    clusters: tuple[Cluster, ...]
+
+    @property
+    def cores_per_cluster(self) -> int:
+        """The cores of the largest cluster."""
+        return max(cluster.cores for cluster in self.clusters)
+
+    @property
+    def smem_size(self) -> int:
+        """Local memory of each cluster, in bytes."""
+        return self.clusters[0].smem_size
+
+    def cluster(self, number: int) -> Cluster | None:
+        """Return the cluster of that number, if there is one."""
+        return self.clusters[number - 1] if 1 <= number <= len(self.clusters) else None
+
+    def default_host_cpu(self, core: Core, cpus: Sequence[int]) -> int:
+        """Return where a core runs that no mapfile places."""
+        index = (core.cluster - 1) * self.cores_per_cluster + core.core
+        return cpus[index % len(cpus)]
+
+
+PROFILES = ("host", "coolidge", "bostan")
+
+
+def profile(
+    name: str,
+    *,
+    clusters: int | None = None,
+    cores_per_cluster: int | None = None,
+    smem_size: int | None = None,
+) -> Topology:
+    """Return a profile's shape, with those parts replaced that are given."""
+    shapes = {
+        "host": (5, 16, 0, None),
+        "coolidge": (5, 16, 0, 4 * MIB),
+        "bostan": (16, 16, 4, 2 * MIB),
+    }
+    own_clusters, own_cores, io_clusters, own_smem = shapes[name]
+    count = clusters or own_clusters
+    if clusters is not None:
+        io_clusters = 0
+    cores = [cores_per_cluster or own_cores] * count + [IO_CLUSTER_CORES] * io_clusters
+    smem = smem_size or own_smem or host_smem_size(len(cores))
+    return Topology(name, tuple(Cluster(i, n, smem) for i, n in enumerate(cores, start=1)))
+
+
+def host_smem_size(clusters: int, shm: Path = Path("/dev/shm")) -> int:
+    """Return half of the machine's shared memory, divided among the clusters, in whole MiB."""
+    status = os.statvfs(shm)
+    share = status.f_blocks * status.f_frsize // 2 // clusters
+    return max(share // MIB, 1) * MIB
+
+
+def usable_cpus() -> tuple[int, ...]:
+    """Return the host CPUs this process may run on."""
+    return tuple(sorted(os.sched_getaffinity(0)))
+
+
+def assign_host_cpus(
+    used: Iterable[Core], fixed: Mapping[Core, int], cpus: Sequence[int]
+) -> dict[Core, int]:
+    """Spread the used cores over the CPUs in order, so that none is shared while one is free.
+
+    List the busiest cores first: nodes, then receive threads. A core in `fixed` keeps its CPU.
+    """
+    load = Counter(fixed.values())
+    assigned = dict(fixed)
+    for core in used:
+        if core not in assigned:
+            cpu = min(cpus, key=lambda candidate: load[candidate])
+            assigned[core] = cpu
+            load[cpu] += 1
+    return assigned
