@@ -26,19 +26,29 @@ WHEELS_BOOTSTRAPPED = "_ROS_WHEELS_BOOTSTRAP_COMPLETE"
 REPLACED = "_RMW_MANYCORE_REPLACED"
 
 
+# In a virtual environment site.py processes each .pth file twice.
+_ran = False
+
+
 def substitute() -> None:
     """Restart this process with the stand-ins in front, unless it already has them."""
-    stand_ins = stand_in_directory(sys.prefix)
+    global _ran
+    if _ran:
+        return
+    _ran = True
     replaced = os.environ.pop(REPLACED, None) == str(os.getpid())
+    stand_ins = stand_in_directory(sys.prefix)
     if stand_ins in library_path(os.environ):
         rest = [path for path in library_path(os.environ) if path != stand_ins]
         os.environ[LIBRARY_PATH] = os.pathsep.join(rest)  # child processes start afresh
+    elif not (needs_stand_ins(sys.prefix) and _is_python_program()):
+        return
     elif replaced:
         sys.stderr.write(
-            f"rmw_manycore: {LIBRARY_PATH} was lost when {sys.executable} restarted itself, so ROS 2 "
-            f"would use another middleware; start it with {LIBRARY_PATH}={stand_ins} first\n"
+            f"rmw_manycore: {LIBRARY_PATH} was lost when {sys.executable} restarted itself, so "
+            f"rmw_manycore cannot be used; start it with {LIBRARY_PATH}={stand_ins}\n"
         )
-    elif needs_stand_ins(sys.prefix) and _is_python_program():
+    else:
         environment = substituted_environment(os.environ, sys.prefix)
         environment[REPLACED] = str(os.getpid())
         os.execve(sys.executable, [sys.executable, *sys.orig_argv[1:]], environment)
@@ -86,5 +96,5 @@ def _wheel_library_directories(prefix: str) -> list[str]:
 
 
 def _is_python_program() -> bool:
-    """Tell a python interpreter from a program that embeds one and cannot be restarted as python."""
+    """Tell python from a program that embeds it and cannot be restarted as python."""
     return bool(sys.executable) and os.path.samefile("/proc/self/exe", sys.executable)

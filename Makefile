@@ -1,0 +1,46 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#
+# Every target sets up what it needs in .venv first; see `make help`.
+
+VENV := .venv/bin
+NATIVE := build/native
+JOBS ?= $(shell nproc)
+NATIVE_SOURCES := $(shell find CMakeLists.txt cmake startup rmw_manycore_py/native \
+	-type f -not -name '*.md')
+
+.PHONY: help setup demo test test-native test-model stress sanitize bench lint docs clean
+
+help:  ## this list
+	@sed -n 's/^\([a-z-]*\):.*## /\1: /p' $(MAKEFILE_LIST) | column -t -s: -N target,purpose
+
+.venv/installed: pyproject.toml scripts/setup.sh $(NATIVE_SOURCES)
+	scripts/setup.sh
+
+setup: .venv/installed  ## build, and install this checkout into .venv
+
+demo: setup  ## run talker and listener in two clusters for ten seconds
+	$(VENV)/manycore run mapfiles/talker_listener.yaml --duration 10
+
+test: setup test-native test-model  ## all tests but the long ones
+	$(VENV)/pytest
+
+stress: setup  ## the long tests: random kills, many nodes
+	$(VENV)/pytest -m stress
+
+test-native: setup  ## the C++ tests
+	scripts/native_tests.sh $(NATIVE)
+
+sanitize: setup  ## the C++ tests with sanitizers: address and undefined behaviour, then threads
+	scripts/native_tests.sh build/asan -DMANYCORE_SANITIZE=address,undefined
+	scripts/native_tests.sh build/tsan -DMANYCORE_SANITIZE=thread
+
+lint: setup  ## style and types
+	$(VENV)/ruff check
+	$(VENV)/ruff format --check
+	$(VENV)/mypy
+
+docs: setup  ## the documentation as HTML in build/docs, links checked
+	$(VENV)/mkdocs build --strict --site-dir build/docs
+
+clean:  ## remove everything that was built
+	rm -rf build .venv

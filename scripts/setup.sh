@@ -1,0 +1,62 @@
+#!/bin/sh
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#
+# Makes .venv and installs this checkout into it, with everything that is needed for that:
+#   scripts/setup.sh                the system's packages (if any is missing), then .venv
+#   scripts/setup.sh system [PKG..] the system's packages only, and PKG too
+set -eu
+cd "$(dirname "$0")/.."
+: "${PYTHON:=python3}"
+
+# Prints the Debian packages that are missing; the names are the same on Ubuntu.
+missing_packages() {
+  command -v g++ >/dev/null || echo g++
+  command -v make >/dev/null || echo make
+  command -v "$PYTHON" >/dev/null || { echo python3 python3-venv python3-dev; return; }
+  "$PYTHON" -c 'import ensurepip, venv' 2>/dev/null || echo python3-venv
+  "$PYTHON" -c 'import os, sysconfig as s
+os.stat(os.path.join(s.get_path("include"), "Python.h"))' 2>/dev/null || echo python3-dev
+}
+
+install_packages() {
+  [ $# -gt 0 ] || return 0
+  if command -v apt-get >/dev/null && [ "$(id -u)" = 0 ]; then
+    echo "Installing $*" >&2
+    apt-get update -qq
+    DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "$@" >/dev/null
+  else
+    echo "Missing on this machine: $*. Install with:" >&2
+    echo "  sudo apt-get update && sudo apt-get install -y $*" >&2
+    exit 1
+  fi
+}
+
+# What pyproject.toml asks for at build time; installed into .venv, a rebuild takes seconds.
+build_requirements() {
+  .venv/bin/python - <<'END'
+try:
+    import tomllib
+except ModuleNotFoundError:  # Python 3.10
+    from pip._vendor import tomli as tomllib
+with open("pyproject.toml", "rb") as file:
+    print("\n".join(tomllib.load(file)["build-system"]["requires"]))
+END
+}
+
+install_checkout() {
+  [ -x .venv/bin/python ] || "$PYTHON" -m venv .venv
+  build_requirements >.venv/build-requirements.txt
+  .venv/bin/pip install --quiet --disable-pip-version-check cmake ninja \
+    --requirement .venv/build-requirements.txt
+  .venv/bin/pip install --quiet --disable-pip-version-check \
+    --no-build-isolation --editable '.[dev]'
+  touch .venv/installed
+}
+
+if [ "${1:-}" = system ]; then
+  shift
+  install_packages $(missing_packages) "$@"
+else
+  install_packages $(missing_packages)
+  install_checkout
+fi

@@ -1,0 +1,172 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""The start-up hook, in real python processes of a virtual environment made for the test."""
+
+from __future__ import annotations
+
+import json
+import shutil
+import subprocess
+import venv
+from pathlib import Path
+
+import pytest
+
+import rmw_manycore_hook as hook
+
+pytestmark = pytest.mark.unit
+
+SHOW = (
+    "import json, os, sys; print(json.dumps({'environ': dict(os.environ), 'argv': sys.argv,"
+    "'orig_argv': sys.orig_argv[1:], 'flags': sys.flags.utf8_mode, 'pid': os.getpid(),"
+    "'loader': open('/proc/self/environ').read().split(chr(0))}))"
+)
+
+
+class Prefix:
+    """A virtual environment with our hook and files named like those of the ROS 2 wheels."""
+
+    def __init__(self, path: Path) -> None:
+        venv.create(path, symlinks=True)
+        self.path = path
+        self.python = path / "bin/python"
+        self.site_packages = next(path.glob("lib/python*/site-packages"))
+        self.stand_ins = path / "lib/rmw_manycore/standin"
+        for name in ("rmw_manycore_hook.py", "rmw_manycore.pth"):
+            shutil.copy(Path(hook.__file__).parent / name, self.site_packages)
+        self.stand_ins.mkdir(parents=True)
+        (self.site_packages / "ros_rcl.libs").mkdir()
+        (path / "lib/librmw_fastrtps_cpp.so").touch()
+
+    def run(self, *arguments: str, **variables: str) -> subprocess.CompletedProcess[str]:
+        environment = {"PATH": "/usr/bin:/bin", "RMW_IMPLEMENTATION": "rmw_manycore", **variables}
+        return subprocess.run(
+            [self.python, *arguments], env=environment, capture_output=True, text=True, timeout=30
+        )
+
+    def show(self, *arguments: str, **variables: str) -> dict:
+        done = self.run(*(arguments or ("-c", SHOW)), **variables)
+        assert done.returncode == 0, done.stderr
+        assert done.stderr == ""
+        return json.loads(done.stdout)
+
+    @property
+    def wheel_libraries(self) -> list[str]:
+        return [f"{self.path}/lib", f"{self.site_packages}/ros_rcl.libs"]
+
+
+@pytest.fixture(scope="module")
+def prefix(tmp_path_factory: pytest.TempPathFactory) -> Prefix:
+    return Prefix(tmp_path_factory.mktemp("prefix"))
+
+
+def loader_path(shown: dict) -> list[str]:
+    """Return what the dynamic loader of the process saw, which the hook cannot change."""
+    return next(
+        (line.split("=", 1)[1].split(":") for line in shown["loader"] if line.startswith("LD_LIB")),
+        [],
+    )
+
+
+def test_the_loader_sees_the_stand_ins_first(prefix: Prefix) -> None:
+    shown = prefix.show(LD_LIBRARY_PATH=f"/opt/mine:{prefix.path}/lib")
+    assert loader_path(shown) == [str(prefix.stand_ins), *prefix.wheel_libraries, "/opt/mine"]
+    assert shown["environ"]["_ROS_WHEELS_BOOTSTRAP_COMPLETE"] == "1"
+
+
+def test_child_processes_start_clean(prefix: Prefix) -> None:
+    environ = prefix.show()["environ"]
+    assert environ["LD_LIBRARY_PATH"].split(":") == prefix.wheel_libraries
+    assert not [name for name in environ if "MANYCORE" in name]
+
+
+def test_a_child_that_selects_another_middleware_gets_it(prefix: Prefix) -> None:
+    child = (
+        "import os, sys; os.environ['RMW_IMPLEMENTATION'] = 'rmw_fastrtps_cpp'; "
+        f"os.execv(sys.executable, [sys.executable, '-c', {SHOW!r}])"
+    )
+    assert loader_path(prefix.show("-c", child)) == prefix.wheel_libraries
+
+
+def test_a_python_child_is_substituted_again(prefix: Prefix) -> None:
+    child = f"import subprocess, sys; subprocess.run([sys.executable, '-c', {SHOW!r}], check=True)"
+    assert loader_path(prefix.show("-c", child))[0] == str(prefix.stand_ins)
+
+
+@pytest.mark.parametrize("other", ["rmw_fastrtps_cpp", "rmw_manycore_cpp", ""])
+def test_other_processes_are_left_alone(prefix: Prefix, other: str) -> None:
+    shown = prefix.show(RMW_IMPLEMENTATION=other)
+    assert "LD_LIBRARY_PATH" not in shown["environ"]
+
+
+def test_the_hook_is_not_even_imported_by_other_processes(prefix: Prefix) -> None:
+    code = "import sys; print('rmw_manycore_hook' in sys.modules)"
+    assert prefix.run("-c", code, RMW_IMPLEMENTATION="").stdout == "False\n"
+
+
+def test_an_ordinary_ros_install_is_left_alone(tmp_path: Path) -> None:
+    prefix = Prefix(tmp_path)
+    (tmp_path / "lib/librmw_fastrtps_cpp.so").unlink()
+    assert "LD_LIBRARY_PATH" not in prefix.show()["environ"]
+
+
+def test_a_launcher_saves_the_second_start(prefix: Prefix) -> None:
+    environment = hook.substituted_environment(
+        {"RMW_IMPLEMENTATION": "rmw_manycore"}, str(prefix.path)
+    )
+    process = subprocess.Popen(
+        [prefix.python, "-c", SHOW], env=environment, stdout=subprocess.PIPE, text=True
+    )
+    shown = json.loads(process.communicate(timeout=30)[0])
+    assert loader_path(shown)[0] == str(prefix.stand_ins)
+    assert hook.REPLACED not in "".join(shown["loader"])
+
+
+def test_the_environment_of_an_ordinary_ros_is_not_changed(tmp_path: Path) -> None:
+    assert hook.substituted_environment({"A": "b"}, str(tmp_path)) == {"A": "b"}
+
+
+def test_options_and_arguments_survive(prefix: Prefix, tmp_path: Path) -> None:
+    (tmp_path / "shown.py").write_text(SHOW)
+    script = str(tmp_path / "shown.py")
+    for start in (["-X", "utf8", script], ["-u", "-X", "utf8=1", "-W", "ignore", script]):
+        shown = prefix.show(*start, "--ros-args", "-r", "a:=b c")
+        assert shown["orig_argv"] == [*start, "--ros-args", "-r", "a:=b c"]
+        assert shown["argv"] == [script, "--ros-args", "-r", "a:=b c"]
+        assert shown["flags"] == 1
+
+
+def test_modules_start_as_modules(prefix: Prefix) -> None:
+    (prefix.site_packages / "shown.py").write_text(SHOW)
+    shown = prefix.show("-m", "shown", "x")
+    assert shown["orig_argv"] == ["-m", "shown", "x"]
+    assert shown["argv"] == [str(prefix.site_packages / "shown.py"), "x"]
+    assert loader_path(shown)[0] == str(prefix.stand_ins)
+
+
+def test_a_program_on_standard_input_is_read_once(prefix: Prefix) -> None:
+    done = subprocess.run(
+        [prefix.python, "-"],
+        input=SHOW,
+        capture_output=True,
+        text=True,
+        timeout=30,
+        env={"RMW_IMPLEMENTATION": "rmw_manycore"},
+    )
+    assert loader_path(json.loads(done.stdout))[0] == str(prefix.stand_ins)
+
+
+def test_a_lost_library_path_is_told_and_not_retried(prefix: Prefix) -> None:
+    """Whatever clears LD_LIBRARY_PATH on the way would otherwise make python restart for ever."""
+    done = subprocess.run(
+        ["bash", "-c", f"{hook.REPLACED}=$$ exec {prefix.python} -c 'print(1)'"],
+        env={"PATH": "/usr/bin:/bin", "RMW_IMPLEMENTATION": "rmw_manycore"},
+        capture_output=True,
+        text=True,
+        timeout=30,
+    )
+    assert done.stdout == "1\n"
+    assert "LD_LIBRARY_PATH was lost" in done.stderr
+
+
+def test_the_hook_comes_before_that_of_the_wheels() -> None:
+    assert sorted(["ros_wheels_bootstrapper.pth", "rmw_manycore.pth"])[0] == "rmw_manycore.pth"
