@@ -90,6 +90,8 @@ def _leftover_problem(platform: str) -> str | None:
 def _to_report(config: pytest.Config, data: dict[str, Any]) -> pytest.TestReport:
     report = config.hook.pytest_report_from_serializable(config=config, data=data)
     assert isinstance(report, pytest.TestReport)
+    if report.skipped and isinstance(report.longrepr, list):
+        report.longrepr = tuple(report.longrepr)  # JSON has no tuples
     return report
 
 

@@ -1,0 +1,150 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Events: matched, incompatible QoS, lost messages; and policies that are refused."""
+
+from __future__ import annotations
+
+import pytest
+import rclpy
+from rclpy.duration import Duration
+from rclpy.event_handler import (
+    PublisherEventCallbacks,
+    QoSPublisherMatchedInfo,
+    QoSSubscriptionMatchedInfo,
+    SubscriptionEventCallbacks,
+)
+from rclpy.qos import (
+    DurabilityPolicy,
+    LivelinessPolicy,
+    QoSPolicyKind,
+    QoSProfile,
+    ReliabilityPolicy,
+)
+from ros_support import announce, peer_node, spin_until
+from std_msgs.msg import String
+from support import IS_MANYCORE
+
+BEST_EFFORT = QoSProfile(depth=10, reliability=ReliabilityPolicy.BEST_EFFORT)
+VOLATILE = QoSProfile(depth=10)
+TRANSIENT_LOCAL = QoSProfile(depth=10, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+
+INCOMPATIBLE = {
+    "reliability": (BEST_EFFORT, VOLATILE, QoSPolicyKind.RELIABILITY),
+    "durability": (VOLATILE, TRANSIENT_LOCAL, QoSPolicyKind.DURABILITY),
+}
+
+
+def offer(policy: str) -> None:
+    """Publish with less than the test asks for, and tell when the middleware says so."""
+    with peer_node() as node:
+        events = PublisherEventCallbacks(
+            incompatible_qos=lambda event: announce(f"event {event.last_policy_kind!r}")
+        )
+        publisher = node.create_publisher(
+            String, "chatter", INCOMPATIBLE[policy][0], event_callbacks=events
+        )
+        node.create_timer(0.02, lambda: publisher.publish(String()))
+        rclpy.spin(node)
+
+
+@pytest.mark.parametrize("policy", INCOMPATIBLE)
+def test_incompatible_qos(node, start_peer, peer_cluster, policy):
+    _, requested, kind = INCOMPATIBLE[policy]
+    received, events = [], []
+    callbacks = SubscriptionEventCallbacks(incompatible_qos=events.append)
+    node.create_subscription(
+        String, "chatter", received.append, requested, event_callbacks=callbacks
+    )
+    peer = start_peer(offer, policy, cluster=peer_cluster)
+    spin_until(node, lambda: events)
+    assert peer.wait_for(r"event .*?(\d+)>?$").group(1) == str(int(kind))
+    assert (events[0].total_count, events[0].total_count_change) == (1, 1)
+    assert events[0].last_policy_kind == kind
+    assert received == []
+
+
+def test_incompatible_qos_is_logged(node, start_peer):
+    """Without callbacks rclpy logs the event, on both sides."""
+    node.create_subscription(String, "chatter", lambda _: None, 10)
+    peer = start_peer(publish_best_effort, cluster=2)
+    peer.wait_for(r"incompatible QoS.*RELIABILITY")
+
+
+def publish_best_effort() -> None:
+    with peer_node() as node:
+        node.create_publisher(String, "chatter", BEST_EFFORT)
+        rclpy.spin(node)
+
+
+def test_matched(node, start_peer, peer_cluster):
+    published: list[QoSPublisherMatchedInfo] = []
+    subscribed: list[QoSSubscriptionMatchedInfo] = []
+    node.create_publisher(
+        String,
+        "to_peer",
+        10,
+        event_callbacks=PublisherEventCallbacks(matched=published.append),
+    )
+    node.create_subscription(
+        String,
+        "from_peer",
+        lambda _: None,
+        10,
+        event_callbacks=SubscriptionEventCallbacks(matched=subscribed.append),
+    )
+    peer = start_peer(match, cluster=peer_cluster)
+    spin_until(node, lambda: published and subscribed)
+    for event in (published[-1], subscribed[-1]):
+        assert (event.total_count, event.current_count) == (1, 1)
+        assert (event.total_count_change, event.current_count_change) == (1, 1)
+    assert peer.stop() == 0
+    spin_until(node, lambda: len(published) == 2 and len(subscribed) == 2)
+    for event in (published[-1], subscribed[-1]):
+        assert (event.total_count, event.current_count) == (1, 0)
+        assert (event.total_count_change, event.current_count_change) == (0, -1)
+
+
+def match() -> None:
+    with peer_node() as node:
+        node.create_subscription(String, "to_peer", lambda _: None, 10)
+        node.create_publisher(String, "from_peer", 10)
+        rclpy.spin(node)
+
+
+def test_messages_that_were_overwritten_are_reported_as_lost(node, start_peer, peer_cluster):
+    if not IS_MANYCORE:
+        pytest.skip("Fast DDS does not count what its own history dropped")
+    received, lost = [], []
+    callbacks = SubscriptionEventCallbacks(message_lost=lost.append)
+    node.create_subscription(String, "chatter", received.append, 3, event_callbacks=callbacks)
+    peer = start_peer(publish_ten, cluster=peer_cluster)
+    peer.wait_for("published")
+    spin_until(node, lambda: lost and lost[-1].total_count == 7)
+    spin_until(node, lambda: len(received) == 3)
+    assert sum(event.total_count_change for event in lost) == 7
+
+
+def publish_ten() -> None:
+    with peer_node() as node:
+        publisher = node.create_publisher(String, "chatter", 10)
+        spin_until(node, publisher.get_subscription_count)
+        for _ in range(10):
+            publisher.publish(String())
+        announce("published")
+        rclpy.spin(node)
+
+
+REFUSED = {
+    "deadline": QoSProfile(depth=1, deadline=Duration(seconds=1)),
+    "liveliness lease": QoSProfile(depth=1, liveliness_lease_duration=Duration(seconds=1)),
+    "liveliness kind": QoSProfile(depth=1, liveliness=LivelinessPolicy.MANUAL_BY_TOPIC),
+}
+
+
+@pytest.mark.skipif(not IS_MANYCORE, reason="Fast DDS honours them")
+@pytest.mark.parametrize("policy", REFUSED)
+def test_a_policy_that_is_not_honoured_is_refused(node, policy):
+    word = policy.split()[0]
+    with pytest.raises(Exception, match=f"(?i){word}"):
+        node.create_publisher(String, "chatter", REFUSED[policy])
+    with pytest.raises(Exception, match=f"(?i){word}"):
+        node.create_subscription(String, "chatter", lambda _: None, REFUSED[policy])

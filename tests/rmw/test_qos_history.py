@@ -1,0 +1,192 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""History, durability and lifespan: which messages a subscription still finds."""
+
+from __future__ import annotations
+
+import time
+
+import pytest
+import rclpy
+from rclpy.duration import Duration
+from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
+from ros_support import announce, peer_node, spin_until
+from std_msgs.msg import String, UInt8MultiArray
+from support import IS_MANYCORE
+
+TRANSIENT_LOCAL = DurabilityPolicy.TRANSIENT_LOCAL
+
+
+def publish_burst(count: int, depth: int, end: bool) -> None:
+    """Publish 0 to count - 1 at once, and "end" on another topic once that has a reader."""
+    with peer_node() as node:
+        publisher = node.create_publisher(String, "numbers", depth)
+        end_publisher = node.create_publisher(String, "end", 1)
+        spin_until(node, publisher.get_subscription_count)
+        for number in range(count):
+            publisher.publish(String(data=str(number)))
+        announce("published")
+        if end:
+            spin_until(node, end_publisher.get_subscription_count)
+            end_publisher.publish(String())
+        rclpy.spin(node)
+
+
+def receive_after_burst(node, start_peer, cluster, qos, count):
+    """Return what a subscription holds that nobody looked at during a burst."""
+    received, ended = [], []
+    node.create_subscription(String, "numbers", lambda m: received.append(int(m.data)), qos)
+    node.create_subscription(String, "end", ended.append, 1)
+    peer = start_peer(publish_burst, count, count, True, cluster=cluster)
+    peer.wait_for("published")
+    spin_until(node, lambda: ended)
+    spin_until(node, lambda: count - 1 in received)
+    return received
+
+
+def test_keep_last_keeps_the_newest(node, start_peer, peer_cluster):
+    received = receive_after_burst(node, start_peer, peer_cluster, 3, 10)
+    assert received == [7, 8, 9]
+
+
+def test_depth_of_one(node, start_peer, peer_cluster):
+    assert receive_after_burst(node, start_peer, peer_cluster, 1, 10) == [9]
+
+
+def test_keep_all_keeps_all(node, start_peer, peer_cluster):
+    qos = QoSProfile(history=HistoryPolicy.KEEP_ALL)
+    assert receive_after_burst(node, start_peer, peer_cluster, qos, 500) == list(range(500))
+
+
+def test_depth_is_reached_with_large_messages(node, start_peer, peer_cluster):
+    """Ten messages of 1 MiB fit a depth of ten: a topic DSM without a fixed size grows."""
+    received, ended = [], []
+    node.create_subscription(UInt8MultiArray, "large", received.append, 10)
+    node.create_subscription(String, "end", ended.append, 1)
+    peer = start_peer(publish_large, cluster=peer_cluster)
+    peer.wait_for("published")
+    spin_until(node, lambda: ended)
+    spin_until(node, lambda: len(received) == 10)
+    assert [(m.data[0], m.data[-1], len(m.data)) for m in received] == [
+        (number, number, 1 << 20) for number in range(10)
+    ]
+
+
+def publish_large() -> None:
+    with peer_node() as node:
+        publisher = node.create_publisher(UInt8MultiArray, "large", 10)
+        end_publisher = node.create_publisher(String, "end", 1)
+        spin_until(node, publisher.get_subscription_count)
+        for number in range(10):
+            publisher.publish(UInt8MultiArray(data=bytes([number]) * (1 << 20)))
+        announce("published")
+        spin_until(node, end_publisher.get_subscription_count)
+        end_publisher.publish(String())
+        rclpy.spin(node)
+
+
+def publish_history(count: int, depth: int) -> None:
+    """Publish 0 to count - 1 for readers that come later."""
+    with peer_node() as node:
+        qos = QoSProfile(depth=depth, durability=TRANSIENT_LOCAL)
+        publisher = node.create_publisher(String, "numbers", qos)
+        for number in range(count):
+            publisher.publish(String(data=str(number)))
+        announce("published")
+        spin_until(node, publisher.get_subscription_count)
+        publisher.publish(String(data="-1"))
+        rclpy.spin(node)
+
+
+@pytest.mark.parametrize(("writer_depth", "reader_depth", "kept"), [(5, 20, 5), (20, 20, 10)])
+def test_late_joiner_gets_the_history(
+    node, start_peer, peer_cluster, writer_depth, reader_depth, kept
+):
+    peer = start_peer(publish_history, 10, writer_depth, cluster=peer_cluster)
+    peer.wait_for("published")
+    received = []
+    qos = QoSProfile(depth=reader_depth, durability=TRANSIENT_LOCAL)
+    node.create_subscription(String, "numbers", lambda m: received.append(int(m.data)), qos)
+    spin_until(node, lambda: -1 in received)
+    assert received == [*range(10 - kept, 10), -1]
+
+
+def test_late_joiner_that_is_volatile_gets_only_the_new(node, start_peer, peer_cluster):
+    peer = start_peer(publish_history, 10, 10, cluster=peer_cluster)
+    peer.wait_for("published")
+    received = []
+    node.create_subscription(String, "numbers", lambda m: received.append(int(m.data)), 20)
+    spin_until(node, lambda: -1 in received)
+    assert received == [-1]
+
+
+def test_late_joiner_of_the_same_process(node):
+    qos = QoSProfile(depth=3, durability=TRANSIENT_LOCAL)
+    publisher = node.create_publisher(String, "numbers", qos)
+    for number in range(5):
+        publisher.publish(String(data=str(number)))
+    received = []
+    node.create_subscription(String, "numbers", lambda m: received.append(int(m.data)), qos)
+    spin_until(node, lambda: len(received) == 3)
+    assert received == [2, 3, 4]
+
+
+def test_expired_messages_are_not_delivered(node, start_peer, peer_cluster):
+    """The lifespan runs out while the message waits; one without a lifespan marks the end."""
+    received = []
+    # The publisher's lifespan counts; Fast DDS only looks at the subscription's.
+    qos = 10 if IS_MANYCORE else QoSProfile(depth=10, lifespan=Duration(seconds=0.1))
+    node.create_subscription(String, "numbers", lambda m: received.append(m.data), qos)
+    peer = start_peer(publish_short_lived, cluster=peer_cluster)
+    peer.wait_for("published")
+    time.sleep(0.3)  # the lifespan itself, not a wait for something to happen
+    peer.say("go on")
+    spin_until(node, lambda: "lasting" in received)
+    assert received == ["lasting"]
+
+
+def publish_short_lived() -> None:
+    with peer_node() as node:
+        short = QoSProfile(depth=10, lifespan=Duration(seconds=0.1))
+        expiring = node.create_publisher(String, "numbers", short)
+        lasting = node.create_publisher(String, "numbers", 10)
+        for publisher in (expiring, lasting):
+            spin_until(node, publisher.get_subscription_count)
+        expiring.publish(String(data="short-lived"))
+        announce("published")
+        input()
+        lasting.publish(String(data="lasting"))
+        rclpy.spin(node)
+
+
+def test_a_reader_takes_what_a_publisher_left(node, start_peer, peer_cluster):
+    """What was published before the publisher went away is not lost."""
+    if not IS_MANYCORE:
+        pytest.skip("a DDS writer takes its unread samples with it")
+    received = []
+    node.create_subscription(String, "numbers", lambda m: received.append(int(m.data)), 10)
+    peer = start_peer(publish_burst, 5, 5, False, cluster=peer_cluster)
+    peer.wait_for("published")
+    assert peer.stop() == 0
+    spin_until(node, lambda: len(received) == 5)
+    assert received == [0, 1, 2, 3, 4]
+
+
+def test_system_default_and_best_available(node):
+    """The profiles that leave a choice to the middleware come back as what was chosen."""
+    received = []
+    publisher = node.create_publisher(
+        String, "chatter", QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
+    )
+    available = QoSProfile(
+        depth=1,
+        reliability=ReliabilityPolicy.BEST_AVAILABLE,
+        durability=DurabilityPolicy.BEST_AVAILABLE,
+    )
+    spin_until(node, lambda: node.count_publishers("chatter"))
+    subscription = node.create_subscription(String, "chatter", received.append, available)
+    spin_until(node, publisher.get_subscription_count)
+    publisher.publish(String())
+    spin_until(node, lambda: received)
+    info = node.get_subscriptions_info_by_topic(subscription.topic_name)[0].qos_profile
+    assert info.reliability == ReliabilityPolicy.BEST_EFFORT
+    assert info.durability == DurabilityPolicy.VOLATILE
