@@ -11,7 +11,7 @@ NATIVE_SOURCES := $(shell find CMakeLists.txt cmake startup rmw_manycore_py/nati
 .PHONY: help setup demo test test-native test-model stress sanitize bench lint docs clean
 
 help:  ## this list
-	@sed -n 's/^\([a-z-]*\):.*## /\1: /p' $(MAKEFILE_LIST) | column -t -s: -N target,purpose
+	@sed -n 's/^\([a-z-]*\):.*## /\1: /p' $(MAKEFILE_LIST) | column -t -l 2 -s:
 
 .venv/installed: pyproject.toml scripts/setup.sh $(NATIVE_SOURCES)
 	scripts/setup.sh

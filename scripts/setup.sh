@@ -50,6 +50,9 @@ install_checkout() {
     --requirement .venv/build-requirements.txt
   .venv/bin/pip install --quiet --disable-pip-version-check \
     --no-build-isolation --editable '.[dev]'
+  # For type checkers the editable install also puts the checkout on sys.path, which would make
+  # `bridge` and `tests` top-level modules of every program; its first line does the real work.
+  sed -i 1q .venv/lib/python3*/site-packages/_editable_skbc_rmw_manycore.pth
   touch .venv/installed
 }
 
