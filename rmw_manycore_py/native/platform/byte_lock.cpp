@@ -1,0 +1,98 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#include "platform/byte_lock.hpp"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+
+#include <cerrno>
+#include <ctime>
+
+#include "platform/clock.hpp"
+#include "platform/error.hpp"
+
+namespace manycore {
+namespace {
+
+struct flock range(short type, uint32_t first, uint32_t count) {
+  struct flock lock {};
+  lock.l_type = type;
+  lock.l_whence = SEEK_SET;
+  lock.l_start = first;
+  lock.l_len = count;
+  return lock;
+}
+
+bool same_file(int fd, const std::string & path) {
+  struct stat opened {};
+  struct stat named {};
+  return fstat(fd, &opened) == 0 && stat(path.c_str(), &named) == 0 &&
+         opened.st_ino == named.st_ino && opened.st_dev == named.st_dev;
+}
+
+}  // namespace
+
+ByteLocks ByteLocks::open(const std::string & path) {
+  FileDescriptor fd(::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600));
+  if (!fd) {
+    throw_errno("cannot open " + path);
+  }
+  return ByteLocks(std::move(fd), path);
+}
+
+bool ByteLocks::try_lock(uint32_t byte) const {
+  struct flock lock = range(F_WRLCK, byte, 1);
+  if (fcntl(fd_.get(), F_SETLK, &lock) == 0) {
+    return true;
+  }
+  if (errno != EAGAIN && errno != EACCES) {
+    throw_errno("cannot lock " + path_);
+  }
+  return false;
+}
+
+void ByteLocks::unlock(uint32_t byte) const noexcept {
+  struct flock lock = range(F_UNLCK, byte, 1);
+  fcntl(fd_.get(), F_SETLK, &lock);
+}
+
+bool ByteLocks::held_by_other(uint32_t byte) const { return any_held_by_other(byte, 1); }
+
+bool ByteLocks::any_held_by_other(uint32_t first, uint32_t count) const {
+  struct flock lock = range(F_WRLCK, first, count);
+  if (fcntl(fd_.get(), F_GETLK, &lock) != 0) {
+    throw_errno("cannot examine the locks of " + path_);
+  }
+  return lock.l_type != F_UNLCK;
+}
+
+std::optional<FileLock> FileLock::acquire(const std::string & path, int timeout_ms) {
+  const int64_t deadline = monotonic_ns() + int64_t{timeout_ms} * 1'000'000;
+  while (true) {
+    FileDescriptor fd(::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600));
+    if (!fd && errno == ENOENT) {
+      return std::nullopt;
+    }
+    if (!fd) {
+      throw_errno("cannot open " + path);
+    }
+    // Joining holds the lock for well under a millisecond, so a short pause between tries is enough.
+    while (flock(fd.get(), LOCK_EX | LOCK_NB) != 0) {
+      if (errno != EWOULDBLOCK && errno != EINTR) {
+        throw_errno("cannot lock " + path);
+      }
+      if (monotonic_ns() > deadline) {
+        throw Error(
+          ErrorCode::timeout, path + " has been locked by another process for " +
+            std::to_string(timeout_ms) + " ms; is one that was joining stopped?");
+      }
+      const timespec pause = to_timespec(200'000);
+      nanosleep(&pause, nullptr);
+    }
+    if (same_file(fd.get(), path)) {
+      return FileLock(std::move(fd));
+    }
+  }
+}
+
+}  // namespace manycore

@@ -1,0 +1,46 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "platform/file_descriptor.hpp"
+
+namespace manycore {
+
+/// One file of byte locks (fcntl): the kernel drops a process's locks when it dies, whatever killed
+/// it, so a held byte proves life and a free one proves death, with no doubt about reused pids.
+/// A process must open the file once only: closing any descriptor of it drops its locks.
+class ByteLocks {
+public:
+  static ByteLocks open(const std::string & path);
+
+  /// False when another process holds the byte.
+  bool try_lock(uint32_t byte) const;
+  void unlock(uint32_t byte) const noexcept;
+  /// True when another process holds the byte. (Own locks are not seen.)
+  bool held_by_other(uint32_t byte) const;
+  /// True when another process holds any byte in [first, first + count); count 0 = to the end.
+  bool any_held_by_other(uint32_t first, uint32_t count) const;
+
+private:
+  ByteLocks(FileDescriptor fd, std::string path) : fd_(std::move(fd)), path_(std::move(path)) {}
+  FileDescriptor fd_;
+  std::string path_;
+};
+
+/// Exclusive lock of a whole file (flock), held while alive. The file may be unlinked by its holder;
+/// acquiring checks that the locked file is still the one at `path`.
+class FileLock {
+public:
+  /// Waits at most `timeout_ms`; throws Error{timeout} naming the file. Empty when the file's directory is
+  /// missing (its last user has just removed it).
+  static std::optional<FileLock> acquire(const std::string & path, int timeout_ms);
+
+private:
+  explicit FileLock(FileDescriptor fd) : fd_(std::move(fd)) {}
+  FileDescriptor fd_;
+};
+
+}  // namespace manycore

@@ -1,0 +1,145 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#include "platform/os_process.hpp"
+
+#include <fcntl.h>
+#include <sched.h>
+#include <spawn.h>
+#include <sys/syscall.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+
+#include "platform/error.hpp"
+
+extern char ** environ;
+
+namespace manycore {
+namespace {
+
+std::string base_name(const std::string & path) { return path.substr(path.rfind('/') + 1); }
+
+std::vector<std::string> command_line() {
+  std::ifstream file("/proc/self/cmdline", std::ios::binary);
+  std::vector<std::string> words;
+  for (std::string word; std::getline(file, word, '\0');) {
+    words.push_back(word);
+  }
+  return words;
+}
+
+}  // namespace
+
+FileDescriptor open_pidfd(pid_t pid) {
+  FileDescriptor fd(static_cast<int>(syscall(SYS_pidfd_open, pid, 0)));
+  if (!fd && errno != ESRCH && errno != EINVAL) {
+    throw_errno("cannot watch process " + std::to_string(pid));
+  }
+  return fd;
+}
+
+bool pin_to_cpu(int host_cpu) noexcept {
+  cpu_set_t cpus;
+  CPU_ZERO(&cpus);
+  CPU_SET(static_cast<size_t>(host_cpu), &cpus);
+  return sched_setaffinity(0, sizeof cpus, &cpus) == 0;
+}
+
+std::string program_name() {
+  const std::vector<std::string> words = command_line();
+  if (words.empty()) {
+    return "?";
+  }
+  const std::string executable = base_name(words[0]);
+  if (executable.rfind("python", 0) != 0) {
+    return executable;
+  }
+  for (size_t i = 1; i < words.size(); ++i) {
+    if (words[i] == "-m" && i + 1 < words.size()) {
+      return words[i + 1];
+    }
+    if (words[i][0] != '-') {
+      return base_name(words[i]);
+    }
+  }
+  return executable;
+}
+
+int spawn_daemon(const std::vector<std::string> & arguments) {
+  std::vector<char *> argv;
+  for (const std::string & argument : arguments) {
+    argv.push_back(const_cast<char *>(argument.c_str()));
+  }
+  argv.push_back(nullptr);
+
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDWR, 0);
+  posix_spawn_file_actions_adddup2(&actions, 0, 1);
+  posix_spawn_file_actions_addclosefrom_np(&actions, 3);
+  posix_spawnattr_t attributes;
+  posix_spawnattr_init(&attributes);
+  sigset_t none;
+  sigemptyset(&none);
+  sigset_t all;
+  sigfillset(&all);
+  posix_spawnattr_setsigmask(&attributes, &none);
+  posix_spawnattr_setsigdefault(&attributes, &all);
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
+
+  pid_t pid = -1;
+  const int error =
+    posix_spawn(&pid, argv[0], &actions, &attributes, argv.data(), environ);
+  posix_spawn_file_actions_destroy(&actions);
+  posix_spawnattr_destroy(&attributes);
+  if (error != 0) {
+    errno = error;
+    return -1;
+  }
+  int status = 0;
+  while (waitpid(pid, &status, 0) < 0) {
+    if (errno != EINTR) {
+      return 0;  // a program that ignores SIGCHLD: its children leave no status
+    }
+  }
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 1;
+}
+
+Daemon Daemon::detach() {
+  int ends[2];
+  if (pipe2(ends, O_CLOEXEC) != 0) {
+    throw_errno("cannot create a pipe");
+  }
+  FileDescriptor reader(ends[0]);
+  FileDescriptor writer(ends[1]);
+  const pid_t child = fork();
+  if (child < 0) {
+    throw_errno("cannot fork");
+  }
+  if (child > 0) {
+    writer = FileDescriptor();
+    char ok = 0;
+    ssize_t got = 0;
+    do {
+      got = read(reader.get(), &ok, 1);
+    } while (got < 0 && errno == EINTR);
+    _exit(got == 1 ? 0 : 1);
+  }
+  setsid();
+  return Daemon(std::move(writer));
+}
+
+void Daemon::ready() noexcept {
+  const int null = open("/dev/null", O_RDWR | O_CLOEXEC);
+  dup2(null, STDERR_FILENO);  // until now errors went to the starter's terminal
+  close(null);
+  const ssize_t told = write(status_.get(), "1", 1);
+  static_cast<void>(told);  // a starter that is gone needs no answer
+  status_ = FileDescriptor();
+}
+
+}  // namespace manycore

@@ -1,0 +1,33 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+#include "platform/file_descriptor.hpp"
+
+namespace manycore {
+
+/// The eMCOS message primitive on the host: a FIFO that carries messages of one fixed size, at most
+/// PIPE_BUF, so that each write is atomic. Opened for reading and writing by everybody: what lies in
+/// it survives the death of its reader.
+class Pipe {
+public:
+  /// Creates the FIFO where it is missing (mode 0600) and opens it.
+  static Pipe open(const std::string & path);
+
+  /// False when the pipe is full; the sender never waits.
+  bool try_send(const void * message, size_t size_bytes) const noexcept;
+
+  /// Blocks until at least one message is there; returns the bytes read, 0 when interrupted.
+  size_t receive(void * buffer, size_t capacity_bytes) const;
+
+private:
+  explicit Pipe(FileDescriptor sender, FileDescriptor receiver)
+  : sender_(std::move(sender)), receiver_(std::move(receiver)) {}
+
+  FileDescriptor sender_;    ///< O_NONBLOCK
+  FileDescriptor receiver_;  ///< blocking; a description of its own, since O_NONBLOCK belongs to one
+};
+
+}  // namespace manycore

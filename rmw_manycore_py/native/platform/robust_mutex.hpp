@@ -1,0 +1,26 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <pthread.h>
+
+namespace manycore {
+
+/// A mutex in shared memory whose next owner learns that the last one died holding it. Lives in a
+/// registry header; never taken on the data path.
+class RobustMutex {
+public:
+  enum class Outcome { locked, owner_died };
+
+  /// Once, by the creator of the segment.
+  void initialize();
+  /// Throws Error{timeout} after `timeout_ns` and Error{corrupt} on a word that is no mutex.
+  Outcome lock(long timeout_ns);
+  void unlock() noexcept;
+  /// After owner_died, once the protected state has been repaired.
+  void mark_consistent() noexcept;
+
+private:
+  pthread_mutex_t mutex_;
+};
+
+}  // namespace manycore

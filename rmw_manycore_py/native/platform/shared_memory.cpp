@@ -1,0 +1,118 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#include "platform/shared_memory.hpp"
+
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <sys/statvfs.h>
+
+#include <cerrno>
+#include <utility>
+
+#include "platform/error.hpp"
+
+namespace manycore {
+namespace {
+
+constexpr uint64_t page = 4096;
+
+uint64_t page_floor(uint64_t x) { return x & ~(page - 1); }
+uint64_t page_ceil(uint64_t x) { return page_floor(x + page - 1); }
+
+}  // namespace
+
+SharedMemory::SharedMemory(FileDescriptor fd, const std::string & path, size_t size_bytes)
+: fd_(std::move(fd)), path_(path), size_(size_bytes) {
+  void * const mapped = mmap(
+    nullptr, size_bytes, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_NORESERVE, fd_.get(), 0);
+  if (mapped == MAP_FAILED) {
+    throw_errno("cannot map " + path);
+  }
+  // A core dump of one node must not contain the whole platform.
+  madvise(mapped, size_bytes, MADV_DONTDUMP);
+  data_ = static_cast<std::byte *>(mapped);
+}
+
+SharedMemory::SharedMemory(SharedMemory && other) noexcept { *this = std::move(other); }
+
+SharedMemory & SharedMemory::operator=(SharedMemory && other) noexcept {
+  std::swap(fd_, other.fd_);
+  std::swap(path_, other.path_);
+  std::swap(data_, other.data_);
+  std::swap(size_, other.size_);
+  return *this;
+}
+
+SharedMemory::~SharedMemory() { unmap(); }
+
+void SharedMemory::unmap() noexcept {
+  if (data_ != nullptr) {
+    munmap(data_, size_);
+  }
+}
+
+SharedMemory SharedMemory::create(const std::string & path, size_t size_bytes) {
+  FileDescriptor fd(::open(path.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0600));
+  if (!fd) {
+    throw_errno("cannot create " + path);
+  }
+  if (ftruncate(fd.get(), static_cast<off_t>(size_bytes)) != 0) {
+    throw_errno("cannot size " + path);
+  }
+  return SharedMemory(std::move(fd), path, size_bytes);
+}
+
+SharedMemory SharedMemory::open(const std::string & path, size_t least_size_bytes) {
+  FileDescriptor fd(::open(path.c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW));
+  if (!fd) {
+    throw_errno("cannot open " + path);
+  }
+  struct stat status {};
+  if (fstat(fd.get(), &status) != 0) {
+    throw_errno("cannot examine " + path);
+  }
+  if (!S_ISREG(status.st_mode) || static_cast<size_t>(status.st_size) < least_size_bytes) {
+    throw Error(
+      ErrorCode::corrupt, path + " is truncated or not a segment (" +
+        std::to_string(status.st_size) + " bytes, expected at least " +
+        std::to_string(least_size_bytes) + "); remove it with 'manycore clean'");
+  }
+  return SharedMemory(std::move(fd), path, static_cast<size_t>(status.st_size));
+}
+
+void SharedMemory::reserve(uint64_t offset, uint64_t length) const {
+  const uint64_t first = page_floor(offset);
+  const uint64_t bytes = page_ceil(offset + length) - first;
+  int error = 0;
+  do {
+    error = posix_fallocate(fd_.get(), static_cast<off_t>(first), static_cast<off_t>(bytes));
+  } while (error == EINTR);
+  if (error == 0) {
+    return;
+  }
+  struct statvfs fs {};
+  fstatvfs(fd_.get(), &fs);
+  throw Error(
+    ErrorCode::no_space, "no room for " + std::to_string(bytes) + " bytes in " + path_ + ": " +
+      std::to_string(fs.f_bavail * fs.f_frsize) + " of " +
+      std::to_string(fs.f_blocks * fs.f_frsize) +
+      " bytes are free; enlarge /dev/shm (mount -o remount,size=...) or lower topic_dsm_size");
+}
+
+void SharedMemory::populate(uint64_t offset, uint64_t length) const noexcept {
+  const uint64_t first = page_floor(offset);
+  // Kernels before 5.14 refuse the advice; pages are then mapped by their first use.
+  madvise(data_ + first, page_ceil(offset + length) - first, MADV_POPULATE_WRITE);
+}
+
+void SharedMemory::release(uint64_t offset, uint64_t length) const noexcept {
+  const uint64_t first = page_ceil(offset);
+  const uint64_t end = page_floor(offset + length);
+  if (end > first) {
+    fallocate(
+      fd_.get(), FALLOC_FL_PUNCH_HOLE | FALLOC_FL_KEEP_SIZE, static_cast<off_t>(first),
+      static_cast<off_t>(end - first));
+  }
+}
+
+}  // namespace manycore

@@ -1,0 +1,52 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+#include "platform/file_descriptor.hpp"
+
+namespace manycore {
+
+/// A shared mapping of one file in /dev/shm. The file is sparse: only reserved ranges hold memory,
+/// so a small /dev/shm shows at reserve() and never as SIGBUS.
+class SharedMemory {
+public:
+  SharedMemory() = default;
+  SharedMemory(SharedMemory && other) noexcept;
+  SharedMemory & operator=(SharedMemory && other) noexcept;
+  ~SharedMemory();
+
+  /// Creates `path` (mode 0600, must not exist) with `size_bytes`, nothing reserved.
+  static SharedMemory create(const std::string & path, size_t size_bytes);
+  /// Maps an existing file of this user. Throws Error{corrupt} below `least_size_bytes`.
+  static SharedMemory open(const std::string & path, size_t least_size_bytes);
+
+  std::byte * data() const noexcept { return data_; }
+  size_t size() const noexcept { return size_; }
+  explicit operator bool() const noexcept { return data_ != nullptr; }
+
+  template<typename T>
+  T & at(uint64_t offset) const noexcept {
+    return *reinterpret_cast<T *>(data_ + offset);
+  }
+
+  /// Backs [offset, offset + length) with memory; throws Error{no_space} naming the size needed.
+  void reserve(uint64_t offset, uint64_t length) const;
+  /// Maps the pages of a reserved range into this process, so that first use does not fault.
+  void populate(uint64_t offset, uint64_t length) const noexcept;
+  /// Gives the whole pages inside the range back to the system; they read as zero afterwards.
+  void release(uint64_t offset, uint64_t length) const noexcept;
+
+private:
+  SharedMemory(FileDescriptor fd, const std::string & path, size_t size_bytes);
+  void unmap() noexcept;
+
+  FileDescriptor fd_;
+  std::string path_;
+  std::byte * data_ = nullptr;
+  size_t size_ = 0;
+};
+
+}  // namespace manycore

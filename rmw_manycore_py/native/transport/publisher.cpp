@@ -1,0 +1,101 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#include "transport/publisher.hpp"
+
+#include <utility>
+
+#include "platform/clock.hpp"
+#include "transport/matching.hpp"
+#include "transport/notifier.hpp"
+#include "transport/publisher_impl.hpp"
+
+namespace manycore {
+
+Draft::Draft(Draft && other) noexcept
+: publisher_(std::exchange(other.publisher_, nullptr)),
+  data_(other.data_),
+  capacity_(other.capacity_) {}
+
+Draft::~Draft() {
+  if (publisher_ == nullptr) {
+    return;
+  }
+  Publisher::Impl & impl = *publisher_->impl_;
+  impl.writer.abandon_room();
+  impl.writer.leave();
+  impl.mutex.unlock();
+}
+
+Publisher::Publisher(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+
+Publisher::~Publisher() {
+  try {
+    const Registry::Lock lock(impl_->registry);
+    matching::close(impl_->registry, impl_->slot, false);
+    matching::sweep(impl_->registry);
+  } catch (const std::exception &) {
+    // The registry stayed locked; the reaper closes this endpoint when the process ends.
+  }
+  impl_->registry.graph_changed();
+}
+
+const Gid & Publisher::gid() const noexcept { return impl_->entry.gid; }
+
+const Qos & Publisher::qos() const noexcept { return impl_->entry.qos; }
+
+Draft Publisher::draft(size_t size_bytes) {
+  Impl & impl = *impl_;
+  std::unique_lock<std::mutex> lock(impl.mutex);
+  impl.writer.enter();
+  try {
+    const TopicDsmWriter::Room room = impl.writer.find_room(size_bytes);
+    lock.release();
+    return Draft(*this, room.data, room.capacity_bytes);
+  } catch (...) {
+    impl.writer.leave();
+    throw;
+  }
+}
+
+uint64_t Publisher::publish(
+  Draft && draft, size_t size_bytes, int64_t source_timestamp_ns,
+  const Correlation & correlation) {
+  Impl & impl = *impl_;
+  const std::unique_lock<std::mutex> lock(impl.mutex, std::adopt_lock);
+  draft.publisher_ = nullptr;
+  const uint64_t sequence_number = ++impl.published;
+  const uint64_t number =
+    impl.writer.commit(size_bytes, source_timestamp_ns, sequence_number, correlation);
+  const bool targeted = impl.entry.role == EndpointRole::reply;
+  announce(
+    impl.registry, impl.entry.cluster, impl.writer.readers(),
+    {impl.entry.block, impl.slot, impl.entry.slot.incarnation, number,
+     targeted ? &correlation.client : nullptr});
+  impl.writer.leave();
+  EndpointCounters & counters = impl.entry.counters;
+  counters.messages.store(sequence_number, std::memory_order_relaxed);
+  counters.bytes.store(
+    counters.bytes.load(std::memory_order_relaxed) + size_bytes, std::memory_order_relaxed);
+  return sequence_number;
+}
+
+bool Publisher::wait_for_all_taken(int64_t timeout_ns) {
+  const std::lock_guard<std::mutex> lock(impl_->mutex);
+  const int64_t now = monotonic_ns();
+  impl_->writer.enter();
+  const bool taken =
+    impl_->writer.wait_until_taken(timeout_ns > INT64_MAX - now ? INT64_MAX : now + timeout_ns);
+  impl_->writer.leave();
+  return taken;
+}
+
+MatchedCount Publisher::matched() const {
+  return {impl_->entry.matched_total.load(), impl_->entry.matched_current.load()};
+}
+
+IncompatibleCount Publisher::incompatible() const {
+  return {
+    impl_->entry.incompatible_total.load(),
+    static_cast<QosPolicy>(impl_->entry.incompatible_policy.load())};
+}
+
+}  // namespace manycore

@@ -1,0 +1,79 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "transport/registry.hpp"
+#include "transport/subscription_layout.hpp"
+#include "transport/topic_dsm_layout.hpp"
+
+namespace manycore {
+
+/// One reader of the own topic DSM, resolved to addresses of this process.
+struct Reader {
+  SourceEntry * source = nullptr;
+  SubscriptionHeader * subscription = nullptr;
+  WakeWord * wake = nullptr;
+  uint32_t cluster = 0;
+  uint32_t endpoint = 0;
+  uint32_t source_index = 0;
+  uint32_t source_incarnation = 0;
+  bool reliable = false;
+  Gid gid{};
+
+  bool active() const noexcept {
+    return source->state.load(std::memory_order_acquire) == SourceState::active;
+  }
+};
+
+/// A publisher's private copy of its reader table, renewed when the table changes. The addresses in it are
+/// good while the publisher's phase is odd (see docs/design/topic_dsm.md, Freeing).
+class ReaderList {
+public:
+  ReaderList(Registry & registry, Cluster & cluster, TopicDsmHeader & dsm) noexcept
+  : registry_(registry), cluster_(cluster), dsm_(dsm) {}
+
+  /// Renews the copy if the table changed. The load is seq_cst: it must not move before the caller's
+  /// preceding seq_cst store of `phase`, `number` or `last`.
+  void refresh() {
+    if (dsm_.match_generation.load(std::memory_order_seq_cst) != seen_) {
+      rebuild();
+    }
+  }
+
+  const std::vector<Reader> & readers() const noexcept { return readers_; }
+
+  /// True while some reader holds a claim on record `number`.
+  bool is_pinned(uint64_t number) const noexcept {
+    for (const Reader & reader : readers_) {
+      const uint64_t reading = reader.source->reading.load(std::memory_order_seq_cst);
+      if (reading == number || reading == every_record) {
+        return true;
+      }
+    }
+    return false;
+  }
+
+  /// True while some reader holds a claim on a record in [first, last].
+  bool is_any_pinned(uint64_t first, uint64_t last) const noexcept {
+    for (const Reader & reader : readers_) {
+      const uint64_t reading = reader.source->reading.load(std::memory_order_seq_cst);
+      if ((reading >= first && reading <= last) || reading == every_record) {
+        return true;
+      }
+    }
+    return false;
+  }
+
+private:
+  void rebuild();
+  bool resolve(ReaderEntry & entry, Reader & reader);
+
+  Registry & registry_;
+  Cluster & cluster_;
+  TopicDsmHeader & dsm_;
+  uint64_t seen_ = 0;
+  std::vector<Reader> readers_;
+};
+
+}  // namespace manycore

@@ -1,0 +1,140 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#include "transport/reaper.hpp"
+
+#include <pthread.h>
+#include <sys/epoll.h>
+#include <sys/eventfd.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cstdlib>
+
+#include "platform/os_process.hpp"
+#include "transport/lifecycle.hpp"
+
+namespace manycore {
+namespace {
+
+constexpr int for_ever_ms = -1;
+constexpr uint64_t look_again_key = 0;  ///< no process has pid 0
+
+/// True while the platform's directory still holds this registry, and not a later one of the same name.
+bool is_current(Registry & registry) {
+  try {
+    return Registry(registry.paths()).nonce() == registry.nonce();
+  } catch (const Error &) {
+    return false;
+  }
+}
+
+void add_to_poll(int poll, int fd, uint64_t key) {
+  epoll_event event{};
+  event.events = EPOLLIN;
+  event.data.u64 = key;
+  if (epoll_ctl(poll, EPOLL_CTL_ADD, fd, &event) != 0) {
+    throw_errno("cannot watch a descriptor");
+  }
+}
+
+}  // namespace
+
+void exit_if_unused(Registry & registry) {
+  const JoinLock lock(registry.paths());
+  if (!is_current(registry)) {
+    _exit(0);
+  }
+  if (!is_in_use(registry)) {
+    remove_platform(registry.paths());
+    _exit(0);
+  }
+}
+
+Reaper::Reaper(Registry & registry, uint32_t cluster)
+: registry_(registry),
+  cluster_(cluster),
+  poll_(epoll_create1(EPOLL_CLOEXEC)),
+  event_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
+  if (!poll_ || !event_) {
+    throw_errno("cannot create the reaper's descriptors");
+  }
+  add_to_poll(poll_.get(), event_.get(), look_again_key);
+  watch_new();
+  thread_ = std::thread([this] { run(); });
+  pthread_setname_np(thread_.native_handle(), "manycore_reaper");
+}
+
+Reaper::~Reaper() {
+  running_ = false;
+  look_again();
+  thread_.join();
+}
+
+void Reaper::look_again() noexcept { eventfd_write(event_.get(), 1); }
+
+void Reaper::watch(pid_t pid) {
+  if (pid <= 0 || pid == getpid() || watched_.count(pid) != 0) {
+    return;
+  }
+  FileDescriptor pidfd = open_pidfd(pid);
+  if (pidfd) {
+    add_to_poll(poll_.get(), pidfd.get(), static_cast<uint64_t>(pid));
+    watched_.emplace(pid, std::move(pidfd));
+  }
+}
+
+void Reaper::watch_new() {
+  for (uint32_t slot = 0; slot < registry_.processes().high_water(); ++slot) {
+    const ProcessEntry & process = registry_.processes()[slot];
+    if (registry_.processes().is_live(slot) && process.cluster == cluster_) {
+      watch(process.pid);
+    }
+  }
+  const uint64_t present = registry_.header().clusters_present.load();
+  for (uint32_t id = 1; id <= max_clusters; ++id) {
+    if ((present >> (id - 1) & 1) != 0 && id != cluster_ && registry_.clusters().find(id)) {
+      watch(registry_.clusters().at(id).header().receive_thread_pid.load());
+    }
+  }
+  bury();  // who died before it was watched
+}
+
+void Reaper::bury() {
+  uint32_t dead = 0;
+  {
+    const Registry::Lock lock(registry_);
+    dead = reap_dead(registry_);
+  }
+  if (dead != 0) {
+    registry_.graph_changed();
+  }
+}
+
+void Reaper::run() noexcept {
+  while (true) {
+    epoll_event events[16];
+    const int count = epoll_wait(poll_.get(), events, 16, for_ever_ms);
+    try {
+      bool somebody_ended = false;
+      for (int i = 0; i < count; ++i) {
+        if (events[i].data.u64 == look_again_key) {
+          eventfd_t ignored = 0;
+          eventfd_read(event_.get(), &ignored);
+        } else {
+          watched_.erase(static_cast<pid_t>(events[i].data.u64));
+          somebody_ended = true;
+        }
+      }
+      if (!running_) {
+        return;
+      }
+      watch_new();
+      if (somebody_ended) {
+        exit_if_unused(registry_);
+      }
+    } catch (const std::exception &) {
+      // A lock that stayed taken or a damaged entry: the next event tries again.
+    }
+  }
+}
+
+}  // namespace manycore

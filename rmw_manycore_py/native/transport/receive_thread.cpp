@@ -1,0 +1,124 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#include "transport/receive_thread.hpp"
+
+#include "transport/reader_table.hpp"
+#include "transport/subscriber_queue.hpp"
+
+namespace manycore {
+
+ReceiveThread::ReceiveThread(Registry & registry, uint32_t cluster)
+: registry_(registry), cluster_(registry.clusters().at(cluster)) {
+  cluster_.header().phase.store(0, std::memory_order_seq_cst);  // a dead predecessor's may be odd
+}
+
+void ReceiveThread::recover() {
+  const Registry::Lock lock(registry_);
+  for (uint32_t slot = 0; slot < registry_.endpoints().high_water(); ++slot) {
+    EndpointEntry & endpoint = registry_.endpoints()[slot];
+    if (
+      !registry_.endpoints().is_live(slot) || endpoint.cluster != cluster_.id() ||
+      endpoint.kind != EndpointKind::subscription) {
+      continue;
+    }
+    if (auto * const header = cluster_.find<SubscriptionHeader>(endpoint.block.offset())) {
+      header->resync.store(1, std::memory_order_seq_cst);
+    }
+  }
+  wake_who_must_look();
+}
+
+/// Whole messages only: every write is atomic and of this size; anything else was put there by a stranger and is
+/// dropped with the rest of its batch.
+size_t ReceiveThread::receive() {
+  const size_t bytes = cluster_.pipe().receive(batch_, sizeof batch_);
+  return bytes % sizeof(EmcosMessage) == 0 ? bytes / sizeof(EmcosMessage) : 0;
+}
+
+void ReceiveThread::run(const std::function<void(EmcosMessageKind)> & on_processes_changed) {
+  ClusterHeader & header = cluster_.header();
+  while (true) {
+    const size_t count = receive();
+    for (size_t i = 0; i < count; ++i) {
+      switch (batch_[i].kind) {
+        case EmcosMessageKind::publish:
+          forward(batch_[i]);
+          break;
+        case EmcosMessageKind::attach:
+        case EmcosMessageKind::detach:
+          on_processes_changed(batch_[i].kind);
+          break;
+        case EmcosMessageKind::resync:  // take_overflow() follows
+          break;
+      }
+    }
+    header.messages.store(
+      header.messages.load(std::memory_order_relaxed) + count, std::memory_order_relaxed);
+    if (take_overflow()) {
+      wake_who_must_look();
+      on_processes_changed(EmcosMessageKind::attach);  // its message may be among the missing
+    }
+  }
+}
+
+/// Step 2 of Fig. 4: receive thread -> queue -> wake.
+void ReceiveThread::forward(const EmcosMessage & message) noexcept {
+  std::atomic<uint64_t> & phase = cluster_.header().phase;
+  phase.store(phase.load(std::memory_order_relaxed) | 1, std::memory_order_seq_cst);
+  Cluster * const source = registry_.clusters().find(message.topic_dsm.cluster());
+  TopicDsmHeader * const dsm =
+    source == nullptr ? nullptr : source->find<TopicDsmHeader>(message.topic_dsm.offset());
+  const bool current = dsm != nullptr &&
+                       dsm->magic.load(std::memory_order_seq_cst) == topic_dsm_magic &&
+                       dsm->endpoint.load(std::memory_order_relaxed) == message.endpoint &&
+                       dsm->incarnation.load(std::memory_order_relaxed) == message.incarnation;
+  if (current) {
+    for_each_reader(*source, *dsm, [&](ReaderEntry & reader) {
+      const SegmentRef subscription{reader.subscription.load(std::memory_order_relaxed)};
+      const bool wanted =
+        message.target == nothing ||
+        message.target == reader.endpoint.load(std::memory_order_relaxed);
+      if (subscription.cluster() == cluster_.id() && wanted) {
+        push_to(reader, message.number);
+      }
+    });
+  }
+  phase.store(phase.load(std::memory_order_relaxed) + 1, std::memory_order_release);
+}
+
+void ReceiveThread::push_to(ReaderEntry & reader, uint64_t number) noexcept {
+  const SegmentRef ref{reader.subscription.load(std::memory_order_relaxed)};
+  auto * const subscription = cluster_.find<SubscriptionHeader>(ref.offset());
+  if (
+    subscription == nullptr ||
+    subscription->magic.load(std::memory_order_relaxed) != subscription_magic) {
+    return;
+  }
+  subscriber_queue::push(
+    *subscription, {reader.source_index.load(std::memory_order_relaxed),
+                    reader.source_incarnation.load(std::memory_order_relaxed), number});
+  ClusterHeader & header = cluster_.header();
+  header.notifications.store(
+    header.notifications.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
+  const uint32_t process = subscription->process.load(std::memory_order_relaxed);
+  if (process < registry_.processes().high_water()) {
+    registry_.processes()[process].wake.notify();
+  }
+}
+
+/// After every batch: a sender that found the pipe full relies on the reader of the full pipe to come by here.
+bool ReceiveThread::take_overflow() noexcept {
+  std::atomic<uint32_t> & overflow = cluster_.header().pipe_overflow;
+  return overflow.load(std::memory_order_seq_cst) != 0 &&
+         overflow.exchange(0, std::memory_order_seq_cst) != 0;
+}
+
+/// All processes of the cluster: who has nothing to look for sleeps on.
+void ReceiveThread::wake_who_must_look() noexcept {
+  for (uint32_t slot = 0; slot < registry_.processes().high_water(); ++slot) {
+    if (registry_.processes().is_live(slot) && registry_.processes()[slot].cluster == cluster_.id()) {
+      registry_.processes()[slot].wake.notify();
+    }
+  }
+}
+
+}  // namespace manycore

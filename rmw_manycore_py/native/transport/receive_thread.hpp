@@ -1,0 +1,37 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+
+#include "transport/registry.hpp"
+#include "transport/topic_dsm_layout.hpp"
+
+namespace manycore {
+
+/// The receive thread of one cluster (ROS-lite2 III-B): takes publish notices off the cluster's pipe, pushes them
+/// on the queues of the cluster's subscriptions and wakes their nodes. The owner's thread runs it.
+class ReceiveThread {
+public:
+  ReceiveThread(Registry & registry, uint32_t cluster);
+
+  /// After the death of a predecessor: every subscription of the cluster looks for itself once.
+  void recover();
+
+  /// For ever. `on_processes_changed` is told of attach and detach messages.
+  void run(const std::function<void(EmcosMessageKind)> & on_processes_changed);
+
+private:
+  static constexpr size_t batch_size = 64;
+
+  size_t receive();
+  void forward(const EmcosMessage & message) noexcept;
+  void push_to(ReaderEntry & reader, uint64_t number) noexcept;
+  bool take_overflow() noexcept;
+  void wake_who_must_look() noexcept;
+
+  Registry & registry_;
+  Cluster & cluster_;
+  EmcosMessage batch_[batch_size];
+};
+
+}  // namespace manycore

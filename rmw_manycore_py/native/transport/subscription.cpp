@@ -1,0 +1,122 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#include "transport/subscription.hpp"
+
+#include <utility>
+
+#include "platform/clock.hpp"
+#include "transport/matching.hpp"
+#include "transport/subscription_impl.hpp"
+
+namespace manycore {
+
+Claim::Claim(Claim && other) noexcept
+: subscription_(std::exchange(other.subscription_, nullptr)),
+  reader_(other.reader_),
+  number_(other.number_),
+  data_(other.data_),
+  size_(other.size_),
+  info_(other.info_) {}
+
+/// Step 3 of Fig. 4, end: release.
+Claim::~Claim() {
+  if (subscription_ == nullptr) {
+    return;
+  }
+  Subscription::Impl & impl = *subscription_->impl_;
+  reader_->release(number_);
+  const bool finished = reader_->is_finished();
+  impl.mutex.unlock();
+  if (finished) {
+    impl.sweep();
+  }
+}
+
+Subscription::Subscription(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+
+Subscription::~Subscription() {
+  try {
+    const Registry::Lock lock(impl_->registry);
+    matching::close(impl_->registry, impl_->slot, false);
+    matching::sweep(impl_->registry);
+  } catch (const std::exception &) {
+    // The registry stayed locked; the reaper closes this endpoint when the process ends.
+  }
+  impl_->registry.graph_changed();
+}
+
+const Gid & Subscription::gid() const noexcept { return impl_->entry.gid; }
+
+const Qos & Subscription::qos() const noexcept { return impl_->entry.qos; }
+
+bool Subscription::has_data() const noexcept {
+  return !subscriber_queue::empty(impl_->header) ||
+         impl_->backlog_size.load(std::memory_order_relaxed) != 0 ||
+         impl_->header.resync.load(std::memory_order_acquire) != 0;
+}
+
+std::optional<Claim> Subscription::claim() {
+  Impl & impl = *impl_;
+  std::unique_lock<std::mutex> lock(impl.mutex);
+  while (const auto candidate = impl.next()) {
+    TopicDsmReader::View view;
+    switch (candidate->reader->claim(candidate->number, view)) {
+      case TopicDsmReader::ClaimResult::gone:
+        impl.count_lost(1);
+        continue;
+      case TopicDsmReader::ClaimResult::expired:
+        impl.entry.counters.expired.fetch_add(1, std::memory_order_relaxed);
+        continue;
+      case TopicDsmReader::ClaimResult::not_ours:
+        continue;
+      case TopicDsmReader::ClaimResult::claimed:
+        break;
+    }
+    ++impl.received;
+    impl.count_taken(view.record->size_bytes);
+    Claim claim;
+    claim.subscription_ = this;
+    claim.reader_ = candidate->reader;
+    claim.number_ = candidate->number;
+    claim.data_ = view.data;
+    claim.size_ = view.record->size_bytes;
+    claim.info_.source_timestamp_ns = view.record->source_timestamp_ns;
+    claim.info_.received_timestamp_ns = realtime_ns();
+    claim.info_.publication_sequence_number = view.record->publication_sequence_number;
+    claim.info_.reception_sequence_number = impl.received;
+    claim.info_.publisher = candidate->reader->publisher();
+    claim.info_.correlation = view.record->correlation;
+    claim.info_.from_this_process =
+      candidate->reader->publisher_process() == impl.entry.process;
+    lock.release();
+    return claim;
+  }
+  return std::nullopt;
+}
+
+uint64_t Subscription::arrivals() const noexcept {
+  Impl & impl = *impl_;
+  if (impl.header.resync.load(std::memory_order_acquire) != 0) {
+    const std::lock_guard<std::mutex> lock(impl.mutex);
+    impl.resync_if_asked();
+  }
+  const uint64_t pushed =
+    impl.header.tail.load(std::memory_order_acquire) - (uint64_t{1} << impl.header.slot_count_log2);
+  return pushed + impl.arrivals_by_resync.load(std::memory_order_relaxed);
+}
+
+uint64_t Subscription::lost() const noexcept {
+  return impl_->entry.counters.lost.load(std::memory_order_relaxed) +
+         impl_->header.dropped.load(std::memory_order_relaxed);
+}
+
+MatchedCount Subscription::matched() const {
+  return {impl_->entry.matched_total.load(), impl_->entry.matched_current.load()};
+}
+
+IncompatibleCount Subscription::incompatible() const {
+  return {
+    impl_->entry.incompatible_total.load(),
+    static_cast<QosPolicy>(impl_->entry.incompatible_policy.load())};
+}
+
+}  // namespace manycore

@@ -1,0 +1,174 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#include "transport/subscription_impl.hpp"
+
+#include <algorithm>
+
+#include "transport/matching.hpp"
+#include "transport/source_table.hpp"
+
+namespace manycore {
+namespace {
+
+uint32_t log2_at_least(uint32_t x) {
+  uint32_t log2 = 0;
+  while ((uint64_t{1} << log2) < x) {
+    ++log2;
+  }
+  return log2;
+}
+
+/// Requests and replies are never displaced: a lost request would leave its client waiting for ever.
+bool displaces(const EndpointEntry & entry) {
+  return entry.role == EndpointRole::topic && entry.qos.history == History::keep_last;
+}
+
+}  // namespace
+
+SubscriptionHeader & Subscription::Impl::create(Registry & registry, uint32_t endpoint_slot) {
+  EndpointEntry & entry = registry.endpoints()[endpoint_slot];
+  Cluster & cluster = registry.clusters().at(entry.cluster);
+  const uint32_t depth = displaces(entry) ? entry.qos.depth
+                         : entry.role == EndpointRole::topic
+                           ? keep_all_capacity
+                           : std::max(entry.qos.depth, 16u);
+  const uint32_t log2 = log2_at_least(depth);
+  auto & header = cluster.allocate_cleared<SubscriptionHeader>(
+    sizeof(SubscriptionHeader) + (uint64_t{8} << log2));
+  header.endpoint.store(endpoint_slot);
+  header.incarnation.store(entry.slot.incarnation);
+  header.process.store(entry.process);
+  header.depth = depth;
+  header.slot_count_log2 = log2;
+  header.keep_all = displaces(entry) ? 0 : 1;
+  subscriber_queue::initialize(header);
+  header.magic.store(subscription_magic, std::memory_order_release);
+  return header;
+}
+
+Subscription::Impl::Impl(Registry & registry_, uint32_t slot_)
+: registry(registry_),
+  slot(slot_),
+  entry(registry_.endpoints()[slot_]),
+  cluster(registry_.clusters().at(entry.cluster)),
+  header(*cluster.find<SubscriptionHeader>(entry.block.offset())) {}
+
+void Subscription::Impl::renew_readers() {
+  const uint64_t generation = header.source_generation.load(std::memory_order_acquire);
+  if (generation == seen_source_generation) {
+    return;
+  }
+  seen_source_generation = generation;
+  std::vector<TopicDsmReader> renewed;
+  visit_source_table(cluster, header, [&](SourceEntry & source, uint32_t index) {
+    if (source.state.load(std::memory_order_acquire) != SourceState::active) {
+      return false;
+    }
+    const auto known = std::find_if(
+      readers.begin(), readers.end(),
+      [&](const TopicDsmReader & reader) { return reader.is_same_source(source); });
+    TopicDsmReader reader =
+      known != readers.end() ? *known : TopicDsmReader(registry, source, index, entry.gid);
+    if (reader) {
+      renewed.push_back(reader);
+    }
+    return false;
+  });
+  readers = std::move(renewed);
+}
+
+TopicDsmReader * Subscription::Impl::find_reader(uint32_t source, uint32_t incarnation) {
+  renew_readers();
+  for (TopicDsmReader & reader : readers) {
+    if (
+      reader.index() == source &&
+      (reader.incarnation() & Hint::incarnation_mask) == (incarnation & Hint::incarnation_mask)) {
+      return &reader;
+    }
+  }
+  return nullptr;
+}
+
+/// Hints may be missing: forget those that are there and look into every topic DSM instead.
+void Subscription::Impl::resync() {
+  uint64_t forgotten = 0;
+  while (subscriber_queue::pop(header)) {
+    ++forgotten;
+  }
+  renew_readers();
+  scratch.clear();
+  for (TopicDsmReader & reader : readers) {
+    reader.list_waiting(scratch);
+  }
+  std::stable_sort(scratch.begin(), scratch.end(), [](const auto & a, const auto & b) {
+    return a.source_timestamp_ns < b.source_timestamp_ns;
+  });
+  backlog.insert(backlog.end(), scratch.begin(), scratch.end());
+  arrivals_by_resync.fetch_add(scratch.size() - forgotten, std::memory_order_relaxed);
+  while (displaces(entry) && backlog.size() > header.depth) {
+    backlog.pop_front();
+    count_lost(1);
+  }
+  backlog_size.store(backlog.size(), std::memory_order_relaxed);
+}
+
+void Subscription::Impl::resync_if_asked() {
+  if (
+    header.resync.load(std::memory_order_relaxed) != 0 &&
+    header.resync.exchange(0, std::memory_order_seq_cst) != 0) {
+    resync();
+  }
+}
+
+std::optional<Subscription::Impl::Candidate> Subscription::Impl::next_of_backlog() {
+  while (!backlog.empty()) {
+    const TopicDsmReader::Waiting waiting = backlog.front();
+    backlog.pop_front();
+    backlog_size.store(backlog.size(), std::memory_order_relaxed);
+    if (TopicDsmReader * const reader = find_reader(waiting.source, waiting.incarnation)) {
+      return Candidate{reader, waiting.number};
+    }
+  }
+  return std::nullopt;
+}
+
+std::optional<Subscription::Impl::Candidate> Subscription::Impl::next_of_queue() {
+  while (const std::optional<Hint> hint = subscriber_queue::pop(header)) {
+    TopicDsmReader * const reader = find_reader(hint->source, hint->source_incarnation);
+    if (reader == nullptr) {
+      continue;  // its topic DSM is gone
+    }
+    const uint64_t number = reader->full_number(hint->number);
+    if (number > reader->noted()) {
+      return Candidate{reader, number};
+    }
+  }
+  return std::nullopt;
+}
+
+std::optional<Subscription::Impl::Candidate> Subscription::Impl::next() {
+  resync_if_asked();
+  std::optional<Candidate> candidate = next_of_backlog();
+  return candidate ? candidate : next_of_queue();
+}
+
+void Subscription::Impl::sweep() noexcept {
+  try {
+    const Registry::Lock lock(registry);
+    matching::sweep(registry);
+  } catch (const std::exception &) {
+    // The registry stayed locked: the next change of the graph sweeps.
+  }
+}
+
+void Subscription::Impl::count_lost(uint64_t messages) noexcept {
+  entry.counters.lost.fetch_add(messages, std::memory_order_relaxed);
+}
+
+void Subscription::Impl::count_taken(uint64_t bytes) noexcept {
+  EndpointCounters & counters = entry.counters;
+  counters.messages.store(received, std::memory_order_relaxed);
+  counters.bytes.store(
+    counters.bytes.load(std::memory_order_relaxed) + bytes, std::memory_order_relaxed);
+}
+
+}  // namespace manycore

@@ -1,0 +1,54 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <deque>
+#include <mutex>
+#include <vector>
+
+#include "transport/subscriber_queue.hpp"
+#include "transport/subscription.hpp"
+#include "transport/topic_dsm_reader.hpp"
+
+namespace manycore {
+
+struct Subscription::Impl {
+  Impl(Registry & registry_, uint32_t slot_);
+
+  /// Allocates header and queue; the caller holds the registry lock.
+  static SubscriptionHeader & create(Registry & registry, uint32_t endpoint_slot);
+
+  struct Candidate {
+    TopicDsmReader * reader;
+    uint64_t number;
+  };
+  /// Next record to claim: from the backlog, else from the queue. The caller holds the mutex.
+  std::optional<Candidate> next();
+  std::optional<Candidate> next_of_backlog();
+  std::optional<Candidate> next_of_queue();
+  /// The reader of a source, or nullptr when the source is gone.
+  TopicDsmReader * find_reader(uint32_t source, uint32_t incarnation);
+  void resync_if_asked();
+  void renew_readers();
+  void resync();
+  void count_lost(uint64_t messages) noexcept;
+  void count_taken(uint64_t bytes) noexcept;
+  /// A finished topic DSM waits for its last reader only: frees it.
+  void sweep() noexcept;
+
+  Registry & registry;
+  uint32_t slot;
+  EndpointEntry & entry;
+  Cluster & cluster;
+  SubscriptionHeader & header;
+  std::mutex mutex;  ///< held while a claim lives
+
+  std::vector<TopicDsmReader> readers;
+  uint64_t seen_source_generation = 0;
+  std::deque<TopicDsmReader::Waiting> backlog;  ///< found by a resync, served before the queue
+  std::atomic<size_t> backlog_size{0};          ///< for has_data() without the mutex
+  std::atomic<uint64_t> arrivals_by_resync{0};  ///< beyond the pushes on the queue; wraps
+  std::vector<TopicDsmReader::Waiting> scratch;
+  uint64_t received = 0;
+};
+
+}  // namespace manycore

@@ -1,0 +1,61 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "transport/endpoint.hpp"
+#include "transport/segment_layout.hpp"
+
+namespace manycore {
+
+/// free -> active -> revoked -> free. Only `active` allows a claim.
+enum class SourceState : uint32_t { free, active, revoked };
+
+/// A topic DSM as seen from one subscription. The cache line is written by the subscriber per message.
+struct alignas(64) SourceEntry {
+  std::atomic<SourceState> state;
+  std::atomic<uint32_t> incarnation;  ///< raised at each use of this entry
+  std::atomic<uint64_t> topic_dsm;    ///< SegmentRef of its header
+  std::atomic<uint32_t> topic_dsm_endpoint;
+  std::atomic<uint32_t> topic_dsm_incarnation;
+  std::atomic<uint64_t> taken;    ///< all records up to this number are done for this reader
+  std::atomic<uint64_t> reading;  ///< record being read: the claim; no_record or every_record else
+  std::atomic<uint64_t> reader;   ///< SegmentRef of the ReaderEntry
+};
+static_assert(sizeof(SourceEntry) == 64);
+
+constexpr uint32_t sources_per_block = 15;
+
+struct SourceBlock {
+  std::atomic<uint64_t> next;  ///< offset in the same segment; 0 = last
+  uint64_t reserved[7];
+  SourceEntry entries[sources_per_block];
+};
+static_assert(sizeof(SourceBlock) == 1024);
+
+/// Head of a subscription; the queue's slots follow it.
+struct SubscriptionHeader {
+  std::atomic<uint32_t> magic;
+  std::atomic<uint32_t> endpoint;     ///< slot of the subscription
+  std::atomic<uint32_t> incarnation;  ///< of that slot
+  std::atomic<uint32_t> process;      ///< slot of its process
+  uint32_t depth;                     ///< capacity of the queue
+  uint32_t slot_count_log2;           ///< slots are a power of two, at least depth
+  uint8_t keep_all;
+  uint8_t reserved[7];
+  std::atomic<uint64_t> first_source_block;
+  std::atomic<uint64_t> source_generation;  ///< raised whenever the source table changes
+  std::atomic<uint64_t> dropped;            ///< hints that pushers displaced
+  std::atomic<uint32_t> resync;             ///< hints may be missing: scan the sources
+  uint32_t reserved2;
+
+  alignas(64) std::atomic<uint64_t> head;
+  alignas(64) std::atomic<uint64_t> tail;
+
+  std::atomic<uint64_t> * slots() noexcept {
+    return reinterpret_cast<std::atomic<uint64_t> *>(this + 1);
+  }
+};
+static_assert(sizeof(SubscriptionHeader) == 192);
+
+constexpr uint32_t keep_all_capacity = 1024;  ///< hints; beyond it the subscriber scans its sources
+
+}  // namespace manycore

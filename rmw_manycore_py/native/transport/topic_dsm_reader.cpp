@@ -1,0 +1,170 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#include "transport/topic_dsm_reader.hpp"
+
+#include <algorithm>
+
+#include "platform/clock.hpp"
+
+namespace manycore {
+namespace {
+
+/// By number; and no timestamp before an earlier record's, so that merging sources keeps each one's order even
+/// where the clock was set back.
+void order(std::vector<TopicDsmReader::Waiting> & all, ptrdiff_t begin) {
+  using Waiting = TopicDsmReader::Waiting;
+  std::sort(all.begin() + begin, all.end(), [](const Waiting & a, const Waiting & b) {
+    return a.number < b.number;
+  });
+  for (auto i = static_cast<size_t>(begin) + 1; i < all.size(); ++i) {
+    all[i].source_timestamp_ns =
+      std::max(all[i].source_timestamp_ns, all[i - 1].source_timestamp_ns);
+  }
+}
+
+}  // namespace
+
+TopicDsmReader::TopicDsmReader(
+  Registry & registry, SourceEntry & source, uint32_t index, const Gid & own_gid)
+: source_(&source),
+  index_(index),
+  incarnation_(source.incarnation.load(std::memory_order_relaxed)),
+  noted_(source.taken.load(std::memory_order_relaxed)),
+  own_gid_(own_gid) {
+  const SegmentRef ref{source.topic_dsm.load(std::memory_order_relaxed)};
+  cluster_ = registry.clusters().find(ref.cluster());
+  dsm_ = registry.clusters().find<TopicDsmHeader>(ref);
+}
+
+uint64_t TopicDsmReader::full_number(uint64_t low_bits) const noexcept {
+  constexpr uint64_t period = uint64_t{1} << 28;
+  const uint64_t base = noted_ & ~(period - 1);
+  const uint64_t candidate = base | low_bits;
+  // The nearest number with these low bits: hints are less than half a period away from what was noted.
+  if (candidate + period / 2 < noted_) {
+    return candidate + period;
+  }
+  if (candidate > noted_ + period / 2 && candidate >= period) {
+    return candidate - period;
+  }
+  return candidate;
+}
+
+const GenerationEntry * TopicDsmReader::generation_of(uint64_t number) const noexcept {
+  const GenerationEntry * best = nullptr;
+  uint64_t best_first = 0;
+  for (const GenerationEntry & generation : dsm_->generations) {
+    const uint64_t first = generation.first.load(std::memory_order_acquire);
+    if (first != 0 && first <= number && first > best_first) {
+      best = &generation;
+      best_first = first;
+    }
+  }
+  return best;
+}
+
+RecordDescriptor * TopicDsmReader::descriptors_of(
+  const GenerationEntry & generation) const noexcept {
+  const uint64_t count = generation.descriptor_count.load(std::memory_order_relaxed);
+  if (count == 0 || (count & (count - 1)) != 0) {
+    return nullptr;
+  }
+  return cluster_->find<RecordDescriptor>(
+    generation.offset.load(std::memory_order_relaxed), count * sizeof(RecordDescriptor));
+}
+
+bool TopicDsmReader::is_for_us(const RecordDescriptor & record) const noexcept {
+  return static_cast<EndpointRole>(dsm_->role) != EndpointRole::reply ||
+         record.correlation.client == own_gid_;
+}
+
+/// Dekker with take_back(): `reading` is stored before `number` is loaded, both seq_cst, so either the
+/// publisher sees the claim and leaves the bytes alone, or the number is gone here.
+TopicDsmReader::ClaimResult TopicDsmReader::claim(uint64_t number, View & view) noexcept {
+  source_->reading.store(number, std::memory_order_seq_cst);
+  const auto give_up = [&](ClaimResult result) {
+    release(number);
+    return result;
+  };
+  if (source_->state.load(std::memory_order_seq_cst) != SourceState::active) {
+    return give_up(ClaimResult::gone);
+  }
+  const GenerationEntry * const generation = generation_of(number);
+  RecordDescriptor * const descriptors =
+    generation == nullptr ? nullptr : descriptors_of(*generation);
+  if (descriptors == nullptr) {
+    return give_up(ClaimResult::gone);
+  }
+  const uint64_t first = generation->first.load(std::memory_order_acquire);
+  const uint32_t count = generation->descriptor_count.load(std::memory_order_relaxed);
+  RecordDescriptor & record = descriptors[number & (count - 1)];
+  if (record.number.load(std::memory_order_seq_cst) != number) {
+    return give_up(ClaimResult::gone);
+  }
+  // The generation may have been given back before the claim was seen; its entry then has changed.
+  if (
+    generation->first.load(std::memory_order_acquire) != first || first > number ||
+    !cluster_->contains(record.offset, record.size_bytes)) {
+    return give_up(ClaimResult::gone);
+  }
+  if (!is_for_us(record)) {
+    return give_up(ClaimResult::not_ours);
+  }
+  if (
+    dsm_->lifespan_ns != infinite_ns &&
+    realtime_ns() - record.source_timestamp_ns > dsm_->lifespan_ns) {
+    return give_up(ClaimResult::expired);
+  }
+  view.record = &record;
+  view.data = cluster_->find<uint8_t>(record.offset, record.size_bytes);
+  return ClaimResult::claimed;
+}
+
+void TopicDsmReader::release(uint64_t number) noexcept {
+  if (number > source_->taken.load(std::memory_order_relaxed)) {
+    source_->taken.store(number, std::memory_order_release);
+  }
+  if (number > noted_) {
+    noted_ = number;
+  }
+  // seq_cst: the publisher raises `writer_waits` before it looks at `taken` once more.
+  source_->reading.store(no_record, std::memory_order_seq_cst);
+  tell_waiting_publisher();
+}
+
+void TopicDsmReader::tell_waiting_publisher() noexcept {
+  if (dsm_->writer_waits.load(std::memory_order_seq_cst) != 0) {
+    dsm_->progress.fetch_add(1, std::memory_order_seq_cst);
+    futex_wake_all(dsm_->progress);
+  }
+}
+
+void TopicDsmReader::list_waiting(std::vector<Waiting> & out) noexcept {
+  const auto own_part = static_cast<ptrdiff_t>(out.size());
+  source_->reading.store(every_record, std::memory_order_seq_cst);
+  if (source_->state.load(std::memory_order_seq_cst) == SourceState::active) {
+    const uint64_t last = dsm_->last.load(std::memory_order_seq_cst);
+    for (const GenerationEntry & generation : dsm_->generations) {
+      RecordDescriptor * const descriptors =
+        generation.first.load(std::memory_order_acquire) == 0 ? nullptr
+                                                              : descriptors_of(generation);
+      const uint32_t count = generation.descriptor_count.load(std::memory_order_relaxed);
+      for (uint32_t i = 0; descriptors != nullptr && i < count; ++i) {
+        const uint64_t number = descriptors[i].number.load(std::memory_order_seq_cst);
+        if (number > noted_ && number <= last && is_for_us(descriptors[i])) {
+          out.push_back({descriptors[i].source_timestamp_ns, number, index_, incarnation_});
+        }
+      }
+    }
+    noted_ = last > noted_ ? last : noted_;
+  }
+  source_->reading.store(no_record, std::memory_order_seq_cst);
+  order(out, own_part);
+}
+
+bool TopicDsmReader::is_finished() const noexcept {
+  return dsm_->orphan.load(std::memory_order_acquire) != 0 &&
+         source_->taken.load(std::memory_order_relaxed) >=
+           dsm_->last.load(std::memory_order_acquire);
+}
+
+}  // namespace manycore

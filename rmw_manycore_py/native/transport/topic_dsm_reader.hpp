@@ -1,0 +1,71 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "transport/registry.hpp"
+#include "transport/subscription_layout.hpp"
+#include "transport/topic_dsm_layout.hpp"
+
+namespace manycore {
+
+/// The reading side of one topic DSM, for one subscription. One thread at a time (the subscription's mutex).
+/// See docs/design/topic_dsm.md, Take.
+class TopicDsmReader {
+public:
+  /// Nullptr-like (operator bool) when the source leads nowhere.
+  TopicDsmReader(Registry & registry, SourceEntry & source, uint32_t index, const Gid & own_gid);
+
+  explicit operator bool() const noexcept { return dsm_ != nullptr; }
+  uint32_t index() const noexcept { return index_; }
+  uint32_t incarnation() const noexcept { return incarnation_; }
+  bool is_same_source(const SourceEntry & source) const noexcept {
+    return &source == source_ && source.incarnation.load() == incarnation_;
+  }
+
+  /// Highest record number that needs no further look: taken, or in the backlog.
+  uint64_t noted() const noexcept { return noted_; }
+  /// The full number of which a hint carries the low 28 bits.
+  uint64_t full_number(uint64_t low_bits) const noexcept;
+
+  enum class ClaimResult { claimed, gone, not_ours, expired };
+  struct View {
+    const RecordDescriptor * record = nullptr;
+    const uint8_t * data = nullptr;
+  };
+  /// On `claimed`, release() must follow; any other result has released already.
+  ClaimResult claim(uint64_t number, View & view) noexcept;
+  /// Everything up to `number` is done for this reader.
+  void release(uint64_t number) noexcept;
+
+  struct Waiting {
+    int64_t source_timestamp_ns;
+    uint64_t number;
+    uint32_t source;
+    uint32_t incarnation;  ///< of the source
+  };
+  /// Step of a resync: appends the live records above noted() to `out`, in order, and notes them.
+  void list_waiting(std::vector<Waiting> & out) noexcept;
+
+  /// The publisher is gone and everything it left has been taken.
+  bool is_finished() const noexcept;
+  const Gid & publisher() const noexcept { return dsm_->gid; }
+  uint32_t publisher_process() const noexcept { return dsm_->process; }
+
+private:
+  /// The generation that holds `number`, or nullptr.
+  const GenerationEntry * generation_of(uint64_t number) const noexcept;
+  RecordDescriptor * descriptors_of(const GenerationEntry & generation) const noexcept;
+  bool is_for_us(const RecordDescriptor & record) const noexcept;
+  void tell_waiting_publisher() noexcept;
+
+  Cluster * cluster_ = nullptr;
+  TopicDsmHeader * dsm_ = nullptr;
+  SourceEntry * source_;
+  uint32_t index_;
+  uint32_t incarnation_;
+  uint64_t noted_ = 0;
+  Gid own_gid_;
+};
+
+}  // namespace manycore

@@ -1,0 +1,445 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#include "transport/topic_dsm_writer.hpp"
+
+#include <algorithm>
+
+#include "platform/clock.hpp"
+#include "platform/error.hpp"
+
+namespace manycore {
+namespace {
+
+constexpr uint64_t record_alignment = 64;
+constexpr uint64_t first_data_bytes = 2048;
+constexpr uint64_t first_descriptor_count = 16;
+constexpr uint64_t descriptor_limit = 1 << 16;
+/// What Fast DDS waits for by default (max_blocking_time).
+constexpr int64_t max_blocking_ns = 100'000'000;
+
+uint64_t power_of_two_at_least(uint64_t x) {
+  uint64_t power = 1;
+  while (power < x) {
+    power *= 2;
+  }
+  return power;
+}
+
+/// A fixed topic DSM cannot get more descriptors later.
+uint64_t initial_descriptor_count(const EndpointEntry & endpoint) {
+  if (endpoint.topic_dsm_size == 0) {
+    return first_descriptor_count;
+  }
+  const uint64_t most = std::max<uint64_t>(endpoint.topic_dsm_size / record_alignment, 2);
+  return power_of_two_at_least(
+    std::min(most, std::max(first_descriptor_count, uint64_t{endpoint.qos.depth} * 2)));
+}
+
+void fill_generation(
+  Cluster & cluster, GenerationEntry & entry, uint64_t data_bytes, uint64_t count,
+  uint64_t first) {
+  const uint64_t descriptor_bytes = count * sizeof(RecordDescriptor);
+  const uint64_t offset = cluster.allocate(descriptor_bytes + data_bytes);
+  std::memset(cluster.find<std::byte>(offset), 0, descriptor_bytes);
+  entry.offset.store(offset, std::memory_order_relaxed);
+  entry.descriptor_count.store(static_cast<uint32_t>(count), std::memory_order_relaxed);
+  entry.data_bytes.store(data_bytes, std::memory_order_relaxed);
+  entry.first.store(first, std::memory_order_release);
+}
+
+}  // namespace
+
+void TopicDsmWriter::BlockRing::push_back(const Block & block) {
+  if (count_ == slots_.size()) {
+    std::rotate(slots_.begin(), slots_.begin() + static_cast<ptrdiff_t>(first_), slots_.end());
+    first_ = 0;
+    slots_.resize(slots_.size() * 2);
+  }
+  slots_[(first_ + count_++) % slots_.size()] = block;
+}
+
+void TopicDsmWriter::BlockRing::pop_front() noexcept {
+  first_ = (first_ + 1) % slots_.size();
+  --count_;
+}
+
+TopicDsmHeader & TopicDsmWriter::create(Registry & registry, uint32_t endpoint_slot) {
+  EndpointEntry & endpoint = registry.endpoints()[endpoint_slot];
+  Cluster & cluster = registry.clusters().at(endpoint.cluster);
+  TopicDsmHeader & dsm = cluster.allocate_cleared<TopicDsmHeader>();
+  dsm.endpoint.store(endpoint_slot);
+  dsm.incarnation.store(endpoint.slot.incarnation);
+  dsm.lifespan_ns = endpoint.qos.lifespan_ns;
+  dsm.depth = endpoint.qos.depth;
+  dsm.keep_all = endpoint.qos.history == History::keep_all ? 1 : 0;
+  dsm.transient_local = endpoint.qos.durability == Durability::transient_local ? 1 : 0;
+  dsm.role = static_cast<uint8_t>(endpoint.role);
+  dsm.process = endpoint.process;
+  dsm.gid = endpoint.gid;
+  try {
+    const uint64_t data_bytes =
+      endpoint.topic_dsm_size == 0 ? first_data_bytes
+                                   : align_up(endpoint.topic_dsm_size, record_alignment);
+    fill_generation(
+      cluster, dsm.generations[0], data_bytes, initial_descriptor_count(endpoint), 1);
+  } catch (...) {
+    cluster.free(cluster.ref_of(&dsm).offset(), sizeof dsm);
+    throw;
+  }
+  dsm.magic.store(topic_dsm_magic, std::memory_order_release);
+  return dsm;
+}
+
+TopicDsmWriter::TopicDsmWriter(Registry & registry, Cluster & cluster, EndpointEntry & endpoint)
+: registry_(registry),
+  cluster_(cluster),
+  endpoint_(endpoint),
+  dsm_(*cluster.find<TopicDsmHeader>(endpoint.block.offset())),
+  readers_(registry, cluster, dsm_),
+  current_(view(dsm_.generations[0])),
+  pinned_in_slot_(current_.count, no_record) {}
+
+TopicDsmWriter::Generation TopicDsmWriter::view(GenerationEntry & entry) const noexcept {
+  Generation generation;
+  generation.entry = &entry;
+  generation.count = entry.descriptor_count.load(std::memory_order_relaxed);
+  const uint64_t offset = entry.offset.load(std::memory_order_relaxed);
+  generation.descriptors = cluster_.find<RecordDescriptor>(offset);
+  generation.data_offset = offset + generation.count * sizeof(RecordDescriptor);
+  generation.data_bytes = entry.data_bytes.load(std::memory_order_relaxed);
+  generation.first = entry.first.load(std::memory_order_relaxed);
+  return generation;
+}
+
+void TopicDsmWriter::enter() noexcept {
+  dsm_.phase.store(dsm_.phase.load(std::memory_order_relaxed) | 1, std::memory_order_seq_cst);
+  readers_.refresh();
+}
+
+void TopicDsmWriter::leave() noexcept {
+  dsm_.phase.store(dsm_.phase.load(std::memory_order_relaxed) + 1, std::memory_order_release);
+}
+
+/// KEEP_LAST readers want the last `depth` only, counted with the record about to be written. Requests and
+/// replies are wanted until taken: their queues do not displace.
+bool TopicDsmWriter::wants(
+  const Reader & reader, uint64_t number, const RecordDescriptor & record) const noexcept {
+  if (reader.source->taken.load(std::memory_order_acquire) >= number || !reader.active()) {
+    return false;
+  }
+  if (endpoint_.role == EndpointRole::reply) {
+    return record.correlation.client == reader.gid;
+  }
+  return reader.subscription->keep_all != 0 ||
+         number + reader.subscription->depth > next_number_;
+}
+
+bool TopicDsmWriter::is_wanted(
+  uint64_t number, const RecordDescriptor & record) const noexcept {
+  const int64_t lifespan = endpoint_.qos.lifespan_ns;
+  if (lifespan != infinite_ns && realtime_ns() - record.source_timestamp_ns > lifespan) {
+    return false;
+  }
+  if (dsm_.transient_local != 0 && number + dsm_.depth > next_number_) {
+    return true;
+  }
+  for (const Reader & reader : readers_.readers()) {
+    if (wants(reader, number, record)) {
+      return true;
+    }
+  }
+  return false;
+}
+
+TopicDsmWriter::TakeBack TopicDsmWriter::take_back(uint64_t number, bool force) {
+  RecordDescriptor & record = current_.descriptor(number);
+  if (record.number.load(std::memory_order_relaxed) == number) {
+    const bool wanted = is_wanted(number, record);
+    if (wanted && !force) {
+      return TakeBack::wanted;
+    }
+    if (wanted) {
+      endpoint_.counters.overwritten.fetch_add(1, std::memory_order_relaxed);
+    }
+    // Dekker with the claim: the reader stores `reading` before it loads `number`. A reader that joined
+    // just now counts too, so the list is renewed after the store.
+    record.number.store(no_record, std::memory_order_seq_cst);
+    readers_.refresh();
+    pinned_in_slot_[number & (current_.count - 1)] = number;  // until seen unpinned
+  }
+  return readers_.is_pinned(number) ? TakeBack::pinned : TakeBack::freed;
+}
+
+/// Early release (ROS-lite2 III-B: deleted once all subscribers have deserialized). An empty ring starts again
+/// at its beginning, so that a stream whose readers keep up stays in the same cache lines.
+void TopicDsmWriter::take_back_free_records() {
+  while (!blocks_.empty() && take_back(blocks_.front().number, false) == TakeBack::freed) {
+    blocks_.pop_front();
+  }
+  if (blocks_.empty()) {
+    cursor_ = 0;
+  }
+}
+
+/// Takes back what nobody wants in an old generation; true once nothing in it can be read any more.
+bool TopicDsmWriter::drain(const Generation & old) {
+  bool wanted = false;
+  for (uint64_t slot = 0; slot < old.count; ++slot) {
+    RecordDescriptor & record = old.descriptors[slot];
+    const uint64_t number = record.number.load(std::memory_order_relaxed);
+    if (number != no_record && is_wanted(number, record)) {
+      wanted = true;
+    } else if (number != no_record) {
+      record.number.store(no_record, std::memory_order_seq_cst);
+    }
+  }
+  readers_.refresh();
+  return !wanted && !readers_.is_any_pinned(old.first, current_.first - 1);
+}
+
+void TopicDsmWriter::free_old_generations() noexcept {
+  try {
+    for (size_t i = 0; i < old_.size();) {
+      if (!drain(old_[i])) {
+        ++i;
+        continue;
+      }
+      const Registry::Lock lock(registry_, Registry::Lock::no_wait_ns);
+      // Cleared before it is given back: a reader that meets foreign bytes in it finds the entry changed.
+      old_[i].entry->first.store(0, std::memory_order_seq_cst);
+      cluster_.free(old_[i].entry->offset.load(), old_[i].entry->extent_bytes());
+      old_.erase(old_.begin() + static_cast<ptrdiff_t>(i));
+    }
+  } catch (const Error &) {
+    // The registry is locked by somebody else: the next publish tries again.
+  }
+}
+
+uint64_t TopicDsmWriter::data_limit() const noexcept {
+  return endpoint_.topic_dsm_size != 0 ? current_.data_bytes : cluster_.size() / 2;
+}
+
+bool TopicDsmWriter::grow(uint64_t data_bytes, uint64_t descriptor_count) {
+  const bool keep_all = dsm_.keep_all != 0;
+  if (
+    endpoint_.topic_dsm_size != 0 || data_bytes > data_limit() ||
+    descriptor_count > (keep_all ? keep_all_capacity : descriptor_limit)) {
+    return false;
+  }
+  GenerationEntry * const free_entry = std::find_if(
+    std::begin(dsm_.generations), std::end(dsm_.generations),
+    [](const GenerationEntry & entry) { return entry.first.load() == 0; });
+  if (free_entry == std::end(dsm_.generations)) {
+    return false;
+  }
+  try {
+    const Registry::Lock lock(registry_, Registry::Lock::short_wait_ns);
+    fill_generation(cluster_, *free_entry, data_bytes, descriptor_count, next_number_);
+  } catch (const Error &) {
+    return false;
+  }
+  old_.push_back(current_);
+  current_ = view(*free_entry);
+  blocks_.clear();
+  pinned_in_slot_.assign(current_.count, no_record);
+  cursor_ = 0;
+  return true;
+}
+
+void TopicDsmWriter::require_data_bytes(uint64_t need_bytes) {
+  if (need_bytes <= current_.data_bytes) {
+    return;
+  }
+  if (grow(std::min(need_bytes * 2, std::max(need_bytes, data_limit())), current_.count)) {
+    return;
+  }
+  endpoint_.counters.refused.fetch_add(1, std::memory_order_relaxed);
+  const std::string size = std::to_string(need_bytes);
+  if (endpoint_.topic_dsm_size != 0) {
+    throw Error(
+      ErrorCode::too_large, "a message of " + size + " bytes does not fit the topic DSM of '" +
+        endpoint_.topic + "' (" + std::to_string(endpoint_.topic_dsm_size) +
+        " bytes); set its topic_dsm_size to at least " + size);
+  }
+  throw Error(
+    ErrorCode::too_large, "a message of " + size + " bytes on '" + std::string(endpoint_.topic) +
+      "' does not fit into cluster " + std::to_string(cluster_.id()) + ": " +
+      std::to_string(cluster_.header().used_bytes.load()) + " of " +
+      std::to_string(cluster_.size()) + " bytes of SMEM are used; it needs at least " + size +
+      " free (is /dev/shm large enough?)");
+}
+
+void TopicDsmWriter::wait_for_progress(uint64_t number) {
+  if (blocked_until_ns_ == 0) {
+    blocked_until_ns_ = monotonic_ns() + max_blocking_ns;
+  }
+  if (monotonic_ns() >= blocked_until_ns_) {
+    endpoint_.counters.refused.fetch_add(1, std::memory_order_relaxed);
+    throw Error(
+      ErrorCode::timeout, "publish on '" + std::string(endpoint_.topic) +
+        "' timed out: RELIABLE + KEEP_ALL, and a subscription has not taken its messages for " +
+        std::to_string(max_blocking_ns / 1'000'000) + " ms");
+  }
+  const uint32_t seen = dsm_.progress.load(std::memory_order_seq_cst);
+  dsm_.writer_waits.store(1, std::memory_order_seq_cst);
+  if (is_wanted(number, current_.descriptor(number))) {
+    leave();  // nobody needs to wait for this publisher's references meanwhile
+    futex_wait(dsm_.progress, seen, blocked_until_ns_);
+    enter();
+  }
+  dsm_.writer_waits.store(0, std::memory_order_relaxed);
+}
+
+void TopicDsmWriter::make_place(uint64_t number, uint64_t need_bytes, bool more_descriptors) {
+  const uint64_t count = more_descriptors ? current_.count * 2 : current_.count;
+  const uint64_t bytes =
+    more_descriptors ? current_.data_bytes : std::max(current_.data_bytes * 2, need_bytes * 2);
+  if (grow(bytes, count)) {
+    return;
+  }
+  if (dsm_.keep_all != 0 && endpoint_.qos.reliability == Reliability::reliable) {
+    wait_for_progress(number);
+    return;
+  }
+  take_back(number, true);
+}
+
+/// Makes next_number_ one whose descriptor may be written. A number whose descriptor a reader still holds is
+/// skipped: readers count what they miss by publication sequence, not by record number.
+void TopicDsmWriter::claim_descriptor(uint64_t need_bytes) {
+  for (uint64_t skipped = 0; skipped < current_.count;) {
+    RecordDescriptor & record = current_.descriptor(next_number_);
+    const uint64_t old = record.number.load(std::memory_order_relaxed);
+    if (old != no_record) {
+      if (take_back(old, false) == TakeBack::wanted) {
+        make_place(old, need_bytes, true);
+      }
+      continue;
+    }
+    uint64_t & pinned = pinned_in_slot_[next_number_ & (current_.count - 1)];
+    if (pinned == no_record || !readers_.is_pinned(pinned)) {
+      pinned = no_record;
+      return;
+    }
+    ++next_number_;
+    ++skipped;
+  }
+  endpoint_.counters.refused.fetch_add(1, std::memory_order_relaxed);
+  throw Error(
+    ErrorCode::no_space,
+    "every record of '" + std::string(endpoint_.topic) + "' is being read; nothing can be published");
+}
+
+/// Places a block of `need_bytes` at the cursor or after it; false when wanted or pinned records leave no
+/// room within one round.
+bool TopicDsmWriter::try_place(uint64_t need_bytes) {
+  size_t pinned_seen = 0;
+  int wraps = 0;
+  while (true) {
+    const bool ahead = !blocks_.empty() && blocks_.front().begin >= cursor_;
+    const uint64_t limit = ahead ? blocks_.front().begin : current_.data_bytes;
+    if (limit - cursor_ >= need_bytes) {
+      blocks_.push_back({cursor_, cursor_ + need_bytes, next_number_});
+      cursor_ += need_bytes;
+      return true;
+    }
+    if (!ahead) {
+      if (++wraps == 2) {
+        return false;
+      }
+      cursor_ = 0;
+      continue;
+    }
+    const Block block = blocks_.front();
+    switch (take_back(block.number, false)) {
+      case TakeBack::freed:
+        blocks_.pop_front();
+        break;
+      case TakeBack::pinned:  // a hole: passed over now, met again in the next round
+        if (++pinned_seen > blocks_.size()) {
+          return false;
+        }
+        blocks_.pop_front();
+        blocks_.push_back(block);
+        cursor_ = block.end;
+        break;
+      case TakeBack::wanted: {
+        const GenerationEntry * const before = current_.entry;
+        make_place(block.number, need_bytes, false);
+        wraps = current_.entry == before ? wraps : 0;
+        break;
+      }
+    }
+  }
+}
+
+TopicDsmWriter::Room TopicDsmWriter::find_room(uint64_t size_bytes) {
+  const uint64_t need = align_up(std::max<uint64_t>(size_bytes, 1), record_alignment);
+  blocked_until_ns_ = 0;
+  if (!old_.empty()) {
+    free_old_generations();
+  }
+  take_back_free_records();
+  require_data_bytes(need);
+  claim_descriptor(need);
+  if (!try_place(need) && !(grow(std::max(current_.data_bytes, need) * 2, current_.count) &&
+                            try_place(need))) {
+    endpoint_.counters.refused.fetch_add(1, std::memory_order_relaxed);
+    throw Error(
+      ErrorCode::no_space, "the topic DSM of '" + std::string(endpoint_.topic) +
+        "' is full of records that are being read; a message of " + std::to_string(size_bytes) +
+        " bytes needs a topic_dsm_size of at least " +
+        std::to_string(current_.data_bytes + need));
+  }
+  const Block & block = blocks_.back();
+  return {
+    cluster_.find<uint8_t>(current_.data_offset) + block.begin, block.end - block.begin};
+}
+
+void TopicDsmWriter::abandon_room() noexcept {
+  cursor_ = blocks_.back().begin;
+  blocks_.pop_back();
+}
+
+uint64_t TopicDsmWriter::commit(
+  uint64_t size_bytes, int64_t source_timestamp_ns, uint64_t publication_sequence_number,
+  const Correlation & correlation) {
+  Block & block = blocks_.back();
+  block.end = block.begin + align_up(std::max<uint64_t>(size_bytes, 1), record_alignment);
+  block.number = next_number_;
+  cursor_ = block.end;
+  RecordDescriptor & record = current_.descriptor(next_number_);
+  record.offset = current_.data_offset + block.begin;
+  record.size_bytes = static_cast<uint32_t>(size_bytes);
+  record.source_timestamp_ns = source_timestamp_ns;
+  record.publication_sequence_number = publication_sequence_number;
+  record.correlation = correlation;
+  // Release: whoever finds the number finds the bytes and the fields above.
+  record.number.store(next_number_, std::memory_order_release);
+  // Dekker with a late joiner: it activates its reader entry before it loads `last`.
+  dsm_.last.store(next_number_, std::memory_order_seq_cst);
+  readers_.refresh();
+  return next_number_++;
+}
+
+bool TopicDsmWriter::wait_until_taken(int64_t deadline_ns) {
+  while (true) {
+    const uint32_t seen = dsm_.progress.load(std::memory_order_seq_cst);
+    dsm_.writer_waits.store(1, std::memory_order_seq_cst);
+    readers_.refresh();
+    const uint64_t last = dsm_.last.load(std::memory_order_relaxed);
+    const bool pending = std::any_of(
+      readers_.readers().begin(), readers_.readers().end(), [&](const Reader & reader) {
+        return reader.reliable && reader.active() &&
+               reader.source->taken.load(std::memory_order_seq_cst) < last;
+      });
+    if (!pending || monotonic_ns() >= deadline_ns) {
+      dsm_.writer_waits.store(0, std::memory_order_relaxed);
+      return !pending;
+    }
+    leave();
+    futex_wait(dsm_.progress, seen, deadline_ns);
+    enter();
+  }
+}
+
+}  // namespace manycore
