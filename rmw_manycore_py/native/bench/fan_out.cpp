@@ -1,0 +1,68 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+// How old is a message when each of many subscribers has it, at a steady rate?
+//
+//   fan_out role=sink
+//   fan_out role=source bytes=N subscribers=N rate_hz=N iterations=N
+//
+// A sink prints the age of each message in the order of arrival; messages are as many as
+// `iterations` unless some got lost.
+#include <thread>
+
+#include "bench/node.hpp"
+#include "bench/program.hpp"
+#include "platform/clock.hpp"
+
+namespace {
+
+using namespace manycore::bench;
+using manycore::monotonic_ns;
+
+constexpr size_t depth = 10;
+// Messages before the measured ones, so that every sink has matched and every page is warm.
+constexpr size_t warm_up = 100;
+constexpr uint64_t warm_up_stamp = 0;
+
+void source(const Arguments & arguments) {
+  Node node("source");
+  Publisher publisher(node, "/data", reliable_qos(depth));
+  wait_until_matched(publisher, arguments.number("subscribers"));
+  Message message;
+  message.data.resize(arguments.number("bytes"));
+  const std::chrono::nanoseconds period(manycore::ns_per_s / arguments.number("rate_hz"));
+  auto next = std::chrono::steady_clock::now();
+  const size_t messages = warm_up + arguments.number("iterations");
+  for (size_t i = 0; i < messages; ++i) {
+    std::this_thread::sleep_until(next += period);
+    set_number(message, i < warm_up ? warm_up_stamp : static_cast<uint64_t>(monotonic_ns()));
+    publisher.publish(message);
+  }
+  std::this_thread::sleep_until(next += period);
+  publisher.publish(Message());
+  // A reliable middleware may still be sending again what was lost.
+  wait_for_end_of_input();
+}
+
+void sink() {
+  Node node("sink");
+  Subscription subscription(node, "/data", reliable_qos(depth));
+  WaitSet wait_set(node);
+  Message message;
+  std::vector<int64_t> samples_ns;
+  while (true) {
+    take_next(wait_set, subscription, message);
+    if (message.data.empty()) {
+      return print_samples(samples_ns);
+    }
+    if (number_of(message) != warm_up_stamp) {
+      samples_ns.push_back(monotonic_ns() - static_cast<int64_t>(number_of(message)));
+    }
+  }
+}
+
+}  // namespace
+
+int main(int argc, char ** argv) {
+  return run_program(argc, argv, [](const Arguments & arguments) {
+    arguments.text("role") == "source" ? source(arguments) : sink();
+  });
+}
