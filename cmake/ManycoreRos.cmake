@@ -16,7 +16,7 @@ find_package(ament_cmake QUIET)
 if(ament_cmake_FOUND)
   find_package(fastcdr REQUIRED)
   target_link_libraries(manycore_ros INTERFACE fastcdr)
-  foreach(package rmw rcutils rosidl_runtime_c rosidl_dynamic_typesupport
+  foreach(package rmw rcutils rcpputils rosidl_runtime_c rosidl_dynamic_typesupport
       rosidl_typesupport_fastrtps_c rosidl_typesupport_fastrtps_cpp)
     find_package(${package} REQUIRED)
     target_link_libraries(manycore_ros INTERFACE ${package}::${package})

@@ -47,10 +47,6 @@ function(manycore_library name kind directory)
   foreach(excluded IN LISTS arg_EXCLUDE)
     list(REMOVE_ITEM sources ${directory}/${excluded})
   endforeach()
-  if(NOT sources)
-    file(WRITE ${CMAKE_BINARY_DIR}/empty.cpp "")
-    set(sources ${CMAKE_BINARY_DIR}/empty.cpp)
-  endif()
   add_library(${name} ${kind} ${sources})
   target_link_libraries(${name} PUBLIC manycore_options)
 endfunction()
@@ -61,8 +57,8 @@ function(manycore_executable name)
 endfunction()
 
 # Puts a target under <prefix>/lib/rmw_manycore, out of the way of linkers and PATH.
-function(manycore_install_private name directory)
-  set(private lib/rmw_manycore/${directory})
+function(manycore_install_private name subdirectory)
+  set(private lib/rmw_manycore/${subdirectory})
   set_target_properties(${name} PROPERTIES
     RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/${private}
     LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/${private})

@@ -1,0 +1,109 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Includes and imports go downwards only."""
+
+from __future__ import annotations
+
+import ast
+import re
+from pathlib import Path
+
+import pytest
+
+pytestmark = pytest.mark.unit
+
+PACKAGE = Path(__file__).parents[2] / "rmw_manycore_py"
+NATIVE = PACKAGE / "native"
+
+# What each native directory may include of the others, besides itself.
+NATIVE_BELOW = {
+    "platform": set(),
+    "transport": {"platform"},
+    "rmw": {"platform", "transport"},
+    "python": {"platform", "transport"},
+    "ndt": {"platform", "transport"},
+    "bench": {"platform", "transport"},
+}
+SEES_ROS = {"rmw", "bench"}
+ROS_HEADER = re.compile(r"(rmw|rcl|rcutils|rcpputils|rosidl_\w+|fastcdr|\w+_msgs)/")
+# Mapping, pinning and futexes are wrapped once.
+PLATFORM_ONLY = {"sys/mman.h", "linux/futex.h", "sys/syscall.h", "sched.h"}
+CALLS_THE_SYSTEM = {"platform", "bench"}
+
+# Lowest first; a module may import those of its own layer and of layers before it.
+PYTHON_LAYERS = ["errors", "topology", "mapfile", "create", "launch", "cli"]
+
+INCLUDE = re.compile(r'^\s*#\s*include\s+[<"]([^>"]+)[>"]', re.MULTILINE)
+
+
+def native_files() -> list[Path]:
+    return [path for path in NATIVE.rglob("*") if path.suffix in {".cpp", ".hpp", ".c", ".h"}]
+
+
+def directory_of(path: Path) -> str:
+    return path.relative_to(NATIVE).parts[0]
+
+
+def allowed(path: Path, header: str) -> bool:
+    """Tell whether the native file `path` may include `header`."""
+    directory = directory_of(path)
+    first = header.split("/")[0]
+    if (NATIVE / header).exists():
+        return first == directory or first in NATIVE_BELOW[directory]
+    if ROS_HEADER.match(header):
+        return directory in SEES_ROS
+    return header not in PLATFORM_ONLY or directory in CALLS_THE_SYSTEM
+
+
+def test_native_code_includes_downwards_only() -> None:
+    assert native_files()
+    wrong = [
+        f"{path.relative_to(NATIVE)} includes {header}"
+        for path in native_files()
+        for header in INCLUDE.findall(path.read_text())
+        if not allowed(path, header)
+    ]
+    assert wrong == []
+
+
+@pytest.mark.parametrize(
+    ("path", "header"),
+    [
+        ("platform/futex.hpp", "transport/process.hpp"),
+        ("transport/process.hpp", "rmw/init.h"),
+        ("python/module.cpp", "rmw/names.hpp"),
+        ("transport/process.cpp", "sys/mman.h"),
+    ],
+)
+def test_an_upward_include_is_seen(path: str, header: str) -> None:
+    assert not allowed(NATIVE / path, header)
+
+
+def layer_of(module: str) -> int | None:
+    """Return the layer of a dotted module name, None for one that is in none."""
+    parts = module.split(".")
+    if parts[0] != "rmw_manycore_py" or len(parts) < 2 or parts[1] not in PYTHON_LAYERS:
+        return None
+    return PYTHON_LAYERS.index(parts[1])
+
+
+def imported_modules(path: Path) -> list[str]:
+    """Return the dotted names of all modules that a file imports."""
+    modules: list[str] = []
+    for statement in ast.walk(ast.parse(path.read_text())):
+        if isinstance(statement, ast.Import):
+            modules += [alias.name for alias in statement.names]
+        elif isinstance(statement, ast.ImportFrom) and statement.module:
+            modules += [f"{statement.module}.{alias.name}" for alias in statement.names]
+    return modules
+
+
+def test_python_imports_downwards_only() -> None:
+    wrong = []
+    for path in PACKAGE.rglob("*.py"):
+        module = ".".join(path.relative_to(PACKAGE.parent).with_suffix("").parts)
+        own = layer_of(module)
+        for imported in imported_modules(path):
+            below = layer_of(imported)
+            if own is not None and below is not None and below > own:
+                wrong.append(f"{module} imports {imported}")
+    assert wrong == []
