@@ -1,0 +1,316 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""The actions of ROS 2 launch, under their own names; executing one records what it would do."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Iterable, Mapping
+from pathlib import Path
+from typing import Any
+
+from typing_extensions import override
+
+from rmw_manycore_py.errors import MapfileError
+from rmw_manycore_py.mapfile.launch_file.context import LaunchContext, LaunchedNode, RefusedError
+from rmw_manycore_py.mapfile.launch_file.guard import guarded
+from rmw_manycore_py.mapfile.launch_file.substitutions import is_true, perform
+
+_HERE = str(Path(__file__).parent)
+# How output is shown and when a process is killed is for `manycore run` to say.
+_WITHOUT_EFFECT = frozenset(
+    {"output", "emulate_tty", "log_cmd", "shell", "sigterm_timeout", "sigkill_timeout"}
+    | {"output_format", "cached_output", "description"}
+)
+
+
+class Condition:
+    """Decides whether an action takes place."""
+
+    def evaluate(self, context: LaunchContext) -> bool:
+        """Return whether it does."""
+        raise NotImplementedError
+
+
+class IfCondition(Condition):
+    """`if="..."`."""
+
+    def __init__(self, predicate_expression: Any) -> None:
+        self.predicate_expression = predicate_expression
+
+    @override
+    def evaluate(self, context: LaunchContext) -> bool:
+        return is_true(context, self.predicate_expression)
+
+
+class UnlessCondition(IfCondition):
+    """`unless="..."`."""
+
+    @override
+    def evaluate(self, context: LaunchContext) -> bool:
+        return not super().evaluate(context)
+
+
+class LaunchConfigurationEquals(Condition):
+    """Compares a launch argument with a text; one that is not set equals None."""
+
+    def __init__(self, launch_configuration_name: str, expected_value: Any) -> None:
+        self.name, self.expected_value = launch_configuration_name, expected_value
+
+    @override
+    def evaluate(self, context: LaunchContext) -> bool:
+        found = context.launch_configurations.get(self.name)
+        expected = self.expected_value
+        return found == (None if expected is None else perform(context, expected))
+
+
+class LaunchConfigurationNotEquals(LaunchConfigurationEquals):
+    """The opposite."""
+
+    @override
+    def evaluate(self, context: LaunchContext) -> bool:
+        return not super().evaluate(context)
+
+
+class Action:
+    """One thing a launch file does; knows the line it stands in."""
+
+    def __init__(self, *, condition: Condition | None = None) -> None:
+        self.condition = condition
+        self.line = _calling_line()
+
+    def visit(self, context: LaunchContext) -> None:
+        """Do it, unless its condition says otherwise."""
+        try:
+            if self.condition is None or self.condition.evaluate(context):
+                self.execute(context)
+        except RefusedError as refused:
+            raise MapfileError(refused.at(context.file, self.line)) from refused
+
+    def execute(self, context: LaunchContext) -> None:
+        """Do it."""
+        raise NotImplementedError
+
+
+class LaunchDescription(Action):
+    """The content of a launch file."""
+
+    def __init__(
+        self, initial_entities: Iterable[Any] | None = None, *, deprecated_reason: Any = None
+    ) -> None:
+        super().__init__()
+        self.entities = list(initial_entities or ())
+        self.deprecated_reason = deprecated_reason
+
+    def add_action(self, action: Any) -> None:
+        """Append an action."""
+        self.entities.append(action)
+
+    add_entity = add_action
+
+    @override
+    def execute(self, context: LaunchContext) -> None:
+        visit_all(context, self.entities)
+
+
+class DeclareLaunchArgument(Action):
+    """`arg`: an argument of the launch file."""
+
+    def __init__(
+        self,
+        name: str,
+        *,
+        default_value: Any = None,
+        description: Any = None,
+        choices: Iterable[str] | None = None,
+        condition: Condition | None = None,
+    ) -> None:
+        super().__init__(condition=condition)
+        self.name, self.default_value, self.description = name, default_value, description
+        self.choices = list(choices) if choices is not None else None
+
+    @override
+    def execute(self, context: LaunchContext) -> None:
+        context.declared.add(self.name)
+        values = context.launch_configurations
+        if self.name not in values:
+            if self.default_value is None:
+                expected = f"a value for the launch argument '{self.name}', in launch_arguments"
+                raise RefusedError(expected, "none, and it has no default", self.name)
+            values[self.name] = perform(context, self.default_value)
+        if self.choices is not None and values[self.name] not in self.choices:
+            raise RefusedError(
+                f"one of {', '.join(self.choices)}", f"'{values[self.name]}'", self.name
+            )
+
+
+class SetLaunchConfiguration(Action):
+    """`let`."""
+
+    def __init__(self, name: Any, value: Any, *, condition: Condition | None = None) -> None:
+        super().__init__(condition=condition)
+        self.name, self.value = name, value
+
+    @override
+    def execute(self, context: LaunchContext) -> None:
+        context.launch_configurations[perform(context, self.name)] = perform(context, self.value)
+
+
+class SetEnvironmentVariable(Action):
+    """`set_env`: for the processes that follow."""
+
+    def __init__(self, name: Any, value: Any, *, condition: Condition | None = None) -> None:
+        super().__init__(condition=condition)
+        self.name, self.value = name, value
+
+    @override
+    def execute(self, context: LaunchContext) -> None:
+        context.scope.environment[perform(context, self.name)] = perform(context, self.value)
+
+
+class GroupAction(Action):
+    """`group`: actions whose settings end with it."""
+
+    def __init__(
+        self,
+        actions: Iterable[Any],
+        *,
+        scoped: Any = True,
+        forwarding: Any = True,
+        launch_configurations: Mapping[Any, Any] | None = None,
+        condition: Condition | None = None,
+    ) -> None:
+        super().__init__(condition=condition)
+        self.actions, self.scoped, self.forwarding = list(actions), scoped, forwarding
+        self.launch_configurations = dict(launch_configurations or {})
+
+    @override
+    def execute(self, context: LaunchContext) -> None:
+        if not is_true(context, self.scoped):
+            visit_all(context, self.actions)
+            return
+        values = {
+            perform(context, name): perform(context, value)
+            for name, value in self.launch_configurations.items()
+        }
+        with context.scoped():
+            if not is_true(context, self.forwarding):
+                context.launch_configurations.clear()
+            context.launch_configurations.update(values)
+            visit_all(context, self.actions)
+
+
+class OpaqueFunction(Action):
+    """Python code of the launch file that returns actions."""
+
+    def __init__(
+        self,
+        *,
+        function: Callable[..., Any],
+        args: Iterable[Any] = (),
+        kwargs: Mapping[str, Any] | None = None,
+        condition: Condition | None = None,
+    ) -> None:
+        super().__init__(condition=condition)
+        self.function, self.args, self.kwargs = function, tuple(args), dict(kwargs or {})
+
+    @override
+    def execute(self, context: LaunchContext) -> None:
+        made = guarded(context.file, self.function, context, *self.args, **self.kwargs)
+        visit_all(context, made or ())
+
+
+class LogInfo(Action):
+    """`log`: something to tell whoever starts the launch file."""
+
+    def __init__(self, *, msg: Any, condition: Condition | None = None) -> None:
+        super().__init__(condition=condition)
+        self.msg = msg
+
+    @override
+    def execute(self, context: LaunchContext) -> None:
+        context.notice(self.line, perform(context, self.msg))
+
+
+class TimerAction(Action):
+    """`timer`: actions that come later."""
+
+    def __init__(
+        self, *, period: Any, actions: Iterable[Any], condition: Condition | None = None
+    ) -> None:
+        super().__init__(condition=condition)
+        self.period, self.actions = period, list(actions)
+
+    @override
+    def execute(self, context: LaunchContext) -> None:
+        context.notice(self.line, "what the timer delays starts with the others")
+        visit_all(context, self.actions)
+
+
+class ExecuteProcess(Action):
+    """`executable`: a process that is not declared as a node."""
+
+    def __init__(
+        self,
+        *,
+        cmd: Iterable[Any],
+        name: Any = None,
+        additional_env: Mapping[Any, Any] | None = None,
+        condition: Condition | None = None,
+        **options: Any,
+    ) -> None:
+        super().__init__(condition=condition)
+        self.cmd, self.name = list(cmd), name
+        self.additional_env = dict(additional_env or {})
+        self.options = options
+
+    @override
+    def execute(self, context: LaunchContext) -> None:
+        note_options(context, self.line, self.options)
+        context.nodes.append(
+            LaunchedNode(
+                file=context.file,
+                line=self.line,
+                name=None if self.name is None else perform(context, self.name),
+                namespace="/",
+                package=None,
+                executable=None,
+                command=tuple(perform(context, word) for word in self.cmd),
+                parameters=(),
+                remappings=(),
+                arguments=(),
+                ros_arguments=(),
+                env=environment(context, self.additional_env),
+            )
+        )
+
+
+def visit_all(context: LaunchContext, entities: Iterable[Any]) -> None:
+    """Execute actions in their order."""
+    for entity in entities:
+        if not isinstance(entity, Action):
+            raise RefusedError("a launch action", type(entity).__name__)
+        entity.visit(context)
+
+
+def environment(context: LaunchContext, additional: Mapping[Any, Any]) -> dict[str, str]:
+    """Return what a launch file adds to the environment of a process."""
+    own = {perform(context, name): perform(context, value) for name, value in additional.items()}
+    return {**context.scope.environment, **own}
+
+
+def note_options(context: LaunchContext, line: int, options: Mapping[str, Any]) -> None:
+    """Refuse options that are not known; say of known ones that they have no effect here."""
+    for name, value in options.items():
+        if name in _WITHOUT_EFFECT or value in (None, False, "false", "", ()):
+            continue
+        if name not in ("respawn", "respawn_delay", "respawn_max_retries", "on_exit", "prefix"):
+            raise RefusedError("an option of a node or executable", f"'{name}'", name)
+        context.notice(line, f"'{name}' has no effect under manycore run")
+
+
+def _calling_line() -> int:
+    """Return the line of the launch file in Python that makes an action."""
+    frame = sys._getframe(1)
+    while frame.f_back is not None and frame.f_code.co_filename.startswith(_HERE):
+        frame = frame.f_back
+    return frame.f_lineno

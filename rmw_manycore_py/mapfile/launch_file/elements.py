@@ -1,0 +1,136 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""The common form of launch files in XML and YAML: tags with attributes, children and lines."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+from xml.parsers import expat
+
+from rmw_manycore_py.errors import MapfileError, Problem
+from rmw_manycore_py.mapfile.document import Document, KeyPath, read_text, read_yaml
+
+# In YAML these keys hold children; everything else is an attribute.
+_CHILD_LISTS = ("param", "remap", "env", "arg", "let")
+_CHILD_BLOCKS = ("group", "timer")
+
+
+@dataclass
+class Element:
+    """A tag; `used` collects the attributes someone asked for."""
+
+    file: Path
+    line: int
+    tag: str
+    attributes: dict[str, Any] = field(default_factory=dict)
+    children: list[Element] = field(default_factory=list)
+    used: set[str] = field(default_factory=set)
+
+    def problem(self, expected: str, found: str) -> MapfileError:
+        """Return an error at this tag."""
+        return MapfileError(Problem(self.file, self.line, self.tag, expected, found))
+
+    def get(self, *names: str) -> Any:
+        """Return the first attribute of these names that is given."""
+        self.used.update(names)
+        return next((self.attributes[name] for name in names if name in self.attributes), None)
+
+    def require(self, *names: str) -> Any:
+        """Return an attribute that must be given."""
+        value = self.get(*names)
+        if value is None:
+            raise self.problem(f"the attribute '{names[0]}'", "no such attribute")
+        return value
+
+    def take(self, *tags: str) -> list[Element]:
+        """Remove and return the children with these tags."""
+        taken = [child for child in self.children if child.tag in tags]
+        self.children = [child for child in self.children if child.tag not in tags]
+        return taken
+
+    def check_all_used(self) -> None:
+        """Refuse attributes and children that nobody asked for."""
+        unknown = [name for name in self.attributes if name not in self.used]
+        if unknown:
+            raise self.problem(f"one of {', '.join(sorted(self.used))}", f"'{unknown[0]}'")
+        if self.children:
+            child = self.children[0]
+            raise child.problem(f"nothing of the kind in <{self.tag}>", f"<{child.tag}>")
+
+
+def read_xml(path: Path) -> Element:
+    """Read the tags of an XML launch file."""
+    text = read_text(path)
+    root = Element(path, 1, "")
+    stack = [root]
+    parser = expat.ParserCreate()
+
+    def start(tag: str, attributes: dict[str, str]) -> None:
+        element = Element(path, parser.CurrentLineNumber, tag, attributes)
+        stack[-1].children.append(element)
+        stack.append(element)
+
+    def characters(words: str) -> None:
+        if words.strip():
+            raise stack[-1].problem("tags only", repr(words.strip()))
+
+    parser.StartElementHandler = start
+    parser.EndElementHandler = lambda _tag: stack.pop()
+    parser.CharacterDataHandler = characters
+    try:
+        parser.Parse(text, True)
+    except expat.ExpatError as error:
+        problem = Problem(path, error.lineno, "", "valid XML", expat.ErrorString(error.code))
+        raise MapfileError(problem) from error
+    return _launch_tag(root.children[0])
+
+
+def read_yaml_elements(path: Path) -> Element:
+    """Read the tags of a YAML launch file."""
+    document = read_yaml(path)
+    data = document.data
+    if not isinstance(data, dict) or list(data) != ["launch"]:
+        raise MapfileError(document.problem((), "the one key 'launch'", _kind(data)))
+    return _launch_tag(_element(document, "launch", data["launch"], ("launch",)))
+
+
+def _launch_tag(element: Element) -> Element:
+    if element.tag != "launch":
+        raise element.problem("the tag 'launch'", f"'{element.tag}'")
+    return element
+
+
+def _element(document: Document, tag: str, value: Any, path: KeyPath) -> Element:
+    element = Element(document.file, document.line(path), tag)
+    if isinstance(value, list):
+        _add_children(document, element, value, path)
+    elif isinstance(value, dict):
+        for key, item in value.items():
+            _add_key(document, element, key, item, (*path, key))
+    elif value is not None:
+        raise element.problem("a mapping or a list", _kind(value))
+    return element
+
+
+def _add_key(document: Document, element: Element, key: str, item: Any, path: KeyPath) -> None:
+    if key == "children" or (key in _CHILD_BLOCKS and isinstance(item, list)):
+        _add_children(document, element, item, path)
+    elif key in _CHILD_LISTS and isinstance(item, list):
+        element.children += [
+            _element(document, key, child, (*path, i)) for i, child in enumerate(item)
+        ]
+    else:
+        element.attributes[key] = item
+
+
+def _add_children(document: Document, element: Element, items: Any, path: KeyPath) -> None:
+    for index, item in enumerate(items or ()):
+        if not isinstance(item, dict) or len(item) != 1:
+            raise MapfileError(document.problem((*path, index), "one tag", _kind(item)))
+        for tag, value in item.items():
+            element.children.append(_element(document, tag, value, (*path, index, tag)))
+
+
+def _kind(value: Any) -> str:
+    return f"the keys {', '.join(map(str, value))}" if isinstance(value, dict) else repr(value)

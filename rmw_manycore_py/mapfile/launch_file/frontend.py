@@ -1,0 +1,192 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Turns the tags of XML and YAML launch files into the actions they stand for."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from rmw_manycore_py.errors import MapfileError
+from rmw_manycore_py.mapfile.launch_file import actions as a
+from rmw_manycore_py.mapfile.launch_file import ros_actions as r
+from rmw_manycore_py.mapfile.launch_file import text
+from rmw_manycore_py.mapfile.launch_file.context import RefusedError
+from rmw_manycore_py.mapfile.launch_file.elements import Element
+from rmw_manycore_py.mapfile.launch_file.include import (
+    IncludeLaunchDescription,
+    LaunchDescriptionSource,
+)
+from rmw_manycore_py.mapfile.launch_file.parameters import ParameterFile, ParameterValue
+
+Make = Callable[[Element], a.Action]
+_OPTIONS = ("output", "emulate_tty", "respawn", "respawn_delay", "respawn_max_retries", "on_exit")
+_TYPES = {"bool": bool, "int": int, "float": float, "double": float, "str": str}
+
+
+def description(element: Element) -> a.LaunchDescription:
+    """Return the actions of a <launch> tag."""
+    element.get("version")
+    return a.LaunchDescription(_actions(element))
+
+
+def _actions(element: Element) -> list[a.Action]:
+    children, element.children = element.children, []
+    made = [_action(child) for child in children]
+    element.check_all_used()
+    return made
+
+
+def _action(element: Element) -> a.Action:
+    make = _TAGS.get(element.tag)
+    if make is None:
+        raise element.problem(f"one of the tags {', '.join(_TAGS)}", f"'{element.tag}'")
+    try:
+        condition = _condition(element)
+        action = make(element)
+        action.line, action.condition = element.line, condition
+        element.check_all_used()
+    except RefusedError as refused:
+        raise MapfileError(refused.at(element.file, element.line)) from refused
+    return action
+
+
+def _condition(element: Element) -> a.Condition | None:
+    holds, fails = _text(element.get("if")), _text(element.get("unless"))
+    if holds is not None and fails is not None:
+        raise element.problem("either 'if' or 'unless'", "both")
+    if holds is not None:
+        return a.IfCondition(holds)
+    return None if fails is None else a.UnlessCondition(fails)
+
+
+def _text(value: Any) -> text.Parts | None:
+    if value is None:
+        return None
+    if isinstance(value, bool):
+        value = str(value).lower()
+    return text.parse(str(value))
+
+
+def _arg(element: Element) -> a.Action:
+    choices = [str(child.require("value")) for child in element.take("choice")]
+    return a.DeclareLaunchArgument(
+        str(element.require("name")),
+        default_value=_text(element.get("default")),
+        description=element.get("description"),
+        choices=choices or None,
+    )
+
+
+def _node(element: Element) -> a.Action:
+    return r.Node(
+        package=_text(element.require("pkg")),
+        executable=_text(element.require("exec")),
+        name=_text(element.get("name")),
+        namespace=_text(element.get("namespace", "ns")),
+        arguments=_words(element.get("args")),
+        ros_arguments=_words(element.get("ros_args")),
+        parameters=[_parameter(child) for child in element.take("param")],
+        remappings=_pairs(element.take("remap"), "from", "to"),
+        additional_env=dict(_pairs(element.take("env"), "name", "value")),
+        **_options(element),
+    )
+
+
+def _words(line: Any) -> list[text.Parts]:
+    return [] if line is None else text.split_words(text.parse(str(line)))
+
+
+def _options(element: Element) -> dict[str, Any]:
+    options = {name: element.get(name) for name in _OPTIONS}
+    return {**options, "prefix": element.get("launch-prefix")}
+
+
+def _pairs(elements: list[Element], first: str, second: str) -> list[tuple[str, Any]]:
+    pairs = []
+    for element in elements:
+        pairs.append((str(element.require(first)), _text(element.require(second))))
+        element.check_all_used()
+    return pairs
+
+
+def _parameter(element: Element) -> Any:
+    file = element.get("from")
+    if file is not None:
+        allow = _text(element.get("allow_substs"))
+        element.check_all_used()
+        return ParameterFile(_text(file), allow_substs=allow or False)
+    name = str(element.require("name"))
+    nested = [_parameter(child) for child in element.take("param")]
+    if nested:
+        element.check_all_used()
+        return {name: {key: value for part in nested for key, value in part.items()}}
+    value = _parameter_value(element)
+    element.check_all_used()
+    return {name: value}
+
+
+def _parameter_value(element: Element) -> Any:
+    value = element.require("value")
+    separator, kind = element.get("value-sep"), element.get("type")
+    if separator is not None:
+        return [ParameterValue(_text(part.strip())) for part in str(value).split(separator)]
+    if kind is not None and kind not in _TYPES:
+        raise element.problem(f"one of the types {', '.join(_TYPES)}", f"'{kind}'")
+    if isinstance(value, str):
+        return ParameterValue(_text(value), value_type=_TYPES[kind] if kind else None)
+    return value
+
+
+def _include(element: Element) -> a.Action:
+    arguments = _pairs(element.take("arg", "let"), "name", "value")
+    source = LaunchDescriptionSource(_text(element.require("file")))
+    return IncludeLaunchDescription(source, launch_arguments=arguments)
+
+
+def _group(element: Element) -> a.Action:
+    scoped = _text(element.get("scoped")) or True
+    forwarding = _text(element.get("forwarding")) or True
+    keep = dict(_pairs(element.take("keep"), "name", "value"))
+    return a.GroupAction(
+        _actions(element), scoped=scoped, forwarding=forwarding, launch_configurations=keep
+    )
+
+
+def _executable(element: Element) -> a.Action:
+    element.get("shell")
+    return a.ExecuteProcess(
+        cmd=_words(element.require("cmd")),
+        name=_text(element.get("name")),
+        additional_env=dict(_pairs(element.take("env"), "name", "value")),
+        **_options(element),
+    )
+
+
+def _of_two(make: Callable[..., a.Action], first: str, second: str) -> Make:
+    return lambda e: make(_text(e.require(first)), _text(e.require(second)))
+
+
+def _set_parameter(element: Element) -> a.Action:
+    return r.SetParameter(_text(element.require("name")), _parameter_value(element))
+
+
+def _push_namespace(element: Element) -> a.Action:
+    return r.PushROSNamespace(_text(element.require("namespace", "ns")))
+
+
+_TAGS: dict[str, Make] = {
+    "arg": _arg,
+    "let": _of_two(a.SetLaunchConfiguration, "name", "value"),
+    "node": _node,
+    "include": _include,
+    "group": _group,
+    "executable": _executable,
+    "push-ros-namespace": _push_namespace,
+    "push_ros_namespace": _push_namespace,
+    "set_env": _of_two(a.SetEnvironmentVariable, "name", "value"),
+    "set_remap": _of_two(r.SetRemap, "from", "to"),
+    "set_parameter": _set_parameter,
+    "set_parameters_from_file": lambda e: r.SetParametersFromFile(_text(e.require("filename"))),
+    "log": lambda e: a.LogInfo(msg=_text(e.require("message"))),
+    "timer": lambda e: a.TimerAction(period=_text(e.require("period")), actions=_actions(e)),
+}

@@ -1,0 +1,32 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Calls the code of launch files, so that whatever it raises names the file and the line."""
+
+from __future__ import annotations
+
+import traceback
+from pathlib import Path
+from typing import Any
+
+from rmw_manycore_py.errors import ManycoreError, MapfileError, Problem
+from rmw_manycore_py.mapfile.launch_file.context import RefusedError
+
+
+def guarded(path: Path, function: Any, *arguments: Any, **named: Any) -> Any:
+    """Call code of a launch file; whatever it raises is an error in that file."""
+    try:
+        return function(*arguments, **named)
+    except ManycoreError:
+        raise
+    except Exception as error:
+        raise failure(path, error) from error
+
+
+def failure(path: Path, error: Exception) -> MapfileError:
+    """Return what went wrong in the code of a launch file, with the line it happened in."""
+    frames = traceback.extract_tb(error.__traceback__)
+    lines = [frame.lineno or 0 for frame in frames if frame.filename == str(path)]
+    line = lines[-1] if lines else getattr(error, "lineno", None) or 0
+    if isinstance(error, RefusedError):
+        return MapfileError(error.at(path, line))
+    found = f"{type(error).__name__}: {error}"
+    return MapfileError(Problem(path, line, "", "launch code that is understood here", found))

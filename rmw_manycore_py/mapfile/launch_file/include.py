@@ -1,0 +1,69 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Launch files that launch files include."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from pathlib import Path
+from typing import Any
+
+from typing_extensions import override
+
+from rmw_manycore_py.errors import MapfileError, Problem
+from rmw_manycore_py.mapfile.launch_file.actions import Action, Condition, LaunchDescription
+from rmw_manycore_py.mapfile.launch_file.context import LaunchContext, RefusedError
+from rmw_manycore_py.mapfile.launch_file.substitutions import perform
+
+Frontend = Callable[[Path], LaunchDescription]
+# Suffix of the file name to what reads it; filled by `reader`, which knows all of them.
+FRONTENDS: dict[str, Frontend] = {}
+_DEEPEST_INCLUDE = 50
+
+
+class LaunchDescriptionSource:
+    """Names a launch file; what reads it follows from the name's suffix."""
+
+    def __init__(self, launch_file_path: Any) -> None:
+        self.launch_file_path = launch_file_path
+
+
+class IncludeLaunchDescription(Action):
+    """`include`."""
+
+    def __init__(
+        self,
+        launch_description_source: Any,
+        *,
+        launch_arguments: Iterable[tuple[Any, Any]] | None = None,
+        condition: Condition | None = None,
+    ) -> None:
+        super().__init__(condition=condition)
+        self.source = launch_description_source
+        self.launch_arguments = list(launch_arguments or ())
+
+    @override
+    def execute(self, context: LaunchContext) -> None:
+        source = self.source
+        path = source.launch_file_path if isinstance(source, LaunchDescriptionSource) else source
+        file = Path(perform(context, path))
+        if not file.is_file():
+            raise RefusedError("an existing launch file", str(file))
+        for name, value in self.launch_arguments:
+            context.launch_configurations[perform(context, name)] = perform(context, value)
+        read_into(context, file)
+
+
+def read_into(context: LaunchContext, file: Path) -> None:
+    """Read a launch file and record what it starts."""
+    context.depth += 1
+    if context.depth > _DEEPEST_INCLUDE:
+        raise RefusedError("launch files that do not include themselves", str(file))
+    frontend = next(
+        (read for suffix, read in FRONTENDS.items() if file.name.endswith(suffix)), None
+    )
+    if frontend is None:
+        problem = Problem(file, 0, "", f"a file ending in {', '.join(FRONTENDS)}", f"'{file.name}'")
+        raise MapfileError(problem)
+    with context.reading(file):
+        frontend(file).visit(context)
+    context.depth -= 1

@@ -1,0 +1,119 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Parameters in launch files: values, substitutions that yield values, and parameter files."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from rmw_manycore_py.mapfile.document import read_text
+from rmw_manycore_py.mapfile.launch_file import text
+from rmw_manycore_py.mapfile.launch_file.context import LaunchContext, ParameterSource, RefusedError
+from rmw_manycore_py.mapfile.launch_file.substitutions import Substitution, is_true, perform
+
+_TYPES = {bool: "bool", int: "int", float: "float", str: "str"}
+
+
+class ParameterValue:
+    """A value with its type given, so that the text of a substitution is not guessed at."""
+
+    def __init__(self, value: Any, *, value_type: Any = None) -> None:
+        self.value, self.value_type = value, value_type
+
+    def evaluate(self, context: LaunchContext) -> Any:
+        """Return the value in its type."""
+        if self.value_type is None:
+            return _value(context, self.value)
+        if self.value_type is str:
+            return perform(context, self.value)
+        value = _value(context, self.value)
+        if self.value_type is float and type(value) is int:
+            return float(value)
+        if self.value_type in _TYPES and type(value) is not self.value_type:
+            raise RefusedError(f"a parameter of type {_TYPES[self.value_type]}", repr(value))
+        return value
+
+
+class ParameterFile:
+    """A parameter file, in which substitutions may stand."""
+
+    def __init__(self, param_file: Any, *, allow_substs: Any = False) -> None:
+        self.param_file, self.allow_substs = param_file, allow_substs
+
+    def evaluate(self, context: LaunchContext, node: str) -> ParameterSource:
+        """Return the file, or what it says for `node` where substitutions had to be made."""
+        path = Path(perform(context, self.param_file)).expanduser()
+        if not path.is_file():
+            raise RefusedError("an existing parameter file", str(path))
+        if not is_true(context, self.allow_substs):
+            return path
+        return _expanded(context, path, node)
+
+
+def evaluate_all(context: LaunchContext, sources: Any, node: str) -> tuple[ParameterSource, ...]:
+    """Return the parameters of a node in their order; the later ones win."""
+    return tuple(_evaluate(context, source, node) for source in sources or ())
+
+
+def _evaluate(context: LaunchContext, source: Any, node: str) -> ParameterSource:
+    if isinstance(source, Mapping):
+        return dict(_flat(context, source, ""))
+    if isinstance(source, ParameterFile):
+        return source.evaluate(context, node)
+    return ParameterFile(source).evaluate(context, node)
+
+
+def _flat(
+    context: LaunchContext, source: Mapping[Any, Any], prefix: str
+) -> Iterable[tuple[str, Any]]:
+    for key, value in source.items():
+        name = prefix + perform(context, key)
+        if isinstance(value, Mapping):
+            yield from _flat(context, value, f"{name}.")
+        else:
+            yield name, _value(context, value)
+
+
+def _value(context: LaunchContext, value: Any) -> Any:
+    if isinstance(value, ParameterValue):
+        return value.evaluate(context)
+    if isinstance(value, (str, bool, int, float)):
+        return value
+    if isinstance(value, Substitution):
+        return _typed(perform(context, value))
+    if isinstance(value, (list, tuple)):
+        if any(isinstance(part, Substitution) for part in value):
+            return _typed(perform(context, value))
+        return [_value(context, part) for part in value]
+    raise RefusedError("a parameter value", repr(value))
+
+
+def _typed(words: str) -> Any:
+    """Return what YAML makes of a text: that is how ROS 2 launch types substitutions."""
+    try:
+        value = yaml.safe_load(words)
+    except yaml.YAMLError:
+        return words
+    return value if isinstance(value, (bool, int, float, list)) else words
+
+
+def _expanded(context: LaunchContext, path: Path, node: str) -> dict[str, Any]:
+    data = yaml.safe_load(read_text(path)) or {}
+    namespace, _, name = node.rpartition("/")
+    chosen: dict[str, Any] = {}
+    for key in ("/**", f"{namespace}/*", name, f"/{name}", node):
+        section = data.get(key)
+        if isinstance(section, Mapping) and isinstance(section.get("ros__parameters"), Mapping):
+            chosen |= dict(_flat(context, _substitute(section["ros__parameters"]), ""))
+    return chosen
+
+
+def _substitute(value: Any) -> Any:
+    if isinstance(value, Mapping):
+        return {key: _substitute(item) for key, item in value.items()}
+    if isinstance(value, list):
+        return [_substitute(item) for item in value]
+    return text.parse(value) if isinstance(value, str) and "$(" in value else value

@@ -1,0 +1,49 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Reads a launch file of any kind, without the package `launch`."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from rmw_manycore_py.errors import MapfileError, Problem
+from rmw_manycore_py.mapfile.launch_file.context import LaunchContext, LaunchedNode, RefusedError
+from rmw_manycore_py.mapfile.launch_file.elements import read_xml, read_yaml_elements
+from rmw_manycore_py.mapfile.launch_file.frontend import description
+from rmw_manycore_py.mapfile.launch_file.include import FRONTENDS, read_into
+from rmw_manycore_py.mapfile.launch_file.python_file import read_python, stand_ins
+
+FRONTENDS.update(
+    {
+        ".xml": lambda file: description(read_xml(file)),
+        ".yaml": lambda file: description(read_yaml_elements(file)),
+        ".yml": lambda file: description(read_yaml_elements(file)),
+        ".py": read_python,
+    }
+)
+
+
+@dataclass(frozen=True)
+class LaunchFile:
+    """What a launch file starts."""
+
+    file: Path
+    nodes: tuple[LaunchedNode, ...]
+    notices: tuple[str, ...]
+
+
+def read_launch_file(file: Path, arguments: Mapping[str, str] | None = None) -> LaunchFile:
+    """Read a launch file with values for its arguments."""
+    given = dict(arguments or {})
+    context = LaunchContext(file, given)
+    try:
+        with stand_ins():
+            read_into(context, file)
+    except RefusedError as refused:
+        raise MapfileError(refused.at(file, 0)) from refused
+    unknown = [name for name in given if name not in context.declared]
+    if unknown:
+        expected = f"only declared launch arguments ({', '.join(sorted(context.declared))})"
+        raise MapfileError(Problem(file, 0, unknown[0], expected, "an argument that is not"))
+    return LaunchFile(file, tuple(context.nodes), tuple(context.notices))

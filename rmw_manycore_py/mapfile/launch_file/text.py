@@ -1,0 +1,119 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Reads `$(name argument ...)` in the texts of XML and YAML launch files."""
+
+from __future__ import annotations
+
+import shlex
+from collections.abc import Callable
+from typing import Any
+
+from rmw_manycore_py.mapfile.launch_file import substitutions as s
+from rmw_manycore_py.mapfile.launch_file.context import RefusedError
+
+Parts = list[s.Substitution]
+_BY_NAME: dict[str, tuple[int, int, Callable[..., s.Substitution]]] = {
+    "var": (1, 2, lambda name, default=None: s.LaunchConfiguration(name, default=default)),
+    "env": (1, 2, lambda name, default=None: s.EnvironmentVariable(name, default_value=default)),
+    "find-pkg-share": (1, 1, s.FindPackageShare),
+    "find-pkg-prefix": (1, 1, s.FindPackagePrefix),
+    "exec-in-pkg": (2, 2, s.ExecutableInPackage),
+    "find-exec": (1, 1, lambda name: s.FindExecutable(name=name)),
+    "filename": (0, 0, s.ThisLaunchFile),
+    "dirname": (0, 0, s.ThisLaunchFileDir),
+    "eval": (1, 2, s.PythonExpression),
+    "command": (1, 2, lambda line, on_stderr="fail": s.Command(line, on_stderr=on_stderr)),
+    "not": (1, 1, s.NotSubstitution),
+    "and": (2, 2, s.AndSubstitution),
+    "or": (2, 2, s.OrSubstitution),
+    "equals": (2, 2, s.EqualsSubstitution),
+    "not-equals": (2, 2, s.NotEqualsSubstitution),
+    "if": (1, 3, s.IfElseSubstitution),
+}
+
+
+# Private-use characters stand for substitutions while a line is split.
+_PLACEHOLDER = 0xF0000
+
+
+def parse(text: str) -> Parts:
+    """Return the parts of a text: plain ones and substitutions."""
+    reader = _Reader(text)
+    parts = reader.parts(lambda _char: False)
+    return parts or [s.TextSubstitution(text="")]
+
+
+def split_words(parts: Parts) -> list[Parts]:
+    """Split a command line at its spaces; what a substitution yields is never split."""
+    line = "".join(
+        part.text if isinstance(part, s.TextSubstitution) else chr(_PLACEHOLDER + index)
+        for index, part in enumerate(parts)
+    )
+    try:
+        words = shlex.split(line)
+    except ValueError as error:
+        raise RefusedError("a command line as in a shell", f"{line!r}: {error}") from error
+    return [[_part(char, parts) for char in word] for word in words]
+
+
+def _part(char: str, parts: Parts) -> s.Substitution:
+    index = ord(char) - _PLACEHOLDER
+    return parts[index] if 0 <= index < len(parts) else s.TextSubstitution(text=char)
+
+
+class _Reader:
+    def __init__(self, text: str) -> None:
+        self._text = text
+        self._at = 0
+
+    def parts(self, ends: Callable[[str], bool]) -> Parts:
+        """Read up to the first character for which `ends` holds, outside of substitutions."""
+        parts: Parts = []
+        plain = ""
+        while self._at < len(self._text) and not ends(self._text[self._at]):
+            if self._text.startswith("$(", self._at):
+                parts += [s.TextSubstitution(text=plain)] if plain else []
+                plain = ""
+                parts.append(self._substitution())
+                continue
+            if self._text[self._at] == "\\" and self._text[self._at + 1 : self._at + 2] in "$\\\"'":
+                self._at += 1
+            plain += self._text[self._at : self._at + 1]
+            self._at += 1
+        return parts + ([s.TextSubstitution(text=plain)] if plain else [])
+
+    def _substitution(self) -> s.Substitution:
+        self._at += len("$(")
+        start = self._at
+        while self._at < len(self._text) and self._text[self._at] not in " \t\n)":
+            self._at += 1
+        name = self._text[start : self._at]
+        arguments = self._arguments()
+        if name not in _BY_NAME:
+            raise RefusedError(f"one of the substitutions {', '.join(_BY_NAME)}", f"'$({name})'")
+        fewest, most, make = _BY_NAME[name]
+        if not fewest <= len(arguments) <= most:
+            count = f"{fewest}" if fewest == most else f"{fewest} to {most}"
+            raise RefusedError(f"{count} argument(s) of $({name})", str(len(arguments)))
+        return make(*arguments)
+
+    def _arguments(self) -> list[Any]:
+        arguments: list[Parts] = []
+        while True:
+            while self._at < len(self._text) and self._text[self._at] in " \t\n":
+                self._at += 1
+            if self._at >= len(self._text):
+                raise RefusedError("a closing ')'", repr(self._text))
+            if self._text[self._at] == ")":
+                self._at += 1
+                return arguments
+            arguments.append(self._argument(self._text[self._at]))
+
+    def _argument(self, quote: str) -> Parts:
+        if quote not in "\"'":
+            return self.parts(lambda char: char in " \t\n)")
+        self._at += 1
+        parts = self.parts(lambda char: char == quote)
+        if self._at >= len(self._text):
+            raise RefusedError(f"a closing {quote}", repr(self._text))
+        self._at += 1
+        return parts or [s.TextSubstitution(text="")]
