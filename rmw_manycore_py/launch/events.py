@@ -1,0 +1,101 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""What the runner reports. `as_json` is the interface of `manycore run --json`."""
+
+from __future__ import annotations
+
+import json
+import re
+from dataclasses import asdict, dataclass
+
+
+@dataclass(frozen=True)
+class Event:
+    """Something that happened during a run."""
+
+    def as_json(self) -> str:
+        """Return one line: the kind of event, then its fields."""
+        kind = re.sub(r"(?<!^)(?=[A-Z])", "_", type(self).__name__).lower()
+        return json.dumps({"event": kind, **asdict(self)})
+
+
+@dataclass(frozen=True)
+class PlacedCore:
+    """A line of the table: who runs on which virtual core, and on which host CPU that is."""
+
+    node: str
+    cluster: int
+    core: int
+    host_cpu: int
+
+
+@dataclass(frozen=True)
+class Platform(Event):
+    """The platform is configured."""
+
+    name: str
+    profile: str
+    clusters: int
+    cores_per_cluster: int
+    smem_size: int
+    cores: tuple[PlacedCore, ...]
+
+
+@dataclass(frozen=True)
+class Notice(Event):
+    """Something the user should know; nothing is wrong."""
+
+    text: str
+
+
+@dataclass(frozen=True)
+class Started(Event):
+    """A node runs."""
+
+    node: str
+    pid: int
+    cluster: int
+    core: int
+    host_cpu: int
+
+
+@dataclass(frozen=True)
+class Output(Event):
+    """A node printed a line."""
+
+    node: str
+    line: str
+
+
+@dataclass(frozen=True)
+class Stopping(Event):
+    """From here on the nodes are asked to end."""
+
+    reason: str
+
+
+@dataclass(frozen=True)
+class Insisting(Event):
+    """A node did not end when it was asked to, and was sent a stronger signal."""
+
+    node: str
+    signal: str
+
+
+@dataclass(frozen=True)
+class Ended(Event):
+    """A node is over; `last_lines` are those of a failed one."""
+
+    node: str
+    state: str
+    reason: str
+    exit_status: int | None
+    signal: str | None
+    last_lines: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Finished(Event):
+    """The run is over."""
+
+    failed: tuple[str, ...]
+    exit_status: int

@@ -1,0 +1,22 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""What the runner needs to know of a node: how it is started, and where."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from rmw_manycore_py.topology import Core
+
+
+@dataclass(frozen=True)
+class NodeProgram:
+    """One node as a process: its command line, its whole environment, its core."""
+
+    name: str
+    command: tuple[str, ...]
+    environment: Mapping[str, str]
+    core: Core
+    host_cpu: int
+    directory: Path | None = None

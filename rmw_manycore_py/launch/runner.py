@@ -1,0 +1,176 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""The loop of `manycore run`: one thread that waits for output, ends, signals and deadlines."""
+
+from __future__ import annotations
+
+import selectors
+import time
+from collections.abc import Callable, Sequence
+from contextlib import ExitStack
+from typing import Protocol
+
+from rmw_manycore_py.errors import EXIT_FAILURE
+from rmw_manycore_py.launch.events import Ended, Event, Insisting, Output, Started, Stopping
+from rmw_manycore_py.launch.node_process import NodeProcess
+from rmw_manycore_py.launch.program import NodeProgram
+from rmw_manycore_py.launch.signals import SignalInbox, signal_inbox
+from rmw_manycore_py.launch.state import NodeState
+
+Report = Callable[[Event], None]
+Handler = Callable[[], None]
+
+
+class _Readable(Protocol):
+    def fileno(self) -> int: ...
+
+
+class Runner:
+    """Starts nodes in order, one per turn of the loop, and stays until the last one is over."""
+
+    def __init__(self, programs: Sequence[NodeProgram], report: Report) -> None:
+        self._nodes = [NodeProcess(program) for program in programs]
+        self._report_to = report
+        self._selector = selectors.DefaultSelector()
+        self._stopping = False
+        self._silent = False
+        self._end_s = float("inf")  # when the run's duration is over, on the monotonic clock
+
+    @property
+    def failed(self) -> tuple[str, ...]:
+        """The names of the nodes that failed."""
+        return tuple(n.program.name for n in self._nodes if n.state is NodeState.FAILED)
+
+    def run(self, duration_s: float | None = None) -> int:
+        """Run until all nodes are over, or for a time from the start of the last; exit status."""
+        with ExitStack() as stack:
+            inbox = stack.enter_context(signal_inbox())
+            stack.callback(self._selector.close)
+            for node in self._nodes:
+                stack.callback(node.destroy)
+            self._watch(inbox, lambda: self._take_signals(inbox))
+            while not self._is_over():
+                self._start_next(duration_s)
+                for key, _ in self._selector.select(self._patience_s()):
+                    handler: Handler = key.data
+                    handler()
+                self._keep_deadlines()
+        return EXIT_FAILURE if self.failed else 0
+
+    def _is_over(self) -> bool:
+        if self._stopping:
+            return not any(node.is_alive for node in self._nodes)
+        return all(node.is_over for node in self._nodes)
+
+    def _next_node(self) -> NodeProcess | None:
+        waiting = (node for node in self._nodes if node.state is NodeState.WAITING)
+        return None if self._stopping else next(waiting, None)
+
+    def _start_next(self, duration_s: float | None) -> None:
+        node = self._next_node()
+        if node is None:
+            return
+        if node.start():
+            self._watch_node(node)
+        else:
+            self._report_end(node)
+            self._stop(f"{node.program.name} {node.ending.reason}" if node.ending else "")
+        if duration_s is not None and self._next_node() is None:
+            self._end_s = time.monotonic() + duration_s
+
+    def _watch_node(self, node: NodeProcess) -> None:
+        core = node.program.core
+        self._report(Started(node.program.name, node.process.pid, *core, node.program.host_cpu))
+        self._watch(node.output, lambda: self._read_output(node))
+        self._selector.register(node.pidfd, selectors.EVENT_READ, lambda: self._leader_ended(node))
+
+    def _watch(self, readable: _Readable, handler: Handler) -> None:
+        self._selector.register(readable, selectors.EVENT_READ, handler)
+
+    def _read_output(self, node: NodeProcess) -> None:
+        self._report_lines(node, node.output.read_lines())
+        if node.output.at_end:
+            self._selector.unregister(node.output)
+            if node.is_leaderless:
+                self._collect(node)
+
+    def _leader_ended(self, node: NodeProcess) -> None:
+        self._selector.unregister(node.pidfd)
+        node.leader_ended()
+        if node.output.at_end:
+            self._collect(node)
+
+    def _collect(self, node: NodeProcess) -> None:
+        if not node.output.at_end:
+            self._selector.unregister(node.output)
+        self._report_lines(node, node.collect())
+        self._report_end(node)
+
+    def _take_signals(self, inbox: SignalInbox) -> None:
+        for number in inbox.take():
+            if self._stopping:
+                self._insist(float("inf"))  # asked again: no more patience
+            else:
+                self._stop(number.name)
+
+    def _stop(self, reason: str) -> None:
+        if self._stopping:
+            return
+        self._stopping = True
+        self._report(Stopping(reason))
+        for node in self._nodes:
+            if node.state is NodeState.RUNNING and not node.is_leaderless:
+                node.stop()
+
+    def _insist(self, now_s: float) -> None:
+        """Take the next step with each node whose time is up."""
+        for node in self._nodes:
+            if node.is_alive and not node.is_leaderless and node.deadline_s <= now_s:
+                number = node.stop()
+                if number:
+                    self._report(Insisting(node.program.name, number.name))
+
+    def _keep_deadlines(self) -> None:
+        now_s = time.monotonic()
+        if now_s >= self._end_s:
+            self._end_s = float("inf")
+            self._stop("the duration is over")
+        for node in self._nodes:
+            if node.is_leaderless and now_s >= node.deadline_s:
+                self._collect(node)
+        self._insist(now_s)
+
+    def _patience_s(self) -> float | None:
+        """Return how long nothing is due; None = nothing ever is."""
+        if self._next_node() or self._is_over():
+            return 0
+        due_s = min([self._end_s, *(node.deadline_s for node in self._nodes)])
+        return None if due_s == float("inf") else max(due_s - time.monotonic(), 0)
+
+    def _report_lines(self, node: NodeProcess, lines: list[str]) -> None:
+        for line in lines:
+            self._report(Output(node.program.name, line))
+
+    def _report_end(self, node: NodeProcess) -> None:
+        ending = node.ending
+        assert ending is not None
+        tail = node.last_lines if ending.failed else ()
+        self._report(
+            Ended(
+                node.program.name,
+                node.state.value,
+                ending.reason,
+                ending.exit_status,
+                ending.signal,
+                tail,
+            )
+        )
+
+    def _report(self, event: Event) -> None:
+        """Report an event; when nobody reads what we print, the run is over."""
+        if self._silent:
+            return
+        try:
+            self._report_to(event)
+        except OSError:  # a closed pipe, a terminal that hung up
+            self._silent = True
+            self._stop("the output was closed")

@@ -1,0 +1,50 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Signals as something to select on, instead of something that interrupts."""
+
+from __future__ import annotations
+
+import signal
+import socket
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+
+STOP_SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+
+
+class SignalInbox:
+    """Readable when signals have arrived."""
+
+    def __init__(self, reader: socket.socket) -> None:
+        self._reader = reader
+
+    def fileno(self) -> int:
+        """Return the descriptor, for selectors."""
+        return self._reader.fileno()
+
+    def take(self) -> list[signal.Signals]:
+        """Return what has arrived since the last call."""
+        try:
+            return [signal.Signals(number) for number in self._reader.recv(4096)]
+        except BlockingIOError:
+            return []
+
+
+@contextmanager
+def signal_inbox(signals: Iterable[signal.Signals] = STOP_SIGNALS) -> Iterator[SignalInbox]:
+    """Collect these signals instead of ending on them; for the main thread."""
+    reader, writer = socket.socketpair()
+    with reader, writer:
+        reader.setblocking(False)
+        writer.setblocking(False)
+        before = {number: signal.signal(number, _ignore) for number in signals}
+        descriptor_before = signal.set_wakeup_fd(writer.fileno(), warn_on_full_buffer=False)
+        try:
+            yield SignalInbox(reader)
+        finally:
+            signal.set_wakeup_fd(descriptor_before)
+            for number, handler in before.items():
+                signal.signal(number, handler)
+
+
+def _ignore(_number: int, _frame: object) -> None:
+    """Do nothing: the interpreter has already written the number to the inbox."""

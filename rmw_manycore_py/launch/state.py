@@ -1,0 +1,56 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""The states of a launched node, and the steps by which it is stopped."""
+
+from __future__ import annotations
+
+import signal
+from enum import Enum
+from typing import NamedTuple
+
+# rclpy nodes end some 0.1 s after SIGINT; the rest of the time is for nodes that save things.
+INTERRUPT_GRACE_S = 5.0
+TERMINATE_GRACE_S = 3.0
+
+
+class NodeState(Enum):
+    """Where a launched node is in its life."""
+
+    WAITING = "waiting"  # its turn to be started has not come
+    RUNNING = "running"
+    INTERRUPTED = "interrupted"  # was sent SIGINT
+    TERMINATED = "terminated"  # was sent SIGTERM
+    KILLED = "killed"  # was sent SIGKILL
+    FINISHED = "finished"  # ended well: by itself, or because it was asked to
+    FAILED = "failed"  # could not be started, ended badly, or had to be killed
+
+
+TRANSITIONS: dict[NodeState, frozenset[NodeState]] = {
+    NodeState.WAITING: frozenset({NodeState.RUNNING, NodeState.FAILED}),
+    NodeState.RUNNING: frozenset({NodeState.INTERRUPTED, NodeState.FINISHED, NodeState.FAILED}),
+    NodeState.INTERRUPTED: frozenset({NodeState.TERMINATED, NodeState.FINISHED, NodeState.FAILED}),
+    NodeState.TERMINATED: frozenset({NodeState.KILLED, NodeState.FINISHED, NodeState.FAILED}),
+    NodeState.KILLED: frozenset({NodeState.FAILED}),
+    NodeState.FINISHED: frozenset(),
+    NodeState.FAILED: frozenset(),
+}
+
+
+class StopStep(NamedTuple):
+    """What is done to a node that has to stop, and how long it has before the next step."""
+
+    signal: signal.Signals
+    state: NodeState
+    grace_s: float
+
+
+STOP_STEPS = {
+    NodeState.RUNNING: StopStep(signal.SIGINT, NodeState.INTERRUPTED, INTERRUPT_GRACE_S),
+    NodeState.INTERRUPTED: StopStep(signal.SIGTERM, NodeState.TERMINATED, TERMINATE_GRACE_S),
+    NodeState.TERMINATED: StopStep(signal.SIGKILL, NodeState.KILLED, float("inf")),
+}
+
+
+def check_transition(old: NodeState, new: NodeState) -> None:
+    """Raise ValueError for a step that the table does not have."""
+    if new not in TRANSITIONS[old]:
+        raise ValueError(f"no transition from {old.value} to {new.value}")

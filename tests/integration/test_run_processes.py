@@ -1,0 +1,251 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""The runner with real processes: plain programs stand for nodes, so that no ROS is needed."""
+
+from __future__ import annotations
+
+import json
+import os
+import shlex
+import signal
+import sys
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from support import Program, peer_command, wait_until
+
+from rmw_manycore_py.launch.program import NodeProgram
+from rmw_manycore_py.launch.runner import Runner
+from rmw_manycore_py.topology import Core
+
+pytestmark = pytest.mark.integration
+
+CPU = min(os.sched_getaffinity(0))
+STUBBORN = """
+import signal, time
+for number in (signal.SIGINT, signal.SIGTERM):
+    signal.signal(number, lambda *_: print("no", flush=True))
+print("ready", flush=True)
+while True:
+    time.sleep(60)
+"""
+POLITE = """
+import signal, sys
+def leave(*_):
+    print("bye", flush=True)
+    sys.exit(0)
+signal.signal(signal.SIGINT, leave)
+print("ready", flush=True)
+while True:
+    signal.pause()
+"""
+
+
+def python(source: str) -> list[str]:
+    return [sys.executable, "-c", source]
+
+
+def run_programs(commands: dict[str, list[str]], host_cpu: int, duration_s: float | None) -> None:
+    """Run in a process of its own: a runner over commands, its events on standard output."""
+    programs = [
+        NodeProgram(name, tuple(command), dict(os.environ), Core(1, number), host_cpu)
+        for number, (name, command) in enumerate(commands.items(), start=1)
+    ]
+    runner = Runner(programs, lambda event: print(event.as_json(), flush=True))
+    sys.exit(runner.run(duration_s))
+
+
+class Run:
+    """A runner in a process of its own."""
+
+    def __init__(self, commands: dict[str, list[str]], host_cpu: int, duration_s: float | None):
+        arguments = (commands, host_cpu, duration_s)
+        self.program = Program(peer_command(run_programs, *arguments), dict(os.environ))
+
+    @property
+    def events(self) -> list[dict[str, Any]]:
+        return [json.loads(line) for line in self.program.lines if line.startswith("{")]
+
+    def event(self, kind: str, node: str | None = None) -> dict[str, Any]:
+        found = [e for e in self.events if e["event"] == kind and node in (None, e.get("node"))]
+        assert found, self.program
+        return found[-1]
+
+    def wait_for_lines(self, line: str, *nodes: str) -> None:
+        """Wait until each of the nodes has printed the line."""
+        for node in nodes:
+            wanted = {"event": "output", "node": node, "line": line}
+            wait_until(lambda: wanted in self.events, f"{node} prints {line}")  # noqa: B023
+
+
+StartRun = Callable[..., Run]
+
+
+@pytest.fixture
+def start_run() -> Iterator[StartRun]:
+    runs: list[Run] = []
+
+    def start(host_cpu: int = CPU, duration_s: float | None = None, **commands: list[str]) -> Run:
+        runs.append(Run(commands, host_cpu, duration_s))
+        return runs[-1]
+
+    yield start
+    for run in runs:
+        run.program.kill()
+
+
+def is_gone(pid: int) -> bool:
+    """Tell whether a process has ended; one that nobody has waited for yet has ended too."""
+    try:
+        stat = Path(f"/proc/{pid}/stat").read_text()
+    except (FileNotFoundError, ProcessLookupError):
+        return True
+    return stat.rsplit(")", 1)[1].split()[0] == "Z"
+
+
+def test_nodes_start_in_order_and_end_by_themselves(start_run: StartRun) -> None:
+    run = start_run(first=python("print('one')"), second=python("print('two', end='')"))
+    assert run.program.wait() == 0
+    assert [e["node"] for e in run.events if e["event"] == "started"] == ["first", "second"]
+    assert run.event("output", "first")["line"] == "one"
+    assert run.event("output", "second")["line"] == "two"
+    assert run.event("ended", "first")["state"] == "finished"
+    assert not any(e["event"] == "stopping" for e in run.events)
+
+
+def test_a_node_runs_on_its_cpu_from_its_first_instruction(start_run: StartRun) -> None:
+    source = "import os; print(os.sched_getaffinity(0))"
+    cpu = max(os.sched_getaffinity(0))
+    run = start_run(host_cpu=cpu, node=python(source))
+    assert run.program.wait() == 0
+    assert run.event("started")["host_cpu"] == cpu
+    assert run.event("output")["line"] == str({cpu})
+
+
+def test_a_failed_node_is_reported_with_its_last_words(start_run: StartRun) -> None:
+    run = start_run(bad=python("import sys; print('why'); sys.exit(3)"), good=python("pass"))
+    assert run.program.wait() == 1
+    ended = run.event("ended", "bad")
+    assert (ended["state"], ended["exit_status"], ended["reason"]) == ("failed", 3, "exit status 3")
+    assert ended["last_lines"] == ["why"]
+    assert run.event("ended", "good")["state"] == "finished"
+
+
+def test_a_crash_is_reported_by_the_name_of_its_signal(start_run: StartRun) -> None:
+    run = start_run(node=python("import os, signal; os.kill(os.getpid(), signal.SIGSEGV)"))
+    assert run.program.wait() == 1
+    ended = run.event("ended")
+    assert (ended["signal"], ended["exit_status"]) == ("SIGSEGV", None)
+    assert "SIGSEGV" in ended["reason"]
+
+
+def test_the_others_go_on_when_one_node_is_killed(start_run: StartRun) -> None:
+    run = start_run(victim=python(POLITE), other=python(POLITE))
+    run.wait_for_lines("ready", "victim", "other")
+    os.kill(run.event("started", "victim")["pid"], signal.SIGKILL)
+    run.program.wait_for('"event": "ended", "node": "victim"')
+    assert run.program.is_running()
+    run.program.signal(signal.SIGINT)
+    assert run.program.wait() == 1
+    assert run.event("ended", "other")["state"] == "finished"
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+def test_a_signal_stops_the_nodes_cleanly(start_run: StartRun, number: signal.Signals) -> None:
+    run = start_run(one=python(POLITE), two=python(POLITE))
+    run.wait_for_lines("ready", "one", "two")
+    run.program.signal(number)
+    assert run.program.wait() == 0
+    assert run.event("stopping")["reason"] == number.name
+    for name in ("one", "two"):
+        assert run.event("output", name)["line"] == "bye"
+        assert run.event("ended", name)["reason"] == "stopped"
+
+
+def test_a_node_without_handler_that_dies_of_the_interrupt_did_not_fail(
+    start_run: StartRun,
+) -> None:
+    run = start_run(node=["sleep", "1000"])
+    run.program.wait_for('"started"')
+    run.program.signal(signal.SIGINT)
+    assert run.program.wait() == 0
+    assert (run.event("ended")["state"], run.event("ended")["signal"]) == ("finished", "SIGINT")
+
+
+def test_the_duration_ends_the_run(start_run: StartRun) -> None:
+    run = start_run(duration_s=0.2, node=["sleep", "1000"])
+    assert run.program.wait() == 0
+    assert run.event("stopping")["reason"] == "the duration is over"
+
+
+def test_a_stubborn_node_is_killed_and_counts_as_failed(start_run: StartRun) -> None:
+    run = start_run(node=python(STUBBORN))
+    run.wait_for_lines("ready", "node")
+    run.program.signal(signal.SIGINT)
+    run.program.wait_for('"line": "no"')
+    run.program.signal(signal.SIGINT)  # asked again, it does not wait out the grace
+    run.program.wait_for('"line": "no"')
+    run.program.signal(signal.SIGINT)
+    assert run.program.wait() == 1
+    assert [e["signal"] for e in run.events if e["event"] == "insisting"] == ["SIGTERM", "SIGKILL"]
+    assert "did not stop" in run.event("ended")["reason"]
+
+
+def test_stopped_processes_are_stopped_too(start_run: StartRun) -> None:
+    run = start_run(node=["sleep", "1000"])
+    run.program.wait_for('"started"')
+    pid = run.event("started")["pid"]
+    os.kill(pid, signal.SIGSTOP)
+    for _ in range(3):
+        run.program.signal(signal.SIGINT)
+        run.program.wait_for('"stopping"|"insisting"')
+    assert run.program.wait() == 1
+    assert is_gone(pid)
+
+
+def test_children_of_a_node_die_with_it(start_run: StartRun) -> None:
+    run = start_run(node=["sh", "-c", "sleep 1000 & echo $!; kill -KILL $$"])
+    assert run.program.wait() == 1
+    child = int(run.event("output")["line"])
+    wait_until(lambda: is_gone(child), "the child of the node is gone")
+
+
+def test_a_node_that_cannot_start_stops_those_before_it(start_run: StartRun) -> None:
+    run = start_run(one=python(POLITE), two=["no-such-program"], three=python(POLITE))
+    assert run.program.wait() == 1
+    assert "no-such-program" in run.event("ended", "two")["reason"]
+    assert "two could not be started" in run.event("stopping")["reason"]
+    assert is_gone(run.event("started", "one")["pid"])
+    assert not any(e.get("node") == "three" for e in run.events)
+
+
+def test_a_cpu_that_does_not_exist_is_named(start_run: StartRun) -> None:
+    run = start_run(host_cpu=1000, node=["true"])
+    assert run.program.wait() == 1
+    assert "host CPU 1000" in run.event("ended")["reason"]
+
+
+def test_nodes_die_with_a_killed_runner(start_run: StartRun) -> None:
+    run = start_run(node=python(STUBBORN))
+    run.wait_for_lines("ready", "node")
+    pid = run.event("started")["pid"]
+    run.program.kill()
+    wait_until(lambda: is_gone(pid), "the node dies with the runner")
+
+
+def test_a_reader_that_closes_the_pipe_ends_the_run() -> None:
+    endless = {"node": ["sh", "-c", "while echo again; do sleep 0.01; done"]}
+    command = shlex.join(peer_command(run_programs, endless, CPU, None))
+    pipeline = Program(["sh", "-c", f"{command} | head -n 3"], dict(os.environ))
+    pipeline.wait()
+    pipeline.kill()
+    assert is_gone(json.loads(pipeline.lines[0])["pid"])
+
+
+def test_long_lines_and_foreign_bytes_pass(start_run: StartRun) -> None:
+    source = "import sys; sys.stdout.buffer.write(b'x' * 200_000 + b'\\xff\\n')"
+    run = start_run(node=python(source))
+    assert run.program.wait() == 0
+    text = "".join(e["line"] for e in run.events if e["event"] == "output")
+    assert text == "x" * 200_000 + "\ufffd"
