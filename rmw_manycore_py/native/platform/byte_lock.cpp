@@ -32,8 +32,16 @@ bool same_file(int fd, const std::string & path) {
 
 }  // namespace
 
+void ByteLocks::create(const std::string & path) {
+  const FileDescriptor fd(
+    ::open(path.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, 0600));
+  if (!fd) {
+    throw_errno("cannot create " + path);
+  }
+}
+
 ByteLocks ByteLocks::open(const std::string & path) {
-  FileDescriptor fd(::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600));
+  FileDescriptor fd(::open(path.c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW));
   if (!fd) {
     throw_errno("cannot open " + path);
   }

@@ -14,6 +14,7 @@ namespace manycore {
 /// A process must open the file once only: closing any descriptor of it drops its locks.
 class ByteLocks {
 public:
+  static void create(const std::string & path);
   static ByteLocks open(const std::string & path);
 
   /// False when another process holds the byte.

@@ -160,6 +160,7 @@ void ensure_platform(
   if (!exists(paths.directory)) {
     make_private_directory(paths.directory);
     try {
+      ByteLocks::create(paths.alive());
       Registry::create(paths, profile, topics);
     } catch (...) {
       remove_platform(paths);

@@ -231,6 +231,9 @@ bool TopicDsmWriter::grow(uint64_t data_bytes, uint64_t descriptor_count) {
   if (free_entry == std::end(dsm_.generations)) {
     return false;
   }
+  if (next_number_ == current_.first) {
+    ++next_number_;  // a reader tells generations apart by their first numbers
+  }
   try {
     const Registry::Lock lock(registry_, Registry::Lock::short_wait_ns);
     fill_generation(cluster_, *free_entry, data_bytes, descriptor_count, next_number_);
