@@ -12,8 +12,15 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-
-from support import IS_MANYCORE, PATIENCE_S, environment, leftovers, unique_platform, wait_until
+from support import (
+    IS_MANYCORE,
+    PATIENCE_S,
+    TESTS,
+    environment,
+    leftovers,
+    unique_platform,
+    wait_until,
+)
 
 REPORT_VARIABLE = "MANYCORE_TEST_REPORT"
 
@@ -57,13 +64,14 @@ def _reports(item: pytest.Item) -> list[pytest.TestReport]:
 
 
 def _run_pytest(item: pytest.Item, platform: str, report_path: Path) -> str | None:
-    command = [sys.executable, "-m", "pytest", "-p", "no:cacheprovider", "-m", "rmw", item.nodeid]
+    test = str(item.config.rootpath / item.nodeid)
+    command = [sys.executable, "-m", "pytest", "-p", "no:cacheprovider", "-m", "rmw", test]
     env = environment(platform, **{REPORT_VARIABLE: str(report_path)})
     try:
         result = subprocess.run(
             command,
             env=env,
-            cwd=item.config.rootpath,
+            cwd=TESTS,
             text=True,
             errors="replace",
             stdout=subprocess.PIPE,

@@ -83,7 +83,7 @@ class Program:
         self._process = subprocess.Popen(
             self.command,
             env=env,
-            cwd=REPOSITORY,
+            cwd=TESTS,  # not the repository, whose sources would hide the installed package
             text=True,
             errors="replace",
             stdin=subprocess.PIPE,

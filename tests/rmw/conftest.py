@@ -10,7 +10,6 @@ from typing import Any
 import pytest
 import rclpy
 from rclpy.node import Node
-
 from support import Program, peer_command
 
 

@@ -1,0 +1,104 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Actions: goals, feedback, results, cancelling, several clients."""
+
+from __future__ import annotations
+
+import pytest
+from action_msgs.msg import GoalStatus
+from rclpy.action import ActionClient, ActionServer, GoalResponse
+from rclpy.node import Node
+from ros_support import peer_node, spin_until
+from support import example_command
+from test_msgs.action import Fibonacci
+
+FAST = ("--ros-args", "-p", "rate_hz:=50.0")
+
+
+@pytest.fixture
+def client(node: Node, start, peer_cluster) -> ActionClient:
+    """Start the example server and return a client of it."""
+    start(example_command("fibonacci_server", *FAST), peer_cluster)
+    client = ActionClient(node, Fibonacci, "fibonacci")
+    assert client.wait_for_server(30)
+    return client
+
+
+def send(node, client, order, feedback=None):
+    accepted = client.send_goal_async(Fibonacci.Goal(order=order), feedback_callback=feedback)
+    spin_until(node, accepted.done)
+    return accepted.result()
+
+
+def result_of(node, goal):
+    finished = goal.get_result_async()
+    spin_until(node, finished.done)
+    return finished.result()
+
+
+def test_goal_feedback_and_result(node, client):
+    steps = []
+    goal = send(node, client, 5, lambda message: steps.append(list(message.feedback.sequence)))
+    result = result_of(node, goal)
+    assert result.status == GoalStatus.STATUS_SUCCEEDED
+    assert list(result.result.sequence) == [0, 1, 1, 2, 3, 5]
+    spin_until(node, lambda: len(steps) == 4)
+    assert steps[-1] == [0, 1, 1, 2, 3, 5]
+
+
+def test_cancel(node, client):
+    goal = send(node, client, 40)
+    cancelled = goal.cancel_goal_async()
+    spin_until(node, cancelled.done)
+    assert len(cancelled.result().goals_canceling) == 1
+    assert result_of(node, goal).status == GoalStatus.STATUS_CANCELED
+
+
+def test_result_of_a_goal_that_ended_long_ago(node, client):
+    """The result is asked for after the server has it, and it is still there."""
+    goal = send(node, client, 2)
+    spin_until(node, lambda: goal.status == GoalStatus.STATUS_SUCCEEDED)
+    assert list(result_of(node, goal).result.sequence) == [0, 1, 1]
+
+
+def test_several_goals_at_once(node, client):
+    orders = [2, 3, 4, 5]
+    goals = [send(node, client, order) for order in orders]
+    lengths = [len(result_of(node, goal).result.sequence) for goal in goals]
+    assert lengths == [3, 4, 5, 6]
+
+
+def test_several_clients(node, start, client):
+    others = [
+        start(example_command("fibonacci_client", "--ros-args", "-r", f"__node:=client_{n}"), n)
+        for n in (1, 2)
+    ]
+    assert len(result_of(node, send(node, client, 6)).result.sequence) == 7
+    for other in others:
+        other.wait_for(r"goal 1 succeeded: \[0, 1, 1, 2, 3, 5\]")
+
+
+def test_rejected_goal(node, start_peer, peer_cluster):
+    start_peer(reject, cluster=peer_cluster)
+    client = ActionClient(node, Fibonacci, "fibonacci")
+    assert client.wait_for_server(30)
+    assert not send(node, client, 5).accepted
+
+
+def reject() -> None:
+    with peer_node() as node:
+        ActionServer(
+            node,
+            Fibonacci,
+            "fibonacci",
+            execute_callback=lambda goal: Fibonacci.Result(),
+            goal_callback=lambda goal: GoalResponse.REJECT,
+        )
+        spin_until(node, lambda: False, timeout_s=600)
+
+
+def test_server_goes_away(node, start, peer_cluster):
+    server = start(example_command("fibonacci_server", *FAST), peer_cluster)
+    client = ActionClient(node, Fibonacci, "fibonacci")
+    assert client.wait_for_server(30)
+    assert server.stop() == 0
+    spin_until(node, lambda: not client.server_is_ready())

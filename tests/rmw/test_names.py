@@ -1,0 +1,111 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Names: namespaces, remapping, private topics, domains; and the log topic."""
+
+from __future__ import annotations
+
+import os
+
+import pytest
+import rclpy
+from rcl_interfaces.msg import Log
+from rclpy.qos import DurabilityPolicy, QoSProfile
+from ros_support import announce, peer_node, spin_until
+from std_msgs.msg import String
+from support import example_command
+
+
+def test_namespace_and_remapping(node, start, peer_cluster):
+    heard = []
+    node.create_subscription(String, "/far/away", heard.append, 10)
+    remap = [
+        "--ros-args",
+        "-r",
+        "__ns:=/robot",
+        "-r",
+        "__node:=speaker",
+        "-r",
+        "chatter:=/far/away",
+    ]
+    start(example_command("talker", *remap, "-p", "rate_hz:=50.0"), peer_cluster)
+    spin_until(node, lambda: heard)
+    spin_until(node, lambda: ("speaker", "/robot") in node.get_node_names_and_namespaces())
+
+
+def test_relative_and_private_names(node, start_peer, peer_cluster):
+    heard = []
+    node.create_subscription(String, "/robot/chatter", lambda m: heard.append(m.data), 10)
+    node.create_subscription(String, "/robot/peer/own", lambda m: heard.append(m.data), 10)
+    start_peer(publish_two, cluster=peer_cluster)
+    spin_until(node, lambda: {"relative", "private"} <= set(heard))
+
+
+def publish_two() -> None:
+    with peer_node("peer", namespace="robot") as node:
+        relative = node.create_publisher(String, "chatter", 10)
+        private = node.create_publisher(String, "~/own", 10)
+        node.create_timer(0.02, lambda: relative.publish(String(data="relative")))
+        node.create_timer(0.02, lambda: private.publish(String(data="private")))
+        rclpy.spin(node)
+
+
+def test_long_names(node):
+    topic = "/" + "/".join(["level"] * 40)
+    received = []
+    publisher = node.create_publisher(String, topic, 10)
+    node.create_subscription(String, topic, received.append, 10)
+    spin_until(node, publisher.get_subscription_count)
+    publisher.publish(String())
+    spin_until(node, lambda: received)
+    assert topic in dict(node.get_topic_names_and_types())
+
+
+def test_log_topic(node, start_peer, peer_cluster):
+    logs = []
+    qos = QoSProfile(depth=100, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+    node.create_subscription(Log, "/rosout", logs.append, qos)
+    peer = start_peer(log_one_line, cluster=peer_cluster)
+    peer.wait_for("something happened")
+    spin_until(node, lambda: any(log.msg == "something happened" for log in logs))
+    (log,) = [log for log in logs if log.msg == "something happened"]
+    assert (log.name, log.level, log.function) == ("peer", 30, "log_one_line")
+
+
+def log_one_line() -> None:
+    with peer_node() as node:
+        node.get_logger().warning("something happened")
+        rclpy.spin(node)
+
+
+@pytest.mark.parametrize("domain", [101, 100], ids=["one_domain", "two_domains"])
+def test_domains_are_apart(start_peer, monkeypatch, domain):
+    """Without MANYCORE_PLATFORM the ROS domain is the platform."""
+    monkeypatch.delenv("MANYCORE_PLATFORM", raising=False)
+    rclpy.init(domain_id=101)
+    node = rclpy.create_node("tester")
+    heard = []
+    node.create_subscription(String, "chatter", heard.append, 10)
+    peer = start_peer(talk_in_domain, domain)
+    peer.wait_for("published")
+    if domain == 101:
+        spin_until(node, lambda: heard)
+        spin_until(node, lambda: sorted(node.get_node_names()) == ["peer", "tester"])
+    else:
+        rclpy.spin_once(node, timeout_sec=0.1)
+        assert heard == []
+        assert node.get_node_names() == ["tester"]
+    node.destroy_node()
+    rclpy.shutdown()
+
+
+def talk_in_domain(domain: int) -> None:
+    """Publish to a reader of the own domain, which shows that messages arrive at all."""
+    os.environ.pop("MANYCORE_PLATFORM", None)
+    os.environ["ROS_DOMAIN_ID"] = str(domain)
+    with peer_node() as node:
+        heard = []
+        publisher = node.create_publisher(String, "chatter", 10)
+        node.create_subscription(String, "chatter", heard.append, 10)
+        node.create_timer(0.02, lambda: publisher.publish(String()))
+        spin_until(node, lambda: len(heard) > 2)
+        announce("published")
+        rclpy.spin(node)

@@ -1,0 +1,207 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Waiting: guard conditions, timers, executors with threads, executors with events."""
+
+from __future__ import annotations
+
+import threading
+import time
+
+import pytest
+import rclpy
+from rclpy._rclpy_pybind11 import RCLError
+from rclpy.callback_groups import ReentrantCallbackGroup
+from rclpy.executors import MultiThreadedExecutor, SingleThreadedExecutor
+from rclpy.experimental.events_executor import EventsExecutor
+from ros_support import announce, peer_node, spin_until
+from std_msgs.msg import String
+from std_srvs.srv import Trigger
+
+EXECUTORS = [SingleThreadedExecutor, MultiThreadedExecutor, EventsExecutor]
+
+
+def test_guard_condition_wakes_a_spinning_thread(node):
+    triggered = threading.Event()
+    guard = node.create_guard_condition(triggered.set)
+    executor = SingleThreadedExecutor()
+    executor.add_node(node)
+    thread = threading.Thread(target=executor.spin)
+    thread.start()
+    guard.trigger()
+    assert triggered.wait(30)
+    executor.shutdown()
+    thread.join(30)
+    assert not thread.is_alive()
+
+
+def test_a_trigger_before_the_wait_is_not_lost(node):
+    triggered = []
+    guard = node.create_guard_condition(lambda: triggered.append(1))
+    guard.trigger()
+    rclpy.spin_once(node, timeout_sec=30)
+    assert triggered == [1]
+
+
+def test_wait_times_out(node):
+    """With nothing to do a wait lasts as long as was asked for, and no callback runs."""
+    before = time.monotonic()
+    rclpy.spin_once(node, timeout_sec=0.2)
+    assert time.monotonic() - before >= 0.199
+
+
+def test_timers(node):
+    ticks = {0.01: 0, 0.03: 0}
+
+    def count(period_s: float) -> None:
+        ticks[period_s] += 1
+
+    timers = [node.create_timer(period, lambda p=period: count(p)) for period in ticks]
+    spin_until(node, lambda: ticks[0.03] == 5)
+    assert ticks[0.01] > ticks[0.03]
+    timers[0].cancel()
+    stopped_at = ticks[0.01]
+    spin_until(node, lambda: ticks[0.03] == 10)
+    assert ticks[0.01] == stopped_at
+
+
+@pytest.mark.parametrize("executor_type", EXECUTORS)
+def test_executors_deliver(node, start_peer, peer_cluster, executor_type):
+    heard = threading.Semaphore(0)
+    received = []
+
+    def hear(message: String) -> None:
+        received.append(int(message.data))
+        heard.release()
+
+    node.create_subscription(String, "numbers", hear, 100)
+    executor = executor_type()
+    executor.add_node(node)
+    thread = threading.Thread(target=executor.spin)
+    thread.start()
+    start_peer(publish_numbers, cluster=peer_cluster)
+    assert all(heard.acquire(timeout=30) for _ in range(100))
+    executor.shutdown()
+    thread.join(30)
+    assert sorted(received) == list(range(100))
+
+
+def publish_numbers() -> None:
+    with peer_node() as node:
+        publisher = node.create_publisher(String, "numbers", 100)
+        spin_until(node, publisher.get_subscription_count)
+        for number in range(100):
+            publisher.publish(String(data=str(number)))
+        rclpy.spin(node)
+
+
+@pytest.mark.parametrize("executor_type", EXECUTORS)
+def test_executors_serve(node, start_peer, executor_type):
+    """Services, clients and timers in one executor."""
+
+    def succeed(_, response):
+        response.success = True
+        return response
+
+    node.create_service(Trigger, "trigger", succeed)
+    executor = executor_type()
+    executor.add_node(node)
+    thread = threading.Thread(target=executor.spin)
+    thread.start()
+    peer = start_peer(call_trigger, executor_type.__name__, cluster=2)
+    peer.wait_for("10 answers")
+    executor.shutdown()
+    thread.join(30)
+
+
+def call_trigger(executor_name: str) -> None:
+    executor = {kind.__name__: kind for kind in EXECUTORS}[executor_name]
+    with peer_node() as node:
+        client = node.create_client(Trigger, "trigger")
+        assert client.wait_for_service(30)
+        answers = []
+
+        def call() -> None:
+            client.call_async(Trigger.Request()).add_done_callback(answers.append)
+            if len(answers) == 10:
+                announce("10 answers")
+
+        node.create_timer(0.01, call)
+        rclpy.spin(node, executor())
+
+
+def test_call_within_a_callback(node, start_peer):
+    """A callback waits for a service while other threads of its executor go on."""
+    start_peer(answer_trigger, cluster=2)
+    group = ReentrantCallbackGroup()
+    client = node.create_client(Trigger, "trigger", callback_group=group)
+    assert client.wait_for_service(30)
+    answers, done = [], threading.Event()
+
+    def call() -> None:
+        answers.append(client.call(Trigger.Request()).message)
+        if len(answers) == 20:
+            done.set()
+
+    node.create_timer(0.01, call, callback_group=group)
+    executor = MultiThreadedExecutor(4)
+    executor.add_node(node)
+    thread = threading.Thread(target=executor.spin)
+    thread.start()
+    assert done.wait(30)
+    executor.shutdown()
+    thread.join(30)
+    assert set(answers) == {"here"}
+
+
+def answer_trigger() -> None:
+    with peer_node() as node:
+
+        def answer(_, response):
+            response.message = "here"
+            return response
+
+        node.create_service(Trigger, "trigger", answer)
+        rclpy.spin(node)
+
+
+def test_many_entities_in_one_wait(node):
+    """Each of a hundred subscriptions is woken for its own message only."""
+    heard = {}
+    publishers = []
+    for number in range(100):
+        topic = f"topic_{number}"
+        publishers.append(node.create_publisher(String, topic, 1))
+        node.create_subscription(String, topic, lambda m, t=topic: heard.update({t: m.data}), 1)
+    spin_until(node, lambda: all(p.get_subscription_count() for p in publishers))
+    for number, publisher in enumerate(publishers):
+        publisher.publish(String(data=str(number)))
+    spin_until(node, lambda: len(heard) == 100)
+    assert heard == {f"topic_{number}": str(number) for number in range(100)}
+
+
+def test_init_and_shutdown_again_and_again():
+    for number in range(5):
+        rclpy.init()
+        node = rclpy.create_node(f"node_{number}")
+        received = []
+        publisher = node.create_publisher(String, "chatter", 1)
+        node.create_subscription(String, "chatter", received.append, 1)
+        spin_until(node, publisher.get_subscription_count)
+        publisher.publish(String())
+        spin_until(node, lambda received=received: received)
+        node.destroy_node()
+        rclpy.shutdown()
+
+
+def test_shutdown_with_everything_still_there():
+    """Endpoints that are still held when the context ends do no harm."""
+    rclpy.init()
+    node = rclpy.create_node("tester")
+    publisher = node.create_publisher(String, "chatter", 1)
+    subscription = node.create_subscription(String, "chatter", lambda _: None, 1)
+    client = node.create_client(Trigger, "trigger")
+    rclpy.shutdown()
+    with pytest.raises(RCLError, match="context is invalid"):
+        publisher.publish(String())
+    for entity in (publisher, subscription, client):
+        entity.destroy()
+    node.destroy_node()
