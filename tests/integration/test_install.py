@@ -1,0 +1,160 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""The wheel: what is in it, and that it works where nothing was installed before.
+
+Builds with isolation, as `pip install .` does, so it takes a full compilation for each python.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+import venv
+from collections.abc import Iterator
+from pathlib import Path
+from zipfile import ZipFile
+
+import pytest
+
+from support import MAPFILES, REPOSITORY, environment, unique_platform
+
+pytestmark = pytest.mark.integration
+
+INSTALL_TIMEOUT_S = 900
+STAND_INS = {"librmw_fastrtps_cpp.so", "librmw_fastrtps_shared_cpp.so", "libfastrtps.so.2.14"}
+ROS_LIBRARY = re.compile(r"lib(rmw|rcl|rcutils|rcpputils|rosidl_|fastcdr|fastrtps|tracetools)\w*\.")
+
+
+def run(*command: str | Path, **more: object) -> str:
+    """Return what a command prints; its standard error belongs to the message of a failure."""
+    done = subprocess.run(
+        [str(word) for word in command],
+        capture_output=True,
+        text=True,
+        timeout=INSTALL_TIMEOUT_S,
+        **more,  # type: ignore[call-overload]
+    )
+    assert done.returncode == 0, f"{command}\n{done.stdout}\n{done.stderr}"
+    return str(done.stdout)
+
+
+def build_wheel(python: Path, directory: Path) -> Path:
+    """Return the wheel that `pip install .` would install."""
+    build = f"--config-settings=build-dir={directory}/build"
+    run(python, "-m", "pip", "wheel", "--no-deps", build, "-w", directory, REPOSITORY)
+    return next(directory.glob("*.whl"))
+
+
+def other_pythons() -> Iterator[Path]:
+    """Find the supported pythons of this machine besides the running one."""
+    root = Path(os.environ.get("PYENV_ROOT", Path.home() / ".pyenv"))
+    for minor in {10, 11, 12, 13} - {sys.version_info.minor}:
+        installed = sorted(root.glob(f"versions/3.{minor}.*/bin/python3"))
+        if found := shutil.which(f"/usr/bin/python3.{minor}"):
+            installed.append(Path(found))
+        yield from installed[:1]
+
+
+@pytest.fixture(scope="module")
+def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return build_wheel(Path(sys.executable), tmp_path_factory.mktemp("wheel"))
+
+
+@pytest.fixture(scope="module")
+def unpacked(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    directory = tmp_path_factory.mktemp("unpacked")
+    with ZipFile(wheel) as archive:
+        archive.extractall(directory)
+    return directory
+
+
+@pytest.fixture(scope="module")
+def prefix(unpacked: Path) -> Path:
+    """What will lie under the prefix of the environment, next to bin/ and lib/pythonX.Y."""
+    return next(unpacked.glob("*.data/data"))
+
+
+@pytest.fixture(scope="module")
+def native_files(unpacked: Path) -> list[Path]:
+    files = [path for path in unpacked.rglob("*") if path.is_file()]
+    found = [path for path in files if path.read_bytes()[:4] == b"\x7fELF"]
+    assert found
+    return found
+
+
+def test_no_ros_library_is_copied(native_files: list[Path]) -> None:
+    named_like_ros = {path for path in native_files if ROS_LIBRARY.match(path.name)}
+    stand_ins = {path for path in named_like_ros if path.parent.name == "standin"}
+    assert {path.name for path in stand_ins} == STAND_INS
+    assert {path.name for path in named_like_ros - stand_ins} == {"librmw_manycore.so"}
+
+
+def test_nothing_names_the_build_machine(native_files: list[Path]) -> None:
+    for path in native_files:
+        paths = re.findall(r"(?:RPATH|RUNPATH).*\[(.*)\]", run("readelf", "-d", path))
+        assert all(part.startswith("$ORIGIN") for found in paths for part in found.split(":"))
+
+
+def test_only_the_rmw_interface_is_exported(prefix: Path) -> None:
+    library = prefix / "lib/librmw_manycore.so"
+    names = {line.split()[0] for line in run("nm", "-DP", "--defined-only", library).splitlines()}
+    assert names
+    assert [name for name in names if not name.startswith("rmw_")] == []
+
+
+def test_every_function_of_the_rmw_interface_is_exported(prefix: Path) -> None:
+    """As many as the middleware has whose place it takes."""
+    ours = run("nm", "-DP", "--defined-only", prefix / "lib/librmw_manycore.so")
+    theirs = run("nm", "-DP", "--defined-only", Path(sys.prefix) / "lib/librmw_fastrtps_cpp.so")
+    functions = re.compile(r"^(rmw_\w+) T", re.MULTILINE)
+    assert set(functions.findall(theirs)) - set(functions.findall(ours)) == set()
+
+
+def test_the_stand_in_brings_the_middleware(prefix: Path) -> None:
+    stand_in = prefix / "lib/rmw_manycore/standin/librmw_fastrtps_cpp.so"
+    assert "[librmw_manycore.so]" in run("readelf", "-d", stand_in)
+
+
+@pytest.mark.parametrize("kind", ["rmw_typesupport", "rmw_typesupport_c", "rmw_typesupport_cpp"])
+def test_an_ordinary_ros_finds_the_middleware(prefix: Path, kind: str) -> None:
+    entry = prefix / "share/ament_index/resource_index" / kind / "rmw_manycore"
+    assert "rosidl_typesupport_fastrtps" in entry.read_text()
+
+
+def test_top_level_names(unpacked: Path) -> None:
+    names = {path.name for path in unpacked.iterdir() if not path.name.startswith("rmw_manycore-")}
+    assert names == {"rmw_manycore.pth", "rmw_manycore_hook.py", "rmw_manycore_py"}
+
+
+def test_fast_dds_is_not_loaded() -> None:
+    show = "import rclpy.impl.implementation_singleton; print(open('/proc/self/maps').read())"
+    maps = run(sys.executable, "-c", show, env=environment(unique_platform()))
+    loaded = {Path(line.split()[-1]) for line in maps.splitlines() if ".so" in line}
+    assert Path(sys.prefix) / "lib/librmw_manycore.so" in loaded
+    replaced = {path for path in loaded if path.name.startswith(("libfastrtps", "librmw_fastrtps"))}
+    assert {path.parent.name for path in replaced} == {"standin"}
+
+
+@pytest.mark.parametrize(
+    "python",
+    [
+        pytest.param(None, id="this python"),
+        *(pytest.param(p, id=str(p), marks=pytest.mark.stress) for p in other_pythons()),
+    ],
+)
+def test_a_fresh_environment_runs_a_mapfile(
+    python: Path | None, request: pytest.FixtureRequest, tmp_path: Path
+) -> None:
+    if python is None:
+        wheel = request.getfixturevalue("wheel")
+        venv.create(tmp_path / "venv", with_pip=True)
+    else:
+        wheel = build_wheel(python, tmp_path)
+        run(python, "-m", "venv", tmp_path / "venv")
+    run(tmp_path / "venv/bin/pip", "install", wheel)
+    mapfile = MAPFILES / "talker_listener.yaml"
+    manycore = tmp_path / "venv/bin/manycore"
+    printed = run(manycore, "run", mapfile, "--duration", "3", cwd=tmp_path)
+    assert "I heard" in printed
