@@ -95,13 +95,18 @@ def start_run() -> Iterator[StartRun]:
         run.program.kill()
 
 
-def is_gone(pid: int) -> bool:
-    """Tell whether a process has ended; one that nobody has waited for yet has ended too."""
+def state_of(pid: int) -> str:
+    """Return the letter that /proc has for the state of a process; Z when there is none."""
     try:
         stat = Path(f"/proc/{pid}/stat").read_text()
     except (FileNotFoundError, ProcessLookupError):
-        return True
-    return stat.rsplit(")", 1)[1].split()[0] == "Z"
+        return "Z"
+    return stat.rsplit(")", 1)[1].split()[0]
+
+
+def is_gone(pid: int) -> bool:
+    """Tell whether a process has ended; one that nobody has waited for yet has ended too."""
+    return state_of(pid) == "Z"
 
 
 def test_nodes_start_in_order_and_end_by_themselves(start_run: StartRun) -> None:
@@ -197,6 +202,7 @@ def test_stopped_processes_are_stopped_too(start_run: StartRun) -> None:
     run.program.wait_for('"started"')
     pid = run.event("started")["pid"]
     os.kill(pid, signal.SIGSTOP)
+    wait_until(lambda: state_of(pid) == "T", "the node is stopped")
     for _ in range(3):
         run.program.signal(signal.SIGINT)
         run.program.wait_for('"stopping"|"insisting"')
