@@ -17,7 +17,6 @@ from pathlib import Path
 from zipfile import ZipFile
 
 import pytest
-
 from support import MAPFILES, REPOSITORY, environment, unique_platform
 
 pytestmark = pytest.mark.integration
