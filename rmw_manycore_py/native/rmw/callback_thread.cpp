@@ -1,0 +1,118 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#include "rmw/callback_thread.hpp"
+
+#include <pthread.h>
+
+#include <algorithm>
+#include <csignal>
+
+namespace rmw_manycore {
+namespace {
+
+/// Signals are the program's business: a thread born under this guard receives none.
+class BlockedSignals {
+public:
+  BlockedSignals() noexcept {
+    sigset_t all;
+    sigfillset(&all);
+    pthread_sigmask(SIG_SETMASK, &all, &before_);
+  }
+  ~BlockedSignals() { pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
+  BlockedSignals(const BlockedSignals &) = delete;
+  BlockedSignals & operator=(const BlockedSignals &) = delete;
+
+private:
+  sigset_t before_;
+};
+
+}  // namespace
+
+void CallbackThread::add(Callback & callback) {
+  if (std::find(active_.begin(), active_.end(), &callback) != active_.end()) {
+    return;
+  }
+  active_.push_back(&callback);
+  changed_ = true;
+  if (!thread_.joinable() && !stopping_) {
+    const BlockedSignals blocked;
+    thread_ = std::thread([this] { run(); });
+  }
+  wake_.notify_all();
+}
+
+void CallbackThread::remove(Callback & callback) noexcept {
+  active_.erase(std::remove(active_.begin(), active_.end(), &callback), active_.end());
+  changed_ = true;
+}
+
+void CallbackThread::stop() noexcept {
+  {
+    const std::lock_guard lock(mutex_);
+    stopping_ = true;
+    wake_.notify_all();
+  }
+  waiter_.notify();
+  if (thread_.joinable()) {
+    thread_.join();
+  }
+}
+
+void CallbackThread::run() noexcept {
+  waiter_.watch_endpoint_events();
+  std::unique_lock lock(mutex_);
+  while (!stopping_) {
+    if (active_.empty()) {
+      wake_.wait(lock);
+      continue;
+    }
+    const uint32_t epoch = waiter_.epoch();
+    report_all();
+    lock.unlock();
+    waiter_.wait(epoch, std::nullopt);
+    lock.lock();
+  }
+  waiter_.unwatch_endpoint_events();
+}
+
+void CallbackThread::report_all() noexcept {
+  do {
+    changed_ = false;
+    for (size_t i = 0; i < active_.size() && !changed_; ++i) {
+      active_[i]->report();
+    }
+  } while (changed_);
+}
+
+void Callback::set(rmw_event_callback_t function, const void * user_data) {
+  if (function == nullptr) {
+    clear();
+    return;
+  }
+  const std::lock_guard lock(thread_.mutex_);
+  function_ = function;
+  user_data_ = user_data;
+  const uint64_t arrivals = arrivals_();
+  const uint64_t pending = std::min(unread_(), arrivals - reported_);
+  reported_ = arrivals;
+  if (pending != 0) {
+    function_(user_data_, pending);
+  }
+  thread_.add(*this);
+}
+
+void Callback::clear() noexcept {
+  const std::lock_guard lock(thread_.mutex_);
+  function_ = nullptr;
+  thread_.remove(*this);
+}
+
+void Callback::report() noexcept {
+  const uint64_t arrivals = arrivals_();
+  if (arrivals > reported_) {
+    const uint64_t fresh = arrivals - reported_;
+    reported_ = arrivals;
+    function_(user_data_, fresh);
+  }
+}
+
+}  // namespace rmw_manycore

@@ -1,0 +1,32 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "rosidl_typesupport_fastrtps_cpp/message_type_support.h"
+
+namespace rmw_manycore {
+
+/// How messages of one type become CDR bytes (XCDR version 1, plain, with encapsulation header) and
+/// back. The bytes are those that rmw_fastrtps_cpp writes. Allocates nothing itself. Stateless.
+class Cdr {
+public:
+  explicit Cdr(const message_type_support_callbacks_t & callbacks);
+
+  /// An upper bound of what `serialize` writes: the exact size, rounded up for types of fixed size.
+  size_t size_bound(const void * message) const;
+
+  /// Returns the number of bytes written; throws manycore::Error or a Fast CDR exception.
+  size_t serialize(const void * message, uint8_t * data, size_t capacity) const;
+
+  /// Throws manycore::Error or a Fast CDR exception; `message` is then in an undefined state.
+  void deserialize(const uint8_t * data, size_t size, void * message) const;
+
+private:
+  const message_type_support_callbacks_t * callbacks_;
+  size_t fixed_size_bound_ = 0;  ///< of types whose size does not depend on the message; else 0
+  bool empty_ = false;           ///< has no members: one filler byte stands for it
+};
+
+}  // namespace rmw_manycore

@@ -1,0 +1,30 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#include "rmw/checks.hpp"
+#include "rmw/get_network_flow_endpoints.h"
+
+namespace {
+
+template<typename Handle>
+rmw_ret_t refuse(
+  const Handle * handle, rcutils_allocator_t * allocator,
+  rmw_network_flow_endpoint_array_t * network_flow_endpoint_array) {
+  MANYCORE_CHECK_HANDLE(handle);
+  MANYCORE_CHECK_ARGUMENT(allocator);
+  MANYCORE_CHECK_ARGUMENT(network_flow_endpoint_array);
+  RMW_SET_ERROR_MSG("rmw_manycore uses no network, so there are no network flow endpoints");
+  return RMW_RET_UNSUPPORTED;
+}
+
+}  // namespace
+
+rmw_ret_t rmw_publisher_get_network_flow_endpoints(
+  const rmw_publisher_t * publisher, rcutils_allocator_t * allocator,
+  rmw_network_flow_endpoint_array_t * network_flow_endpoint_array) {
+  return refuse(publisher, allocator, network_flow_endpoint_array);
+}
+
+rmw_ret_t rmw_subscription_get_network_flow_endpoints(
+  const rmw_subscription_t * subscription, rcutils_allocator_t * allocator,
+  rmw_network_flow_endpoint_array_t * network_flow_endpoint_array) {
+  return refuse(subscription, allocator, network_flow_endpoint_array);
+}

@@ -1,0 +1,128 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#include "rmw/publisher.hpp"
+
+#include <algorithm>
+
+#include "platform/error.hpp"
+#include "rmw/checks.hpp"
+#include "rmw/endpoint_spec.hpp"
+#include "rmw/error.hpp"
+#include "rmw/names.hpp"
+#include "rmw/qos.hpp"
+#include "rmw/rmw.h"
+#include "rmw/time.h"
+
+namespace rmw_manycore {
+
+using manycore::EndpointKind;
+using manycore::EndpointRole;
+
+Publisher::Publisher(
+  const Node & node, MessageType type, const char * topic, const rmw_qos_profile_t & profile,
+  const rmw_publisher_options_t & options)
+: EndpointEvents(node.callback_thread()),
+  topic_(topic),
+  cdr_(type.cdr),
+  transport_(node.process().create_publisher(
+    endpoint_spec(node, EndpointRole::topic, topic, type, profile, EndpointKind::publisher))) {
+  handle.implementation_identifier = identifier;
+  handle.data = this;
+  handle.topic_name = topic_.c_str();
+  handle.options = options;
+  handle.can_loan_messages = false;
+}
+
+namespace {
+
+void check_options(const rmw_publisher_options_t & options) {
+  if (
+    options.require_unique_network_flow_endpoints ==
+    RMW_UNIQUE_NETWORK_FLOW_ENDPOINTS_STRICTLY_REQUIRED) {
+    throw manycore::Error(
+      manycore::ErrorCode::unsupported,
+      "unique network flow endpoints are not supported: rmw_manycore uses no network");
+  }
+}
+
+}  // namespace
+}  // namespace rmw_manycore
+
+using rmw_manycore::Publisher;
+
+rmw_publisher_t * rmw_create_publisher(
+  const rmw_node_t * node, const rosidl_message_type_support_t * type_support,
+  const char * topic_name, const rmw_qos_profile_t * qos_profile,
+  const rmw_publisher_options_t * publisher_options) {
+  // Invariants
+  MANYCORE_CHECK_HANDLE_OR_NULL(node);
+  RMW_CHECK_ARGUMENT_FOR_NULL(type_support, nullptr);
+  RMW_CHECK_ARGUMENT_FOR_NULL(topic_name, nullptr);
+  RMW_CHECK_ARGUMENT_FOR_NULL(qos_profile, nullptr);
+  RMW_CHECK_ARGUMENT_FOR_NULL(publisher_options, nullptr);
+
+  // Implementation
+  return rmw_manycore::guarded_handle([&] {
+    rmw_manycore::check_endpoint_name(topic_name, *qos_profile);
+    rmw_manycore::check_options(*publisher_options);
+    const auto & owner = rmw_manycore::Node::of(node);
+    const rmw_qos_profile_t profile =
+      rmw_manycore::best_available_for_publisher(owner, topic_name, *qos_profile);
+    auto type = rmw_manycore::MessageType::of(type_support);
+    return &(new Publisher(owner, std::move(type), topic_name, profile, *publisher_options))
+              ->handle;
+  });
+}
+
+rmw_ret_t rmw_destroy_publisher(rmw_node_t * node, rmw_publisher_t * publisher) {
+  // Invariants
+  MANYCORE_CHECK_HANDLE(node);
+  MANYCORE_CHECK_HANDLE(publisher);
+
+  // Implementation
+  delete &Publisher::of(publisher);
+  return RMW_RET_OK;
+}
+
+rmw_ret_t rmw_publisher_count_matched_subscriptions(
+  const rmw_publisher_t * publisher, size_t * subscription_count) {
+  // Invariants
+  MANYCORE_CHECK_HANDLE(publisher);
+  MANYCORE_CHECK_ARGUMENT(subscription_count);
+
+  // Implementation
+  return rmw_manycore::guarded([&] {
+    *subscription_count = Publisher::of(publisher).transport().matched().current;
+    return RMW_RET_OK;
+  });
+}
+
+rmw_ret_t rmw_publisher_get_actual_qos(const rmw_publisher_t * publisher, rmw_qos_profile_t * qos) {
+  // Invariants
+  MANYCORE_CHECK_HANDLE(publisher);
+  MANYCORE_CHECK_ARGUMENT(qos);
+
+  // Implementation
+  *qos = rmw_manycore::to_rmw(Publisher::of(publisher).transport().qos());
+  return RMW_RET_OK;
+}
+
+rmw_ret_t rmw_publisher_assert_liveliness(const rmw_publisher_t * publisher) {
+  // Invariants
+  MANYCORE_CHECK_HANDLE(publisher);
+
+  // Implementation: liveliness is automatic, a publisher asserts it by being there.
+  return RMW_RET_OK;
+}
+
+rmw_ret_t rmw_publisher_wait_for_all_acked(
+  const rmw_publisher_t * publisher, rmw_time_t wait_timeout) {
+  // Invariants
+  MANYCORE_CHECK_HANDLE(publisher);
+
+  // Implementation
+  return rmw_manycore::guarded([&] {
+    const bool all = Publisher::of(publisher).transport().wait_for_all_taken(
+      rmw_time_total_nsec(wait_timeout));
+    return all ? RMW_RET_OK : RMW_RET_TIMEOUT;
+  });
+}

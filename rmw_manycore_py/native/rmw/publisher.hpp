@@ -1,0 +1,42 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "rmw/endpoint_events.hpp"
+#include "rmw/node.hpp"
+#include "rmw/type_support.hpp"
+#include "rmw/types.h"
+#include "transport/publisher.hpp"
+
+namespace rmw_manycore {
+
+class Publisher final : public EndpointEvents {
+public:
+  /// Throws manycore::Error.
+  Publisher(
+    const Node & node, MessageType type, const char * topic, const rmw_qos_profile_t & profile,
+    const rmw_publisher_options_t & options);
+  ~Publisher() override { clear_callbacks(); }
+
+  static Publisher & of(const rmw_publisher_t * handle) {
+    return *static_cast<Publisher *>(handle->data);
+  }
+
+  rmw_publisher_t handle{};
+
+  const Cdr & cdr() const noexcept { return cdr_; }
+  manycore::Publisher & transport() const noexcept { return *transport_; }
+
+private:
+  manycore::MatchedCount matched() const override { return transport_->matched(); }
+  manycore::IncompatibleCount incompatible() const override { return transport_->incompatible(); }
+  uint64_t lost() const override { return 0; }
+
+  const std::string topic_;
+  const Cdr cdr_;
+  const std::unique_ptr<manycore::Publisher> transport_;
+};
+
+}  // namespace rmw_manycore

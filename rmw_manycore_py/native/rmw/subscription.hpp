@@ -1,0 +1,42 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "rmw/endpoint_events.hpp"
+#include "rmw/inbox.hpp"
+#include "rmw/node.hpp"
+#include "rmw/type_support.hpp"
+#include "rmw/types.h"
+
+namespace rmw_manycore {
+
+class Subscription final : public EndpointEvents {
+public:
+  /// Throws manycore::Error.
+  Subscription(
+    const Node & node, MessageType type, const char * topic, const rmw_qos_profile_t & profile,
+    const rmw_subscription_options_t & options);
+  ~Subscription() override { clear_callbacks(); }
+
+  static Subscription & of(const rmw_subscription_t * handle) {
+    return *static_cast<Subscription *>(handle->data);
+  }
+
+  rmw_subscription_t handle{};
+
+  const Cdr & cdr() const noexcept { return cdr_; }
+  Inbox & inbox() noexcept { return inbox_; }
+  const manycore::Subscription & transport() const noexcept { return inbox_.transport(); }
+
+private:
+  manycore::MatchedCount matched() const override { return transport().matched(); }
+  manycore::IncompatibleCount incompatible() const override { return transport().incompatible(); }
+  uint64_t lost() const override { return transport().lost(); }
+
+  const std::string topic_;
+  const Cdr cdr_;
+  Inbox inbox_;
+};
+
+}  // namespace rmw_manycore
