@@ -19,6 +19,34 @@ struct NodeInfo {
   std::string enclave;
 };
 
+/// What an endpoint has done so far.
+struct CounterValues {
+  uint64_t messages = 0;     ///< published or taken
+  uint64_t bytes = 0;        ///< of serialized data
+  uint64_t lost = 0;         ///< subscription: gone before they were taken
+  uint64_t expired = 0;      ///< subscription: older than their lifespan when their turn came
+  uint64_t refused = 0;      ///< publisher: did not fit
+  uint64_t overwritten = 0;  ///< publisher: recycled while a reader still wanted them
+};
+
+struct ProcessInfo {
+  uint32_t slot = 0;
+  int32_t pid = 0;
+  uint32_t cluster = 0;
+  int32_t core = -1;      ///< -1 = not placed on a core
+  int32_t host_cpu = -1;  ///< -1 = not pinned
+  std::string label;
+};
+
+struct ClusterInfo {
+  uint32_t id = 0;
+  uint64_t smem_bytes = 0;
+  uint64_t used_bytes = 0;
+  int32_t receive_thread_pid = 0;
+  uint64_t messages = 0;       ///< eMCOS messages handled
+  uint64_t notifications = 0;  ///< hints pushed by the receive thread
+};
+
 struct EndpointInfo {
   EndpointKind kind = EndpointKind::publisher;
   EndpointRole role = EndpointRole::topic;
@@ -32,6 +60,7 @@ struct EndpointInfo {
   uint32_t cluster = 0;
   MatchedCount matched;
   IncompatibleCount incompatible;
+  CounterValues counters;
 };
 
 /// Consistent snapshots of who is on the platform. Any thread; never on the data path.
@@ -41,6 +70,8 @@ public:
 
   /// Changes whenever a node or endpoint comes or goes.
   uint64_t generation() const noexcept;
+  std::vector<ProcessInfo> processes() const;
+  std::vector<ClusterInfo> clusters() const;
   std::vector<NodeInfo> nodes() const;
   std::vector<EndpointInfo> endpoints() const;
   /// Endpoints of one topic or service only (constant-time lookup by name).

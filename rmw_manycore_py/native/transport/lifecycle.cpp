@@ -101,10 +101,17 @@ void reap(Registry & registry, uint32_t process) {
 
 }  // namespace
 
-JoinLock::JoinLock(const PlatformPaths & paths) {
+JoinLock::JoinLock(const PlatformPaths & paths) : paths_(paths) {
   while (!lock_) {
     make_private_directory(paths.user_directory);
     lock_ = FileLock::acquire(paths.join_lock(), join_timeout_ms);
+  }
+}
+
+JoinLock::~JoinLock() {
+  if (entries_of(paths_.user_directory) == std::vector<std::string>{"lock"}) {
+    unlink(paths_.join_lock().c_str());
+    rmdir(paths_.user_directory.c_str());
   }
 }
 
@@ -155,7 +162,6 @@ void ensure_platform(
   const std::vector<TopicConfiguration> & topics) {
   if (exists(paths.directory) && !is_alive(paths)) {
     remove_platform(paths);
-    make_private_directory(paths.user_directory);
   }
   if (!exists(paths.directory)) {
     make_private_directory(paths.directory);
@@ -202,10 +208,6 @@ std::vector<std::string> remove_platform(const PlatformPaths & paths) {
     }
   }
   rmdir(paths.directory.c_str());
-  if (entries_of(paths.user_directory) == std::vector<std::string>{"lock"}) {
-    unlink(paths.join_lock().c_str());
-    rmdir(paths.user_directory.c_str());
-  }
   return removed;
 }
 

@@ -14,13 +14,18 @@ namespace manycore {
 constexpr uint32_t receive_thread_byte = 65536;  ///< + cluster
 constexpr uint32_t configurator_byte = 131072;   ///< who configured the platform and keeps it
 
-/// Serialises joining and leaving of all platforms of this user, while alive.
+/// Serialises joining and leaving of all platforms of this user, while alive. The user directory comes with its
+/// first holder and goes with the last one that leaves no platform in it.
 class JoinLock {
 public:
-  /// Creates the user directory where it is missing; throws Error{permission} when it is not private.
+  /// Throws Error{permission} when the user directory is not private.
   explicit JoinLock(const PlatformPaths & paths);
+  ~JoinLock();
+  JoinLock(const JoinLock &) = delete;
+  JoinLock & operator=(const JoinLock &) = delete;
 
 private:
+  PlatformPaths paths_;
   std::optional<FileLock> lock_;
 };
 
