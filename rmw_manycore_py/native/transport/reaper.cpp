@@ -36,15 +36,23 @@ void add_to_poll(int poll, int fd, uint64_t key) {
   }
 }
 
+/// Removes the platform if nobody uses it; true when this receive thread has nothing left to serve.
+bool end_if_unused(Registry & registry) {
+  const JoinLock lock(registry.paths());
+  if (!is_current(registry)) {
+    return true;
+  }
+  if (is_in_use(registry)) {
+    return false;
+  }
+  remove_platform(registry.paths());
+  return true;
+}
+
 }  // namespace
 
 void exit_if_unused(Registry & registry) {
-  const JoinLock lock(registry.paths());
-  if (!is_current(registry)) {
-    _exit(0);
-  }
-  if (!is_in_use(registry)) {
-    remove_platform(registry.paths());
+  if (end_if_unused(registry)) {
     _exit(0);
   }
 }
