@@ -111,7 +111,7 @@ class Program:
     def output(self) -> str:
         return "\n".join(self.lines)
 
-    def __str__(self) -> str:
+    def __repr__(self) -> str:
         return f"{' '.join(self.command)} (exit status {self._process.poll()}):\n{self.output}"
 
     def wait_for(self, pattern: str, timeout_s: float = PATIENCE_S) -> re.Match[str]:

@@ -1,0 +1,127 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Every example mapfile, run by the command line tool, with what its nodes hear from each other."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from support import IS_MANYCORE, MAPFILES, PATIENCE_S, Program, manycore_command
+
+pytestmark = [
+    pytest.mark.integration,
+    pytest.mark.skipif(not IS_MANYCORE, reason="manycore run is about rmw_manycore"),
+]
+
+
+class Run:
+    """A `manycore run --json`, read as the output of its nodes."""
+
+    def __init__(self, program: Program) -> None:
+        self.program = program
+
+    def wait_for(self, node: str, pattern: str) -> re.Match[str]:
+        """Return the match in the next line of a node that has one."""
+        output = rf'"event": "output", "node": "{node}", "line": (".*{pattern}.*")'
+        line = self.program.wait_for(output, timeout_s=2 * PATIENCE_S)
+        match = re.search(pattern, json.loads(line.group(1)))
+        assert match is not None
+        return match
+
+    def events(self, kind: str) -> Iterator[dict[str, Any]]:
+        """Yield the events of one kind so far."""
+        events = (json.loads(line) for line in self.program.lines if line.startswith("{"))
+        return (event for event in events if event["event"] == kind)
+
+    def stop(self) -> None:
+        """Stop as Ctrl-C does; every node must have ended well."""
+        status = self.program.stop()
+        assert status == 0, self.program
+        assert "Traceback" not in self.program.output, self.program
+
+    def places(self) -> dict[str, tuple[int, int]]:
+        """Return cluster and core of each node that was started."""
+        return {
+            event["node"]: (event["cluster"], event["core"]) for event in self.events("started")
+        }
+
+
+@pytest.fixture
+def run(start, platform):
+    def run(name: str) -> Run:
+        return Run(start(manycore_command("run", MAPFILES / name, "--json")))
+
+    return run
+
+
+def assert_consecutive(numbers: Iterable[int]) -> None:
+    numbers = list(numbers)
+    assert numbers == list(range(numbers[0], numbers[0] + len(numbers)))
+
+
+def test_talker_listener(run):
+    """Fig. 8 of ROS-lite2."""
+    running = run("talker_listener.yaml")
+    heard = [running.wait_for("listener", r"I heard: 'Hello World: (\d+)'") for _ in range(5)]
+    assert_consecutive(int(match.group(1)) for match in heard)
+    running.stop()
+    assert running.places() == {"talker": (1, 1), "listener": (2, 1)}
+
+
+@pytest.mark.parametrize("mapfile", ["three_nodes.yaml", "three_nodes.map"])
+def test_three_nodes(run, mapfile):
+    """Fig. 6 and 7 of ROS-lite: both listeners of cluster 2 hear the talker of cluster 1."""
+    running = run(mapfile)
+    for _ in range(3):
+        running.wait_for("listener", "I heard")
+    for _ in range(3):
+        running.wait_for("listener2", "I heard")
+    running.stop()
+    clusters = {node: cluster for node, (cluster, _) in running.places().items()}
+    assert clusters == {"talker": 1, "listener": 2, "listener2": 2}
+
+
+def test_image_pipeline(run):
+    """Thirty pictures of 1 MiB through three clusters: each byte right, none lost."""
+    running = run("image_pipeline.yaml")
+    verdicts = [
+        running.wait_for("image_sink", r"frame (\d+) is (\w+), (\d+) lost") for _ in range(30)
+    ]
+    running.stop()
+    assert {match.group(2) for match in verdicts} == {"good"}
+    assert {match.group(3) for match in verdicts} == {"0"}
+    assert_consecutive(int(match.group(1)) for match in verdicts)
+
+
+def test_services_and_parameters(run):
+    running = run("services_parameters.yaml")
+    running.wait_for("controller", r"gain is 0\.5")
+    for state in ("on", "off", "on"):
+        running.wait_for("lamp_switch", rf"answer: the lamp is {state} \(changed\)")
+    running.wait_for("tuner", r"gain 2\.5 was accepted")
+    running.wait_for("tuner", r"gain 99\.0 was refused")
+    running.stop()
+    controller = [e["line"] for e in running.events("output") if e["node"] == "controller"]
+    assert any("gain is now 7.5" in line for line in controller)
+    assert not any("99" in line for line in controller)
+
+
+def test_action(run):
+    """Two clients, one in the server's cluster; the third goal of each is cancelled."""
+    running = run("action.yaml")
+    running.wait_for("near_client", r"goal 1 succeeded: \[0, 1, 1, 2, 3, 5\]")
+    running.wait_for("near_client", "goal 3 cancelled")
+    running.stop()
+    far = [e["line"] for e in running.events("output") if e["node"] == "far_client"]
+    assert any("goal 1 succeeded: [0, 1, 1, 2, 3, 5, 8, 13, 21]" in line for line in far)
+    assert any("goal 1 feedback: [0, 1, 1, 2, 3, 5, 8, 13]" in line for line in far)
+
+
+def test_every_mapfile_is_run_here():
+    tested = set(re.findall(r'"(\w+\.(?:yaml|map))"', Path(__file__).read_text()))
+    mapfiles = {file.name for file in MAPFILES.iterdir() if ".params." not in file.name}
+    assert mapfiles <= tested

@@ -1,0 +1,100 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Nodes that somebody starts by hand, one by one, with nothing else running."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from support import IS_MANYCORE, PLATFORMS, RMW, environment, example_command
+
+pytestmark = pytest.mark.integration
+
+needs_manycore = pytest.mark.skipif(not IS_MANYCORE, reason="looks at rmw_manycore's directory")
+
+GROUPS = {
+    "talker": ["talker", "listener"],
+    "image": ["image_source", "image_filter", "image_sink"],
+    "lamp": ["lamp", "lamp_switch"],
+    "gain": ["controller", "tuner"],
+    "action": ["fibonacci_server", "fibonacci_client"],
+}
+
+
+@pytest.mark.parametrize("cluster", [1, 2], ids=["same_cluster", "other_cluster"])
+def test_two_shells(start, cluster):
+    talker = start(example_command("talker"))
+    listener = start(example_command("listener"), cluster)
+    for _ in range(3):
+        listener.wait_for("I heard: 'Hello World")
+    assert talker.stop() == 0, talker
+    assert listener.stop() == 0, listener
+    assert "Traceback" not in talker.output + listener.output
+
+
+def test_listener_first(start):
+    listener = start(example_command("listener"), cluster=2)
+    talker = start(example_command("talker"))
+    talker.wait_for("Publishing")
+    listener.wait_for("I heard: 'Hello World")
+
+
+def test_the_other_end_may_come_back(start):
+    listener = start(example_command("listener"))
+    for _ in range(3):
+        talker = start(example_command("talker"), cluster=2)
+        talker.wait_for("Hello World: 1")
+        listener.wait_for("I heard: 'Hello World")
+        assert talker.stop() == 0, talker
+
+
+@pytest.mark.parametrize("group", GROUPS)
+def test_examples_end_quietly(start, group):
+    """Interrupted in the middle of their work, they end with status 0 and no traceback."""
+    programs = [start(example_command(name)) for name in GROUPS[group]]
+    for program in programs:
+        program.wait_for("INFO")
+    for program in programs:
+        program.signal(signal.SIGINT)
+    for program in programs:
+        assert program.wait() == 0, program
+        assert "Traceback" not in program.output, program
+
+
+@needs_manycore
+def test_what_exists_while_a_node_runs_is_private(start, platform):
+    start(example_command("talker")).wait_for("Publishing")
+    directory = PLATFORMS / platform
+    assert (directory / "registry").exists()
+    for path in [PLATFORMS, directory, *directory.rglob("*")]:
+        assert path.stat().st_mode & 0o077 == 0, f"others may use {path}"
+        assert path.stat().st_uid == os.getuid()
+
+
+@needs_manycore
+def test_fast_dds_is_not_loaded(start):
+    talker = start(example_command("talker"))
+    talker.wait_for("Publishing")
+    libraries = Path(f"/proc/{talker.pid}/maps").read_text()
+    assert "librmw_manycore.so" in libraries
+    assert "fastrtps.so.2" not in libraries or "standin" in libraries
+
+
+def test_the_middleware_says_its_name(platform):
+    code = "import rclpy; print(rclpy.get_rmw_implementation_identifier())"
+    command = [sys.executable, "-c", code]
+    name = subprocess.check_output(command, env=environment(platform), text=True)
+    assert name.strip() == RMW
+
+
+@needs_manycore
+def test_without_the_variable_nothing_changes(platform):
+    code = "import rclpy; print(rclpy.get_rmw_implementation_identifier())"
+    env = environment(platform)
+    del env["RMW_IMPLEMENTATION"]
+    name = subprocess.check_output([sys.executable, "-c", code], env=env, text=True)
+    assert name.strip() == "rmw_fastrtps_cpp"
