@@ -1,0 +1,101 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""The placement: a mapfile with everything found, ready to be run or written out."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from rmw_manycore_py.topology import Core, Topology
+
+
+@dataclass(frozen=True)
+class PlacedNode:
+    """A node on its core; `env` is what is set on top of the caller's environment."""
+
+    name: str
+    full_name: str
+    cluster: int
+    core: int
+    host_cpu: int
+    argv: list[str]
+    env: dict[str, str]
+    cwd: Path
+    program: tuple[str, ...]
+    ros_arguments: tuple[str, ...]
+    parameters: Mapping[str, Any]
+    param_files: tuple[Path, ...]
+    publish: Mapping[str, str]
+    subscribe: Mapping[str, str]
+
+    @property
+    def place(self) -> Core:
+        """Cluster and core."""
+        return Core(self.cluster, self.core)
+
+
+@dataclass(frozen=True)
+class TopicEntry:
+    """A row of the topic table (Fig. 7); without a size its topic DSM grows as needed."""
+
+    id: int
+    name: str
+    type: str | None
+    topic_dsm_size: int | None
+    publishers: tuple[PlacedNode, ...]
+    subscribers: tuple[PlacedNode, ...]
+
+    @property
+    def publisher_clusters(self) -> tuple[int, ...]:
+        """The clusters that hold a topic DSM of this topic."""
+        return tuple(sorted({node.cluster for node in self.publishers}))
+
+    @property
+    def receiver_clusters(self) -> tuple[int, ...]:
+        """The clusters whose receive thread is told of each message."""
+        return tuple(sorted({node.cluster for node in self.subscribers}))
+
+    @property
+    def receiver_mask(self) -> int:
+        """The same as bits: bit 0 is cluster 1."""
+        return sum(1 << (cluster - 1) for cluster in self.receiver_clusters)
+
+
+@dataclass(frozen=True)
+class ClusterMemory:
+    """Local memory of a cluster and what fixed topic DSMs take of it, in bytes."""
+
+    cluster: int
+    smem_size: int
+    topic_dsms: Mapping[str, int]
+
+    @property
+    def used(self) -> int:
+        """Bytes that the topic DSMs of fixed size take."""
+        return sum(self.topic_dsms.values())
+
+
+@dataclass(frozen=True)
+class BridgePlacement:
+    """What crosses the platform's border: full names with types, and where the bridge runs."""
+
+    inward: Mapping[str, str]
+    outward: Mapping[str, str]
+    inward_core: Core
+    outward_core: Core
+
+
+@dataclass(frozen=True)
+class Placement:
+    """A platform and what runs on it."""
+
+    name: str
+    topology: Topology
+    nodes: tuple[PlacedNode, ...]
+    topics: tuple[TopicEntry, ...]
+    memory: tuple[ClusterMemory, ...]
+    host_cpus: Mapping[Core, int]
+    bridge: BridgePlacement | None
+    notices: tuple[str, ...]
