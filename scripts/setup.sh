@@ -7,6 +7,8 @@
 set -eu
 cd "$(dirname "$0")/.."
 : "${PYTHON:=python3}"
+# As newer versions of pip build everything; those of Debian 12 and Python 3.10 complain otherwise.
+export PIP_USE_PEP517=1 PIP_DISABLE_PIP_VERSION_CHECK=1
 
 # Prints the Debian packages that are missing; the names are the same on Ubuntu.
 missing_packages() {
@@ -46,9 +48,9 @@ END
 install_checkout() {
   [ -x .venv/bin/python ] || "$PYTHON" -m venv .venv
   build_requirements >.venv/build-requirements.txt
-  .venv/bin/pip install --quiet --disable-pip-version-check cmake ninja \
+  .venv/bin/pip install --quiet cmake ninja \
     --requirement .venv/build-requirements.txt
-  .venv/bin/pip install --quiet --disable-pip-version-check \
+  .venv/bin/pip install --quiet \
     --no-build-isolation --editable '.[dev]'
   # For type checkers the editable install also puts the checkout on sys.path, which would make
   # `bridge` and `tests` top-level modules of every program; its first line does the real work.
