@@ -101,11 +101,10 @@ void join(Registry & registry, const Pair & pair) {
   source.topic_dsm.store(pair.publisher.block.word, std::memory_order_relaxed);
   source.topic_dsm_endpoint.store(pair.publisher_slot, std::memory_order_relaxed);
   source.topic_dsm_incarnation.store(pair.publisher.slot.incarnation, std::memory_order_relaxed);
-  source.taken.store(history ? 0 : dsm->last.load(), std::memory_order_relaxed);
-  source.reading.store(no_record, std::memory_order_relaxed);
+  const uint64_t taken = history ? 0 : dsm->last.load(std::memory_order_seq_cst);
+  source.taken.store(taken, std::memory_order_relaxed);
   source.reader.store(publisher_cluster.ref_of(&reader).word, std::memory_order_relaxed);
-  source.state.store(SourceState::active, std::memory_order_release);
-  header->source_generation.fetch_add(1, std::memory_order_release);
+  source.state.store(SourceState::joining, std::memory_order_release);
 
   reader.endpoint.store(pair.subscription_slot, std::memory_order_relaxed);
   reader.subscription.store(pair.subscription.block.word, std::memory_order_relaxed);
@@ -113,10 +112,14 @@ void join(Registry & registry, const Pair & pair) {
   reader.source_index.store(index, std::memory_order_relaxed);
   reader.source_incarnation.store(source.incarnation.load(), std::memory_order_relaxed);
   reader.active.store(1, std::memory_order_release);
-  // From here on the publisher finds this reader: it looks again after storing `last` (seq_cst).
+  // From here on the publisher finds this reader: it looks again after storing `last` (seq_cst). No claim may
+  // come earlier, or the publisher could recycle a record under a reader it does not know.
   dsm->match_generation.fetch_add(1, std::memory_order_seq_cst);
+  source.state.store(SourceState::active, std::memory_order_seq_cst);
+  header->source_generation.fetch_add(1, std::memory_order_seq_cst);
 
-  if (history && dsm->last.load(std::memory_order_seq_cst) != 0) {
+  // History, or what was published between the first look at `last` and now.
+  if (dsm->last.load(std::memory_order_seq_cst) > taken) {
     header->resync.store(1, std::memory_order_seq_cst);
     notify_process(registry, pair.subscription.process);
   }
@@ -159,6 +162,32 @@ void count_unmatched(Registry & registry, EndpointEntry & entry) {
   notify_event_watchers(registry, entry.process);
 }
 
+/// The topic DSM of a source, or nullptr when its publisher's endpoint is gone and its memory may be another's.
+TopicDsmHeader * topic_dsm_of(Registry & registry, const SourceEntry & source) {
+  const uint32_t slot = source.topic_dsm_endpoint.load();
+  if (slot >= registry.endpoints().high_water()) {
+    return nullptr;
+  }
+  const Slot & publisher = registry.endpoints()[slot].slot;
+  const bool there = publisher.state.load() != SlotState::free &&
+                     publisher.incarnation == source.topic_dsm_incarnation.load();
+  return there ? registry.clusters().find<TopicDsmHeader>(SegmentRef{source.topic_dsm.load()})
+               : nullptr;
+}
+
+/// Takes the reader of a source off its topic DSM's reader table.
+void detach_reader(Registry & registry, SourceEntry & source) {
+  TopicDsmHeader * const dsm = topic_dsm_of(registry, source);
+  auto * const reader = registry.clusters().find<ReaderEntry>(SegmentRef{source.reader.load()});
+  if (dsm == nullptr || reader == nullptr) {
+    return;
+  }
+  reader->active.store(0, std::memory_order_release);
+  dsm->match_generation.fetch_add(1, std::memory_order_seq_cst);
+  dsm->progress.fetch_add(1, std::memory_order_seq_cst);
+  futex_wake_all(dsm->progress);  // a publisher that waited for this reader need not
+}
+
 void close_subscription(Registry & registry, EndpointEntry & entry) {
   Cluster * const cluster = registry.clusters().find(entry.block.cluster());
   auto * const header = registry.clusters().find<SubscriptionHeader>(entry.block);
@@ -166,64 +195,19 @@ void close_subscription(Registry & registry, EndpointEntry & entry) {
     return;
   }
   visit_source_table(*cluster, *header, [&](SourceEntry & source, uint32_t) {
-    if (source.state.load() != SourceState::active) {
+    const SourceState state = source.state.load();
+    if (state != SourceState::active && state != SourceState::joining) {
       return false;
     }
-    const SegmentRef dsm_ref{source.topic_dsm.load()};
-    auto * const dsm = registry.clusters().find<TopicDsmHeader>(dsm_ref);
-    auto * const reader = registry.clusters().find<ReaderEntry>(SegmentRef{source.reader.load()});
-    if (dsm != nullptr && reader != nullptr) {
-      reader->active.store(0, std::memory_order_release);
-      dsm->match_generation.fetch_add(1, std::memory_order_seq_cst);
-      dsm->progress.fetch_add(1, std::memory_order_seq_cst);
-      futex_wake_all(dsm->progress);  // a publisher that waited for this reader need not
-      const uint32_t publisher = dsm->endpoint.load();
-      if (registry.endpoints().is_live(publisher)) {
-        count_unmatched(registry, registry.endpoints()[publisher]);
-      }
+    const uint32_t publisher = source.topic_dsm_endpoint.load();
+    if (state == SourceState::active && topic_dsm_of(registry, source) != nullptr &&
+        registry.endpoints().is_live(publisher)) {
+      count_unmatched(registry, registry.endpoints()[publisher]);
     }
     source.state.store(SourceState::revoked, std::memory_order_seq_cst);
+    detach_reader(registry, source);
     return false;
   });
-}
-
-void close_publisher(Registry & registry, EndpointEntry & entry, bool died) {
-  Cluster * const cluster = registry.clusters().find(entry.block.cluster());
-  auto * const dsm = registry.clusters().find<TopicDsmHeader>(entry.block);
-  if (cluster == nullptr || dsm == nullptr || dsm->orphan.exchange(1) != 0) {
-    return;
-  }
-  if (died) {
-    dsm->phase.store(0, std::memory_order_seq_cst);  // the dead follow no references
-  }
-  for_each_reader(*cluster, *dsm, [&](ReaderEntry & reader) {
-    const uint32_t slot = reader.endpoint.load();
-    if (!registry.endpoints().is_live(slot)) {
-      return;
-    }
-    count_unmatched(registry, registry.endpoints()[slot]);
-    auto * const header =
-      registry.clusters().find<SubscriptionHeader>(SegmentRef{reader.subscription.load()});
-    if (died && header != nullptr) {
-      header->resync.store(1, std::memory_order_seq_cst);
-      notify_process(registry, registry.endpoints()[slot].process);
-    }
-  });
-}
-
-/// True when the cluster's receive thread follows no references that it loaded before now.
-bool receive_threads_are_out(Registry & registry) {
-  const uint64_t present = registry.header().clusters_present.load();
-  for (uint32_t id = 1; id <= max_clusters; ++id) {
-    if ((present >> (id - 1) & 1) == 0) {
-      continue;
-    }
-    Cluster * const cluster = registry.clusters().find(id);
-    if (cluster != nullptr && cluster->header().phase.load(std::memory_order_seq_cst) % 2 != 0) {
-      return false;
-    }
-  }
-  return true;
 }
 
 /// A record that `reader` may still want, in any generation.
@@ -249,6 +233,52 @@ bool undelivered(
     }
   }
   return false;
+}
+
+/// Hints of its last records may never have been pushed (`died`), or may have been displaced: readers that miss
+/// something are told to look, so that the topic DSM does not wait for them for ever.
+void close_publisher(Registry & registry, EndpointEntry & entry, bool died) {
+  Cluster * const cluster = registry.clusters().find(entry.block.cluster());
+  auto * const dsm = registry.clusters().find<TopicDsmHeader>(entry.block);
+  if (cluster == nullptr || dsm == nullptr) {
+    return;
+  }
+  if (died) {
+    dsm->phase.store(0, std::memory_order_seq_cst);  // the dead follow no references
+  }
+  if (dsm->orphan.load() != 0) {
+    return;
+  }
+  for_each_reader(*cluster, *dsm, [&](ReaderEntry & reader) {
+    const uint32_t slot = reader.endpoint.load();
+    auto * const source = registry.clusters().find<SourceEntry>(SegmentRef{reader.source.load()});
+    auto * const header =
+      registry.clusters().find<SubscriptionHeader>(SegmentRef{reader.subscription.load()});
+    if (!registry.endpoints().is_live(slot) || source == nullptr || header == nullptr) {
+      return;
+    }
+    count_unmatched(registry, registry.endpoints()[slot]);
+    if (undelivered(*cluster, *dsm, *source, registry.endpoints()[slot].gid)) {
+      header->resync.store(1, std::memory_order_seq_cst);
+      notify_process(registry, registry.endpoints()[slot].process);
+    }
+  });
+  dsm->orphan.store(1, std::memory_order_seq_cst);
+}
+
+/// True when the cluster's receive thread follows no references that it loaded before now.
+bool receive_threads_are_out(Registry & registry) {
+  const uint64_t present = registry.header().clusters_present.load();
+  for (uint32_t id = 1; id <= max_clusters; ++id) {
+    if ((present >> (id - 1) & 1) == 0) {
+      continue;
+    }
+    Cluster * const cluster = registry.clusters().find(id);
+    if (cluster != nullptr && cluster->header().phase.load(std::memory_order_seq_cst) % 2 != 0) {
+      return false;
+    }
+  }
+  return true;
 }
 
 /// Takes the topic DSM away from a reader that is done with it; false while it is not.
@@ -347,6 +377,21 @@ bool sweep_subscription(Registry & registry, EndpointEntry & entry) {
   return true;
 }
 
+void undo_half_matches_of(Registry & registry, EndpointEntry & entry) {
+  Cluster * const cluster = registry.clusters().find(entry.block.cluster());
+  auto * const header = registry.clusters().find<SubscriptionHeader>(entry.block);
+  if (cluster == nullptr || header == nullptr) {
+    return;
+  }
+  visit_source_table(*cluster, *header, [&](SourceEntry & source, uint32_t) {
+    if (source.state.load() == SourceState::joining) {
+      detach_reader(registry, source);
+      source.state.store(SourceState::free, std::memory_order_seq_cst);
+    }
+    return false;
+  });
+}
+
 }  // namespace
 
 void connect(Registry & registry, uint32_t endpoint) {
@@ -363,11 +408,21 @@ void connect(Registry & registry, uint32_t endpoint) {
   });
 }
 
+void undo_half_matches(Registry & registry) {
+  for (uint32_t slot = 0; slot < registry.endpoints().high_water(); ++slot) {
+    EndpointEntry & entry = registry.endpoints()[slot];
+    if (registry.endpoints().is_live(slot) && entry.kind == EndpointKind::subscription) {
+      undo_half_matches_of(registry, entry);
+    }
+  }
+}
+
 void close(Registry & registry, uint32_t endpoint, bool died) {
   EndpointEntry & entry = registry.endpoints()[endpoint];
-  entry.slot.state.store(SlotState::closing, std::memory_order_release);
-  registry.unlink_endpoint(endpoint);
-  ++registry.header().closing_count;
+  if (entry.slot.state.exchange(SlotState::closing) == SlotState::live) {
+    registry.unlink_endpoint(endpoint);
+    ++registry.header().closing_count;
+  }
   if (entry.kind == EndpointKind::publisher) {
     close_publisher(registry, entry, died);
   } else {

@@ -46,15 +46,14 @@ public:
   /// True while some reader holds a claim on record `number`.
   bool is_pinned(uint64_t number) const noexcept {
     for (const Reader & reader : readers_) {
-      const uint64_t reading = reader.source->reading.load(std::memory_order_seq_cst);
-      if (reading == number || reading == every_record) {
+      if (reader.source->reading.load(std::memory_order_seq_cst) == number) {
         return true;
       }
     }
     return false;
   }
 
-  /// True while some reader holds a claim on a record in [first, last].
+  /// True while some reader holds a claim on a record in [first, last], or scans.
   bool is_any_pinned(uint64_t first, uint64_t last) const noexcept {
     for (const Reader & reader : readers_) {
       const uint64_t reading = reader.source->reading.load(std::memory_order_seq_cst);

@@ -2,7 +2,6 @@
 #include "transport/receive_thread.hpp"
 
 #include "transport/reader_table.hpp"
-#include "transport/subscriber_queue.hpp"
 
 namespace manycore {
 
@@ -72,30 +71,46 @@ void ReceiveThread::forward(const EmcosMessage & message) noexcept {
                        dsm->endpoint.load(std::memory_order_relaxed) == message.endpoint &&
                        dsm->incarnation.load(std::memory_order_relaxed) == message.incarnation;
   if (current) {
-    for_each_reader(*source, *dsm, [&](ReaderEntry & reader) {
-      const SegmentRef subscription{reader.subscription.load(std::memory_order_relaxed)};
-      const bool wanted =
-        message.target == nothing ||
-        message.target == reader.endpoint.load(std::memory_order_relaxed);
-      if (subscription.cluster() == cluster_.id() && wanted) {
-        push_to(reader, message.number);
-      }
-    });
+    while (!push_to_readers(*source, *dsm, message)) {
+    }
   }
   phase.store(phase.load(std::memory_order_relaxed) + 1, std::memory_order_release);
 }
 
-void ReceiveThread::push_to(ReaderEntry & reader, uint64_t number) noexcept {
-  const SegmentRef ref{reader.subscription.load(std::memory_order_relaxed)};
+/// False when the reader table changed meanwhile: an entry may then have been read half old, half new. What was
+/// pushed already is pushed twice; subscribers ignore doubles.
+bool ReceiveThread::push_to_readers(
+  const Cluster & source, TopicDsmHeader & dsm, const EmcosMessage & message) noexcept {
+  const uint64_t generation = dsm.match_generation.load(std::memory_order_seq_cst);
+  bool unchanged = true;
+  visit_reader_table(source, dsm, [&](ReaderEntry & entry) {
+    if (entry.active.load(std::memory_order_acquire) == 0) {
+      return false;
+    }
+    const uint32_t endpoint = entry.endpoint.load(std::memory_order_relaxed);
+    const SegmentRef subscription{entry.subscription.load(std::memory_order_relaxed)};
+    const Hint hint{
+      entry.source_index.load(std::memory_order_relaxed),
+      entry.source_incarnation.load(std::memory_order_relaxed), message.number};
+    std::atomic_thread_fence(std::memory_order_acquire);
+    unchanged = dsm.match_generation.load(std::memory_order_seq_cst) == generation;
+    const bool wanted = message.target == nothing || message.target == endpoint;
+    if (unchanged && wanted && subscription.cluster() == cluster_.id()) {
+      push(subscription, hint);
+    }
+    return !unchanged;
+  });
+  return unchanged;
+}
+
+void ReceiveThread::push(SegmentRef ref, const Hint & hint) noexcept {
   auto * const subscription = cluster_.find<SubscriptionHeader>(ref.offset());
   if (
     subscription == nullptr ||
     subscription->magic.load(std::memory_order_relaxed) != subscription_magic) {
     return;
   }
-  subscriber_queue::push(
-    *subscription, {reader.source_index.load(std::memory_order_relaxed),
-                    reader.source_incarnation.load(std::memory_order_relaxed), number});
+  subscriber_queue::push(*subscription, hint);
   ClusterHeader & header = cluster_.header();
   header.notifications.store(
     header.notifications.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);

@@ -4,6 +4,7 @@
 #include <functional>
 
 #include "transport/registry.hpp"
+#include "transport/subscriber_queue.hpp"
 #include "transport/topic_dsm_layout.hpp"
 
 namespace manycore {
@@ -25,7 +26,9 @@ private:
 
   size_t receive();
   void forward(const EmcosMessage & message) noexcept;
-  void push_to(ReaderEntry & reader, uint64_t number) noexcept;
+  bool push_to_readers(
+    const Cluster & source, TopicDsmHeader & dsm, const EmcosMessage & message) noexcept;
+  void push(SegmentRef subscription, const Hint & hint) noexcept;
   bool take_overflow() noexcept;
   void wake_who_must_look() noexcept;
 

@@ -4,6 +4,7 @@
 #include <random>
 
 #include "platform/error.hpp"
+#include "transport/matching.hpp"
 #include "transport/subscription_layout.hpp"
 #include "transport/topic_dsm_layout.hpp"
 
@@ -216,6 +217,7 @@ void Registry::repair() noexcept {
       ++header().closing_count;
     }
   }
+  matching::undo_half_matches(*this);
 }
 
 }  // namespace manycore

@@ -80,6 +80,9 @@ inline void push(SubscriptionHeader & header, const Hint & hint) noexcept {
       continue;
     }
     uint64_t head = header.head.load(std::memory_order_acquire);
+    if (header.tail.load(std::memory_order_acquire) != tail) {
+      continue;  // `word` may be of a later lap, and `head` may have passed `tail`
+    }
     if (tail - head >= header.depth) {
       if (header.keep_all != 0) {
         header.resync.store(1, std::memory_order_seq_cst);
@@ -89,9 +92,6 @@ inline void push(SubscriptionHeader & header, const Hint & hint) noexcept {
         header.dropped.fetch_add(1, std::memory_order_relaxed);
       }
       continue;
-    }
-    if (header.tail.load(std::memory_order_acquire) != tail) {
-      continue;  // `word` may be of a later lap
     }
     if (slot.compare_exchange_strong(
         word, encode(slots.lap(tail), hint), std::memory_order_acq_rel)) {

@@ -105,7 +105,11 @@ void Subscription::Impl::resync() {
   backlog.insert(backlog.end(), scratch.begin(), scratch.end());
   arrivals_by_resync.fetch_add(scratch.size() - forgotten, std::memory_order_relaxed);
   while (displaces(entry) && backlog.size() > header.depth) {
+    const TopicDsmReader::Waiting oldest = backlog.front();
     backlog.pop_front();
+    if (TopicDsmReader * const reader = find_reader(oldest.source, oldest.incarnation)) {
+      reader->skip(oldest.number);
+    }
     count_lost(1);
   }
   backlog_size.store(backlog.size(), std::memory_order_relaxed);
@@ -138,7 +142,7 @@ std::optional<Subscription::Impl::Candidate> Subscription::Impl::next_of_queue()
       continue;  // its topic DSM is gone
     }
     const uint64_t number = reader->full_number(hint->number);
-    if (number > reader->noted()) {
+    if (number > reader->noted() && number <= reader->last()) {
       return Candidate{reader, number};
     }
   }

@@ -6,8 +6,9 @@
 
 namespace manycore {
 
-/// free -> active -> revoked -> free. Only `active` allows a claim.
-enum class SourceState : uint32_t { free, active, revoked };
+/// free -> joining -> active -> revoked -> free. Only `active` allows a claim; `joining` until the publisher
+/// can know of the reader.
+enum class SourceState : uint32_t { free, joining, active, revoked };
 
 /// A topic DSM as seen from one subscription. The cache line is written by the subscriber per message.
 struct alignas(64) SourceEntry {

@@ -9,7 +9,7 @@ namespace manycore {
 
 constexpr uint32_t max_generations = 8;
 constexpr uint64_t no_record = 0;  ///< record numbers start at 1
-/// Value of SourceEntry::reading that pins every record of the topic DSM, for a scan.
+/// Value of SourceEntry::reading that keeps the topic DSM and all its generations, but no record.
 constexpr uint64_t every_record = UINT64_MAX;
 
 /// One record of a topic DSM. Owned by the publisher; a reader looks at it only under its claim.

@@ -77,58 +77,78 @@ bool TopicDsmReader::is_for_us(const RecordDescriptor & record) const noexcept {
          record.correlation.client == own_gid_;
 }
 
+bool TopicDsmReader::may_look() const noexcept {
+  return source_->state.load(std::memory_order_seq_cst) == SourceState::active &&
+         source_->incarnation.load(std::memory_order_seq_cst) == incarnation_;
+}
+
 /// Dekker with take_back(): `reading` is stored before `number` is loaded, both seq_cst, so either the
-/// publisher sees the claim and leaves the bytes alone, or the number is gone here.
+/// publisher sees the claim and leaves the bytes alone, or the number is gone here. The same with revoke() and the
+/// source's state: nothing of the topic DSM is touched unless the state was still `active` after the store.
 TopicDsmReader::ClaimResult TopicDsmReader::claim(uint64_t number, View & view) noexcept {
   source_->reading.store(number, std::memory_order_seq_cst);
-  const auto give_up = [&](ClaimResult result) {
-    release(number);
-    return result;
-  };
-  if (source_->state.load(std::memory_order_seq_cst) != SourceState::active) {
-    return give_up(ClaimResult::gone);
+  if (!may_look()) {
+    source_->reading.store(no_record, std::memory_order_release);
+    return ClaimResult::not_ours;
   }
+  const ClaimResult result = look_at(number, view);
+  if (result != ClaimResult::claimed) {
+    release(number);
+  }
+  return result;
+}
+
+TopicDsmReader::ClaimResult TopicDsmReader::look_at(uint64_t number, View & view) noexcept {
   const GenerationEntry * const generation = generation_of(number);
   RecordDescriptor * const descriptors =
     generation == nullptr ? nullptr : descriptors_of(*generation);
   if (descriptors == nullptr) {
-    return give_up(ClaimResult::gone);
+    return ClaimResult::gone;
   }
   const uint64_t first = generation->first.load(std::memory_order_acquire);
   const uint32_t count = generation->descriptor_count.load(std::memory_order_relaxed);
   RecordDescriptor & record = descriptors[number & (count - 1)];
   if (record.number.load(std::memory_order_seq_cst) != number) {
-    return give_up(ClaimResult::gone);
+    return ClaimResult::gone;
   }
   // The generation may have been given back before the claim was seen; its entry then has changed.
   if (
     generation->first.load(std::memory_order_acquire) != first || first > number ||
     !cluster_->contains(record.offset, record.size_bytes)) {
-    return give_up(ClaimResult::gone);
+    return ClaimResult::gone;
   }
   if (!is_for_us(record)) {
-    return give_up(ClaimResult::not_ours);
+    return ClaimResult::not_ours;
   }
   if (
     dsm_->lifespan_ns != infinite_ns &&
     realtime_ns() - record.source_timestamp_ns > dsm_->lifespan_ns) {
-    return give_up(ClaimResult::expired);
+    return ClaimResult::expired;
   }
   view.record = &record;
   view.data = cluster_->find<uint8_t>(record.offset, record.size_bytes);
   return ClaimResult::claimed;
 }
 
+/// `reading` last: once it is empty the topic DSM may be freed. The publisher waits for `taken` only, so it is told
+/// in time (seq_cst: it raises `writer_waits` before it looks at `taken` once more).
 void TopicDsmReader::release(uint64_t number) noexcept {
   if (number > source_->taken.load(std::memory_order_relaxed)) {
-    source_->taken.store(number, std::memory_order_release);
+    source_->taken.store(number, std::memory_order_seq_cst);
   }
   if (number > noted_) {
     noted_ = number;
   }
-  // seq_cst: the publisher raises `writer_waits` before it looks at `taken` once more.
-  source_->reading.store(no_record, std::memory_order_seq_cst);
   tell_waiting_publisher();
+  source_->reading.store(no_record, std::memory_order_release);
+}
+
+void TopicDsmReader::skip(uint64_t number) noexcept {
+  source_->reading.store(every_record, std::memory_order_seq_cst);
+  if (may_look()) {
+    release(number);
+  }
+  source_->reading.store(no_record, std::memory_order_release);
 }
 
 void TopicDsmReader::tell_waiting_publisher() noexcept {
@@ -138,26 +158,40 @@ void TopicDsmReader::tell_waiting_publisher() noexcept {
   }
 }
 
+uint64_t TopicDsmReader::last() const noexcept { return dsm_->last.load(std::memory_order_seq_cst); }
+
+/// Holds one record after the other, so that a scan that is stopped costs one record like any claim. The
+/// generation is held all the time: each value of `reading` is inside it.
+void TopicDsmReader::scan(
+  const GenerationEntry & generation, uint64_t last, std::vector<Waiting> & out) noexcept {
+  source_->reading.store(every_record, std::memory_order_seq_cst);
+  RecordDescriptor * const descriptors =
+    generation.first.load(std::memory_order_seq_cst) == 0 ? nullptr : descriptors_of(generation);
+  const uint32_t count = generation.descriptor_count.load(std::memory_order_relaxed);
+  for (uint32_t i = 0; descriptors != nullptr && i < count; ++i) {
+    const uint64_t number = descriptors[i].number.load(std::memory_order_relaxed);
+    if (number <= noted_ || number > last) {
+      continue;
+    }
+    source_->reading.store(number, std::memory_order_seq_cst);
+    const bool live = descriptors[i].number.load(std::memory_order_seq_cst) == number;
+    if (live && is_for_us(descriptors[i])) {
+      out.push_back({descriptors[i].source_timestamp_ns, number, index_, incarnation_});
+    }
+  }
+}
+
 void TopicDsmReader::list_waiting(std::vector<Waiting> & out) noexcept {
   const auto own_part = static_cast<ptrdiff_t>(out.size());
   source_->reading.store(every_record, std::memory_order_seq_cst);
-  if (source_->state.load(std::memory_order_seq_cst) == SourceState::active) {
+  if (may_look()) {
     const uint64_t last = dsm_->last.load(std::memory_order_seq_cst);
     for (const GenerationEntry & generation : dsm_->generations) {
-      RecordDescriptor * const descriptors =
-        generation.first.load(std::memory_order_acquire) == 0 ? nullptr
-                                                              : descriptors_of(generation);
-      const uint32_t count = generation.descriptor_count.load(std::memory_order_relaxed);
-      for (uint32_t i = 0; descriptors != nullptr && i < count; ++i) {
-        const uint64_t number = descriptors[i].number.load(std::memory_order_seq_cst);
-        if (number > noted_ && number <= last && is_for_us(descriptors[i])) {
-          out.push_back({descriptors[i].source_timestamp_ns, number, index_, incarnation_});
-        }
-      }
+      scan(generation, last, out);
     }
-    noted_ = last > noted_ ? last : noted_;
+    noted_ = std::max(noted_, last);
   }
-  source_->reading.store(no_record, std::memory_order_seq_cst);
+  source_->reading.store(no_record, std::memory_order_release);
   order(out, own_part);
 }
 

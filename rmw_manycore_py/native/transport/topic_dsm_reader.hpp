@@ -35,8 +35,12 @@ public:
   };
   /// On `claimed`, release() must follow; any other result has released already.
   ClaimResult claim(uint64_t number, View & view) noexcept;
-  /// Everything up to `number` is done for this reader.
+  /// Ends a claim: everything up to `number` is done for this reader.
   void release(uint64_t number) noexcept;
+  /// The same without a claim.
+  void skip(uint64_t number) noexcept;
+  /// Highest record number published.
+  uint64_t last() const noexcept;
 
   struct Waiting {
     int64_t source_timestamp_ns;
@@ -55,8 +59,12 @@ public:
 private:
   /// The generation that holds `number`, or nullptr.
   const GenerationEntry * generation_of(uint64_t number) const noexcept;
+  ClaimResult look_at(uint64_t number, View & view) noexcept;
   RecordDescriptor * descriptors_of(const GenerationEntry & generation) const noexcept;
   bool is_for_us(const RecordDescriptor & record) const noexcept;
+  /// The source is still this one, and open: to be asked after storing `reading`.
+  bool may_look() const noexcept;
+  void scan(const GenerationEntry & generation, uint64_t last, std::vector<Waiting> & out) noexcept;
   void tell_waiting_publisher() noexcept;
 
   Cluster * cluster_ = nullptr;

@@ -123,7 +123,7 @@ void TopicDsmWriter::leave() noexcept {
 /// replies are wanted until taken: their queues do not displace.
 bool TopicDsmWriter::wants(
   const Reader & reader, uint64_t number, const RecordDescriptor & record) const noexcept {
-  if (reader.source->taken.load(std::memory_order_acquire) >= number || !reader.active()) {
+  if (reader.source->taken.load(std::memory_order_seq_cst) >= number || !reader.active()) {
     return false;
   }
   if (endpoint_.role == EndpointRole::reply) {
