@@ -1,33 +1,30 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The transport of rmw_manycore without ROS: platforms seen, configured and joined."""
+"""The transport without ROS: platforms seen, configured and joined."""
 
+from collections.abc import Mapping, Sequence
 from typing import Any
 
+Row = dict[str, Any]
+
 class PlatformError(RuntimeError):
-    """What the transport refuses or cannot do; its text says what to do."""
+    """Something is wrong with a platform; the message says what to do."""
 
 def platforms() -> list[str]:
-    """Names of this user's platforms, dead or alive."""
+    """Return the names of this user's platforms, dead or alive."""
 
 def platform_directory(name: str) -> str:
-    """Directory in which everything of a platform lies."""
+    """Return where everything of a platform lies."""
 
 def clean(name: str) -> list[str]:
-    """Remove what a dead platform left; PlatformError while it is alive. Returns the removed paths."""
-
-class Platform:
-    """Read-only view of a platform: does not join it and does not keep it alive."""
-
-    def __init__(self, name: str) -> None: ...
-    def info(self) -> dict[str, Any]: ...
-    def processes(self) -> list[dict[str, Any]]: ...
-    def clusters(self) -> list[dict[str, Any]]: ...
-    def nodes(self) -> list[dict[str, Any]]: ...
-    def endpoints(self) -> list[dict[str, Any]]: ...
-    def topic_table(self) -> list[dict[str, Any]]: ...
+    """Remove what a dead platform left and return the paths; PlatformError while it lives."""
 
 class Configurator:
-    """A platform created before its first node and kept while this object lives."""
+    """Creates a platform before its first node, and keeps it while this object exists.
+
+    `smem_size` is in bytes for each cluster, 0 = this machine's; `topics` are rows (name, topic id,
+    topic DSM size in bytes, bit mask of the receiver clusters). When the object goes, so does the
+    platform, unless somebody is on it.
+    """
 
     def __init__(
         self,
@@ -36,19 +33,48 @@ class Configurator:
         clusters: int,
         cores_per_cluster: int,
         smem_size: int,
-        host_cpu_of_receive_thread: dict[int, int],
-        topics: list[tuple[str, int, int, int]],
-    ) -> None:
-        """`smem_size` in bytes, 0 = from the machine; topics are (name, id, topic_dsm_size, cluster mask)."""
+        host_cpu_of_receive_thread: Mapping[int, int],
+        topics: Sequence[tuple[str, int, int, int]],
+    ) -> None: ...
+
+class Platform:
+    """A look at a platform: does not join it, and does not keep it alive."""
+
+    def __init__(self, name: str) -> None: ...
+    def info(self) -> Row:
+        """Return name, clusters, cores_per_cluster, smem_size, alive."""
+
+    def processes(self) -> list[Row]:
+        """Return slot, pid, cluster, core, host_cpu, label, alive of each."""
+
+    def nodes(self) -> list[Row]:
+        """Return handle, process (slot), name, namespace, enclave of each."""
+
+    def endpoints(self) -> list[Row]:
+        """Return each publisher and subscription.
+
+        Keys: kind (publisher, subscription), role (topic, request, reply), topic, type, type_hash,
+        gid, node, namespace, cluster, process (slot), qos, matched, counters.
+        """
+
+    def clusters(self) -> list[Row]:
+        """Return id, smem_size, used, receive_thread_pid, messages, notifications, alive of each."""
+
+    def topic_table(self) -> list[Row]:
+        """Return topic_name, topic_id, topic_dsm_size, receiver_clusters (bit mask) of each."""
 
 class Publisher:
+    """Publishes serialized messages."""
+
     def publish(self, data: bytes) -> int:
-        """Publish serialized bytes; returns the publication sequence number."""
+        """Publish and return the sequence number."""
+
     def matched(self) -> int: ...
 
 class Subscription:
-    def take(self) -> tuple[bytes, dict[str, Any]] | None:
-        """Next serialized message with its metadata, or None."""
+    """Takes serialized messages."""
+
+    def take(self) -> tuple[bytes, Row] | None: ...
     def has_data(self) -> bool: ...
     def matched(self) -> int: ...
     def lost(self) -> int: ...
@@ -59,9 +85,13 @@ class Process:
     def __init__(
         self, platform: str, cluster: int = 1, core: int | None = None, label: str = "tool"
     ) -> None: ...
-    def publisher(self, topic: str, type: str, qos: dict[str, Any]) -> Publisher: ...
-    def subscription(self, topic: str, type: str, qos: dict[str, Any]) -> Subscription: ...
-    def epoch(self) -> int: ...
+    def publisher(self, topic: str, type: str, qos: Mapping[str, Any]) -> Publisher: ...
+    def subscription(self, topic: str, type: str, qos: Mapping[str, Any]) -> Subscription: ...
+    def epoch(self) -> int:
+        """Return a number that changes when something comes in."""
+
     def wait(self, seen: int, timeout_s: float | None = None) -> bool:
-        """Sleep until the epoch is no longer `seen`; False after `timeout_s` seconds."""
-    def notify(self) -> None: ...
+        """Sleep until the epoch is another than `seen`; False when the time is over."""
+
+    def notify(self) -> None:
+        """Wake whoever waits."""

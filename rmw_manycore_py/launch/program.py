@@ -7,6 +7,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
+from rmw_manycore_py.launch.environment import program_environment
+from rmw_manycore_py.mapfile.placement import PlacedNode
 from rmw_manycore_py.topology import Core
 
 
@@ -20,3 +22,15 @@ class NodeProgram:
     core: Core
     host_cpu: int
     directory: Path | None = None
+
+    @classmethod
+    def of(cls, node: PlacedNode) -> NodeProgram:
+        """Return the program of a node that a mapfile places."""
+        return cls(
+            name=node.name,
+            command=tuple(node.argv),
+            environment=program_environment(node.env),
+            core=node.place,
+            host_cpu=node.host_cpu,
+            directory=node.cwd,
+        )

@@ -1,0 +1,59 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Options that several commands have, and how they print."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import click
+from rich.console import Console
+from rich.table import Table
+
+from rmw_manycore_py.launch.environment import default_platform
+
+json_option = click.option("--json", "as_json", is_flag=True, help="Print JSON.")
+platform_option = click.option(
+    "--platform",
+    default=default_platform,
+    show_default="$MANYCORE_PLATFORM, or domain-$ROS_DOMAIN_ID",
+    help="Name of the platform.",
+)
+mapfile_argument = click.argument(
+    "mapfile", type=click.Path(dir_okay=False, exists=True, path_type=Path)
+)
+
+
+def print_json(data: Any) -> None:
+    """Print data for programs."""
+    click.echo(json.dumps(data, indent=2, default=str))
+
+
+def new_table(*columns: str, title: str | None = None) -> Table:
+    """Return a plain table; columns whose name starts with # hold numbers."""
+    table = Table(title=title, title_justify="left", box=None, pad_edge=False)
+    for column in columns:
+        is_number = column.startswith("#")
+        table.add_column(column.lstrip("#"), justify="right" if is_number else "left")
+    return table
+
+
+def print_table(table: Table) -> None:
+    """Print a table; into a pipe as wide as it is, for grep and cut."""
+    console = Console()
+    if not console.is_terminal:
+        console = Console(width=1000)
+        for column in table.columns:
+            column.no_wrap = True
+    with console.capture() as capture:
+        console.print(table)
+    click.echo("\n".join(line.rstrip() for line in capture.get().splitlines()))
+
+
+def size_text(size_bytes: int) -> str:
+    """Write a number of bytes as people do: 4 MiB."""
+    for unit, shift in (("GiB", 30), ("MiB", 20), ("KiB", 10)):
+        if size_bytes >= 1 << shift:
+            return f"{size_bytes / (1 << shift):.4g} {unit}"
+    return f"{size_bytes} B"

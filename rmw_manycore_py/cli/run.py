@@ -1,0 +1,47 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""`manycore run`."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import click
+
+from rmw_manycore_py.cli.options import mapfile_argument
+from rmw_manycore_py.cli.run_printer import RunPrinter
+from rmw_manycore_py.launch.events import Event
+from rmw_manycore_py.launch.run import run_placement
+from rmw_manycore_py.mapfile import load_mapfile, resolve
+
+
+@click.command("run")
+@mapfile_argument
+@click.option(
+    "--duration",
+    "duration_s",
+    type=click.FloatRange(min=0, min_open=True),
+    metavar="S",
+    help="Stop after this many seconds, counted from the start of the last node.",
+)
+@click.option("--json", "as_json", is_flag=True, help="Print one JSON object per event.")
+def command(mapfile: Path, duration_s: float | None, as_json: bool) -> None:
+    """Start the nodes of MAPFILE, each on its core, and stop them together.
+
+    Ends when all nodes have ended, when the duration is over, or on Ctrl-C; a second Ctrl-C does not
+    wait for nodes that take their time. The exit status is 0 unless a node failed.
+
+    \b
+    Examples:
+      manycore run mapfiles/talker_listener.yaml
+      manycore run mapfiles/talker_listener.yaml --duration 10
+      manycore run mapfiles/talker_listener.yaml --json | jq 'select(.event == "output")'
+    """
+    placement = resolve(load_mapfile(mapfile))
+    names = [node.name for node in placement.nodes]
+    report = _print_json if as_json else RunPrinter(names).report
+    sys.exit(run_placement(placement, report, duration_s))
+
+
+def _print_json(event: Event) -> None:
+    click.echo(event.as_json())

@@ -1,0 +1,26 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""The environment in which a program finds rmw_manycore."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Mapping
+
+import rmw_manycore_hook
+
+IMPLEMENTATION = "rmw_manycore"
+
+
+def program_environment(
+    variables: Mapping[str, str], base: Mapping[str, str] = os.environ
+) -> dict[str, str]:
+    """Return `base` with `variables` in it, as a program needs it to load rmw_manycore at once."""
+    environment = {**base, "RMW_IMPLEMENTATION": IMPLEMENTATION, **variables}
+    return rmw_manycore_hook.substituted_environment(environment, sys.prefix)
+
+
+def default_platform(environment: Mapping[str, str] = os.environ) -> str:
+    """Return the platform of programs that are not told another one."""
+    domain = environment.get("ROS_DOMAIN_ID") or "0"
+    return environment.get("MANYCORE_PLATFORM") or f"domain-{domain}"
