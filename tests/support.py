@@ -127,6 +127,11 @@ class Program:
                 if self._ended or not self._changed.wait(max(left_s, 0)):
                     raise AssertionError(f"no line matches {pattern!r} in the output of {self}")
 
+    def skip_output(self) -> None:
+        """Be done with everything printed so far."""
+        with self._changed:
+            self._next_line = len(self.lines)
+
     def say(self, line: str) -> None:
         """Write a line to the program's standard input."""
         assert self._process.stdin is not None

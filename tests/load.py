@@ -1,0 +1,148 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""The nodes that the stress tests load a platform with, and kill."""
+
+from __future__ import annotations
+
+import os
+import random
+import signal
+import sys
+import threading
+from collections.abc import Callable
+
+import rclpy
+from payload import make_message, read_message
+from rclpy.node import Node
+from rclpy.qos import QoSProfile
+from ros_support import announce, peer_node, spin_until
+from std_msgs.msg import UInt8MultiArray
+
+TOPIC = "load"
+LARGEST_BYTES = 100_000
+DEEP = QoSProfile(depth=2000)
+
+
+def publish_steadily(rate_hz: float) -> None:
+    """Publish messages of random sizes; the first one once a subscription is there."""
+    with peer_node(f"steady_publisher_{os.getpid()}") as node:
+        publisher = node.create_publisher(UInt8MultiArray, TOPIC, DEEP)
+        spin_until(node, publisher.get_subscription_count)
+        number = 0
+
+        def publish() -> None:
+            nonlocal number
+            number += 1
+            size_bytes = random.randrange(LARGEST_BYTES)
+            publisher.publish(make_message(os.getpid(), number, size_bytes))
+
+        node.create_timer(1 / rate_hz, publish)
+        announce(f"publishing as {os.getpid()}")
+        rclpy.spin(node)
+
+
+def check_steadily(writer: int) -> None:
+    """Check every message; tell on request how many came from a writer that nobody kills."""
+    with peer_node(f"steady_subscriber_{os.getpid()}") as node:
+        last, heard, missing = 0, 0, 0
+
+        def check(message: UInt8MultiArray) -> None:
+            nonlocal last, heard, missing
+            try:
+                found, number = read_message(message)
+            except ValueError as error:
+                announce(str(error))
+                return
+            if found != writer:
+                return
+            if number <= last:
+                announce(f"wrong order: {number} after {last}")
+            missing += number - last - 1 if last else 0
+            last = number
+            heard += 1
+
+        def answer() -> None:
+            for _ in sys.stdin:
+                announce(f"heard {heard}, missing {missing}")
+
+        node.create_subscription(UInt8MultiArray, TOPIC, check, DEEP)
+        threading.Thread(target=answer, daemon=True).start()
+        announce("checking")
+        rclpy.spin(node)
+
+
+def publish_until_killed() -> None:
+    with peer_node(f"publisher_{os.getpid()}") as node:
+        publisher = node.create_publisher(UInt8MultiArray, TOPIC, 10)
+        announce(f"victim {os.getpid()} works")
+        number = 0
+        while True:
+            number += 1
+            size_bytes = random.randrange(LARGEST_BYTES)
+            publisher.publish(make_message(os.getpid(), number, size_bytes))
+            rclpy.spin_once(node, timeout_sec=0.001)
+
+
+def check_until_killed() -> None:
+    with peer_node(f"subscriber_{os.getpid()}") as node:
+
+        def check(message: UInt8MultiArray) -> None:
+            try:
+                read_message(message)
+            except ValueError as error:
+                announce(str(error))
+
+        node.create_subscription(UInt8MultiArray, TOPIC, check, 10)
+        announce(f"victim {os.getpid()} works")
+        rclpy.spin(node)
+
+
+VICTIMS = {"publisher": publish_until_killed, "subscriber": check_until_killed}
+
+
+def breed() -> None:
+    """Start a victim for each line of input, "KIND CLUSTER", by fork: python is loaded only once.
+
+    The fork comes before anything of ROS is initialised, so each child is a process as any other.
+    """
+    signal.signal(signal.SIGCHLD, signal.SIG_IGN)  # nobody waits for the dead
+    announce("ready")
+    for line in sys.stdin:
+        kind, cluster = line.split()
+        fork(VICTIMS[kind], cluster)
+
+
+def fork(function: Callable[[], None], cluster: str) -> None:
+    """Run a function in a child process and tell its pid."""
+    pid = os.fork()
+    if pid:
+        announce(f"born {pid}")
+        return
+    os.environ["MANYCORE_CLUSTER"] = cluster
+    function()
+    os._exit(0)
+
+
+def crowd(size: int) -> None:
+    """Fork `size` nodes into five clusters; each says when it has heard all of them."""
+    signal.signal(signal.SIGCHLD, signal.SIG_IGN)
+    for number in range(size):
+        fork(lambda number=number: be_one_of(size, number), str(1 + number % 5))
+    sys.stdin.read()
+
+
+def be_one_of(size: int, number: int) -> None:
+    with peer_node(f"node_{number}") as node:
+        heard: set[int] = set()
+        node.create_subscription(
+            UInt8MultiArray, TOPIC, lambda message: heard.add(message.data[0]), DEEP
+        )
+        publisher = node.create_publisher(UInt8MultiArray, TOPIC, 10)
+        _spin_until_all(node, lambda: publisher.get_subscription_count() == size)
+        publisher.publish(UInt8MultiArray(data=[number]))
+        _spin_until_all(node, lambda: len(heard) == size)
+        announce(f"node {number} heard all")
+        rclpy.spin(node)
+
+
+def _spin_until_all(node: Node, condition: Callable[[], bool]) -> None:
+    spin_until(node, condition, timeout_s=600)

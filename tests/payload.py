@@ -1,0 +1,30 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Messages that can tell whether they are whole: writer, number, checksum, then random bytes."""
+
+from __future__ import annotations
+
+import random
+import struct
+import zlib
+
+from std_msgs.msg import UInt8MultiArray
+
+HEADER = struct.Struct("<QQI")
+RANDOM_BYTES = random.Random(1).randbytes(1 << 20)
+
+
+def make_message(writer: int, number: int, size_bytes: int) -> UInt8MultiArray:
+    """Return a message of `size_bytes` after its header."""
+    start = random.randrange(len(RANDOM_BYTES) - size_bytes + 1)
+    body = RANDOM_BYTES[start : start + size_bytes]
+    header = HEADER.pack(writer, number, zlib.crc32(body, writer ^ number))
+    return UInt8MultiArray(data=header + body)
+
+
+def read_message(message: UInt8MultiArray) -> tuple[int, int]:
+    """Return writer and number; a ValueError says that the message is torn."""
+    data = bytes(message.data)
+    writer, number, checksum = HEADER.unpack_from(data)
+    if zlib.crc32(data[HEADER.size :], writer ^ number) != checksum:
+        raise ValueError(f"torn message: writer {writer}, number {number}, {len(data)} bytes")
+    return writer, number

@@ -1,0 +1,86 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""A subscriber that stands still does not slow its publisher down."""
+
+from __future__ import annotations
+
+import os
+import signal
+import statistics
+import sys
+import time
+
+from payload import make_message, read_message
+from processes import is_stopped
+from ros_support import announce, peer_node, spin_until
+from std_msgs.msg import UInt8MultiArray
+from support import peer_command, wait_until
+
+MESSAGES = 2000
+SIZE_BYTES = 20_000
+ROUNDS = 7
+
+
+def publish_on_request() -> None:
+    """For each line of input publish a burst and tell how long that took."""
+    with peer_node("publisher") as node:
+        publisher = node.create_publisher(UInt8MultiArray, "load", 10)
+        spin_until(node, lambda: publisher.get_subscription_count() == 2)
+        announce("ready")
+        message = make_message(1, 1, SIZE_BYTES)
+        for _ in sys.stdin:
+            start_ns = time.perf_counter_ns()
+            for _ in range(MESSAGES):
+                publisher.publish(message)
+            announce(f"took {time.perf_counter_ns() - start_ns} ns")
+
+
+def listen() -> None:
+    with peer_node(f"subscriber_{os.getpid()}") as node:
+        count = 0
+
+        def hear(message: UInt8MultiArray) -> None:
+            nonlocal count
+            read_message(message)
+            count += 1
+
+        def answer() -> None:
+            announce(f"heard {count}")
+
+        node.create_subscription(UInt8MultiArray, "load", hear, 10)
+        node.create_timer(0.1, answer)
+        announce("ready")
+        spin_until(node, lambda: False, timeout_s=3600)
+
+
+def heard(subscriber) -> int:
+    """Return a count that the subscriber printed after now."""
+    subscriber.skip_output()
+    return int(subscriber.wait_for(r"heard (\d+)").group(1))
+
+
+def test_stopped_subscribers(start):
+    """Bursts with both subscribers awake and both stopped, by turns; medians are compared."""
+    subscribers = [start(peer_command(listen), cluster) for cluster in (1, 2)]
+    for subscriber in subscribers:
+        subscriber.wait_for("ready")
+    publisher = start(peer_command(publish_on_request))
+    publisher.wait_for("ready")
+
+    def burst_ns() -> int:
+        publisher.say("go")
+        return int(publisher.wait_for(r"took (\d+) ns").group(1))
+
+    awake_ns, stopped_ns = [], []
+    for _ in range(ROUNDS):
+        awake_ns.append(burst_ns())
+        for subscriber in subscribers:
+            subscriber.signal(signal.SIGSTOP)
+            wait_until(lambda s=subscriber: is_stopped(s.pid), "the subscriber is stopped")
+        stopped_ns.append(burst_ns())
+        for subscriber in subscribers:
+            subscriber.signal(signal.SIGCONT)
+    assert statistics.median(stopped_ns) < 1.5 * statistics.median(awake_ns)
+    for subscriber in subscribers:
+        before = heard(subscriber)
+        burst_ns()
+        wait_until(lambda s=subscriber, b=before: heard(s) > b, "the subscriber hears again")
