@@ -1,0 +1,97 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""What many nodes cost that have nothing to do."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+from rmw_manycore_py.bench.contenders import FAST_DDS, INSIDE, Middleware, manycore
+from rmw_manycore_py.bench.question import Question, Run
+from rmw_manycore_py.bench.session import Session
+from rmw_manycore_py.bench.summary import Goal, Result
+
+CLUSTERS = 5
+WINDOW_S = 10.0
+
+
+def question(nodes: int) -> Question:
+    """Return the question for that many nodes."""
+    cpu = f"{nodes} idle nodes, CPU"
+    wake_ups = f"{nodes} idle nodes, wake-ups"
+    own = tuple(_spread(manycore("inside", wait), nodes) for wait in ("block", "adaptive"))
+
+    def measure(run: Run) -> list[Result]:
+        results = []
+        for middleware in (*own, FAST_DDS):
+            if run.wants(middleware.name):
+                run.note(f"{cpu}: {middleware.name}")
+                used_ms, woken = _watch(run, middleware, nodes)
+                results.append(Result(cpu, middleware.name, "ms/s", (used_ms,)))
+                results.append(Result(wake_ups, middleware.name, "1/s", (woken,)))
+        return results
+
+    return Question(
+        "idle",
+        measure,
+        tuple(Goal(name, each.name, "within", 0) for name in (cpu, wake_ups) for each in own),
+        f"nodes on both CPUs in turn, over {CLUSTERS} clusters, receive threads included",
+    )
+
+
+def _spread(middleware: Middleware, nodes: int) -> Middleware:
+    name = middleware.name.replace(INSIDE.name.split()[1], f"in {CLUSTERS} clusters")
+    clusters = tuple(party % CLUSTERS + 1 for party in range(nodes))
+    return replace(middleware, name=name, clusters=clusters)
+
+
+def _watch(run: Run, middleware: Middleware, nodes: int) -> tuple[float, float]:
+    """Return milliseconds of CPU and wake-ups, both a second, of all processes together."""
+    window_s = WINDOW_S * max(run.share, 0.1)
+    with Session(middleware, run.cpus) as session:
+        processes = [
+            session.native("idle_node", party, name=f"idle_{party}") for party in range(nodes)
+        ]
+        for process in processes:
+            process.wait_until_ready()
+        pids = [process.pid for process in processes] + session.receive_thread_pids()
+        wait_until_quiet(pids)
+        before_ns, before = cpu_ns(pids), wake_ups(pids)
+        time.sleep(window_s)
+        used_ns, woken = cpu_ns(pids) - before_ns, wake_ups(pids) - before
+        for process in processes:
+            process.release()
+        for process in processes:
+            process.finish()
+    return used_ns / 1e6 / window_s, woken / window_s
+
+
+def wait_until_quiet(pids: Sequence[int], timeout_s: float = 30.0) -> None:
+    """Return after a second in which nothing woke up, or after the timeout."""
+    deadline = time.monotonic() + timeout_s
+    seen = -1
+    while time.monotonic() < deadline and seen != (now := wake_ups(pids)):
+        seen = now
+        time.sleep(1.0)
+
+
+def cpu_ns(pids: Iterable[int]) -> int:
+    """Return the time that all threads of the processes have run."""
+    return sum(int(path.read_text().split()[0]) for path in _tasks(pids, "schedstat"))
+
+
+def wake_ups(pids: Iterable[int]) -> int:
+    """Return how often the threads of the processes have gone to sleep by themselves."""
+    return sum(
+        int(line.split()[1])
+        for path in _tasks(pids, "status")
+        for line in path.read_text().splitlines()
+        if line.startswith("voluntary_ctxt_switches")
+    )
+
+
+def _tasks(pids: Iterable[int], name: str) -> Iterable[Path]:
+    for pid in pids:
+        yield from Path(f"/proc/{pid}/task").glob(f"*/{name}")

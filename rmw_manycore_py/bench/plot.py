@@ -1,0 +1,46 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""A picture of the results, where matplotlib is installed."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from rmw_manycore_py.bench.summary import Result
+from rmw_manycore_py.errors import ManycoreError
+
+COLUMNS = 2
+
+
+def plot(results: Sequence[Result], path: Path) -> None:
+    """Draw a panel per question: a bar to the median, a line to the 99th percentile."""
+    try:
+        from matplotlib.figure import Figure
+    except ImportError:
+        raise ManycoreError(
+            "the plot needs matplotlib: pip install 'rmw-manycore[bench]'"
+        ) from None
+    questions = list(dict.fromkeys(result.question for result in results))
+    rows = math.ceil(len(questions) / COLUMNS)
+    figure = Figure(figsize=(7 * COLUMNS, 2.4 * rows), layout="constrained")
+    panels = figure.subplots(rows, COLUMNS, squeeze=False).flatten()
+    for panel, question in zip(panels, questions, strict=False):
+        _draw(panel, question, [r for r in results if r.question == question])
+    for panel in panels[len(questions) :]:
+        panel.remove()
+    figure.savefig(path)
+
+
+def _draw(panel: Any, question: str, results: Sequence[Result]) -> None:
+    names = [result.contender for result in results]
+    medians = [result.summary.median for result in results]
+    tails = [max(result.summary.p99 - result.summary.median, 0) for result in results]
+    colours = ["tab:blue" if "manycore" in name else "tab:gray" for name in names]
+    panel.barh(names, medians, xerr=[[0] * len(tails), tails], color=colours, ecolor="0.3")
+    panel.invert_yaxis()
+    panel.set_title(question)
+    panel.set_xlabel(results[0].unit)
+    if min(medians) > 0:
+        panel.set_xscale("log")

@@ -1,0 +1,113 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""What was measured, in numbers, and whether it reaches the goal."""
+
+from __future__ import annotations
+
+import math
+import statistics
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Literal
+
+Statistic = Literal["median", "mean", "p99", "largest"]
+
+
+@dataclass(frozen=True)
+class Summary:
+    """The numbers of a table row, in the unit of the samples."""
+
+    samples: int
+    median: float
+    mean: float
+    p99: float
+    largest: float
+
+    @classmethod
+    def of(cls, samples: Sequence[float]) -> Summary:
+        """Summarize at least one sample."""
+        ordered = sorted(samples)
+        return cls(
+            samples=len(ordered),
+            median=statistics.median(ordered),
+            mean=statistics.fmean(ordered),
+            p99=nearest_rank(ordered, 0.99),
+            largest=ordered[-1],
+        )
+
+
+def nearest_rank(ordered: Sequence[float], share: float) -> float:
+    """Return the smallest sample that at least `share` of all samples do not exceed."""
+    return ordered[max(math.ceil(share * len(ordered)), 1) - 1]
+
+
+@dataclass(frozen=True)
+class Result:
+    """All samples of one contender at one question, for example "64 B"."""
+
+    question: str
+    contender: str
+    unit: str
+    samples: tuple[float, ...]
+    higher_is_better: bool = False
+    summary: Summary = field(init=False)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "summary", Summary.of(self.samples))
+
+
+@dataclass(frozen=True)
+class Goal:
+    """What a contender shall reach, against a peer of the same question or as it stands.
+
+    "within": at most `factor` times the peer (without a peer: at most `factor` units);
+    "better": better than the peer by at least `factor`, whichever direction is the better one.
+    """
+
+    question: str
+    contender: str
+    kind: Literal["within", "better"]
+    factor: float
+    peer: str | None = None
+    statistic: Statistic = "median"
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """A goal with what was found; `found` is in the terms of the goal's factor."""
+
+    goal: Goal
+    found: float
+
+    @property
+    def reached(self) -> bool:
+        """Tell whether the goal is reached."""
+        goal = self.goal
+        return self.found <= goal.factor if goal.kind == "within" else self.found >= goal.factor
+
+
+def judge(results: Sequence[Result], goals: Sequence[Goal]) -> list[Verdict]:
+    """Hold the results against those goals whose two sides were measured."""
+    by_name = {(result.question, result.contender): result for result in results}
+    verdicts = []
+    for goal in goals:
+        own = by_name.get((goal.question, goal.contender))
+        peer = by_name.get((goal.question, goal.peer)) if goal.peer else None
+        if own and (peer or goal.peer is None):
+            verdicts.append(Verdict(goal, _found(goal, own, peer)))
+    return verdicts
+
+
+def _found(goal: Goal, own: Result, peer: Result | None) -> float:
+    own_value = float(getattr(own.summary, goal.statistic))
+    if peer is None:
+        return own_value
+    peer_value = float(getattr(peer.summary, goal.statistic))
+    if goal.kind == "better" and not own.higher_is_better:
+        return _ratio(peer_value, own_value)
+    return _ratio(own_value, peer_value)
+
+
+def _ratio(numerator: float, denominator: float) -> float:
+    if denominator == 0:
+        return 1.0 if numerator == 0 else math.inf
+    return numerator / denominator
