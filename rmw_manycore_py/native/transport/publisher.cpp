@@ -3,7 +3,6 @@
 
 #include <utility>
 
-#include "platform/clock.hpp"
 #include "transport/matching.hpp"
 #include "transport/notifier.hpp"
 #include "transport/publisher_impl.hpp"
@@ -76,16 +75,6 @@ uint64_t Publisher::publish(
   counters.bytes.store(
     counters.bytes.load(std::memory_order_relaxed) + size_bytes, std::memory_order_relaxed);
   return sequence_number;
-}
-
-bool Publisher::wait_for_all_taken(int64_t timeout_ns) {
-  const std::lock_guard<std::mutex> lock(impl_->mutex);
-  const int64_t now = monotonic_ns();
-  impl_->writer.enter();
-  const bool taken =
-    impl_->writer.wait_until_taken(timeout_ns > INT64_MAX - now ? INT64_MAX : now + timeout_ns);
-  impl_->writer.leave();
-  return taken;
 }
 
 MatchedCount Publisher::matched() const {

@@ -53,9 +53,6 @@ public:
   uint64_t publish(Draft && draft, size_t size_bytes, int64_t source_timestamp_ns,
     const Correlation & correlation = {});
 
-  /// True once every reliable reader has taken everything published, within `timeout_ns`.
-  bool wait_for_all_taken(int64_t timeout_ns);
-
   MatchedCount matched() const;
   IncompatibleCount incompatible() const;
 

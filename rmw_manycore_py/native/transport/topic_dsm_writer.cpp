@@ -150,6 +150,15 @@ bool TopicDsmWriter::is_wanted(
   return false;
 }
 
+/// RELIABLE + KEEP_ALL and a reliable reader still wants it: must not be overwritten.
+bool TopicDsmWriter::is_owed(uint64_t number) const noexcept {
+  const std::vector<Reader> & readers = readers_.readers();
+  return dsm_.keep_all != 0 && endpoint_.qos.reliability == Reliability::reliable &&
+         std::any_of(readers.begin(), readers.end(), [&](const Reader & reader) {
+           return reader.reliable && wants(reader, number, current_.descriptor(number));
+         });
+}
+
 TopicDsmWriter::TakeBack TopicDsmWriter::take_back(uint64_t number, bool force) {
   RecordDescriptor & record = current_.descriptor(number);
   if (record.number.load(std::memory_order_relaxed) == number) {
@@ -284,7 +293,7 @@ void TopicDsmWriter::wait_for_progress(uint64_t number) {
   }
   const uint32_t seen = dsm_.progress.load(std::memory_order_seq_cst);
   dsm_.writer_waits.store(1, std::memory_order_seq_cst);
-  if (is_wanted(number, current_.descriptor(number))) {
+  if (is_owed(number)) {
     leave();  // nobody needs to wait for this publisher's references meanwhile
     futex_wait(dsm_.progress, seen, blocked_until_ns_);
     enter();
@@ -299,7 +308,7 @@ void TopicDsmWriter::make_place(uint64_t number, uint64_t need_bytes, bool more_
   if (grow(bytes, count)) {
     return;
   }
-  if (dsm_.keep_all != 0 && endpoint_.qos.reliability == Reliability::reliable) {
+  if (is_owed(number)) {
     wait_for_progress(number);
     return;
   }
@@ -422,27 +431,6 @@ uint64_t TopicDsmWriter::commit(
   dsm_.last.store(next_number_, std::memory_order_seq_cst);
   readers_.refresh();
   return next_number_++;
-}
-
-bool TopicDsmWriter::wait_until_taken(int64_t deadline_ns) {
-  while (true) {
-    const uint32_t seen = dsm_.progress.load(std::memory_order_seq_cst);
-    dsm_.writer_waits.store(1, std::memory_order_seq_cst);
-    readers_.refresh();
-    const uint64_t last = dsm_.last.load(std::memory_order_relaxed);
-    const bool pending = std::any_of(
-      readers_.readers().begin(), readers_.readers().end(), [&](const Reader & reader) {
-        return reader.reliable && reader.active() &&
-               reader.source->taken.load(std::memory_order_seq_cst) < last;
-      });
-    if (!pending || monotonic_ns() >= deadline_ns) {
-      dsm_.writer_waits.store(0, std::memory_order_relaxed);
-      return !pending;
-    }
-    leave();
-    futex_wait(dsm_.progress, seen, deadline_ns);
-    enter();
-  }
 }
 
 }  // namespace manycore

@@ -35,9 +35,6 @@ public:
     uint64_t size_bytes, int64_t source_timestamp_ns, uint64_t publication_sequence_number,
     const Correlation & correlation);
 
-  /// Waits until no reliable reader wants any record; false at the deadline (CLOCK_MONOTONIC).
-  bool wait_until_taken(int64_t deadline_ns);
-
   const ReaderList & readers() const noexcept { return readers_; }
   TopicDsmHeader & header() const noexcept { return dsm_; }
 
@@ -87,6 +84,7 @@ private:
   bool wants(const Reader & reader, uint64_t number, const RecordDescriptor & record)
     const noexcept;
   bool is_wanted(uint64_t number, const RecordDescriptor & record) const noexcept;
+  bool is_owed(uint64_t number) const noexcept;
   TakeBack take_back(uint64_t number, bool force);
   void take_back_free_records();
   bool drain(const Generation & old);
