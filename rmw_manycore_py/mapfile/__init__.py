@@ -1,6 +1,10 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 """The mapfile: which node runs on which core of which cluster, and how it is started."""
 
+from __future__ import annotations
+
+from pathlib import Path
+
 from rmw_manycore_py.mapfile.loader import Mapfile, load_mapfile
 from rmw_manycore_py.mapfile.placement import (
     BridgePlacement,
@@ -10,6 +14,8 @@ from rmw_manycore_py.mapfile.placement import (
     TopicEntry,
 )
 from rmw_manycore_py.mapfile.resolve import resolve
+from rmw_manycore_py.mapfile.show import as_data
+from rmw_manycore_py.mapfile.template import init
 
 __all__ = [
     "BridgePlacement",
@@ -18,6 +24,14 @@ __all__ = [
     "PlacedNode",
     "Placement",
     "TopicEntry",
+    "as_data",
+    "check",
+    "init",
     "load_mapfile",
     "resolve",
 ]
+
+
+def check(path: Path | str) -> Placement:
+    """Read a mapfile and find everything it refers to; what is wrong is a MapfileError."""
+    return resolve(load_mapfile(path))

@@ -17,6 +17,8 @@ from rmw_manycore_py.mapfile.values import (
     Size,
 )
 
+# Receiver clusters are a mask of 64 bits.
+MAX_CLUSTERS = 64
 Positive = Annotated[StrictInt, Field(ge=1)]
 CoreNumber = Annotated[StrictInt, Field(ge=0)]
 Text = Annotated[str, StringConstraints(min_length=1)]
@@ -42,7 +44,9 @@ class PlatformSection(Section):
     name: PlatformName | None = Field(
         default=None, description="Name, instead of domain-<ROS_DOMAIN_ID>"
     )
-    clusters: Positive | None = Field(default=None, description="Number of clusters")
+    clusters: Annotated[StrictInt, Field(ge=1, le=MAX_CLUSTERS)] | None = Field(
+        default=None, description="Number of clusters"
+    )
     cores_per_cluster: Annotated[StrictInt, Field(ge=2)] | None = Field(
         default=None, description="Cores of each cluster, the reserved ones included"
     )

@@ -88,7 +88,14 @@ def memory_of_clusters(mapfile: Mapfile, topics: Sequence[TopicEntry]) -> tuple[
 
 
 def check_memory(mapfile: Mapfile, memory: Iterable[ClusterMemory]) -> Iterator[Problem]:
-    """Yield clusters whose local memory is too small for their topics."""
+    """Yield topics that fit no cluster, or clusters that are too small for all their topics."""
+    smem_size = mapfile.topology.smem_size
+    for name, topic in mapfile.sections.topics.items():
+        if topic.topic_dsm_size is not None and topic.topic_dsm_size > smem_size:
+            path = ("topics", name, "topic_dsm_size")
+            expected = f"at most {smem_size}, the local memory of a cluster"
+            yield mapfile.document.problem(path, expected, str(topic.topic_dsm_size))
+            return
     for cluster in memory:
         if cluster.used > cluster.smem_size:
             largest = max(cluster.topic_dsms, key=lambda name: cluster.topic_dsms[name])

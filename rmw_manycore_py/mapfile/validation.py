@@ -27,6 +27,7 @@ _EXPECTED = {
     "string_too_short": "a non-empty string",
     "too_short": "at least one entry",
     "greater_than_equal": "at least {ge}",
+    "less_than_equal": "at most {le}",
     "literal_error": "{expected}",
     "expected": "{expected}",
 }

@@ -1,0 +1,43 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""The launch script of a node: the command with its full environment, for any shell."""
+
+from __future__ import annotations
+
+import os
+import shlex
+from pathlib import PurePosixPath
+
+from rmw_manycore_py.mapfile.placement import PlacedNode
+
+# What an installation of ROS 2 is found by; taken from the environment of `create`.
+_OF_THE_INSTALLATION = ("AMENT_PREFIX_PATH", "PYTHONPATH", "ROS_DOMAIN_ID")
+
+
+def launch_script(node: PlacedNode, parameter_files: list[PurePosixPath]) -> str:
+    """Return the script; parameter files are given relative to the directory above it."""
+    inherited = {key: os.environ[key] for key in _OF_THE_INSTALLATION if key in os.environ}
+    lines = [
+        "#!/bin/sh",
+        f"# {node.full_name} on {node.place}, host CPU {node.host_cpu}.",
+        'created=$(cd "$(dirname "$0")/.." && pwd) || exit 1',
+        *(f"export {key}={shlex.quote(value)}" for key, value in {**inherited, **node.env}.items()),
+        f"cd {shlex.quote(str(node.cwd))} || exit 1",
+        f"exec taskset --cpu-list {node.host_cpu} \\",
+        *_command(node, parameter_files),
+    ]
+    return "\n".join(lines) + "\n"
+
+
+def _command(node: PlacedNode, parameter_files: list[PurePosixPath]) -> list[str]:
+    """Return the command, one option a line; parameters come from files instead."""
+    options = [" ".join(shlex.quote(word) for word in node.program)]
+    words = list(node.ros_arguments)
+    if words:
+        options.append(words.pop(0))
+    while words:
+        flag, value, *words = words
+        if flag not in ("-p", "--params-file"):
+            options.append(f"{flag} {shlex.quote(value)}")
+    options += [f'--params-file "$created"/{shlex.quote(str(file))}' for file in parameter_files]
+    last = len(options) - 1
+    return [f"  {option}" + (" \\" if i < last else ' "$@"') for i, option in enumerate(options)]

@@ -1,0 +1,49 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""The mapfile's JSON Schema, for editors: `python -m rmw_manycore_py.mapfile.schema`."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+from rmw_manycore_py.mapfile.model import MapfileSections, PlatformSection
+from rmw_manycore_py.topology import PROFILES
+
+_ID = "https://json-schema.org/draft/2020-12/schema"
+
+
+def json_schema() -> dict[str, Any]:
+    """Return the schema of a mapfile as people write it, short forms included."""
+    schema = MapfileSections.model_json_schema()
+    schema |= {"$schema": _ID, "title": "mapfile"}
+    properties = schema["properties"]
+    reference = f"#/$defs/{PlatformSection.__name__}"
+    properties["platform"] = {
+        "description": MapfileSections.model_fields["platform"].description,
+        "anyOf": [{"enum": list(PROFILES)}, {"$ref": reference}],
+    }
+    _allow_none_entries(schema["$defs"]["NodeSection"]["properties"])
+    return schema
+
+
+def _allow_none_entries(node: dict[str, Any]) -> None:
+    """Fig. 8 writes an empty entry as `none:`; param_path is another name of param_file."""
+    empty = {"type": "object", "properties": {"none": {"type": "null"}}, "maxProperties": 1}
+    node["param_path"] = dict(node["param_file"])
+    for key in ("param_file", "param_path"):
+        options = node[key].pop("anyOf")
+        node[key]["anyOf"] = [*options, {**empty, "additionalProperties": False}]
+    for key in ("topic_in", "topic_to", "publish", "subscribe"):
+        # A type is checked when the file is read: there also the spellings of ROS 1 are known.
+        node[key].pop("propertyNames", None)
+        node[key].pop("patternProperties", None)
+        node[key]["additionalProperties"] = {"type": ["string", "null"]}
+
+
+def schema_text() -> str:
+    """Return the schema as it stands in docs/mapfile.schema.json."""
+    return json.dumps(json_schema(), indent=2) + "\n"
+
+
+if __name__ == "__main__":
+    print(schema_text(), end="")

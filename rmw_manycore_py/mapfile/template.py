@@ -1,0 +1,155 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Makes the template of a mapfile from an application (ROS-lite, Fig. 5 a)."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
+from rmw_manycore_py.mapfile.executables import find_module
+from rmw_manycore_py.mapfile.launch_file import read_launch_file
+from rmw_manycore_py.mapfile.names import full_node_name
+from rmw_manycore_py.mapfile.source import SourceNode, scan
+
+_ADVICE = "# Choose the clusters. A node takes the first free core, unless its 'core' is given."
+_LAUNCH_SUFFIXES = (".launch.py", ".launch.xml", ".launch.yaml", ".launch.yml", ".xml", ".yaml")
+
+
+@dataclass
+class _Entry:
+    name: str
+    start: str = ""
+    publish: dict[str, str] = field(default_factory=dict)
+    subscribe: dict[str, str] = field(default_factory=dict)
+    remarks: list[str] = field(default_factory=list)
+
+
+def init(sources: Sequence[Path], directory: Path | None = None, platform: str = "host") -> str:
+    """Return a mapfile with the nodes found in Python files, directories and one launch file.
+
+    Only the clusters are left to fill in. `directory` is where the mapfile will stand.
+    """
+    directory = (directory or Path.cwd()).resolve()
+    launches = [path for path in sources if path.is_file() and _is_launch_file(path)]
+    if len(launches) > 1:
+        raise ManycoreError("a mapfile has one launch file", EXIT_BAD_INPUT)
+    entries = [entry for file in _python_files(sources) for entry in _entries_of(file, directory)]
+    for launch in launches:
+        entries = [*_entries_of_launch(launch), *entries]
+    entries = _with_own_names(entries)
+    if not entries:
+        places = ", ".join(map(str, sources))
+        raise ManycoreError(f"no nodes found in {places}", EXIT_BAD_INPUT)
+    head = [_ADVICE, f"platform: {platform}"]
+    head += [f"launch_path: {_relative(launch, directory)}" for launch in launches]
+    return (
+        "\n".join([*head, "nodes:", *(line for entry in entries for line in _lines(entry))]) + "\n"
+    )
+
+
+def _is_launch_file(path: Path) -> bool:
+    return path.name.endswith(_LAUNCH_SUFFIXES)
+
+
+def _python_files(sources: Iterable[Path]) -> Iterator[Path]:
+    for source in sources:
+        if source.is_dir():
+            files = sorted(source.rglob("*.py"))
+            yield from (f for f in files if not _is_launch_file(f) and not _is_hidden(f, source))
+        elif not source.is_file():
+            raise ManycoreError(f"{source}: no such file or directory", EXIT_BAD_INPUT)
+        elif source.suffix == ".py" and not _is_launch_file(source):
+            yield source
+        elif not _is_launch_file(source):
+            expected = "a Python file, a directory or a launch file"
+            raise ManycoreError(f"{source}: expected {expected}", EXIT_BAD_INPUT)
+
+
+def _is_hidden(file: Path, top: Path) -> bool:
+    return any(part.startswith(".") for part in file.relative_to(top).parts)
+
+
+def _entries_of(file: Path, directory: Path) -> list[_Entry]:
+    """Return the process a file starts; several nodes in a file run in one process."""
+    nodes = scan(file)
+    if not nodes:
+        return []
+    entry = _Entry(nodes[0].name or file.stem, _start(file, directory))
+    for node in nodes:
+        entry.publish |= node.publish
+        entry.subscribe |= node.subscribe
+        entry.remarks += _remarks(node)
+    if len(nodes) > 1:
+        names = ", ".join(node.name or "a node without a constant name" for node in nodes)
+        entry.remarks.append(f"one process with several nodes: {names}")
+    return [entry]
+
+
+def _remarks(node: SourceNode) -> list[str]:
+    lines = ", ".join(str(line) for line in node.unclear)
+    return [f"{node.file.name}:{lines}: topic or type is computed; add it here"] if lines else []
+
+
+def _entries_of_launch(launch: Path) -> list[_Entry]:
+    nodes = read_launch_file(launch.resolve()).nodes
+    several = [node.label for node in nodes]
+    return [
+        _Entry(
+            node.label
+            if several.count(node.label) == 1
+            else full_node_name(node.namespace, node.label)
+        )
+        for node in nodes
+    ]
+
+
+def _start(file: Path, directory: Path) -> str:
+    parts = [file.stem] if file.stem != "__main__" else []
+    parent = file.resolve().parent
+    while (parent / "__init__.py").is_file():
+        parts.insert(0, parent.name)
+        parent = parent.parent
+    program = find_module(".".join(parts), directory) if len(parts) > 1 else None
+    if program is not None and program.source is not None and program.source.samefile(file):
+        return f"module: {'.'.join(parts)}"
+    return f"script: {_relative(file, directory)}"
+
+
+def _relative(path: Path, directory: Path) -> str:
+    return os.path.relpath(path.resolve(), directory)
+
+
+def _with_own_names(entries: Iterable[_Entry]) -> list[_Entry]:
+    """Merge sources with the nodes of the launch file, and number names that come again."""
+    named: dict[str, _Entry] = {}
+    for entry in entries:
+        known = named.get(entry.name)
+        if known is not None and not known.start:
+            known.publish, known.subscribe, known.remarks = (
+                entry.publish,
+                entry.subscribe,
+                entry.remarks,
+            )
+            continue
+        number = 2
+        base = entry.name
+        while entry.name in named:
+            entry.name = f"{base}{number}"
+            number += 1
+        named[entry.name] = entry
+    return list(named.values())
+
+
+def _lines(entry: _Entry) -> Iterator[str]:
+    yield f"  {entry.name}:"
+    yield from (f"    # {remark}" for remark in entry.remarks)
+    yield "    cluster: 1  # choose"
+    if entry.start:
+        yield f"    {entry.start}"
+    for key, topics in (("publish", entry.publish), ("subscribe", entry.subscribe)):
+        if topics:
+            yield f"    {key}:"
+            yield from (f"      {topic}: {type_name}" for topic, type_name in topics.items())
