@@ -33,25 +33,30 @@ install_packages() {
   fi
 }
 
-# What pyproject.toml asks for at build time; installed into .venv, a rebuild takes seconds.
-build_requirements() {
+# All that pyproject.toml asks for: with it in .venv a rebuild takes seconds and no network.
+requirements() {
   .venv/bin/python - <<'END'
 try:
     import tomllib
 except ModuleNotFoundError:  # Python 3.10
     from pip._vendor import tomli as tomllib
 with open("pyproject.toml", "rb") as file:
-    print("\n".join(tomllib.load(file)["build-system"]["requires"]))
+    settings = tomllib.load(file)
+project = settings["project"]
+for requirements in (
+    settings["build-system"]["requires"],
+    project["dependencies"],
+    project["optional-dependencies"]["dev"],
+):
+    print("\n".join(requirements))
 END
 }
 
 install_checkout() {
   [ -x .venv/bin/python ] || "$PYTHON" -m venv .venv
-  build_requirements >.venv/build-requirements.txt
-  .venv/bin/pip install --quiet cmake ninja \
-    --requirement .venv/build-requirements.txt
-  .venv/bin/pip install --quiet \
-    --no-build-isolation --editable '.[dev]'
+  requirements >.venv/requirements.txt
+  .venv/bin/pip install --quiet --requirement .venv/requirements.txt
+  .venv/bin/pip install --quiet --no-deps --no-build-isolation --editable .
   # For type checkers the editable install also puts the checkout on sys.path, which would make
   # `bridge` and `tests` top-level modules of every program; its first line does the real work.
   sed -i 1q .venv/lib/python3*/site-packages/_editable_skbc_rmw_manycore.pth
