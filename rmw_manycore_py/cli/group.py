@@ -14,25 +14,26 @@ from rmw_manycore_py.errors import ManycoreError
 
 
 class LazyGroup(click.Group):
-    """Its commands are the attributes `command` of modules, in the order they are given in.
+    """Knows where each of its commands is: "package.module:attribute".
 
     A command whose module is not installed does not exist.
     """
 
-    def __init__(self, *args: Any, modules: dict[str, str], **kwargs: Any) -> None:
+    def __init__(self, *args: Any, commands_at: dict[str, str], **kwargs: Any) -> None:
         super().__init__(*args, **kwargs)
-        self._modules = modules
+        self._commands_at = commands_at
 
     @override
     def list_commands(self, ctx: click.Context) -> list[str]:
-        return [name for name, module in self._modules.items() if _is_installed(module)]
+        return [name for name, place in self._commands_at.items() if _is_installed(place)]
 
     @override
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
-        module = self._modules.get(cmd_name)
-        if module is None or not _is_installed(module):
+        place = self._commands_at.get(cmd_name)
+        if place is None or not _is_installed(place):
             return None
-        command = importlib.import_module(module).command
+        module, _, attribute = place.partition(":")
+        command = getattr(importlib.import_module(module), attribute)
         assert isinstance(command, click.Command)
         return command
 
@@ -45,8 +46,8 @@ class LazyGroup(click.Group):
             ctx.exit(error.exit_status)
 
 
-def _is_installed(module: str) -> bool:
+def _is_installed(place: str) -> bool:
     try:
-        return importlib.util.find_spec(module) is not None
+        return importlib.util.find_spec(place.partition(":")[0]) is not None
     except ModuleNotFoundError:
         return False  # not even the package around it

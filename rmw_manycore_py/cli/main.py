@@ -7,32 +7,35 @@ import click
 
 from rmw_manycore_py import __version__
 from rmw_manycore_py.cli.group import LazyGroup
+from rmw_manycore_py.cli.options import examples
 
 VERBS = {
-    "run": "rmw_manycore_py.cli.run",
-    "create": "rmw_manycore_py.cli.create",
-    "map": "rmw_manycore_py.cli.map",
-    "status": "rmw_manycore_py.cli.status",
-    "topic": "rmw_manycore_py.cli.topic",
-    "node": "rmw_manycore_py.cli.node",
-    "clean": "rmw_manycore_py.cli.clean",
-    "doctor": "rmw_manycore_py.cli.doctor",
-    "env": "rmw_manycore_py.cli.env",
-    "bench": "rmw_manycore_py.bench.command",
+    "run": "rmw_manycore_py.cli.run:command",
+    "create": "rmw_manycore_py.cli.create:command",
+    "map": "rmw_manycore_py.cli.map:command",
+    "status": "rmw_manycore_py.cli.status:command",
+    "topic": "rmw_manycore_py.cli.topic:command",
+    "node": "rmw_manycore_py.cli.node:command",
+    "clean": "rmw_manycore_py.cli.clean:command",
+    "doctor": "rmw_manycore_py.cli.doctor:command",
+    "env": "rmw_manycore_py.cli.env:command",
+    "bench": "rmw_manycore_py.bench.cli:bench",
 }
 
 
-@click.group(cls=LazyGroup, modules=VERBS, context_settings={"help_option_names": ["-h", "--help"]})
+@click.group(
+    cls=LazyGroup,
+    commands_at=VERBS,
+    context_settings={"help_option_names": ["-h", "--help"]},
+    epilog=examples(
+        "manycore run mapfiles/talker_listener.yaml",
+        "manycore status",
+        "manycore topic echo /chatter",
+    ),
+)
 @click.version_option(__version__, prog_name="manycore")
 def cli() -> None:
-    """Run ROS 2 nodes on the cores of a clustered many-core platform, and look at them.
-
-    \b
-    Examples:
-      manycore run mapfiles/talker_listener.yaml
-      manycore status
-      manycore topic echo /chatter
-    """
+    """Run ROS 2 nodes on the cores of a clustered many-core platform, and look at them."""
 
 
 def main() -> None:

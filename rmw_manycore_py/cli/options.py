@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
@@ -20,14 +21,31 @@ platform_option = click.option(
     show_default="$MANYCORE_PLATFORM, or domain-$ROS_DOMAIN_ID",
     help="Name of the platform.",
 )
+hidden_option = click.option(
+    "--include-hidden",
+    "hidden",
+    is_flag=True,
+    help="Show names with a part that starts with _ too.",
+)
 mapfile_argument = click.argument(
     "mapfile", type=click.Path(dir_okay=False, exists=True, path_type=Path)
 )
 
 
+def examples(*lines: str) -> str:
+    """Return the end of a help text, with a mark that keeps click from joining the lines."""
+    return "\b\nExamples:\n" + "\n".join(f"  {line}" for line in lines)
+
+
 def print_json(data: Any) -> None:
     """Print data for programs."""
     click.echo(json.dumps(data, indent=2, default=str))
+
+
+def print_notices(notices: Iterable[str]) -> None:
+    """Print what the user should know, beside the output proper."""
+    for notice in notices:
+        click.secho(f"notice: {notice}", fg="yellow", err=True)
 
 
 def new_table(*columns: str, title: str | None = None) -> Table:

@@ -8,14 +8,21 @@ from pathlib import Path
 
 import click
 
-from rmw_manycore_py.cli.options import mapfile_argument
+from rmw_manycore_py.cli.options import examples, mapfile_argument
 from rmw_manycore_py.cli.run_printer import RunPrinter
 from rmw_manycore_py.launch.events import Event
 from rmw_manycore_py.launch.run import run_placement
 from rmw_manycore_py.mapfile import load_mapfile, resolve
 
 
-@click.command("run")
+@click.command(
+    "run",
+    epilog=examples(
+        "manycore run mapfiles/talker_listener.yaml",
+        "manycore run mapfiles/talker_listener.yaml --duration 10",
+        "manycore run mapfiles/talker_listener.yaml --json | jq 'select(.event == \"output\")'",
+    ),
+)
 @mapfile_argument
 @click.option(
     "--duration",
@@ -28,14 +35,8 @@ from rmw_manycore_py.mapfile import load_mapfile, resolve
 def command(mapfile: Path, duration_s: float | None, as_json: bool) -> None:
     """Start the nodes of MAPFILE, each on its core, and stop them together.
 
-    Ends when all nodes have ended, when the duration is over, or on Ctrl-C; a second Ctrl-C does not
-    wait for nodes that take their time. The exit status is 0 unless a node failed.
-
-    \b
-    Examples:
-      manycore run mapfiles/talker_listener.yaml
-      manycore run mapfiles/talker_listener.yaml --duration 10
-      manycore run mapfiles/talker_listener.yaml --json | jq 'select(.event == "output")'
+    Ends when all nodes have ended, when the duration is over, or on Ctrl-C; a second Ctrl-C does
+    not wait for nodes that take their time. The exit status is 0 unless a node failed.
     """
     placement = resolve(load_mapfile(mapfile))
     names = [node.name for node in placement.nodes]

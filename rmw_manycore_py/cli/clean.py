@@ -1,0 +1,35 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""`manycore clean`."""
+
+from __future__ import annotations
+
+import click
+
+from rmw_manycore_py import _transport
+from rmw_manycore_py.cli.options import examples, json_option, print_json
+from rmw_manycore_py.errors import ManycoreError
+
+
+@click.command("clean", epilog=examples("manycore clean", "manycore clean domain-0"))
+@click.argument("platforms", nargs=-1)
+@json_option
+def command(platforms: tuple[str, ...], as_json: bool) -> None:
+    """Remove what dead PLATFORMS left in shared memory; by default of all that are dead.
+
+    Living platforms are left alone. The next start of a platform does the same by itself.
+    """
+    removed: list[str] = []
+    known = _transport.platforms()
+    for name in platforms or known:
+        if name not in known:
+            raise ManycoreError(f"no platform '{name}'")
+        try:
+            removed += _transport.clean(name)
+        except _transport.PlatformError as error:
+            if platforms:
+                raise ManycoreError(str(error)) from error
+    if as_json:
+        print_json({"removed": removed})
+        return
+    for path in removed:
+        click.echo(path)

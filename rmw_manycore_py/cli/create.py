@@ -1,0 +1,50 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""`manycore create`: the create.py of ROS-lite2."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from rmw_manycore_py.cli.options import (
+    examples,
+    json_option,
+    mapfile_argument,
+    print_json,
+    print_notices,
+)
+from rmw_manycore_py.create import create
+
+
+@click.command(
+    "create", epilog=examples("manycore create mapfiles/talker_listener.yaml -o generated")
+)
+@mapfile_argument
+@click.option(
+    "-o",
+    "--output",
+    "directory",
+    required=True,
+    type=click.Path(file_okay=False, path_type=Path),
+    help="Directory to write to; it may be one that create wrote before.",
+)
+@json_option
+def command(mapfile: Path, directory: Path, as_json: bool) -> None:
+    """Write the topic table, launch scripts, parameter files and memory use of MAPFILE."""
+    report = create(mapfile, directory)
+    if as_json:
+        print_json(
+            {
+                "directory": report.directory,
+                "files": report.files,
+                "written_lines": report.written_lines,
+                "generated_lines": report.generated_lines,
+                "delta_loc": report.delta_loc,
+            }
+        )
+        return
+    print_notices(report.placement.notices)
+    for file in report.files:
+        click.echo(file)
+    click.echo(report.summary)

@@ -1,0 +1,30 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""`manycore node list`, printed as `ros2 node list` prints."""
+
+from __future__ import annotations
+
+import click
+
+from rmw_manycore_py.cli import view
+from rmw_manycore_py.cli.options import (
+    examples,
+    hidden_option,
+    json_option,
+    platform_option,
+    print_json,
+)
+
+
+@click.command("list", epilog=examples("manycore node list", "manycore node list --json"))
+@hidden_option
+@json_option
+@platform_option
+def command(platform: str, as_json: bool, hidden: bool) -> None:
+    """List the nodes of a platform."""
+    opened = view.open_platform(platform)
+    names = view.node_names(opened.nodes(), hidden=hidden)
+    if as_json:
+        print_json(view.placed_nodes(opened.nodes(), opened.processes(), set(names)))
+        return
+    for name in names:
+        click.echo(name)

@@ -1,0 +1,17 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""`manycore topic`."""
+
+from __future__ import annotations
+
+import click
+
+from rmw_manycore_py.cli.group import LazyGroup
+
+VERBS = {
+    verb: f"rmw_manycore_py.cli.topic_{verb}:command" for verb in ("list", "info", "echo", "hz")
+}
+
+
+@click.group("topic", cls=LazyGroup, commands_at=VERBS)
+def command() -> None:
+    """List topics and look at what they carry."""

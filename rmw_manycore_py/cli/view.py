@@ -1,0 +1,143 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""What the tools see of a platform, as plain data; they do not join it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+from rmw_manycore_py import _transport
+from rmw_manycore_py.errors import ManycoreError
+
+Row = dict[str, Any]
+
+
+def open_platform(name: str) -> _transport.Platform:
+    """Return the view of a platform; where there is none, say which ones there are."""
+    names = _transport.platforms()
+    if name not in names:
+        others = f"; there is {', '.join(names)} (--platform)" if names else "; none is running"
+        raise ManycoreError(f"no platform '{name}'{others}")
+    try:
+        return _transport.Platform(name)
+    except _transport.PlatformError as error:
+        raise ManycoreError(str(error)) from error
+
+
+def platform_state(platform: _transport.Platform) -> Row:
+    """Return everything `manycore status` shows."""
+    nodes, endpoints = platform.nodes(), platform.endpoints()
+    processes = [
+        {**process, "nodes": [full_name(n) for n in nodes if n["process"] == process["slot"]]}
+        for process in platform.processes()
+    ]
+    clusters = platform.clusters()
+    return {
+        **platform.info(),
+        "clusters": clusters,
+        "processes": processes,
+        "losses": losses(endpoints),
+    }
+
+
+def losses(endpoints: Iterable[Row]) -> list[Row]:
+    """Return each counter of messages that did not arrive and that is not zero."""
+    return [
+        {
+            "node": _owner(e),
+            "topic": e["topic"],
+            "counter": counter,
+            "count": e["counters"][counter],
+        }
+        for e in endpoints
+        for counter in ("lost", "expired", "refused")
+        if e["counters"][counter]
+    ]
+
+
+def full_name(node: Row) -> str:
+    """Return a node's namespace and name in one."""
+    return f"{node['namespace'].rstrip('/')}/{node['name']}"
+
+
+def is_hidden(name: str) -> bool:
+    """Tell whether ROS hides a topic, service or node of that name."""
+    return any(part.startswith("_") for part in name.split("/"))
+
+
+def topics(endpoints: Iterable[Row], *, hidden: bool = False) -> list[Row]:
+    """Return each topic by name, with its types and the numbers of its endpoints."""
+    rows: dict[str, Row] = {}
+    for endpoint in endpoints:
+        if endpoint["role"] != "topic" or (is_hidden(endpoint["topic"]) and not hidden):
+            continue
+        row = rows.setdefault(
+            endpoint["topic"],
+            {"name": endpoint["topic"], "types": [], "publishers": 0, "subscriptions": 0},
+        )
+        if endpoint["type"] not in row["types"]:
+            row["types"].append(endpoint["type"])
+        row[f"{endpoint['kind']}s"] += 1
+    return [rows[name] for name in sorted(rows)]
+
+
+def endpoints_of_topic(endpoints: Iterable[Row], topic: str) -> list[Row]:
+    """Return the publishers and subscriptions of one topic."""
+    return [e for e in endpoints if e["role"] == "topic" and e["topic"] == topic]
+
+
+def node_names(nodes: Iterable[Row], *, hidden: bool = False) -> list[str]:
+    """Return the full names of the nodes."""
+    names = map(full_name, nodes)
+    return sorted(name for name in names if hidden or not is_hidden(name))
+
+
+def placed_nodes(nodes: Iterable[Row], processes: Iterable[Row], names: set[str]) -> list[Row]:
+    """Return the nodes of these names with the place of their process."""
+    places = {process["slot"]: process for process in processes}
+    rows = []
+    for node in nodes:
+        process = places.get(node["process"])
+        if process is not None and full_name(node) in names:
+            place = {key: process[key] for key in ("cluster", "core", "host_cpu", "pid")}
+            rows.append({"node": full_name(node), **place})
+    return sorted(rows, key=lambda row: str(row["node"]))
+
+
+def node_interfaces(endpoints: Iterable[Row], node: str, *, hidden: bool = False) -> Row:
+    """Return what a node offers and uses: each a mapping from names to types."""
+    found: Row = {kind: {} for kind in INTERFACES}
+    for endpoint in endpoints:
+        kind = _INTERFACE_KINDS.get((endpoint["role"], endpoint["kind"]))
+        if kind is None or _owner(endpoint) != node:
+            continue
+        name, type_name = endpoint["topic"], endpoint["type"]
+        if name.endswith(_SEND_GOAL) and kind in _ACTION_KINDS:
+            action = type_name.removesuffix("_SendGoal")
+            found[_ACTION_KINDS[kind]][name.removesuffix(_SEND_GOAL)] = action
+        if hidden or not is_hidden(name):
+            found[kind][name] = type_name
+    return {kind: dict(sorted(found[kind].items())) for kind in INTERFACES}
+
+
+def _owner(endpoint: Row) -> str:
+    return full_name({"name": endpoint["node"], "namespace": endpoint["namespace"]})
+
+
+INTERFACES = (
+    "subscribers",
+    "publishers",
+    "service_servers",
+    "service_clients",
+    "action_servers",
+    "action_clients",
+)
+_SEND_GOAL = "/_action/send_goal"
+# A service is a pair of topics; its request side is the one that both ends always have.
+_INTERFACE_KINDS = {
+    ("topic", "subscription"): "subscribers",
+    ("topic", "publisher"): "publishers",
+    ("request", "subscription"): "service_servers",
+    ("request", "publisher"): "service_clients",
+}
+_ACTION_KINDS = {"service_servers": "action_servers", "service_clients": "action_clients"}
