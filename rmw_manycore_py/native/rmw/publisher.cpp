@@ -1,8 +1,6 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #include "rmw/publisher.hpp"
 
-#include <algorithm>
-
 #include "platform/error.hpp"
 #include "rmw/checks.hpp"
 #include "rmw/endpoint_spec.hpp"
@@ -10,7 +8,6 @@
 #include "rmw/names.hpp"
 #include "rmw/qos.hpp"
 #include "rmw/rmw.h"
-#include "rmw/time.h"
 
 namespace rmw_manycore {
 
@@ -115,14 +112,11 @@ rmw_ret_t rmw_publisher_assert_liveliness(const rmw_publisher_t * publisher) {
 }
 
 rmw_ret_t rmw_publisher_wait_for_all_acked(
-  const rmw_publisher_t * publisher, rmw_time_t wait_timeout) {
+  const rmw_publisher_t * publisher, rmw_time_t /*wait_timeout*/) {
   // Invariants
   MANYCORE_CHECK_HANDLE(publisher);
 
-  // Implementation
-  return rmw_manycore::guarded([&] {
-    const bool all = Publisher::of(publisher).transport().wait_for_all_taken(
-      rmw_time_total_nsec(wait_timeout));
-    return all ? RMW_RET_OK : RMW_RET_TIMEOUT;
-  });
+  // Implementation: an acknowledgement says that a message is with its readers' middleware, taken or
+  // not. Here it is from publication on, and stays there whatever becomes of the publisher.
+  return RMW_RET_OK;
 }
