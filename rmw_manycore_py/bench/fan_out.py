@@ -38,7 +38,6 @@ def measure(run: Run) -> list[Result]:
                 iterations=messages,
             )
             found = [sink.finish()["samples_ns"] for sink in sinks]
-            source.release()
             source.finish()
         samples_ns = [sample_ns for samples_ns in found for sample_ns in samples_ns]
         lost.setdefault(middleware.name, []).append(SUBSCRIBERS * messages - len(samples_ns))

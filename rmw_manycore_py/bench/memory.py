@@ -31,8 +31,8 @@ def _measure_manycore(run: Run) -> list[Result]:
     with Session(INSIDE, run.cpus) as session:
         first = _start_nodes(session, 0, 1)
         alone = session.shared_sizes()
-        receive_threads = session.receive_thread_pids()
-        thread = sum(private_bytes(pid) for pid in receive_threads)
+        (receive_thread,) = session.receive_thread_pids()
+        thread = private_bytes(receive_thread)
         more = _start_nodes(session, 1, NODES)
         together = session.shared_sizes()
         _stop_nodes(first + more)
@@ -40,7 +40,7 @@ def _measure_manycore(run: Run) -> list[Result]:
     return [
         _row("platform: registry", alone["registry"]),
         _row("cluster: segment with one node", alone[cluster]),
-        _row("cluster: receive thread, private", thread / max(len(receive_threads), 1)),
+        _row("cluster: receive thread, private", thread),
         _row("node: its share of the segment", (together[cluster] - alone[cluster]) / NODES),
         _row("node: its share of the registry", (together["registry"] - alone["registry"]) / NODES),
     ]

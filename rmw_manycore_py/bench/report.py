@@ -5,15 +5,16 @@ from __future__ import annotations
 
 import csv
 import json
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-from rich.console import Console
+import click
 from rich.table import Table
 
 from rmw_manycore_py.bench.summary import Result, Verdict
+from rmw_manycore_py.cli.options import new_table, print_table
 
 
 @dataclass(frozen=True)
@@ -40,13 +41,15 @@ class Report:
             indent=2,
         )
 
-    def print(self, console: Console) -> None:
+    def print(self) -> None:
         """Print the machine, the measurements and the goals."""
         for name, value in {**self.machine, **self.placements}.items():
-            console.print(f"[dim]{name}:[/] {value}", highlight=False)
-        console.print(_results_table(self.results))
+            click.echo(f"{name}: {value}")
+        click.echo()
+        print_table(_results_table(self.results))
         if self.verdicts:
-            console.print(_goals_table(self.verdicts))
+            click.echo()
+            print_table(_goals_table(self.verdicts))
 
     def write(self, directory: Path) -> list[Path]:
         """Write report.json, results.csv and samples.csv; return their paths."""
@@ -81,30 +84,31 @@ def _row(result: Result) -> dict[str, Any]:
 
 
 def _results_table(results: Sequence[Result]) -> Table:
-    table = Table("question", "contender", "unit", title="Measurements")
-    for name in ("samples", "median", "mean", "p99"):
-        table.add_column(name, justify="right")
+    table = new_table("question", "contender", "#median", "#mean", "#p99", "unit", "#samples")
     previous = ""
-    for result in results:
-        if result.question != previous:
-            table.add_section()
+    for result in sorted(results, key=_order_of(results)):
+        if previous not in ("", result.question):
+            table.add_row()
         summary = result.summary
-        numbers = [number(value) for value in (summary.median, summary.mean, summary.p99)]
         table.add_row(
-            result.question if result.question != previous else "",
+            "" if result.question == previous else result.question,
             result.contender,
+            *(number(value) for value in (summary.median, summary.mean, summary.p99)),
             result.unit,
             str(summary.samples),
-            *numbers,
         )
         previous = result.question
     return table
 
 
+def _order_of(results: Sequence[Result]) -> Callable[[Result], int]:
+    """Order by question, the questions as they come first."""
+    questions = list(dict.fromkeys(result.question for result in results))
+    return lambda result: questions.index(result.question)
+
+
 def _goals_table(verdicts: Sequence[Verdict]) -> Table:
-    table = Table("question", "contender", "goal", title="Goals")
-    table.add_column("found", justify="right")
-    table.add_column("")
+    table = new_table("question", "contender", "goal", "#found", "")
     for verdict in verdicts:
         table.add_row(
             verdict.goal.question,

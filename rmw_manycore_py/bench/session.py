@@ -67,7 +67,10 @@ def pinned_to(cpus: Sequence[int]) -> Iterator[None]:
 class Process:
     """A started process that says `ready` when it is, and ends with a line of JSON."""
 
-    def __init__(self, command: Sequence[str | Path], env: dict[str, str], cpus: Sequence[int]):
+    def __init__(
+        self, name: str, command: Sequence[str | Path], env: dict[str, str], cpus: Sequence[int]
+    ) -> None:
+        self._name = name
         self._errors = tempfile.TemporaryFile("w+")  # noqa: SIM115
         with pinned_to(cpus):
             self.started_ns = time.monotonic_ns()
@@ -103,8 +106,8 @@ class Process:
         if self._process.returncode != 0:
             self._errors.seek(0)
             raise ManycoreError(
-                f"{self._process.args!r} ended with status {self._process.returncode}:\n"
-                + self._errors.read()
+                f"{self._name}: {self._process.args!r} ended with status "
+                f"{self._process.returncode}:\n" + self._errors.read()
             )
         lines = [line for line in output.splitlines() if line.startswith("{")]
         result: dict[str, Any] = json.loads(lines[-1]) if lines else {}
@@ -160,16 +163,21 @@ class Session:
         if with_library_path:
             environment["LD_LIBRARY_PATH"] = os.pathsep.join(library_path(self.middleware))
             environment[WHEELS_BOOTSTRAPPED] = "1"
-        process = Process(command, environment, [cpu])
+        process = Process(self.middleware.name, command, environment, [cpu])
         self._stack.callback(process.close)
         return process
 
     def receive_thread_pids(self) -> list[int]:
-        """Return the processes of the clusters' receive threads."""
+        """Return the processes of the clusters' receive threads, once all have started."""
         if not self.middleware.is_manycore:
             return []
-        clusters = Platform(self.platform).clusters()
-        return [cluster["receive_thread_pid"] for cluster in clusters if cluster["alive"]]
+        platform = Platform(self.platform)
+        deadline = time.monotonic() + PATIENCE_S
+        while not all(cluster["alive"] for cluster in (clusters := platform.clusters())):
+            if time.monotonic() > deadline:
+                raise ManycoreError(f"{self.platform}: a receive thread does not start")
+            time.sleep(0.01)
+        return [cluster["receive_thread_pid"] for cluster in clusters]
 
     def shared_sizes(self) -> dict[str, int]:
         """Return the bytes of memory that each file of the platform holds."""
@@ -213,7 +221,7 @@ def run_peer(peer: Peer, cpus: tuple[int, int], **arguments: object) -> dict[str
     """Run a peer to its end and return what it found."""
     words = [f"{key}={value}" for key, value in arguments.items()]
     command = [str(program_path(peer.program)), f"cpu_1={cpus[0]}", f"cpu_2={cpus[1]}", *words]
-    process = Process(command, dict(os.environ), sorted(os.sched_getaffinity(0)))
+    process = Process(peer.name, command, dict(os.environ), sorted(os.sched_getaffinity(0)))
     try:
         return process.finish()
     finally:

@@ -50,8 +50,10 @@ class Ping(Node):  # type: ignore[misc]
         return time.monotonic_ns() - start_ns
 
     def stop(self) -> None:
-        """Let the other side end."""
+        """Let the other side end, and see it go: else the message may go with this node."""
         self._publisher.publish(UInt8MultiArray())
+        while self._publisher.get_subscription_count():
+            self._executor.spin_once(HELLO_PERIOD_S)
 
 
 def main() -> None:

@@ -37,9 +37,7 @@ void source(const Arguments & arguments) {
     publisher.publish(message);
   }
   std::this_thread::sleep_until(next += period);
-  publisher.publish(Message());
-  // A reliable middleware may still be sending again what was lost.
-  wait_for_end_of_input();
+  stop_subscribers(publisher);
 }
 
 void sink() {

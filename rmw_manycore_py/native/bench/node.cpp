@@ -186,6 +186,11 @@ void wait_until_matched(const Publisher & publisher, size_t subscriptions) {
   poll([&] { return publisher.matched() >= subscriptions; }, "subscription to publish to");
 }
 
+void stop_subscribers(Publisher & publisher) {
+  publisher.publish(Message());
+  poll([&] { return publisher.matched() == 0; }, "end of the subscribers");
+}
+
 void set_number(Message & message, uint64_t number) {
   std::memcpy(message.data.data(), &number, sizeof number);
 }

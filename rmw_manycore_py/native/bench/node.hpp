@@ -95,6 +95,10 @@ void take_next(WaitSet & wait_set, Subscription & subscription, Message & messag
 void wait_until_matched(const Publisher & publisher, const Subscription & subscription);
 void wait_until_matched(const Publisher & publisher, size_t subscriptions);
 
+/// Publishes the empty message that ends subscribers, and returns when they have gone: a publisher
+/// that goes first may take the message with it.
+void stop_subscribers(Publisher & publisher);
+
 /// Throws with the middleware's own words.
 void check(rmw_ret_t status, const char * what);
 

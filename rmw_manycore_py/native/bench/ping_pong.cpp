@@ -36,7 +36,7 @@ int64_t Ping::round_trip() {
   return monotonic_ns() - start_ns;
 }
 
-void Ping::stop() { publisher_.publish(Message()); }
+void Ping::stop() { stop_subscribers(publisher_); }
 
 void run_pong(const std::function<void(uint64_t number)> & before) {
   Node node("pong");

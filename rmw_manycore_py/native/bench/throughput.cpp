@@ -39,7 +39,7 @@ public:
     wait_for_acknowledgement_of(sent_);
   }
 
-  void stop() { publisher_.publish(Message()); }
+  void stop() { stop_subscribers(publisher_); }
   uint64_t lost() const { return lost_; }
 
 private:

@@ -40,15 +40,15 @@ QUICK_NODES = 20
 DEFAULT_NODES = 100
 DEFAULT_ROUNDS = 5
 
-Command = Callable[..., None]
+Body = Callable[..., None]
 
 
-@click.group()
-def bench() -> None:
+@click.group("bench")
+def command() -> None:
     """Measure rmw_manycore beside Fast DDS and beside the machine itself."""
 
 
-def _common_options(command: Command) -> Command:
+def _common_options(body: Body) -> Body:
     options = [
         click.option("--quick", is_flag=True, help="One short round: does everything run?"),
         click.option("--rounds", default=DEFAULT_ROUNDS, show_default=True, type=click.IntRange(1)),
@@ -63,11 +63,11 @@ def _common_options(command: Command) -> Command:
         click.option("--plot", "with_plot", is_flag=True, help="Write plot.svg there as well."),
     ]
     for option in reversed(options):
-        command = option(command)
-    return command
+        body = option(body)
+    return body
 
 
-@bench.command("rmw")
+@command.command("rmw")
 @click.argument("questions", nargs=-1, type=click.Choice(list(RMW_QUESTIONS)))
 @_common_options
 def rmw_command(questions: tuple[str, ...], **options: Any) -> None:
@@ -75,21 +75,21 @@ def rmw_command(questions: tuple[str, ...], **options: Any) -> None:
     _answer([RMW_QUESTIONS[name] for name in questions or RMW_QUESTIONS], **options)
 
 
-@bench.command("rclpy")
+@command.command("rclpy")
 @_common_options
 def rclpy_command(**options: Any) -> None:
     """Round trips between two rclpy nodes."""
     _answer([rclpy_round_trip.QUESTION], **options)
 
 
-@bench.command("startup")
+@command.command("startup")
 @_common_options
 def startup_command(**options: Any) -> None:
     """From the start of an rclpy process to its first message."""
     _answer([startup.QUESTION], **options)
 
 
-@bench.command("idle")
+@command.command("idle")
 @click.option("--nodes", default=DEFAULT_NODES, show_default=True, type=click.IntRange(1))
 @_common_options
 def idle_command(nodes: int, **options: Any) -> None:
@@ -97,14 +97,14 @@ def idle_command(nodes: int, **options: Any) -> None:
     _answer([idle.question(nodes)], **options)
 
 
-@bench.command("memory")
+@command.command("memory")
 @_common_options
 def memory_command(**options: Any) -> None:
     """Memory of the platform, of a cluster and of a node."""
     _answer([memory.QUESTION], **options)
 
 
-@bench.command("all")
+@command.command("all")
 @_common_options
 def all_command(quick: bool, **options: Any) -> None:
     """Answer all questions; with --quick that takes about two minutes."""
@@ -138,7 +138,7 @@ def _answer(
     if as_json:
         click.echo(report.as_json())
     else:
-        report.print(Console())
+        report.print()
     if output is not None:
         _write(report, output, with_plot, progress)
 
