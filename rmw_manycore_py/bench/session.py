@@ -173,11 +173,12 @@ class Session:
             return []
         platform = Platform(self.platform)
         deadline = time.monotonic() + PATIENCE_S
-        while not all(cluster["alive"] for cluster in (clusters := platform.clusters())):
-            if time.monotonic() > deadline:
-                raise ManycoreError(f"{self.platform}: a receive thread does not start")
+        while time.monotonic() < deadline:
+            clusters = platform.clusters()
+            if all(cluster["alive"] for cluster in clusters):
+                return [cluster["receive_thread_pid"] for cluster in clusters]
             time.sleep(0.01)
-        return [cluster["receive_thread_pid"] for cluster in clusters]
+        raise ManycoreError(f"{self.platform}: a receive thread does not start")
 
     def shared_sizes(self) -> dict[str, int]:
         """Return the bytes of memory that each file of the platform holds."""
