@@ -24,11 +24,14 @@ if(ament_cmake_FOUND)
   return()
 endif()
 
-# A prefix is what holds lib/pythonX.Y/site-packages; build front ends hand us the latter only.
-set(ros_prefixes ${MANYCORE_ROS_PREFIX} ${CMAKE_PREFIX_PATH} $ENV{VIRTUAL_ENV})
-foreach(path IN LISTS CMAKE_PREFIX_PATH)
-  list(APPEND ros_prefixes ${path}/../../..)
-endforeach()
+# A prefix is what holds lib/pythonX.Y/site-packages. Build front ends hand us only the latter, that
+# of the isolated build environment after that of the python which started the build.
+set(ros_prefixes ${CMAKE_PREFIX_PATH} $ENV{VIRTUAL_ENV})
+if(SKBUILD)
+  set(site_packages ${CMAKE_PREFIX_PATH})
+  list(REVERSE site_packages)
+  list(TRANSFORM site_packages APPEND /../../.. OUTPUT_VARIABLE ros_prefixes)
+endif()
 find_path(MANYCORE_ROS_INCLUDE rmw/rmw/rmw.h
   PATHS ${ros_prefixes} PATH_SUFFIXES include NO_DEFAULT_PATH NO_CMAKE_FIND_ROOT_PATH)
 if(NOT MANYCORE_ROS_INCLUDE)
