@@ -1,0 +1,128 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Check the models with spin: each must hold, and must not hold with any of its seeded bugs.
+
+Run as `python docs/model/check.py [MODEL..]`. The head of a model lists its configurations (` * RUN DEPTH=2`; none: one
+configuration without definitions) and its seeded bugs (` * BUG 1: what`, in the first configuration, or
+` * BUG 1 DEPTH=2: what`).
+"""
+
+from __future__ import annotations
+
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+from dataclasses import dataclass
+from pathlib import Path
+
+DIRECTORY = Path(__file__).resolve().parent
+PROGRAMS = ("spin", "gcc")
+
+MEMORY_LIMIT_MIB = 3000
+DEPTH_LIMIT = 1_000_000  # steps of one execution; exceeding it is an error, not a shorter search
+
+# Without partial order reduction: it is not sound for processes that die (`unless`).
+COMPILER_OPTIONS = ("-O2", "-w", "-DSAFETY", "-DNOREDUCE", f"-DMEMLIM={MEMORY_LIMIT_MIB}")
+
+
+class IncompleteSearchError(RuntimeError):
+    """The verifier ended before it had seen every state."""
+
+
+@dataclass(frozen=True)
+class Case:
+    """One exhaustive search: a model in one configuration, with at most one seeded bug."""
+
+    model: str
+    defines: tuple[str, ...]
+    bug: int = 0
+    what: str = "as built"
+
+    @property
+    def name(self) -> str:
+        return "-".join([self.model, *self.defines, f"bug{self.bug}" if self.bug else "built"])
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What a search found."""
+
+    violation: str  # empty when every property holds
+    states: int
+    seconds: float
+
+
+def missing_programs() -> list[str]:
+    return [program for program in PROGRAMS if shutil.which(program) is None]
+
+
+def cases() -> list[Case]:
+    """List what is to be checked: every model in all its configurations, then with each bug."""
+    return [case for path in sorted(DIRECTORY.glob("*.pml")) for case in _cases_of(path)]
+
+
+def _cases_of(path: Path) -> list[Case]:
+    text = path.read_text()
+    if "init {" not in text:  # only included by others
+        return []
+    runs = [run.split() for run in re.findall(r"^ \* RUN (.+)$", text, re.M)] or [[]]
+    built = [Case(path.stem, tuple(run)) for run in runs]
+    seeded = [
+        Case(path.stem, tuple(run.split() or runs[0]), int(bug), what)
+        for bug, run, what in re.findall(r"^ \* BUG (\d+)(.*?): (.+)$", text, re.M)
+    ]
+    return built + seeded
+
+
+def check(case: Case) -> Outcome:
+    """Search all states of a model."""
+    started = time.monotonic()
+    defines = [f"-D{define}" for define in (f"BUG={case.bug}", *case.defines)]
+    with tempfile.TemporaryDirectory() as directory:
+        _run(["spin", *defines, "-a", str(DIRECTORY / f"{case.model}.pml")], directory)
+        _run(["gcc", *COMPILER_OPTIONS, "-o", "pan", "pan.c"], directory)
+        report = _run(["./pan", f"-m{DEPTH_LIMIT}"], directory)
+    return _read(report, time.monotonic() - started)
+
+
+def _run(command: list[str], directory: str) -> str:
+    done = subprocess.run(command, cwd=directory, text=True, capture_output=True, check=False)
+    if done.returncode != 0:
+        raise IncompleteSearchError(f"{command[0]}: {done.stdout}{done.stderr}")
+    return done.stdout
+
+
+def _read(report: str, seconds: float) -> Outcome:
+    errors = re.search(r"errors: (\d+)", report)
+    states = re.search(r"([\d.e+]+) states, stored", report)
+    violation = re.search(r"pan:1: (.+?) \(at depth", report)
+    complete = "Search not completed" not in report and "max search depth too small" not in report
+    if errors is None or states is None or (errors[1] == "0" and not complete):
+        raise IncompleteSearchError(report)
+    found = violation[1] if violation else ""
+    if bool(found) != (errors[1] != "0"):
+        raise IncompleteSearchError(report)
+    return Outcome(found, int(float(states[1])), seconds)
+
+
+def main(arguments: list[str]) -> int:
+    failures = 0
+    for case in cases():
+        if arguments and case.model not in arguments:
+            continue
+        outcome = check(case)
+        as_expected = bool(outcome.violation) == bool(case.bug)
+        failures += not as_expected
+        print(
+            f"{'ok  ' if as_expected else 'FAIL'} {case.name}: {case.what}: "
+            f"{outcome.violation or 'holds'} "
+            f"({outcome.states:,} states, {outcome.seconds:.1f} s)",
+            flush=True,
+        )
+    return 1 if failures else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

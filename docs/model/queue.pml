@@ -1,0 +1,237 @@
+/* Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+ *
+ * Question: does the subscriber queue keep every hint, in order, once, or count it as dropped, whoever dies where?
+ * Follows subscriber_queue::push and ::pop statement by statement. Every store in them is a compare-and-swap, a full
+ * fence on x86, so there are no store buffers here.
+ *
+ * The word of a slot is {lap mod LAPS, source}: without the record number, so that two hints of one source differ by
+ * their lap alone. That is the worst case for a delayed compare-and-swap, which is safe while no pusher sleeps through
+ * LAPS laps of its slot. This run makes fewer than 8 laps; the real queue has 65,536, and 2^28 numbers that must come
+ * round at the same time.
+ *
+ * RUN DEPTH=1
+ * RUN DEPTH=2
+ * BUG 1: no lap in the word
+ * BUG 2: laps modulo 2: a pusher that sleeps through two laps overwrites a later hint
+ * BUG 3: tail advanced before the slot is filled
+ * BUG 4: fullness judged by a tail that head has passed
+ * BUG 5: oldest displaced without compare-and-swap
+ * BUG 6 DEPTH=2: pop does not look at head again after it read the slot
+ * BUG 7: nobody finishes the push of a pusher that died before it moved tail
+ */
+#define PUSHES 3
+#define KILLED_PUSHES 1
+#define SLOTS DEPTH
+#define PUSHERS 2
+#define LAST_PUSHER 2     /* comes when the others are done, to see that the queue still works */
+
+#if BUG == 1
+#define LAPS 1
+#elif BUG == 2
+#define LAPS 2
+#else
+#define LAPS 8
+#endif
+
+#define HELP (BUG != 3 && BUG != 7)
+
+#define lap(position) (((position) / SLOTS) % LAPS)
+#define encode(position, source) (lap(position) * 4 + (source) + 1)
+#define source_of(word) ((word) % 4 - 1)
+#define filled(word, position) ((word) / 4 == lap(position))
+#define at(position) ((position) % SLOTS)
+
+byte slot[SLOTS];
+byte head = SLOTS;        /* positions start at lap 1; lap 0 is "never filled" */
+byte tail = SLOTS;
+
+/* What the properties speak of; the protocol does not read it. */
+byte number[SLOTS];       /* record number of the hint in the slot */
+byte waiting;             /* hints pushed, neither popped nor counted as dropped */
+byte last_popped[3];      /* record number, by source */
+bool was_empty;           /* at some moment of the present pop */
+bool overtaken[3];        /* some word changed during this pusher's present attempt */
+byte ended;               /* pushers that finished or died */
+bool killed;
+
+inline word_changed() {
+  overtaken[0] = true; overtaken[1] = true; overtaken[2] = true
+}
+
+/* compare_exchange(tail, seen, seen + 1) */
+inline advance_tail(seen) {
+  atomic { if :: tail == seen -> tail++; word_changed() :: else fi }
+}
+
+inline remove_oldest() {
+  head++;
+  assert(waiting > 0);
+  waiting--;
+  was_empty = was_empty || waiting == 0;
+  word_changed()
+}
+
+inline fill(position, source, record) {
+  slot[at(position)] = encode(position, source);
+  number[at(position)] = record;
+  waiting++;
+  word_changed()
+}
+
+/* Uses t, h, word of the process. Each atomic step holds one access to a shared word, and what follows from it. */
+inline push(source, record) {
+  skip;
+attempt:
+  atomic { overtaken[source] = false; h = 0; word = 0; t = tail };
+  atomic {
+    word = slot[at(t)];
+    if
+    :: HELP && filled(word, t) -> goto help
+    :: else
+    fi
+  };
+#if BUG == 4
+  h = head;
+#else
+  h = head;
+  atomic {
+    if
+    :: tail != t -> goto failed           /* from here on head <= tail is known */
+    :: else
+    fi
+  };
+#endif
+  if
+  :: t < h || t - h >= DEPTH -> goto displace   /* unsigned in C++: t - h of a passed tail is huge */
+  :: else
+  fi;
+#if BUG == 4
+  atomic {
+    if
+    :: tail != t -> goto failed           /* the word may be of a later lap */
+    :: else
+    fi
+  };
+#endif
+#if BUG == 3
+  atomic {
+    if
+    :: tail == t -> tail++; word_changed()
+    :: else -> goto failed
+    fi
+  };
+  d_step { fill(t, source, record) };
+  goto pushed;
+#else
+  atomic {
+    if
+    :: slot[at(t)] == word -> d_step { fill(t, source, record) }
+    :: else -> goto failed
+    fi
+  };
+  advance_tail(t);
+  goto pushed;
+#endif
+help:
+  advance_tail(t);
+  goto failed;
+displace:
+#if BUG == 5
+  atomic { head = h; remove_oldest() };
+#else
+  atomic { if :: head == h -> remove_oldest() :: else fi };
+#endif
+failed:
+  atomic { assert(overtaken[source]); goto attempt };   /* lock-free: who fails was overtaken */
+pushed:
+  skip
+}
+
+/* Uses h, word, n of the process; leaves `found`. */
+inline pop() {
+  d_step { found = false; was_empty = waiting == 0 };
+look:
+  atomic { word = 0; n = 0; h = head };
+  d_step { word = slot[at(h)]; n = number[at(h)] };
+#if BUG != 6
+  atomic {
+    if
+    :: head != h -> goto look             /* displaced meanwhile */
+    :: else
+    fi
+  };
+#endif
+  if
+  :: !filled(word, h) -> assert(was_empty); goto looked
+  :: else
+  fi;
+  if
+  :: HELP -> advance_tail(h)
+  :: else
+  fi;
+  atomic {
+    if
+    :: head == h ->
+       d_step {
+         remove_oldest();
+         assert(word % 4 != 0);                    /* nothing fabricated */
+         assert(n > last_popped[source_of(word)]); /* nothing twice, order per pusher */
+         last_popped[source_of(word)] = n;
+         found = true
+       }
+    :: else -> goto look
+    fi
+  };
+looked:
+  skip
+}
+
+proctype Pusher(byte source; byte pushes) {
+  byte t, h, word, record;
+  {
+    skip;
+next:
+    if
+    :: atomic { record < pushes -> record++ };
+       push(source, record);
+       goto next
+    :: record == pushes
+    fi
+  } unless { killed && source == 0 };
+  ended++
+}
+
+/* SIGKILL at any step of the first pusher, or never. */
+proctype Killer() {
+  if
+  :: killed = true
+  :: skip
+  fi
+}
+
+proctype LastPusher() {
+  byte t, h, word;
+  push(LAST_PUSHER, 1);
+  ended++
+}
+
+proctype Popper() {
+  byte h, word, n;
+  bool found, all_ended;
+  do
+  :: all_ended = ended == PUSHERS;
+     pop();
+     if
+     :: all_ended && !found -> break
+     :: else
+     fi
+  od;
+  assert(waiting == 0);
+  run LastPusher();
+  ended == PUSHERS + 1;
+  assert(tail == head + 1 && waiting == 1)
+}
+
+init {
+  atomic { run Pusher(0, KILLED_PUSHES); run Pusher(1, PUSHES); run Killer(); run Popper() }
+}

@@ -1,0 +1,40 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""The formal models of the data path hold, and each of their seeded bugs is found."""
+
+from __future__ import annotations
+
+import importlib.util
+import sys
+from pathlib import Path
+
+import pytest
+
+CHECKER = Path(__file__).resolve().parents[2] / "docs" / "model" / "check.py"
+
+spec = importlib.util.spec_from_file_location("check_models", CHECKER)
+assert spec is not None
+assert spec.loader is not None
+check_models = importlib.util.module_from_spec(spec)
+sys.modules[spec.name] = check_models  # dataclasses look their module up
+spec.loader.exec_module(check_models)
+
+MISSING = check_models.missing_programs()
+CASES = check_models.cases()
+
+pytestmark = pytest.mark.skipif(
+    bool(MISSING), reason=f"not installed: {', '.join(MISSING)} (apt-get install spin gcc)"
+)
+
+
+@pytest.mark.parametrize("case", [case for case in CASES if not case.bug], ids=lambda c: c.name)
+def test_model_holds(case) -> None:
+    assert check_models.check(case).violation == ""
+
+
+@pytest.mark.parametrize("case", [case for case in CASES if case.bug], ids=lambda c: c.name)
+def test_seeded_bug_is_found(case) -> None:
+    assert check_models.check(case).violation != ""
+
+
+def test_every_model_has_seeded_bugs() -> None:
+    assert {case.model for case in CASES} == {case.model for case in CASES if case.bug}
