@@ -34,6 +34,9 @@ sanitize: setup  ## the C++ tests with sanitizers: address and undefined behavio
 	scripts/native_tests.sh build/asan -DMANYCORE_SANITIZE=address,undefined
 	scripts/native_tests.sh build/tsan -DMANYCORE_SANITIZE=thread
 
+bench: setup  ## every bench, briefly; tables, and CSV in build/bench
+	$(VENV)/manycore bench all --quick --output build/bench
+
 lint: setup  ## style and types
 	$(VENV)/ruff check
 	$(VENV)/ruff format --check

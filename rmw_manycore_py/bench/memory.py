@@ -6,7 +6,7 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-from rmw_manycore_py.bench.contenders import FAST_DDS, INSIDE, Middleware
+from rmw_manycore_py.bench.contenders import FAST_DDS, INSIDE, MIB, Middleware
 from rmw_manycore_py.bench.question import Question, Run
 from rmw_manycore_py.bench.session import Process, Session
 from rmw_manycore_py.bench.summary import Result
@@ -14,6 +14,7 @@ from rmw_manycore_py.bench.summary import Result
 NODES = 8
 NAME = "memory"
 KIB = 1024
+COOLIDGE_SMEM_BYTES = 4 * MIB
 
 
 def measure(run: Run) -> list[Result]:
@@ -40,6 +41,7 @@ def _measure_manycore(run: Run) -> list[Result]:
     return [
         _row("platform: registry", alone["registry"]),
         _row("cluster: segment with one node", alone[cluster]),
+        _row("cluster: left for topic data of 4 MiB SMEM", COOLIDGE_SMEM_BYTES - alone[cluster]),
         _row("cluster: receive thread, private", thread),
         _row("node: its share of the segment", (together[cluster] - alone[cluster]) / NODES),
         _row("node: its share of the registry", (together["registry"] - alone["registry"]) / NODES),

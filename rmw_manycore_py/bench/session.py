@@ -39,10 +39,8 @@ def program_path(name: str) -> Path:
     path = native_directory() / "bench" / name
     if not path.exists():
         raise ManycoreError(
-            f"the bench program {path} is not there; build it with\n"
-            "  cmake -S . -B build/bench -DMANYCORE_BUILD_BENCH=ON "
-            f"-DCMAKE_PREFIX_PATH={sys.prefix}\n"
-            f"  cmake --build build/bench && cmake --install build/bench --prefix {sys.prefix}"
+            f"the bench program {path} is not there: this rmw_manycore was built without "
+            "-DMANYCORE_BUILD_BENCH=ON"
         )
     return path
 
