@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import ctypes
 import os
 import random
 import signal
@@ -13,13 +14,16 @@ from collections.abc import Callable
 import rclpy
 from payload import make_message, read_message
 from rclpy.node import Node
-from rclpy.qos import QoSProfile
+from rclpy.qos import DurabilityPolicy, QoSProfile
 from ros_support import announce, peer_node, spin_until
 from std_msgs.msg import UInt8MultiArray
+from support import PATIENCE_S
 
+PR_SET_PDEATHSIG = 1  # <linux/prctl.h>
 TOPIC = "load"
 LARGEST_BYTES = 100_000
 DEEP = QoSProfile(depth=2000)
+LASTING = QoSProfile(depth=1000, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 
 def publish_steadily(rate_hz: float) -> None:
@@ -117,6 +121,7 @@ def fork(function: Callable[[], None], cluster: str) -> None:
     if pid:
         announce(f"born {pid}")
         return
+    ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)  # no orphans when a test fails
     os.environ["MANYCORE_CLUSTER"] = cluster
     function()
     os._exit(0)
@@ -134,9 +139,9 @@ def be_one_of(size: int, number: int) -> None:
     with peer_node(f"node_{number}") as node:
         heard: set[int] = set()
         node.create_subscription(
-            UInt8MultiArray, TOPIC, lambda message: heard.add(message.data[0]), DEEP
+            UInt8MultiArray, TOPIC, lambda message: heard.add(message.data[0]), LASTING
         )
-        publisher = node.create_publisher(UInt8MultiArray, TOPIC, 10)
+        publisher = node.create_publisher(UInt8MultiArray, TOPIC, LASTING)
         _spin_until_all(node, lambda: publisher.get_subscription_count() == size)
         publisher.publish(UInt8MultiArray(data=[number]))
         _spin_until_all(node, lambda: len(heard) == size)
@@ -145,4 +150,4 @@ def be_one_of(size: int, number: int) -> None:
 
 
 def _spin_until_all(node: Node, condition: Callable[[], bool]) -> None:
-    spin_until(node, condition, timeout_s=600)
+    spin_until(node, condition, timeout_s=4 * PATIENCE_S)

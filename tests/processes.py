@@ -47,7 +47,7 @@ def is_stopped(pid: int) -> bool:
 
 def _program(process: Path) -> str:
     with suppress(OSError):
-        return os.readlink(process / "exe")
+        return str((process / "exe").readlink())
     return ""
 
 
@@ -55,5 +55,5 @@ def _uses(process: Path, directory: str) -> bool:
     with suppress(OSError):
         if directory in (process / "maps").read_text():
             return True
-        return any(os.readlink(fd).startswith(directory) for fd in (process / "fd").iterdir())
+        return any(str(fd.readlink()).startswith(directory) for fd in (process / "fd").iterdir())
     return False

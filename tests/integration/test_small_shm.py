@@ -1,0 +1,94 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""A /dev/shm that is too small gives an error that says how much is needed."""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+import sys
+
+import pytest
+from support import (
+    IS_MANYCORE,
+    MAPFILES,
+    Program,
+    environment,
+    example_command,
+    manycore_command,
+    unique_platform,
+)
+
+SMALL = 'mount -t tmpfs -o size={size_mib}m,mode=1777 tmpfs /dev/shm && exec "$@"'
+SIZE_NEEDED = re.compile(r"\b\d[\d,.]* ?(bytes|[KMG]iB)")
+
+
+def small_shm_command(size_mib: int, command: list[str]) -> list[str]:
+    """Return a command that sees a /dev/shm of its own."""
+    script = SMALL.format(size_mib=size_mib)
+    return ["unshare", "--mount", "sh", "-c", script, "sh", *map(str, command)]
+
+
+def can_mount() -> bool:
+    if os.getuid() != 0:
+        return False
+    return subprocess.run(small_shm_command(1, ["true"]), capture_output=True).returncode == 0
+
+
+pytestmark = [
+    pytest.mark.integration,
+    pytest.mark.skipif(not IS_MANYCORE, reason="about the segments of rmw_manycore"),
+    pytest.mark.skipif(not can_mount(), reason="needs root and a mount namespace"),
+]
+
+
+@pytest.fixture
+def start_small():
+    programs = []
+
+    def start_small(size_mib: int, command: list[str]) -> Program:
+        env = environment(unique_platform())
+        programs.append(Program(small_shm_command(size_mib, command), env))
+        return programs[-1]
+
+    yield start_small
+    for program in programs:
+        program.kill()
+
+
+def assert_says_the_size(program: Program) -> None:
+    status = program.wait()
+    assert status > 0, program  # and not the end by a signal, such as SIGBUS
+    assert "/dev/shm" in program.output, program
+    assert SIZE_NEEDED.search(program.output), program
+
+
+def test_small_messages_fit(start_small):
+    talker = start_small(16, example_command("talker"))
+    talker.wait_for("Publishing")
+    assert talker.stop() == 0, talker
+
+
+def test_a_mapfile_that_needs_more(start_small):
+    """The clusters of image_pipeline have 4 MiB each."""
+    mapfile = MAPFILES / "image_pipeline.yaml"
+    assert_says_the_size(start_small(4, manycore_command("run", mapfile, "--duration", "5")))
+
+
+PUBLISH_LARGE = """
+import rclpy
+from std_msgs.msg import UInt8MultiArray
+rclpy.init()
+node = rclpy.create_node("node")
+publisher = node.create_publisher(UInt8MultiArray, "large", 10)
+publisher.publish(UInt8MultiArray(data=bytes(32 << 20)))
+"""
+
+
+def test_a_message_that_needs_more(start_small):
+    assert_says_the_size(start_small(16, [sys.executable, "-c", PUBLISH_LARGE]))
+
+
+def test_no_room_at_all(start_small):
+    fill = 'head -c 16M /dev/zero > /dev/shm/full; exec "$@"'
+    assert_says_the_size(start_small(16, ["sh", "-c", fill, "sh", *example_command("talker")]))
