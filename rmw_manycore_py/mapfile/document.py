@@ -84,7 +84,8 @@ class _Reader:
     def convert(self, node: yaml.Node, path: KeyPath) -> Any:
         self.lines.setdefault(path, node.start_mark.line + 1)
         if id(node) in self._open:
-            raise yaml.YAMLError(f"an alias that contains itself at '{dotted(path)}'")
+            found = f"'{dotted(path)}', which contains itself"
+            raise yaml.MarkedYAMLError(problem=found, problem_mark=node.start_mark)
         self._open.add(id(node))
         try:
             if isinstance(node, yaml.MappingNode):

@@ -14,7 +14,7 @@ from rmw_manycore_py.mapfile.document import Document, read_yaml
 from rmw_manycore_py.mapfile.model import MapfileSections, PlatformSection
 from rmw_manycore_py.mapfile.normalise import normalise
 from rmw_manycore_py.mapfile.ros_lite import from_list
-from rmw_manycore_py.mapfile.validation import problems_of
+from rmw_manycore_py.mapfile.validation import describe, problems_of
 from rmw_manycore_py.topology import Topology, profile
 
 
@@ -41,7 +41,7 @@ def load_mapfile(path: Path | str) -> Mapfile:
         document = from_list(document)
     if not isinstance(document.data, dict):
         expected = "a mapping with the key 'nodes', or a list of nodes"
-        raise MapfileError(document.problem((), expected, type(document.data).__name__))
+        raise MapfileError(document.problem((), expected, describe(document.data)))
     notices = normalise(document)
     sections = _validate(document)
     mapfile = Mapfile(path, sections, _topology(sections.platform), document, tuple(notices))

@@ -72,7 +72,18 @@ def _launch_file(mapfile: Mapfile) -> LaunchFile | None:
     sections = mapfile.sections
     if sections.launch_path is None:
         return None
-    return read_launch_file(mapfile.file(sections.launch_path), sections.launch_arguments)
+    launch = read_launch_file(mapfile.file(sections.launch_path), sections.launch_arguments)
+    known = ", ".join(sorted(launch.arguments)) or "it has none"
+    problems = [
+        mapfile.document.problem(
+            ("launch_arguments", name), f"an argument of the launch file ({known})", f"'{name}'"
+        )
+        for name in sections.launch_arguments
+        if name not in launch.arguments
+    ]
+    if problems:
+        raise MapfileError(*problems)
+    return launch
 
 
 def _starts(mapfile: Mapfile, launch: LaunchFile | None) -> dict[str, NodeStart]:

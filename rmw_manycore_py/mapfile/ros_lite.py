@@ -7,6 +7,7 @@ from typing import Any
 
 from rmw_manycore_py.errors import MapfileError, Problem
 from rmw_manycore_py.mapfile.document import Document, KeyPath
+from rmw_manycore_py.mapfile.validation import describe
 
 # ROS-lite's maps describe the MPPA-256; they have no place to say so.
 _PLATFORM = "bostan"
@@ -28,7 +29,7 @@ def from_list(document: Document) -> Document:
 
 def _add_entry(document: Document, path: KeyPath, entry: Any, result: Document) -> None:
     if not isinstance(entry, dict) or not isinstance(entry.get("name"), str):
-        problem = document.problem(path, "an entry with the key 'name'", _describe(entry))
+        problem = document.problem(path, "an entry with the key 'name'", describe(entry))
         raise MapfileError(problem)
     name = entry["name"]
     nodes = result.data["nodes"]
@@ -51,12 +52,8 @@ def _join_topics(
     types = [] if types is None else types
     for name, value in ((key, topics), (f"{key}_type", types)):
         if not isinstance(value, list):
-            raise MapfileError(document.problem((*path, name), "a list", _describe(value)))
+            raise MapfileError(document.problem((*path, name), "a list", describe(value)))
     if len(topics) != len(types):
         expected = f"one type for each topic of '{key}', {len(topics)} in all"
         raise MapfileError(document.problem((*path, f"{key}_type"), expected, str(len(types))))
     return dict(zip(topics, types, strict=True))
-
-
-def _describe(value: Any) -> str:
-    return f"{type(value).__name__} {value!r}"

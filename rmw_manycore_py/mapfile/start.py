@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rmw_manycore_py.errors import MapfileError, Problem
-from rmw_manycore_py.mapfile import executables
+from rmw_manycore_py.mapfile import ament, executables
 from rmw_manycore_py.mapfile.executables import Program
 from rmw_manycore_py.mapfile.launch_file import LaunchedNode, LaunchFile, ParameterSource
 from rmw_manycore_py.mapfile.model import NodeSection
@@ -179,6 +179,6 @@ def _launched_program(launched: LaunchedNode) -> Program:
 
 def _expected_executable(package: str) -> str:
     known = executables.executables_of(package)
-    if known:
-        return f"an executable of the package '{package}' ({', '.join(known)})"
-    return f"an executable of an installed package '{package}'"
+    if known or ament.package_prefix(package):
+        return f"an executable of the package '{package}' ({', '.join(known) or 'it has none'})"
+    return f"an executable of the package '{package}' (it is not installed)"

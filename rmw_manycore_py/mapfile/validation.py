@@ -59,7 +59,10 @@ def _problem(details: ErrorDetails, document: Document) -> Problem:
         return document.problem(path, f"the key '{path[-1]}'", "no such key")
     if details["type"] == "extra_forbidden":
         return document.problem(path, _known_keys(path), f"the unknown key '{path[-1]}'")
-    return document.problem(path, _expected(details, path), describe(details["input"]))
+    found = details.get("ctx", {}).get("found", details["input"])
+    if "name" in details.get("ctx", {}):
+        path = (*path, *details["ctx"]["name"].split("."))
+    return document.problem(path, _expected(details, path), describe(found))
 
 
 def _expected(details: ErrorDetails, path: KeyPath) -> str:

@@ -15,8 +15,8 @@ _SIZE = re.compile(r"(\d+)\s*([KMG]?I?B?)", re.IGNORECASE)
 _SCALARS = (bool, int, float, str)
 
 
-def _expected(text: str) -> PydanticCustomError:
-    return PydanticCustomError("expected", "{expected}", {"expected": text})
+def _expected(text: str, **found: Any) -> PydanticCustomError:
+    return PydanticCustomError("expected", "{expected}", {"expected": text, **found})
 
 
 def _size(value: Any) -> int:
@@ -77,10 +77,8 @@ def flatten_parameters(value: Any, prefix: str = "") -> dict[str, Any]:
         elif isinstance(item, _SCALARS) or _is_array(item):
             flat[f"{prefix}{name}"] = list(item) if isinstance(item, tuple) else item
         else:
-            raise _expected(
-                f"parameter '{prefix}{name}' to be a bool, a number, a string or a non-empty list "
-                "of one of these"
-            )
+            expected = "a bool, a number, a string or a non-empty list of one of these"
+            raise _expected(expected, found=item, name=f"{prefix}{name}")
     return flat
 
 

@@ -28,5 +28,6 @@ def failure(path: Path, error: Exception) -> MapfileError:
     line = lines[-1] if lines else getattr(error, "lineno", None) or 0
     if isinstance(error, RefusedError):
         return MapfileError(error.at(path, line))
-    found = f"{type(error).__name__}: {error}"
+    reason = error.msg if isinstance(error, SyntaxError) else error
+    found = f"{type(error).__name__}: {reason}"
     return MapfileError(Problem(path, line, "", "launch code that is understood here", found))

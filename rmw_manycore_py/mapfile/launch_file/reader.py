@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from rmw_manycore_py.errors import MapfileError, Problem
+from rmw_manycore_py.errors import MapfileError
 from rmw_manycore_py.mapfile.launch_file.context import LaunchContext, LaunchedNode, RefusedError
 from rmw_manycore_py.mapfile.launch_file.elements import read_xml, read_yaml_elements
 from rmw_manycore_py.mapfile.launch_file.frontend import description
@@ -30,20 +30,17 @@ class LaunchFile:
 
     file: Path
     nodes: tuple[LaunchedNode, ...]
+    arguments: frozenset[str]
     notices: tuple[str, ...]
 
 
 def read_launch_file(file: Path, arguments: Mapping[str, str] | None = None) -> LaunchFile:
     """Read a launch file with values for its arguments."""
-    given = dict(arguments or {})
-    context = LaunchContext(file, given)
+    context = LaunchContext(file, arguments or {})
     try:
         with stand_ins():
             read_into(context, file)
     except RefusedError as refused:
         raise MapfileError(refused.at(file, 0)) from refused
-    unknown = [name for name in given if name not in context.declared]
-    if unknown:
-        expected = f"only declared launch arguments ({', '.join(sorted(context.declared))})"
-        raise MapfileError(Problem(file, 0, unknown[0], expected, "an argument that is not"))
-    return LaunchFile(file, tuple(context.nodes), tuple(context.notices))
+    declared = frozenset(context.declared)
+    return LaunchFile(file, tuple(context.nodes), declared, tuple(context.notices))
