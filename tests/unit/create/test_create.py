@@ -13,17 +13,15 @@ import yaml
 from rmw_manycore_py.create import create
 from rmw_manycore_py.errors import ManycoreError
 
+pytestmark = pytest.mark.unit
+
 # Prints how it was started; the topics are for the topic table.
 NODE = """\
 import json, os, sys
-
-pytestmark = pytest.mark.unit
-def never(node):
-    from std_msgs.msg import String
-    node.create_{kind}(String, "chatter", 10)
+def never():
     class A(Node):
         def __init__(self):
-            super().__init__("x")
+            from std_msgs.msg import String
             self.create_{kind}(String, "chatter", 10)
 print(json.dumps({{
     "argv": sys.argv[1:], "cwd": os.getcwd(), "env": dict(os.environ),

@@ -12,6 +12,8 @@ import pytest
 
 from rmw_manycore_py.mapfile.launch_file import LaunchedNode, LaunchFile, read_launch_file
 
+pytestmark = pytest.mark.unit
+
 Read = Callable[..., LaunchFile]
 
 XML = """\
@@ -65,8 +67,6 @@ from launch.substitutions import (
 )
 from launch_ros.actions import Node, PushRosNamespace
 from launch_ros.parameter_descriptions import ParameterValue
-
-pytestmark = pytest.mark.unit
 
 
 def generate_launch_description():

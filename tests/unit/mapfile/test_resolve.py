@@ -14,11 +14,11 @@ from rmw_manycore_py.mapfile.names import resolve_topic
 from rmw_manycore_py.mapfile.start import parameter_text
 from rmw_manycore_py.topology import Core
 
+pytestmark = pytest.mark.unit
+
 TALKER = """\
 from rclpy.node import Node
 from std_msgs.msg import String
-
-pytestmark = pytest.mark.unit
 class Talker(Node):
     def __init__(self):
         super().__init__("talker")

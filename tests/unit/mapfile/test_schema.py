@@ -26,7 +26,8 @@ def test_the_schema_in_the_docs_is_current() -> None:
 
 
 def test_the_reference_explains_every_key() -> None:
-    explained = set(re.findall(r"^\| `(\w+)`", (DOCS / "mapfile.md").read_text(), re.MULTILINE))
+    rows = re.compile(r"^\| `(\w+)` \|", re.MULTILINE)
+    explained = set(rows.findall((DOCS / "mapfile.md").read_text()))
     sections = (MapfileSections, PlatformSection, TopicSection, NodeSection)
     keys = {key for section in sections for key in section.model_fields}
-    assert explained == keys
+    assert keys <= explained

@@ -8,11 +8,11 @@ import pytest
 from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.mapfile import check, init
 
+pytestmark = pytest.mark.unit
+
 NODE = """\
 from rclpy.node import Node
 from std_msgs.msg import String
-
-pytestmark = pytest.mark.unit
 class A(Node):
     def __init__(self):
         super().__init__("{name}")
