@@ -43,8 +43,8 @@ DEFAULT_ROUNDS = 5
 Body = Callable[..., None]
 
 
-@click.group("bench")
-def command() -> None:
+@click.group()
+def bench() -> None:
     """Measure rmw_manycore beside Fast DDS and beside the machine itself."""
 
 
@@ -67,7 +67,7 @@ def _common_options(body: Body) -> Body:
     return body
 
 
-@command.command("rmw")
+@bench.command("rmw")
 @click.argument("questions", nargs=-1, type=click.Choice(list(RMW_QUESTIONS)))
 @_common_options
 def rmw_command(questions: tuple[str, ...], **options: Any) -> None:
@@ -75,21 +75,21 @@ def rmw_command(questions: tuple[str, ...], **options: Any) -> None:
     _answer([RMW_QUESTIONS[name] for name in questions or RMW_QUESTIONS], **options)
 
 
-@command.command("rclpy")
+@bench.command("rclpy")
 @_common_options
 def rclpy_command(**options: Any) -> None:
     """Round trips between two rclpy nodes."""
     _answer([rclpy_round_trip.QUESTION], **options)
 
 
-@command.command("startup")
+@bench.command("startup")
 @_common_options
 def startup_command(**options: Any) -> None:
     """From the start of an rclpy process to its first message."""
     _answer([startup.QUESTION], **options)
 
 
-@command.command("idle")
+@bench.command("idle")
 @click.option("--nodes", default=DEFAULT_NODES, show_default=True, type=click.IntRange(1))
 @_common_options
 def idle_command(nodes: int, **options: Any) -> None:
@@ -97,14 +97,14 @@ def idle_command(nodes: int, **options: Any) -> None:
     _answer([idle.question(nodes)], **options)
 
 
-@command.command("memory")
+@bench.command("memory")
 @_common_options
 def memory_command(**options: Any) -> None:
     """Memory of the platform, of a cluster and of a node."""
     _answer([memory.QUESTION], **options)
 
 
-@command.command("all")
+@bench.command("all")
 @_common_options
 def all_command(quick: bool, **options: Any) -> None:
     """Answer all questions; with --quick that takes about two minutes."""

@@ -1,0 +1,93 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Every bench runs, in its shortest form; no figure is held against a clock."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+from pathlib import Path
+from typing import Any
+
+import pytest
+from support import PATIENCE_S, PLATFORMS, manycore_command, wait_until
+
+pytestmark = pytest.mark.integration
+
+OWN = ("--only", "(block)")
+OTHERS = ("--only", "futex", "--only", "pipe", "--only", "Fast DDS")
+
+
+def run_bench(*arguments: str) -> dict[str, Any]:
+    command = manycore_command("bench", *arguments, "--quick", "--json")
+    result = subprocess.run(
+        [str(word) for word in command],
+        env={**os.environ, "MANYCORE_PLATFORM": "untouched"},
+        text=True,
+        capture_output=True,
+        timeout=4 * PATIENCE_S,
+    )
+    assert result.returncode == 0, result.stderr
+    report: dict[str, Any] = json.loads(result.stdout)
+    assert report["results"]
+    return report
+
+
+@pytest.fixture(autouse=True)
+def _leave_nothing() -> Any:
+    yield
+    wait_until(lambda: not list(PLATFORMS.glob("bench-*")), "no platform of a bench is left")
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ("rmw", "round-trip", *OWN),
+        ("rmw", "round-trip", *OTHERS),
+        ("rmw", "first-message"),
+        ("rclpy", *OWN),
+        ("startup", *OWN),
+        ("memory", *OWN),
+    ],
+    ids=lambda arguments: "-".join(arguments[:2]) + ("-others" if "futex" in arguments else ""),
+)
+def test_a_bench_measures_every_contender(arguments: tuple[str, ...]) -> None:
+    for result in run_bench(*arguments)["results"]:
+        assert result["samples"] > 0
+        assert result["median"] > 0
+
+
+def all_reached(report: dict[str, Any]) -> bool:
+    return all(goal["reached"] for goal in report["goals"]) and bool(report["goals"])
+
+
+@pytest.mark.parametrize("question", ["throughput", "fan-out"])
+def test_nothing_is_lost(question: str) -> None:
+    report = run_bench("rmw", question, *OWN)
+    lost = [row for row in report["results"] if row["question"].endswith("lost")]
+    assert lost
+    assert [row for row in lost if row["largest"] > 0] == []
+
+
+def test_the_warm_data_path_neither_allocates_nor_faults() -> None:
+    assert all_reached(run_bench("rmw", "steady-state", *OWN))
+
+
+def test_idle_nodes_do_nothing() -> None:
+    assert all_reached(run_bench("idle", "--nodes", "6", "--only", "manycore"))
+
+
+def test_the_report_is_written(tmp_path: Path) -> None:
+    run_bench("rmw", "round-trip", "--only", "futex", "--output", str(tmp_path))
+    assert {path.name for path in tmp_path.iterdir()} == {
+        "report.json",
+        "results.csv",
+        "samples.csv",
+    }
+
+
+def test_a_plot_needs_a_place() -> None:
+    command = manycore_command("bench", "rmw", "--quick", "--plot")
+    result = subprocess.run([str(word) for word in command], text=True, capture_output=True)
+    assert result.returncode == 2
+    assert "--output" in result.stderr
