@@ -205,6 +205,15 @@ def test_an_unscoped_group_leaves_what_it_sets(read: Read) -> None:
     assert launch.nodes[0].namespace == "/x"
 
 
+def test_an_absolute_namespace_ignores_the_pushed_one(read: Read) -> None:
+    launch = read(
+        "demo.launch.xml",
+        '<launch><push-ros-namespace namespace="x"/>'
+        '<node pkg="p" exec="low" namespace="y"/><node pkg="p" exec="top" namespace="/z"/></launch>',
+    )
+    assert [node.namespace for node in launch.nodes] == ["/x/y", "/z"]
+
+
 def test_parameter_files_keep_their_order_and_may_hold_substitutions(
     tmp_path: Path, read: Read
 ) -> None:

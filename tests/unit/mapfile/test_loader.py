@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 
 from rmw_manycore_py.mapfile import Mapfile, load_mapfile
+from rmw_manycore_py.mapfile.ament import canonical_type
 
 pytestmark = pytest.mark.unit
 
@@ -75,6 +76,20 @@ def test_corrected_spellings_are_noted_with_their_line(tmp_path: Path) -> None:
         "mapfile.yaml:17: nodes.listener.topic_to.chatter: "
         "std_msgs::String is read as std_msgs/msg/String",
     ]
+
+
+@pytest.mark.parametrize(
+    ("written", "read"),
+    [
+        ("std_msgs/String", "std_msgs/msg/String"),
+        ("/sensor_msgs/msg/point_cloud2", "sensor_msgs/msg/PointCloud2"),
+        ("sensor_msgs::pointcloud2", "sensor_msgs/msg/PointCloud2"),
+        ("/std_srvs/srv/set_bool", "std_srvs/srv/SetBool"),
+        ("not_installed/msg/thing", "not_installed/msg/Thing"),
+    ],
+)
+def test_types_are_known_in_other_spellings(written: str, read: str) -> None:
+    assert canonical_type(written) == read
 
 
 def test_param_path_is_param_file(tmp_path: Path) -> None:
