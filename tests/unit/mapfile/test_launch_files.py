@@ -209,7 +209,8 @@ def test_an_absolute_namespace_ignores_the_pushed_one(read: Read) -> None:
     launch = read(
         "demo.launch.xml",
         '<launch><push-ros-namespace namespace="x"/>'
-        '<node pkg="p" exec="low" namespace="y"/><node pkg="p" exec="top" namespace="/z"/></launch>',
+        '<node pkg="p" exec="low" namespace="y"/><node pkg="p" exec="top" namespace="/z"/>'
+        "</launch>",
     )
     assert [node.namespace for node in launch.nodes] == ["/x/y", "/z"]
 
