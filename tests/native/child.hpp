@@ -1,0 +1,69 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <sys/types.h>
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "platform/file_descriptor.hpp"
+
+/// Lines of text in both directions between a test and a process that it started.
+class Lines {
+public:
+  Lines(manycore::FileDescriptor in, manycore::FileDescriptor out);
+  void say(const std::string & line);
+  /// The next line. Throws when none comes within `patience_s`, or when the other side has ended.
+  std::string hear();
+  /// Throws unless the next line is `expected`.
+  void expect(const std::string & expected);
+  /// True when a line, or the end, is there already.
+  bool has_news(int timeout_ms = 0) const;
+
+private:
+  manycore::FileDescriptor in_;
+  manycore::FileDescriptor out_;
+  std::string unread_;
+};
+
+using Arguments = std::vector<std::string>;
+
+/// What a process that a test starts does. At file scope:
+///   const Role silent_publisher("silent_publisher", [](Lines & test, const Arguments & arguments) {...});
+class Role {
+public:
+  using Play = std::function<void(Lines & test, const Arguments & arguments)>;
+  Role(const char * name, Play play);
+
+  /// Plays the role that this program was started for; false when it was started to run its tests.
+  static bool play(int argc, char ** argv, int & status);
+};
+
+/// A process in one of this program's roles: real, so that it can be stopped and killed.
+class Child {
+public:
+  explicit Child(const std::string & role, const Arguments & arguments = {});
+  Child(Child && other) noexcept;
+  /// Killed, if it still lives.
+  ~Child();
+
+  pid_t pid() const noexcept { return pid_; }
+  Lines & lines() noexcept { return lines_; }
+  void say(const std::string & line) { lines_.say(line); }
+  std::string hear() { return lines_.hear(); }
+  void expect(const std::string & line) { lines_.expect(line); }
+
+  void stop();    ///< SIGSTOP; returns once it stands still
+  void resume();  ///< SIGCONT
+  void kill();    ///< SIGKILL; returns once it is gone
+  /// Waits for its end: the exit status, or minus the signal that ended it. Throws when it goes on for `patience_s`.
+  int wait();
+
+private:
+  Child(pid_t pid, Lines lines) : pid_(pid), lines_(std::move(lines)) {}
+  static Child start(const std::string & role, const Arguments & arguments);
+
+  pid_t pid_;
+  Lines lines_;
+};

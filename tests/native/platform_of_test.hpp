@@ -1,0 +1,69 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <sys/types.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "transport/process.hpp"
+#include "transport/registry.hpp"
+
+/// A platform of its own for one test. At its end nothing may be left: no file, no receive thread.
+class TestPlatform {
+public:
+  TestPlatform();
+  ~TestPlatform();
+
+  const std::string & name() const noexcept { return name_; }
+  manycore::PlatformPaths paths() const { return manycore::PlatformPaths::of(name_); }
+  std::shared_ptr<manycore::Process> join(
+    uint32_t cluster = 1, manycore::WaitMode mode = manycore::WaitMode::block) const;
+  /// Pids of the receive threads that run for it.
+  std::vector<pid_t> receive_threads() const;
+  /// Waits until the receive thread of `cluster` serves; its pid. `not_this`: a predecessor.
+  pid_t receive_thread(uint32_t cluster, pid_t not_this = 0) const;
+  bool exists() const;
+
+private:
+  std::string name_;
+};
+
+/// The registry as seen from outside, for looking at what the interface does not show.
+class Inspection {
+public:
+  explicit Inspection(const TestPlatform & platform) : registry_(platform.paths()) {}
+
+  manycore::Registry & registry() noexcept { return registry_; }
+  uint64_t used_bytes(uint32_t cluster = 1);
+  uint32_t live_endpoints();
+  uint32_t live_processes();
+  /// Slot of the live endpoint with this gid.
+  uint32_t slot_of(const manycore::Gid & gid);
+  /// Allocations of a publisher's topic DSM that are in use.
+  uint32_t generations_of(const manycore::Publisher & publisher);
+
+private:
+  manycore::Registry registry_;
+};
+
+/// Whether a process runs (a zombie does not).
+bool is_running(pid_t pid);
+
+/// Code and text of the Error that `act` throws; none when it does not.
+struct Refusal {
+  std::optional<manycore::ErrorCode> code;
+  std::string text;
+  bool says(const std::string & part) const { return text.find(part) != std::string::npos; }
+};
+
+template<typename Act>
+Refusal refusal_of(Act act) {
+  try {
+    act();
+  } catch (const manycore::Error & error) {
+    return {error.code(), error.what()};
+  }
+  return {};
+}
