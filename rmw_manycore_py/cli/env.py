@@ -3,13 +3,15 @@
 
 from __future__ import annotations
 
-import os
 import shlex
 
 import click
 
+from rmw_manycore_hook import LIBRARY_PATH, WHEELS_BOOTSTRAPPED
 from rmw_manycore_py.cli.options import examples, json_option, print_json
 from rmw_manycore_py.launch.environment import program_environment
+
+VARIABLES = ("RMW_IMPLEMENTATION", LIBRARY_PATH, WHEELS_BOOTSTRAPPED)
 
 
 @click.command("env", epilog=examples('eval "$(manycore env)"', "python talker.py"))
@@ -20,10 +22,9 @@ def command(as_json: bool) -> None:
     Python programs need RMW_IMPLEMENTATION alone; the rest is for programs in other languages.
     """
     wanted = program_environment({})
-    changed = {name: value for name, value in wanted.items() if os.environ.get(name) != value}
-    changed["RMW_IMPLEMENTATION"] = wanted["RMW_IMPLEMENTATION"]  # what one looks for first
+    names = [name for name in VARIABLES if name in wanted]
     if as_json:
-        print_json(changed)
+        print_json({name: wanted[name] for name in names})
         return
-    for name, value in sorted(changed.items()):
-        click.echo(f"export {name}={shlex.quote(value)}")
+    for name in names:
+        click.echo(f"export {name}={shlex.quote(wanted[name])}")

@@ -36,9 +36,8 @@ class Listener:
         message_type = load_type(type_name or type_of_topic(topic, endpoints))
         os.environ["MANYCORE_PLATFORM"] = platform
         import rclpy
-        from rclpy.signals import SignalHandlerOptions
 
-        rclpy.init(args=[], signal_handler_options=SignalHandlerOptions.NO)
+        rclpy.init(args=[])
         self._rclpy = rclpy
         self._over = False
         self._node = rclpy.create_node(
@@ -56,18 +55,18 @@ class Listener:
 
     def run(self) -> None:
         """Listen until stopped or interrupted."""
-        try:
-            with suppress(KeyboardInterrupt):
-                while not self._over:
-                    self._rclpy.spin_once(self._node)
-        finally:
-            self._node.destroy_node()
-            self._rclpy.shutdown()
+        from rclpy.executors import ExternalShutdownException
+
+        with suppress(KeyboardInterrupt, ExternalShutdownException):
+            while not self._over:
+                self._rclpy.spin_once(self._node)
+        self._node.destroy_node()
+        self._rclpy.try_shutdown()
 
 
 def type_of_topic(topic: str, endpoints: Iterable[Row]) -> str:
     """Return the one type of a topic."""
-    types = sorted({endpoint["type"] for endpoint in endpoints})
+    types: list[str] = sorted({endpoint["type"] for endpoint in endpoints})
     if not types:
         raise ManycoreError(f"nobody uses the topic '{topic}' yet; give its type to wait for it")
     if len(types) > 1:

@@ -37,8 +37,8 @@ def command(mapfile: Path, as_json: bool) -> None:
 
 
 def _show_nodes(placement: Placement) -> None:
-    title = f"platform {placement.name} ({placement.topology.profile})"
-    table = new_table("node", "#cluster", "#core", "#host CPU", "command", title=title)
+    click.echo(f"platform {placement.name} ({placement.topology.profile})")
+    table = new_table("node", "#cluster", "#core", "#host CPU", "command")
     for node in placement.nodes:
         place = (str(node.cluster), str(node.core), str(node.host_cpu))
         table.add_row(node.full_name, *place, " ".join(node.program))
@@ -46,8 +46,9 @@ def _show_nodes(placement: Placement) -> None:
 
 
 def _show_topics(placement: Placement) -> None:
+    click.echo("\ntopic table")
     columns = ("#id", "topic", "type", "#topic DSM size", "publishers in", "receivers in")
-    table = new_table(*columns, title="\ntopic table")
+    table = new_table(*columns)
     for topic in placement.topics:
         size = size_text(topic.topic_dsm_size) if topic.topic_dsm_size else "grows"
         clusters = (topic.publisher_clusters, topic.receiver_clusters)
@@ -57,7 +58,8 @@ def _show_topics(placement: Placement) -> None:
 
 
 def _show_memory(placement: Placement) -> None:
-    table = new_table("#cluster", "#SMEM", "#fixed topic DSMs", title="\nmemory")
+    click.echo("\nmemory")
+    table = new_table("#cluster", "#SMEM", "#fixed topic DSMs")
     for memory in placement.memory:
         table.add_row(str(memory.cluster), size_text(memory.smem_size), size_text(memory.used))
     print_table(table)

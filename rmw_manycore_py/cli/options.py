@@ -48,9 +48,9 @@ def print_notices(notices: Iterable[str]) -> None:
         click.secho(f"notice: {notice}", fg="yellow", err=True)
 
 
-def new_table(*columns: str, title: str | None = None) -> Table:
+def new_table(*columns: str) -> Table:
     """Return a plain table; columns whose name starts with # hold numbers."""
-    table = Table(title=title, title_justify="left", box=None, pad_edge=False)
+    table = Table(box=None, pad_edge=False)
     for column in columns:
         is_number = column.startswith("#")
         table.add_column(column.lstrip("#"), justify="right" if is_number else "left")

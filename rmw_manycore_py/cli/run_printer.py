@@ -87,11 +87,11 @@ class RunPrinter:
 
 
 def _print_platform(event: Platform) -> None:
-    title = (
+    click.echo(
         f"platform {event.name} ({event.profile}): {event.clusters} clusters x "
         f"{event.cores_per_cluster} cores, SMEM {size_text(event.smem_size)} each"
     )
-    table = new_table("node", "#cluster", "#core", "#host CPU", title=title)
+    table = new_table("node", "#cluster", "#core", "#host CPU")
     for row in event.cores:
         table.add_row(row.node, str(row.cluster), str(row.core), str(row.host_cpu))
     print_table(table)

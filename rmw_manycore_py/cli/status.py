@@ -61,7 +61,7 @@ def _show(state: Row) -> None:
 
 def _show_clusters(clusters: list[Row]) -> None:
     columns = ("#cluster", "receive thread", "#SMEM", "#used", "#messages")
-    table = new_table(*columns, title="clusters")
+    table = new_table(*columns)
     for row in clusters:
         thread = f"pid {row['receive_thread_pid']}" if row["alive"] else "not running"
         sizes = (size_text(row["smem_size"]), size_text(row["used"]))
@@ -71,7 +71,7 @@ def _show_clusters(clusters: list[Row]) -> None:
 
 def _show_processes(processes: list[Row]) -> None:
     columns = ("#pid", "#cluster", "#core", "#host CPU", "program", "nodes", "state")
-    table = new_table(*columns, title="processes")
+    table = new_table(*columns)
     for row in processes:
         numbers = (row["pid"], row["cluster"], row["core"], row["host_cpu"])
         texts = ("-" if number is None else str(number) for number in numbers)
