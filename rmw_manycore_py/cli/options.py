@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import json
+import os
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
@@ -12,7 +13,12 @@ import click
 from rich.console import Console
 from rich.table import Table
 
-from rmw_manycore_py.launch.environment import default_platform
+
+def default_platform() -> str:
+    """Return the platform of programs that are not told another one."""
+    domain = os.environ.get("ROS_DOMAIN_ID") or "0"
+    return os.environ.get("MANYCORE_PLATFORM") or f"domain-{domain}"
+
 
 json_option = click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 platform_option = click.option(

@@ -24,9 +24,3 @@ def enter_middleware() -> None:
     """Restart this program with rmw_manycore loaded, unless the start-up hook has done so."""
     if os.environ.get("RMW_IMPLEMENTATION") != IMPLEMENTATION:
         os.execve(sys.executable, [sys.executable, *sys.orig_argv[1:]], program_environment({}))
-
-
-def default_platform(environment: Mapping[str, str] = os.environ) -> str:
-    """Return the platform of programs that are not told another one."""
-    domain = environment.get("ROS_DOMAIN_ID") or "0"
-    return environment.get("MANYCORE_PLATFORM") or f"domain-{domain}"
