@@ -15,7 +15,7 @@
 #include <mutex>
 
 #include "platform/os_process.hpp"
-#include "transport/matching.hpp"
+#include "transport/closing.hpp"
 
 namespace manycore {
 namespace {
@@ -88,7 +88,7 @@ void reap(Registry & registry, uint32_t process) {
   for (uint32_t slot = 0; slot < registry.endpoints().high_water(); ++slot) {
     EndpointEntry & endpoint = registry.endpoints()[slot];
     if (endpoint.process == process && endpoint.slot.state.load() != SlotState::free) {
-      matching::close(registry, slot, true);
+      closing::close(registry, slot, true);
     }
   }
   for (uint32_t slot = 0; slot < registry.nodes().high_water(); ++slot) {
@@ -221,7 +221,7 @@ uint32_t reap_dead(Registry & registry) {
     }
   }
   if (dead != 0) {
-    matching::sweep(registry);
+    closing::sweep(registry);
   }
   return dead;
 }

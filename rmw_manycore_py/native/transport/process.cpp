@@ -12,6 +12,7 @@
 #include "platform/error.hpp"
 #include "platform/os_process.hpp"
 #include "transport/lifecycle.hpp"
+#include "transport/closing.hpp"
 #include "transport/matching.hpp"
 #include "transport/publisher_impl.hpp"
 #include "transport/receive_thread_watcher.hpp"
@@ -269,7 +270,7 @@ uint32_t Process::Impl::fill_endpoint(const EndpointSpec & spec, EndpointKind ki
 uint32_t Process::Impl::add_endpoint(const EndpointSpec & spec, EndpointKind kind) {
   check_qos(spec);
   const Registry::Lock lock(*registry);
-  matching::sweep(*registry);
+  closing::sweep(*registry);
   const uint32_t taken = fill_endpoint(spec, kind);
   EndpointEntry & entry = registry->endpoints()[taken];
   try {
@@ -289,8 +290,8 @@ uint32_t Process::Impl::add_endpoint(const EndpointSpec & spec, EndpointKind kin
   try {
     matching::connect(*registry, taken);
   } catch (...) {
-    matching::close(*registry, taken, false);
-    matching::sweep(*registry);
+    closing::close(*registry, taken, false);
+    closing::sweep(*registry);
     throw;
   }
   return taken;

@@ -3,7 +3,7 @@
 
 #include <utility>
 
-#include "transport/matching.hpp"
+#include "transport/closing.hpp"
 #include "transport/notifier.hpp"
 #include "transport/publisher_impl.hpp"
 
@@ -29,8 +29,8 @@ Publisher::Publisher(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 Publisher::~Publisher() {
   try {
     const Registry::Lock lock(impl_->registry);
-    matching::close(impl_->registry, impl_->slot, false);
-    matching::sweep(impl_->registry);
+    closing::close(impl_->registry, impl_->slot, false);
+    closing::sweep(impl_->registry);
   } catch (const std::exception &) {
     // The registry stayed locked; the reaper closes this endpoint when the process ends.
   }

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "platform/clock.hpp"
-#include "transport/matching.hpp"
+#include "transport/closing.hpp"
 #include "transport/subscription_impl.hpp"
 
 namespace manycore {
@@ -36,8 +36,8 @@ Subscription::Subscription(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) 
 Subscription::~Subscription() {
   try {
     const Registry::Lock lock(impl_->registry);
-    matching::close(impl_->registry, impl_->slot, false);
-    matching::sweep(impl_->registry);
+    closing::close(impl_->registry, impl_->slot, false);
+    closing::sweep(impl_->registry);
   } catch (const std::exception &) {
     // The registry stayed locked; the reaper closes this endpoint when the process ends.
   }

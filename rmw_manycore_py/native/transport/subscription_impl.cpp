@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "transport/matching.hpp"
+#include "transport/closing.hpp"
 #include "transport/source_table.hpp"
 
 namespace manycore {
@@ -158,7 +158,7 @@ std::optional<Subscription::Impl::Candidate> Subscription::Impl::next() {
 void Subscription::Impl::sweep() noexcept {
   try {
     const Registry::Lock lock(registry);
-    matching::sweep(registry);
+    closing::sweep(registry);
   } catch (const std::exception &) {
     // The registry stayed locked: the next change of the graph sweeps.
   }

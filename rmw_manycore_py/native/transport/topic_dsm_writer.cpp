@@ -34,33 +34,7 @@ uint64_t initial_descriptor_count(const EndpointEntry & endpoint) {
     std::min(most, std::max(first_descriptor_count, uint64_t{endpoint.qos.depth} * 2)));
 }
 
-void fill_generation(
-  Cluster & cluster, GenerationEntry & entry, uint64_t data_bytes, uint64_t count,
-  uint64_t first) {
-  const uint64_t descriptor_bytes = count * sizeof(RecordDescriptor);
-  const uint64_t offset = cluster.allocate(descriptor_bytes + data_bytes);
-  std::memset(cluster.find<std::byte>(offset), 0, descriptor_bytes);
-  entry.offset.store(offset, std::memory_order_relaxed);
-  entry.descriptor_count.store(static_cast<uint32_t>(count), std::memory_order_relaxed);
-  entry.data_bytes.store(data_bytes, std::memory_order_relaxed);
-  entry.first.store(first, std::memory_order_release);
-}
-
 }  // namespace
-
-void TopicDsmWriter::BlockRing::push_back(const Block & block) {
-  if (count_ == slots_.size()) {
-    std::rotate(slots_.begin(), slots_.begin() + static_cast<ptrdiff_t>(first_), slots_.end());
-    first_ = 0;
-    slots_.resize(slots_.size() * 2);
-  }
-  slots_[(first_ + count_++) % slots_.size()] = block;
-}
-
-void TopicDsmWriter::BlockRing::pop_front() noexcept {
-  first_ = (first_ + 1) % slots_.size();
-  --count_;
-}
 
 TopicDsmHeader & TopicDsmWriter::create(Registry & registry, uint32_t endpoint_slot) {
   EndpointEntry & endpoint = registry.endpoints()[endpoint_slot];
@@ -79,7 +53,7 @@ TopicDsmHeader & TopicDsmWriter::create(Registry & registry, uint32_t endpoint_s
     const uint64_t data_bytes =
       endpoint.topic_dsm_size == 0 ? first_data_bytes
                                    : align_up(endpoint.topic_dsm_size, record_alignment);
-    fill_generation(
+    Generation::allocate(
       cluster, dsm.generations[0], data_bytes, initial_descriptor_count(endpoint), 1);
   } catch (...) {
     cluster.free(cluster.ref_of(&dsm).offset(), sizeof dsm);
@@ -95,20 +69,8 @@ TopicDsmWriter::TopicDsmWriter(Registry & registry, Cluster & cluster, EndpointE
   endpoint_(endpoint),
   dsm_(*cluster.find<TopicDsmHeader>(endpoint.block.offset())),
   readers_(registry, cluster, dsm_),
-  current_(view(dsm_.generations[0])),
+  current_(Generation::view(cluster, dsm_.generations[0])),
   pinned_in_slot_(current_.count, no_record) {}
-
-TopicDsmWriter::Generation TopicDsmWriter::view(GenerationEntry & entry) const noexcept {
-  Generation generation;
-  generation.entry = &entry;
-  generation.count = entry.descriptor_count.load(std::memory_order_relaxed);
-  const uint64_t offset = entry.offset.load(std::memory_order_relaxed);
-  generation.descriptors = cluster_.find<RecordDescriptor>(offset);
-  generation.data_offset = offset + generation.count * sizeof(RecordDescriptor);
-  generation.data_bytes = entry.data_bytes.load(std::memory_order_relaxed);
-  generation.first = entry.first.load(std::memory_order_relaxed);
-  return generation;
-}
 
 void TopicDsmWriter::enter() noexcept {
   dsm_.phase.store(dsm_.phase.load(std::memory_order_relaxed) | 1, std::memory_order_seq_cst);
@@ -245,12 +207,12 @@ bool TopicDsmWriter::grow(uint64_t data_bytes, uint64_t descriptor_count) {
   }
   try {
     const Registry::Lock lock(registry_, Registry::Lock::short_wait_ns);
-    fill_generation(cluster_, *free_entry, data_bytes, descriptor_count, next_number_);
+    Generation::allocate(cluster_, *free_entry, data_bytes, descriptor_count, next_number_);
   } catch (const Error &) {
     return false;
   }
   old_.push_back(current_);
-  current_ = view(*free_entry);
+  current_ = Generation::view(cluster_, *free_entry);
   blocks_.clear();
   pinned_in_slot_.assign(current_.count, no_record);
   cursor_ = 0;

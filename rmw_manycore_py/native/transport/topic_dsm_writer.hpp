@@ -3,8 +3,9 @@
 
 #include <vector>
 
+#include "transport/block_ring.hpp"
+#include "transport/generation.hpp"
 #include "transport/reader_list.hpp"
-#include "transport/topic_dsm_layout.hpp"
 
 namespace manycore {
 
@@ -39,48 +40,8 @@ public:
   TopicDsmHeader & header() const noexcept { return dsm_; }
 
 private:
-  /// Bytes in the data area that hold a record, or did and are still being read.
-  struct Block {
-    uint64_t begin;
-    uint64_t end;
-    uint64_t number;
-  };
-
-  /// Blocks in the order in which the cursor will meet them; grows, never shrinks.
-  class BlockRing {
-  public:
-    BlockRing() : slots_(64) {}
-    bool empty() const noexcept { return count_ == 0; }
-    size_t size() const noexcept { return count_; }
-    Block & front() noexcept { return slots_[first_]; }
-    Block & back() noexcept { return slots_[(first_ + count_ - 1) % slots_.size()]; }
-    void push_back(const Block & block);
-    void pop_front() noexcept;
-    void pop_back() noexcept { --count_; }
-    void clear() noexcept { count_ = 0; }
-
-  private:
-    std::vector<Block> slots_;
-    size_t first_ = 0;
-    size_t count_ = 0;
-  };
-
-  /// This process's view of one generation.
-  struct Generation {
-    GenerationEntry * entry = nullptr;
-    RecordDescriptor * descriptors = nullptr;
-    uint64_t count = 0;
-    uint64_t data_offset = 0;
-    uint64_t data_bytes = 0;
-    uint64_t first = 0;
-    RecordDescriptor & descriptor(uint64_t number) const noexcept {
-      return descriptors[number & (count - 1)];
-    }
-  };
-
   enum class TakeBack { freed, pinned, wanted };
 
-  Generation view(GenerationEntry & entry) const noexcept;
   bool wants(const Reader & reader, uint64_t number, const RecordDescriptor & record)
     const noexcept;
   bool is_wanted(uint64_t number, const RecordDescriptor & record) const noexcept;

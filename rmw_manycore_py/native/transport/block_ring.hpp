@@ -1,0 +1,50 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace manycore {
+
+/// Bytes of a data area that hold a record, or did and are still being read.
+struct Block {
+  uint64_t begin;
+  uint64_t end;
+  uint64_t number;
+};
+
+/// A publisher's private list of blocks, in the order in which its cursor will meet them. Grows, never shrinks, so
+/// that the steady state allocates nothing.
+class BlockRing {
+public:
+  BlockRing() : slots_(64) {}
+
+  bool empty() const noexcept { return count_ == 0; }
+  size_t size() const noexcept { return count_; }
+  Block & front() noexcept { return slots_[first_]; }
+  Block & back() noexcept { return slots_[(first_ + count_ - 1) % slots_.size()]; }
+
+  void push_back(const Block & block) {
+    if (count_ == slots_.size()) {
+      std::rotate(slots_.begin(), slots_.begin() + static_cast<ptrdiff_t>(first_), slots_.end());
+      first_ = 0;
+      slots_.resize(slots_.size() * 2);
+    }
+    slots_[(first_ + count_++) % slots_.size()] = block;
+  }
+  void pop_front() noexcept {
+    first_ = (first_ + 1) % slots_.size();
+    --count_;
+  }
+  void pop_back() noexcept { --count_; }
+  void clear() noexcept { count_ = 0; }
+
+private:
+  std::vector<Block> slots_;
+  size_t first_ = 0;
+  size_t count_ = 0;
+};
+
+}  // namespace manycore
