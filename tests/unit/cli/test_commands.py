@@ -1,0 +1,141 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""The command line as a whole: every verb has its help, and errors are one line."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import click
+import pytest
+from click.testing import CliRunner, Result
+
+from rmw_manycore_py.cli.main import cli
+from rmw_manycore_py.errors import EXIT_BAD_INPUT
+
+pytestmark = pytest.mark.unit
+
+MAPFILE = """\
+nodes:
+  talker: {cluster: 1, core: 1, command: "true"}
+"""
+
+
+def manycore(*words: str) -> Result:
+    return CliRunner().invoke(cli, words, prog_name="manycore")
+
+
+def commands(group: click.Group = cli, *path: str) -> Iterator[tuple[str, ...]]:
+    context = click.Context(group)
+    for name in group.list_commands(context):
+        command = group.get_command(context, name)
+        if isinstance(command, click.Group):
+            yield from commands(command, *path, name)
+        else:
+            yield (*path, name)
+
+
+@pytest.fixture
+def mapfile(tmp_path: Path) -> Path:
+    path = tmp_path / "map.yaml"
+    path.write_text(MAPFILE)
+    return path
+
+
+@pytest.mark.parametrize("path", [p for p in commands() if p[0] != "bench"], ids=" ".join)
+def test_every_command_has_help_with_examples(path: tuple[str, ...]) -> None:
+    result = manycore(*path, "--help")
+    assert result.exit_code == 0
+    assert f"Examples:\n    manycore {' '.join(path)}" in result.output or path == ("env",)
+
+
+def test_the_verbs_are_there() -> None:
+    found = {" ".join(path) for path in commands()}
+    expected = {
+        "run",
+        "create",
+        "map init",
+        "map check",
+        "map show",
+        "status",
+        "clean",
+        "doctor",
+        "env",
+        "topic list",
+        "topic info",
+        "topic echo",
+        "topic hz",
+        "node list",
+        "node info",
+    }
+    assert expected <= found
+
+
+def test_an_unknown_verb_is_an_error() -> None:
+    result = manycore("fly")
+    assert result.exit_code == EXIT_BAD_INPUT
+    assert "No such command 'fly'" in result.output
+
+
+def test_a_mapfile_that_does_not_exist() -> None:
+    result = manycore("run", "no-such.yaml")
+    assert result.exit_code == EXIT_BAD_INPUT
+    assert "no-such.yaml" in result.output
+
+
+@pytest.mark.parametrize("verb", [("run",), ("map", "check"), ("map", "show")], ids=" ".join)
+def test_a_wrong_mapfile_is_one_line_with_its_place(mapfile: Path, verb: tuple[str, ...]) -> None:
+    mapfile.write_text(MAPFILE.replace("core: 1", "kernel: 1"))
+    result = manycore(*verb, str(mapfile))
+    assert result.exit_code == EXIT_BAD_INPUT
+    assert result.output.startswith(f"manycore: {mapfile}:2: nodes.talker.kernel")
+    assert "Traceback" not in result.output
+
+
+def test_a_program_that_does_not_exist_is_found_before_the_run(mapfile: Path) -> None:
+    mapfile.write_text(MAPFILE.replace('"true"', "no-such-program"))
+    result = manycore("run", str(mapfile))
+    assert result.exit_code == EXIT_BAD_INPUT
+    assert "no-such-program" in result.output
+
+
+def test_map_check_and_show(mapfile: Path) -> None:
+    assert f"{mapfile}: 1 nodes in 1 clusters" in manycore("map", "check", str(mapfile)).output
+    shown = manycore("map", "show", str(mapfile)).output
+    assert "/talker" in shown
+    assert "topic table" in shown
+
+
+def test_map_init_writes_a_template_once(tmp_path: Path) -> None:
+    examples = Path(__file__).parents[3] / "rmw_manycore_py/examples"
+    output = tmp_path / "map.yaml"
+    words = ("map", "init", str(examples / "talker.py"), "-o", str(output))
+    assert manycore(*words).exit_code == 0
+    assert "talker:" in output.read_text()
+    again = manycore(*words)
+    assert again.exit_code == EXIT_BAD_INPUT
+    assert "exists" in again.output
+
+
+def test_create_lists_what_it_wrote(mapfile: Path, tmp_path: Path) -> None:
+    result = manycore("create", str(mapfile), "-o", str(tmp_path / "out"))
+    assert result.exit_code == 0
+    assert str(tmp_path / "out/topic_table.yaml") in result.output
+    assert (tmp_path / "out/topic_table.yaml").is_file()
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ("topic", "list"),
+        ("topic", "info", "/t"),
+        ("node", "list"),
+        ("node", "info", "/n"),
+        ("status",),
+    ],
+    ids=" ".join,
+)
+def test_a_platform_that_is_not_there(words: tuple[str, ...]) -> None:
+    result = manycore(*words, "--platform", "no-such-platform")
+    assert result.exit_code == 1
+    assert result.output.startswith("manycore: no platform 'no-such-platform'")

@@ -1,0 +1,41 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Messages as text, with messages of the real packages."""
+
+import array
+import json
+
+import pytest
+import yaml
+from geometry_msgs.msg import PoseStamped
+from sensor_msgs.msg import Image
+from std_msgs.msg import Byte, Float64MultiArray, String
+
+from rmw_manycore_py.cli.message_text import ELLIPSIS, SHOWN_LENGTH, to_plain, to_yaml
+
+pytestmark = pytest.mark.unit
+
+
+def test_a_string_is_printed_as_ros2_prints_it() -> None:
+    assert to_yaml(String(data="Hello World: 1")) == "data: 'Hello World: 1'\n"
+
+
+def test_nested_messages_keep_the_order_of_their_fields() -> None:
+    text = to_yaml(PoseStamped())
+    assert text.index("header:") < text.index("frame_id:") < text.index("orientation:")
+    assert yaml.safe_load(text)["pose"]["orientation"]["w"] == 1.0
+
+
+def test_long_arrays_and_strings_are_shortened() -> None:
+    image = Image(data=array.array("B", range(200)), encoding="x" * 200)
+    shown = yaml.safe_load(to_yaml(image))
+    assert shown["data"] == [*range(SHOWN_LENGTH), ELLIPSIS]
+    assert shown["encoding"] == "x" * SHOWN_LENGTH + ELLIPSIS
+
+
+def test_json_has_everything() -> None:
+    message = Float64MultiArray(data=[0.5] * 200)
+    assert json.loads(json.dumps(to_plain(message)))["data"] == [0.5] * 200
+
+
+def test_a_byte_is_a_number() -> None:
+    assert to_plain(Byte(data=b"\x07")) == {"data": 7}

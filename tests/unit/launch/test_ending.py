@@ -1,0 +1,48 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Whether a node ended well, and in what words."""
+
+import signal
+
+import pytest
+
+from rmw_manycore_py.launch.ending import judge, not_started
+from rmw_manycore_py.launch.state import NodeState
+
+pytestmark = pytest.mark.unit
+
+
+@pytest.mark.parametrize(
+    ("return_code", "state", "failed", "reason"),
+    [
+        (0, NodeState.RUNNING, False, "finished"),
+        (3, NodeState.RUNNING, True, "exit status 3"),
+        (-signal.SIGINT, NodeState.RUNNING, True, "killed by SIGINT (Interrupt)"),
+        (-signal.SIGSEGV, NodeState.RUNNING, True, "killed by SIGSEGV (Segmentation fault)"),
+        (0, NodeState.INTERRUPTED, False, "stopped"),
+        (-signal.SIGINT, NodeState.INTERRUPTED, False, "stopped"),
+        (130, NodeState.INTERRUPTED, False, "stopped"),
+        (-signal.SIGTERM, NodeState.TERMINATED, False, "stopped"),
+        (143, NodeState.TERMINATED, False, "stopped"),
+        (1, NodeState.INTERRUPTED, True, "exit status 1"),
+        (-signal.SIGABRT, NodeState.INTERRUPTED, True, "killed by SIGABRT (Aborted)"),
+    ],
+)
+def test_judgement(return_code: int, state: NodeState, failed: bool, reason: str) -> None:
+    ending = judge(return_code, state)
+    assert (ending.failed, ending.reason) == (failed, reason)
+
+
+def test_one_that_had_to_be_killed_failed() -> None:
+    ending = judge(-signal.SIGKILL, NodeState.KILLED)
+    assert (ending.failed, ending.signal, ending.exit_status) == (True, "SIGKILL", None)
+    assert "did not stop within 5 s of SIGINT and 3 s of SIGTERM" in ending.reason
+
+
+def test_real_time_signals_have_numbers() -> None:
+    assert "signal 40" in judge(-40, NodeState.RUNNING).reason
+
+
+def test_a_missing_program_is_named() -> None:
+    error = FileNotFoundError(2, "No such file or directory", "no-such-program")
+    reason = not_started(error).reason
+    assert reason == "could not be started: No such file or directory: no-such-program"
