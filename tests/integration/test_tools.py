@@ -1,0 +1,145 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""The tools that look at a running platform, and at the installation."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+
+import pytest
+from support import (
+    IS_MANYCORE,
+    MAPFILES,
+    PLATFORMS,
+    environment,
+    leftovers,
+    manycore_command,
+    wait_until,
+)
+
+pytestmark = [
+    pytest.mark.integration,
+    pytest.mark.skipif(not IS_MANYCORE, reason="manycore is about rmw_manycore"),
+]
+
+
+@pytest.fixture
+def manycore(start):
+    """Return a function that runs a verb to its end and returns its output."""
+
+    def call(*words: str, status: int = 0) -> str:
+        program = start(manycore_command(*words))
+        assert program.wait() == status, program
+        return program.output
+
+    return call
+
+
+@pytest.fixture
+def running(start, platform):
+    run = start(manycore_command("run", MAPFILES / "talker_listener.yaml", "--json"))
+    run.wait_for("I heard")
+    yield run
+    assert run.stop() == 0
+
+
+def test_topics_and_nodes_are_listed(running, manycore) -> None:
+    assert "/chatter [std_msgs/msg/String]" in manycore("topic", "list", "-t").splitlines()
+    assert manycore("node", "list").splitlines() == ["/listener", "/talker"]
+    rows = {row["node"]: row for row in json.loads(manycore("node", "list", "--json"))}
+    assert (rows["/talker"]["cluster"], rows["/talker"]["core"]) == (1, 1)
+    assert (rows["/listener"]["cluster"], rows["/listener"]["core"]) == (2, 1)
+
+
+def test_a_topic_is_described(running, manycore) -> None:
+    assert manycore("topic", "info", "/chatter").splitlines() == [
+        "Type: std_msgs/msg/String",
+        "Publisher count: 1",
+        "Subscription count: 1",
+    ]
+    lines = manycore("topic", "info", "-v", "/chatter").splitlines()
+    assert lines[2:6] == ["Publisher count: 1", "", "Node name: talker", "Node namespace: /"]
+    assert "  History (Depth): KEEP_LAST (10)" in lines
+    assert "unknown topic" in manycore("topic", "info", "/nothing", status=1)
+
+
+def test_a_node_is_described(running, manycore) -> None:
+    lines = manycore("node", "info", "/listener").splitlines()
+    assert lines[:3] == ["/listener", "  Subscribers:", "    /chatter: std_msgs/msg/String"]
+    server = "    /listener/list_parameters: rcl_interfaces/srv/ListParameters"
+    assert server in lines[lines.index("  Service Servers:") :]
+    assert "unable to find" in manycore("node", "info", "/nobody", status=1)
+
+
+def test_messages_are_printed_as_ros2_does(running, start, manycore) -> None:
+    echo = start(manycore_command("topic", "echo", "/chatter"))
+    echo.wait_for(r"^data: 'Hello World: \d+'$")
+    echo.wait_for(r"^---$")
+    assert echo.stop() == 0
+    assert (
+        "Hello World"
+        in json.loads(manycore("topic", "echo", "--once", "--json", "/chatter"))["data"]
+    )
+    assert "give its type" in manycore("topic", "echo", "/nothing", status=1)
+
+
+def test_echo_waits_for_a_topic_whose_type_is_given(start, platform) -> None:
+    echo = start(manycore_command("topic", "echo", "--once", "/chatter", "std_msgs/msg/String"))
+    wait_until(lambda: leftovers(platform), "echo has made the platform")
+    talker = start([sys.executable, "-m", "rmw_manycore_py.examples.talker"])
+    assert echo.wait() == 0
+    assert "data: 'Hello World" in echo.output
+    assert talker.stop() == 0
+
+
+def test_the_rate_is_printed_as_ros2_does(running, start) -> None:
+    hz = start(manycore_command("topic", "hz", "/chatter"))
+    hz.wait_for(r"^average rate: \d+\.\d{3}$")
+    hz.wait_for(r"^\tmin: \d\.\d{3}s max: \d\.\d{3}s std dev: \d\.\d{5}s window: \d+$")
+    assert hz.stop() == 0
+
+
+def test_status_shows_who_runs_where(running, manycore, platform) -> None:
+    state = json.loads(manycore("status", "--platform", platform, "--json"))[0]
+    assert state["alive"]
+    assert {node for process in state["processes"] for node in process["nodes"]} == {
+        "/talker",
+        "/listener",
+    }
+    assert [cluster["alive"] for cluster in state["clusters"]] == [True, True]
+    assert f"platform {platform}: alive" in manycore("status", "--platform", platform)
+
+
+def test_a_living_platform_is_not_cleaned(running, manycore, platform) -> None:
+    assert "is alive" in manycore("clean", platform, status=1)
+    assert leftovers(platform)
+    assert f"no platform '{platform}x'" in manycore("clean", f"{platform}x", status=1)
+
+
+def test_a_dead_platform_is_seen_and_cleaned(manycore, platform) -> None:
+    directory = PLATFORMS / platform
+    directory.mkdir(mode=0o700, parents=True)
+    (directory / "registry").write_bytes(bytes(4096))
+    assert f"platform {platform}: " in manycore("status")
+    assert platform in manycore("doctor")
+    assert str(directory) in manycore("clean", platform)
+    assert leftovers(platform) == []
+
+
+def test_the_doctor_finds_this_installation_well(manycore) -> None:
+    findings = {row["subject"]: row for row in json.loads(manycore("doctor", "--json"))}
+    assert findings["substitution"]["found"] == "rclpy uses rmw_manycore"
+    assert all(row["verdict"] != "failure" for row in findings.values())
+    assert "ok       substitution: rclpy uses rmw_manycore" in manycore("doctor")
+
+
+def test_a_shell_with_the_exports_uses_rmw_manycore(platform) -> None:
+    manycore = " ".join(map(str, manycore_command("env")))
+    probe = "import rclpy; print(rclpy.get_rmw_implementation_identifier())"
+    shell = f'eval "$({manycore})" && {sys.executable} -c "{probe}"'
+    plain = {k: v for k, v in environment(platform).items() if k != "RMW_IMPLEMENTATION"}
+    result = subprocess.run(
+        ["sh", "-c", shell], env=plain, text=True, capture_output=True, check=True
+    )
+    assert result.stdout.split() == ["rmw_manycore"]
