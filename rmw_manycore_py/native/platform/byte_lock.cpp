@@ -51,6 +51,8 @@ ByteLocks ByteLocks::open(const std::string & path) {
 bool ByteLocks::try_lock(uint32_t byte) const {
   struct flock lock = range(F_WRLCK, byte, 1);
   if (fcntl(fd_.get(), F_SETLK, &lock) == 0) {
+    const std::lock_guard<std::mutex> guard(own_->mutex);
+    own_->bytes.insert(byte);
     return true;
   }
   if (errno != EAGAIN && errno != EACCES) {
@@ -62,11 +64,31 @@ bool ByteLocks::try_lock(uint32_t byte) const {
 void ByteLocks::unlock(uint32_t byte) const noexcept {
   struct flock lock = range(F_UNLCK, byte, 1);
   fcntl(fd_.get(), F_SETLK, &lock);
+  const std::lock_guard<std::mutex> guard(own_->mutex);
+  own_->bytes.erase(byte);
 }
 
-bool ByteLocks::held_by_other(uint32_t byte) const { return any_held_by_other(byte, 1); }
+bool ByteLocks::is_held(uint32_t byte) const {
+  {
+    const std::lock_guard<std::mutex> guard(own_->mutex);
+    if (own_->bytes.count(byte) != 0) {
+      return true;
+    }
+  }
+  return is_held_elsewhere(byte, 1);
+}
 
-bool ByteLocks::any_held_by_other(uint32_t first, uint32_t count) const {
+bool ByteLocks::is_any_held() const {
+  {
+    const std::lock_guard<std::mutex> guard(own_->mutex);
+    if (!own_->bytes.empty()) {
+      return true;
+    }
+  }
+  return is_held_elsewhere(0, 0);
+}
+
+bool ByteLocks::is_held_elsewhere(uint32_t first, uint32_t count) const {
   struct flock lock = range(F_WRLCK, first, count);
   if (fcntl(fd_.get(), F_GETLK, &lock) != 0) {
     throw_errno("cannot examine the locks of " + path_);

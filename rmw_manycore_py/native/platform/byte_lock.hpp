@@ -2,7 +2,10 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
+#include <mutex>
 #include <optional>
+#include <set>
 #include <string>
 
 #include "platform/file_descriptor.hpp"
@@ -20,15 +23,24 @@ public:
   /// False when another process holds the byte.
   bool try_lock(uint32_t byte) const;
   void unlock(uint32_t byte) const noexcept;
-  /// True when another process holds the byte. (Own locks are not seen.)
-  bool held_by_other(uint32_t byte) const;
-  /// True when another process holds any byte in [first, first + count); count 0 = to the end.
-  bool any_held_by_other(uint32_t first, uint32_t count) const;
+  /// True when any process holds the byte.
+  bool is_held(uint32_t byte) const;
+  bool is_any_held() const;
 
 private:
   ByteLocks(FileDescriptor fd, std::string path) : fd_(std::move(fd)), path_(std::move(path)) {}
+  /// True when another process holds a byte in [first, first + count); count 0 = to the end.
+  bool is_held_elsewhere(uint32_t first, uint32_t count) const;
+
+  /// Bytes this process holds: the kernel does not report a process's own locks to it.
+  struct Own {
+    std::mutex mutex;
+    std::set<uint32_t> bytes;
+  };
+
   FileDescriptor fd_;
   std::string path_;
+  std::unique_ptr<Own> own_ = std::make_unique<Own>();
 };
 
 /// Exclusive lock of a whole file (flock), held while alive. The file may be unlinked by its holder;

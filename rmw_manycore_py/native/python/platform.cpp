@@ -1,8 +1,6 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 // The read-only view of a platform: does not join, does not keep it alive.
 
-#include <unistd.h>
-
 #include <nanobind/nanobind.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
@@ -38,7 +36,7 @@ public:
     nb::list all;
     for (const ProcessInfo & process : graph_.processes()) {
       nb::dict entry = to_dict(process);
-      entry["alive"] = process.pid == getpid() || alive.held_by_other(process.slot);
+      entry["alive"] = alive.is_held(process.slot);
       all.append(entry);
     }
     return all;
@@ -49,7 +47,7 @@ public:
     nb::list all;
     for (const ClusterInfo & cluster : graph_.clusters()) {
       nb::dict entry = to_dict(cluster);
-      entry["alive"] = alive.held_by_other(receive_thread_byte + cluster.id);
+      entry["alive"] = alive.is_held(receive_thread_byte + cluster.id);
       all.append(entry);
     }
     return all;

@@ -23,6 +23,7 @@ public:
 
   bool empty() const noexcept { return count_ == 0; }
   size_t size() const noexcept { return count_; }
+  uint64_t bytes() const noexcept { return bytes_; }
   Block & front() noexcept { return slots_[first_]; }
   Block & back() noexcept { return slots_[(first_ + count_ - 1) % slots_.size()]; }
 
@@ -33,18 +34,29 @@ public:
       slots_.resize(slots_.size() * 2);
     }
     slots_[(first_ + count_++) % slots_.size()] = block;
+    bytes_ += block.end - block.begin;
   }
   void pop_front() noexcept {
+    bytes_ -= front().end - front().begin;
     first_ = (first_ + 1) % slots_.size();
     --count_;
   }
-  void pop_back() noexcept { --count_; }
-  void clear() noexcept { count_ = 0; }
+  void pop_back() noexcept {
+    bytes_ -= back().end - back().begin;
+    --count_;
+  }
+  /// The last block needs less than was set aside for it.
+  void shrink_back(uint64_t end) noexcept {
+    bytes_ -= back().end - end;
+    back().end = end;
+  }
+  void clear() noexcept { count_ = bytes_ = 0; }
 
 private:
   std::vector<Block> slots_;
   size_t first_ = 0;
   size_t count_ = 0;
+  uint64_t bytes_ = 0;
 };
 
 }  // namespace manycore

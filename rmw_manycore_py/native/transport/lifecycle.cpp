@@ -154,7 +154,7 @@ Profile host_profile() {
 }
 
 bool is_alive(const PlatformPaths & paths) {
-  return exists(paths.alive()) && alive_locks(paths).any_held_by_other(0, 0);
+  return exists(paths.alive()) && alive_locks(paths).is_any_held();
 }
 
 void ensure_platform(
@@ -177,11 +177,11 @@ void ensure_platform(
 
 bool is_in_use(Registry & registry) {
   const ByteLocks & alive = alive_locks(registry.paths());
-  if (alive.held_by_other(configurator_byte)) {
+  if (alive.is_held(configurator_byte)) {
     return true;
   }
   for (uint32_t slot = 0; slot < registry.processes().high_water(); ++slot) {
-    if (registry.processes().is_live(slot) && alive.held_by_other(slot)) {
+    if (registry.processes().is_live(slot) && alive.is_held(slot)) {
       return true;
     }
   }
@@ -215,7 +215,7 @@ uint32_t reap_dead(Registry & registry) {
   const ByteLocks & alive = alive_locks(registry.paths());
   uint32_t dead = 0;
   for (uint32_t slot = 0; slot < registry.processes().high_water(); ++slot) {
-    if (registry.processes().is_live(slot) && !alive.held_by_other(slot)) {
+    if (registry.processes().is_live(slot) && !alive.is_held(slot)) {
       reap(registry, slot);
       ++dead;
     }
@@ -229,7 +229,7 @@ uint32_t reap_dead(Registry & registry) {
 void ensure_receive_thread(const PlatformPaths & paths, uint32_t cluster) {
   const JoinLock lock(paths);  // one starter at a time
   if (!exists(paths.alive()) ||
-      alive_locks(paths).held_by_other(receive_thread_byte + cluster)) {
+      alive_locks(paths).is_held(receive_thread_byte + cluster)) {
     return;
   }
   const std::string program = receive_thread_program();

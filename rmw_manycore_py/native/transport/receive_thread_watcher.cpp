@@ -53,7 +53,7 @@ bool ReceiveThreadWatcher::watch_once() {
   const pid_t pid = registry_.clusters().at(cluster_).header().receive_thread_pid.load();
   const FileDescriptor pidfd = pid > 0 ? open_pidfd(pid) : FileDescriptor();
   // The lock proves that the pid, read before, is still the receive thread's.
-  if (!pidfd || !alive.held_by_other(receive_thread_byte + cluster_)) {
+  if (!pidfd || !alive.is_held(receive_thread_byte + cluster_)) {
     return !stopped_within(settle_ms, -1);
   }
   return !stopped_within(for_ever_ms, pidfd.get());

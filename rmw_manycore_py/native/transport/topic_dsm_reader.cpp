@@ -165,8 +165,8 @@ uint64_t TopicDsmReader::last() const noexcept { return dsm_->last.load(std::mem
 void TopicDsmReader::scan(
   const GenerationEntry & generation, uint64_t last, std::vector<Waiting> & out) noexcept {
   source_->reading.store(every_record, std::memory_order_seq_cst);
-  RecordDescriptor * const descriptors =
-    generation.first.load(std::memory_order_seq_cst) == 0 ? nullptr : descriptors_of(generation);
+  const uint64_t first = generation.first.load(std::memory_order_seq_cst);
+  RecordDescriptor * const descriptors = first == 0 ? nullptr : descriptors_of(generation);
   const uint32_t count = generation.descriptor_count.load(std::memory_order_relaxed);
   for (uint32_t i = 0; descriptors != nullptr && i < count; ++i) {
     const uint64_t number = descriptors[i].number.load(std::memory_order_relaxed);
@@ -174,7 +174,9 @@ void TopicDsmReader::scan(
       continue;
     }
     source_->reading.store(number, std::memory_order_seq_cst);
-    const bool live = descriptors[i].number.load(std::memory_order_seq_cst) == number;
+    // As in look_at(): the generation may have been given back before the first store of `reading` was seen.
+    const bool live = descriptors[i].number.load(std::memory_order_seq_cst) == number &&
+                      generation.first.load(std::memory_order_acquire) == first;
     if (live && is_for_us(descriptors[i])) {
       out.push_back({descriptors[i].source_timestamp_ns, number, index_, incarnation_});
     }

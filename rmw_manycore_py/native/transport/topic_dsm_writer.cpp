@@ -190,10 +190,11 @@ uint64_t TopicDsmWriter::data_limit() const noexcept {
 }
 
 bool TopicDsmWriter::grow(uint64_t data_bytes, uint64_t descriptor_count) {
-  const bool keep_all = dsm_.keep_all != 0;
+  const bool larger =
+    data_bytes > current_.data_bytes || descriptor_count > current_.count;
   if (
-    endpoint_.topic_dsm_size != 0 || data_bytes > data_limit() ||
-    descriptor_count > (keep_all ? keep_all_capacity : descriptor_limit)) {
+    endpoint_.topic_dsm_size != 0 || !larger || data_bytes > data_limit() ||
+    descriptor_count > most_descriptors()) {
     return false;
   }
   GenerationEntry * const free_entry = std::find_if(
@@ -217,6 +218,33 @@ bool TopicDsmWriter::grow(uint64_t data_bytes, uint64_t descriptor_count) {
   pinned_in_slot_.assign(current_.count, no_record);
   cursor_ = 0;
   return true;
+}
+
+uint64_t TopicDsmWriter::most_descriptors() const noexcept {
+  return dsm_.keep_all != 0 ? keep_all_capacity : descriptor_limit;
+}
+
+/// The most records that anybody may want at a time.
+uint64_t TopicDsmWriter::deepest_history() const noexcept {
+  uint64_t deepest = dsm_.transient_local != 0 ? dsm_.depth : 1;
+  for (const Reader & reader : readers_.readers()) {
+    const bool unbounded = reader.subscription->keep_all != 0 || dsm_.keep_all != 0;
+    deepest = std::max<uint64_t>(
+      deepest, unbounded ? keep_all_capacity : uint64_t{reader.subscription->depth});
+  }
+  return deepest;
+}
+
+/// Four times the records, descriptors and bytes alike, but no more than are ever wanted: few generations, since
+/// the old ones stay while their records are wanted.
+bool TopicDsmWriter::grow_to_hold_more(uint64_t need_bytes) {
+  const uint64_t held = std::max<uint64_t>(blocks_.size(), 2);
+  const uint64_t records = std::max(held + 2, std::min(held * 4, deepest_history() + 2));
+  const uint64_t bytes_per_record = std::max(need_bytes, blocks_.bytes() / held);
+  const uint64_t bytes = std::max(records * bytes_per_record, current_.data_bytes);
+  return grow(
+    std::min(bytes, std::max(data_limit(), current_.data_bytes)),
+    std::clamp(power_of_two_at_least(records), current_.count, most_descriptors()));
 }
 
 void TopicDsmWriter::require_data_bytes(uint64_t need_bytes) {
@@ -263,11 +291,8 @@ void TopicDsmWriter::wait_for_progress(uint64_t number) {
   dsm_.writer_waits.store(0, std::memory_order_relaxed);
 }
 
-void TopicDsmWriter::make_place(uint64_t number, uint64_t need_bytes, bool more_descriptors) {
-  const uint64_t count = more_descriptors ? current_.count * 2 : current_.count;
-  const uint64_t bytes =
-    more_descriptors ? current_.data_bytes : std::max(current_.data_bytes * 2, need_bytes * 2);
-  if (grow(bytes, count)) {
+void TopicDsmWriter::make_place(uint64_t number, uint64_t need_bytes) {
+  if (grow_to_hold_more(need_bytes)) {
     return;
   }
   if (is_owed(number)) {
@@ -285,7 +310,7 @@ void TopicDsmWriter::claim_descriptor(uint64_t need_bytes) {
     const uint64_t old = record.number.load(std::memory_order_relaxed);
     if (old != no_record) {
       if (take_back(old, false) == TakeBack::wanted) {
-        make_place(old, need_bytes, true);
+        make_place(old, need_bytes);
       }
       continue;
     }
@@ -338,7 +363,7 @@ bool TopicDsmWriter::try_place(uint64_t need_bytes) {
         break;
       case TakeBack::wanted: {
         const GenerationEntry * const before = current_.entry;
-        make_place(block.number, need_bytes, false);
+        make_place(block.number, need_bytes);
         wraps = current_.entry == before ? wraps : 0;
         break;
       }
@@ -378,7 +403,7 @@ uint64_t TopicDsmWriter::commit(
   uint64_t size_bytes, int64_t source_timestamp_ns, uint64_t publication_sequence_number,
   const Correlation & correlation) {
   Block & block = blocks_.back();
-  block.end = block.begin + align_up(std::max<uint64_t>(size_bytes, 1), record_alignment);
+  blocks_.shrink_back(block.begin + align_up(std::max<uint64_t>(size_bytes, 1), record_alignment));
   block.number = next_number_;
   cursor_ = block.end;
   RecordDescriptor & record = current_.descriptor(next_number_);

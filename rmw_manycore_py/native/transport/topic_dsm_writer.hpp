@@ -51,9 +51,12 @@ private:
   bool drain(const Generation & old);
   void free_old_generations() noexcept;
   /// Makes place where a wanted record stands: grows, waits (RELIABLE + KEEP_ALL) or overwrites.
-  void make_place(uint64_t number, uint64_t need_bytes, bool more_descriptors);
+  void make_place(uint64_t number, uint64_t need_bytes);
   void claim_descriptor(uint64_t need_bytes);
   bool try_place(uint64_t need_bytes);
+  uint64_t most_descriptors() const noexcept;
+  uint64_t deepest_history() const noexcept;
+  bool grow_to_hold_more(uint64_t need_bytes);
   bool grow(uint64_t data_bytes, uint64_t descriptor_count);
   void require_data_bytes(uint64_t need_bytes);
   void wait_for_progress(uint64_t number);
