@@ -15,7 +15,7 @@ RECEIVE_THREAD = "(receive thread)"  # no node can have a name with blanks
 
 def run_placement(placement: Placement, report: Report, duration_s: float | None = None) -> int:
     """Run the nodes of a placement on a platform of their own; return the exit status."""
-    for text in placement.notices:
+    for text in (*placement.notices, *_bridge_notices(placement)):
         report(Notice(text))
     with configured_platform(placement):
         report(_describe(placement))
@@ -25,6 +25,12 @@ def run_placement(placement: Placement, report: Report, duration_s: float | None
         report(Notice(f"platform {placement.name} stays, for {', '.join(users)}"))
     report(Finished(runner.failed, exit_status))
     return exit_status
+
+
+def _bridge_notices(placement: Placement) -> list[str]:
+    if placement.bridge is None:
+        return []
+    return ["topic_in and topic_to join nothing yet: no bridge to the outside is started"]
 
 
 def _describe(placement: Placement) -> Platform:
