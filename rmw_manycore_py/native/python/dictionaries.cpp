@@ -89,7 +89,7 @@ Qos qos_from(const nb::dict & values) {
   Qos qos;
   for (const auto [key_object, value] : values) {
     const auto key = nb::cast<std::string>(key_object);
-    const auto word = [&] { return nb::cast<std::string>(value); };
+    const auto word = [&value = value] { return nb::cast<std::string>(value); };
     if (key == "reliability") {
       qos.reliability = static_cast<Reliability>(second_of(key, word(), "best_effort", "reliable"));
     } else if (key == "durability") {
