@@ -155,5 +155,6 @@ def test_a_fresh_environment_runs_a_mapfile(
     run(tmp_path / "venv/bin/pip", "install", wheel)
     mapfile = MAPFILES / "talker_listener.yaml"
     manycore = tmp_path / "venv/bin/manycore"
-    printed = run(manycore, "run", mapfile, "--duration", "3", cwd=tmp_path)
+    nodes = environment(unique_platform())
+    printed = run(manycore, "run", mapfile, "--duration", "3", cwd=tmp_path, env=nodes)
     assert "I heard" in printed
