@@ -38,7 +38,7 @@ def substitute() -> None:
     _ran = True
     replaced = os.environ.pop(REPLACED, None) == str(os.getpid())
     stand_ins = stand_in_directory(sys.prefix)
-    if stand_ins in library_path(os.environ):
+    if library_path(os.environ)[:1] == [stand_ins]:
         rest = [path for path in library_path(os.environ) if path != stand_ins]
         os.environ[LIBRARY_PATH] = os.pathsep.join(rest)  # child processes start afresh
     elif not (needs_stand_ins(sys.prefix) and _is_python_program()):

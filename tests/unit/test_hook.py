@@ -92,6 +92,13 @@ def test_a_python_child_is_substituted_again(prefix: Prefix) -> None:
     assert loader_path(prefix.show("-c", child))[0] == str(prefix.stand_ins)
 
 
+def test_stand_ins_behind_other_directories_do_not_count(prefix: Prefix) -> None:
+    behind = f"{prefix.path}/lib:{prefix.stand_ins}"
+    shown = prefix.show(LD_LIBRARY_PATH=behind)
+    assert loader_path(shown) == [str(prefix.stand_ins), *prefix.wheel_libraries]
+    assert shown["environ"]["LD_LIBRARY_PATH"].split(":") == prefix.wheel_libraries
+
+
 @pytest.mark.parametrize("other", ["rmw_fastrtps_cpp", "rmw_manycore_cpp", ""])
 def test_other_processes_are_left_alone(prefix: Prefix, other: str) -> None:
     shown = prefix.show(RMW_IMPLEMENTATION=other)
