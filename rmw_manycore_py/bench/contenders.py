@@ -43,7 +43,7 @@ class Middleware:
     """A middleware as a bench sets it up; its processes are parties, counted from 0."""
 
     name: str
-    variables: dict[str, str] = field(default_factory=dict)
+    variables: dict[str, str] = field(default_factory=dict, hash=False)
     profile: str | None = None
     clusters: tuple[int, ...] = (1,)
 

@@ -9,6 +9,7 @@ import os
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager
@@ -80,6 +81,8 @@ class Process:
                 stdout=subprocess.PIPE,
                 stderr=self._errors,
             )
+        self._end_of_patience = threading.Timer(PATIENCE_S, self._process.kill)
+        self._end_of_patience.start()
 
     @property
     def pid(self) -> int:
@@ -89,8 +92,10 @@ class Process:
     def wait_until_ready(self) -> None:
         """Return when the process has done its part of the set-up."""
         assert self._process.stdout is not None
-        if self._process.stdout.readline().strip() != "ready":
-            self.finish()
+        for line in self._process.stdout:
+            if line.strip() == "ready":
+                return
+        self.finish()
 
     def release(self) -> None:
         """End the input of the process, for which some wait before they end themselves."""
@@ -100,7 +105,7 @@ class Process:
 
     def finish(self) -> dict[str, Any]:
         """Return what the process found, once it has ended well."""
-        output, _ = self._process.communicate(timeout=PATIENCE_S)
+        output, _ = self._process.communicate()
         if self._process.returncode != 0:
             self._errors.seek(0)
             raise ManycoreError(
@@ -112,7 +117,8 @@ class Process:
         return result
 
     def close(self) -> None:
-        """End the process, whatever it is doing."""
+        """End the process, whatever it is doing, and close our ends of its pipes."""
+        self._end_of_patience.cancel()
         if self._process.poll() is None:
             self._process.kill()
         self._process.wait()

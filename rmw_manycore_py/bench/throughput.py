@@ -13,7 +13,10 @@ from rmw_manycore_py.bench.summary import Goal, Result
 IN_FLIGHT = 8
 SMALL = ("64 B", "1 KiB")
 LARGE = ("64 KiB", "1 MiB", "8 MiB")
-FULL_MESSAGES = {"64 B": 20000, "1 KiB": 20000, "64 KiB": 8000, "1 MiB": 1000, "8 MiB": 120}
+# Messages of a sample, and samples of a full round.
+STRETCH = {"64 B": 400, "1 KiB": 400, "64 KiB": 160, "1 MiB": 40, "8 MiB": 8}
+FULL_STRETCHES = 50
+WARM_UP_STRETCHES = 3
 
 
 def measure(run: Run) -> list[Result]:
@@ -25,7 +28,7 @@ def measure(run: Run) -> list[Result]:
 
 
 def _measure_size(run: Run, size: str) -> list[Result]:
-    messages = run.iterations(FULL_MESSAGES[size])
+    stretch = STRETCH[size]
     lost: dict[str, list[float]] = {}
 
     def flood(middleware: Middleware) -> Sequence[float]:
@@ -36,14 +39,15 @@ def _measure_size(run: Run, size: str) -> list[Result]:
                 role="source",
                 bytes=PAYLOADS[size],
                 in_flight=IN_FLIGHT,
-                warm_up=messages // 4,
-                iterations=messages,
+                warm_up=WARM_UP_STRETCHES * stretch,
+                stretch=stretch,
+                stretches=run.iterations(FULL_STRETCHES),
             )
             sink = session.native("throughput", 1, role="sink")
             found = source.finish()
             sink.finish()
         lost.setdefault(middleware.name, []).append(found["lost"])
-        return [found["messages"] / found["duration_ns"] * 1e9]
+        return [stretch / sample_ns * 1e9 for sample_ns in found["samples_ns"]]
 
     rates = run.interleave(
         f"throughput {size}", "1/s", for_each(MIDDLEWARES, flood), higher_is_better=True

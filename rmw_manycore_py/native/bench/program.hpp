@@ -6,15 +6,23 @@
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <map>
+#include <string>
 #include <vector>
 
 #include "bench/arguments.hpp"
 
 namespace manycore::bench {
 
+using Counts = std::map<std::string, uint64_t>;
+
 /// Ends every program: one line of JSON on standard output, as the Python side reads it.
-inline void print_samples(const std::vector<int64_t> & samples_ns) {
-  std::printf("{\"samples_ns\": [");
+inline void print_samples(const std::vector<int64_t> & samples_ns, const Counts & counts = {}) {
+  std::printf("{");
+  for (const auto & [name, count] : counts) {
+    std::printf("\"%s\": %llu, ", name.c_str(), static_cast<unsigned long long>(count));
+  }
+  std::printf("\"samples_ns\": [");
   for (size_t i = 0; i < samples_ns.size(); ++i) {
     std::printf("%s%lld", i == 0 ? "" : ",", static_cast<long long>(samples_ns[i]));
   }

@@ -16,22 +16,18 @@ namespace {
 
 using namespace manycore::bench;
 
-struct Counts {
-  uint64_t allocations;
-  uint64_t page_faults;
-};
-
 Counts counts_now() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
-  return {allocations(), static_cast<uint64_t>(usage.ru_minflt + usage.ru_majflt)};
+  const auto page_faults = static_cast<uint64_t>(usage.ru_minflt + usage.ru_majflt);
+  return {{"allocations", allocations()}, {"page_faults", page_faults}};
 }
 
-void print_difference(const Counts & from, const Counts & to) {
-  std::printf(
-    "{\"allocations\": %llu, \"page_faults\": %llu}\n",
-    static_cast<unsigned long long>(to.allocations - from.allocations),
-    static_cast<unsigned long long>(to.page_faults - from.page_faults));
+Counts difference(Counts from, Counts to) {
+  for (auto & [name, count] : to) {
+    count -= from[name];
+  }
+  return to;
 }
 
 void ping(const Arguments & arguments) {
@@ -46,14 +42,14 @@ void ping(const Arguments & arguments) {
   }
   const Counts end = counts_now();
   ping.stop();
-  print_difference(start, end);
+  print_samples({}, difference(start, end));
 }
 
 void pong(const Arguments & arguments) {
   const uint64_t first = arguments.number("warm_up") + 1;
   const uint64_t last = first + arguments.number("iterations") - 1;
-  Counts start{};
-  Counts end{};
+  Counts start;
+  Counts end;
   run_pong([&](uint64_t number) {
     if (number == first) {
       start = counts_now();
@@ -62,7 +58,7 @@ void pong(const Arguments & arguments) {
       end = counts_now();
     }
   });
-  print_difference(start, end);
+  print_samples({}, difference(start, end));
 }
 
 }  // namespace

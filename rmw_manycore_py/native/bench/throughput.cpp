@@ -2,10 +2,11 @@
 // How many messages a second arrive, none lost, with a bounded number under way?
 //
 //   throughput role=sink
-//   throughput role=source bytes=N in_flight=N warm_up=N iterations=N
+//   throughput role=source bytes=N in_flight=N warm_up=N stretch=N stretches=N
 //
 // The source sends a message as soon as the one `in_flight` before it is acknowledged; the sink
-// acknowledges each message with its number and with how many are missing so far.
+// acknowledges each message with its number and with how many are missing so far. The samples are
+// the times of stretches of `stretch` messages, from acknowledgement to acknowledgement.
 #include "bench/node.hpp"
 #include "bench/program.hpp"
 #include "platform/clock.hpp"
@@ -30,14 +31,16 @@ public:
     } while (!wait_set_.wait(acknowledgements_, std::chrono::milliseconds(100)));
   }
 
+  /// Sends `count` messages; on return all but the last `in_flight` - 1 are acknowledged.
   void send(size_t count) {
     for (size_t i = 0; i < count; ++i) {
       set_number(message_, ++sent_);
       publisher_.publish(message_);
       wait_for_acknowledgement_of(sent_ < in_flight_ ? 0 : sent_ - in_flight_ + 1);
     }
-    wait_for_acknowledgement_of(sent_);
   }
+
+  void drain() { wait_for_acknowledgement_of(sent_); }
 
   void stop() { stop_subscribers(publisher_); }
   uint64_t lost() const { return lost_; }
@@ -67,14 +70,15 @@ void source(const Arguments & arguments) {
   Source source(arguments.number("bytes"), arguments.number("in_flight"));
   source.connect();
   source.send(arguments.number("warm_up"));
-  const size_t messages = arguments.number("iterations");
-  const int64_t start_ns = monotonic_ns();
-  source.send(messages);
-  const int64_t duration_ns = monotonic_ns() - start_ns;
+  std::vector<int64_t> samples_ns(arguments.number("stretches"));
+  for (int64_t & sample_ns : samples_ns) {
+    const int64_t start_ns = monotonic_ns();
+    source.send(arguments.number("stretch"));
+    sample_ns = monotonic_ns() - start_ns;
+  }
+  source.drain();
   source.stop();
-  std::printf(
-    "{\"messages\": %zu, \"duration_ns\": %lld, \"lost\": %llu}\n", messages,
-    static_cast<long long>(duration_ns), static_cast<unsigned long long>(source.lost()));
+  print_samples(samples_ns, {{"lost", source.lost()}});
 }
 
 void sink() {
