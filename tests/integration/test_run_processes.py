@@ -13,10 +13,11 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from support import Program, peer_command, wait_until
+from support import PATIENCE_S, Program, peer_command, wait_until
 
 from rmw_manycore_py.launch.program import NodeProgram
 from rmw_manycore_py.launch.runner import Runner
+from rmw_manycore_py.launch.state import STOP_STEPS
 from rmw_manycore_py.topology import Core
 
 pytestmark = pytest.mark.integration
@@ -46,8 +47,12 @@ def python(source: str) -> list[str]:
     return [sys.executable, "-c", source]
 
 
-def run_programs(commands: dict[str, list[str]], host_cpu: int, duration_s: float | None) -> None:
+def run_programs(
+    commands: dict[str, list[str]], host_cpu: int, duration_s: float | None, grace_s: float
+) -> None:
     """Run in a process of its own: a runner over commands, its events on standard output."""
+    for state, step in STOP_STEPS.items():
+        STOP_STEPS[state] = step._replace(grace_s=grace_s)
     programs = [
         NodeProgram(name, tuple(command), dict(os.environ), Core(1, number), host_cpu)
         for number, (name, command) in enumerate(commands.items(), start=1)
@@ -59,8 +64,7 @@ def run_programs(commands: dict[str, list[str]], host_cpu: int, duration_s: floa
 class Run:
     """A runner in a process of its own."""
 
-    def __init__(self, commands: dict[str, list[str]], host_cpu: int, duration_s: float | None):
-        arguments = (commands, host_cpu, duration_s)
+    def __init__(self, *arguments: Any) -> None:
         self.program = Program(peer_command(run_programs, *arguments), dict(os.environ))
 
     @property
@@ -86,8 +90,13 @@ StartRun = Callable[..., Run]
 def start_run() -> Iterator[StartRun]:
     runs: list[Run] = []
 
-    def start(host_cpu: int = CPU, duration_s: float | None = None, **commands: list[str]) -> Run:
-        runs.append(Run(commands, host_cpu, duration_s))
+    def start(
+        host_cpu: int = CPU,
+        duration_s: float | None = None,
+        grace_s: float = PATIENCE_S,
+        **commands: list[str],
+    ) -> Run:
+        runs.append(Run(commands, host_cpu, duration_s, grace_s))
         return runs[-1]
 
     yield start
@@ -184,17 +193,24 @@ def test_the_duration_ends_the_run(start_run: StartRun) -> None:
     assert run.event("stopping")["reason"] == "the duration is over"
 
 
-def test_a_stubborn_node_is_killed_and_counts_as_failed(start_run: StartRun) -> None:
-    run = start_run(node=python(STUBBORN))
+def test_a_stubborn_node_is_killed_when_its_time_is_up(start_run: StartRun) -> None:
+    run = start_run(node=python(STUBBORN), grace_s=0.1)
     run.wait_for_lines("ready", "node")
-    run.program.signal(signal.SIGINT)
-    run.program.wait_for('"line": "no"')
-    run.program.signal(signal.SIGINT)  # asked again, it does not wait out the grace
-    run.program.wait_for('"line": "no"')
     run.program.signal(signal.SIGINT)
     assert run.program.wait() == 1
     assert [e["signal"] for e in run.events if e["event"] == "insisting"] == ["SIGTERM", "SIGKILL"]
     assert "did not stop" in run.event("ended")["reason"]
+
+
+def test_who_interrupts_again_does_not_wait(start_run: StartRun) -> None:
+    run = start_run(node=python(STUBBORN), grace_s=1e6)
+    run.wait_for_lines("ready", "node")
+    for number in ("SIGTERM", "SIGKILL"):
+        run.program.signal(signal.SIGINT)
+        run.program.wait_for('"line": "no"')
+        assert not any(e.get("signal") == number for e in run.events)
+    run.program.signal(signal.SIGINT)
+    assert run.program.wait() == 1
 
 
 def test_stopped_processes_are_stopped_too(start_run: StartRun) -> None:
@@ -242,7 +258,7 @@ def test_nodes_die_with_a_killed_runner(start_run: StartRun) -> None:
 
 def test_a_reader_that_closes_the_pipe_ends_the_run() -> None:
     endless = {"node": ["sh", "-c", "while echo again; do sleep 0.01; done"]}
-    command = shlex.join(peer_command(run_programs, endless, CPU, None))
+    command = shlex.join(peer_command(run_programs, endless, CPU, None, PATIENCE_S))
     pipeline = Program(["sh", "-c", f"{command} | head -n 3"], dict(os.environ))
     pipeline.wait()
     pipeline.kill()

@@ -73,7 +73,7 @@ def test_a_node_is_described(running, manycore) -> None:
 
 
 def test_messages_are_printed_as_ros2_does(running, start, manycore) -> None:
-    echo = start(manycore_command("topic", "echo", "/chatter"))
+    echo = start(manycore_command("topic", "echo", "/chatter"), RMW_IMPLEMENTATION="")
     echo.wait_for(r"^data: 'Hello World: \d+'$")
     echo.wait_for(r"^---$")
     assert echo.stop() == 0
