@@ -4,7 +4,7 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-Row = dict[str, Any]
+_Row = dict[str, Any]
 
 class PlatformError(RuntimeError):
     """Something is wrong with a platform; the message says what to do."""
@@ -41,26 +41,26 @@ class Platform:
     """A look at a platform: does not join it, and does not keep it alive."""
 
     def __init__(self, name: str) -> None: ...
-    def info(self) -> Row:
+    def info(self) -> _Row:
         """Return name, clusters, cores_per_cluster, smem_size, alive."""
 
-    def processes(self) -> list[Row]:
+    def processes(self) -> list[_Row]:
         """Return slot, pid, cluster, core, host_cpu, label, alive of each."""
 
-    def nodes(self) -> list[Row]:
+    def nodes(self) -> list[_Row]:
         """Return handle, process (slot), name, namespace, enclave of each."""
 
-    def endpoints(self) -> list[Row]:
+    def endpoints(self) -> list[_Row]:
         """Return each publisher and subscription.
 
         Keys: kind (publisher, subscription), role (topic, request, reply), topic, type, type_hash,
         gid, node, namespace, cluster, process (slot), qos, matched, counters.
         """
 
-    def clusters(self) -> list[Row]:
+    def clusters(self) -> list[_Row]:
         """Return id, smem_size, used, receive_thread_pid, messages, notifications, alive of each."""
 
-    def topic_table(self) -> list[Row]:
+    def topic_table(self) -> list[_Row]:
         """Return topic_name, topic_id, topic_dsm_size, receiver_clusters (bit mask) of each."""
 
 class Publisher:
@@ -74,7 +74,7 @@ class Publisher:
 class Subscription:
     """Takes serialized messages."""
 
-    def take(self) -> tuple[bytes, Row] | None: ...
+    def take(self) -> tuple[bytes, _Row] | None: ...
     def has_data(self) -> bool: ...
     def matched(self) -> int: ...
     def lost(self) -> int: ...
