@@ -2,8 +2,8 @@
 #
 # Defines `manycore_ros`: the headers and libraries of the user's ROS 2.
 #
-# In a colcon workspace the packages are found as ament exports them. The wheels' exports name the
-# machine that built them, so there (and wherever ament_cmake is absent) plain paths are used.
+# In a sourced ROS 2 install (as under colcon) the packages are found as ament exports them. The
+# wheels lack ament_cmake and other things that their exports refer to; there plain paths do.
 add_library(manycore_ros INTERFACE)
 
 set(ros_packages rmw rcutils rcpputils rosidl_runtime_c rosidl_runtime_cpp
@@ -12,8 +12,8 @@ set(ros_packages rmw rcutils rcpputils rosidl_runtime_c rosidl_runtime_cpp
 set(ros_libraries rmw rcutils rosidl_runtime_c rosidl_typesupport_fastrtps_c
   rosidl_typesupport_fastrtps_cpp rosidl_dynamic_typesupport fastcdr)
 
-find_package(ament_cmake QUIET)
-if(ament_cmake_FOUND)
+if(DEFINED ENV{AMENT_PREFIX_PATH} AND NOT SKBUILD)
+  find_package(ament_cmake REQUIRED)
   find_package(fastcdr REQUIRED)
   target_link_libraries(manycore_ros INTERFACE fastcdr)
   foreach(package rmw rcutils rcpputils rosidl_runtime_c rosidl_dynamic_typesupport
