@@ -3,7 +3,7 @@
 //
 //   first_message role=publisher         keeps one message for whoever comes, until its input ends
 //   first_message role=joining           comes to a publisher that is already there
-//   first_message role=alone             publishes to itself; nothing of the system was there before
+//   first_message role=alone             publishes to itself, as the first process of all
 #include "bench/node.hpp"
 #include "bench/program.hpp"
 #include "platform/clock.hpp"

@@ -126,7 +126,8 @@ Subscription::Subscription(Node & node, const std::string & topic, const rmw_qos
 }
 
 Subscription::~Subscription() {
-  warn_unless_ok(rmw_destroy_subscription(node_.handle(), subscription_), "rmw_destroy_subscription");
+  warn_unless_ok(
+    rmw_destroy_subscription(node_.handle(), subscription_), "rmw_destroy_subscription");
 }
 
 bool Subscription::take(Message & message) {
