@@ -12,6 +12,8 @@ from rmw_manycore_py.bench.summary import Result
 from rmw_manycore_py.errors import ManycoreError
 
 COLUMNS = 2
+# Beyond this ratio of the longest bar to the shortest the short ones could not be seen.
+LINEAR_UP_TO = 20
 
 
 def plot(results: Sequence[Result], path: Path) -> None:
@@ -22,7 +24,7 @@ def plot(results: Sequence[Result], path: Path) -> None:
         raise ManycoreError(
             "the plot needs matplotlib: pip install 'rmw-manycore[bench]'"
         ) from None
-    questions = list(dict.fromkeys(result.question for result in results))
+    questions = list(dict.fromkeys(r.question for r in results if r.summary.largest > 0))
     rows = math.ceil(len(questions) / COLUMNS)
     figure = Figure(figsize=(7 * COLUMNS, 2.4 * rows), layout="constrained")
     panels = figure.subplots(rows, COLUMNS, squeeze=False).flatten()
@@ -36,11 +38,12 @@ def plot(results: Sequence[Result], path: Path) -> None:
 def _draw(panel: Any, question: str, results: Sequence[Result]) -> None:
     names = [result.contender for result in results]
     medians = [result.summary.median for result in results]
-    tails = [max(result.summary.p99 - result.summary.median, 0) for result in results]
+    tails = [result.summary.p99 - result.summary.median for result in results]
     colours = ["tab:blue" if "manycore" in name else "tab:gray" for name in names]
-    panel.barh(names, medians, xerr=[[0] * len(tails), tails], color=colours, ecolor="0.3")
+    panel.barh(names, medians, xerr=[[0.0] * len(tails), tails], color=colours, ecolor="0.3")
     panel.invert_yaxis()
     panel.set_title(question)
     panel.set_xlabel(results[0].unit)
-    if min(medians) > 0:
+    if 0 < LINEAR_UP_TO * min(medians) < max(medians):
         panel.set_xscale("log")
+        panel.set_xlim(left=10 ** math.floor(math.log10(min(medians))))
