@@ -12,7 +12,7 @@ from rmw_manycore_py.bench.summary import Result
 from rmw_manycore_py.errors import ManycoreError
 
 COLUMNS = 2
-# Beyond this ratio of the longest bar to the shortest the short ones could not be seen.
+# Beyond this ratio of the longest line to the shortest bar the bar could not be seen.
 LINEAR_UP_TO = 20
 
 
@@ -44,6 +44,6 @@ def _draw(panel: Any, question: str, results: Sequence[Result]) -> None:
     panel.invert_yaxis()
     panel.set_title(question)
     panel.set_xlabel(results[0].unit)
-    if 0 < LINEAR_UP_TO * min(medians) < max(medians):
+    if 0 < LINEAR_UP_TO * min(medians) < max(r.summary.p99 for r in results):
         panel.set_xscale("log")
         panel.set_xlim(left=10 ** math.floor(math.log10(min(medians))))
