@@ -97,7 +97,7 @@ def _run(command: list[str], directory: str) -> str:
 def _read(report: str, seconds: float) -> Outcome:
     errors = re.search(r"errors: (\d+)", report)
     states = re.search(r"([\d.e+]+) states, stored", report)
-    violation = re.search(r"pan:1: (.+?) \(at depth", report)
+    violation = re.search(r"pan:1: (assertion violated|invalid end state|.+)", report)
     complete = "Search not completed" not in report and "max search depth too small" not in report
     if errors is None or states is None or (errors[1] == "0" and not complete):
         raise IncompleteSearchError(report)

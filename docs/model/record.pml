@@ -1,0 +1,322 @@
+/* Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+ *
+ * Question: does a reader that holds a claim read the bytes of its record and no others, while the publisher neither
+ * waits nor is refused because of a reader that is stuck, and gets the place back in the end?
+ * Follows TopicDsmWriter (take_back, claim_descriptor, try_place, commit) on a ring that may not grow, and
+ * TopicDsmReader (claim, release, scan). All messages are of one size, so the data area is BLOCKS places that the cursor
+ * passes in turn. A hint names any record that the reader has not noted: they come late, twice or never.
+ * A publish may be refused (no_space) only when readers claim one record after the other just as the cursor comes by.
+ * A stopped reader is one that spin lets take no more steps; reader 0 may be killed at any step, and is then reaped.
+ *
+ * RUN READERS=1
+ * RUN READERS=2
+ * BUG 1: no fence between reading and the look at number (reader)
+ * BUG 2: no fence between clearing number and the look at reading (publisher)
+ * BUG 3: number cleared after the look at reading
+ * BUG 4: number and last stored before the bytes
+ * BUG 5: reading cleared before the bytes are read
+ * BUG 6: cursor (taken) advanced before the bytes are read
+ * BUG 7: descriptor of a pinned record used again
+ * BUG 8: a scan pins every record
+ * BUG 9: publisher does not learn that a reader was reaped
+ */
+#if READERS == 1
+#define COUNT 2           /* descriptors: a power of two, more than readers */
+#define MESSAGES 3
+#define CLAIMS 4          /* of reader 0, at most */
+#define KILLABLE 1
+#else
+#define COUNT 4
+#define MESSAGES 1
+#define CLAIMS 2
+#define KILLABLE 0
+#endif
+#define BLOCKS (READERS + 1)   /* with every reader stuck, one place is left */
+
+#define NUMBER(d) (d)
+#define BLOCK(d) (4 + (d))
+#define DATA(b) (8 + (b))
+#define READING(r) (11 + (r))
+#define TAKEN(r) (13 + (r))
+#define LAST 15
+#define GENERATION 16     /* match_generation */
+#define ACTIVE 17         /* of reader 0's entry in the reader table; reader 1's stays */
+#define WORDS 18
+#define PROCESSES 3
+#define PUBLISHER 2       /* readers are processes 0 and 1 */
+
+#define no_record 0
+#define every_record 255
+
+#include "tso.pml"
+
+byte finished[READERS];   /* what the reader has read or given up; for the property only */
+bool claimed_anew;        /* some reader made a claim since the publisher began to look for room */
+byte gone;                /* readers that left for good: ended, or dead and reaped */
+bool killed, dead;
+
+/* TopicDsmReader */
+
+inline choose_hint() {
+  atomic {
+    claims > 0 && load(r, LAST) > noted ->
+    n = noted + 1;
+    do
+    :: n < load(r, LAST) -> n++
+    :: break
+    od
+  }
+}
+
+inline release() {
+  atomic {
+    store_seq_cst(r, TAKEN(r), n);
+    assert(finished[r] >= n)
+  };
+  store_release(r, READING(r), no_record)
+}
+
+/* Any moment between claim and release. */
+inline read_bytes() {
+  atomic {
+    b = load(r, BLOCK(n % COUNT));
+    assert(load(r, DATA(b)) == n);
+    b = 0;
+    finished[r] = n
+  }
+}
+
+inline claim() {
+#if BUG == 1
+  atomic { store_release(r, READING(r), n); claimed_anew = true };
+#else
+  atomic { store_seq_cst(r, READING(r), n); claimed_anew = true };
+#endif
+  atomic {
+    holds = load(r, NUMBER(n % COUNT)) == n;
+    if
+    :: !holds -> finished[r] = n
+    :: else
+    fi
+  }
+}
+
+/* `claims` is what it makes at most. */
+proctype Reader(byte r; byte claims) {
+  byte noted, n, b;
+  bool holds;
+  {
+    do
+    :: choose_hint();
+#if BUG == 8
+       store_seq_cst(r, READING(r), every_record);
+#endif
+       claim();
+       if
+       :: holds ->
+#if BUG == 5
+          store_release(r, READING(r), no_record);
+#endif
+#if BUG == 6
+          release();
+          read_bytes()
+#else
+          read_bytes();
+          release()
+#endif
+       :: holds -> store_release(r, READING(r), no_record)   /* only a scan: the record stays untaken */
+       :: !holds -> release()
+       fi;
+       atomic { noted = n; n = 0; holds = false; claims-- }
+    :: break
+    od
+  } unless { r == 0 && killed };
+  if
+  :: r == 0 && killed -> dead = true
+  :: else -> gone++
+  fi
+}
+
+/* SIGKILL at any step of reader 0, or never; the reaper takes it off the reader table. */
+proctype Reaper() {
+  if
+  :: KILLABLE -> killed = true;
+     if
+     :: dead && settled(0) ->
+        memory[ACTIVE] = 0;
+#if BUG != 9
+        memory[GENERATION]++;
+#endif
+        gone++
+     :: gone == READERS           /* it had ended before */
+     fi
+  :: skip
+  fi
+}
+
+/* TopicDsmWriter */
+
+inline refresh() {
+  atomic {
+    if
+    :: load(PUBLISHER, GENERATION) != seen ->
+       seen = load(PUBLISHER, GENERATION);
+       first_reader = (load(PUBLISHER, ACTIVE) -> 0 : 1)
+    :: else
+    fi
+  }
+}
+
+inline clear_number(n) {
+  if
+  :: load(PUBLISHER, NUMBER((n) % COUNT)) == (n) ->      /* the publisher alone writes it */
+#if BUG == 2
+     store_release(PUBLISHER, NUMBER((n) % COUNT), no_record);
+#else
+     store_seq_cst(PUBLISHER, NUMBER((n) % COUNT), no_record);
+#endif
+     refresh();
+     maybe_pinned[(n) % COUNT] = n
+  :: else
+  fi
+}
+
+inline look_at(i, n) {
+  atomic {
+    if
+    :: i < first_reader || i >= READERS
+    :: else ->
+       if
+       :: load(PUBLISHER, READING(i)) == (n) -> pinned = true
+       :: BUG == 8 && load(PUBLISHER, READING(i)) == every_record -> pinned = true
+       :: else
+       fi
+    fi
+  }
+}
+
+inline look_at_readers(n) {
+  atomic { pinned = false; look_at(0, n) };
+  look_at(1, n)
+}
+
+/* A free record and one that is overwritten are taken back alike. */
+inline take_back(n) {
+#if BUG == 3
+  look_at_readers(n);
+  clear_number(n)
+#else
+  clear_number(n);
+  look_at_readers(n)
+#endif
+}
+
+inline begin_search() {
+  d_step { tries = 0; claimed_anew = false }
+}
+
+inline pass_over(position, next_position, all) {
+  atomic {
+    assert(!alone);                                      /* alone, nothing is pinned */
+    position = next_position;
+    tries++;
+    if
+    :: tries == all -> assert(claimed_anew); goto refused
+    :: else
+    fi
+  }
+}
+
+inline claim_descriptor() {
+  begin_search();
+  do
+  :: load(PUBLISHER, NUMBER(next % COUNT)) != no_record ->
+     old = load(PUBLISHER, NUMBER(next % COUNT));
+     take_back(old);
+     old = no_record
+  :: else ->
+     if
+     :: maybe_pinned[next % COUNT] == no_record || BUG == 7 -> break
+     :: else -> look_at_readers(maybe_pinned[next % COUNT])
+     fi;
+     if
+     :: !pinned -> maybe_pinned[next % COUNT] = no_record; break
+     :: else -> pass_over(next, next + 1, COUNT)
+     fi
+  od
+}
+
+inline try_place() {
+  begin_search();
+  do
+  :: held[cursor] == no_record -> break
+  :: else ->
+     take_back(held[cursor]);
+     if
+     :: !pinned -> held[cursor] = no_record; break
+     :: else -> pass_over(cursor, (cursor + 1) % BLOCKS, BLOCKS)
+     fi
+  od
+}
+
+inline commit() {
+#if BUG == 4
+  store_release(PUBLISHER, NUMBER(next % COUNT), next);
+  store_seq_cst(PUBLISHER, LAST, next);
+#endif
+  store_release(PUBLISHER, DATA(cursor), next);
+  store_release(PUBLISHER, BLOCK(next % COUNT), cursor);
+#if BUG != 4
+  store_release(PUBLISHER, NUMBER(next % COUNT), next);
+  store_seq_cst(PUBLISHER, LAST, next);
+#endif
+  d_step { held[cursor] = next; cursor = (cursor + 1) % BLOCKS; next++ }
+}
+
+inline publish() {
+  refresh();
+  claim_descriptor();
+  try_place();
+  commit();
+refused:
+  atomic { calls++; pinned = false; tries = 0; claimed_anew = false }
+}
+
+proctype Publisher() {
+  byte next = BLOCKS + 1, cursor, calls, tries, old, first_reader, seen;
+  byte held[BLOCKS];
+  byte maybe_pinned[COUNT];
+  bool pinned, alone;
+  d_step {
+    for (tries : 1 .. BLOCKS) {
+      held[tries - 1] = tries
+    };
+    tries = 0
+  };
+  do
+  :: calls < MESSAGES || (alone && calls < MESSAGES + BLOCKS) -> publish()
+  :: calls == MESSAGES && !alone ->
+     atomic { gone == READERS && settled(0) && settled(1) -> alone = true }
+  :: calls == MESSAGES + BLOCKS -> break
+  od
+}
+
+/* It begins with a full ring, of which nothing has been taken. */
+init {
+  byte i;
+  atomic {
+    for (i : 1 .. BLOCKS) {
+      memory[NUMBER(i % COUNT)] = i;
+      memory[BLOCK(i % COUNT)] = i - 1;
+      memory[DATA(i - 1)] = i
+    };
+    memory[LAST] = BLOCKS;
+    memory[ACTIVE] = 1;
+    run StoreBuffer(0); run StoreBuffer(1); run StoreBuffer(PUBLISHER);
+    run Reader(0, CLAIMS); run Reaper(); run Publisher();
+    if
+    :: READERS == 2 -> run Reader(1, 1)
+    :: else
+    fi
+  }
+}
