@@ -129,7 +129,10 @@ Daemon Daemon::detach() {
     } while (got < 0 && errno == EINTR);
     _exit(got == 1 ? 0 : 1);
   }
-  setsid();
+  // A group of its own keeps the terminal's Ctrl-C away. Not a session of its own: the kernel's autogroup would
+  // then make it compete with its cluster's nodes as a whole, which costs milliseconds on a loaded CPU.
+  setpgid(0, 0);
+  signal(SIGHUP, SIG_IGN);
   return Daemon(std::move(writer));
 }
 

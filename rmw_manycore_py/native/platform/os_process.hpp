@@ -19,7 +19,7 @@ bool pin_to_cpu(int host_cpu) noexcept;
 /// Name of this program, for labels: the script of an interpreter, else the executable.
 std::string program_name();
 
-/// Starts `arguments` as a daemon (no controlling terminal, no inherited descriptors) and waits until
+/// Starts `arguments` as a daemon (own process group, no inherited descriptors) and waits until
 /// it reports readiness by exiting its parent half; returns that exit status, -1 when not started.
 int spawn_daemon(const std::vector<std::string> & arguments);
 

@@ -1,6 +1,8 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #include "transport/waiter.hpp"
 
+#include <sched.h>
+
 #include <algorithm>
 
 #include "platform/clock.hpp"
@@ -43,6 +45,8 @@ bool Waiter::spin(uint32_t seen, std::optional<int64_t> deadline_ns) noexcept {
       }
       pause();
     }
+    // The receive thread that will bring the message may share this CPU.
+    sched_yield();
   }
   return false;
 }
