@@ -33,8 +33,6 @@ def main() -> None:
         rclpy.spin(Controller())
     except (KeyboardInterrupt, ExternalShutdownException):
         pass
-    finally:
-        rclpy.try_shutdown()
 
 
 if __name__ == "__main__":

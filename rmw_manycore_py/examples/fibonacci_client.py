@@ -56,8 +56,6 @@ def main() -> None:
         rclpy.spin(FibonacciClient())
     except (KeyboardInterrupt, ExternalShutdownException):
         pass
-    finally:
-        rclpy.try_shutdown()
 
 
 if __name__ == "__main__":

@@ -58,8 +58,6 @@ def main() -> None:
         rclpy.spin(FibonacciServer())
     except (KeyboardInterrupt, ExternalShutdownException):
         pass
-    finally:
-        rclpy.try_shutdown()
 
 
 if __name__ == "__main__":

@@ -36,8 +36,6 @@ def main() -> None:
         rclpy.spin(ImageSink())
     except (KeyboardInterrupt, ExternalShutdownException):
         pass
-    finally:
-        rclpy.try_shutdown()
 
 
 if __name__ == "__main__":

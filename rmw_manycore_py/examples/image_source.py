@@ -34,8 +34,6 @@ def main() -> None:
         rclpy.spin(ImageSource())
     except (KeyboardInterrupt, ExternalShutdownException):
         pass
-    finally:
-        rclpy.try_shutdown()
 
 
 if __name__ == "__main__":

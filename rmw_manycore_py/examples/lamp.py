@@ -30,8 +30,6 @@ def main() -> None:
         rclpy.spin(Lamp())
     except (KeyboardInterrupt, ExternalShutdownException):
         pass
-    finally:
-        rclpy.try_shutdown()
 
 
 if __name__ == "__main__":

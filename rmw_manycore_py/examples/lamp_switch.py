@@ -42,8 +42,6 @@ def main() -> None:
         rclpy.spin(LampSwitch())
     except (KeyboardInterrupt, ExternalShutdownException):
         pass
-    finally:
-        rclpy.try_shutdown()
 
 
 if __name__ == "__main__":

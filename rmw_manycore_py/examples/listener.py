@@ -25,8 +25,6 @@ def main() -> None:
         rclpy.spin(Listener())
     except (KeyboardInterrupt, ExternalShutdownException):
         pass
-    finally:
-        rclpy.try_shutdown()
 
 
 if __name__ == "__main__":

@@ -31,8 +31,6 @@ def main() -> None:
         rclpy.spin(Talker())
     except (KeyboardInterrupt, ExternalShutdownException):
         pass
-    finally:
-        rclpy.try_shutdown()
 
 
 if __name__ == "__main__":

@@ -45,8 +45,6 @@ def main() -> None:
         rclpy.spin(Tuner())
     except (KeyboardInterrupt, ExternalShutdownException):
         pass
-    finally:
-        rclpy.try_shutdown()
 
 
 if __name__ == "__main__":

@@ -89,6 +89,7 @@ def test_a_message_that_needs_more(start_small):
     assert_says_the_size(start_small(16, [sys.executable, "-c", PUBLISH_LARGE]))
 
 
-def test_no_room_at_all(start_small):
-    fill = 'head -c 16M /dev/zero > /dev/shm/full; exec "$@"'
+def test_hardly_any_room(start_small):
+    # Some is left for the tracing library in the wheels of ROS, which dies without its page.
+    fill = 'head -c 16300K /dev/zero > /dev/shm/full; exec "$@"'
     assert_says_the_size(start_small(16, ["sh", "-c", fill, "sh", *example_command("talker")]))

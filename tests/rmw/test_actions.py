@@ -8,7 +8,7 @@ from action_msgs.msg import GoalStatus
 from rclpy.action import ActionClient, ActionServer, GoalResponse
 from rclpy.node import Node
 from ros_support import peer_node, spin_until
-from support import example_command
+from support import PATIENCE_S, example_command
 from test_msgs.action import Fibonacci
 
 FAST = ("--ros-args", "-p", "rate_hz:=50.0")
@@ -19,7 +19,7 @@ def client(node: Node, start, peer_cluster) -> ActionClient:
     """Start the example server and return a client of it."""
     start(example_command("fibonacci_server", *FAST), peer_cluster)
     client = ActionClient(node, Fibonacci, "fibonacci")
-    assert client.wait_for_server(30)
+    assert client.wait_for_server(PATIENCE_S)
     return client
 
 
@@ -80,7 +80,7 @@ def test_several_clients(node, start, client):
 def test_rejected_goal(node, start_peer, peer_cluster):
     start_peer(reject, cluster=peer_cluster)
     client = ActionClient(node, Fibonacci, "fibonacci")
-    assert client.wait_for_server(30)
+    assert client.wait_for_server(PATIENCE_S)
     assert not send(node, client, 5).accepted
 
 
@@ -99,6 +99,6 @@ def reject() -> None:
 def test_server_goes_away(node, start, peer_cluster):
     server = start(example_command("fibonacci_server", *FAST), peer_cluster)
     client = ActionClient(node, Fibonacci, "fibonacci")
-    assert client.wait_for_server(30)
+    assert client.wait_for_server(PATIENCE_S)
     assert server.stop() == 0
     spin_until(node, lambda: not client.server_is_ready())

@@ -9,6 +9,7 @@ from rclpy.service_introspection import ServiceIntrospectionState
 from ros_support import announce, peer_node, spin_until
 from service_msgs.msg import ServiceEventInfo
 from std_srvs.srv import SetBool
+from support import PATIENCE_S
 from test_msgs.message_fixtures import get_msg_arrays
 from test_msgs.srv import Arrays, BasicTypes
 
@@ -30,7 +31,7 @@ def ask(name: str, count: int) -> None:
     """Send `count` requests at once and check that the answers are the right ones."""
     with peer_node(name) as node:
         client = node.create_client(BasicTypes, "double")
-        assert client.wait_for_service(30)
+        assert client.wait_for_service(PATIENCE_S)
         requests = [BasicTypes.Request(int64_value=n, string_value=name) for n in range(count)]
         answers = [client.call_async(request) for request in requests]
         spin_until(node, lambda: all(answer.done() for answer in answers))
@@ -53,7 +54,7 @@ def test_several_clients(node, start_peer):
 def test_server_elsewhere(node, start_peer, peer_cluster):
     start_peer(serve, cluster=peer_cluster)
     client = node.create_client(BasicTypes, "double")
-    assert client.wait_for_service(30)
+    assert client.wait_for_service(PATIENCE_S)
     answer = client.call_async(BasicTypes.Request(int64_value=21, string_value="x"))
     spin_until(node, answer.done)
     assert (answer.result().int64_value, answer.result().string_value) == (42, "x")
@@ -62,7 +63,7 @@ def test_server_elsewhere(node, start_peer, peer_cluster):
 def test_server_and_client_in_one_node(node):
     node.create_service(BasicTypes, "double", double)
     client = node.create_client(BasicTypes, "double")
-    assert client.wait_for_service(30)
+    assert client.wait_for_service(PATIENCE_S)
     answer = client.call_async(BasicTypes.Request(int64_value=4))
     spin_until(node, answer.done)
     assert answer.result().int64_value == 8
@@ -75,7 +76,7 @@ def test_large_requests_and_answers(node):
 
     node.create_service(Arrays, "mirror", mirror)
     client = node.create_client(Arrays, "mirror")
-    assert client.wait_for_service(30)
+    assert client.wait_for_service(PATIENCE_S)
     strings = [letter * 1_000_000 for letter in "abc"]
     request = Arrays.Request(string_values=strings)
     request.basic_types_values = get_msg_arrays()[0].basic_types_values
@@ -87,7 +88,7 @@ def test_large_requests_and_answers(node):
 def test_service_goes_away(node, start_peer, peer_cluster):
     peer = start_peer(serve, cluster=peer_cluster)
     client = node.create_client(BasicTypes, "double")
-    assert client.wait_for_service(30)
+    assert client.wait_for_service(PATIENCE_S)
     assert peer.stop() == 0
     spin_until(node, lambda: not client.service_is_ready())
 
@@ -95,7 +96,7 @@ def test_service_goes_away(node, start_peer, peer_cluster):
 def test_a_killed_server_is_not_ready(node, start_peer, peer_cluster):
     peer = start_peer(serve, cluster=peer_cluster)
     client = node.create_client(BasicTypes, "double")
-    assert client.wait_for_service(30)
+    assert client.wait_for_service(PATIENCE_S)
     peer.kill()
     spin_until(node, lambda: not client.service_is_ready())
 
@@ -104,7 +105,7 @@ def test_a_new_server_takes_over(node, start_peer, peer_cluster):
     client = node.create_client(BasicTypes, "double")
     for value in (1, 2, 3):
         peer = start_peer(serve, cluster=peer_cluster)
-        assert client.wait_for_service(30)
+        assert client.wait_for_service(PATIENCE_S)
         answer = client.call_async(BasicTypes.Request(int64_value=value))
         spin_until(node, answer.done)
         assert answer.result().int64_value == 2 * value
@@ -127,7 +128,7 @@ def test_service_introspection(node):
             node.get_clock(), qos_profile_system_default, ServiceIntrospectionState.CONTENTS
         )
     node.create_subscription(SetBool.Event, "switch/_service_event", events.append, 10)
-    assert client.wait_for_service(30)
+    assert client.wait_for_service(PATIENCE_S)
     spin_until(node, lambda: node.count_publishers("/switch/_service_event") == 2)
     client.call_async(SetBool.Request(data=True))
     spin_until(node, lambda: len(events) == 4)
