@@ -1,0 +1,118 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Callbacks for arrivals, through the executor that has no wait sets but lives on them alone."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import pytest
+import rclpy
+from rclpy.event_handler import SubscriptionEventCallbacks
+from rclpy.experimental import EventsExecutor
+from ros_support import announce, peer_node
+from std_msgs.msg import String
+from std_srvs.srv import Trigger
+from support import PATIENCE_S
+
+
+@pytest.fixture
+def executor(node) -> Iterator[EventsExecutor]:
+    executor = EventsExecutor()
+    executor.add_node(node)
+    yield executor
+    executor.shutdown()
+
+
+def run_until(executor: EventsExecutor, condition: Callable[[], Any]) -> None:
+    deadline = time.monotonic() + PATIENCE_S
+    while not condition():
+        assert time.monotonic() < deadline, f"not within {PATIENCE_S:g} s"
+        executor.spin_once(0.05)
+
+
+def talk() -> None:
+    with peer_node() as node:
+        publisher = node.create_publisher(String, "chatter", 10)
+        numbers = iter(range(1_000_000))
+        node.create_timer(0.005, lambda: publisher.publish(String(data=str(next(numbers)))))
+        rclpy.spin(node)
+
+
+def test_messages(node, executor, start_peer, peer_cluster):
+    received = []
+    node.create_subscription(String, "chatter", received.append, 10)
+    start_peer(talk, cluster=peer_cluster)
+    run_until(executor, lambda: len(received) >= 50)
+    numbers = [int(message.data) for message in received]
+    assert numbers == list(range(numbers[0], numbers[0] + len(numbers)))
+
+
+def test_messages_from_before_the_callback_was_set(node):
+    received = []
+    node.create_subscription(String, "chatter", received.append, 10)
+    publisher = node.create_publisher(String, "chatter", 10)
+    for number in range(3):
+        publisher.publish(String(data=str(number)))
+    executor = EventsExecutor()
+    executor.add_node(node)
+    run_until(executor, lambda: len(received) == 3)
+    executor.shutdown()
+
+
+def serve() -> None:
+    with peer_node() as node:
+        node.create_service(Trigger, "ready", lambda _, answer: answer)
+        rclpy.spin(node)
+
+
+def test_answers(node, executor, start_peer, peer_cluster):
+    client = node.create_client(Trigger, "ready")
+    start_peer(serve, cluster=peer_cluster)
+    assert client.wait_for_service(PATIENCE_S)
+    future = client.call_async(Trigger.Request())
+    run_until(executor, future.done)
+    assert future.result() == Trigger.Response()
+
+
+def ask() -> None:
+    with peer_node() as node:
+        client = node.create_client(Trigger, "ready")
+        client.wait_for_service(PATIENCE_S)
+        rclpy.spin_until_future_complete(node, client.call_async(Trigger.Request()))
+        announce("answered")
+
+
+def test_requests(node, executor, start_peer, peer_cluster):
+    node.create_service(Trigger, "ready", lambda _, answer: answer)
+    peer = start_peer(ask, cluster=peer_cluster)
+    run_until(executor, lambda: "answered" in peer.lines)
+
+
+def test_events(node, start_peer, peer_cluster):
+    matched = []
+    node.create_subscription(
+        String,
+        "chatter",
+        lambda _: None,
+        10,
+        event_callbacks=SubscriptionEventCallbacks(matched=matched.append),
+    )
+    executor = EventsExecutor()
+    executor.add_node(node)
+    peer = start_peer(talk, cluster=peer_cluster)
+    run_until(executor, lambda: matched and matched[-1].current_count == 1)
+    peer.stop()
+    run_until(executor, lambda: matched[-1].current_count == 0)
+    executor.shutdown()
+
+
+def test_entities_that_go_while_messages_arrive(node, executor, start_peer, peer_cluster):
+    """No callback runs for a subscription that is gone."""
+    start_peer(talk, cluster=peer_cluster)
+    for _ in range(20):
+        received: list[String] = []
+        subscription = node.create_subscription(String, "chatter", received.append, 10)
+        run_until(executor, lambda got=received: got)
+        node.destroy_subscription(subscription)
