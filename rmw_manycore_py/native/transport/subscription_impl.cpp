@@ -52,12 +52,13 @@ Subscription::Impl::Impl(Registry & registry_, uint32_t slot_)
   cluster(registry_.clusters().at(entry.cluster)),
   header(*cluster.find<SubscriptionHeader>(entry.block.offset())) {}
 
-void Subscription::Impl::renew_readers() {
+bool Subscription::Impl::renew_readers() {
   const uint64_t generation = header.source_generation.load(std::memory_order_acquire);
   if (generation == seen_source_generation) {
-    return;
+    return false;
   }
   seen_source_generation = generation;
+  bool has_new = false;
   std::vector<TopicDsmReader> renewed;
   visit_source_table(cluster, header, [&](SourceEntry & source, uint32_t index) {
     if (source.state.load(std::memory_order_acquire) != SourceState::active) {
@@ -69,15 +70,16 @@ void Subscription::Impl::renew_readers() {
     TopicDsmReader reader =
       known != readers.end() ? *known : TopicDsmReader(registry, source, index, entry.gid);
     if (reader) {
+      has_new = has_new || known == readers.end();
       renewed.push_back(reader);
     }
     return false;
   });
   readers = std::move(renewed);
+  return has_new;
 }
 
 TopicDsmReader * Subscription::Impl::find_reader(uint32_t source, uint32_t incarnation) {
-  renew_readers();
   for (TopicDsmReader & reader : readers) {
     if (
       reader.index() == source &&
@@ -128,31 +130,44 @@ std::optional<Subscription::Impl::Candidate> Subscription::Impl::next_of_backlog
     const TopicDsmReader::Waiting waiting = backlog.front();
     backlog.pop_front();
     backlog_size.store(backlog.size(), std::memory_order_relaxed);
-    if (TopicDsmReader * const reader = find_reader(waiting.source, waiting.incarnation)) {
+    TopicDsmReader * const reader = find_reader(waiting.source, waiting.incarnation);
+    if (reader != nullptr && waiting.number > reader->taken()) {
       return Candidate{reader, waiting.number};
     }
   }
   return std::nullopt;
 }
 
-std::optional<Subscription::Impl::Candidate> Subscription::Impl::next_of_queue() {
-  while (const std::optional<Hint> hint = subscriber_queue::pop(header)) {
-    TopicDsmReader * const reader = find_reader(hint->source, hint->source_incarnation);
-    if (reader == nullptr) {
-      continue;  // its topic DSM is gone
-    }
-    const uint64_t number = reader->full_number(hint->number);
-    if (number > reader->noted() && number <= reader->last()) {
-      return Candidate{reader, number};
-    }
+std::optional<Subscription::Impl::Candidate> Subscription::Impl::candidate_of(const Hint & hint) {
+  TopicDsmReader * const reader = find_reader(hint.source, hint.source_incarnation);
+  if (reader == nullptr) {
+    return std::nullopt;  // its topic DSM is gone
   }
-  return std::nullopt;
+  const uint64_t number = reader->full_number(hint.number);
+  if (number <= reader->noted() || number > reader->last()) {
+    return std::nullopt;  // a double, or not of this source
+  }
+  return Candidate{reader, number};
 }
 
 std::optional<Subscription::Impl::Candidate> Subscription::Impl::next() {
-  resync_if_asked();
-  std::optional<Candidate> candidate = next_of_backlog();
-  return candidate ? candidate : next_of_queue();
+  while (true) {
+    resync_if_asked();
+    if (const std::optional<Candidate> candidate = next_of_backlog()) {
+      return candidate;
+    }
+    const std::optional<Hint> hint = subscriber_queue::pop(header);
+    if (!hint) {
+      return std::nullopt;
+    }
+    if (renew_readers()) {
+      // A hint of a new source may overtake the matcher's resync, and with it the source's history. Looking
+      // into all sources finds what the hint announced as well.
+      resync();
+    } else if (const std::optional<Candidate> candidate = candidate_of(*hint)) {
+      return candidate;
+    }
+  }
 }
 
 void Subscription::Impl::sweep() noexcept {

@@ -24,11 +24,13 @@ struct Subscription::Impl {
   /// Next record to claim: from the backlog, else from the queue. The caller holds the mutex.
   std::optional<Candidate> next();
   std::optional<Candidate> next_of_backlog();
-  std::optional<Candidate> next_of_queue();
+  /// The record that a hint of the queue names, or nothing when it is stale.
+  std::optional<Candidate> candidate_of(const Hint & hint);
   /// The reader of a source, or nullptr when the source is gone.
   TopicDsmReader * find_reader(uint32_t source, uint32_t incarnation);
   void resync_if_asked();
-  void renew_readers();
+  /// Follows the source table; true when it has a source that was not known yet.
+  bool renew_readers();
   void resync();
   void count_lost(uint64_t messages) noexcept;
   void count_taken(uint64_t bytes) noexcept;

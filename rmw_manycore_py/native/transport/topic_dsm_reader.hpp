@@ -39,6 +39,7 @@ public:
   void release(uint64_t number) noexcept;
   /// The same without a claim.
   void skip(uint64_t number) noexcept;
+  uint64_t taken() const noexcept { return source_->taken.load(std::memory_order_relaxed); }
   /// Highest record number published.
   uint64_t last() const noexcept;
 

@@ -305,7 +305,8 @@ void TopicDsmWriter::make_place(uint64_t number, uint64_t need_bytes) {
 /// Makes next_number_ one whose descriptor may be written. A number whose descriptor a reader still holds is
 /// skipped: readers count what they miss by publication sequence, not by record number.
 void TopicDsmWriter::claim_descriptor(uint64_t need_bytes) {
-  for (uint64_t skipped = 0; skipped < current_.count;) {
+  const uint64_t most_skipped = current_.count * (readers_.readers().size() + 1);
+  for (uint64_t skipped = 0; skipped < most_skipped;) {
     RecordDescriptor & record = current_.descriptor(next_number_);
     const uint64_t old = record.number.load(std::memory_order_relaxed);
     if (old != no_record) {
@@ -331,8 +332,10 @@ void TopicDsmWriter::claim_descriptor(uint64_t need_bytes) {
 /// Places a block of `need_bytes` at the cursor or after it; false when wanted or pinned records leave no
 /// room within one round.
 bool TopicDsmWriter::try_place(uint64_t need_bytes) {
+  // Quick readers may each hold, in turn, just the record that the cursor meets; each tries a cleared record once.
+  const size_t rounds = readers_.readers().size() + 1;
   size_t pinned_seen = 0;
-  int wraps = 0;
+  size_t wraps = 0;
   while (true) {
     const bool ahead = !blocks_.empty() && blocks_.front().begin >= cursor_;
     const uint64_t limit = ahead ? blocks_.front().begin : current_.data_bytes;
@@ -342,7 +345,7 @@ bool TopicDsmWriter::try_place(uint64_t need_bytes) {
       return true;
     }
     if (!ahead) {
-      if (++wraps == 2) {
+      if (++wraps > rounds) {
         return false;
       }
       cursor_ = 0;
@@ -354,7 +357,7 @@ bool TopicDsmWriter::try_place(uint64_t need_bytes) {
         blocks_.pop_front();
         break;
       case TakeBack::pinned:  // a hole: passed over now, met again in the next round
-        if (++pinned_seen > blocks_.size()) {
+        if (++pinned_seen > blocks_.size() * rounds) {
           return false;
         }
         blocks_.pop_front();
@@ -364,7 +367,7 @@ bool TopicDsmWriter::try_place(uint64_t need_bytes) {
       case TakeBack::wanted: {
         const GenerationEntry * const before = current_.entry;
         make_place(block.number, need_bytes);
-        wraps = current_.entry == before ? wraps : 0;
+        wraps = current_.entry == before ? wraps : size_t{0};
         break;
       }
     }
