@@ -1,0 +1,166 @@
+/* Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+ *
+ * Question: is the memory of a subscription freed only when no publisher and no receive thread can still push to it, and
+ * is it freed in the end although they are killed?
+ * Follows matching::close_subscription and ::sweep_subscription, TopicDsmWriter::enter and ::leave, ReceiveThread::forward.
+ * The publisher pushes through its private reader list, the receive thread reads the table each time. The publisher may
+ * be killed at any step, and is then reaped; the receive thread too, and is then replaced.
+ *
+ * BUG 1: freed without grace
+ * BUG 2: publisher: no fence between phase and the look at match_generation
+ * BUG 3: publisher renews its list before its phase is odd
+ * BUG 4: receive thread: no fence between phase and the look at the table
+ * BUG 5: phases looked at before the reader is taken off the table
+ * BUG 6: match_generation not raised
+ * BUG 7: reaper does not end the phase of a killed publisher
+ * BUG 8: a new receive thread does not end the phase of its predecessor
+ * BUG 9: publisher's phase even before its last push
+ */
+#define GENERATION 0      /* match_generation */
+#define ACTIVE 1          /* of the reader table's entry */
+#define PHASE(p) (2 + (p))
+#define WORDS 4
+#define PROCESSES 3
+#define PUBLISHER 0
+#define RECEIVER 1
+#define CLOSER 2
+#define MESSAGES 2
+
+#include "tso.pml"
+
+bool freed;
+bool kill_publisher, kill_receiver;
+bool publisher_ended, receiver_ended;
+
+/* Phases count up in C++; here they go between 0 and 1. */
+inline enter(p) {
+  if
+  :: BUG == 2 + 2 * p -> store_release(p, PHASE(p), 1)
+  :: else -> store_seq_cst(p, PHASE(p), 1)
+  fi
+}
+
+inline leave(p) {
+  store_release(p, PHASE(p), 0)
+}
+
+/* Every step inside a push touches the queue; one stands for all. */
+inline push() {
+  assert(!freed)
+}
+
+inline refresh() {
+  if
+  :: load(PUBLISHER, GENERATION) != seen ->
+     seen = load(PUBLISHER, GENERATION);
+     listed = load(PUBLISHER, ACTIVE)
+  :: else
+  fi
+}
+
+proctype Publisher() {
+  byte seen, message;
+  bool listed = true;      /* the match was made before */
+  {
+    do
+    :: message < MESSAGES ->
+       message++;
+#if BUG == 3
+       refresh();
+#endif
+       enter(PUBLISHER);
+#if BUG != 3
+       refresh();
+#endif
+#if BUG == 9
+       leave(PUBLISHER);
+#endif
+       if
+       :: listed -> push()
+       :: else
+       fi;
+#if BUG != 9
+       leave(PUBLISHER)
+#endif
+    :: break              /* for ever silent */
+    od
+  } unless { kill_publisher };
+  publisher_ended = true
+}
+
+proctype ReceiveThread() {
+  byte message;
+  {
+    do
+    :: message < MESSAGES ->
+       message++;
+       enter(RECEIVER);
+       if
+       :: load(RECEIVER, ACTIVE) -> push()
+       :: else
+       fi;
+       leave(RECEIVER)
+    :: break              /* for ever silent */
+    od
+  } unless { kill_receiver };
+  receiver_ended = true
+}
+
+/* Kills and buries, or not. Who died has no steps left, but its stores still become visible. */
+proctype Reaper() {
+  if
+  :: kill_publisher = true;
+     publisher_ended && settled(PUBLISHER);
+#if BUG != 7
+     memory[PHASE(PUBLISHER)] = 0
+#endif
+  :: skip
+  fi
+}
+
+proctype Successor() {
+  if
+  :: kill_receiver = true;
+     receiver_ended && settled(RECEIVER);
+#if BUG != 8
+     memory[PHASE(RECEIVER)] = 0;
+#endif
+     kill_receiver = false;
+     run ReceiveThread()
+  :: skip
+  fi
+}
+
+inline take_off() {
+  store_release(CLOSER, ACTIVE, 0);
+#if BUG != 6
+  d_step { settled(CLOSER) -> memory[GENERATION]++ }
+#else
+  settled(CLOSER)
+#endif
+}
+
+/* With the registry lock held; it tries again whenever the lock is next taken. */
+proctype Closer() {
+#if BUG == 5
+  load(CLOSER, PHASE(PUBLISHER)) == 0;
+  load(CLOSER, PHASE(RECEIVER)) == 0;
+  take_off();
+#else
+  take_off();
+#if BUG != 1
+  load(CLOSER, PHASE(RECEIVER)) == 0;
+  load(CLOSER, PHASE(PUBLISHER)) == 0;
+#endif
+#endif
+  freed = true
+}
+
+/* A phase that stays odd for ever keeps Closer from its end: spin reports an invalid end state. */
+init {
+  atomic {
+    memory[ACTIVE] = 1;
+    run StoreBuffer(PUBLISHER); run StoreBuffer(RECEIVER); run StoreBuffer(CLOSER);
+    run Publisher(); run ReceiveThread(); run Reaper(); run Successor(); run Closer()
+  }
+}

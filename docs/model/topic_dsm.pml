@@ -1,0 +1,147 @@
+/* Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+ *
+ * Question: is the topic DSM of a gone publisher freed only when nobody can look into it any more, and does a reader
+ * that wakes up late spoil nothing of the next match, which may be given the same source entry and the same memory?
+ * Follows matching::sweep_publisher, ::revoke and ::join, TopicDsmReader (claim, release) and ReceiveThread::forward.
+ * The subscription holds a hint of the first publisher whose record is gone already. A sweep that finds the topic DSM in
+ * use gives up, and is done again later.
+ *
+ * BUG 1: no fence between reading and the look at state
+ * BUG 2: revoked without a look at reading
+ * BUG 3: state revoked after the look at reading
+ * BUG 4: claim does not compare the source's incarnation
+ * BUG 5: a claim that was refused advances the cursor
+ * BUG 6: reading cleared before the waiting publisher is told
+ * BUG 7: receive thread: no fence between phase and the look at magic
+ * BUG 8: freed while the receive thread is in its phase
+ * BUG 9: incarnation raised after the source is opened again
+ */
+#define STATE 0           /* of the source */
+#define INCARNATION 1
+#define READING 2
+#define TAKEN 3
+#define MAGIC 4           /* of the topic DSM */
+#define PHASE 5           /* of the receive thread */
+#define WORDS 6
+#define PROCESSES 3
+#define READER 0
+#define RECEIVER 1
+#define SWEEPER 2
+
+#define free_source 0
+#define active 1
+#define revoked 2
+
+#define NUMBER 9          /* of the stale hint; the next publisher begins with lower ones */
+
+#include "tso.pml"
+
+byte owner = 1;           /* who the topic DSM's memory belongs to: first publisher, nobody (0), second publisher */
+
+/* Any read or write in the memory of the topic DSM of publisher `whose`. */
+inline touch(whose) {
+  assert(owner == whose)
+}
+
+inline release(whose) {
+  store_seq_cst(READER, TAKEN, NUMBER);
+#if BUG == 6
+  store_release(READER, READING, 0);
+  touch(whose)
+#else
+  touch(whose);                                        /* tell_waiting_publisher */
+  store_release(READER, READING, 0)
+#endif
+}
+
+/* It found the source of the first publisher and is about to claim. */
+proctype Reader() {
+  bool may_look;
+#if BUG == 1
+  store_release(READER, READING, NUMBER);
+#else
+  store_seq_cst(READER, READING, NUMBER);
+#endif
+  may_look = load(READER, STATE) == active;
+#if BUG != 4
+  may_look = may_look && load(READER, INCARNATION) == 1;
+#endif
+  if
+  :: may_look ->
+     touch(1);                                         /* number, descriptor, bytes */
+     release(1)
+  :: !may_look ->
+#if BUG == 5
+     store_seq_cst(READER, TAKEN, NUMBER);
+#endif
+     store_release(READER, READING, 0)
+  fi
+}
+
+/* It has an eMCOS message of the first publisher. */
+proctype ReceiveThread() {
+#if BUG == 7
+  store_release(RECEIVER, PHASE, 1);
+#else
+  store_seq_cst(RECEIVER, PHASE, 1);
+#endif
+  if
+  :: load(RECEIVER, MAGIC) == 1 -> touch(1)             /* the endpoint in the header is compared too */
+  :: else
+  fi;
+  store_release(RECEIVER, PHASE, 0)
+}
+
+inline revoke() {
+#if BUG == 3
+  load(SWEEPER, READING) == 0;
+  store_seq_cst(SWEEPER, STATE, revoked);
+#else
+  store_seq_cst(SWEEPER, STATE, revoked);
+#if BUG != 2
+  load(SWEEPER, READING) == 0;
+#endif
+#endif
+  store_release(SWEEPER, STATE, free_source)
+}
+
+inline free_topic_dsm() {
+  store_seq_cst(SWEEPER, MAGIC, 0);
+#if BUG != 8
+  load(SWEEPER, PHASE) == 0;
+#endif
+  owner = 0
+}
+
+inline join_second_publisher() {
+  owner = 2;
+  store_seq_cst(SWEEPER, MAGIC, 2);
+#if BUG != 9
+  store_release(SWEEPER, INCARNATION, 2);
+#endif
+  store_release(SWEEPER, TAKEN, 0);
+  store_seq_cst(SWEEPER, STATE, active);
+#if BUG == 9
+  store_release(SWEEPER, INCARNATION, 2);
+#endif
+  settled(SWEEPER)
+}
+
+/* The registry lock keeps these in line. */
+proctype Sweeper() {
+  revoke();
+  free_topic_dsm();
+  join_second_publisher()
+}
+
+init {
+  atomic {
+    memory[STATE] = active;
+    memory[INCARNATION] = 1;
+    memory[MAGIC] = 1;
+    run StoreBuffer(READER); run StoreBuffer(RECEIVER); run StoreBuffer(SWEEPER);
+    run Reader(); run ReceiveThread(); run Sweeper()
+  };
+  _nr_pr == 4 && settled(READER) && settled(RECEIVER) && settled(SWEEPER);
+  assert(memory[TAKEN] == 0 && memory[READING] == 0)   /* the second match begins where it should */
+}
