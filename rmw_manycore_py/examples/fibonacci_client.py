@@ -1,6 +1,8 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 """Sends goals to the action `fibonacci`, one after the other, and cancels every third one."""
 
+from contextlib import suppress
+
 import rclpy
 from action_msgs.msg import GoalStatus
 from rclpy.action import ActionClient
@@ -52,10 +54,8 @@ class FibonacciClient(Node):
 def main() -> None:
     """Run the node until it is interrupted."""
     rclpy.init()
-    try:
+    with suppress(KeyboardInterrupt, ExternalShutdownException):
         rclpy.spin(FibonacciClient())
-    except (KeyboardInterrupt, ExternalShutdownException):
-        pass
 
 
 if __name__ == "__main__":

@@ -1,6 +1,8 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 """Inverts the pictures of `image_raw` and publishes them on `image_inverted`."""
 
+from contextlib import suppress
+
 import numpy as np
 import rclpy
 from rclpy.executors import ExternalShutdownException
@@ -26,10 +28,8 @@ class ImageFilter(Node):
 def main() -> None:
     """Run the node until it is interrupted."""
     rclpy.init()
-    try:
+    with suppress(KeyboardInterrupt, ExternalShutdownException):
         rclpy.spin(ImageFilter())
-    except (KeyboardInterrupt, ExternalShutdownException):
-        pass
 
 
 if __name__ == "__main__":

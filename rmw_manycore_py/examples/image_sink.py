@@ -1,6 +1,8 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 """Checks every byte of the pictures on `image_inverted` and counts the ones that are missing."""
 
+from contextlib import suppress
+
 import numpy as np
 import rclpy
 from rclpy.executors import ExternalShutdownException
@@ -32,10 +34,8 @@ class ImageSink(Node):
 def main() -> None:
     """Run the node until it is interrupted."""
     rclpy.init()
-    try:
+    with suppress(KeyboardInterrupt, ExternalShutdownException):
         rclpy.spin(ImageSink())
-    except (KeyboardInterrupt, ExternalShutdownException):
-        pass
 
 
 if __name__ == "__main__":

@@ -71,7 +71,12 @@ def assert_refuses(newcomer: Program, directory: Path) -> None:
 @pytest.mark.parametrize("name", ["registry", "cluster-1"])
 def test_segment(start, directory, name, damage):
     damage_file(directory / name, damage)
-    assert_refuses(start(example_command("listener")), directory)
+    newcomer = start(example_command("listener"))
+    if damage == "random_after_the_header":  # found out later, by whatever first looks there
+        assert newcomer.wait() == 1, newcomer
+        assert "RCLError" in newcomer.output, newcomer
+    else:
+        assert_refuses(newcomer, directory)
 
 
 def test_segment_of_another_platform(start, directory):
