@@ -58,7 +58,7 @@ class Platform:
         """
 
     def clusters(self) -> list[_Row]:
-        """Return id, smem_size, used, receive_thread_pid, messages, notifications, alive of each."""
+        """Return id, smem_size, used, receive_thread_pid, messages, notifications and alive."""
 
     def topic_table(self) -> list[_Row]:
         """Return topic_name, topic_id, topic_dsm_size, receiver_clusters (bit mask) of each."""

@@ -1,9 +1,9 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 """Check the models with spin: each must hold, and must not hold with any of its seeded bugs.
 
-Run as `python docs/model/check.py [MODEL..]`. The head of a model lists its configurations (` * RUN DEPTH=2`; none: one
-configuration without definitions) and its seeded bugs (` * BUG 1: what`, in the first configuration, or
-` * BUG 1 DEPTH=2: what`).
+Run as `python docs/model/check.py [MODEL..]`. The head of a model lists its configurations
+(` * RUN DEPTH=2`; none: one configuration without definitions) and its seeded bugs
+(` * BUG 1: what`, in the first configuration, or ` * BUG 1 DEPTH=2: what`).
 """
 
 from __future__ import annotations
