@@ -36,8 +36,8 @@ def peer_node(name: str = "peer", **options: Any) -> Iterator[Node]:
 
 
 def announce(line: str) -> None:
-    """Print a line for the test that waits for it."""
-    print(line, flush=True)
+    """Print a line for the test that waits for it, in one write, as several may print at once."""
+    print(f"{line}\n", end="", flush=True)
 
 
 def type_of(name: str) -> Any:
