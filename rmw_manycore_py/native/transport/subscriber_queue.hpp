@@ -123,6 +123,12 @@ inline std::optional<Hint> pop(SubscriptionHeader & header) noexcept {
   }
 }
 
+/// Hints in the queue, at some moment during the call.
+inline uint64_t size(SubscriptionHeader & header) noexcept {
+  const uint64_t head = header.head.load(std::memory_order_acquire);
+  return header.tail.load(std::memory_order_acquire) - head;
+}
+
 inline bool empty(SubscriptionHeader & header) noexcept {
   const Slots slots(header);
   const uint64_t head = header.head.load(std::memory_order_acquire);

@@ -91,8 +91,7 @@ TopicDsmReader * Subscription::Impl::find_reader(uint32_t source, uint32_t incar
 }
 
 /// Hints may be missing: forget those that are there and look into every topic DSM instead.
-void Subscription::Impl::resync() {
-  uint64_t forgotten = 0;
+void Subscription::Impl::resync(uint64_t forgotten) {
   while (subscriber_queue::pop(header)) {
     ++forgotten;
   }
@@ -106,6 +105,9 @@ void Subscription::Impl::resync() {
   });
   backlog.insert(backlog.end(), scratch.begin(), scratch.end());
   arrivals_by_resync.fetch_add(scratch.size() - forgotten, std::memory_order_relaxed);
+  if (forgotten > scratch.size()) {
+    count_lost(forgotten - scratch.size());  // announced, and overwritten since
+  }
   while (displaces(entry) && backlog.size() > header.depth) {
     const TopicDsmReader::Waiting oldest = backlog.front();
     backlog.pop_front();
@@ -153,6 +155,10 @@ std::optional<Subscription::Impl::Candidate> Subscription::Impl::candidate_of(co
 std::optional<Subscription::Impl::Candidate> Subscription::Impl::next() {
   while (true) {
     resync_if_asked();
+    if (displaces(entry) && !backlog.empty() &&
+        backlog.size() + subscriber_queue::size(header) > header.depth) {
+      resync();  // newer messages displace those of the backlog
+    }
     if (const std::optional<Candidate> candidate = next_of_backlog()) {
       return candidate;
     }
@@ -163,7 +169,7 @@ std::optional<Subscription::Impl::Candidate> Subscription::Impl::next() {
     if (renew_readers()) {
       // A hint of a new source may overtake the matcher's resync, and with it the source's history. Looking
       // into all sources finds what the hint announced as well.
-      resync();
+      resync(1);
     } else if (const std::optional<Candidate> candidate = candidate_of(*hint)) {
       return candidate;
     }

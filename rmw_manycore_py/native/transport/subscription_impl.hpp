@@ -31,7 +31,8 @@ struct Subscription::Impl {
   void resync_if_asked();
   /// Follows the source table; true when it has a source that was not known yet.
   bool renew_readers();
-  void resync();
+  /// `forgotten`: hints that its caller has popped and not used.
+  void resync(uint64_t forgotten = 0);
   void count_lost(uint64_t messages) noexcept;
   void count_taken(uint64_t bytes) noexcept;
   /// A finished topic DSM waits for its last reader only: frees it.
