@@ -81,8 +81,14 @@ void TopicDsmWriter::leave() noexcept {
   dsm_.phase.store(dsm_.phase.load(std::memory_order_relaxed) + 1, std::memory_order_release);
 }
 
-/// KEEP_LAST readers want the last `depth` only, counted with the record about to be written. Requests and
-/// replies are wanted until taken: their queues do not displace.
+/// Among the last `depth` messages, the one about to be written included. Record numbers do not tell: some are
+/// skipped.
+bool TopicDsmWriter::is_among_last(uint32_t depth, const RecordDescriptor & record) const noexcept {
+  return record.publication_sequence_number + depth > last_sequence_number_ + 1;
+}
+
+/// KEEP_LAST readers want the last `depth` only. Requests and replies are wanted until taken: their queues do not
+/// displace.
 bool TopicDsmWriter::wants(
   const Reader & reader, uint64_t number, const RecordDescriptor & record) const noexcept {
   if (reader.source->taken.load(std::memory_order_seq_cst) >= number || !reader.active()) {
@@ -92,7 +98,7 @@ bool TopicDsmWriter::wants(
     return record.correlation.client == reader.gid;
   }
   return reader.subscription->keep_all != 0 ||
-         number + reader.subscription->depth > next_number_;
+         is_among_last(reader.subscription->depth, record);
 }
 
 bool TopicDsmWriter::is_wanted(
@@ -101,7 +107,7 @@ bool TopicDsmWriter::is_wanted(
   if (lifespan != infinite_ns && realtime_ns() - record.source_timestamp_ns > lifespan) {
     return false;
   }
-  if (dsm_.transient_local != 0 && number + dsm_.depth > next_number_) {
+  if (dsm_.transient_local != 0 && is_among_last(dsm_.depth, record)) {
     return true;
   }
   for (const Reader & reader : readers_.readers()) {
@@ -236,12 +242,14 @@ uint64_t TopicDsmWriter::deepest_history() const noexcept {
 }
 
 /// Four times the records, descriptors and bytes alike, but no more than are ever wanted: few generations, since
-/// the old ones stay while their records are wanted.
+/// the old ones stay while their records are wanted. Half as many bytes more at least: records of mixed sizes leave
+/// gaps.
 bool TopicDsmWriter::grow_to_hold_more(uint64_t need_bytes) {
   const uint64_t held = std::max<uint64_t>(blocks_.size(), 2);
   const uint64_t records = std::max(held + 2, std::min(held * 4, deepest_history() + 2));
   const uint64_t bytes_per_record = std::max(need_bytes, blocks_.bytes() / held);
-  const uint64_t bytes = std::max(records * bytes_per_record, current_.data_bytes);
+  const uint64_t bytes = align_up(
+    std::max(records * bytes_per_record, current_.data_bytes * 3 / 2), record_alignment);
   return grow(
     std::min(bytes, std::max(data_limit(), current_.data_bytes)),
     std::clamp(power_of_two_at_least(records), current_.count, most_descriptors()));
@@ -417,6 +425,7 @@ uint64_t TopicDsmWriter::commit(
   record.correlation = correlation;
   // Release: whoever finds the number finds the bytes and the fields above.
   record.number.store(next_number_, std::memory_order_release);
+  last_sequence_number_ = publication_sequence_number;
   // Dekker with a late joiner: it activates its reader entry before it loads `last`.
   dsm_.last.store(next_number_, std::memory_order_seq_cst);
   readers_.refresh();

@@ -44,6 +44,7 @@ private:
 
   bool wants(const Reader & reader, uint64_t number, const RecordDescriptor & record)
     const noexcept;
+  bool is_among_last(uint32_t depth, const RecordDescriptor & record) const noexcept;
   bool is_wanted(uint64_t number, const RecordDescriptor & record) const noexcept;
   bool is_owed(uint64_t number) const noexcept;
   TakeBack take_back(uint64_t number, bool force);
@@ -73,6 +74,7 @@ private:
   std::vector<uint64_t> pinned_in_slot_;  ///< by descriptor: number that a reader may still hold, or 0
   uint64_t cursor_ = 0;                   ///< next free byte of the data area
   uint64_t next_number_ = 1;
+  uint64_t last_sequence_number_ = 0;
   int64_t blocked_until_ns_ = 0;
 };
 
