@@ -7,7 +7,7 @@
 
 #include <csignal>
 #include <fstream>
-#include <iterator>
+#include <sstream>
 
 #include "patience.hpp"
 #include "transport/lifecycle.hpp"
@@ -19,7 +19,9 @@ namespace {
 
 std::string content_of(const std::string & path) {
   std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  std::ostringstream content;
+  content << file.rdbuf();  // throws nothing where a process ends meanwhile
+  return content.str();
 }
 
 }  // namespace
@@ -40,7 +42,7 @@ TestPlatform::~TestPlatform() {
   try {
     wait_until(name_ + " leaves nothing", [&] { return !exists() && receive_threads().empty(); });
   } catch (const std::exception & error) {
-    FAIL_CHECK(error.what());
+    FAIL_CHECK(std::string(error.what()), ", directory: ", exists());
     for (const pid_t pid : receive_threads()) {
       kill(pid, SIGKILL);
     }
@@ -81,7 +83,7 @@ pid_t TestPlatform::receive_thread(uint32_t cluster, pid_t not_this) const {
   wait_until("a receive thread in cluster " + std::to_string(cluster), [&] {
     pid = registry.clusters().at(cluster).header().receive_thread_pid.load();
     return pid != 0 && pid != not_this && is_running(pid) &&
-           alive_locks(paths()).held_by_other(receive_thread_byte + cluster);
+           alive_locks(paths()).is_held(receive_thread_byte + cluster);
   });
   return pid;
 }
