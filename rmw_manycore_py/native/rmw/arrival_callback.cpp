@@ -24,8 +24,7 @@ rmw_ret_t rmw_subscription_set_on_new_message_callback(
   MANYCORE_CHECK_HANDLE(subscription);
 
   // Implementation
-  return set_callback(
-    rmw_manycore::Subscription::of(subscription).inbox(), callback, user_data);
+  return set_callback(rmw_manycore::Subscription::of(subscription).inbox(), callback, user_data);
 }
 
 rmw_ret_t rmw_service_set_on_new_request_callback(

@@ -47,8 +47,7 @@ size_t Cdr::serialize(const void * message, uint8_t * data, size_t capacity) con
 
 void Cdr::deserialize(const uint8_t * data, size_t size, void * message) const {
   // Fast CDR has no buffer of const bytes; it only reads here.
-  eprosima::fastcdr::FastBuffer buffer(
-    reinterpret_cast<char *>(const_cast<uint8_t *>(data)), size);
+  eprosima::fastcdr::FastBuffer buffer(reinterpret_cast<char *>(const_cast<uint8_t *>(data)), size);
   eprosima::fastcdr::Cdr cdr(buffer, eprosima::fastcdr::Cdr::DEFAULT_ENDIAN);
   cdr.read_encapsulation();
   if (empty_) {

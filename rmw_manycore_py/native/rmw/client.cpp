@@ -18,8 +18,8 @@ Client::Client(
 : name_(name),
   type_(std::move(type)),
   replies_(
-    node.process().create_subscription(endpoint_spec(
-      node, EndpointRole::reply, name, type_, profile, EndpointKind::subscription)),
+    node.process().create_subscription(
+      endpoint_spec(node, EndpointRole::reply, name, type_, profile, EndpointKind::subscription)),
     node.callback_thread()),
   requests_(node.process().create_publisher(
     endpoint_spec(node, EndpointRole::request, name, type_, profile, EndpointKind::publisher))) {

@@ -11,10 +11,14 @@ namespace {
 
 rmw_ret_t code_of(manycore::ErrorCode code) noexcept {
   switch (code) {
-    case manycore::ErrorCode::invalid_argument: return RMW_RET_INVALID_ARGUMENT;
-    case manycore::ErrorCode::unsupported: return RMW_RET_UNSUPPORTED;
-    case manycore::ErrorCode::timeout: return RMW_RET_TIMEOUT;
-    default: return RMW_RET_ERROR;
+    case manycore::ErrorCode::invalid_argument:
+      return RMW_RET_INVALID_ARGUMENT;
+    case manycore::ErrorCode::unsupported:
+      return RMW_RET_UNSUPPORTED;
+    case manycore::ErrorCode::timeout:
+      return RMW_RET_TIMEOUT;
+    default:
+      return RMW_RET_ERROR;
   }
 }
 

@@ -82,8 +82,8 @@ rmw_ret_t rmw_event_set_callback(
 
   // Implementation
   return rmw_manycore::guarded([&] {
-    static_cast<EndpointEvents *>(event->data)->set_callback(
-      event->event_type, callback, user_data);
+    static_cast<EndpointEvents *>(event->data)
+      ->set_callback(event->event_type, callback, user_data);
     return RMW_RET_OK;
   });
 }

@@ -1,4 +1,6 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#include "rmw/init.h"
+
 #include <unistd.h>
 
 #include <memory>
@@ -10,7 +12,6 @@
 #include "rmw/context.hpp"
 #include "rmw/domain_id.h"
 #include "rmw/error.hpp"
-#include "rmw/init.h"
 
 namespace rmw_manycore {
 namespace {
@@ -34,7 +35,8 @@ manycore::Placement placement_of(const rmw_init_options_t & options, size_t doma
   }
   if (discovery.static_peers_count != 0) {
     RCUTILS_LOG_WARN_NAMED(
-      identifier, "static discovery peers are ignored: rmw_manycore does not leave the machine, "
+      identifier,
+      "static discovery peers are ignored: rmw_manycore does not leave the machine, "
       "a bridge joins topics to other machines");
   }
   return placement;

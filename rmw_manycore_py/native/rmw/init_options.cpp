@@ -1,10 +1,11 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#include "rmw/init_options.h"
+
 #include "rcpputils/scope_exit.hpp"
 #include "rcutils/strdup.h"
 #include "rmw/checks.hpp"
 #include "rmw/domain_id.h"
 #include "rmw/error.hpp"
-#include "rmw/init_options.h"
 
 rmw_ret_t rmw_init_options_init(rmw_init_options_t * init_options, rcutils_allocator_t allocator) {
   // Invariants
@@ -52,8 +53,8 @@ rmw_ret_t rmw_init_options_copy(const rmw_init_options_t * src, rmw_init_options
     RMW_SET_ERROR_MSG("out of memory");
     return RMW_RET_BAD_ALLOC;
   }
-  auto free_enclave = rcpputils::make_scope_exit(
-    [&] { allocator.deallocate(copy.enclave, allocator.state); });
+  auto free_enclave =
+    rcpputils::make_scope_exit([&] { allocator.deallocate(copy.enclave, allocator.state); });
   rmw_ret_t result =
     rmw_security_options_copy(&src->security_options, &allocator, &copy.security_options);
   if (result != RMW_RET_OK) {
@@ -61,8 +62,7 @@ rmw_ret_t rmw_init_options_copy(const rmw_init_options_t * src, rmw_init_options
   }
   auto free_security = rcpputils::make_scope_exit(
     [&] { rmw_manycore::ignore(rmw_security_options_fini(&copy.security_options, &allocator)); });
-  result =
-    rmw_discovery_options_copy(&src->discovery_options, &allocator, &copy.discovery_options);
+  result = rmw_discovery_options_copy(&src->discovery_options, &allocator, &copy.discovery_options);
   if (result != RMW_RET_OK) {
     return result;
   }
@@ -84,8 +84,7 @@ rmw_ret_t rmw_init_options_fini(rmw_init_options_t * init_options) {
 
   // Implementation
   allocator.deallocate(init_options->enclave, allocator.state);
-  const rmw_ret_t security =
-    rmw_security_options_fini(&init_options->security_options, &allocator);
+  const rmw_ret_t security = rmw_security_options_fini(&init_options->security_options, &allocator);
   const rmw_ret_t discovery = rmw_discovery_options_fini(&init_options->discovery_options);
   *init_options = rmw_get_zero_initialized_init_options();
   return security != RMW_RET_OK ? security : discovery;

@@ -7,7 +7,7 @@
 
 namespace {
 
-template<typename Handle>
+template <typename Handle>
 rmw_ret_t refuse(const Handle * handle) {
   MANYCORE_CHECK_HANDLE(handle);
   RMW_SET_ERROR_MSG("rmw_manycore does not lend messages");

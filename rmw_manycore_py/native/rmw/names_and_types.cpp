@@ -30,8 +30,7 @@ void write(
   }
   rmw_names_and_types_t made = rmw_get_zero_initialized_names_and_types();
   check(rmw_names_and_types_init(&made, found.size(), &allocator));
-  auto free_made =
-    rcpputils::make_scope_exit([&] { ignore(rmw_names_and_types_fini(&made)); });
+  auto free_made = rcpputils::make_scope_exit([&] { ignore(rmw_names_and_types_fini(&made)); });
   size_t i = 0;
   for (const auto & [name, types] : found) {
     made.names.data[i] = rcutils_strdup(name.c_str(), allocator);

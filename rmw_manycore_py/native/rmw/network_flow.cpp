@@ -4,7 +4,7 @@
 
 namespace {
 
-template<typename Handle>
+template <typename Handle>
 rmw_ret_t refuse(
   const Handle * handle, rcutils_allocator_t * allocator,
   rmw_network_flow_endpoint_array_t * network_flow_endpoint_array) {

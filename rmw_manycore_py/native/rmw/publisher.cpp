@@ -116,7 +116,7 @@ rmw_ret_t rmw_publisher_wait_for_all_acked(
   // Invariants
   MANYCORE_CHECK_HANDLE(publisher);
 
-  // Implementation: an acknowledgement says that a message is with its readers' middleware, taken or
-  // not. Here it is from publication on, and stays there whatever becomes of the publisher.
+  // Implementation: an acknowledgement says that a message is with its readers' middleware, taken
+  // or not. Here it is from publication on, and stays there whatever becomes of the publisher.
   return RMW_RET_OK;
 }

@@ -34,9 +34,12 @@ rmw_time_t to_duration(int64_t ns) { return rmw_time_from_nsec(ns); }
 manycore::History history_of(const rmw_qos_profile_t & profile) {
   switch (profile.history) {
     case RMW_QOS_POLICY_HISTORY_SYSTEM_DEFAULT:
-    case RMW_QOS_POLICY_HISTORY_KEEP_LAST: return manycore::History::keep_last;
-    case RMW_QOS_POLICY_HISTORY_KEEP_ALL: return manycore::History::keep_all;
-    default: refuse_unknown("history");
+    case RMW_QOS_POLICY_HISTORY_KEEP_LAST:
+      return manycore::History::keep_last;
+    case RMW_QOS_POLICY_HISTORY_KEEP_ALL:
+      return manycore::History::keep_all;
+    default:
+      refuse_unknown("history");
   }
 }
 
@@ -45,9 +48,12 @@ manycore::Reliability reliability_of(const rmw_qos_profile_t & profile, Endpoint
     case RMW_QOS_POLICY_RELIABILITY_SYSTEM_DEFAULT:
       return kind == EndpointKind::publisher ? manycore::Reliability::reliable
                                              : manycore::Reliability::best_effort;
-    case RMW_QOS_POLICY_RELIABILITY_RELIABLE: return manycore::Reliability::reliable;
-    case RMW_QOS_POLICY_RELIABILITY_BEST_EFFORT: return manycore::Reliability::best_effort;
-    default: refuse_unknown("reliability");
+    case RMW_QOS_POLICY_RELIABILITY_RELIABLE:
+      return manycore::Reliability::reliable;
+    case RMW_QOS_POLICY_RELIABILITY_BEST_EFFORT:
+      return manycore::Reliability::best_effort;
+    default:
+      refuse_unknown("reliability");
   }
 }
 
@@ -56,19 +62,24 @@ manycore::Durability durability_of(const rmw_qos_profile_t & profile, EndpointKi
     case RMW_QOS_POLICY_DURABILITY_SYSTEM_DEFAULT:
       return kind == EndpointKind::publisher ? manycore::Durability::transient_local
                                              : manycore::Durability::is_volatile;
-    case RMW_QOS_POLICY_DURABILITY_TRANSIENT_LOCAL: return manycore::Durability::transient_local;
-    case RMW_QOS_POLICY_DURABILITY_VOLATILE: return manycore::Durability::is_volatile;
-    default: refuse_unknown("durability");
+    case RMW_QOS_POLICY_DURABILITY_TRANSIENT_LOCAL:
+      return manycore::Durability::transient_local;
+    case RMW_QOS_POLICY_DURABILITY_VOLATILE:
+      return manycore::Durability::is_volatile;
+    default:
+      refuse_unknown("durability");
   }
 }
 
 manycore::Liveliness liveliness_of(const rmw_qos_profile_t & profile) {
   switch (profile.liveliness) {
     case RMW_QOS_POLICY_LIVELINESS_SYSTEM_DEFAULT:
-    case RMW_QOS_POLICY_LIVELINESS_AUTOMATIC: return manycore::Liveliness::automatic;
+    case RMW_QOS_POLICY_LIVELINESS_AUTOMATIC:
+      return manycore::Liveliness::automatic;
     case RMW_QOS_POLICY_LIVELINESS_MANUAL_BY_TOPIC:
       refuse("liveliness MANUAL_BY_TOPIC is not supported by rmw_manycore yet: use AUTOMATIC");
-    default: refuse_unknown("liveliness");
+    default:
+      refuse_unknown("liveliness");
   }
 }
 

@@ -15,8 +15,8 @@ manycore::Qos to_transport(const rmw_qos_profile_t & profile, manycore::Endpoint
 
 rmw_qos_profile_t to_rmw(const manycore::Qos & qos);
 
-/// Replace "best available" policies by the highest level of service that matches the endpoints that
-/// `topic` has now on the other side. Policies of other values are left as they are.
+/// Replace "best available" policies by the highest level of service that matches the endpoints
+/// that `topic` has now on the other side. Policies of other values are left as they are.
 rmw_qos_profile_t best_available_for_subscription(
   const Node & node, const char * topic, const rmw_qos_profile_t & profile);
 rmw_qos_profile_t best_available_for_publisher(

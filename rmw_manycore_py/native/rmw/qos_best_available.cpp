@@ -19,7 +19,7 @@ void resolve(rmw_time_t & duration, const rmw_time_t & best_available, int64_t n
   }
 }
 
-template<typename Policy>
+template <typename Policy>
 void resolve(Policy & policy, Policy best_available, Policy value) {
   if (policy == best_available) {
     policy = value;
@@ -45,8 +45,8 @@ rmw_qos_profile_t resolve_for_subscription(
     }
     return ns;
   };
-  const bool reliable =
-    all([](const EndpointInfo & p) { return p.qos.reliability == manycore::Reliability::reliable; });
+  const bool reliable = all(
+    [](const EndpointInfo & p) { return p.qos.reliability == manycore::Reliability::reliable; });
   const bool transient_local = all([](const EndpointInfo & p) {
     return p.qos.durability == manycore::Durability::transient_local;
   });
@@ -96,16 +96,14 @@ rmw_qos_profile_t resolve_for_publisher(
 
 rmw_qos_profile_t best_available_for_subscription(
   const Node & node, const char * topic, const rmw_qos_profile_t & profile) {
-  return has_best_available(profile)
-           ? resolve_for_subscription(profile, publishers_of(node, topic))
-           : profile;
+  return has_best_available(profile) ? resolve_for_subscription(profile, publishers_of(node, topic))
+                                     : profile;
 }
 
 rmw_qos_profile_t best_available_for_publisher(
   const Node & node, const char * topic, const rmw_qos_profile_t & profile) {
-  return has_best_available(profile)
-           ? resolve_for_publisher(profile, subscriptions_of(node, topic))
-           : profile;
+  return has_best_available(profile) ? resolve_for_publisher(profile, subscriptions_of(node, topic))
+                                     : profile;
 }
 
 rmw_qos_profile_t best_available_for_service(rmw_qos_profile_t profile) {

@@ -13,15 +13,16 @@ namespace {
 
 constexpr rmw_time_t unspecified = RMW_DURATION_UNSPECIFIED;
 
-/// What two profiles will do when they meet. Its value may be decided only when the endpoint exists.
-template<typename Policy>
+/// Whether the policy's value is decided only when the endpoint exists.
+template <typename Policy>
 bool is_open(Policy policy, Policy system_default, Policy unknown) {
   return policy == system_default || policy == unknown;
 }
 
-/// The subscription asks for more often than the publisher promises.
+/// An error when the subscription asks for more than the publisher promises; else nullptr.
 const char * duration_error(
-  const rmw_time_t & offered, const rmw_time_t & requested, const char * none, const char * longer) {
+  const rmw_time_t & offered, const rmw_time_t & requested, const char * none,
+  const char * longer) {
   if (rmw_time_equal(requested, unspecified)) {
     return nullptr;
   }
@@ -64,14 +65,14 @@ std::string errors(const rmw_qos_profile_t & offered, const rmw_qos_profile_t & 
 }
 
 /// A warning when the pair could fail: the offer is open or weak, the request open or strong.
-template<typename Policy>
+template <typename Policy>
 std::string warning(
   const char * name, Policy offered, Policy requested, Policy weak, Policy strong,
   Policy system_default, Policy unknown, const char * (*to_string)(Policy)) {
   const bool offer_open = is_open(offered, system_default, unknown);
   const bool request_open = is_open(requested, system_default, unknown);
-  const bool may_fail = (offer_open && (request_open || requested == strong)) ||
-                        (request_open && offered == weak);
+  const bool may_fail =
+    (offer_open && (request_open || requested == strong)) || (request_open && offered == weak);
   if (!may_fail) {
     return {};
   }

@@ -39,8 +39,8 @@ rmw_ret_t rmw_deserialize(
 
   // Implementation
   return rmw_manycore::guarded([&] {
-    rmw_manycore::cdr_of(type_support).deserialize(
-      serialized_message->buffer, serialized_message->buffer_length, ros_message);
+    rmw_manycore::cdr_of(type_support)
+      .deserialize(serialized_message->buffer, serialized_message->buffer_length, ros_message);
     return RMW_RET_OK;
   });
 }

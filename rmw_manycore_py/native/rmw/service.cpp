@@ -20,8 +20,8 @@ Service::Service(
   replies_(node.process().create_publisher(
     endpoint_spec(node, EndpointRole::reply, name, type_, profile, EndpointKind::publisher))),
   requests_(
-    node.process().create_subscription(endpoint_spec(
-      node, EndpointRole::request, name, type_, profile, EndpointKind::subscription)),
+    node.process().create_subscription(
+      endpoint_spec(node, EndpointRole::request, name, type_, profile, EndpointKind::subscription)),
     node.callback_thread()) {
   handle.implementation_identifier = identifier;
   handle.data = this;

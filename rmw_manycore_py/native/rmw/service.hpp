@@ -12,8 +12,8 @@
 
 namespace rmw_manycore {
 
-/// A service server: reads requests, writes replies. The replies' publisher is there before the first
-/// request can arrive, and goes after the last.
+/// A service server: reads requests, writes replies. The replies' publisher is there before the
+/// first request can arrive, and goes after the last.
 class Service {
 public:
   /// Throws manycore::Error.

@@ -68,9 +68,7 @@ rmw_ret_t rmw_take_sequence(
   MANYCORE_CHECK_ARGUMENT(message_sequence);
   MANYCORE_CHECK_ARGUMENT(message_info_sequence);
   MANYCORE_CHECK_ARGUMENT(taken);
-  if (
-    count == 0 || count > message_sequence->capacity ||
-    count > message_info_sequence->capacity) {
+  if (count == 0 || count > message_sequence->capacity || count > message_info_sequence->capacity) {
     RMW_SET_ERROR_MSG("count must be at least 1 and at most the capacity of both sequences");
     return RMW_RET_INVALID_ARGUMENT;
   }
@@ -78,10 +76,9 @@ rmw_ret_t rmw_take_sequence(
   // Implementation
   *taken = 0;
   const rmw_ret_t result = rmw_manycore::guarded([&] {
-    while (*taken < count &&
-           rmw_manycore::take(
-             Subscription::of(subscription), message_sequence->data[*taken],
-             &message_info_sequence->data[*taken])) {
+    while (*taken < count && rmw_manycore::take(
+                               Subscription::of(subscription), message_sequence->data[*taken],
+                               &message_info_sequence->data[*taken])) {
       ++*taken;
     }
     return RMW_RET_OK;

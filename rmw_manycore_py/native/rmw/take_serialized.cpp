@@ -46,8 +46,8 @@ rmw_ret_t rmw_take_serialized_message(
   // Implementation
   *taken = false;
   return rmw_manycore::guarded([&] {
-    *taken = rmw_manycore::take_serialized(
-      Subscription::of(subscription), *serialized_message, nullptr);
+    *taken =
+      rmw_manycore::take_serialized(Subscription::of(subscription), *serialized_message, nullptr);
     return RMW_RET_OK;
   });
 }

@@ -84,8 +84,7 @@ rmw_ret_t write_found(
   // Implementation
   return guarded([&] {
     const Node & asking = Node::of(node);
-    write(
-      find(asking, topic_name), asking.process().graph().nodes(), *allocator, *result);
+    write(find(asking, topic_name), asking.process().graph().nodes(), *allocator, *result);
     return RMW_RET_OK;
   });
 }

@@ -25,18 +25,18 @@ bool is_ready(const rmw_event_t & event) {
 }
 
 bool take(GuardCondition & condition) { return condition.take(); }
-template<typename Entity>
+template <typename Entity>
 bool take(Entity & entity) {
   return is_ready(entity);
 }
 
 /// One of the five arrays that rmw_wait is given, as entities. Entries may be null.
-template<typename Entity>
+template <typename Entity>
 class Entities {
 public:
   Entities(void ** entries, size_t count) noexcept : entries_(entries), count_(count) {}
 
-  template<typename Predicate>
+  template <typename Predicate>
   bool any(Predicate && predicate) const {
     for (size_t i = 0; i < count_; ++i) {
       if (entries_[i] != nullptr && predicate(at(i))) {
