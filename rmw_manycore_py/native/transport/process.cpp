@@ -9,6 +9,7 @@
 #include <map>
 #include <mutex>
 
+#include "platform/cpu.hpp"
 #include "platform/error.hpp"
 #include "platform/os_process.hpp"
 #include "transport/lifecycle.hpp"
@@ -192,12 +193,7 @@ uint32_t Process::Impl::take_process_slot() {
   entry.pid = getpid();
   entry.cluster = placement.cluster;
   entry.core = placement.core ? static_cast<int32_t>(*placement.core) : -1;
-  cpu_set_t cpus;
-  const bool known = sched_getaffinity(0, sizeof cpus, &cpus) == 0;
-  entry.host_cpu = -1;
-  for (int cpu = 0; known && CPU_COUNT(&cpus) == 1 && cpu < CPU_SETSIZE; ++cpu) {
-    entry.host_cpu = CPU_ISSET(static_cast<size_t>(cpu), &cpus) ? cpu : entry.host_cpu;
-  }
+  entry.host_cpu = only_cpu();
   std::memset(entry.label, 0, sizeof entry.label);
   std::strncpy(entry.label, placement.label.c_str(), sizeof entry.label - 1);
   entry.wake.sleepers.store(0);

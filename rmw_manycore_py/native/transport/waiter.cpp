@@ -1,11 +1,10 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #include "transport/waiter.hpp"
 
-#include <sched.h>
-
 #include <algorithm>
 
 #include "platform/clock.hpp"
+#include "platform/cpu.hpp"
 #include "transport/wake_word.hpp"
 
 namespace manycore {
@@ -22,14 +21,6 @@ constexpr uint32_t score_of_success = 4;
 /// Between looks at the clock.
 constexpr int looks_per_check = 64;
 
-void pause() noexcept {
-#if defined(__x86_64__) || defined(__i386__)
-  __builtin_ia32_pause();
-#elif defined(__aarch64__)
-  asm volatile("yield");
-#endif
-}
-
 }  // namespace
 
 Waiter::Waiter(WakeWord & word, WaitMode mode) noexcept
@@ -43,10 +34,10 @@ bool Waiter::spin(uint32_t seen, std::optional<int64_t> deadline_ns) noexcept {
       if (word_.epoch.load(std::memory_order_acquire) != seen) {
         return true;
       }
-      pause();
+      pause_cpu();
     }
     // The receive thread that will bring the message may share this CPU.
-    sched_yield();
+    yield_cpu();
   }
   return false;
 }
