@@ -1,0 +1,115 @@
+/* Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+ *
+ * Question: does a subscription in another cluster learn of every message, although eMCOS messages are thrown away when
+ * its cluster's pipe is full?
+ * Follows notifier.cpp (announce, ask_to_look), ReceiveThread::run and Subscription::Impl::next. Waking is waiting.pml's
+ * matter: here the subscriber looks when its epoch was raised, and only then.
+ *
+ * BUG 1: resync set after pipe_overflow
+ * BUG 2: pipe_overflow looked at before the pipe is read, not after
+ * BUG 3: no eMCOS message tried after pipe_overflow is set
+ * BUG 4: pipe_overflow cleared after the processes are woken
+ * BUG 5: subscriber clears resync after its look
+ * BUG 6: publisher relies on the full pipe alone
+ */
+#define MESSAGES 2
+#define PUBLISHERS 2
+#define CAPACITY 1        /* eMCOS messages in the pipe */
+
+chan pipe = [CAPACITY] of { byte, byte };   /* publisher; record number, 0 in one of kind resync */
+byte last[PUBLISHERS];    /* published so far */
+byte hinted[PUBLISHERS];  /* highest record number on the subscriber queue */
+byte noted[PUBLISHERS];
+bool resync, pipe_overflow;
+bool woken;               /* epoch raised since the subscriber's last look */
+
+/* Every store here is one with a full fence, or a system call. */
+proctype Publisher(byte i) {
+  do
+  :: last[i] < MESSAGES ->
+     last[i]++;
+     if
+     :: atomic { nfull(pipe) -> pipe!i, last[i] }
+     :: full(pipe) ->
+#if BUG == 1
+        pipe_overflow = true;
+        resync = true;
+#elif BUG == 6
+        resync = true;
+#else
+        resync = true;
+        pipe_overflow = true;
+#endif
+#if BUG != 3
+        if
+        :: atomic { nfull(pipe) -> pipe!i, 0 }
+        :: full(pipe)
+        fi
+#endif
+     fi
+  :: last[i] == MESSAGES -> break
+  od
+}
+
+inline look_after_overflow() {
+  if
+  :: pipe_overflow ->
+#if BUG == 4
+     woken = true;
+     pipe_overflow = false
+#else
+     pipe_overflow = false;
+     woken = true
+#endif
+  :: else
+  fi
+}
+
+proctype ReceiveThread() {
+  byte i, n;
+end:
+  do
+  :: nempty(pipe) ->
+#if BUG == 2
+     look_after_overflow();
+#endif
+     pipe?i, n;
+     if
+     :: n > 0 -> hinted[i] = n; woken = true
+     :: else
+     fi;
+     i = 0; n = 0;
+#if BUG != 2
+     look_after_overflow()
+#endif
+  od
+}
+
+inline look() {
+  if
+  :: resync ->
+#if BUG != 5
+     resync = false;
+#endif
+     noted[0] = last[0];
+     noted[1] = last[1];
+#if BUG == 5
+     resync = false
+#endif
+  :: else ->
+     atomic { noted[0] = (hinted[0] > noted[0] -> hinted[0] : noted[0]) };
+     atomic { noted[1] = (hinted[1] > noted[1] -> hinted[1] : noted[1]) }
+  fi
+}
+
+/* An end state in which it sleeps and has missed something is an error. */
+proctype Subscription() {
+  do
+  :: noted[0] == MESSAGES && noted[1] == MESSAGES -> break
+  :: woken -> woken = false; look()
+  od
+}
+
+init {
+  atomic { run Publisher(0); run Publisher(1); run ReceiveThread(); run Subscription() }
+}
