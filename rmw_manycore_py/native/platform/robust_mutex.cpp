@@ -8,7 +8,35 @@
 #include "platform/clock.hpp"
 #include "platform/error.hpp"
 
+#if defined(__has_feature)
+#define MANYCORE_THREAD_SANITIZER __has_feature(thread_sanitizer)
+#elif defined(__SANITIZE_THREAD__)
+#define MANYCORE_THREAD_SANITIZER 1
+#else
+#define MANYCORE_THREAD_SANITIZER 0
+#endif
+#if MANYCORE_THREAD_SANITIZER
+#include <sanitizer/tsan_interface.h>
+#endif
+
 namespace manycore {
+namespace {
+
+int lock_until(pthread_mutex_t & mutex, const timespec & until) {
+#if MANYCORE_THREAD_SANITIZER
+  // The thread sanitizers of gcc 12 and clang 14 know pthread_mutex_unlock, but not this way to lock.
+  __tsan_mutex_pre_lock(&mutex, 0);
+  const int error = pthread_mutex_clocklock(&mutex, CLOCK_MONOTONIC, &until);
+  const bool locked = error == 0 || error == EOWNERDEAD;
+  __tsan_mutex_post_lock(
+    &mutex, locked ? 0 : __tsan_mutex_try_lock | __tsan_mutex_try_lock_failed, 0);
+  return error;
+#else
+  return pthread_mutex_clocklock(&mutex, CLOCK_MONOTONIC, &until);
+#endif
+}
+
+}  // namespace
 
 void RobustMutex::initialize() {
   pthread_mutexattr_t attributes;
@@ -24,7 +52,7 @@ void RobustMutex::initialize() {
 
 RobustMutex::Outcome RobustMutex::lock(long timeout_ns) {
   const timespec until = to_timespec(monotonic_ns() + timeout_ns);
-  switch (const int error = pthread_mutex_clocklock(&mutex_, CLOCK_MONOTONIC, &until)) {
+  switch (const int error = lock_until(mutex_, until)) {
     case 0:
       return Outcome::locked;
     case EOWNERDEAD:
