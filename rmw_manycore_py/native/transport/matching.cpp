@@ -93,11 +93,12 @@ void join(Registry & registry, const Pair & pair) {
   source.reader.store(publisher_cluster.ref_of(&reader).word, std::memory_order_relaxed);
   source.state.store(SourceState::joining, std::memory_order_release);
 
-  reader.endpoint.store(pair.subscription_slot, std::memory_order_relaxed);
-  reader.subscription.store(pair.subscription.block.word, std::memory_order_relaxed);
-  reader.source.store(subscription_cluster.ref_of(&source).word, std::memory_order_relaxed);
-  reader.source_index.store(index, std::memory_order_relaxed);
-  reader.source_incarnation.store(source.incarnation.load(), std::memory_order_relaxed);
+  // Release, for receive threads that still look at a reader that was here before.
+  reader.endpoint.store(pair.subscription_slot, std::memory_order_release);
+  reader.subscription.store(pair.subscription.block.word, std::memory_order_release);
+  reader.source.store(subscription_cluster.ref_of(&source).word, std::memory_order_release);
+  reader.source_index.store(index, std::memory_order_release);
+  reader.source_incarnation.store(source.incarnation.load(), std::memory_order_release);
   reader.active.store(1, std::memory_order_release);
   // From here on the publisher finds this reader: it looks again after storing `last` (seq_cst). No claim may
   // come earlier, or the publisher could recycle a record under a reader it does not know.

@@ -7,15 +7,16 @@
 
 namespace manycore {
 
+/// Acquire, as in ReceiveThread::push_to_readers(): who reads a value of a later reader finds the generation raised.
 bool ReaderList::resolve(ReaderEntry & entry, Reader & reader) {
-  reader.endpoint = entry.endpoint.load(std::memory_order_relaxed);
-  const SegmentRef subscription{entry.subscription.load(std::memory_order_relaxed)};
+  reader.endpoint = entry.endpoint.load(std::memory_order_acquire);
+  const SegmentRef subscription{entry.subscription.load(std::memory_order_acquire)};
   reader.cluster = subscription.cluster();
   reader.subscription = registry_.clusters().find<SubscriptionHeader>(subscription);
   reader.source = registry_.clusters().find<SourceEntry>(
-    SegmentRef{entry.source.load(std::memory_order_relaxed)});
-  reader.source_index = entry.source_index.load(std::memory_order_relaxed);
-  reader.source_incarnation = entry.source_incarnation.load(std::memory_order_relaxed);
+    SegmentRef{entry.source.load(std::memory_order_acquire)});
+  reader.source_index = entry.source_index.load(std::memory_order_acquire);
+  reader.source_incarnation = entry.source_incarnation.load(std::memory_order_acquire);
   if (
     reader.subscription == nullptr || reader.source == nullptr ||
     reader.endpoint >= registry_.endpoints().high_water()) {

@@ -87,12 +87,12 @@ bool ReceiveThread::push_to_readers(
     if (entry.active.load(std::memory_order_acquire) == 0) {
       return false;
     }
-    const uint32_t endpoint = entry.endpoint.load(std::memory_order_relaxed);
-    const SegmentRef subscription{entry.subscription.load(std::memory_order_relaxed)};
+    // Acquire: who reads a value of a later reader finds the generation raised.
+    const uint32_t endpoint = entry.endpoint.load(std::memory_order_acquire);
+    const SegmentRef subscription{entry.subscription.load(std::memory_order_acquire)};
     const Hint hint{
-      entry.source_index.load(std::memory_order_relaxed),
-      entry.source_incarnation.load(std::memory_order_relaxed), message.number};
-    std::atomic_thread_fence(std::memory_order_acquire);
+      entry.source_index.load(std::memory_order_acquire),
+      entry.source_incarnation.load(std::memory_order_acquire), message.number};
     unchanged = dsm.match_generation.load(std::memory_order_seq_cst) == generation;
     const bool wanted = message.target == nothing || message.target == endpoint;
     if (unchanged && wanted && subscription.cluster() == cluster_.id()) {
