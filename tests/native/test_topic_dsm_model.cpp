@@ -24,7 +24,8 @@ struct Reader {
 
 class Game {
 public:
-  explicit Game(uint32_t seed) : random_(seed) {}
+  Game(std::shared_ptr<Process> process, uint32_t seed)
+  : process_(std::move(process)), random_(seed) {}
 
   void step() {
     switch (below(20)) {
@@ -119,8 +120,7 @@ private:
     REQUIRE_NOTHROW(Payload::read(claim->data(), claim->size()));
   }
 
-  TestPlatform platform_;
-  std::shared_ptr<Process> process_ = platform_.join();
+  std::shared_ptr<Process> process_;
   std::mt19937 random_;
   std::unique_ptr<Publisher> publisher_;
   std::vector<Reader> readers_;
@@ -130,10 +130,12 @@ private:
 }  // namespace
 
 TEST_CASE("random steps give what KEEP_LAST promises") {
-  for (uint32_t seed = 1; seed <= 20; ++seed) {
+  TestPlatform platform;
+  const std::shared_ptr<Process> process = platform.join();
+  for (uint32_t seed = 1; seed <= 40; ++seed) {
     CAPTURE(seed);
-    Game game(seed);
-    for (int step = 0; step < 400; ++step) {
+    Game game(process, seed);
+    for (int step = 0; step < 300; ++step) {
       CAPTURE(step);
       game.step();
     }
