@@ -1,0 +1,166 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+//
+// The registry's tables and its lock.
+#include <doctest/doctest.h>
+
+#include <csignal>
+#include <map>
+#include <set>
+
+#include "child.hpp"
+#include "messages.hpp"
+#include "patience.hpp"
+#include "platform_of_test.hpp"
+#include "transport/configurator.hpp"
+
+using namespace manycore;
+
+namespace {
+
+/// Holds the registry lock of a platform, and half a change, until it is killed.
+const Role lock_holder("lock_holder", [](Lines & test, const Arguments & arguments) {
+  Registry registry(PlatformPaths::of(arguments.at(0)));
+  const Registry::Lock lock(registry);
+  // As a creator of endpoints that gets no further: slots and SMEM that nothing refers to ..
+  registry.endpoints().take("endpoints");
+  registry.nodes().take("nodes");
+  registry.clusters().at(1).allocate(1 << 20);
+  // .. and chains that lead nowhere.
+  for (uint32_t & bucket : registry.header().topic_buckets) {
+    bucket = nothing;
+  }
+  test.say("holding");
+  raise(SIGSTOP);
+});
+
+struct Fixture {
+  TestPlatform platform;
+  std::shared_ptr<Process> process = platform.join();
+  Inspection inspection{platform};
+  Registry & registry = inspection.registry();
+};
+
+}  // namespace
+
+TEST_CASE("slots of endpoints and nodes are used again, and never with the same gid") {
+  Fixture f;
+  std::set<Gid> gids;
+  for (int i = 0; i < 200; ++i) {
+    const auto publisher = f.process->create_publisher(on_topic("/reuse", keep_last(1)));
+    const auto subscription = f.process->create_subscription(on_topic("/reuse", keep_last(1)));
+    gids.insert(publisher->gid());
+    gids.insert(subscription->gid());
+    f.process->remove_node(f.process->add_node("node", "/", "/"));
+  }
+  CHECK(gids.size() == 400);
+  CHECK(f.registry.endpoints().high_water() == 2);
+  CHECK(f.registry.nodes().high_water() == 1);
+}
+
+TEST_CASE("names that do not fit are refused with their limit, and cost no slot") {
+  Fixture f;
+  const std::string longest(255, 'x');
+  const std::string too_long(256, 'x');
+  f.process->remove_node(f.process->add_node(longest, longest, longest));
+  const auto bad_name = refusal_of([&] { f.process->add_node(too_long, "/", "/"); });
+  CHECK(bad_name.code == ErrorCode::invalid_argument);
+  CHECK(bad_name.says("node name"));
+  CHECK(bad_name.says("255 characters"));
+  CHECK(refusal_of([&] { f.process->add_node("x", too_long, "/"); }).says("namespace"));
+  CHECK(refusal_of([&] { f.process->add_node("x", "/", too_long); }).says("enclave"));
+  const EndpointSpec fits = on_topic(longest, keep_last(1));
+  f.process->create_publisher(fits);
+  EndpointSpec topic = on_topic(too_long, keep_last(1));
+  CHECK(refusal_of([&] { f.process->create_publisher(topic); }).says("topic"));
+  EndpointSpec type = fits;
+  type.type = too_long;
+  CHECK(refusal_of([&] { f.process->create_subscription(type); }).says("type"));
+  CHECK(f.process->graph().nodes().empty());
+  CHECK(f.inspection.live_endpoints() == 0);
+  CHECK(f.registry.endpoints().high_water() == 1);
+}
+
+TEST_CASE("a full table says which one and how large it is; one slot given back is one to use") {
+  Fixture f;
+  std::vector<uint32_t> nodes;
+  for (uint32_t i = 0; i < node_capacity; ++i) {
+    nodes.push_back(f.process->add_node("node", "/", "/"));
+  }
+  const Refusal refusal = refusal_of([&] { f.process->add_node("one_more", "/", "/"); });
+  CHECK(refusal.code == ErrorCode::no_space);
+  CHECK(refusal.says("table of nodes is full (4096)"));
+  f.process->remove_node(nodes[7]);
+  CHECK(f.process->add_node("one_more", "/", "/") == nodes[7]);
+}
+
+TEST_CASE("topics that share a bucket are told apart") {
+  Fixture f;
+  // The first two names whose hashes share a bucket.
+  std::map<uint64_t, std::string> names;
+  std::string first;
+  std::string second;
+  for (int i = 0; second.empty(); ++i) {
+    const std::string name = "/t" + std::to_string(i);
+    const auto [known, is_new] =
+      names.emplace(hash_name(name.c_str()) % topic_bucket_count, name);
+    if (!is_new) {
+      first = known->second;
+      second = name;
+    }
+  }
+  const auto one = f.process->create_publisher(on_topic(first, keep_last(1)));
+  auto other = f.process->create_publisher(on_topic(second, keep_last(1)));
+  const auto subscription = f.process->create_subscription(on_topic(first, keep_last(10)));
+  publish(*one, 1);
+  publish(*other, 2);
+  CHECK(take_all(*subscription) == numbers(1, 1));
+  CHECK(f.process->graph().endpoints_of(first).size() == 2);
+  CHECK(f.process->graph().endpoints_of(second).size() == 1);
+  other.reset();
+  CHECK(f.process->graph().endpoints_of(first).size() == 2);
+}
+
+TEST_CASE("the topic table is found by name") {
+  TestPlatform platform;
+  const Configurator configurator(
+    platform.name(), host_profile(), {{"/a", 1, 64, 1}, {"/b", 2, 0, 3}});
+  Registry registry(platform.paths());
+  CHECK(registry.find_topic("/a")->topic_dsm_size == 64);
+  CHECK(registry.find_topic("/b")->topic_id == 2);
+  CHECK(registry.find_topic("/b")->receiver_clusters == 3);
+  CHECK(registry.find_topic("/c") == nullptr);
+}
+
+TEST_CASE("killed while it holds the lock: the next owner repairs what was half changed") {
+  // One state in which the owner may die. All instructions of a change: test_killed.
+  Fixture f;
+  const auto publisher = f.process->create_publisher(on_topic("/repair", keep_last(10)));
+  const auto subscription = f.process->create_subscription(on_topic("/repair", keep_last(10)));
+  const uint64_t used = f.inspection.used_bytes();
+  Child holder("lock_holder", {f.platform.name()});
+  holder.expect("holding");
+  CHECK(f.inspection.used_bytes() > used);
+  holder.kill();
+  CHECK(f.process->graph().endpoints_of("/repair").size() == 2);  // repairs
+  CHECK(f.inspection.used_bytes() == used);
+  const auto late = f.process->create_subscription(on_topic("/repair", keep_last(10)));
+  CHECK(late->matched().current == 1);
+  CHECK(f.process->add_node("node", "/", "/") == 0);
+  CHECK(f.registry.endpoints().high_water() == 3);
+  publish(*publisher, 1, 10'000);
+  CHECK(take_all(*subscription) == numbers(1, 1));
+  CHECK(take_all(*late) == numbers(1, 1));
+}
+
+TEST_CASE("the lock of a stopped owner is waited for, then it is an error that says so") {
+  Fixture f;
+  Child holder("lock_holder", {f.platform.name()});
+  holder.expect("holding");
+  const Refusal refusal = refusal_of(
+    [&] { const Registry::Lock lock(f.registry, Registry::Lock::short_wait_ns); });
+  CHECK(refusal.code == ErrorCode::timeout);
+  CHECK(refusal.says("stopped"));
+  holder.resume();  // its end gives the lock back
+  CHECK(holder.wait() == 0);
+  CHECK(f.process->graph().nodes().empty());
+}
