@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import os
-import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -58,10 +57,10 @@ def test_examples_end_quietly(start, group):
     programs = [start(example_command(name)) for name in GROUPS[group]]
     for program in programs:
         program.wait_for("INFO")
+    # The source of the messages first: an interrupt while rclpy converts an incoming message can
+    # turn into a RuntimeError there, on any middleware.
     for program in programs:
-        program.signal(signal.SIGINT)
-    for program in programs:
-        assert program.wait() == 0, program
+        assert program.stop() == 0, program
         assert "Traceback" not in program.output, program
 
 
