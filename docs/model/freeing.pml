@@ -1,10 +1,12 @@
 /* Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
  *
- * Question: is the memory of a subscription freed only when no publisher and no receive thread can still push to it, and
- * is it freed in the end although they are killed?
- * Follows matching::close_subscription and ::sweep_subscription, TopicDsmWriter::enter and ::leave, ReceiveThread::forward.
- * The publisher pushes through its private reader list, the receive thread reads the table each time. The publisher may
- * be killed at any step, and is then reaped; the receive thread too, and is then replaced.
+ * Question: is the memory of a subscription freed only when no publisher and no receive thread can
+ * still push to it, and is it freed in the end although they are killed?
+ *
+ * Follows closing.cpp (close_subscription, sweep_subscription), TopicDsmWriter::enter and ::leave,
+ * ReceiveThread::forward. The publisher pushes through its private reader list, the receive thread
+ * reads the table each time. The publisher may be killed at any step, and is then reaped; the
+ * receive thread too, and is then replaced.
  *
  * BUG 1: freed without grace
  * BUG 2: publisher: no fence between phase and the look at match_generation

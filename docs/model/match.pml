@@ -1,11 +1,13 @@
 /* Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
  *
- * Question: does a subscription that joins while its publisher publishes get every message from its join on once, and,
- * when both are transient local, what the ring still holds from before?
- * Follows matching::join, the publisher's ReaderList::refresh in take_back and commit, and Subscription::Impl
- * (next, resync, claim). The subscription is at work for other publishers already: resync may be set at any time.
- * A message may be missed for one reason: its record was overwritten. The queue is long enough here (queue.pml shows what
- * it does when it is not), and the publisher waits for a pinned record instead of passing it over (record.pml).
+ * Question: does a subscription that joins while its publisher publishes get every message from its
+ * join on once, and, when both are transient local, what the ring still holds from before?
+ *
+ * Follows join in matching.cpp, the publisher's ReaderList::refresh in take_back and commit, and
+ * Subscription::Impl (next, resync, claim). The subscription is at work for other publishers
+ * already: resync may be set at any time. A message may be missed for one reason: its record was
+ * overwritten. The queue is long enough here (queue.pml shows what it does when it is not), and the
+ * publisher waits for a pinned record instead of passing it over (record.pml).
  *
  * RUN HISTORY=0
  * RUN HISTORY=1
@@ -225,7 +227,8 @@ proctype Subscription() {
      renew_readers();
      if
      :: added && BUG != 12 -> look_at_everything()      /* finds n too */
-     :: (!added || BUG == 12) && known && (n > noted || BUG == 5) && n <= load(READER, LAST) -> take(n)
+     :: (!added || BUG == 12) && known && (n > noted || BUG == 5) && n <= load(READER, LAST) ->
+        take(n)
      :: else
      fi;
      n = 0

@@ -1,9 +1,11 @@
 /* Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
  *
- * Question: does a subscription in another cluster learn of every message, although eMCOS messages are thrown away when
- * its cluster's pipe is full?
- * Follows notifier.cpp (announce, ask_to_look), ReceiveThread::run and Subscription::Impl::next. Waking is waiting.pml's
- * matter: here the subscriber looks when its epoch was raised, and only then.
+ * Question: does a subscription in another cluster learn of every message, although eMCOS messages
+ * are thrown away when its cluster's pipe is full?
+ *
+ * Follows notifier.cpp (announce, ask_to_look), ReceiveThread::run and Subscription::Impl::next.
+ * Waking is waiting.pml's matter: here the subscriber looks when its epoch was raised, and only
+ * then.
  *
  * BUG 1: resync set after pipe_overflow
  * BUG 2: pipe_overflow looked at before the pipe is read, not after

@@ -1,9 +1,11 @@
 /* Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
  *
- * Question: does a RELIABLE + KEEP_ALL publisher that waits for room wake when its reader has taken the record, or is
- * closed?
- * Follows TopicDsmWriter::wait_for_progress, TopicDsmReader::release and matching::close_subscription. The time limit of
- * the wait is left out: a publisher that needs it shows as an invalid end state.
+ * Question: does a RELIABLE + KEEP_ALL publisher that waits for room wake when its reader has taken
+ * the record, or is closed?
+ *
+ * Follows TopicDsmWriter::wait_for_progress, TopicDsmReader::release and closing.cpp
+ * (close_subscription). The time limit of the wait is left out: a publisher that needs it shows as
+ * an invalid end state.
  *
  * BUG 1: no fence between taken and the look at writer_waits
  * BUG 2: no fence between writer_waits and the look at taken

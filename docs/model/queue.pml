@@ -1,13 +1,15 @@
 /* Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
  *
- * Question: does the subscriber queue keep every hint, in order, once, or count it as dropped, whoever dies where?
- * Follows subscriber_queue::push and ::pop statement by statement. Every store in them is a compare-and-swap, a full
- * fence on x86, so there are no store buffers here.
+ * Question: does the subscriber queue keep every hint, in order, once, or count it as dropped,
+ * whoever dies where?
  *
- * The word of a slot is {lap mod LAPS, source}: without the record number, so that two hints of one source differ by
- * their lap alone. That is the worst case for a delayed compare-and-swap, which is safe while no pusher sleeps through
- * LAPS laps of its slot. This run makes fewer than 8 laps; the real queue has 65,536, and 2^28 numbers that must come
- * round at the same time.
+ * Follows subscriber_queue::push and ::pop statement by statement. Every store in them is a
+ * compare-and-swap, a full fence on x86, so there are no store buffers here.
+ *
+ * The word of a slot is {lap mod LAPS, source}: without the record number, so that two hints of one
+ * source differ by their lap alone. That is the worst case for a delayed compare-and-swap, which is
+ * safe while no pusher sleeps through LAPS laps of its slot. This run makes fewer than 8 laps; the
+ * real queue has 65,536, and 2^28 numbers that must come round at the same time.
  *
  * RUN DEPTH=1
  * RUN DEPTH=2
@@ -78,7 +80,8 @@ inline fill(position, source, record) {
   word_changed()
 }
 
-/* Uses t, h, word of the process. Each atomic step holds one access to a shared word, and what follows from it. */
+/* Uses t, h, word of the process. Each atomic step holds one access to a shared word, and what
+ * follows from it. */
 inline push(source, record) {
   skip;
 attempt:
@@ -102,7 +105,7 @@ attempt:
   };
 #endif
   if
-  :: t < h || t - h >= DEPTH -> goto displace   /* unsigned in C++: t - h of a passed tail is huge */
+  :: t < h || t - h >= DEPTH -> goto displace   /* unsigned: t - h of a passed tail is huge */
   :: else
   fi;
 #if BUG == 4

@@ -1,12 +1,14 @@
 /* Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
  *
- * Question: does a reader that holds a claim read the bytes of its record and no others, while the publisher neither
- * waits nor is refused because of a reader that is stuck, and gets the place back in the end?
- * Follows TopicDsmWriter (take_back, claim_descriptor, try_place, commit) on a ring that may not grow, and
- * TopicDsmReader (claim, release, scan). All messages are of one size, so the data area is BLOCKS places that the cursor
- * passes in turn. A hint names any record that the reader has not noted: they come late, twice or never.
- * A publish may be refused (no_space) only when readers claim one record after the other just as the cursor comes by.
- * A stopped reader is one that spin lets take no more steps; reader 0 may be killed at any step, and is then reaped.
+ * Question: does a reader that holds a claim read the bytes of its record and no others, while the
+ * publisher neither waits nor is refused because of a reader that is stuck, and gets the place back
+ * in the end?
+ *
+ * Follows TopicDsmWriter (take_back, claim_descriptor, try_place, commit) on a ring that may not
+ * grow, and TopicDsmReader (claim, release, scan). All messages are of one size, so the data area
+ * is BLOCKS places that the cursor passes in turn. A hint names any record that the reader has not
+ * noted: they come late, twice or never. A stopped reader is one that spin lets take no more steps;
+ * reader 0 may be killed at any step, and is then reaped.
  *
  * RUN READERS=1
  * RUN READERS=2
@@ -19,6 +21,7 @@
  * BUG 7: descriptor of a pinned record used again
  * BUG 8: a scan pins every record
  * BUG 9: publisher does not learn that a reader was reaped
+ * BUG 10: publisher passes each hole only once, though quick readers pin one after the other
  */
 #if READERS == 1
 #define COUNT 2           /* descriptors: a power of two, more than readers */
@@ -32,6 +35,12 @@
 #define KILLABLE 0
 #endif
 #define BLOCKS (READERS + 1)   /* with every reader stuck, one place is left */
+
+#if BUG == 10
+#define ROUNDS 1
+#else
+#define ROUNDS (READERS + 1)
+#endif
 
 #define NUMBER(d) (d)
 #define BLOCK(d) (4 + (d))
@@ -51,7 +60,6 @@
 #include "tso.pml"
 
 byte finished[READERS];   /* what the reader has read or given up; for the property only */
-bool claimed_anew;        /* some reader made a claim since the publisher began to look for room */
 byte gone;                /* readers that left for good: ended, or dead and reaped */
 bool killed, dead;
 
@@ -88,9 +96,9 @@ inline read_bytes() {
 
 inline claim() {
 #if BUG == 1
-  atomic { store_release(r, READING(r), n); claimed_anew = true };
+  store_release(r, READING(r), n);
 #else
-  atomic { store_seq_cst(r, READING(r), n); claimed_anew = true };
+  store_seq_cst(r, READING(r), n);
 #endif
   atomic {
     holds = load(r, NUMBER(n % COUNT)) == n;
@@ -124,7 +132,7 @@ proctype Reader(byte r; byte claims) {
           read_bytes();
           release()
 #endif
-       :: holds -> store_release(r, READING(r), no_record)   /* only a scan: the record stays untaken */
+       :: holds -> store_release(r, READING(r), no_record)   /* a scan: it stays untaken */
        :: !holds -> release()
        fi;
        atomic { noted = n; n = 0; holds = false; claims-- }
@@ -211,24 +219,17 @@ inline take_back(n) {
 #endif
 }
 
-inline begin_search() {
-  d_step { tries = 0; claimed_anew = false }
-}
-
 inline pass_over(position, next_position, all) {
   atomic {
     assert(!alone);                                      /* alone, nothing is pinned */
     position = next_position;
     tries++;
-    if
-    :: tries == all -> assert(claimed_anew); goto refused
-    :: else
-    fi
+    assert(tries < all * ROUNDS)                         /* refused (no_space) */
   }
 }
 
 inline claim_descriptor() {
-  begin_search();
+  tries = 0;
   do
   :: load(PUBLISHER, NUMBER(next % COUNT)) != no_record ->
      old = load(PUBLISHER, NUMBER(next % COUNT));
@@ -247,7 +248,7 @@ inline claim_descriptor() {
 }
 
 inline try_place() {
-  begin_search();
+  tries = 0;
   do
   :: held[cursor] == no_record -> break
   :: else ->
@@ -270,20 +271,25 @@ inline commit() {
   store_release(PUBLISHER, NUMBER(next % COUNT), next);
   store_seq_cst(PUBLISHER, LAST, next);
 #endif
-  d_step { held[cursor] = next; cursor = (cursor + 1) % BLOCKS; next++ }
+  d_step {
+    held[cursor] = next;
+    cursor = (cursor + 1) % BLOCKS;
+    next++;
+    published++;
+    pinned = false;
+    tries = 0
+  }
 }
 
 inline publish() {
   refresh();
   claim_descriptor();
   try_place();
-  commit();
-refused:
-  atomic { calls++; pinned = false; tries = 0; claimed_anew = false }
+  commit()
 }
 
 proctype Publisher() {
-  byte next = BLOCKS + 1, cursor, calls, tries, old, first_reader, seen;
+  byte next = BLOCKS + 1, cursor, published, tries, old, first_reader, seen;
   byte held[BLOCKS];
   byte maybe_pinned[COUNT];
   bool pinned, alone;
@@ -294,10 +300,10 @@ proctype Publisher() {
     tries = 0
   };
   do
-  :: calls < MESSAGES || (alone && calls < MESSAGES + BLOCKS) -> publish()
-  :: calls == MESSAGES && !alone ->
+  :: published < MESSAGES || (alone && published < MESSAGES + BLOCKS) -> publish()
+  :: published == MESSAGES && !alone ->
      atomic { gone == READERS && settled(0) && settled(1) -> alone = true }
-  :: calls == MESSAGES + BLOCKS -> break
+  :: published == MESSAGES + BLOCKS -> break
   od
 }
 

@@ -1,10 +1,13 @@
 /* Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
  *
- * Question: is the topic DSM of a gone publisher freed only when nobody can look into it any more, and does a reader
- * that wakes up late spoil nothing of the next match, which may be given the same source entry and the same memory?
- * Follows matching::sweep_publisher, ::revoke and ::join, TopicDsmReader (claim, release) and ReceiveThread::forward.
- * The subscription holds a hint of the first publisher whose record is gone already. A sweep that finds the topic DSM in
- * use gives up, and is done again later.
+ * Question: is the topic DSM of a gone publisher freed only when nobody can look into it any more,
+ * and does a reader that wakes up late spoil nothing of the next match, which may be given the same
+ * source entry and the same memory?
+ *
+ * Follows closing.cpp (sweep_publisher, revoke), matching.cpp (join), TopicDsmReader (claim,
+ * release) and ReceiveThread::forward. The subscription holds a hint of the first publisher whose
+ * record is gone already. A sweep that finds the topic DSM in use gives up, and is done again
+ * later.
  *
  * BUG 1: no fence between reading and the look at state
  * BUG 2: revoked without a look at reading
@@ -36,7 +39,7 @@
 
 #include "tso.pml"
 
-byte owner = 1;           /* who the topic DSM's memory belongs to: first publisher, nobody (0), second publisher */
+byte owner = 1;           /* of the topic DSM's memory: first publisher, nobody (0), second one */
 
 /* Any read or write in the memory of the topic DSM of publisher `whose`. */
 inline touch(whose) {
@@ -86,7 +89,7 @@ proctype ReceiveThread() {
   store_seq_cst(RECEIVER, PHASE, 1);
 #endif
   if
-  :: load(RECEIVER, MAGIC) == 1 -> touch(1)             /* the endpoint in the header is compared too */
+  :: load(RECEIVER, MAGIC) == 1 -> touch(1)             /* and the header's endpoint */
   :: else
   fi;
   store_release(RECEIVER, PHASE, 0)

@@ -1,7 +1,8 @@
 /* Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
  *
- * Shared memory as x86 shows it (total store order): each process has a store buffer, first in first out, which the
- * hardware empties at any time; a load finds the own buffered store first. A model defines before it includes this:
+ * Shared memory as x86 shows it (total store order): each process has a store buffer, first in
+ * first out, which the hardware empties at any time; a load finds the own buffered store first. A
+ * model defines before it includes this:
  *   WORDS      words of shared memory
  *   PROCESSES  processes that store
  * and uses, with p the process, a the word:

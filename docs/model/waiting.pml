@@ -1,9 +1,11 @@
 /* Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
  *
- * Question: does a process that sleeps for its next notification wake for each one, and is the system call spared while
- * it is awake?
- * Follows WakeWord::notify and Waiter::wait (mode block), with two threads waiting in one process, each for an entity of
- * its own, and one notifier for each entity. Neither the kernel's own fences nor a spurious wake-up are relied on.
+ * Question: does a process that sleeps for its next notification wake for each one, and is the
+ * system call spared while it is awake?
+ *
+ * Follows WakeWord::notify and Waiter::wait (mode block), with two threads waiting in one process,
+ * each for an entity of its own, and one notifier for each entity. Neither the kernel's own fences
+ * nor a spurious wake-up are relied on.
  *
  * BUG 1: no fence between epoch and the look at sleepers
  * BUG 2: no fence between sleepers and the comparison of the epoch
