@@ -13,12 +13,20 @@ import time
 
 import pytest
 from load import breed, check_steadily, publish_steadily
-from processes import kill, receive_threads_of
-from support import IS_MANYCORE, PATIENCE_S, Program, leftovers, peer_command, wait_until
+from processes import kill, processes_of, receive_threads_of
+from support import (
+    IS_MANYCORE,
+    Program,
+    example_command,
+    leftovers,
+    peer_command,
+    wait_until,
+)
 
 KILLS = int(os.environ.get("MANYCORE_TEST_KILLS", "1000"))
 SEED = int(os.environ.get("MANYCORE_TEST_SEED", str(random.randrange(1 << 32))))
 LONGEST_LIFE_S = 0.2  # of a victim: joining takes some milliseconds, and may itself be hit
+JOINING_S = 0.03  # about what it takes from the fork to the first message
 CLUSTERS = 2
 
 
@@ -124,12 +132,29 @@ def test_everything_dies_at_random(start, platform, load):
 
 @pytest.mark.skipif(not IS_MANYCORE, reason="about what rmw_manycore leaves in /dev/shm")
 def test_the_last_process_is_killed(start, platform):
-    """Nobody is left to clean up after the last one but the receive threads, and they do."""
+    """Nobody is left to clean up after the last node but the receive threads, and they do."""
+    nursery = start(peer_command(breed))
+    nursery.wait_for("ready")
+    for _ in range(KILLS // 10):
+        nursery.say(f"publisher {random.randint(1, CLUSTERS)}")
+        victim = int(nursery.wait_for(r"victim (\d+) works").group(1))
+        time.sleep(random.uniform(0, LONGEST_LIFE_S / 4))  # the random moment
+        kill(victim)
+        wait_until(lambda: not leftovers(platform), "nothing is left in /dev/shm")
+
+
+@pytest.mark.skipif(not IS_MANYCORE, reason="about what rmw_manycore leaves in /dev/shm")
+def test_the_only_process_is_killed_while_it_joins(start, platform):
+    """Before there is a receive thread nobody else knows; then the next start clears up."""
     nursery = start(peer_command(breed))
     nursery.wait_for("ready")
     for _ in range(KILLS // 10):
         nursery.say(f"publisher {random.randint(1, CLUSTERS)}")
         victim = int(nursery.wait_for(r"born (\d+)").group(1))
-        time.sleep(random.uniform(0, LONGEST_LIFE_S))  # the random moment
+        time.sleep(random.uniform(0, JOINING_S))  # the random moment
         kill(victim)
-        wait_until(lambda: not leftovers(platform), "nothing is left in /dev/shm", PATIENCE_S)
+        wait_until(lambda: not processes_of(platform), "the receive threads are gone")
+    talker = start(example_command("talker"))
+    talker.wait_for("Publishing")
+    assert talker.stop() == 0, talker
+    wait_until(lambda: not leftovers(platform), "nothing is left in /dev/shm")
