@@ -16,5 +16,6 @@ struct rmw_context_impl_s {
   const std::shared_ptr<manycore::Process> process;
   rmw_manycore::CallbackThread callback_thread;
   std::atomic<size_t> node_count{0};
-  std::atomic<bool> is_shutdown{false};
+  /// Shared with the context's wait sets, which may outlive it.
+  const std::shared_ptr<std::atomic<bool>> is_shutdown = std::make_shared<std::atomic<bool>>(false);
 };

@@ -84,7 +84,8 @@ rmw_ret_t rmw_shutdown(rmw_context_t * context) {
   MANYCORE_CHECK_HANDLE(context);
 
   // Implementation
-  context->impl->is_shutdown = true;
+  *context->impl->is_shutdown = true;
+  context->impl->process->waiter().notify();
   context->impl->callback_thread.stop();
   return RMW_RET_OK;
 }
@@ -95,7 +96,7 @@ rmw_ret_t rmw_context_fini(rmw_context_t * context) {
   RMW_CHECK_FOR_NULL_WITH_MSG(
     context->impl, "expected initialized context", return RMW_RET_INVALID_ARGUMENT);
   MANYCORE_CHECK_HANDLE(context);
-  if (!context->impl->is_shutdown) {
+  if (!*context->impl->is_shutdown) {
     RMW_SET_ERROR_MSG("context has not been shutdown");
     return RMW_RET_INVALID_ARGUMENT;
   }

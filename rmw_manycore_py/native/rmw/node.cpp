@@ -37,7 +37,7 @@ rmw_node_t * rmw_create_node(rmw_context_t * context, const char * name, const c
   RMW_CHECK_FOR_NULL_WITH_MSG(context->impl, "expected initialized context", return nullptr);
   RMW_CHECK_ARGUMENT_FOR_NULL(name, nullptr);
   RMW_CHECK_ARGUMENT_FOR_NULL(namespace_, nullptr);
-  if (context->impl->is_shutdown) {
+  if (*context->impl->is_shutdown) {
     RMW_SET_ERROR_MSG("context has been shutdown");
     return nullptr;
   }

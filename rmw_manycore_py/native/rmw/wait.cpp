@@ -140,13 +140,16 @@ std::optional<int64_t> deadline_of(const rmw_time_t * timeout) noexcept {
   return now_ns + timeout_ns;
 }
 
+/// Ends with the context as well: rclpy triggers its guard conditions before it shuts its contexts down on
+/// SIGTERM, and would wait for ever if it came back here in between.
 void sleep_until_ready(
-  manycore::Waiter & waiter, const Waited & waited, std::optional<int64_t> deadline_ns) {
+  const WaitSet & wait_set, const Waited & waited, std::optional<int64_t> deadline_ns) {
+  manycore::Waiter & waiter = wait_set.waiter();
   const Watch watch(waiter, waited);
   while (true) {
     // The epoch is read before the entities: what happens in between ends the wait at once.
     const uint32_t epoch = waiter.epoch();
-    if (waited.any_ready() || !waiter.wait(epoch, deadline_ns)) {
+    if (wait_set.is_shutdown() || waited.any_ready() || !waiter.wait(epoch, deadline_ns)) {
       return;
     }
   }
@@ -175,7 +178,7 @@ rmw_ret_t rmw_wait(
     const bool poll = wait_timeout != nullptr && rmw_time_total_nsec(*wait_timeout) == 0;
     if (!poll && !waited.any_ready()) {
       rmw_manycore::sleep_until_ready(
-        static_cast<rmw_manycore::WaitSet *>(wait_set->data)->waiter(), waited,
+        *static_cast<const rmw_manycore::WaitSet *>(wait_set->data), waited,
         rmw_manycore::deadline_of(wait_timeout));
     }
     return waited.keep_ready() ? RMW_RET_OK : RMW_RET_TIMEOUT;

@@ -8,7 +8,8 @@
 
 namespace rmw_manycore {
 
-WaitSet::WaitSet(rmw_context_t & context) : process_(context.impl->process) {
+WaitSet::WaitSet(rmw_context_t & context)
+: process_(context.impl->process), is_shutdown_(context.impl->is_shutdown) {
   handle.implementation_identifier = identifier;
   handle.data = this;
 }

@@ -1,6 +1,7 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <atomic>
 #include <memory>
 
 #include "rmw/types.h"
@@ -18,9 +19,11 @@ public:
   rmw_wait_set_t handle{};
 
   manycore::Waiter & waiter() const noexcept { return process_->waiter(); }
+  bool is_shutdown() const noexcept { return *is_shutdown_; }
 
 private:
   const std::shared_ptr<manycore::Process> process_;
+  const std::shared_ptr<const std::atomic<bool>> is_shutdown_;
 };
 
 }  // namespace rmw_manycore
