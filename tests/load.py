@@ -22,6 +22,7 @@ from support import PATIENCE_S
 PR_SET_PDEATHSIG = 1  # <linux/prctl.h>
 TOPIC = "load"
 LARGEST_BYTES = 100_000
+SMALL_DSM_BYTES = 500_000  # a topic DSM with room for four of the largest messages
 DEEP = QoSProfile(depth=2000)
 LASTING = QoSProfile(depth=1000, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
@@ -98,6 +99,19 @@ def check_until_killed() -> None:
         node.create_subscription(UInt8MultiArray, TOPIC, check, 10)
         announce(f"victim {os.getpid()} works")
         rclpy.spin(node)
+
+
+def publish_without_rest() -> None:
+    """Overwrite a small topic DSM as fast as possible; tell each time it has been filled twice."""
+    with peer_node("restless_publisher") as node:
+        publisher = node.create_publisher(UInt8MultiArray, TOPIC, 2)
+        spin_until(node, publisher.get_subscription_count)
+        number = 0
+        while rclpy.ok():
+            number += 1
+            publisher.publish(make_message(os.getpid(), number, LARGEST_BYTES))
+            if number % (2 * SMALL_DSM_BYTES // LARGEST_BYTES) == 0:
+                announce("overwritten")
 
 
 VICTIMS = {"publisher": publish_until_killed, "subscriber": check_until_killed}

@@ -28,6 +28,9 @@ IS_MANYCORE = RMW == "rmw_manycore"
 # How long a thing may take that should take milliseconds: only ever waited for by a failing test.
 PATIENCE_S = float(os.environ.get("MANYCORE_TEST_PATIENCE", "30"))
 
+# How often the stress tests kill or stop something.
+KILLS = int(os.environ.get("MANYCORE_TEST_KILLS", "1000"))
+
 PLATFORMS = Path(f"/dev/shm/manycore-{os.getuid()}")
 
 _numbers = itertools.count()

@@ -16,6 +16,7 @@ from load import breed, check_steadily, publish_steadily
 from processes import kill, processes_of, receive_threads_of
 from support import (
     IS_MANYCORE,
+    KILLS,
     Program,
     example_command,
     leftovers,
@@ -23,7 +24,6 @@ from support import (
     wait_until,
 )
 
-KILLS = int(os.environ.get("MANYCORE_TEST_KILLS", "1000"))
 SEED = int(os.environ.get("MANYCORE_TEST_SEED", str(random.randrange(1 << 32))))
 LONGEST_LIFE_S = 0.2  # of a victim: joining takes some milliseconds, and may itself be hit
 JOINING_S = 0.03  # about what it takes from the fork to the first message
