@@ -5,6 +5,8 @@
 #include <doctest/doctest.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cctype>
 #include <csignal>
 #include <fstream>
 #include <sstream>
@@ -24,13 +26,60 @@ std::string content_of(const std::string & path) {
   return content.str();
 }
 
+/// Names in a directory that are numbers.
+std::vector<std::string> entries_of(const std::string & path) {
+  std::vector<std::string> names;
+  DIR * const directory = opendir(path.c_str());
+  while (const dirent * const entry = directory == nullptr ? nullptr : readdir(directory)) {
+    if (std::isdigit(static_cast<unsigned char>(entry->d_name[0]))) {
+      names.emplace_back(entry->d_name);
+    }
+  }
+  if (directory != nullptr) {
+    closedir(directory);
+  }
+  return names;
+}
+
+/// State and parent that /proc shows for a process or a thread; state 0 when it is gone.
+struct Status {
+  char state = 0;
+  pid_t parent = 0;
+};
+
+Status status_of(const std::string & directory) {
+  const std::string stat = content_of(directory + "/stat");
+  const size_t end_of_name = stat.rfind(')');
+  if (end_of_name == std::string::npos) {
+    return {};
+  }
+  return {stat[end_of_name + 2], std::stoi(stat.substr(end_of_name + 4))};
+}
+
+/// The half of a daemon that waits until the other one is ready is still there. When it ends, the kernel lets the
+/// other one go on, should somebody have stopped it before.
+bool is_starting(pid_t pid) {
+  const pid_t parent = status_of("/proc/" + std::to_string(pid)).parent;
+  return content_of("/proc/" + std::to_string(parent) + "/cmdline")
+           .find("manycore_receive_thread") != std::string::npos;
+}
+
 }  // namespace
 
 bool is_running(pid_t pid) {
-  const std::string stat = content_of("/proc/" + std::to_string(pid) + "/stat");
-  const size_t end_of_name = stat.rfind(')');
-  return end_of_name != std::string::npos && stat[end_of_name + 2] != 'Z' &&
-         stat[end_of_name + 2] != 'X';
+  const char state = status_of("/proc/" + std::to_string(pid)).state;
+  return state != 0 && state != 'Z' && state != 'X';
+}
+
+void stop_process(pid_t pid) {
+  kill(pid, SIGSTOP);
+  const std::string threads = "/proc/" + std::to_string(pid) + "/task/";
+  wait_until("process " + std::to_string(pid) + " stands still", [&] {
+    const std::vector<std::string> names = entries_of(threads);
+    return std::all_of(names.begin(), names.end(), [&](const std::string & name) {
+      return status_of(threads + name).state == 'T';
+    });
+  });
 }
 
 TestPlatform::TestPlatform() {
@@ -62,18 +111,15 @@ std::shared_ptr<Process> TestPlatform::join(uint32_t cluster, WaitMode mode) con
 
 std::vector<pid_t> TestPlatform::receive_threads() const {
   std::vector<pid_t> pids;
-  DIR * const directory = opendir("/proc");
-  while (const dirent * const entry = readdir(directory)) {
-    const pid_t pid = static_cast<pid_t>(std::atoi(entry->d_name));
-    const std::string line =
-      pid == 0 ? "" : content_of(std::string("/proc/") + entry->d_name + "/cmdline");
+  for (const std::string & name : entries_of("/proc")) {
+    const std::string line = content_of("/proc/" + name + "/cmdline");
+    const pid_t pid = std::stoi(name);
     const bool serves = line.find("manycore_receive_thread") != std::string::npos &&
                         line.find('\0' + name_ + '\0') != std::string::npos;
     if (serves && is_running(pid)) {
       pids.push_back(pid);
     }
   }
-  closedir(directory);
   return pids;
 }
 
@@ -82,7 +128,7 @@ pid_t TestPlatform::receive_thread(uint32_t cluster, pid_t not_this) const {
   pid_t pid = 0;
   wait_until("a receive thread in cluster " + std::to_string(cluster), [&] {
     pid = registry.clusters().at(cluster).header().receive_thread_pid.load();
-    return pid != 0 && pid != not_this && is_running(pid) &&
+    return pid != 0 && pid != not_this && is_running(pid) && !is_starting(pid) &&
            alive_locks(paths()).is_held(receive_thread_byte + cluster);
   });
   return pid;

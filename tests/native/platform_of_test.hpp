@@ -51,6 +51,9 @@ private:
 /// Whether a process runs (a zombie does not).
 bool is_running(pid_t pid);
 
+/// SIGSTOP for a process that is no child; returns once all its threads stand still.
+void stop_process(pid_t pid);
+
 /// Code and text of the Error that `act` throws; none when it does not.
 struct Refusal {
   std::optional<manycore::ErrorCode> code;

@@ -1,0 +1,268 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+//
+// How a platform comes into being, and that nothing of it stays.
+#include <doctest/doctest.h>
+
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdlib>
+#include <fstream>
+
+#include "messages.hpp"
+#include "node_role.hpp"
+#include "patience.hpp"
+#include "private_shm.hpp"
+#include "transport/configurator.hpp"
+
+using namespace manycore;
+
+namespace {
+
+mode_t permissions_of(const std::string & path) {
+  struct stat status {};
+  return stat(path.c_str(), &status) == 0 ? status.st_mode & 0777 : 0;
+}
+
+void write_file(const std::string & path, const std::string & content) {
+  std::ofstream(path, std::ios::binary) << content;
+}
+
+/// Kills everything of a platform whose nodes are in clusters 1, 2 ..: nodes first or receive threads first.
+void kill_whole(const TestPlatform & platform, std::vector<Node> & nodes, bool nodes_first) {
+  std::vector<pid_t> receive_threads;
+  for (uint32_t cluster = 1; cluster <= nodes.size(); ++cluster) {
+    receive_threads.push_back(platform.receive_thread(cluster));
+  }
+  for (Node & node : nodes) {
+    node.stop();  // nobody may notice what happens to the others
+  }
+  for (const pid_t pid : receive_threads) {
+    stop_process(pid);
+  }
+  if (nodes_first) {
+    nodes.clear();
+  }
+  for (const pid_t pid : receive_threads) {
+    kill(pid, SIGKILL);
+  }
+  nodes.clear();
+  wait_until("all is killed", [&] { return platform.receive_threads().empty(); });
+}
+
+}  // namespace
+
+TEST_CASE("a join brings up what is missing, for this user alone; a leave takes it away") {
+  TestPlatform platform;
+  CHECK_FALSE(platform.exists());
+  {
+    const auto process = platform.join(2);
+    platform.receive_thread(2);
+    CHECK(permissions_of(platform.paths().user_directory) == 0700);
+    CHECK(permissions_of(platform.paths().directory) == 0700);
+    for (const std::string & file :
+         {platform.paths().registry(), platform.paths().alive(), platform.paths().cluster(2),
+          platform.paths().pipe(2)}) {
+      CAPTURE(file);
+      CHECK(permissions_of(file) == 0600);
+    }
+    CHECK(permissions_of(platform.paths().cluster(1)) == 0);  // nobody is there
+    CHECK(process->graph().processes().size() == 1);
+    CHECK(process->graph().clusters().size() == 1);
+  }
+  CHECK_FALSE(platform.exists());
+}
+
+TEST_CASE("a second join of the same process is the same membership") {
+  TestPlatform platform;
+  const auto process = platform.join(1);
+  CHECK(platform.join(1) == process);
+  CHECK(process->graph().processes().size() == 1);
+}
+
+TEST_CASE("the platform stays until the last process leaves") {
+  TestPlatform platform;
+  auto here = platform.join(1);
+  Node there(platform, 2);
+  CHECK(here->graph().processes().size() == 2);
+  here.reset();
+  CHECK(platform.exists());
+  there.tell("publisher /x 1");
+  there.say("leave");
+  CHECK(there.wait() == 0);
+  CHECK_FALSE(platform.exists());
+}
+
+TEST_CASE("nodes that are all killed leave nothing: the receive threads see to it") {
+  TestPlatform platform;
+  std::vector<Node> nodes;
+  for (const uint32_t cluster : {1u, 1u, 2u}) {
+    nodes.emplace_back(platform, cluster);
+    nodes.back().tell("publisher /x 1");
+  }
+  nodes.clear();  // ~TestPlatform waits
+}
+
+TEST_CASE("killed whole, then started again: works, and the leftovers are gone") {
+  for (const bool nodes_first : {true, false}) {
+    CAPTURE(nodes_first);
+    TestPlatform platform;
+    std::vector<Node> nodes;
+    nodes.emplace_back(platform, 1);
+    nodes.emplace_back(platform, 2);
+    nodes[0].tell("publisher /x 10+transient_local");
+    nodes[0].tell("publish 1 10 1000");
+    kill_whole(platform, nodes, nodes_first);
+    REQUIRE(platform.exists());
+    const std::string stray = platform.paths().directory + "/stray";
+    write_file(stray, "left behind");
+
+    const auto process = platform.join(1);
+    CHECK(access(stray.c_str(), F_OK) != 0);
+    CHECK(access(platform.paths().cluster(2).c_str(), F_OK) != 0);
+    CHECK(process->graph().processes().size() == 1);
+    CHECK(process->graph().endpoints().empty());
+    const auto publisher = process->create_publisher(on_topic("/x", keep_last(1)));
+    const auto subscription = process->create_subscription(on_topic("/x", transient_local(10)));
+    CHECK(subscription->matched().current == 0);
+  }
+}
+
+TEST_CASE("clean_platform removes what a dead platform left, and refuses to touch one that lives") {
+  TestPlatform platform;
+  std::vector<Node> nodes;
+  nodes.emplace_back(platform, 1);
+  const Refusal refusal = refusal_of([&] { clean_platform(platform.name()); });
+  CHECK(refusal.code == ErrorCode::invalid_argument);
+  CHECK(refusal.says("alive"));
+  CHECK(nodes[0].ask("publisher /x 1") == "ok");
+  kill_whole(platform, nodes, true);
+  CHECK(clean_platform(platform.name()).size() >= 4);
+  CHECK_FALSE(platform.exists());
+}
+
+TEST_CASE("a configurator keeps the platform while no node is there, also in its own process") {
+  TestPlatform platform;
+  Profile profile = host_profile();
+  profile.clusters = 3;
+  profile.smem_bytes = 8 << 20;
+  {
+    const Configurator configurator(platform.name(), profile, {{"/x", 1, 4096, 0}});
+    {
+      const auto process = platform.join(3);
+      CHECK(process->graph().clusters().at(0).smem_bytes == 8 << 20);
+    }
+    CHECK(platform.exists());
+    const Refusal refusal =
+      refusal_of([&] { Configurator second(platform.name(), profile, {}); });
+    CHECK(refusal.code == ErrorCode::invalid_argument);
+    CHECK(refusal.says("is running already"));
+    Inspection inspection(platform);
+    CHECK(inspection.registry().find_topic("/x")->topic_dsm_size == 4096);
+    const Refusal cluster = refusal_of([&] { platform.join(4); });
+    CHECK(cluster.code == ErrorCode::invalid_argument);
+    CHECK(cluster.says("clusters 1 to 3"));
+  }
+  CHECK_FALSE(platform.exists());
+}
+
+TEST_CASE("a platform outlives its configurator while a node is there") {
+  TestPlatform platform;
+  auto configurator = std::make_unique<Configurator>(platform.name(), host_profile(),
+    std::vector<TopicConfiguration>{});
+  auto process = platform.join();
+  configurator.reset();
+  CHECK(platform.exists());
+  process.reset();
+  CHECK_FALSE(platform.exists());
+}
+
+TEST_CASE("a join that fails leaves nothing behind") {
+  TestPlatform platform;
+  Placement placement;
+  placement.platform = platform.name();
+  placement.cluster = 60;
+  CHECK(refusal_of([&] { Process::join(placement); }).says("no cluster 60"));
+  CHECK_FALSE(platform.exists());
+  placement.cluster = 1;
+  placement.core = 1000;
+  CHECK(refusal_of([&] { Process::join(placement); }).says("no core 1000"));
+  CHECK_FALSE(platform.exists());
+}
+
+TEST_CASE("names that are no platform names never become paths") {
+  for (const std::string & name : {std::string(""), std::string("."), std::string(".."),
+         std::string("a/b"), std::string(".hidden"), std::string("a b"), std::string(65, 'x')}) {
+    CAPTURE(name);
+    const Refusal refusal = refusal_of([&] { PlatformPaths::of(name); });
+    CHECK(refusal.code == ErrorCode::invalid_argument);
+    CHECK(refusal.says("no platform name"));
+  }
+}
+
+TEST_CASE("variables of the environment are checked, and named when they are wrong") {
+  const std::pair<const char *, const char *> wrong[] = {
+    {"MANYCORE_CLUSTER", "0"},  {"MANYCORE_CLUSTER", "65"},  {"MANYCORE_CLUSTER", "two"},
+    {"MANYCORE_CLUSTER", "1x"}, {"MANYCORE_CLUSTER", "-1"},  {"MANYCORE_CORE", "1024"},
+    {"MANYCORE_CORE", "-1"},    {"MANYCORE_WAIT", "busily"},
+  };
+  for (const auto & [name, value] : wrong) {
+    setenv(name, value, 1);
+    const Refusal refusal = refusal_of([] { Placement::from_environment(0); });
+    unsetenv(name);
+    CHECK(refusal.code == ErrorCode::invalid_argument);
+    CHECK(refusal.says(std::string(name) + "='" + value + "'"));
+  }
+  setenv("MANYCORE_CLUSTER", "3", 1);
+  setenv("MANYCORE_WAIT", "adaptive", 1);
+  const Placement placement = Placement::from_environment(42);
+  unsetenv("MANYCORE_CLUSTER");
+  unsetenv("MANYCORE_WAIT");
+  CHECK(placement.platform == "domain-42");
+  CHECK(placement.cluster == 3);
+  CHECK_FALSE(placement.core);
+  CHECK(placement.wait_mode == WaitMode::adaptive);
+}
+
+TEST_CASE("a user directory that others may enter, or that is none, is refused") {
+  if (!has_private_shm()) {
+    MESSAGE("skipped: needs a /dev/shm of its own");
+    return;
+  }
+  TestPlatform platform;
+  const std::string directory = platform.paths().user_directory;
+  wait_until("nobody is there", [&] { return access(directory.c_str(), F_OK) != 0; });
+  SUBCASE("open to others") {
+    mkdir(directory.c_str(), 0755);
+    chmod(directory.c_str(), 0755);
+  }
+  SUBCASE("a file") { write_file(directory, ""); }
+  SUBCASE("a link to a private directory") {
+    mkdir("/dev/shm/elsewhere", 0700);
+    CHECK(symlink("/dev/shm/elsewhere", directory.c_str()) == 0);
+  }
+  const Refusal refusal = refusal_of([&] { platform.join(); });
+  CHECK(refusal.code == ErrorCode::permission);
+  CHECK(refusal.says(directory));
+  CHECK(refusal.says("private"));
+  remove(directory.c_str());
+  rmdir("/dev/shm/elsewhere");
+}
+
+TEST_CASE("many processes join and leave at the same time") {
+  // Cannot prove that no order of joins and leaves goes wrong; it meets many of them.
+  TestPlatform platform;
+  for (int round = 0; round < 3; ++round) {
+    std::vector<std::unique_ptr<Child>> children;
+    for (int i = 0; i < 12; ++i) {
+      children.push_back(std::make_unique<Child>(
+        "node", Arguments{platform.name(), std::to_string(1 + i % 2), "block"}));
+      children.back()->say("publisher /x 1");
+      children.back()->say("leave");
+    }
+    for (const auto & child : children) {
+      CHECK(child->wait() == 0);
+    }
+  }
+}
