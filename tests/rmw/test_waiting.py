@@ -10,7 +10,7 @@ from contextlib import contextmanager
 
 import pytest
 import rclpy
-from rclpy._rclpy_pybind11 import RCLError
+from rclpy._rclpy_pybind11 import GuardCondition, RCLError, WaitSet
 from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.executors import Executor, MultiThreadedExecutor, SingleThreadedExecutor
 from rclpy.node import Node
@@ -56,6 +56,22 @@ def test_wait_times_out(node):
     before = time.monotonic()
     rclpy.spin_once(node, timeout_sec=0.2)
     assert time.monotonic() - before >= 0.199
+
+
+def test_a_wait_ends_with_its_context():
+    """On SIGTERM rclpy shuts its contexts down after it has woken its executors: they may be back."""
+    context = rclpy.Context()
+    context.init()
+    with context.handle:
+        never = GuardCondition(context.handle)
+        wait_set = WaitSet(0, 1, 0, 0, 0, 0, context.handle)
+    wait_set.clear_entities()
+    wait_set.add_guard_condition(never)
+    thread = threading.Thread(target=wait_set.wait, args=(-1,), daemon=True)
+    thread.start()
+    context.shutdown()
+    thread.join(PATIENCE_S)
+    assert not thread.is_alive()
 
 
 def test_timers(node):
