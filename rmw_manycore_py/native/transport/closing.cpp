@@ -237,4 +237,15 @@ void sweep(Registry & registry) {
   }
 }
 
+void leave(Registry & registry, uint32_t endpoint) noexcept {
+  try {
+    const Registry::Lock lock(registry);
+    close(registry, endpoint, false);
+    sweep(registry);
+  } catch (const std::exception &) {
+    // The registry stayed locked: the reaper closes this endpoint when the process ends.
+  }
+  registry.graph_changed();
+}
+
 }  // namespace manycore::closing

@@ -14,4 +14,7 @@ void close(Registry & registry, uint32_t endpoint, bool died);
 /// Freeing).
 void sweep(Registry & registry);
 
+/// What an endpoint's owner calls: takes the lock, closes, sweeps, and tells who watches the graph.
+void leave(Registry & registry, uint32_t endpoint) noexcept;
+
 }  // namespace manycore::closing

@@ -3,6 +3,15 @@
 
 namespace manycore {
 
+MatchedCount matched_of(const EndpointEntry & entry) {
+  return {entry.matched_total.load(), entry.matched_current.load()};
+}
+
+IncompatibleCount incompatible_of(const EndpointEntry & entry) {
+  return {
+    entry.incompatible_total.load(), static_cast<QosPolicy>(entry.incompatible_policy.load())};
+}
+
 void notify_process(Registry & registry, uint32_t process) {
   if (registry.processes().is_live(process)) {
     registry.processes()[process].wake.notify();

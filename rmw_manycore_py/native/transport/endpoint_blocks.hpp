@@ -9,6 +9,10 @@ namespace manycore {
 
 /// What connecting and closing endpoints have in common. The caller holds the registry lock.
 
+/// Counts behind an endpoint's matched and incompatible-QoS events; these two need no lock.
+MatchedCount matched_of(const EndpointEntry & entry);
+IncompatibleCount incompatible_of(const EndpointEntry & entry);
+
 /// Wakes a process, always or only if it watches matched and incompatible-QoS events.
 void notify_process(Registry & registry, uint32_t process);
 void notify_event_watchers(Registry & registry, uint32_t process);

@@ -6,6 +6,17 @@
 
 namespace manycore {
 
+constexpr uint64_t record_alignment = 64;
+
+/// Descriptor counts are powers of two.
+constexpr uint64_t power_of_two_at_least(uint64_t x) {
+  uint64_t power = 1;
+  while (power < x) {
+    power *= 2;
+  }
+  return power;
+}
+
 /// A publisher's view of one generation of its topic DSM.
 struct Generation {
   GenerationEntry * entry = nullptr;

@@ -3,8 +3,7 @@
 
 #include <algorithm>
 
-#include "transport/registry.hpp"
-#include "transport/subscription_layout.hpp"
+#include "transport/endpoint_blocks.hpp"
 
 namespace manycore {
 namespace {
@@ -34,9 +33,8 @@ EndpointInfo describe(Registry & registry, const EndpointEntry & entry) {
   info.node = entry.node;
   info.process = entry.process;
   info.cluster = entry.cluster;
-  info.matched = {entry.matched_total.load(), entry.matched_current.load()};
-  info.incompatible = {
-    entry.incompatible_total.load(), static_cast<QosPolicy>(entry.incompatible_policy.load())};
+  info.matched = matched_of(entry);
+  info.incompatible = incompatible_of(entry);
   return info;
 }
 

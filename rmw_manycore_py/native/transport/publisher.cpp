@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "transport/closing.hpp"
+#include "transport/endpoint_blocks.hpp"
 #include "transport/notifier.hpp"
 #include "transport/publisher_impl.hpp"
 
@@ -26,16 +27,7 @@ Draft::~Draft() {
 
 Publisher::Publisher(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 
-Publisher::~Publisher() {
-  try {
-    const Registry::Lock lock(impl_->registry);
-    closing::close(impl_->registry, impl_->slot, false);
-    closing::sweep(impl_->registry);
-  } catch (const std::exception &) {
-    // The registry stayed locked; the reaper closes this endpoint when the process ends.
-  }
-  impl_->registry.graph_changed();
-}
+Publisher::~Publisher() { closing::leave(impl_->registry, impl_->slot); }
 
 const Gid & Publisher::gid() const noexcept { return impl_->entry.gid; }
 
@@ -77,14 +69,8 @@ uint64_t Publisher::publish(
   return sequence_number;
 }
 
-MatchedCount Publisher::matched() const {
-  return {impl_->entry.matched_total.load(), impl_->entry.matched_current.load()};
-}
+MatchedCount Publisher::matched() const { return matched_of(impl_->entry); }
 
-IncompatibleCount Publisher::incompatible() const {
-  return {
-    impl_->entry.incompatible_total.load(),
-    static_cast<QosPolicy>(impl_->entry.incompatible_policy.load())};
-}
+IncompatibleCount Publisher::incompatible() const { return incompatible_of(impl_->entry); }
 
 }  // namespace manycore

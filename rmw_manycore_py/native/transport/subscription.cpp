@@ -5,6 +5,7 @@
 
 #include "platform/clock.hpp"
 #include "transport/closing.hpp"
+#include "transport/endpoint_blocks.hpp"
 #include "transport/subscription_impl.hpp"
 
 namespace manycore {
@@ -33,16 +34,7 @@ Claim::~Claim() {
 
 Subscription::Subscription(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 
-Subscription::~Subscription() {
-  try {
-    const Registry::Lock lock(impl_->registry);
-    closing::close(impl_->registry, impl_->slot, false);
-    closing::sweep(impl_->registry);
-  } catch (const std::exception &) {
-    // The registry stayed locked; the reaper closes this endpoint when the process ends.
-  }
-  impl_->registry.graph_changed();
-}
+Subscription::~Subscription() { closing::leave(impl_->registry, impl_->slot); }
 
 const Gid & Subscription::gid() const noexcept { return impl_->entry.gid; }
 
@@ -109,14 +101,8 @@ uint64_t Subscription::lost() const noexcept {
          impl_->header.dropped.load(std::memory_order_relaxed);
 }
 
-MatchedCount Subscription::matched() const {
-  return {impl_->entry.matched_total.load(), impl_->entry.matched_current.load()};
-}
+MatchedCount Subscription::matched() const { return matched_of(impl_->entry); }
 
-IncompatibleCount Subscription::incompatible() const {
-  return {
-    impl_->entry.incompatible_total.load(),
-    static_cast<QosPolicy>(impl_->entry.incompatible_policy.load())};
-}
+IncompatibleCount Subscription::incompatible() const { return incompatible_of(impl_->entry); }
 
 }  // namespace manycore
