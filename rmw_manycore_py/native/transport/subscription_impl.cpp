@@ -98,16 +98,13 @@ void Subscription::Impl::resync(uint64_t forgotten) {
   renew_readers();
   scratch.clear();
   for (TopicDsmReader & reader : readers) {
-    reader.list_waiting(scratch);
+    count_lost(reader.list_waiting(scratch));
   }
   std::stable_sort(scratch.begin(), scratch.end(), [](const auto & a, const auto & b) {
     return a.source_timestamp_ns < b.source_timestamp_ns;
   });
   backlog.insert(backlog.end(), scratch.begin(), scratch.end());
   arrivals_by_resync.fetch_add(scratch.size() - forgotten, std::memory_order_relaxed);
-  if (forgotten > scratch.size()) {
-    count_lost(forgotten - scratch.size());  // announced, and overwritten since
-  }
   while (displaces(entry) && backlog.size() > header.depth) {
     const TopicDsmReader::Waiting oldest = backlog.front();
     backlog.pop_front();

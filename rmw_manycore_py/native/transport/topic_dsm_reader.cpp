@@ -183,18 +183,29 @@ void TopicDsmReader::scan(
   }
 }
 
-void TopicDsmReader::list_waiting(std::vector<Waiting> & out) noexcept {
+/// What stood above noted() and is not there any more. Replies to others are none of ours, and what was gone before
+/// this reader came is no loss to it.
+uint64_t TopicDsmReader::missing(uint64_t last, uint64_t found) const noexcept {
+  const bool history = noted_ == no_record && dsm_->transient_local != 0;
+  const bool reply = static_cast<EndpointRole>(dsm_->role) == EndpointRole::reply;
+  return history || reply || last <= noted_ + found ? 0 : last - noted_ - found;
+}
+
+uint64_t TopicDsmReader::list_waiting(std::vector<Waiting> & out) noexcept {
   const auto own_part = static_cast<ptrdiff_t>(out.size());
+  uint64_t gone = 0;
   source_->reading.store(every_record, std::memory_order_seq_cst);
   if (may_look()) {
     const uint64_t last = dsm_->last.load(std::memory_order_seq_cst);
     for (const GenerationEntry & generation : dsm_->generations) {
       scan(generation, last, out);
     }
+    gone = missing(last, out.size() - static_cast<size_t>(own_part));
     noted_ = std::max(noted_, last);
   }
   source_->reading.store(no_record, std::memory_order_release);
   order(out, own_part);
+  return gone;
 }
 
 bool TopicDsmReader::is_finished() const noexcept {

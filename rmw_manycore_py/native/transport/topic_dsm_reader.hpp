@@ -50,7 +50,8 @@ public:
     uint32_t incarnation;  ///< of the source
   };
   /// Step of a resync: appends the live records above noted() to `out`, in order, and notes them.
-  void list_waiting(std::vector<Waiting> & out) noexcept;
+  /// Returns how many are gone already.
+  uint64_t list_waiting(std::vector<Waiting> & out) noexcept;
 
   /// The publisher is gone and everything it left has been taken.
   bool is_finished() const noexcept;
@@ -66,6 +67,7 @@ private:
   /// The source is still this one, and open: to be asked after storing `reading`.
   bool may_look() const noexcept;
   void scan(const GenerationEntry & generation, uint64_t last, std::vector<Waiting> & out) noexcept;
+  uint64_t missing(uint64_t last, uint64_t found) const noexcept;
   void tell_waiting_publisher() noexcept;
 
   Cluster * cluster_ = nullptr;
