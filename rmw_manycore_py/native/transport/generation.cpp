@@ -1,8 +1,6 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #include "transport/generation.hpp"
 
-#include <cstring>
-
 namespace manycore {
 
 void Generation::allocate(
@@ -10,7 +8,12 @@ void Generation::allocate(
   uint64_t first) {
   const uint64_t descriptor_bytes = count * sizeof(RecordDescriptor);
   const uint64_t offset = cluster.allocate(descriptor_bytes + data_bytes);
-  std::memset(cluster.find<std::byte>(offset), 0, descriptor_bytes);
+  // A reader may still be looking here for a number of a generation that was given back; it looks at that
+  // generation's entry again before it believes what it finds.
+  auto * const descriptors = cluster.find<RecordDescriptor>(offset);
+  for (uint64_t i = 0; i < count; ++i) {
+    descriptors[i].number.store(no_record, std::memory_order_relaxed);
+  }
   entry.offset.store(offset, std::memory_order_relaxed);
   entry.descriptor_count.store(static_cast<uint32_t>(count), std::memory_order_relaxed);
   entry.data_bytes.store(data_bytes, std::memory_order_relaxed);

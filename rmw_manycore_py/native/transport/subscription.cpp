@@ -24,8 +24,7 @@ Claim::~Claim() {
     return;
   }
   Subscription::Impl & impl = *subscription_->impl_;
-  reader_->release(number_);
-  const bool finished = reader_->is_finished();
+  const bool finished = reader_->release(number_);
   impl.mutex.unlock();
   if (finished) {
     impl.sweep();

@@ -132,7 +132,7 @@ TopicDsmReader::ClaimResult TopicDsmReader::look_at(uint64_t number, View & view
 
 /// `reading` last: once it is empty the topic DSM may be freed. The publisher waits for `taken` only, so it is told
 /// in time (seq_cst: it raises `writer_waits` before it looks at `taken` once more).
-void TopicDsmReader::release(uint64_t number) noexcept {
+bool TopicDsmReader::release(uint64_t number) noexcept {
   if (number > source_->taken.load(std::memory_order_relaxed)) {
     source_->taken.store(number, std::memory_order_seq_cst);
   }
@@ -140,7 +140,10 @@ void TopicDsmReader::release(uint64_t number) noexcept {
     noted_ = number;
   }
   tell_waiting_publisher();
-  source_->reading.store(no_record, std::memory_order_release);
+  const bool finished = is_finished();
+  // seq_cst: revoke() stores the state before it looks at `reading`.
+  source_->reading.store(no_record, std::memory_order_seq_cst);
+  return finished || source_->state.load(std::memory_order_seq_cst) == SourceState::revoked;
 }
 
 void TopicDsmReader::skip(uint64_t number) noexcept {

@@ -35,8 +35,9 @@ public:
   };
   /// On `claimed`, release() must follow; any other result has released already.
   ClaimResult claim(uint64_t number, View & view) noexcept;
-  /// Ends a claim: everything up to `number` is done for this reader.
-  void release(uint64_t number) noexcept;
+  /// Ends a claim: everything up to `number` is done for this reader. True when the publisher is gone and its topic
+  /// DSM may have waited for this reader only.
+  bool release(uint64_t number) noexcept;
   /// The same without a claim.
   void skip(uint64_t number) noexcept;
   uint64_t taken() const noexcept { return source_->taken.load(std::memory_order_relaxed); }
@@ -53,8 +54,6 @@ public:
   /// Returns how many are gone already.
   uint64_t list_waiting(std::vector<Waiting> & out) noexcept;
 
-  /// The publisher is gone and everything it left has been taken.
-  bool is_finished() const noexcept;
   const Gid & publisher() const noexcept { return dsm_->gid; }
   uint32_t publisher_process() const noexcept { return dsm_->process; }
 
@@ -67,6 +66,8 @@ private:
   /// The source is still this one, and open: to be asked after storing `reading`.
   bool may_look() const noexcept;
   void scan(const GenerationEntry & generation, uint64_t last, std::vector<Waiting> & out) noexcept;
+  /// The publisher is gone and everything it left has been taken.
+  bool is_finished() const noexcept;
   uint64_t missing(uint64_t last, uint64_t found) const noexcept;
   void tell_waiting_publisher() noexcept;
 
