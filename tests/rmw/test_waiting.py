@@ -59,7 +59,7 @@ def test_wait_times_out(node):
 
 
 def test_a_wait_ends_with_its_context():
-    """On SIGTERM rclpy shuts its contexts down after it has woken its executors: they may be back."""
+    """On SIGTERM rclpy shuts contexts down after it woke its executors: they may be back."""
     context = rclpy.Context()
     context.init()
     with context.handle:
