@@ -16,6 +16,7 @@ namespace manycore {
 namespace {
 
 constexpr int for_ever_ms = -1;
+constexpr int retry_ms = 1000;
 constexpr uint64_t look_again_key = 0;  ///< no process has pid 0
 
 /// True while the platform's directory still holds this registry, and not a later one of the same name.
@@ -66,7 +67,6 @@ Reaper::Reaper(Registry & registry, uint32_t cluster)
     throw_errno("cannot create the reaper's descriptors");
   }
   add_to_poll(poll_.get(), event_.get(), look_again_key);
-  watch_new();
   thread_ = std::thread([this] { run(); });
   pthread_setname_np(thread_.native_handle(), "manycore_reaper");
 }
@@ -90,7 +90,7 @@ void Reaper::watch(pid_t pid) {
   }
 }
 
-void Reaper::watch_new() {
+bool Reaper::watch_new() {
   for (uint32_t slot = 0; slot < registry_.processes().high_water(); ++slot) {
     const ProcessEntry & process = registry_.processes()[slot];
     if (registry_.processes().is_live(slot) && process.cluster == cluster_) {
@@ -103,10 +103,10 @@ void Reaper::watch_new() {
       watch(registry_.clusters().at(id).header().receive_thread_pid.load());
     }
   }
-  bury();  // who died before it was watched
+  return bury();  // who died before it was watched
 }
 
-void Reaper::bury() {
+bool Reaper::bury() {
   uint32_t dead = 0;
   {
     const Registry::Lock lock(registry_);
@@ -115,32 +115,37 @@ void Reaper::bury() {
   if (dead != 0) {
     registry_.graph_changed();
   }
+  return dead != 0;
+}
+
+bool Reaper::wait_for_end(int timeout_ms) {
+  epoll_event events[16];
+  const int count = epoll_wait(poll_.get(), events, 16, timeout_ms);
+  bool somebody_ended = false;
+  for (int i = 0; i < count; ++i) {
+    if (events[i].data.u64 == look_again_key) {
+      eventfd_t ignored = 0;
+      eventfd_read(event_.get(), &ignored);
+    } else {
+      watched_.erase(static_cast<pid_t>(events[i].data.u64));
+      somebody_ended = true;
+    }
+  }
+  return somebody_ended;
 }
 
 void Reaper::run() noexcept {
-  while (true) {
-    epoll_event events[16];
-    const int count = epoll_wait(poll_.get(), events, 16, for_ever_ms);
+  bool somebody_ended = true;  // perhaps all who were there when this receive thread was started
+  while (running_) {
     try {
-      bool somebody_ended = false;
-      for (int i = 0; i < count; ++i) {
-        if (events[i].data.u64 == look_again_key) {
-          eventfd_t ignored = 0;
-          eventfd_read(event_.get(), &ignored);
-        } else {
-          watched_.erase(static_cast<pid_t>(events[i].data.u64));
-          somebody_ended = true;
-        }
-      }
-      if (!running_) {
-        return;
-      }
-      watch_new();
+      somebody_ended = watch_new() || somebody_ended;
       if (somebody_ended) {
         exit_if_unused(registry_);
       }
+      somebody_ended = wait_for_end(for_ever_ms);
     } catch (const std::exception &) {
-      // A lock that stayed taken or a damaged entry: the next event tries again.
+      // A lock that stayed taken or a damaged entry.
+      somebody_ended = wait_for_end(retry_ms) || somebody_ended;
     }
   }
 }

@@ -3,6 +3,7 @@
 
 #include <sys/types.h>
 
+#include <atomic>
 #include <map>
 #include <thread>
 
@@ -25,16 +26,19 @@ public:
 
 private:
   void run() noexcept;
-  void watch_new();
+  /// These two: true when somebody was dead.
+  bool watch_new();
+  bool bury();
   void watch(pid_t pid);
-  void bury();
+  /// True when one of those watched has ended; false when there is another reason to look, or none.
+  bool wait_for_end(int timeout_ms);
 
   Registry & registry_;
   uint32_t cluster_;
   FileDescriptor poll_;   ///< epoll
   FileDescriptor event_;  ///< eventfd: look again
   std::map<pid_t, FileDescriptor> watched_;
-  bool running_ = true;
+  std::atomic<bool> running_{true};
   std::thread thread_;
 };
 
