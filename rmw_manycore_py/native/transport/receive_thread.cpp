@@ -26,35 +26,41 @@ void ReceiveThread::recover() {
   wake_who_must_look();
 }
 
-/// Whole messages only: every write is atomic and of this size; anything else was put there by a stranger and is
-/// dropped with the rest of its batch.
-size_t ReceiveThread::receive() {
-  const size_t bytes = cluster_.pipe().receive(batch_, sizeof batch_);
-  return bytes % sizeof(EmcosMessage) == 0 ? bytes / sizeof(EmcosMessage) : 0;
+/// Every write is atomic and of one size, so what is not a whole message of a known kind was put there by a
+/// stranger. It may stand across messages, which then are unreadable as well.
+bool ReceiveThread::handle(const EmcosMessage & message, const ProcessesChanged & on_change) {
+  switch (message.kind) {
+    case EmcosMessageKind::publish:
+      forward(message);
+      return true;
+    case EmcosMessageKind::attach:
+    case EmcosMessageKind::detach:
+      on_change(message.kind);
+      return true;
+    case EmcosMessageKind::resync:  // take_overflow() follows
+      return true;
+  }
+  return false;
 }
 
-void ReceiveThread::run(const std::function<void(EmcosMessageKind)> & on_processes_changed) {
+void ReceiveThread::run(const ProcessesChanged & on_change) {
   ClusterHeader & header = cluster_.header();
   while (true) {
-    const size_t count = receive();
-    for (size_t i = 0; i < count; ++i) {
-      switch (batch_[i].kind) {
-        case EmcosMessageKind::publish:
-          forward(batch_[i]);
-          break;
-        case EmcosMessageKind::attach:
-        case EmcosMessageKind::detach:
-          on_processes_changed(batch_[i].kind);
-          break;
-        case EmcosMessageKind::resync:  // take_overflow() follows
-          break;
-      }
+    const size_t bytes = cluster_.pipe().receive(batch_, sizeof batch_);
+    const size_t count = bytes / sizeof(EmcosMessage);
+    bool understood = bytes % sizeof(EmcosMessage) == 0;
+    for (size_t i = 0; i < count && understood; ++i) {
+      understood = handle(batch_[i], on_change);
     }
     header.messages.store(
       header.messages.load(std::memory_order_relaxed) + count, std::memory_order_relaxed);
+    if (!understood) {
+      recover();
+      on_change(EmcosMessageKind::detach);  // its message may be among the unread
+    }
     if (take_overflow()) {
       wake_who_must_look();
-      on_processes_changed(EmcosMessageKind::attach);  // its message may be among the missing
+      on_change(EmcosMessageKind::attach);  // its message may be among the missing
     }
   }
 }

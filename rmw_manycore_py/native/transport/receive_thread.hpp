@@ -13,18 +13,21 @@ namespace manycore {
 /// on the queues of the cluster's subscriptions and wakes their nodes. The owner's thread runs it.
 class ReceiveThread {
 public:
+  using ProcessesChanged = std::function<void(EmcosMessageKind)>;
+
   ReceiveThread(Registry & registry, uint32_t cluster);
 
-  /// After the death of a predecessor: every subscription of the cluster looks for itself once.
+  /// After the death of a predecessor, or of messages: every subscription of the cluster looks for itself once.
   void recover();
 
-  /// For ever. `on_processes_changed` is told of attach and detach messages.
-  void run(const std::function<void(EmcosMessageKind)> & on_processes_changed);
+  /// For ever. `on_change` is told of attach and detach messages.
+  void run(const ProcessesChanged & on_change);
 
 private:
   static constexpr size_t batch_size = 64;
 
-  size_t receive();
+  /// False for a message of no known kind.
+  bool handle(const EmcosMessage & message, const ProcessesChanged & on_change);
   void forward(const EmcosMessage & message) noexcept;
   bool push_to_readers(
     const Cluster & source, TopicDsmHeader & dsm, const EmcosMessage & message) noexcept;
