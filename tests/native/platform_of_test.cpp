@@ -56,29 +56,34 @@ Status status_of(const std::string & directory) {
   return {stat[end_of_name + 2], std::stoi(stat.substr(end_of_name + 4))};
 }
 
+template<typename Predicate>
+bool any_thread(pid_t pid, Predicate has) {
+  const std::string threads = "/proc/" + std::to_string(pid) + "/task/";
+  const std::vector<std::string> names = entries_of(threads);
+  return std::any_of(names.begin(), names.end(), [&](const std::string & name) {
+    const char state = status_of(threads + name).state;
+    return state != 0 && has(state);
+  });
+}
+
 /// The half of a daemon that waits until the other one is ready is still there. When it ends, the kernel lets the
 /// other one go on, should somebody have stopped it before.
 bool is_starting(pid_t pid) {
   const pid_t parent = status_of("/proc/" + std::to_string(pid)).parent;
-  return content_of("/proc/" + std::to_string(parent) + "/cmdline")
-           .find("manycore_receive_thread") != std::string::npos;
+  return content_of("/proc/" + std::to_string(parent) + "/comm").rfind("manycore", 0) == 0;
 }
 
 }  // namespace
 
 bool is_running(pid_t pid) {
-  const char state = status_of("/proc/" + std::to_string(pid)).state;
-  return state != 0 && state != 'Z' && state != 'X';
+  // A killed process has its locks until the last of its threads is gone.
+  return any_thread(pid, [](char state) { return state != 'Z' && state != 'X'; });
 }
 
 void stop_process(pid_t pid) {
   kill(pid, SIGSTOP);
-  const std::string threads = "/proc/" + std::to_string(pid) + "/task/";
   wait_until("process " + std::to_string(pid) + " stands still", [&] {
-    const std::vector<std::string> names = entries_of(threads);
-    return std::all_of(names.begin(), names.end(), [&](const std::string & name) {
-      return status_of(threads + name).state == 'T';
-    });
+    return !any_thread(pid, [](char state) { return state != 'T'; });
   });
 }
 

@@ -2,6 +2,7 @@
 #include "transport/subscription_impl.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "transport/closing.hpp"
 #include "transport/source_table.hpp"
@@ -97,14 +98,21 @@ void Subscription::Impl::resync(uint64_t forgotten) {
   }
   renew_readers();
   scratch.clear();
+  uint64_t missing = 0;
   for (TopicDsmReader & reader : readers) {
-    count_lost(reader.list_waiting(scratch));
+    missing += reader.list_waiting(scratch);
   }
   std::stable_sort(scratch.begin(), scratch.end(), [](const auto & a, const auto & b) {
     return a.source_timestamp_ns < b.source_timestamp_ns;
   });
   backlog.insert(backlog.end(), scratch.begin(), scratch.end());
   arrivals_by_resync.fetch_add(scratch.size() - forgotten, std::memory_order_relaxed);
+  // Pushers have counted what they displaced; what was announced and is gone was lost in any case.
+  const uint64_t displaced = header.dropped.load(std::memory_order_relaxed);
+  const uint64_t displaced_since = displaced - std::exchange(displaced_before_resync, displaced);
+  count_lost(std::max(
+    missing - std::min(missing, displaced_since),
+    forgotten - std::min<uint64_t>(forgotten, scratch.size())));
   while (displaces(entry) && backlog.size() > header.depth) {
     const TopicDsmReader::Waiting oldest = backlog.front();
     backlog.pop_front();

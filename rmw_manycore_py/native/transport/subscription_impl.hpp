@@ -52,6 +52,7 @@ struct Subscription::Impl {
   std::atomic<uint64_t> arrivals_by_resync{0};  ///< beyond the pushes on the queue; wraps
   std::vector<TopicDsmReader::Waiting> scratch;
   uint64_t received = 0;
+  uint64_t displaced_before_resync = 0;  ///< of the header's `dropped`, at the last resync
 };
 
 }  // namespace manycore
