@@ -39,7 +39,7 @@ bool Waiter::spin(uint32_t seen, std::optional<int64_t> deadline_ns) noexcept {
     // The receive thread that will bring the message may share this CPU.
     yield_cpu();
   }
-  return false;
+  return epoch() != seen;
 }
 
 void Waiter::learn(bool served) noexcept {
