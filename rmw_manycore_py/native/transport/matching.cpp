@@ -17,6 +17,21 @@ struct Pair {
   EndpointEntry & subscription;
 };
 
+/// Where the next block of a chain is to be linked; a damaged chain is not followed.
+template<typename Block>
+std::atomic<uint64_t> * end_of_chain(const Cluster & cluster, std::atomic<uint64_t> * end) {
+  for (uint32_t i = 0; end->load() != 0; ++i) {
+    auto * const block = cluster.find<Block>(end->load());
+    if (block == nullptr || i == endpoint_capacity) {
+      throw Error(
+        ErrorCode::corrupt, "cluster " + std::to_string(cluster.id()) +
+          " is damaged; stop the platform's nodes and run 'manycore clean'");
+    }
+    end = &block->next;
+  }
+  return end;
+}
+
 SourceEntry & free_source(
   Cluster & cluster, SubscriptionHeader & subscription, uint32_t & index_out) {
   SourceEntry * found = nullptr;
@@ -37,9 +52,7 @@ SourceEntry & free_source(
   if (count + sources_per_block > (1u << 14)) {
     throw Error(ErrorCode::no_space, "a subscription has more than 16,000 publishers");
   }
-  while (end->load() != 0) {
-    end = &cluster.find<SourceBlock>(end->load())->next;
-  }
+  end = end_of_chain<SourceBlock>(cluster, end);
   SourceBlock & block = cluster.allocate_cleared<SourceBlock>();
   end->store(cluster.ref_of(&block).offset(), std::memory_order_release);
   index_out = count;
@@ -56,9 +69,7 @@ ReaderEntry & free_reader(Cluster & cluster, TopicDsmHeader & dsm) {
     return *found;
   }
   std::atomic<uint64_t> * end = &dsm.next_reader_block;
-  while (end->load() != 0) {
-    end = &cluster.find<ReaderBlock>(end->load())->next;
-  }
+  end = end_of_chain<ReaderBlock>(cluster, end);
   ReaderBlock & block = cluster.allocate_cleared<ReaderBlock>();
   end->store(cluster.ref_of(&block).offset(), std::memory_order_release);
   return block.entries[0];
