@@ -226,6 +226,19 @@ uint32_t reap_dead(Registry & registry) {
   return dead;
 }
 
+void tell_other_reapers(Registry & registry, uint32_t own) {
+  EmcosMessage message{};
+  message.kind = EmcosMessageKind::attach;
+  const uint64_t present = registry.header().clusters_present.load();
+  for (uint32_t id = 1; id <= max_clusters; ++id) {
+    Cluster * const cluster =
+      (present >> (id - 1) & 1) != 0 && id != own ? registry.clusters().find(id) : nullptr;
+    if (cluster != nullptr) {
+      cluster->send(message);
+    }
+  }
+}
+
 void ensure_receive_thread(const PlatformPaths & paths, uint32_t cluster) {
   const JoinLock lock(paths);  // one starter at a time
   if (!exists(paths.alive()) ||

@@ -53,6 +53,9 @@ std::vector<std::string> remove_platform(const PlatformPaths & paths);
 /// Under the registry lock: closes what dead processes left behind. Returns the number of the dead.
 uint32_t reap_dead(Registry & registry);
 
+/// Has the reapers of all clusters but `own` look whom to watch.
+void tell_other_reapers(Registry & registry, uint32_t own);
+
 /// Starts the cluster's receive thread unless it lives. Throws Error{system} when it cannot be started.
 void ensure_receive_thread(const PlatformPaths & paths, uint32_t cluster);
 

@@ -172,7 +172,7 @@ Process::Impl::Impl(const Placement & placement_)
   watcher = std::make_unique<ReceiveThreadWatcher>(*registry, placement.cluster);
 }
 
-/// Has the reaper watch this process.
+/// Has the reaper watch this process; while its cluster has none, the others'.
 void Process::Impl::attach() {
   Cluster & cluster = registry->clusters().at(placement.cluster);
   EmcosMessage message{};
@@ -180,6 +180,9 @@ void Process::Impl::attach() {
   message.process = slot;
   if (!cluster.send(message)) {
     cluster.header().pipe_overflow.store(1, std::memory_order_seq_cst);
+  }
+  if (!alive_locks(paths).is_held(receive_thread_byte + placement.cluster)) {
+    tell_other_reapers(*registry, placement.cluster);
   }
 }
 

@@ -90,10 +90,15 @@ void Reaper::watch(pid_t pid) {
   }
 }
 
+/// A cluster that has no receive thread, not yet or not any more, is everybody's.
+bool Reaper::is_ours(uint32_t cluster) const {
+  return cluster == cluster_ || !alive_locks(registry_.paths()).is_held(receive_thread_byte + cluster);
+}
+
 bool Reaper::watch_new() {
   for (uint32_t slot = 0; slot < registry_.processes().high_water(); ++slot) {
     const ProcessEntry & process = registry_.processes()[slot];
-    if (registry_.processes().is_live(slot) && process.cluster == cluster_) {
+    if (registry_.processes().is_live(slot) && is_ours(process.cluster)) {
       watch(process.pid);
     }
   }

@@ -29,6 +29,7 @@ private:
   /// These two: true when somebody was dead.
   bool watch_new();
   bool bury();
+  bool is_ours(uint32_t cluster) const;
   void watch(pid_t pid);
   /// True when one of those watched has ended; false when there is another reason to look, or none.
   bool wait_for_end(int timeout_ms);

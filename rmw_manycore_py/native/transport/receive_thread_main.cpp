@@ -17,20 +17,6 @@
 namespace manycore {
 namespace {
 
-/// Other reapers watch this process from now on.
-void announce_to_other_clusters(Registry & registry, uint32_t own) {
-  EmcosMessage message{};
-  message.kind = EmcosMessageKind::attach;
-  const uint64_t present = registry.header().clusters_present.load();
-  for (uint32_t id = 1; id <= max_clusters; ++id) {
-    Cluster * const cluster =
-      (present >> (id - 1) & 1) != 0 && id != own ? registry.clusters().find(id) : nullptr;
-    if (cluster != nullptr) {
-      cluster->send(message);
-    }
-  }
-}
-
 void serve(const std::string & platform, uint32_t id, Daemon & daemon) {
   const PlatformPaths paths = PlatformPaths::of(platform);
   Registry registry(paths);
@@ -50,7 +36,7 @@ void serve(const std::string & platform, uint32_t id, Daemon & daemon) {
     receive_thread.recover();
   }
   Reaper reaper(registry, id);
-  announce_to_other_clusters(registry, id);
+  tell_other_reapers(registry, id);  // they watch this process from now on
   daemon.ready();
   receive_thread.run([&](EmcosMessageKind kind) {
     if (kind == EmcosMessageKind::detach) {
