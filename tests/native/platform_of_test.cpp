@@ -139,6 +139,20 @@ pid_t TestPlatform::receive_thread(uint32_t cluster, pid_t not_this) const {
   return pid;
 }
 
+pid_t TestPlatform::stop_receive_thread(uint32_t cluster) const {
+  const pid_t pid = receive_thread(cluster);
+  Registry registry(paths());
+  while (true) {
+    stop_process(pid);
+    try {
+      const Registry::Lock lock(registry, Registry::Lock::no_wait_ns);
+      return pid;
+    } catch (const Error &) {
+      kill(pid, SIGCONT);
+    }
+  }
+}
+
 uint64_t Inspection::used_bytes(uint32_t cluster) {
   return registry_.clusters().at(cluster).header().used_bytes.load();
 }

@@ -24,6 +24,8 @@ public:
   std::vector<pid_t> receive_threads() const;
   /// Waits until the receive thread of `cluster` serves; its pid. `not_this`: a predecessor.
   pid_t receive_thread(uint32_t cluster, pid_t not_this = 0) const;
+  /// Stops it at a moment when it does not hold the registry lock; its pid.
+  pid_t stop_receive_thread(uint32_t cluster) const;
   bool exists() const;
 
 private:

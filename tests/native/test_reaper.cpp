@@ -1,0 +1,183 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+//
+// What the dead leave behind is cleared away, and what they published before is not lost. Each case kills at one
+// moment of importance; test_killed goes through the moments in between.
+#include <doctest/doctest.h>
+
+#include <csignal>
+
+#include "messages.hpp"
+#include "node_role.hpp"
+#include "patience.hpp"
+#include "platform/clock.hpp"
+#include "transport/lifecycle.hpp"
+#include "transport/topic_dsm_writer.hpp"
+
+using namespace manycore;
+
+namespace {
+
+/// Publishes record 1 as a whole, writes record 2 down as far as asked, and stays so until it is killed.
+const Role interrupted_publisher("interrupted", [](Lines & test, const Arguments & arguments) {
+  Placement placement;
+  placement.platform = arguments.at(0);
+  const auto process = Process::join(placement);
+  const auto publisher = process->create_publisher(on_topic("/x", keep_last(10)));
+  wait_until("a match", [&] { return publisher->matched().current == 1; });
+  Registry registry(PlatformPaths::of(placement.platform));
+  EndpointEntry * entry = &registry.endpoints()[0];
+  while (entry->gid != publisher->gid()) {
+    ++entry;
+  }
+  TopicDsmWriter writer(registry, registry.clusters().at(1), *entry);
+  writer.enter();
+  const size_t size = sizeof(Payload);
+  for (uint64_t number = 1; number <= 2; ++number) {
+    Payload{1, number, size}.write(writer.find_room(size).data);
+    if (number == 1 || arguments.at(1) == "committed") {
+      writer.commit(size, realtime_ns(), number, {});
+    }
+  }
+  test.say("interrupted");  // nothing is announced
+  raise(SIGSTOP);
+});
+
+struct Fixture {
+  TestPlatform platform;
+  std::shared_ptr<Process> process = platform.join(1);
+  Inspection inspection{platform};
+  pid_t receive_thread = platform.receive_thread(1);
+
+  void wait_until_alone() {
+    wait_until("the dead are gone from the registry", [&] {
+      return inspection.live_processes() == 1 && process->graph().nodes().empty();
+    });
+  }
+};
+
+}  // namespace
+
+TEST_CASE("a subscriber killed while it holds a claim: its publisher goes on, its memory is free") {
+  Fixture f;
+  const uint64_t used = f.inspection.used_bytes();
+  auto publisher = f.process->create_publisher(on_topic("/x", keep_last(10)));
+  const uint64_t used_with_publisher = f.inspection.used_bytes();
+  {
+    Node subscriber(f.platform, 1);
+    subscriber.tell("subscription /x 100");
+    publish(*publisher, 1);
+    CHECK(subscriber.ask("claim") == "1");
+  }
+  f.wait_until_alone();
+  CHECK(publisher->matched().current == 0);
+  CHECK(f.inspection.live_endpoints() == 1);
+  CHECK(f.inspection.used_bytes() == used_with_publisher);
+  for (uint64_t number = 2; number <= 1000; ++number) {
+    publish(*publisher, number);
+  }
+  CHECK(f.inspection.generations_of(*publisher) == 1);
+  publisher.reset();
+  CHECK(f.inspection.used_bytes() == used);
+}
+
+TEST_CASE("a publisher killed after it wrote a record, before it told anybody: the record is found") {
+  Fixture f;
+  const uint64_t used = f.inspection.used_bytes();
+  auto subscription = f.process->create_subscription(on_topic("/x", keep_last(10)));
+  SUBCASE("the second record written") {
+    Child publisher("interrupted", {f.platform.name(), "committed"});
+    publisher.expect("interrupted");
+    CHECK_FALSE(subscription->has_data());
+    publisher.kill();
+    CHECK(take_next(*f.process, *subscription).number == 1);
+    CHECK(take_next(*f.process, *subscription).number == 2);
+  }
+  SUBCASE("the second record half written: it was never there") {
+    Child publisher("interrupted", {f.platform.name(), "half"});
+    publisher.expect("interrupted");
+    publisher.kill();
+    CHECK(take_next(*f.process, *subscription).number == 1);
+  }
+  f.wait_until_alone();
+  CHECK_FALSE(take(*subscription));
+  CHECK(f.inspection.live_endpoints() == 1);
+  subscription.reset();
+  CHECK(f.inspection.used_bytes() == used);
+}
+
+TEST_CASE("what a killed publisher published is still taken") {
+  Fixture f;
+  const auto subscription = f.process->create_subscription(on_topic("/x", keep_last(100)));
+  Node publisher(f.platform, 2);
+  publisher.tell("publisher /x 1");
+  publisher.tell("publish 1 50 5000");
+  publisher.kill();
+  for (uint64_t number = 1; number <= 50; ++number) {
+    REQUIRE(take_next(*f.process, *subscription).number == number);
+  }
+  f.wait_until_alone();
+  CHECK(subscription->matched().current == 0);
+}
+
+TEST_CASE("a killed cluster, nodes and receive thread, is buried by the others") {
+  Fixture f;
+  const auto subscription = f.process->create_subscription(on_topic("/x", keep_last(10)));
+  {
+    Node node(f.platform, 2);
+    node.tell("publisher /x 1");
+    const pid_t there = f.platform.receive_thread(2);
+    node.stop();
+    kill(there, SIGKILL);
+    CHECK(subscription->matched().current == 1);
+  }
+  f.wait_until_alone();
+  CHECK(subscription->matched().current == 0);
+  Node successor(f.platform, 2);
+  successor.tell("publisher /x 1");
+  successor.tell("publish 1 1 100");
+  CHECK(take_next(*f.process, *subscription).writer == static_cast<uint64_t>(successor.pid()));
+}
+
+TEST_CASE("killed before its cluster has a receive thread: those of other clusters see to it") {
+  Fixture f;
+  for (int i = 0; i < 10; ++i) {
+    Node(f.platform, 2).tell("publisher /x 1");
+    f.wait_until_alone();
+  }
+}
+
+TEST_CASE("slots of the dead are used again") {
+  Fixture f;
+  for (int i = 0; i < 10; ++i) {
+    Node node(f.platform, 1);
+    node.tell("publisher /x 1");
+    node.kill();
+    f.wait_until_alone();
+  }
+  CHECK(f.inspection.registry().processes().high_water() == 2);
+  CHECK(f.inspection.registry().endpoints().high_water() == 1);
+}
+
+TEST_CASE("a receive thread that is started after all nodes died removes the platform") {
+  TestPlatform platform;
+  const PlatformPaths paths = platform.paths();
+  pid_t dead = 0;
+  {
+    Node node(platform, 1);
+    dead = node.pid();
+    platform.receive_thread(1);
+  }
+  wait_until("the platform is gone", [&] { return !platform.exists(); });
+  {
+    const JoinLock lock(paths);
+    ensure_platform(paths, host_profile(), {});
+    Registry registry(paths);
+    Cluster::create(paths, 1, registry.header().profile.smem_bytes, registry.nonce());
+    registry.header().clusters_present = 1;
+    const uint32_t slot = registry.processes().take("processes");
+    registry.processes()[slot].pid = dead;
+    registry.processes()[slot].cluster = 1;
+    registry.processes().publish(slot);
+  }
+  ensure_receive_thread(paths, 1);  // ~TestPlatform waits
+}

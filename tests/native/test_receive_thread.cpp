@@ -1,0 +1,183 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+//
+// Messages between clusters, and what becomes of them when a receive thread is killed, stopped or fed rubbish. The
+// moments of the kills are those that a test can bring about from outside; all others: tests/stress.
+#include <doctest/doctest.h>
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <vector>
+
+#include "messages.hpp"
+#include "node_role.hpp"
+#include "patience.hpp"
+#include "transport/lifecycle.hpp"
+
+using namespace manycore;
+
+namespace {
+
+const std::string deep = "30000";  ///< a queue that no test fills
+
+/// A publisher here, in cluster 1, and a subscriber in cluster 2.
+struct Fixture {
+  explicit Fixture(const std::string & subscriber_qos = deep) {
+    subscriber.tell("subscription /x " + subscriber_qos);
+    wait_until("a match", [&] { return publisher->matched().current == 1; });
+  }
+  ~Fixture() {
+    publisher.reset();
+    process.reset();
+  }
+
+  void publish_numbers(uint64_t first, uint64_t last) {
+    for (uint64_t number = first; number <= last; ++number) {
+      publish(*publisher, number);
+    }
+  }
+  void expect(uint64_t first, uint64_t last) {
+    subscriber.tell("take " + std::to_string(first) + " " + std::to_string(last) + " 1");
+  }
+  ClusterHeader & far_cluster() { return inspection.registry().clusters().at(2).header(); }
+
+  TestPlatform platform;
+  std::shared_ptr<Process> process = platform.join(1);
+  std::unique_ptr<Publisher> publisher =
+    process->create_publisher(on_topic("/x", keep_last(10)));
+  Node subscriber{platform, 2};
+  Inspection inspection{platform};
+};
+
+/// Opens a pipe as a stranger would.
+FileDescriptor open_pipe(const std::string & path) {
+  return FileDescriptor(open(path.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC));
+}
+
+}  // namespace
+
+TEST_CASE("one eMCOS message per record and cluster, one hint per subscription there") {
+  Fixture f;
+  Node other(f.platform, 2);
+  other.tell("subscription /x 30000");
+  const uint64_t messages = f.far_cluster().messages;
+  const uint64_t notifications = f.far_cluster().notifications;
+  f.publish_numbers(1, 100);
+  f.expect(1, 100);
+  other.tell("take 1 100 1");
+  CHECK(f.far_cluster().notifications - notifications == 200);
+  wait_until("messages are counted", [&] {
+    return f.far_cluster().messages - messages >= 100;
+  });
+  CHECK(f.far_cluster().messages - messages <= 100 + 2);  // attach of `other`, and of its receive thread
+}
+
+TEST_CASE("inside a cluster no eMCOS message is sent") {
+  Fixture f;
+  const auto near = f.process->create_subscription(on_topic("/near", keep_last(10)));
+  const auto publisher = f.process->create_publisher(on_topic("/near", keep_last(10)));
+  f.platform.receive_thread(1);
+  const uint64_t notifications =
+    f.inspection.registry().clusters().at(1).header().notifications;
+  publish(*publisher, 1);
+  CHECK(take_all(*near) == numbers(1, 1));
+  CHECK(f.inspection.registry().clusters().at(1).header().notifications == notifications);
+}
+
+TEST_CASE("killed again and again under load: replaced, and nothing is lost") {
+  Fixture f;
+  pid_t pid = f.platform.receive_thread(2);
+  uint64_t number = 0;
+  for (int round = 0; round < 5; ++round) {
+    f.publish_numbers(number + 1, number + 1000);
+    kill(pid, SIGKILL);
+    f.publish_numbers(number + 1001, number + 2000);
+    number += 2000;
+    pid = f.platform.receive_thread(2, pid);
+  }
+  f.publish_numbers(number + 1, number + 10);
+  f.expect(1, number + 10);
+}
+
+TEST_CASE("killed with messages in hand: its successor has the subscriptions look for themselves") {
+  Fixture f;
+  f.publish_numbers(1, 10);
+  f.expect(1, 10);
+  const pid_t pid = f.platform.stop_receive_thread(2);
+  f.publish_numbers(11, 50);
+  // What it would have read and not forwarded: reads it in its place.
+  const FileDescriptor pipe = open_pipe(f.platform.paths().pipe(2));
+  EmcosMessage message{};
+  size_t stolen = 0;
+  while (read(pipe.get(), &message, sizeof message) == static_cast<ssize_t>(sizeof message)) {
+    ++stolen;
+  }
+  CHECK(stolen >= 39);  // one may be in the hands of the stopped read
+  kill(pid, SIGKILL);
+  f.expect(11, 50);
+}
+
+TEST_CASE("stopped until its pipe overflows: the publisher goes on, and nothing is lost") {
+  Fixture f;
+  f.publish_numbers(1, 10);
+  f.expect(1, 10);
+  const pid_t pid = f.platform.stop_receive_thread(2);
+  constexpr uint64_t more_than_a_pipe_holds = 20'000;
+  f.publish_numbers(11, more_than_a_pipe_holds);
+  CHECK(f.far_cluster().pipe_overflow == 1);
+  SUBCASE("and goes on") { kill(pid, SIGCONT); }
+  SUBCASE("and is killed") { kill(pid, SIGKILL); }
+  f.expect(11, more_than_a_pipe_holds);
+  wait_until("the overflow is dealt with", [&] { return f.far_cluster().pipe_overflow == 0; });
+}
+
+TEST_CASE("stopped: a shallow subscription has the newest when it goes on") {
+  Fixture f("5");
+  const pid_t pid = f.platform.stop_receive_thread(2);
+  f.publish_numbers(1, 20'000);
+  kill(pid, SIGCONT);
+  f.expect(19'996, 20'000);
+}
+
+TEST_CASE("strangers in the pipe: whatever they write, nothing crashes and nothing is lost") {
+  Fixture f;
+  f.publish_numbers(1, 10);
+  f.expect(1, 10);
+  const pid_t pid = f.platform.stop_receive_thread(2);  // so that all that follows is read in one piece
+  std::vector<uint8_t> rubbish;
+  SUBCASE("a byte too many") { rubbish.assign(1, 7); }
+  SUBCASE("messages of no kind") { rubbish.assign(64 * 10, 0xff); }
+  SUBCASE("zeros, not aligned") { rubbish.assign(1000, 0); }
+  SUBCASE("publish messages that lead nowhere") {
+    EmcosMessage message{};
+    message.kind = EmcosMessageKind::publish;
+    for (uint64_t i = 0; i < 64; ++i) {
+      message.topic_dsm = {uint64_t{1} << (i % 64) | i * 32};
+      message.number = i * 0x0101'0101'0101'0101;
+      message.target = nothing;
+      const auto * const bytes = reinterpret_cast<const uint8_t *>(&message);
+      rubbish.insert(rubbish.end(), bytes, bytes + sizeof message);
+    }
+  }
+  const FileDescriptor pipe = open_pipe(f.platform.paths().pipe(2));
+  f.publish_numbers(11, 20);
+  CHECK(write(pipe.get(), rubbish.data(), rubbish.size()) == static_cast<ssize_t>(rubbish.size()));
+  f.publish_numbers(21, 200);
+  kill(pid, SIGCONT);
+  f.expect(11, 200);
+  f.publish_numbers(201, 210);
+  f.expect(201, 210);
+  CHECK(is_running(pid));
+}
+
+TEST_CASE("messages of an earlier publisher in the same place reach nobody") {
+  Fixture f;
+  const pid_t pid = f.platform.stop_receive_thread(2);
+  f.publish_numbers(1, 10);  // in the pipe
+  f.publisher.reset();
+  const auto later = f.process->create_publisher(on_topic("/x", keep_last(10)));
+  publish(*later, 1, 100, 2);
+  kill(pid, SIGCONT);
+  f.subscriber.tell("take 1 1 2");
+}

@@ -1,0 +1,112 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+//
+// A subscriber that stands still, stopped by SIGSTOP while it reads a record, holds up nobody. That the publisher's
+// rate does not change is measured by tests/stress; here: that it publishes at all, and what each side then has.
+#include <doctest/doctest.h>
+
+#include "messages.hpp"
+#include "node_role.hpp"
+#include "transport/configurator.hpp"
+
+using namespace manycore;
+
+namespace {
+
+struct Fixture {
+  TestPlatform platform;
+  Configurator configurator{platform.name(), host_profile(), {{"/fixed", 1, 4000, 0}}};
+  std::shared_ptr<Process> process = platform.join();
+};
+
+void publish_numbers(Publisher & publisher, uint64_t first, uint64_t last) {
+  for (uint64_t number = first; number <= last; ++number) {
+    publish(publisher, number, 100 + number % 7 * 50);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("stopped with a claim: the publisher goes on, others get everything, the claim stays whole") {
+  for (const std::string topic : {"/fixed", "/growing"}) {
+    for (const uint32_t cluster : {1u, 2u}) {
+      CAPTURE(topic);
+      CAPTURE(cluster);
+      Fixture f;
+      const auto publisher = f.process->create_publisher(on_topic(topic, keep_last(10)));
+      const auto near = f.process->create_subscription(on_topic(topic, keep_last(10)));
+      Node stopped(f.platform, cluster);
+      stopped.tell("subscription " + topic + " 3");
+      publish(*publisher, 1, 500, 7);
+      CHECK(stopped.ask("claim") == "1");
+      stopped.stop();
+      CHECK(take_all(*near) == numbers(1, 1));
+      for (uint64_t number = 2; number <= 2000; ++number) {
+        publish(*publisher, number, 100 + number % 7 * 50);
+        REQUIRE(take(*near)->number == number);
+      }
+      stopped.resume();
+      stopped.tell("release");
+      stopped.tell("take 1998 2000 1");
+    }
+  }
+}
+
+TEST_CASE("stopped between messages: it finds the newest when it goes on") {
+  Fixture f;
+  const auto publisher = f.process->create_publisher(on_topic("/fixed", keep_last(10)));
+  Node stopped(f.platform, 2);
+  stopped.tell("subscription /fixed 4");
+  publish_numbers(*publisher, 1, 1);
+  stopped.tell("take 1 1 1");
+  stopped.stop();
+  publish_numbers(*publisher, 2, 2000);
+  stopped.resume();
+  stopped.tell("take 1997 2000 1");
+}
+
+TEST_CASE("stopped in a RELIABLE + KEEP_ALL match: the publisher waits its time, then says so") {
+  Fixture f;
+  Qos qos = keep_all();
+  const auto publisher = f.process->create_publisher(on_topic("/fixed", qos));
+  Node stopped(f.platform, 1);
+  stopped.tell("subscription /fixed keep_all");
+  publish(*publisher, 1, 500);
+  CHECK(stopped.ask("claim") == "1");
+  stopped.stop();
+  uint64_t last = 1;
+  const Refusal refusal = refusal_of([&] {
+    while (last < 1000) {
+      publish(*publisher, last + 1, 500);
+      ++last;
+    }
+  });
+  CHECK((refusal.code == ErrorCode::timeout || refusal.code == ErrorCode::no_space));
+  stopped.resume();
+  stopped.tell("release");
+  stopped.tell("take 2 " + std::to_string(last) + " 1");
+  publish(*publisher, last + 1, 500);
+  stopped.tell("take " + std::to_string(last + 1) + " " + std::to_string(last + 1) + " 1");
+}
+
+TEST_CASE("a stopped publisher holds up no subscriber, and no other publisher") {
+  // A fixed topic DSM does not grow. Stopped while it holds the registry lock, as growing does for microseconds,
+  // the publisher would hold up whoever creates or closes an endpoint.
+  Fixture f;
+  const auto near = f.process->create_subscription(on_topic("/fixed", keep_last(10)));
+  Node stopped(f.platform, 1);
+  stopped.tell("publisher /fixed 10");
+  stopped.say("publish_endlessly 200");
+  take_next(*f.process, *near);
+  stopped.stop();  // at any moment of a publish
+  const auto publisher = f.process->create_publisher(on_topic("/fixed", keep_last(10)));
+  publish_numbers(*publisher, 1, 100);
+  uint64_t last = 0;
+  while (last < 100) {
+    const Payload payload = take_next(*f.process, *near);
+    last = payload.writer == 1 ? payload.number : last;
+  }
+  const auto late = f.process->create_subscription(on_topic("/fixed", keep_last(10)));
+  publish_numbers(*publisher, 101, 101);
+  CHECK(take_next(*f.process, *late).number == 101);
+  stopped.kill();
+}
