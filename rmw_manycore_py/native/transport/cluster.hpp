@@ -40,14 +40,14 @@ public:
   ClusterHeader & header() const noexcept { return memory_.at<ClusterHeader>(0); }
   uint64_t size() const noexcept { return memory_.size(); }
 
-  /// True when [offset, offset + length) is inside the SMEM and aligned like every block of it.
+  /// True when [offset, offset + length) is inside the SMEM.
   bool contains(uint64_t offset, uint64_t length) const noexcept {
-    return offset % 32 == 0 && offset <= memory_.size() && length <= memory_.size() - offset;
+    return offset <= memory_.size() && length <= memory_.size() - offset;
   }
-  /// Nullptr for a reference out of bounds: shared memory is never followed blindly.
+  /// Nullptr for a reference that is out of bounds or where no T can be: shared memory is never followed blindly.
   template<typename T>
   T * find(uint64_t offset, uint64_t length = sizeof(T)) const noexcept {
-    return contains(offset, length) ? &memory_.at<T>(offset) : nullptr;
+    return offset % alignof(T) == 0 && contains(offset, length) ? &memory_.at<T>(offset) : nullptr;
   }
 
   /// Allocation of SMEM, resident but not cleared; the caller holds the registry lock. Throws

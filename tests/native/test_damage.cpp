@@ -1,0 +1,227 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+//
+// Files of a platform that somebody has damaged: who comes gets an error that says what to do, or gets along; nobody
+// crashes or hangs. Random damage is a sample. A file that is cut short while it is mapped ends those who use it
+// (SIGBUS): the kernel leaves no choice.
+#include <doctest/doctest.h>
+
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <csignal>
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <random>
+
+#include "messages.hpp"
+#include "node_role.hpp"
+#include "patience.hpp"
+#include "transport/configurator.hpp"
+#include "transport/registry_layout.hpp"
+
+using namespace manycore;
+
+namespace {
+
+using Bytes = std::vector<char>;
+
+/// Comes, does a bit of everything, and goes.
+const Role visitor("visitor", [](Lines & test, const Arguments & arguments) {
+  Placement placement;
+  placement.platform = arguments.at(0);
+  const auto process = Process::join(placement);
+  process->remove_node(process->add_node("visitor", "/", "/"));
+  const auto publisher = process->create_publisher(on_topic("/x", transient_local(10)));
+  const auto subscription = process->create_subscription(on_topic("/x", transient_local(10)));
+  for (uint64_t number = 1; number <= 20; ++number) {
+    publish(*publisher, number, 2000);
+    while (subscription->claim()) {
+    }
+  }
+  process->graph().endpoints();
+  process->graph().processes();
+  test.say("got along");
+});
+
+/// What became of a visit: "got along", or "error: ..". Throws when the visitor crashed or hangs.
+std::string visit(const TestPlatform & platform) {
+  Child child("visitor", {platform.name()});
+  const std::string outcome = child.hear();
+  const int status = child.wait();
+  if (status < 0) {
+    throw std::runtime_error("killed by signal " + std::to_string(-status));
+  }
+  return outcome;
+}
+
+Bytes read_file(const std::string & path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+/// Puts another file in the place of one that is in use; those who have it mapped go on with the old one.
+void replace_file(const std::string & path, const Bytes & content) {
+  const std::string fresh = path + ".new";
+  std::ofstream(fresh, std::ios::binary).write(content.data(), static_cast<long>(content.size()));
+  chmod(fresh.c_str(), 0600);
+  CHECK(std::rename(fresh.c_str(), path.c_str()) == 0);
+}
+
+/// A platform with a node in it; small, so that its segments are read and written quickly.
+struct Fixture {
+  Fixture() {
+    Profile profile = host_profile();
+    profile.smem_bytes = 1 << 20;
+    configurator = std::make_unique<Configurator>(
+      platform.name(), profile, std::vector<TopicConfiguration>{});
+    node = std::make_unique<Node>(platform, 1);
+    node->tell("publisher /x 10+transient_local");
+    node->tell("publish 1 10 1000");
+    receive_thread = platform.receive_thread(1);
+  }
+  /// Nobody can be expected to clear away what is damaged.
+  ~Fixture() {
+    node.reset();
+    kill(receive_thread, SIGKILL);
+    wait_until("its end", [&] { return !is_running(receive_thread); });
+    configurator.reset();
+    const JoinLock lock(platform.paths());
+    remove_platform(platform.paths());
+  }
+
+  TestPlatform platform;
+  std::unique_ptr<Configurator> configurator;
+  std::unique_ptr<Node> node;
+  pid_t receive_thread;
+};
+
+std::mt19937 random_bits{7};
+
+Bytes random_bytes(size_t size) {
+  Bytes bytes(size);
+  std::generate(bytes.begin(), bytes.end(), [] { return static_cast<char>(random_bits()); });
+  return bytes;
+}
+
+struct Damage {
+  const char * name;
+  Bytes (*apply)(Bytes content);
+};
+
+Bytes with_word(Bytes content, size_t offset, uint32_t word) {
+  std::memcpy(content.data() + offset, &word, sizeof word);
+  return content;
+}
+
+Bytes cut(Bytes content, size_t size) {
+  content.resize(size);
+  return content;
+}
+
+constexpr Damage damages[] = {
+  {"empty", [](Bytes) { return Bytes(); }},
+  {"cut in the header", [](Bytes content) { return cut(std::move(content), 10); }},
+  {"cut in the middle", [](Bytes content) { return cut(content, content.size() / 2); }},
+  {"a byte too long", [](Bytes content) { return cut(content, content.size() + 1); }},
+  {"zeroed", [](Bytes content) { return Bytes(content.size()); }},
+  {"random", [](Bytes content) { return random_bytes(content.size()); }},
+  {"of no magic", [](Bytes content) { return with_word(std::move(content), 0, 1); }},
+  {"of another layout", [](Bytes content) { return with_word(std::move(content), 8, 99); }},
+};
+
+}  // namespace
+
+TEST_CASE("a damaged registry or cluster segment is refused, with the file's name and what to do") {
+  for (const Damage & damage : damages) {
+    for (const bool of_registry : {true, false}) {
+      const std::string what = damage.name;
+      CAPTURE(what);
+      CAPTURE(of_registry);
+      Fixture f;
+      const std::string path =
+        of_registry ? f.platform.paths().registry() : f.platform.paths().cluster(1);
+      const Bytes sound = read_file(path);
+      replace_file(path, damage.apply(sound));
+      const std::string outcome = visit(f.platform);
+      CHECK_MESSAGE(outcome.find("error: " + path) == 0, outcome);
+      CHECK_MESSAGE(outcome.find("manycore clean") != std::string::npos, outcome);
+    }
+  }
+}
+
+TEST_CASE("a segment of another platform is refused") {
+  Fixture f;
+  Fixture other;
+  replace_file(f.platform.paths().cluster(1), read_file(other.platform.paths().cluster(1)));
+  const std::string outcome = visit(f.platform);
+  CHECK_MESSAGE(outcome.find("belongs to another platform") != std::string::npos, outcome);
+}
+
+TEST_CASE("something else in the place of a file is refused") {
+  for (const bool is_pipe : {true, false}) {
+    for (const std::string kind : {"file", "directory", "link", "pipe"}) {
+      if (kind == "pipe" && is_pipe) {
+        continue;
+      }
+      CAPTURE(is_pipe);
+      CAPTURE(kind);
+      Fixture f;
+      const PlatformPaths paths = f.platform.paths();
+      const std::string path = is_pipe ? paths.pipe(1) : paths.cluster(1);
+      unlink(path.c_str());
+      if (kind == "file") {
+        replace_file(path, {});
+      } else if (kind == "directory") {
+        mkdir(path.c_str(), 0700);
+      } else if (kind == "link") {
+        CHECK(symlink("/dev/zero", path.c_str()) == 0);
+      } else {
+        CHECK(mkfifo(path.c_str(), 0600) == 0);
+      }
+      const std::string outcome = visit(f.platform);
+      CHECK_MESSAGE(outcome.find("error: ") == 0, outcome);
+      CHECK_MESSAGE(outcome.find(path) != std::string::npos, outcome);
+      rmdir(path.c_str());
+    }
+  }
+}
+
+TEST_CASE("random words in the tables of a registry in use: visitors get along or get an error") {
+  for (int round = 0; round < 60; ++round) {
+    CAPTURE(round);
+    Fixture f;
+    const std::string path = f.platform.paths().registry();
+    std::fstream file(path, std::ios::binary | std::ios::in | std::ios::out);
+    // The header and the used part of each table.
+    const uint64_t parts[] = {
+      sizeof(SegmentHeader), process_table_offset, node_table_offset, endpoint_table_offset};
+    const uint64_t part = parts[random_bits() % 4];
+    const uint64_t extent = part == parts[0] ? process_table_offset - part : 2048;
+    for (int words = 1 + static_cast<int>(random_bits() % 50); words > 0; --words) {
+      file.seekp(static_cast<long>(part + random_bits() % (extent / 4) * 4));
+      const auto word = static_cast<uint32_t>(random_bits());
+      file.write(reinterpret_cast<const char *>(&word), sizeof word);
+    }
+    file.close();
+    CHECK_NOTHROW(visit(f.platform));
+  }
+}
+
+TEST_CASE("random words in a cluster segment in use: visitors get along or get an error") {
+  for (int round = 0; round < 60; ++round) {
+    CAPTURE(round);
+    Fixture f;
+    std::fstream file(
+      f.platform.paths().cluster(1), std::ios::binary | std::ios::in | std::ios::out);
+    for (int words = 1 + static_cast<int>(random_bits() % 200); words > 0; --words) {
+      file.seekp(static_cast<long>(sizeof(SegmentHeader) + random_bits() % (16 * 1024 / 4) * 4));
+      const uint32_t word = words % 2 == 0 ? random_bits() : random_bits() % 100'000;
+      file.write(reinterpret_cast<const char *>(&word), sizeof word);
+    }
+    file.close();
+    CHECK_NOTHROW(visit(f.platform));
+  }
+}
