@@ -8,6 +8,7 @@ from pathlib import Path
 import click
 
 from rmw_manycore_py.cli.options import (
+    counted,
     examples,
     json_option,
     mapfile_argument,
@@ -33,8 +34,8 @@ def command(mapfile: Path, as_json: bool) -> None:
         print_json({"valid": True, "notices": placement.notices})
         return
     print_notices(placement.notices)
+    nodes = counted(len(placement.nodes), "node")
+    clusters = counted(len({node.cluster for node in placement.nodes}), "cluster")
     click.echo(
-        f"{mapfile}: {len(placement.nodes)} nodes in "
-        f"{len({node.cluster for node in placement.nodes})} clusters, "
-        f"{len(placement.topics)} topics: valid"
+        f"{mapfile}: {nodes} in {clusters}, {counted(len(placement.topics), 'topic')}: valid"
     )

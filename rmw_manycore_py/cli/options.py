@@ -81,3 +81,8 @@ def size_text(size_bytes: int) -> str:
         if size_bytes >= 1 << shift:
             return f"{size_bytes / (1 << shift):.4g} {unit}"
     return f"{size_bytes} B"
+
+
+def counted(number: int, noun: str) -> str:
+    """Write a number of things: 1 node, 2 nodes."""
+    return f"{number} {noun}" if number == 1 else f"{number} {noun}s"

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import importlib.metadata
 import importlib.util
 import os
 import re
@@ -15,6 +14,7 @@ from importlib.machinery import ModuleSpec, PathFinder
 from pathlib import Path
 
 from rmw_manycore_py.mapfile import ament
+from rmw_manycore_py.mapfile.entry_script import console_scripts, module_of_script
 
 
 @dataclass(frozen=True)
@@ -37,8 +37,12 @@ def find_module(module: str, directory: Path) -> Program | None:
         spec = _module_spec(f"{module}.__main__", directory)
     if spec is None:
         return None
-    source = Path(spec.origin) if spec.origin and spec.origin.endswith(".py") else None
-    return Program((sys.executable, "-m", module), source)
+    return Program((sys.executable, "-m", module), _python_source(spec))
+
+
+def _python_source(spec: ModuleSpec | None) -> Path | None:
+    origin = spec.origin if spec else None
+    return Path(origin) if origin and origin.endswith(".py") else None
 
 
 def _module_spec(module: str, directory: Path) -> ModuleSpec | None:
@@ -78,7 +82,9 @@ def executables_of(package: str) -> list[str]:
         for path in (prefix / "lib" / package).glob("*")
         if path.is_file() and os.access(path, os.X_OK) and ".so" not in path.suffixes
     )
-    return sorted({path.name for path in files} | {entry.name for entry in _entry_points(package)})
+    return sorted(
+        {path.name for path in files} | {entry.name for entry in console_scripts(package)}
+    )
 
 
 def find_command(words: Sequence[str], directory: Path) -> Program | None:
@@ -112,24 +118,16 @@ def _of_file(path: Path) -> Program:
         return Program((str(path),))
     # `env python3` finds the interpreter of this environment only where that is activated.
     by_name = b"/env " in first_line
-    return Program((sys.executable, str(path)) if by_name else (str(path),), path)
-
-
-def _entry_points(package: str) -> list[importlib.metadata.EntryPoint]:
-    """Python packages from pip offer their nodes as console scripts."""
-    wanted = re.sub(r"[-_.]+", "-", package).lower()
-    try:
-        distribution = importlib.metadata.distribution(wanted)
-    except importlib.metadata.PackageNotFoundError:
-        return []
-    return [entry for entry in distribution.entry_points if entry.group == "console_scripts"]
+    module = module_of_script(path)
+    source = _python_source(_module_spec(module, path.parent)) if module else None
+    return Program((sys.executable, str(path)) if by_name else (str(path),), source or path)
 
 
 def _entry_point(package: str, executable: str) -> Program | None:
-    entry = next((e for e in _entry_points(package) if e.name == executable), None)
+    entry = next((e for e in console_scripts(package) if e.name == executable), None)
     if entry is None:
         return None
     attribute = entry.attr.split(".")[0]
     code = f"import sys; from {entry.module} import {attribute}; sys.exit({entry.attr}())"
-    module = find_module(entry.module, Path.cwd())
-    return Program((sys.executable, "-c", code), module.source if module else None)
+    source = _python_source(_module_spec(entry.module, Path.cwd()))
+    return Program((sys.executable, "-c", code), source)

@@ -9,6 +9,7 @@ from pathlib import Path
 
 from rmw_manycore_py.errors import MapfileError, Problem
 from rmw_manycore_py.mapfile.ament import canonical_type
+from rmw_manycore_py.mapfile.imports import check_imports
 from rmw_manycore_py.mapfile.launch_file import LaunchFile, read_launch_file
 from rmw_manycore_py.mapfile.loader import Mapfile
 from rmw_manycore_py.mapfile.names import full_node_name, resolve_topic
@@ -47,7 +48,11 @@ def resolve(mapfile: Mapfile) -> Placement:
     )
     topics = topic_table(mapfile, nodes)
     memory = memory_of_clusters(mapfile, topics)
-    problems = [*check_types(mapfile, topics), *check_memory(mapfile, memory)]
+    problems = [
+        *check_types(mapfile, topics),
+        *check_imports(mapfile, starts),
+        *check_memory(mapfile, memory),
+    ]
     if problems:
         raise MapfileError(*problems)
     return Placement(

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import ast
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -12,6 +13,8 @@ from rmw_manycore_py.errors import MapfileError, Problem
 from rmw_manycore_py.mapfile.document import read_text
 
 _CALLS = {"create_publisher": "publish", "create_subscription": "subscribe"}
+# Not the parts of services and actions (SetBool_Request), which no list of types names.
+_INTERFACE = re.compile(r"\w+\.(msg|srv|action)\.[A-Z][A-Za-z0-9]*")
 _NODE_CLASSES = ("Node", "LifecycleNode")
 
 
@@ -29,11 +32,7 @@ class SourceNode:
 
 def scan(file: Path) -> list[SourceNode]:
     """Return the nodes a Python file makes, in the order of their lines."""
-    try:
-        tree = ast.parse(read_text(file), str(file))
-    except (SyntaxError, ValueError) as error:
-        line = getattr(error, "lineno", None) or 0
-        raise MapfileError(Problem(file, line, "", "valid Python", str(error))) from error
+    tree = _parse(file)
     names = _Names(tree)
     classes = [node for node in ast.walk(tree) if isinstance(node, ast.ClassDef)]
     nodes = [found for cls in classes if (found := _class_node(file, cls, names))]
@@ -41,6 +40,25 @@ def scan(file: Path) -> list[SourceNode]:
     rest = [node for node in ast.walk(tree) if id(node) not in in_classes]
     nodes += _function_nodes(file, rest, names)
     return sorted(nodes, key=lambda node: node.line)
+
+
+def imported_interfaces(file: Path) -> dict[str, int]:
+    """Return the interface types a Python file cannot run without, each with its line."""
+    imports = (part for part in _parse(file).body if isinstance(part, ast.ImportFrom))
+    return {
+        f"{part.module}.{alias.name}".replace(".", "/"): part.lineno
+        for part in imports
+        for alias in part.names
+        if _INTERFACE.fullmatch(f"{part.module}.{alias.name}") and not part.level
+    }
+
+
+def _parse(file: Path) -> ast.Module:
+    try:
+        return ast.parse(read_text(file), str(file))
+    except (SyntaxError, ValueError) as error:
+        line = getattr(error, "lineno", None) or 0
+        raise MapfileError(Problem(file, line, "", "valid Python", str(error))) from error
 
 
 class _Names:

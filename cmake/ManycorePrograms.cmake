@@ -1,0 +1,25 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#
+# Programs in Python: short scripts that start the `main` of a module, wherever that lies.
+
+# manycore_program(NAME MODULE DIRECTORY): <prefix>/DIRECTORY/NAME
+function(manycore_program name module directory)
+  set(script ${CMAKE_CURRENT_BINARY_DIR}/programs/${name})
+  configure_file(${CMAKE_CURRENT_SOURCE_DIR}/cmake/program.py.in ${script} @ONLY)
+  install(PROGRAMS ${script} DESTINATION ${MANYCORE_PREFIX}/${directory})
+endfunction()
+
+# The examples, for `ros2 run`, launch files and mapfiles: package rmw_manycore, executable talker.
+file(GLOB example_files CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/rmw_manycore_py/examples/*.py)
+foreach(file IN LISTS example_files)
+  file(STRINGS ${file} has_main REGEX "^def main\\(")
+  if(has_main)
+    get_filename_component(example ${file} NAME_WE)
+    manycore_program(${example} rmw_manycore_py.examples.${example} lib/rmw_manycore)
+  endif()
+endforeach()
+
+# pip writes the command line tool itself, with the interpreter it is for.
+if(NOT SKBUILD)
+  manycore_program(manycore rmw_manycore_py.cli bin)
+endif()
