@@ -9,6 +9,7 @@ import random
 import signal
 import sys
 import threading
+import time
 from collections.abc import Callable
 
 import rclpy
@@ -22,6 +23,7 @@ from support import PATIENCE_S
 PR_SET_PDEATHSIG = 1  # <linux/prctl.h>
 TOPIC = "load"
 LARGEST_BYTES = 100_000
+TOLD_GAP_NS = 200_000_000
 SMALL_DSM_BYTES = 500_000  # a topic DSM with room for four of the largest messages
 DEEP = QoSProfile(depth=2000)
 LASTING = QoSProfile(depth=1000, durability=DurabilityPolicy.TRANSIENT_LOCAL)
@@ -46,12 +48,16 @@ def publish_steadily(rate_hz: float) -> None:
 
 
 def check_steadily(writer: int) -> None:
-    """Check every message; tell on request how many came from a writer that nobody kills."""
+    """Check every message, and how those come that are from a writer that nobody kills.
+
+    Tells of long gaps between them at once, and on request how many came and how many are missing.
+    """
     with peer_node(f"steady_subscriber_{os.getpid()}") as node:
         last, heard, missing = 0, 0, 0
+        last_ns = 0
 
         def check(message: UInt8MultiArray) -> None:
-            nonlocal last, heard, missing
+            nonlocal last, last_ns, heard, missing
             try:
                 found, number = read_message(message)
             except ValueError as error:
@@ -62,7 +68,10 @@ def check_steadily(writer: int) -> None:
             if number <= last:
                 announce(f"wrong order: {number} after {last}")
             missing += number - last - 1 if last else 0
-            last = number
+            now_ns = time.monotonic_ns()
+            if last and now_ns - last_ns > TOLD_GAP_NS:
+                announce(f"heard nothing from {last_ns} to {now_ns}")
+            last, last_ns = number, now_ns
             heard += 1
 
         def answer() -> None:

@@ -3,12 +3,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from running_time import RunningTime
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     for item in items:
         if Path(__file__).parent in item.path.parents:
             item.add_marker("stress")
+
+
+@pytest.fixture
+def running_time() -> Iterator[RunningTime]:
+    clock = RunningTime()
+    yield clock
+    clock.stop()

@@ -9,11 +9,13 @@ from __future__ import annotations
 
 import os
 import random
+import re
 import time
 
 import pytest
 from load import breed, check_steadily, publish_steadily
 from processes import kill, processes_of, receive_threads_of
+from running_time import RunningTime
 from support import (
     IS_MANYCORE,
     KILLS,
@@ -28,12 +30,14 @@ SEED = int(os.environ.get("MANYCORE_TEST_SEED", str(random.randrange(1 << 32))))
 LONGEST_LIFE_S = 0.2  # of a victim: joining takes some milliseconds, and may itself be hit
 JOINING_S = 0.03  # about what it takes from the fork to the first message
 CLUSTERS = 2
+RECOVERY_S = 1.0  # what is promised: the others go on, and what the dead held is free again
 
 
 class Load:
     """A publisher and two subscriptions that must not notice anything, in two clusters."""
 
-    def __init__(self, start) -> None:
+    def __init__(self, start, running_time: RunningTime) -> None:
+        self._running_time = running_time
         self.publisher = start(peer_command(publish_steadily, 50.0))
         self.checkers: list[Program] = []
         writer = None
@@ -67,17 +71,58 @@ class Load:
             assert program.is_running(), program
             assert "torn" not in program.output, program
             assert "wrong order" not in program.output, program
+            for gap in re.finditer(r"heard nothing from (\d+) to (\d+)", program.output):
+                counted_s = self._running_time.between_s(int(gap[1]), int(gap[2]))
+                assert counted_s <= RECOVERY_S, program
         assert [missing for _, missing in self.counts()] == [0, 0]
 
 
+class Graves:
+    """Kills processes, and looks how long the platform takes them for members."""
+
+    def __init__(self, platform: str, running_time: RunningTime) -> None:
+        self._platform = platform
+        self._running_time = running_time
+        self._killed_ns: dict[int, int] = {}
+
+    def kill(self, pid: int) -> None:
+        kill(pid)
+        self._killed_ns[pid] = time.monotonic_ns()
+
+    def assert_reclaimed(self) -> None:
+        """Find nobody in the registry who has been dead for longer than it may take."""
+        for pid in self._members():
+            assert self._running_time.since_s(self._killed_ns[pid]) <= RECOVERY_S, (
+                f"the platform still takes process {pid} for a member"
+            )
+
+    def assert_all_reclaimed(self) -> None:
+        self._running_time.wait_within(RECOVERY_S, lambda: not self._members(), "nobody is left")
+
+    def _members(self) -> list[int]:
+        """Return who is dead and has a place in the registry."""
+        if not IS_MANYCORE:
+            return []
+        from rmw_manycore_py._transport import Platform
+
+        processes = Platform(self._platform).processes()
+        dead = [process["pid"] for process in processes if not process["alive"]]
+        return [pid for pid in dead if pid in self._killed_ns]
+
+
 @pytest.fixture
-def load(start) -> Load:
+def load(start, running_time) -> Load:
     print(f"MANYCORE_TEST_SEED={SEED}")
     random.seed(SEED)
-    return Load(start)
+    return Load(start, running_time)
 
 
-def test_killed_nodes(start, load):
+@pytest.fixture
+def graves(platform, running_time) -> Graves:
+    return Graves(platform, running_time)
+
+
+def test_killed_nodes(start, load, graves):
     """Publishers and subscriptions come, and die at a random moment of their short lives."""
     nursery = start(peer_command(breed))
     nursery.wait_for("ready")
@@ -85,10 +130,12 @@ def test_killed_nodes(start, load):
         nursery.say(f"{random.choice(['publisher', 'subscriber'])} {random.randint(1, CLUSTERS)}")
         victim = int(nursery.wait_for(r"born (\d+)").group(1))
         time.sleep(random.uniform(0, LONGEST_LIFE_S))  # the random moment
-        kill(victim)
+        graves.kill(victim)
+        graves.assert_reclaimed()
         if number % 50 == 49:
             load.wait_until_it_goes_on()
             load.assert_unharmed()
+    graves.assert_all_reclaimed()
     load.wait_until_it_goes_on()
     load.assert_unharmed()
     assert "torn" not in nursery.output, nursery
@@ -106,7 +153,7 @@ def test_killed_receive_threads(platform, load):
 
 
 @pytest.mark.skipif(not IS_MANYCORE, reason="only rmw_manycore has receive threads")
-def test_everything_dies_at_random(start, platform, load):
+def test_everything_dies_at_random(start, platform, load, graves):
     """Nodes and receive threads die in any order, several at a time."""
     nursery = start(peer_command(breed))
     nursery.wait_for("ready")
@@ -117,19 +164,21 @@ def test_everything_dies_at_random(start, platform, load):
         victims.append(int(nursery.wait_for(r"born (\d+)").group(1)))
         time.sleep(random.uniform(0, LONGEST_LIFE_S / 4))  # the random moment
         while len(victims) > 6:
-            kill(victims.pop(random.randrange(len(victims))))
+            graves.kill(victims.pop(random.randrange(len(victims))))
+        graves.assert_reclaimed()
         if random.random() < 0.05:
             for pid in receive_threads_of(platform):
                 kill(pid)
     for victim in victims:
-        kill(victim)
+        graves.kill(victim)
+    graves.assert_all_reclaimed()
     load.wait_until_it_goes_on()
     load.assert_unharmed()
     assert "torn" not in nursery.output, nursery
 
 
 @pytest.mark.skipif(not IS_MANYCORE, reason="about what rmw_manycore leaves in /dev/shm")
-def test_the_last_process_is_killed(start, platform):
+def test_the_last_process_is_killed(start, platform, running_time):
     """Nobody is left to clean up after the last node but the receive threads, and they do."""
     nursery = start(peer_command(breed))
     nursery.wait_for("ready")
@@ -138,7 +187,7 @@ def test_the_last_process_is_killed(start, platform):
         victim = int(nursery.wait_for(r"victim (\d+) works").group(1))
         time.sleep(random.uniform(0, LONGEST_LIFE_S / 4))  # the random moment
         kill(victim)
-        wait_until(lambda: not leftovers(platform), "nothing is left in /dev/shm")
+        running_time.wait_within(RECOVERY_S, lambda: not leftovers(platform), "all is removed")
 
 
 @pytest.mark.skipif(not IS_MANYCORE, reason="about what rmw_manycore leaves in /dev/shm")
