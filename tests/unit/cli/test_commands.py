@@ -100,7 +100,7 @@ def test_a_program_that_does_not_exist_is_found_before_the_run(mapfile: Path) ->
 
 
 def test_map_check_and_show(mapfile: Path) -> None:
-    assert f"{mapfile}: 1 nodes in 1 clusters" in manycore("map", "check", str(mapfile)).output
+    assert f"{mapfile}: 1 node in 1 cluster, " in manycore("map", "check", str(mapfile)).output
     shown = manycore("map", "show", str(mapfile)).output
     assert "/talker" in shown
     assert "topic table" in shown
