@@ -19,6 +19,7 @@ VERBS = {
     "clean": "rmw_manycore_py.cli.clean:command",
     "doctor": "rmw_manycore_py.cli.doctor:command",
     "env": "rmw_manycore_py.cli.env:command",
+    "ndt": "rmw_manycore_py.cli.ndt:command",
     "bench": "rmw_manycore_py.bench.cli:bench",
 }
 

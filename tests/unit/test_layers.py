@@ -30,7 +30,7 @@ PLATFORM_ONLY = {"sys/mman.h", "linux/futex.h", "sys/syscall.h", "sched.h"}
 CALLS_THE_SYSTEM = {"platform", "bench"}
 
 # Lowest first; a module may import those of its own layer and of layers before it.
-PYTHON_LAYERS = ["errors", "topology", "mapfile", "create", "launch", "cli"]
+PYTHON_LAYERS = ["errors", "topology", "mapfile", "create", "launch", "ndt", "cli"]
 
 INCLUDE = re.compile(r'^\s*#\s*include\s+[<"]([^>"]+)[>"]', re.MULTILINE)
 

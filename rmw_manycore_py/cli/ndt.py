@@ -1,0 +1,15 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""`manycore ndt`."""
+
+from __future__ import annotations
+
+import click
+
+from rmw_manycore_py.cli.group import LazyGroup
+
+VERBS = {verb: f"rmw_manycore_py.cli.ndt_{verb}:command" for verb in ("simulate", "map")}
+
+
+@click.group("ndt", cls=LazyGroup, commands_at=VERBS)
+def command() -> None:
+    """Localize by scan matching: recordings, maps and off-loading."""

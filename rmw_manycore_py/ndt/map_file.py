@@ -1,0 +1,85 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Point-cloud maps in files: PCD, PLY (through Open3D) and npz (the format of recordings)."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from types import ModuleType
+
+import numpy as np
+
+from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
+from rmw_manycore_py.ndt.recording import DEFAULT_SCALE_M, INT16_MAX, load_recording, recording_of
+from rmw_manycore_py.ndt.thinning import Points
+
+SUFFIXES = (".pcd", ".ply", ".npz")
+
+
+def read_points(path: Path, leaf_m: float = 0.0) -> Points:
+    """Return the finite points (N, 3) of a map, thinned to voxels of `leaf_m` unless it is 0.
+
+    An npz file is a recording whose scans are accumulated with their poses. A file that is
+    missing, broken, empty or of another kind is a ManycoreError.
+    """
+    if path.suffix not in SUFFIXES:
+        raise _bad(path, f"expected a file that ends in {', '.join(SUFFIXES)}")
+    if not path.is_file():
+        raise _bad(path, "there is no such file")
+    points = _read_npz(path) if path.suffix == ".npz" else _read_cloud(path)
+    points = points[np.isfinite(points).all(axis=1)]
+    if len(points) == 0:
+        raise _bad(path, "it has no points: it is empty, broken, or not what its name says")
+    return _thinned(points, leaf_m) if leaf_m > 0.0 else points
+
+
+def write_points(path: Path, points: Points) -> None:
+    """Write a map of points (N, 3) in the map frame."""
+    if path.suffix == ".npz":
+        scale_m = max(DEFAULT_SCALE_M, float(np.abs(points).max()) / INT16_MAX)
+        recording_of([points], np.eye(4)[None], np.zeros(0), "map", scale_m).save(path)
+        return
+    if path.suffix not in SUFFIXES:
+        raise _bad(path, f"expected a file that ends in {', '.join(SUFFIXES)}")
+    o3d = load_open3d()
+    cloud = o3d.geometry.PointCloud(o3d.utility.Vector3dVector(points.astype(np.float64)))
+    if not o3d.io.write_point_cloud(str(path), cloud):
+        raise _bad(path, "it cannot be written")
+
+
+def load_open3d() -> ModuleType:
+    """Return Open3D; without it an error says how to get it."""
+    try:
+        import open3d
+    except ImportError as error:
+        raise ManycoreError(
+            f"Open3D cannot be loaded ({error}). Maps as PCD and PLY, and thinning, need it: "
+            "pip install 'rmw-manycore[ndt]'; its system libraries: "
+            "apt install libusb-1.0-0 libgl1 libgomp1 libx11-6"
+        ) from error
+    assert isinstance(open3d, ModuleType)
+    open3d.utility.set_verbosity_level(open3d.utility.VerbosityLevel.Error)
+    return open3d
+
+
+def _read_npz(path: Path) -> Points:
+    recording = load_recording(path)
+    return recording.accumulated(range(len(recording)))
+
+
+def _read_cloud(path: Path) -> Points:
+    o3d = load_open3d()
+    try:
+        cloud = o3d.io.read_point_cloud(str(path))
+    except RuntimeError as error:
+        raise _bad(path, f"Open3D cannot read it: {error}") from error
+    return np.asarray(cloud.points, dtype=np.float32)
+
+
+def _thinned(points: Points, leaf_m: float) -> Points:
+    o3d = load_open3d()
+    cloud = o3d.geometry.PointCloud(o3d.utility.Vector3dVector(points.astype(np.float64)))
+    return np.asarray(cloud.voxel_down_sample(leaf_m).points, dtype=np.float32)
+
+
+def _bad(path: Path, problem: str) -> ManycoreError:
+    return ManycoreError(f"map {path}: {problem}", EXIT_BAD_INPUT)
