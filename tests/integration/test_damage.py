@@ -79,10 +79,7 @@ def test_segment(start, directory, name, damage):
     "name",
     [
         "registry",
-        pytest.param(
-            "cluster-1",
-            marks=pytest.mark.xfail(reason="not every offset in a cluster is checked"),
-        ),
+        "cluster-1",
     ],
 )
 def test_segment_that_is_random_after_its_header(start, directory, name, seed):

@@ -30,7 +30,7 @@ public:
 
   manycore::SubscriptionHeader & header() noexcept { return *header_; }
   void push(const manycore::Hint & hint) noexcept {
-    manycore::subscriber_queue::push(*header_, hint);
+    manycore::subscriber_queue::push(*header_, hint, [](const manycore::Hint &) {});
   }
   std::optional<manycore::Hint> pop() noexcept { return manycore::subscriber_queue::pop(*header_); }
   bool empty() noexcept { return manycore::subscriber_queue::empty(*header_); }

@@ -6,6 +6,7 @@
 
 #include "messages.hpp"
 #include "node_role.hpp"
+#include "patience.hpp"
 #include "transport/configurator.hpp"
 
 using namespace manycore;
@@ -13,9 +14,16 @@ using namespace manycore;
 namespace {
 
 struct Fixture {
+  /// Until the receive thread of the only subscription in `cluster` has pushed so many hints.
+  void wait_for_hints(uint32_t cluster, uint64_t count) {
+    const ClusterHeader & header = inspection.registry().clusters().at(cluster).header();
+    wait_until("the hints", [&] { return header.notifications.load() >= count; });
+  }
+
   TestPlatform platform;
   Configurator configurator{platform.name(), host_profile(), {{"/fixed", 1, 4000, 0}}};
   std::shared_ptr<Process> process = platform.join();
+  Inspection inspection{platform};
 };
 
 void publish_numbers(Publisher & publisher, uint64_t first, uint64_t last) {
@@ -44,6 +52,9 @@ TEST_CASE("stopped with a claim: the publisher goes on, others get everything, t
         publish(*publisher, number, 100 + number % 7 * 50);
         REQUIRE(take(*near)->number == number);
       }
+      if (cluster != 1) {
+        f.wait_for_hints(cluster, 2000);
+      }
       stopped.resume();
       stopped.tell("release");
       stopped.tell("take 1998 2000 1");
@@ -60,6 +71,7 @@ TEST_CASE("stopped between messages: it finds the newest when it goes on") {
   stopped.tell("take 1 1 1");
   stopped.stop();
   publish_numbers(*publisher, 2, 2000);
+  f.wait_for_hints(2, 2000);
   stopped.resume();
   stopped.tell("take 1997 2000 1");
 }

@@ -9,9 +9,7 @@ uint64_t Inbox::unread() const {
   if (!subscription_->has_data()) {
     return 0;
   }
-  const uint64_t gone = claimed_.load(std::memory_order_relaxed) + subscription_->lost();
-  const uint64_t arrivals = subscription_->arrivals();
-  return std::max<uint64_t>(1, arrivals > gone ? arrivals - gone : 0);
+  return std::max<uint64_t>(1, subscription_->waiting());
 }
 
 }  // namespace rmw_manycore

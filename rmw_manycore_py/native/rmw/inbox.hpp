@@ -1,7 +1,6 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <atomic>
 #include <memory>
 #include <optional>
 
@@ -22,20 +21,13 @@ public:
   Callback & on_arrival() noexcept { return on_arrival_; }
   bool has_data() const noexcept { return subscription_->has_data(); }
 
-  std::optional<manycore::Claim> claim() {
-    std::optional<manycore::Claim> claim = subscription_->claim();
-    if (claim) {
-      claimed_.fetch_add(1, std::memory_order_relaxed);
-    }
-    return claim;
-  }
+  std::optional<manycore::Claim> claim() { return subscription_->claim(); }
 
 private:
   /// How many arrivals wait to be claimed. An estimate while others push or claim.
   uint64_t unread() const;
 
   std::unique_ptr<manycore::Subscription> subscription_;
-  std::atomic<uint64_t> claimed_{0};
   Callback on_arrival_;
 };
 

@@ -57,13 +57,16 @@ Cluster::Cluster(const PlatformPaths & paths, uint32_t id, uint64_t platform_non
   pipe_(Pipe::open(paths.pipe(id))) {
   const ClusterHeader & head = header();
   check_segment(head.segment, cluster_magic, memory_.size(), paths.cluster(id).c_str());
-  const bool sound = head.segment.cluster == id && head.segment.platform_nonce == platform_nonce &&
-                     head.granule_bytes >= 1024 &&
-                     uint64_t{head.granule_bytes} * head.granule_count <= memory_.size();
+  const std::string advice = "; stop the platform's nodes and run 'manycore clean'";
+  if (head.segment.cluster != id || head.segment.platform_nonce != platform_nonce) {
+    throw Error(ErrorCode::corrupt, paths.cluster(id) + " belongs to another platform" + advice);
+  }
+  const uint32_t granule = granule_size(memory_.size());
+  const bool sound = head.granule_bytes == granule &&
+                     head.granule_count == memory_.size() / granule &&
+                     head.used_bytes.load(std::memory_order_relaxed) <= memory_.size();
   if (!sound) {
-    throw Error(
-      ErrorCode::corrupt, paths.cluster(id) +
-        " belongs to another platform; stop the platform's nodes and run 'manycore clean'");
+    throw Error(ErrorCode::corrupt, paths.cluster(id) + " has a damaged header" + advice);
   }
 }
 

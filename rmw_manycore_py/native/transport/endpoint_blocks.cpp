@@ -1,6 +1,8 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #include "transport/endpoint_blocks.hpp"
 
+#include <algorithm>
+
 namespace manycore {
 
 MatchedCount matched_of(const EndpointEntry & entry) {
@@ -10,6 +12,13 @@ MatchedCount matched_of(const EndpointEntry & entry) {
 IncompatibleCount incompatible_of(const EndpointEntry & entry) {
   return {
     entry.incompatible_total.load(), static_cast<QosPolicy>(entry.incompatible_policy.load())};
+}
+
+uint64_t lost_so_far(const EndpointEntry & entry, const SubscriptionHeader & header) {
+  // Neither word by itself says anything, so they need no order; the sum wraps.
+  const uint64_t by_drops = header.dropped.load(std::memory_order_relaxed) +
+                            header.lost_beside_dropped.load(std::memory_order_relaxed);
+  return std::max(entry.counters.lost.load(std::memory_order_relaxed), by_drops);
 }
 
 void notify_process(Registry & registry, uint32_t process) {

@@ -9,9 +9,13 @@ namespace manycore {
 
 /// What connecting and closing endpoints have in common. The caller holds the registry lock.
 
-/// Counts behind an endpoint's matched and incompatible-QoS events; these two need no lock.
+/// Counts behind an endpoint's matched and incompatible-QoS events; this and lost_so_far() need no lock.
 MatchedCount matched_of(const EndpointEntry & entry);
 IncompatibleCount incompatible_of(const EndpointEntry & entry);
+
+/// Messages that a subscription lost, as far as anybody can know: those that the publication sequence numbers have
+/// shown to be missing, or what pushers have displaced since the subscriber looked last, if that is more.
+uint64_t lost_so_far(const EndpointEntry & entry, const SubscriptionHeader & header);
 
 /// Wakes a process, always or only if it watches matched and incompatible-QoS events.
 void notify_process(Registry & registry, uint32_t process);

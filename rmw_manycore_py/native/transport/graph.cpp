@@ -14,7 +14,7 @@ CounterValues read_counters(Registry & registry, const EndpointEntry & entry) {
                        counters.expired.load(),  counters.refused.load(), counters.overwritten.load()};
   if (entry.kind == EndpointKind::subscription) {
     const auto * const header = registry.clusters().find<SubscriptionHeader>(entry.block);
-    values.lost += header == nullptr ? 0 : header->dropped.load();
+    values.lost = header == nullptr ? values.lost : lost_so_far(entry, *header);
   }
   return values;
 }

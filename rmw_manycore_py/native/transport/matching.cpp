@@ -3,6 +3,7 @@
 
 #include "platform/error.hpp"
 #include "transport/endpoint_blocks.hpp"
+#include "transport/last_published.hpp"
 #include "transport/reader_table.hpp"
 #include "transport/source_table.hpp"
 
@@ -99,8 +100,11 @@ void join(Registry & registry, const Pair & pair) {
   source.topic_dsm.store(pair.publisher.block.word, std::memory_order_relaxed);
   source.topic_dsm_endpoint.store(pair.publisher_slot, std::memory_order_relaxed);
   source.topic_dsm_incarnation.store(pair.publisher.slot.incarnation, std::memory_order_relaxed);
-  const uint64_t taken = history ? 0 : dsm->last.load(std::memory_order_seq_cst);
+  const LastPublished published = last_published(*dsm);
+  const uint64_t taken = history ? 0 : published.number;
   source.taken.store(taken, std::memory_order_relaxed);
+  source.joined_after.store(published.sequence, std::memory_order_relaxed);
+  source.displaced.store(0, std::memory_order_relaxed);
   source.reader.store(publisher_cluster.ref_of(&reader).word, std::memory_order_relaxed);
   source.state.store(SourceState::joining, std::memory_order_release);
 

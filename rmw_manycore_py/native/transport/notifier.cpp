@@ -1,6 +1,7 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #include "transport/notifier.hpp"
 
+#include "transport/source_table.hpp"
 #include "transport/subscriber_queue.hpp"
 
 namespace manycore {
@@ -12,20 +13,21 @@ bool is_for(const Announcement & announcement, const Reader & reader) noexcept {
 
 /// Pushes to the own cluster's readers; returns the mask of the other clusters concerned.
 uint64_t push_to_own_cluster(
-  uint32_t own_cluster, const ReaderList & list, const Announcement & announcement) noexcept {
+  const Cluster & own, const ReaderList & list, const Announcement & announcement) noexcept {
   uint64_t others = 0;
   WakeWord * pending = nullptr;
   for (const Reader & reader : list.readers()) {
     if (!is_for(announcement, reader)) {
       continue;
     }
-    if (reader.cluster != own_cluster) {
+    if (reader.cluster != own.id()) {
       others |= uint64_t{1} << (reader.cluster - 1);
       continue;
     }
     subscriber_queue::push(
       *reader.subscription,
-      {reader.source_index, reader.source_incarnation, announcement.number});
+      {reader.source_index, reader.source_incarnation, announcement.number},
+      [&](const Hint & oldest) { note_displaced(own, *reader.subscription, oldest); });
     if (pending != nullptr && pending != reader.wake) {
       pending->notify();
     }
@@ -67,9 +69,9 @@ void ask_to_look(Cluster & cluster, const ReaderList & list) noexcept {
 }  // namespace
 
 void announce(
-  Registry & registry, uint32_t own_cluster, const ReaderList & list,
+  Registry & registry, const Cluster & own, const ReaderList & list,
   const Announcement & announcement) noexcept {
-  uint64_t others = push_to_own_cluster(own_cluster, list, announcement);
+  uint64_t others = push_to_own_cluster(own, list, announcement);
   if (others == 0) {
     return;
   }

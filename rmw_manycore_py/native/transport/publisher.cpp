@@ -58,7 +58,7 @@ uint64_t Publisher::publish(
     impl.writer.commit(size_bytes, source_timestamp_ns, sequence_number, correlation);
   const bool targeted = impl.entry.role == EndpointRole::reply;
   announce(
-    impl.registry, impl.entry.cluster, impl.writer.readers(),
+    impl.registry, impl.cluster, impl.writer.readers(),
     {impl.entry.block, impl.slot, impl.entry.slot.incarnation, number,
      targeted ? &correlation.client : nullptr});
   impl.writer.leave();

@@ -13,11 +13,13 @@ struct Publisher::Impl {
   : registry(registry_),
     slot(slot_),
     entry(registry_.endpoints()[slot_]),
-    writer(registry_, registry_.clusters().at(entry.cluster), entry) {}
+    cluster(registry_.clusters().at(entry.cluster)),
+    writer(registry_, cluster, entry) {}
 
   Registry & registry;
   uint32_t slot;
   EndpointEntry & entry;
+  Cluster & cluster;
   std::mutex mutex;  ///< held from draft() to publish()
   TopicDsmWriter writer;
   uint64_t published = 0;

@@ -2,6 +2,7 @@
 #include "transport/receive_thread.hpp"
 
 #include "transport/reader_table.hpp"
+#include "transport/source_table.hpp"
 
 namespace manycore {
 
@@ -116,7 +117,9 @@ void ReceiveThread::push(SegmentRef ref, const Hint & hint) noexcept {
     subscription->magic.load(std::memory_order_relaxed) != subscription_magic) {
     return;
   }
-  subscriber_queue::push(*subscription, hint);
+  subscriber_queue::push(*subscription, hint, [&](const Hint & oldest) {
+    note_displaced(cluster_, *subscription, oldest);
+  });
   ClusterHeader & header = cluster_.header();
   header.notifications.store(
     header.notifications.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);

@@ -2,7 +2,8 @@
 #pragma once
 
 #include "transport/cluster.hpp"
-#include "transport/subscription_layout.hpp"
+#include "transport/displaced.hpp"
+#include "transport/subscriber_queue.hpp"
 
 namespace manycore {
 
@@ -23,6 +24,21 @@ void visit_source_table(const Cluster & cluster, SubscriptionHeader & subscripti
     }
     next = block->next.load(std::memory_order_acquire);
   }
+}
+
+/// Notes in its source's entry that a hint was displaced, for the subscriber to know that it is not on its way.
+inline void note_displaced(
+  const Cluster & cluster, SubscriptionHeader & subscription, const Hint & hint) noexcept {
+  visit_source_table(cluster, subscription, [&](SourceEntry & source, uint32_t index) {
+    if (index != hint.source) {
+      return false;
+    }
+    const uint32_t incarnation = source.incarnation.load(std::memory_order_relaxed);
+    if ((incarnation & Hint::incarnation_mask) == hint.source_incarnation) {
+      Displaced::raise(source.displaced, hint.number);
+    }
+    return true;
+  });
 }
 
 }  // namespace manycore

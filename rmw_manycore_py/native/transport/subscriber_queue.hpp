@@ -68,8 +68,9 @@ inline void initialize(SubscriptionHeader & header) noexcept {
 /// displaces nothing: `resync` tells the subscriber to look for itself.
 ///
 /// The exchange on the slot is the push; whoever finds a filled slot at `tail` moves `tail` on, so a
-/// pusher that died in between holds nobody up.
-inline void push(SubscriptionHeader & header, const Hint & hint) noexcept {
+/// pusher that died in between holds nobody up. `on_displaced(Hint)` is called for each that it displaces.
+template<typename OnDisplaced>
+void push(SubscriptionHeader & header, const Hint & hint, OnDisplaced on_displaced) noexcept {
   const Slots slots(header);
   while (true) {
     uint64_t tail = header.tail.load(std::memory_order_acquire);
@@ -88,8 +89,10 @@ inline void push(SubscriptionHeader & header, const Hint & hint) noexcept {
         header.resync.store(1, std::memory_order_seq_cst);
         return;
       }
+      const uint64_t oldest = slots.at(head).load(std::memory_order_acquire);
       if (header.head.compare_exchange_strong(head, head + 1, std::memory_order_acq_rel)) {
         header.dropped.fetch_add(1, std::memory_order_relaxed);
+        on_displaced(decode(oldest));  // what stood there while nobody had moved `head`
       }
       continue;
     }

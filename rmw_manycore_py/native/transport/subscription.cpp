@@ -1,6 +1,7 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #include "transport/subscription.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "platform/clock.hpp"
@@ -52,7 +53,7 @@ std::optional<Claim> Subscription::claim() {
     TopicDsmReader::View view;
     switch (candidate->reader->claim(candidate->number, view)) {
       case TopicDsmReader::ClaimResult::gone:
-        impl.count_lost(1);
+        impl.unsettled = true;
         continue;
       case TopicDsmReader::ClaimResult::expired:
         impl.entry.counters.expired.fetch_add(1, std::memory_order_relaxed);
@@ -95,9 +96,18 @@ uint64_t Subscription::arrivals() const noexcept {
   return pushed + impl.arrivals_by_resync.load(std::memory_order_relaxed);
 }
 
+uint64_t Subscription::waiting() const noexcept {
+  return subscriber_queue::size(impl_->header) +
+         impl_->backlog_size.load(std::memory_order_relaxed);
+}
+
 uint64_t Subscription::lost() const noexcept {
-  return impl_->entry.counters.lost.load(std::memory_order_relaxed) +
-         impl_->header.dropped.load(std::memory_order_relaxed);
+  // What displaced hints suggest may turn out to be too much; a count of lost messages never falls.
+  const uint64_t now = lost_so_far(impl_->entry, impl_->header);
+  uint64_t reported = impl_->reported_lost.load(std::memory_order_relaxed);
+  while (reported < now && !impl_->reported_lost.compare_exchange_weak(reported, now)) {
+  }
+  return std::max(reported, now);
 }
 
 MatchedCount Subscription::matched() const { return matched_of(impl_->entry); }

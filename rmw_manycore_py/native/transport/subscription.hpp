@@ -66,7 +66,11 @@ public:
   /// Notifications received since creation (for on_new_message callbacks).
   uint64_t arrivals() const noexcept;
 
-  /// Messages that were published for this subscription and are gone (overwritten before taken).
+  /// Notifications that wait to be claimed; some may be stale or doubles.
+  uint64_t waiting() const noexcept;
+
+  /// Messages that were published for this subscription and are gone (overwritten before taken), as far as known:
+  /// those of a publisher are counted by the time a later one of its messages is taken.
   uint64_t lost() const noexcept;
 
   MatchedCount matched() const;

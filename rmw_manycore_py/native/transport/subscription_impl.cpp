@@ -69,7 +69,7 @@ bool Subscription::Impl::renew_readers() {
       readers.begin(), readers.end(),
       [&](const TopicDsmReader & reader) { return reader.is_same_source(source); });
     TopicDsmReader reader =
-      known != readers.end() ? *known : TopicDsmReader(registry, source, index, entry.gid);
+      known != readers.end() ? *known : TopicDsmReader(registry, source, index, entry);
     if (reader) {
       has_new = has_new || known == readers.end();
       renewed.push_back(reader);
@@ -98,28 +98,21 @@ void Subscription::Impl::resync(uint64_t forgotten) {
   }
   renew_readers();
   scratch.clear();
-  uint64_t missing = 0;
   for (TopicDsmReader & reader : readers) {
-    missing += reader.list_waiting(scratch);
+    reader.list_waiting(scratch);
   }
   std::stable_sort(scratch.begin(), scratch.end(), [](const auto & a, const auto & b) {
     return a.source_timestamp_ns < b.source_timestamp_ns;
   });
   backlog.insert(backlog.end(), scratch.begin(), scratch.end());
   arrivals_by_resync.fetch_add(scratch.size() - forgotten, std::memory_order_relaxed);
-  // Pushers have counted what they displaced; what was announced and is gone was lost in any case.
-  const uint64_t displaced = header.dropped.load(std::memory_order_relaxed);
-  const uint64_t displaced_since = displaced - std::exchange(displaced_before_resync, displaced);
-  count_lost(std::max(
-    missing - std::min(missing, displaced_since),
-    forgotten - std::min<uint64_t>(forgotten, scratch.size())));
+  unsettled = true;
   while (displaces(entry) && backlog.size() > header.depth) {
     const TopicDsmReader::Waiting oldest = backlog.front();
     backlog.pop_front();
     if (TopicDsmReader * const reader = find_reader(oldest.source, oldest.incarnation)) {
       reader->skip(oldest.number);
     }
-    count_lost(1);
   }
   backlog_size.store(backlog.size(), std::memory_order_relaxed);
 }
@@ -169,6 +162,7 @@ std::optional<Subscription::Impl::Candidate> Subscription::Impl::next() {
     }
     const std::optional<Hint> hint = subscriber_queue::pop(header);
     if (!hint) {
+      settle();
       return std::nullopt;
     }
     if (renew_readers()) {
@@ -181,6 +175,23 @@ std::optional<Subscription::Impl::Candidate> Subscription::Impl::next() {
   }
 }
 
+void Subscription::Impl::settle() noexcept {
+  const uint64_t dropped = header.dropped.load(std::memory_order_relaxed);
+  if (!unsettled && dropped == settled_dropped) {
+    return;
+  }
+  bool all = true;
+  for (TopicDsmReader & reader : readers) {
+    all = reader.settle() && all;
+  }
+  if (all) {
+    unsettled = false;
+    settled_dropped = dropped;
+    header.lost_beside_dropped.store(
+      entry.counters.lost.load(std::memory_order_relaxed) - dropped, std::memory_order_relaxed);
+  }
+}
+
 void Subscription::Impl::sweep() noexcept {
   try {
     const Registry::Lock lock(registry);
@@ -188,10 +199,6 @@ void Subscription::Impl::sweep() noexcept {
   } catch (const std::exception &) {
     // The registry stayed locked: the next change of the graph sweeps.
   }
-}
-
-void Subscription::Impl::count_lost(uint64_t messages) noexcept {
-  entry.counters.lost.fetch_add(messages, std::memory_order_relaxed);
 }
 
 void Subscription::Impl::count_taken(uint64_t bytes) noexcept {

@@ -33,7 +33,8 @@ struct Subscription::Impl {
   bool renew_readers();
   /// `forgotten`: hints that its caller has popped and not used.
   void resync(uint64_t forgotten = 0);
-  void count_lost(uint64_t messages) noexcept;
+  /// With nothing left to take: accounts for what was lost after the last message taken of each source.
+  void settle() noexcept;
   void count_taken(uint64_t bytes) noexcept;
   /// A finished topic DSM waits for its last reader only: frees it.
   void sweep() noexcept;
@@ -52,7 +53,9 @@ struct Subscription::Impl {
   std::atomic<uint64_t> arrivals_by_resync{0};  ///< beyond the pushes on the queue; wraps
   std::vector<TopicDsmReader::Waiting> scratch;
   uint64_t received = 0;
-  uint64_t displaced_before_resync = 0;  ///< of the header's `dropped`, at the last resync
+  bool unsettled = false;     ///< messages may be missing that no later one has shown to be
+  uint64_t settled_dropped = 0;  ///< of the header's `dropped`, when everything was accounted for
+  std::atomic<uint64_t> reported_lost{0};
 };
 
 }  // namespace manycore

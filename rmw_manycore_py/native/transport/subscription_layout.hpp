@@ -20,6 +20,8 @@ struct alignas(64) SourceEntry {
   std::atomic<uint64_t> taken;    ///< all records up to this number are done for this reader
   std::atomic<uint64_t> reading;  ///< record being read: the claim; no_record or every_record else
   std::atomic<uint64_t> reader;   ///< SegmentRef of the ReaderEntry
+  std::atomic<uint64_t> joined_after;  ///< messages published before the match
+  std::atomic<uint64_t> displaced;  ///< newest hint that was displaced, as in its queue slot; 0 = none
 };
 static_assert(sizeof(SourceEntry) == 64);
 
@@ -41,12 +43,13 @@ struct SubscriptionHeader {
   uint32_t depth;                     ///< capacity of the queue
   uint32_t slot_count_log2;           ///< slots are a power of two, at least depth
   uint8_t keep_all;
-  uint8_t reserved[7];
+  uint8_t reserved[3];
+  std::atomic<uint32_t> resync;             ///< hints may be missing: scan the sources
   std::atomic<uint64_t> first_source_block;
   std::atomic<uint64_t> source_generation;  ///< raised whenever the source table changes
   std::atomic<uint64_t> dropped;            ///< hints that pushers displaced
-  std::atomic<uint32_t> resync;             ///< hints may be missing: scan the sources
-  uint32_t reserved2;
+  /// Messages lost minus hints dropped when both were known exactly last: see lost_so_far().
+  std::atomic<uint64_t> lost_beside_dropped;
 
   alignas(64) std::atomic<uint64_t> head;
   alignas(64) std::atomic<uint64_t> tail;
@@ -56,6 +59,7 @@ struct SubscriptionHeader {
   }
 };
 static_assert(sizeof(SubscriptionHeader) == 192);
+static_assert(offsetof(SubscriptionHeader, lost_beside_dropped) == 56);
 
 constexpr uint32_t keep_all_capacity = 1024;  ///< hints; beyond it the subscriber scans its sources
 

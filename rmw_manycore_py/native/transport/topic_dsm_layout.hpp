@@ -82,6 +82,9 @@ struct TopicDsmHeader {
   /// Written by the publisher at each message, read by everybody.
   alignas(64) std::atomic<uint64_t> last;  ///< highest record number published
   std::atomic<uint64_t> phase;             ///< odd while the publisher follows references
+  /// Record numbers that carry no message, stored before and after `last`: see last_published().
+  std::atomic<uint64_t> skipped_before;
+  std::atomic<uint64_t> skipped_after;
   /// Raised by matchers whenever the reader table changes.
   alignas(64) std::atomic<uint64_t> match_generation;
   /// RELIABLE + KEEP_ALL: raised by readers at each release while `writer_waits`.

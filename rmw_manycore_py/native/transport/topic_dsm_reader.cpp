@@ -2,8 +2,11 @@
 #include "transport/topic_dsm_reader.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "platform/clock.hpp"
+#include "transport/displaced.hpp"
+#include "transport/last_published.hpp"
 
 namespace manycore {
 namespace {
@@ -24,12 +27,13 @@ void order(std::vector<TopicDsmReader::Waiting> & all, ptrdiff_t begin) {
 }  // namespace
 
 TopicDsmReader::TopicDsmReader(
-  Registry & registry, SourceEntry & source, uint32_t index, const Gid & own_gid)
+  Registry & registry, SourceEntry & source, uint32_t index, EndpointEntry & subscription)
 : source_(&source),
   index_(index),
   incarnation_(source.incarnation.load(std::memory_order_relaxed)),
   noted_(source.taken.load(std::memory_order_relaxed)),
-  own_gid_(own_gid) {
+  accounted_(source.joined_after.load(std::memory_order_relaxed)),
+  subscription_(&subscription) {
   const SegmentRef ref{source.topic_dsm.load(std::memory_order_relaxed)};
   cluster_ = registry.clusters().find(ref.cluster());
   dsm_ = registry.clusters().find<TopicDsmHeader>(ref);
@@ -74,7 +78,7 @@ RecordDescriptor * TopicDsmReader::descriptors_of(
 
 bool TopicDsmReader::is_for_us(const RecordDescriptor & record) const noexcept {
   return static_cast<EndpointRole>(dsm_->role) != EndpointRole::reply ||
-         record.correlation.client == own_gid_;
+         record.correlation.client == subscription_->gid;
 }
 
 bool TopicDsmReader::may_look() const noexcept {
@@ -120,6 +124,8 @@ TopicDsmReader::ClaimResult TopicDsmReader::look_at(uint64_t number, View & view
   if (!is_for_us(record)) {
     return ClaimResult::not_ours;
   }
+  count_missing(record.publication_sequence_number - 1);
+  accounted_ = std::max(accounted_, record.publication_sequence_number);
   if (
     dsm_->lifespan_ns != infinite_ns &&
     realtime_ns() - record.source_timestamp_ns > dsm_->lifespan_ns) {
@@ -141,6 +147,9 @@ bool TopicDsmReader::release(uint64_t number) noexcept {
   }
   tell_waiting_publisher();
   const bool finished = is_finished();
+  if (finished) {  // the last look at it
+    count_missing(last_published(*dsm_).sequence);
+  }
   // seq_cst: revoke() stores the state before it looks at `reading`.
   source_->reading.store(no_record, std::memory_order_seq_cst);
   return finished || source_->state.load(std::memory_order_seq_cst) == SourceState::revoked;
@@ -186,29 +195,41 @@ void TopicDsmReader::scan(
   }
 }
 
-/// What stood above noted() and is not there any more. Replies to others are none of ours, and what was gone before
-/// this reader came is no loss to it.
-uint64_t TopicDsmReader::missing(uint64_t last, uint64_t found) const noexcept {
-  const bool history = noted_ == no_record && dsm_->transient_local != 0;
-  const bool reply = static_cast<EndpointRole>(dsm_->role) == EndpointRole::reply;
-  return history || reply || last <= noted_ + found ? 0 : last - noted_ - found;
-}
-
-uint64_t TopicDsmReader::list_waiting(std::vector<Waiting> & out) noexcept {
+void TopicDsmReader::list_waiting(std::vector<Waiting> & out) noexcept {
   const auto own_part = static_cast<ptrdiff_t>(out.size());
-  uint64_t gone = 0;
   source_->reading.store(every_record, std::memory_order_seq_cst);
   if (may_look()) {
     const uint64_t last = dsm_->last.load(std::memory_order_seq_cst);
     for (const GenerationEntry & generation : dsm_->generations) {
       scan(generation, last, out);
     }
-    gone = missing(last, out.size() - static_cast<size_t>(own_part));
     noted_ = std::max(noted_, last);
   }
   source_->reading.store(no_record, std::memory_order_release);
   order(out, own_part);
-  return gone;
+}
+
+/// Replies to others are none of ours.
+void TopicDsmReader::count_missing(uint64_t last_sequence) noexcept {
+  const uint64_t before = std::exchange(accounted_, std::max(accounted_, last_sequence));
+  if (accounted_ > before && static_cast<EndpointRole>(dsm_->role) != EndpointRole::reply) {
+    subscription_->counters.lost.fetch_add(accounted_ - before, std::memory_order_relaxed);
+  }
+}
+
+bool TopicDsmReader::settle() noexcept {
+  bool settled = false;
+  source_->reading.store(every_record, std::memory_order_seq_cst);
+  if (may_look()) {
+    const LastPublished published = last_published(*dsm_);
+    const std::optional<uint64_t> displaced = Displaced::read(source_->displaced);
+    settled = published.number <= (displaced ? std::max(noted_, full_number(*displaced)) : noted_);
+    if (settled) {
+      count_missing(published.sequence);
+    }
+  }
+  source_->reading.store(no_record, std::memory_order_release);
+  return settled;
 }
 
 bool TopicDsmReader::is_finished() const noexcept {

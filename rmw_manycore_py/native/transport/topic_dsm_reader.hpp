@@ -14,7 +14,9 @@ namespace manycore {
 class TopicDsmReader {
 public:
   /// Nullptr-like (operator bool) when the source leads nowhere.
-  TopicDsmReader(Registry & registry, SourceEntry & source, uint32_t index, const Gid & own_gid);
+  /// `subscription` has the gid, and the count of lost messages.
+  TopicDsmReader(
+    Registry & registry, SourceEntry & source, uint32_t index, EndpointEntry & subscription);
 
   explicit operator bool() const noexcept { return dsm_ != nullptr; }
   uint32_t index() const noexcept { return index_; }
@@ -51,8 +53,11 @@ public:
     uint32_t incarnation;  ///< of the source
   };
   /// Step of a resync: appends the live records above noted() to `out`, in order, and notes them.
-  /// Returns how many are gone already.
-  uint64_t list_waiting(std::vector<Waiting> & out) noexcept;
+  void list_waiting(std::vector<Waiting> & out) noexcept;
+
+  /// With no hint and no backlog left: counts what was lost since the last message accounted for. False while a hint
+  /// is on its way.
+  bool settle() noexcept;
 
   const Gid & publisher() const noexcept { return dsm_->gid; }
   uint32_t publisher_process() const noexcept { return dsm_->process; }
@@ -66,9 +71,10 @@ private:
   /// The source is still this one, and open: to be asked after storing `reading`.
   bool may_look() const noexcept;
   void scan(const GenerationEntry & generation, uint64_t last, std::vector<Waiting> & out) noexcept;
+  /// Counts messages up to this publication sequence number as lost where they are not accounted for.
+  void count_missing(uint64_t last_sequence) noexcept;
   /// The publisher is gone and everything it left has been taken.
   bool is_finished() const noexcept;
-  uint64_t missing(uint64_t last, uint64_t found) const noexcept;
   void tell_waiting_publisher() noexcept;
 
   Cluster * cluster_ = nullptr;
@@ -77,7 +83,8 @@ private:
   uint32_t index_;
   uint32_t incarnation_;
   uint64_t noted_ = 0;
-  Gid own_gid_;
+  uint64_t accounted_;  ///< publication sequence number up to which messages are taken, expired or counted as lost
+  EndpointEntry * subscription_;
 };
 
 }  // namespace manycore

@@ -295,8 +295,11 @@ uint64_t TopicDsmWriter::commit(
   // Release: whoever finds the number finds the bytes and the fields above.
   record.number.store(next_number_, std::memory_order_release);
   last_sequence_number_ = publication_sequence_number;
+  const uint64_t skipped = next_number_ - publication_sequence_number;
+  dsm_.skipped_before.store(skipped, std::memory_order_relaxed);
   // Dekker with a late joiner: it activates its reader entry before it loads `last`.
   dsm_.last.store(next_number_, std::memory_order_seq_cst);
+  dsm_.skipped_after.store(skipped, std::memory_order_release);
   readers_.refresh();
   return next_number_++;
 }
