@@ -75,13 +75,7 @@ def test_segment(start, directory, name, damage):
 
 
 @pytest.mark.parametrize("seed", SEEDS)
-@pytest.mark.parametrize(
-    "name",
-    [
-        "registry",
-        "cluster-1",
-    ],
-)
+@pytest.mark.parametrize("name", ["registry", "cluster-1"])
 def test_segment_that_is_random_after_its_header(start, directory, name, seed):
     """The header is right, so whatever first looks at the rest has to find out."""
     noise = random.Random(seed)

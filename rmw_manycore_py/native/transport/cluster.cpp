@@ -103,7 +103,22 @@ uint64_t Cluster::find_run(uint64_t count) const noexcept {
   return total;
 }
 
+/// Map and count are changed together, under the registry lock, whose next owner rebuilds both after a death.
+void Cluster::require_sound_map() const {
+  const ClusterHeader & head = header();
+  uint64_t used = 0;
+  for (uint64_t i = 0; i < map_bytes(head.granule_count) / 8; ++i) {
+    used += static_cast<uint64_t>(__builtin_popcountll(granule_map()[i]));
+  }
+  if (used * head.granule_bytes != head.used_bytes.load(std::memory_order_relaxed)) {
+    throw Error(
+      ErrorCode::corrupt, "the memory map of cluster " + std::to_string(id_) +
+        " is damaged; stop the platform's nodes and run 'manycore clean'");
+  }
+}
+
 uint64_t Cluster::allocate(uint64_t length) {
+  require_sound_map();
   ClusterHeader & head = header();
   const uint64_t count = granules_of(length);
   const uint64_t first = find_run(count);
@@ -125,6 +140,9 @@ uint64_t Cluster::allocate(uint64_t length) {
 void Cluster::free(uint64_t offset, uint64_t length) noexcept {
   ClusterHeader & head = header();
   const uint64_t count = granules_of(length);
+  if (!contains(offset, count * head.granule_bytes)) {
+    return;
+  }
   set_granules(offset / head.granule_bytes, count, false);
   head.used_bytes.fetch_sub(count * head.granule_bytes, std::memory_order_relaxed);
   memory_.release(offset, count * head.granule_bytes);

@@ -51,7 +51,7 @@ public:
   }
 
   /// Allocation of SMEM, resident but not cleared; the caller holds the registry lock. Throws
-  /// Error{no_space}.
+  /// Error{no_space|corrupt}.
   uint64_t allocate(uint64_t length);
   template<typename T>
   T & allocate_cleared(uint64_t length = sizeof(T)) {
@@ -78,6 +78,8 @@ private:
   uint64_t * granule_map() const noexcept { return &memory_.at<uint64_t>(granule_map_offset); }
   bool granule_used(uint64_t index) const noexcept;
   void set_granules(uint64_t first, uint64_t count, bool used) const noexcept;
+  /// Throws Error{corrupt}.
+  void require_sound_map() const;
   uint64_t find_run(uint64_t count) const noexcept;
   uint64_t granules_of(uint64_t length) const noexcept;
 

@@ -9,22 +9,19 @@ namespace manycore {
 struct LastPublished {
   uint64_t number;    ///< of its record
   uint64_t sequence;  ///< how many messages the publisher has published with it
+  bool exact;         ///< false when the publisher stands still at a moment where the two may not fit together
 };
 
 /// The publisher stores `skipped_before`, `last`, `skipped_after` in this order. Read the other way round, equal
-/// outer values mean that `last` was stored under this count. A publisher that was stopped between its stores is
-/// not waited for: `sequence` then is off by the numbers it has just skipped.
+/// outer values mean that `last` was stored under this count. Never waits for a publisher that was stopped in between.
 inline LastPublished last_published(const TopicDsmHeader & dsm) noexcept {
   constexpr int tries = 100;
   LastPublished published{};
-  for (int i = 0; i < tries; ++i) {
+  for (int i = 0; i < tries && !published.exact; ++i) {
     const uint64_t after = dsm.skipped_after.load(std::memory_order_seq_cst);
     published.number = dsm.last.load(std::memory_order_seq_cst);
-    const uint64_t before = dsm.skipped_before.load(std::memory_order_seq_cst);
     published.sequence = published.number - after;
-    if (before == after) {
-      break;
-    }
+    published.exact = dsm.skipped_before.load(std::memory_order_seq_cst) == after;
   }
   return published;
 }

@@ -35,7 +35,7 @@ inline void note_displaced(
     }
     const uint32_t incarnation = source.incarnation.load(std::memory_order_relaxed);
     if ((incarnation & Hint::incarnation_mask) == hint.source_incarnation) {
-      Displaced::raise(source.displaced, hint.number);
+      Displaced::raise(source.displaced, hint);
     }
     return true;
   });

@@ -148,7 +148,8 @@ bool TopicDsmReader::release(uint64_t number) noexcept {
   tell_waiting_publisher();
   const bool finished = is_finished();
   if (finished) {  // the last look at it
-    count_missing(last_published(*dsm_).sequence);
+    const LastPublished published = last_published(*dsm_);
+    count_missing(published.exact ? published.sequence : accounted_);
   }
   // seq_cst: revoke() stores the state before it looks at `reading`.
   source_->reading.store(no_record, std::memory_order_seq_cst);
@@ -222,10 +223,13 @@ bool TopicDsmReader::settle() noexcept {
   source_->reading.store(every_record, std::memory_order_seq_cst);
   if (may_look()) {
     const LastPublished published = last_published(*dsm_);
-    const std::optional<uint64_t> displaced = Displaced::read(source_->displaced);
-    settled = published.number <= (displaced ? std::max(noted_, full_number(*displaced)) : noted_);
+    const std::optional<uint64_t> displaced = 
+      Displaced::read(source_->displaced, incarnation_);
+    const uint64_t known = displaced ? std::max(noted_, full_number(*displaced)) : noted_;
+    settled = published.exact && published.number <= known;
     if (settled) {
       count_missing(published.sequence);
+      release(published.number);  // what was counted as lost may not be found by a later look at the topic DSM
     }
   }
   source_->reading.store(no_record, std::memory_order_release);
