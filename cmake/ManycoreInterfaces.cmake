@@ -1,0 +1,80 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#
+# Messages and services that PyPI has no wheels of, from their published definitions in interfaces/:
+# one Python package each, and its libraries.
+#
+# In a sourced ROS 2 install they are packages of the system.
+if(DEFINED ENV{AMENT_PREFIX_PATH} AND NOT SKBUILD)
+  return()
+endif()
+find_package(Python 3.10 REQUIRED COMPONENTS Interpreter Development.Module)
+set(generator ${CMAKE_CURRENT_SOURCE_DIR}/cmake/generate_interfaces.py)
+execute_process(
+  COMMAND ${Python_EXECUTABLE} -c "import em, lark, numpy, rosidl_generator_py; print(numpy.get_include())"
+  OUTPUT_VARIABLE numpy_include OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET
+  RESULT_VARIABLE generators_missing)
+if(generators_missing)
+  if(SKBUILD)
+    message(FATAL_ERROR "The generators of rosidl are build requirements of the wheel, but were not found")
+  endif()
+  message(STATUS "No rosidl generators for ${Python_EXECUTABLE}: the interfaces are not built")
+  return()
+endif()
+
+# manycore_interfaces(PACKAGE): everything in interfaces/PACKAGE. The names of the libraries are those
+# that rosidl_typesupport_c loads.
+function(manycore_interfaces package)
+  set(source ${CMAKE_CURRENT_SOURCE_DIR}/interfaces/${package})
+  set(root ${CMAKE_CURRENT_BINARY_DIR}/interfaces)
+  file(GLOB_RECURSE definitions CONFIGURE_DEPENDS ${source}/*.msg ${source}/*.srv)
+  # At configure time: what the generators write is known only afterwards.
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${definitions} ${generator})
+  execute_process(COMMAND ${Python_EXECUTABLE} ${generator} ${source} ${root} ${ros_prefix}
+    OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
+
+  set(libraries "")
+  foreach(kind generator_c typesupport_fastrtps_c typesupport_introspection_c typesupport_c)
+    set(library ${package}__rosidl_${kind})
+    manycore_generated_sources(sources rosidl_${kind})
+    add_library(${library} SHARED ${sources})
+    manycore_interface_target(${library} ${kind})
+    install(TARGETS ${library} LIBRARY DESTINATION ${MANYCORE_PREFIX}/lib)
+    list(APPEND libraries ${library})
+  endforeach()
+
+  set(module ${package}_s__rosidl_typesupport_c)
+  manycore_generated_sources(sources rosidl_generator_py)
+  python_add_library(${module} MODULE WITH_SOABI ${sources})
+  manycore_interface_target(${module} generator_py)
+  set_target_properties(${module} PROPERTIES
+    LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/interface_modules/${package})
+  install(TARGETS ${module} DESTINATION ${MANYCORE_SITE_PACKAGES}/${package})
+  install(DIRECTORY ${root}/rosidl_generator_py/${package} DESTINATION ${MANYCORE_SITE_PACKAGES}
+    FILES_MATCHING PATTERN "*.py")
+endfunction()
+
+# In the scope of manycore_interfaces.
+macro(manycore_generated_sources variable generator)
+  file(GLOB_RECURSE ${variable} ${root}/${generator}/${package}/*.c ${root}/${generator}/${package}/*.cpp)
+endmacro()
+
+macro(manycore_interface_target target kind)
+  target_compile_features(${target} PRIVATE cxx_std_17)
+  target_include_directories(${target} SYSTEM PRIVATE
+    ${numpy_include} ${ros_prefix}/include/rosidl_typesupport_c
+    ${ros_prefix}/include/rosidl_typesupport_introspection_c)
+  foreach(generator rosidl_generator_c rosidl_typesupport_fastrtps_c rosidl_typesupport_introspection_c)
+    target_include_directories(${target} SYSTEM PRIVATE ${root}/${generator})
+  endforeach()
+  target_link_libraries(${target} PRIVATE ${libraries} manycore_ros
+    ${ros_prefix}/lib/librosidl_typesupport_c.so
+    ${ros_prefix}/lib/librosidl_typesupport_introspection_c.so)
+  foreach(dependency builtin_interfaces geometry_msgs service_msgs std_msgs)
+    target_include_directories(${target} SYSTEM PRIVATE ${ros_prefix}/include/${dependency})
+    target_link_libraries(${target} PRIVATE ${ros_prefix}/lib/lib${dependency}__rosidl_${kind}.so)
+  endforeach()
+endmacro()
+
+foreach(package autoware_internal_debug_msgs tf2_msgs tier4_localization_msgs)
+  manycore_interfaces(${package})
+endforeach()
