@@ -1,21 +1,17 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""An rclpy node on the platform that listens to one topic, for `topic echo` and `topic hz`.
-
-rclpy is imported late: the other commands do without it, and it must find rmw_manycore loaded.
-"""
+"""Listening to one topic, for `topic echo`, `hz`, `bw` and `delay`."""
 
 from __future__ import annotations
 
-import importlib
-import os
 from collections.abc import Callable, Iterable
-from contextlib import suppress
 from typing import Any
 
 from rmw_manycore_py import _transport
 from rmw_manycore_py.cli import view
+from rmw_manycore_py.cli.interface_types import load_type
+from rmw_manycore_py.cli.tool_node import spin_once, tool_node
 from rmw_manycore_py.cli.view import Row
-from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
+from rmw_manycore_py.errors import ManycoreError
 
 DEPTH = 10
 
@@ -32,22 +28,16 @@ class Listener:
         *,
         raw: bool = False,
     ) -> None:
-        endpoints = _endpoints(platform, topic)
-        message_type = load_type(type_name or type_of_topic(topic, endpoints))
-        os.environ["MANYCORE_PLATFORM"] = platform
-        import rclpy
-
-        rclpy.init(args=[])
-        self._rclpy = rclpy
+        self._endpoints = _endpoints(platform, topic)
+        self._message_type = load_type(type_name or type_of_topic(topic, self._endpoints))
+        self._platform, self._topic = platform, topic
+        self._heard, self._raw = heard, raw
+        self._timers: list[tuple[float, Callable[[], None]]] = []
         self._over = False
-        self._node = rclpy.create_node(
-            f"_manycore_{os.getpid()}", enable_rosout=False, start_parameter_services=False
-        )
-        self._node.create_subscription(message_type, topic, heard, _qos(endpoints), raw=raw)
 
     def every(self, period_s: float, call: Callable[[], None]) -> None:
         """Call something once per period."""
-        self._node.create_timer(period_s, call)
+        self._timers.append((period_s, call))
 
     def stop(self) -> None:
         """End `run` after the present message."""
@@ -55,13 +45,15 @@ class Listener:
 
     def run(self) -> None:
         """Listen until stopped or interrupted."""
-        from rclpy.executors import ExternalShutdownException
-
-        with suppress(KeyboardInterrupt, ExternalShutdownException):
+        with tool_node(self._platform) as node:
+            qos = _qos(self._endpoints)
+            node.create_subscription(
+                self._message_type, self._topic, self._heard, qos, raw=self._raw
+            )
+            for period_s, call in self._timers:
+                node.create_timer(period_s, call)
             while not self._over:
-                self._rclpy.spin_once(self._node)
-        self._node.destroy_node()
-        self._rclpy.try_shutdown()
+                spin_once(node)
 
 
 def type_of_topic(topic: str, endpoints: Iterable[Row]) -> str:
@@ -72,19 +64,6 @@ def type_of_topic(topic: str, endpoints: Iterable[Row]) -> str:
     if len(types) > 1:
         raise ManycoreError(f"'{topic}' has several types, give one: {', '.join(types)}")
     return types[0]
-
-
-def load_type(name: str) -> Any:
-    """Return the class of a message type, package/msg/Name."""
-    parts = name.split("/")
-    if len(parts) != 3 or parts[1] not in ("msg", "srv", "action"):
-        raise ManycoreError(
-            f"'{name}' is no message type: expected package/msg/Name", EXIT_BAD_INPUT
-        )
-    try:
-        return getattr(importlib.import_module(f"{parts[0]}.{parts[1]}"), parts[2])
-    except (ImportError, AttributeError) as error:
-        raise ManycoreError(f"message type '{name}' is not installed: {error}") from error
 
 
 def _endpoints(platform: str, topic: str) -> list[Row]:

@@ -27,9 +27,9 @@ def to_plain(value: Any, shown_length: int | None = None) -> Any:
     return _list(value, shown_length)
 
 
-def to_yaml(message: Any) -> str:
+def to_yaml(message: Any, shown_length: int | None = SHOWN_LENGTH) -> str:
     """Return a message as a YAML document without its separator."""
-    data = to_plain(message, SHOWN_LENGTH)
+    data = to_plain(message, shown_length)
     return str(yaml.safe_dump(data, sort_keys=False, allow_unicode=True, width=float("inf")))
 
 

@@ -6,6 +6,7 @@ from __future__ import annotations
 import click
 
 from rmw_manycore_py.cli import view
+from rmw_manycore_py.cli.node_names import existing_node
 from rmw_manycore_py.cli.options import (
     examples,
     hidden_option,
@@ -13,7 +14,6 @@ from rmw_manycore_py.cli.options import (
     platform_option,
     print_json,
 )
-from rmw_manycore_py.errors import ManycoreError
 
 
 @click.command("info", epilog=examples("manycore node info /talker"))
@@ -24,8 +24,7 @@ from rmw_manycore_py.errors import ManycoreError
 def command(node: str, platform: str, as_json: bool, hidden: bool) -> None:
     """Show the topics, services and actions of NODE."""
     opened = view.open_platform(platform)
-    if node not in view.node_names(opened.nodes(), hidden=True):
-        raise ManycoreError(f"unable to find node '{node}' (manycore node list shows all)")
+    node = existing_node(opened, node)
     interfaces = view.node_interfaces(opened.endpoints(), node, hidden=hidden)
     if as_json:
         print_json({"node": node, **interfaces})

@@ -27,6 +27,9 @@ platform_option = click.option(
     show_default="$MANYCORE_PLATFORM, or domain-$ROS_DOMAIN_ID",
     help="Name of the platform.",
 )
+values_argument = click.argument("values", default="{}")
+types_option = click.option("-t", "--show-types", is_flag=True, help="Show the types too.")
+count_option = click.option("-c", "--count", is_flag=True, help="Show their number only.")
 hidden_option = click.option(
     "--include-hidden",
     "hidden",

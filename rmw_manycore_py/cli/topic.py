@@ -8,10 +8,11 @@ import click
 from rmw_manycore_py.cli.group import LazyGroup
 
 VERBS = {
-    verb: f"rmw_manycore_py.cli.topic_{verb}:command" for verb in ("list", "info", "echo", "hz")
+    verb: f"rmw_manycore_py.cli.topic_{verb}:command"
+    for verb in ("list", "info", "type", "find", "echo", "pub", "hz", "bw", "delay")
 }
 
 
 @click.group("topic", cls=LazyGroup, commands_at=VERBS)
 def command() -> None:
-    """List topics and look at what they carry."""
+    """List topics, look at what they carry, and publish."""

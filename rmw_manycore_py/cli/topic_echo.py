@@ -11,7 +11,6 @@ import click
 from rmw_manycore_py.cli.listening import Listener
 from rmw_manycore_py.cli.message_text import to_plain, to_yaml
 from rmw_manycore_py.cli.options import examples, platform_option
-from rmw_manycore_py.launch.environment import enter_middleware
 
 
 @click.command(
@@ -32,7 +31,6 @@ def command(topic: str, type_name: str | None, platform: str, once: bool, as_jso
 
     TYPE is needed only while nobody uses the topic.
     """
-    enter_middleware()
 
     def heard(message: Any) -> None:
         if as_json:

@@ -12,7 +12,6 @@ import click
 from rmw_manycore_py.cli.listening import Listener
 from rmw_manycore_py.cli.options import examples, platform_option
 from rmw_manycore_py.cli.rate import Rate, RateMeter
-from rmw_manycore_py.launch.environment import enter_middleware
 
 PERIOD_S = 1.0
 
@@ -35,7 +34,6 @@ def command(topic: str, type_name: str | None, platform: str, window: int, as_js
 
     TYPE is needed only while nobody uses the topic.
     """
-    enter_middleware()
     meter = RateMeter(window)
     printed: Rate | None = None
 

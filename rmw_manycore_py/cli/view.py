@@ -81,6 +81,36 @@ def topics(endpoints: Iterable[Row], *, hidden: bool = False) -> list[Row]:
     return [rows[name] for name in sorted(rows)]
 
 
+def services(endpoints: Iterable[Row], *, hidden: bool = False) -> list[Row]:
+    """Return each service by name, with its types and the numbers of its servers and clients."""
+    rows: dict[str, Row] = {}
+    for endpoint in endpoints:
+        if endpoint["role"] != "request" or (is_hidden(endpoint["topic"]) and not hidden):
+            continue
+        name = endpoint["topic"]
+        row = rows.setdefault(name, {"name": name, "types": [], "servers": 0, "clients": 0})
+        if endpoint["type"] not in row["types"]:
+            row["types"].append(endpoint["type"])
+        row["servers" if endpoint["kind"] == "subscription" else "clients"] += 1
+    return [rows[name] for name in sorted(rows)]
+
+
+def actions(endpoints: Iterable[Row]) -> list[Row]:
+    """Return each action by name, with its types and the nodes that serve and use it."""
+    rows: dict[str, Row] = {}
+    for endpoint in endpoints:
+        if endpoint["role"] != "request" or not endpoint["topic"].endswith(_SEND_GOAL):
+            continue
+        name = endpoint["topic"].removesuffix(_SEND_GOAL)
+        row = rows.setdefault(name, {"name": name, "types": [], "servers": [], "clients": []})
+        type_name = endpoint["type"].removesuffix("_SendGoal")
+        if type_name not in row["types"]:
+            row["types"].append(type_name)
+        nodes = row["servers" if endpoint["kind"] == "subscription" else "clients"]
+        nodes.append({"node": _owner(endpoint), "type": type_name})
+    return [rows[name] for name in sorted(rows)]
+
+
 def endpoints_of_topic(endpoints: Iterable[Row], topic: str) -> list[Row]:
     """Return the publishers and subscriptions of one topic."""
     return [e for e in endpoints if e["role"] == "topic" and e["topic"] == topic]

@@ -39,6 +39,13 @@ def package_share(package: str) -> Path | None:
     return prefix / "share" / package if prefix else None
 
 
+def packages_with_interfaces() -> list[str]:
+    """Return the packages that have message, service or action types."""
+    directories = (p / "share/ament_index/resource_index/rosidl_interfaces" for p in prefixes())
+    found = {entry.name for d in directories if d.is_dir() for entry in d.iterdir()}
+    return sorted(found)
+
+
 def interfaces(package: str) -> frozenset[str]:
     """Return the message and service types of a package: std_msgs/msg/String."""
     found = find_resource("rosidl_interfaces", package)

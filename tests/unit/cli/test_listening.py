@@ -5,7 +5,8 @@ from __future__ import annotations
 
 import pytest
 
-from rmw_manycore_py.cli.listening import load_type, offered_policies, type_of_topic
+from rmw_manycore_py.cli.interface_types import load_type
+from rmw_manycore_py.cli.listening import offered_policies, type_of_topic
 from rmw_manycore_py.errors import ManycoreError
 
 pytestmark = pytest.mark.unit
@@ -31,6 +32,9 @@ def test_types_that_are_not_there() -> None:
         load_type("std_msgs/msg/NoSuchThing")
     with pytest.raises(ManycoreError, match="expected package/msg/Name"):
         load_type("String")
+    assert load_type("std_srvs/SetBool", "srv").__name__ == "SetBool"
+    with pytest.raises(ManycoreError, match="expected package/srv/Name"):
+        load_type("std_msgs/msg/String", "srv")
 
 
 def test_no_more_is_asked_for_than_all_publishers_offer() -> None:

@@ -1,0 +1,50 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""The definitions of message, service and action types as text."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
+from rmw_manycore_py.mapfile.ament import package_share
+
+# Up to a comment: quoted text, in which # is a character as any other, or anything else.
+_CODE = re.compile(r"""(?:"[^"]*"|'[^']*'|[^#"'])*""")
+# A field's type that is a message: its package may be left out, and it may be an array.
+_NESTED = re.compile(r"(?:(?P<package>\w+)/)?(?P<name>[A-Z]\w*)(?:\[[^]]*\])?\s")
+
+
+def definition(
+    type_name: str, *, comments: bool = True, nested_comments: bool = False
+) -> Iterator[str]:
+    """Yield the lines of a type's definition, those of nested types indented below their field."""
+    package = type_name.split("/")[0]
+    for line in _file(type_name).read_text().splitlines():
+        code = _code(line)
+        if comments or code:
+            yield line.rstrip() if comments else code
+        if nested := _NESTED.match(f"{code} "):
+            name = f"{nested['package'] or package}/msg/{nested['name']}"
+            inner = definition(name, comments=nested_comments, nested_comments=nested_comments)
+            yield from (f"\t{inner_line}" if inner_line else "" for inner_line in inner)
+
+
+def _file(type_name: str) -> Path:
+    parts = type_name.split("/")
+    if len(parts) != 3 or parts[1] not in ("msg", "srv", "action"):
+        raise ManycoreError(f"'{type_name}' is no type: expected package/msg/Name", EXIT_BAD_INPUT)
+    share = package_share(parts[0])
+    if share is None:
+        raise ManycoreError(f"package '{parts[0]}' is not installed")
+    file = share / parts[1] / f"{parts[2]}.{parts[1]}"
+    if not file.is_file():
+        raise ManycoreError(f"type '{type_name}' is not installed: no {file}")
+    return file
+
+
+def _code(line: str) -> str:
+    """Return a line without its comment."""
+    found = _CODE.match(line)
+    return found[0].strip() if found else line.strip()

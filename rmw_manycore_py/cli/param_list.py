@@ -1,0 +1,63 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""`manycore param list`, printed as `ros2 param list` prints."""
+
+from __future__ import annotations
+
+import click
+
+from rmw_manycore_py.cli import view
+from rmw_manycore_py.cli.node_names import existing_node, nodes_with_service
+from rmw_manycore_py.cli.options import (
+    examples,
+    hidden_option,
+    json_option,
+    platform_option,
+    print_json,
+)
+from rmw_manycore_py.cli.parameters import TYPES, Parameters
+from rmw_manycore_py.cli.tool_node import tool_node
+
+
+@click.command("list", epilog=examples("manycore param list", "manycore param list /controller"))
+@click.argument("node", required=False)
+@click.option(
+    "--param-prefixes",
+    "prefixes",
+    multiple=True,
+    metavar="PREFIX",
+    help="Only parameters below PREFIX; may be given several times.",
+)
+@click.option("--param-type", "shows_types", is_flag=True, help="Show the type of each.")
+@hidden_option
+@json_option
+@platform_option
+def command(
+    node: str | None,
+    prefixes: tuple[str, ...],
+    shows_types: bool,
+    platform: str,
+    as_json: bool,
+    hidden: bool,
+) -> None:
+    """List the parameters of NODE, or of all nodes that have some."""
+    opened = view.open_platform(platform)
+    if node:
+        names = [existing_node(opened, node)]
+    else:
+        owners = nodes_with_service(opened, "list_parameters", "rcl_interfaces/srv/ListParameters")
+        names = [name for name in owners if hidden or not view.is_hidden(name)]
+    with tool_node(platform) as tool:
+        found = {name: _types(Parameters(tool, name), prefixes) for name in names}
+    if as_json:
+        print_json(found)
+        return
+    for name, types in found.items():
+        if types and not node:
+            click.echo(f"{name}:")
+        for parameter, type_name in types.items():
+            click.echo(f"  {parameter}" + (f" (type: {type_name})" if shows_types else ""))
+
+
+def _types(parameters: Parameters, prefixes: tuple[str, ...]) -> dict[str, str]:
+    names = parameters.names(prefixes)
+    return {d.name: TYPES[d.type][0] for d in parameters.descriptors(names)} if names else {}

@@ -1,0 +1,66 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""An rclpy node on a platform, for the verbs that talk to other nodes.
+
+rclpy is imported late: the other commands do without it, and it must find rmw_manycore loaded.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from typing import Any
+
+from rmw_manycore_py.errors import ManycoreError
+from rmw_manycore_py.launch.environment import enter_middleware
+
+# How long a node may take to answer that is there.
+ANSWER_TIMEOUT_S = 5.0
+# How often a spinning tool looks whether it was interrupted.
+_LOOK_PERIOD_S = 0.1
+
+
+@contextmanager
+def tool_node(platform: str, name: str | None = None) -> Iterator[Any]:
+    """Yield a node that runs until the block ends or is interrupted; both end it quietly.
+
+    An interrupt reaches the block as KeyboardInterrupt, while the node still works.
+    """
+    enter_middleware()
+    os.environ["MANYCORE_PLATFORM"] = platform
+    import rclpy
+    from rclpy.signals import SignalHandlerOptions
+
+    rclpy.init(args=[], signal_handler_options=SignalHandlerOptions.NO)
+    node = rclpy.create_node(
+        name or f"_manycore_{os.getpid()}", enable_rosout=False, start_parameter_services=False
+    )
+    try:
+        with suppress(KeyboardInterrupt):
+            yield node
+    finally:
+        node.destroy_node()
+        rclpy.shutdown()
+
+
+def spin_once(node: Any, timeout_s: float = _LOOK_PERIOD_S) -> None:
+    """Handle what has come in, or wait a moment for it."""
+    import rclpy
+
+    rclpy.spin_once(node, timeout_sec=min(timeout_s, _LOOK_PERIOD_S))
+
+
+def result_of(node: Any, future: Any, whose: str) -> Any:
+    """Spin until a future is done and return its result, however long that takes."""
+    while not future.done():
+        spin_once(node)
+    if future.exception() is not None:
+        raise ManycoreError(f"{whose}: {future.exception()}")
+    return future.result()
+
+
+def answer_of(node: Any, client: Any, request: Any) -> Any:
+    """Call a service that should be there, and return its response."""
+    if not client.wait_for_service(ANSWER_TIMEOUT_S):
+        raise ManycoreError(f"no service '{client.service_name}' within {ANSWER_TIMEOUT_S:g} s")
+    return result_of(node, client.call_async(request), client.service_name)

@@ -1,0 +1,112 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""`manycore topic pub`, printed as `ros2 topic pub` prints."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from typing import Any
+
+import click
+from builtin_interfaces.msg import Time
+
+from rmw_manycore_py.cli.interface_types import load_type
+from rmw_manycore_py.cli.message_values import message_of, parse_values
+from rmw_manycore_py.cli.options import examples, platform_option, values_argument
+from rmw_manycore_py.cli.qos_options import QosOptions, qos_options
+from rmw_manycore_py.cli.tool_node import spin_once, tool_node
+
+# How long the node stays after its last message, for late ends of its matches to see it.
+KEEP_ALIVE_S = 0.1
+
+
+@click.command(
+    "pub",
+    epilog=examples(
+        "manycore topic pub /chatter std_msgs/msg/String 'data: hello'",
+        "manycore topic pub --once /chatter std_msgs/msg/String 'data: hello'",
+        "manycore topic pub -r 10 /pose geometry_msgs/msg/PoseStamped '{header: auto}'",
+    ),
+)
+@click.argument("topic")
+@click.argument("type_name", metavar="TYPE")
+@values_argument
+@click.option(
+    "-r",
+    "--rate",
+    "rate_hz",
+    type=click.FloatRange(min=0, min_open=True),
+    default=1.0,
+    show_default=True,
+    help="Messages per second.",
+)
+@click.option("-1", "--once", is_flag=True, help="Publish one message and end.")
+@click.option("-t", "--times", type=click.IntRange(0), default=0, help="Publish that many and end.")
+@click.option(
+    "-p",
+    "--print",
+    "shown",
+    metavar="N",
+    type=click.IntRange(0),
+    default=1,
+    show_default=True,
+    help="Print every N-th message.",
+)
+@click.option(
+    "-w",
+    "--wait-matching-subscriptions",
+    "wanted",
+    type=click.IntRange(0),
+    help="Begin when that many subscriptions match; by default 1 with --once and --times, else 0.",
+)
+@qos_options
+@platform_option
+def command(
+    topic: str,
+    type_name: str,
+    values: str,
+    rate_hz: float,
+    once: bool,
+    times: int,
+    shown: int,
+    wanted: int | None,
+    qos: QosOptions,
+    platform: str,
+) -> None:
+    """Publish messages of TYPE on TOPIC, with VALUES in YAML and defaults elsewhere.
+
+    The word `auto` stands for a header, and `now` for a time, of the moment of publishing.
+    """
+    message_type, fields = load_type(type_name), parse_values(values)
+    message_of(message_type, fields, Time())
+    times = 1 if once else times
+    with tool_node(platform) as node:
+        publisher = node.create_publisher(message_type, topic, qos.profile())
+        _wait_for_subscriptions(node, publisher, int(times > 0) if wanted is None else wanted)
+        click.echo("publisher: beginning loop")
+        for number in _ticks(node, 1 / rate_hz, times):
+            message = message_of(message_type, fields, node.get_clock().now().to_msg())
+            if shown and number % shown == 0:
+                click.echo(f"publishing #{number}: {message!r}\n")
+            publisher.publish(message)
+        time.sleep(KEEP_ALIVE_S)
+
+
+def _wait_for_subscriptions(node: Any, publisher: Any, wanted: int) -> None:
+    told = False
+    while publisher.get_subscription_count() < wanted:
+        if not told:
+            click.echo(f"Waiting for at least {wanted} matching subscription(s)...")
+            told = True
+        spin_once(node)
+
+
+def _ticks(node: Any, period_s: float, times: int) -> Iterator[int]:
+    """Yield 1, 2, ... once per period, as often as asked for or, if that is 0, for ever."""
+    number, due_s = 0, time.monotonic()
+    while not times or number < times:
+        while (left_s := due_s - time.monotonic()) > 0:
+            spin_once(node, left_s)
+        number += 1
+        due_s += period_s
+        yield number

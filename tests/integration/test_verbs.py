@@ -1,0 +1,195 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""The verbs of `ros2` under `manycore`, on real nodes."""
+
+from __future__ import annotations
+
+import json
+import signal
+
+import pytest
+import yaml
+from ros_support import announce, peer_node
+from support import IS_MANYCORE, example_command, manycore_command, peer_command
+
+pytestmark = [
+    pytest.mark.integration,
+    pytest.mark.skipif(not IS_MANYCORE, reason="manycore is about rmw_manycore"),
+]
+
+FAST = ("--ros-args", "-p", "rate_hz:=50.0")
+
+
+@pytest.fixture
+def manycore(start):
+    """Return a function that runs a verb to its end and returns its output."""
+
+    def call(*words: str, status: int = 0) -> str:
+        program = start(manycore_command(*words))
+        assert program.wait() == status, program
+        return program.output
+
+    return call
+
+
+def test_services_are_listed_and_called(start, manycore) -> None:
+    start(example_command("lamp"), 2).skip_output()
+    called = manycore("service", "call", "/switch_lamp", "std_srvs/srv/SetBool", "{data: true}")
+    assert called.splitlines()[-4:] == [
+        "requester: making request: std_srvs.srv.SetBool_Request(data=True)",
+        "",
+        "response:",
+        "std_srvs.srv.SetBool_Response(success=True, message='the lamp is on')",
+    ]
+    call = ("service", "call", "--json", "/switch_lamp", "std_srvs/srv/SetBool")
+    assert json.loads(manycore(*call)) == {"success": True, "message": "the lamp is off"}
+    listed = manycore("service", "list", "-t").splitlines()
+    assert "/switch_lamp [std_srvs/srv/SetBool]" in listed
+    assert "/lamp/list_parameters [rcl_interfaces/srv/ListParameters]" in listed
+    assert manycore("service", "type", "/switch_lamp") == "std_srvs/srv/SetBool"
+    assert manycore("service", "find", "std_srvs/srv/SetBool") == "/switch_lamp"
+    assert manycore("service", "info", "/switch_lamp").splitlines() == [
+        "Type: std_srvs/srv/SetBool",
+        "Clients count: 0",
+        "Services count: 1",
+    ]
+    assert "unknown service '/none'" in manycore("service", "type", "/none", status=1)
+    assert "no field 'state'" in manycore(*call, "{state: true}", status=2)
+
+
+def with_parameters() -> None:
+    from rcl_interfaces.msg import FloatingPointRange, ParameterDescriptor
+
+    with peer_node("filter") as node:
+        bounds = FloatingPointRange(from_value=0.0, to_value=10.0, step=0.5)
+        about = ParameterDescriptor(description="loop gain", floating_point_range=[bounds])
+        node.declare_parameter("gain", 2.5, about)
+        node.declare_parameter("limits.low", [1, 2])
+        node.declare_parameter("name", "left")
+        _serve(node)
+
+
+def _serve(node) -> None:
+    import rclpy
+
+    announce("ready")
+    rclpy.spin(node)
+
+
+def test_parameters_are_read_and_changed(start, manycore, tmp_path) -> None:
+    start(peer_command(with_parameters)).wait_for("ready")
+    listed = manycore("param", "list").splitlines()
+    assert listed[:4] == ["/filter:", "  gain", "  limits.low", "  name"]
+    assert "  gain (type: double)" in manycore("param", "list", "filter", "--param-type")
+    assert manycore("param", "get", "/filter", "gain") == "Double value is: 2.5"
+    assert manycore("param", "get", "/filter", "limits.low") == "Integer values are: [1, 2]"
+    assert manycore("param", "set", "/filter", "gain", "3.5") == "Set parameter successful"
+    assert manycore("param", "get", "/filter", "gain", "--hide-type") == "3.5"
+    refused = manycore("param", "set", "/filter", "gain", "99.0", status=1)
+    assert "Setting parameter failed: Parameter gain out of range" in refused
+    assert manycore("param", "describe", "/filter", "gain").splitlines() == [
+        "Parameter name: gain",
+        "  Type: double",
+        "  Description: loop gain",
+        "  Constraints:",
+        "    Min value: 0.0",
+        "    Max value: 10.0",
+        "    Step: 0.5",
+    ]
+    dumped = yaml.safe_load(manycore("param", "dump", "/filter"))["/filter"]["ros__parameters"]
+    assert (dumped["gain"], dumped["limits"], dumped["name"]) == (3.5, {"low": [1, 2]}, "left")
+    assert "cannot be undeclared" in manycore("param", "delete", "/filter", "name", status=1)
+    assert "unable to find node '/none'" in manycore("param", "get", "none", "x", status=1)
+
+    file = tmp_path / "filter.yaml"
+    file.write_text("/**: {ros__parameters: {gain: 1.5, name: right}}")
+    assert manycore("param", "load", "/filter", str(file)).splitlines() == [
+        "Set parameter gain successful",
+        "Set parameter name successful",
+    ]
+    assert manycore("param", "get", "/filter", "name") == "String value is: right"
+    file.write_text("other: {ros__parameters: {gain: 1.5}}")
+    assert "there are some for other" in manycore("param", "load", "/filter", str(file), status=2)
+
+
+def test_actions_are_listed_and_get_goals(start, manycore) -> None:
+    start(example_command("fibonacci_server", *FAST), 2)
+    goal = ("/fibonacci", "test_msgs/action/Fibonacci")
+    lines = manycore("action", "send_goal", "-f", *goal, "{order: 3}").splitlines()
+    assert lines[0] == "Waiting for an action server to become available..."
+    assert lines[1:4] == ["Sending goal:", "     order: 3", ""]
+    assert lines[4].startswith("Goal accepted with ID: ")
+    assert lines.count("Feedback:") == 2
+    result = lines.index("Result:")
+    assert lines[result : result + 6] == ["Result:", "    sequence:", "- 0", "- 1", "- 1", "- 2"]
+    assert lines[-1] == "Goal finished with status: SUCCEEDED"
+    assert manycore("action", "list", "-t") == "/fibonacci [test_msgs/action/Fibonacci]"
+    assert manycore("action", "type", "/fibonacci") == "test_msgs/action/Fibonacci"
+    assert manycore("action", "info", "/fibonacci", "-t").splitlines() == [
+        "Action: /fibonacci",
+        "Action clients: 0",
+        "Action servers: 1",
+        "    /fibonacci_server [test_msgs/action/Fibonacci]",
+    ]
+    sender = start(manycore_command("action", "send_goal", *goal, "{order: 40}"))
+    sender.wait_for("Goal accepted")
+    sender.signal(signal.SIGINT)
+    sender.wait_for("Goal canceled.")
+    assert sender.wait() == 0
+
+
+def with_lifecycle() -> None:
+    import rclpy
+    from rclpy.lifecycle import LifecycleNode
+
+    rclpy.init()
+    node = LifecycleNode("camera")
+    _serve(node)
+
+
+def test_lifecycles_are_seen_and_changed(start, manycore) -> None:
+    start(peer_command(with_lifecycle)).wait_for("ready")
+    assert manycore("lifecycle", "nodes") == "/camera"
+    assert manycore("lifecycle", "get") == "/camera: unconfigured [1]"
+    lines = manycore("lifecycle", "list", "/camera").splitlines()
+    assert lines[:3] == ["- configure [1]", "\tStart: unconfigured", "\tGoal: configuring"]
+    unknown = manycore("lifecycle", "set", "/camera", "fly", status=2)
+    assert "- configure [1]\n- shutdown [5]" in unknown
+    assert manycore("lifecycle", "set", "/camera", "configure") == "Transitioning successful"
+    assert manycore("lifecycle", "set", "/camera", "3") == "Transitioning successful"
+    assert manycore("lifecycle", "get", "camera") == "active [3]"
+    assert "no node '/none' with a lifecycle" in manycore("lifecycle", "get", "none", status=1)
+
+
+def test_messages_are_published_as_ros2_does(start, manycore) -> None:
+    echo = start(manycore_command("topic", "echo", "/chatter", "std_msgs/msg/String"))
+    pub = ("topic", "pub", "-t", "2", "-r", "50", "/chatter", "std_msgs/msg/String")
+    lines = manycore(*pub, "data: hello").splitlines()
+    assert lines[-4:] == [
+        "publisher: beginning loop",
+        "publishing #1: std_msgs.msg.String(data='hello')",
+        "",
+        "publishing #2: std_msgs.msg.String(data='hello')",
+    ]
+    for _ in range(2):
+        echo.wait_for("^data: hello$")
+    assert echo.stop() == 0
+
+
+def test_bandwidth_delay_and_load_of_a_topic(start, manycore) -> None:
+    pose = ("/pose", "geometry_msgs/msg/PoseStamped")
+    pub = start(manycore_command("topic", "pub", "-r", "50", *pose, "{header: auto}"))
+    pub.wait_for("publishing #1")
+    watchers = [start(manycore_command("topic", verb, "/pose")) for verb in ("bw", "delay")]
+    watchers[0].wait_for(r"^\d+\.\d\d KB/s from \d+ messages$")
+    watchers[0].wait_for(r"^\tMessage size mean: 0\.08 KB min: 0\.08 KB max: 0\.08 KB$")
+    watchers[1].wait_for(r"^average delay: \d+\.\d{3}$")
+    watchers[1].wait_for(r"^\tmin: \d\.\d{3}s max: \d\.\d{3}s std dev: \d\.\d{5}s window: \d+$")
+    assert [watcher.stop() for watcher in watchers] == [0, 0]
+    assert manycore("topic", "type", "/pose") == "geometry_msgs/msg/PoseStamped"
+    assert manycore("topic", "find", "geometry_msgs/msg/PoseStamped") == "/pose"
+    load = json.loads(manycore("top", "--count", "1", "--json"))
+    assert load["topics"][0]["topic"] == "/pose"
+    assert load["topics"][0]["messages_per_s"] > 0
+    assert pub.pid in {process["pid"] for process in load["processes"]}
+    assert "messages/s" in manycore("top", "--count", "1", "--period", "0.1")
+    assert pub.stop() == 0
