@@ -14,6 +14,7 @@ import sys
 import threading
 import time
 from collections.abc import Callable, Iterable
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -62,7 +63,9 @@ def environment(platform: str, cluster: int = 1, **more: str) -> dict[str, str]:
 def leftovers(platform: str) -> list[Path]:
     """Return what a platform has left behind in shared memory."""
     directory = PLATFORMS / platform
-    return [directory, *directory.rglob("*")] if directory.exists() else []
+    with suppress(FileNotFoundError):  # the last process may remove it at this moment
+        return [directory, *directory.rglob("*")] if directory.exists() else []
+    return []
 
 
 def wait_until(condition: Callable[[], Any], what: str, timeout_s: float = PATIENCE_S) -> None:
