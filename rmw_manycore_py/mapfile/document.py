@@ -60,7 +60,8 @@ def read_yaml(path: Path) -> Document:
     except yaml.MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
         line = mark.line + 1 if mark else 0
-        problem = Problem(path, line, "", "valid YAML", str(error.problem or error.context))
+        found = str(error.problem or error.context).removeprefix("but ").removeprefix("found ")
+        problem = Problem(path, line, "", "valid YAML", found)
         raise MapfileError(problem) from error
     except yaml.YAMLError as error:
         raise MapfileError(Problem(path, 0, "", "valid YAML", str(error))) from error

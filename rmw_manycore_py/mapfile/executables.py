@@ -97,12 +97,28 @@ def find_command(words: Sequence[str], directory: Path) -> Program | None:
     found = str(directory / first) if len(first.parts) > 1 else words[0]
     own = Path(sys.executable).parent
     path = shutil.which(found, path=f"{own}{os.pathsep}{os.environ.get('PATH', os.defpath)}")
-    return Program((path, *words[1:]), _source_of(words, directory)) if path else None
+    if path is None or unfound_script(words, directory):
+        return None
+    return Program((path, *words[1:]), _source_of(words, directory))
+
+
+def unfound_script(words: Sequence[str], directory: Path) -> str | None:
+    """Return the file or module that python is to run, where there is no such thing."""
+    if len(words) < 2 or not _is_python(words[0]):
+        return None
+    if words[1] == "-m" and len(words) > 2 and words[0] == Path(words[0]).name:
+        return None if find_module(words[2], directory) else words[2]
+    is_missing = words[1].endswith(".py") and not (directory / words[1]).is_file()
+    return words[1] if is_missing else None
+
+
+def _is_python(word: str) -> bool:
+    return re.fullmatch(r"python[\d.]*", Path(word).name) is not None
 
 
 def _source_of(words: Sequence[str], directory: Path) -> Path | None:
     """Return the source of `python3 -m module` and `python3 file.py`."""
-    if len(words) < 2 or not re.fullmatch(r"python[\d.]*", Path(words[0]).name):
+    if len(words) < 2 or not _is_python(words[0]):
         return None
     if words[1] == "-m" and len(words) > 2:
         module = find_module(words[2], directory)

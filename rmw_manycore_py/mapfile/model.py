@@ -9,6 +9,7 @@ from pydantic import BaseModel, ConfigDict, Field, StrictBool, StrictInt, String
 
 from rmw_manycore_py.mapfile.values import (
     Arguments,
+    Command,
     EnvironmentValue,
     InterfaceType,
     MessageType,
@@ -24,6 +25,8 @@ CoreNumber = Annotated[StrictInt, Field(ge=0)]
 Text = Annotated[str, StringConstraints(min_length=1)]
 TopicName = Annotated[str, StringConstraints(pattern=r"^~?/?[A-Za-z_]\w*(/[A-Za-z_]\w*)*$")]
 NodeName = Annotated[str, StringConstraints(pattern=r"^(/?[A-Za-z_]\w*)(/[A-Za-z_]\w*)*$")]
+# Whatever rcl may know in a rule, but no spaces or dashes: node:~/topic, rosservice:///ns/{node}.
+RemapRule = Annotated[str, StringConstraints(pattern=r"^[\w/~:{}]+$")]
 Namespace = Annotated[str, StringConstraints(pattern=r"^/?([A-Za-z_]\w*(/[A-Za-z_]\w*)*)?$")]
 PlatformName = Annotated[str, StringConstraints(pattern=r"^[A-Za-z0-9_][A-Za-z0-9_.-]{0,63}$")]
 WaitMode = Literal["block", "adaptive", "spin"]
@@ -78,14 +81,14 @@ class NodeSection(Section):
     script: Text | None = Field(default=None, description="Python file, relative to the mapfile")
     package: Text | None = Field(default=None, description="ROS package that has the executable")
     executable: Text | None = Field(default=None, description="Executable of the package")
-    command: Arguments | None = Field(default=None, description="Any command")
+    command: Command | None = Field(default=None, description="Any command")
     ros_arguments: StrictBool = Field(
         default=True, description="Append --ros-args to the command; false for what is not a node"
     )
     namespace: Namespace | None = Field(default=None, description="Namespace of the node")
     parameters: Parameters = Field(default_factory=dict, description="Parameters by name")
     param_file: OneOrMore = Field(default=(), description="Parameter files")
-    remappings: dict[Text, Text] = Field(default_factory=dict, description="From: to")
+    remappings: dict[RemapRule, RemapRule] = Field(default_factory=dict, description="From: to")
     arguments: Arguments = Field(default=(), description="Arguments before the ROS arguments")
     env: dict[Text, EnvironmentValue] = Field(default_factory=dict, description="Environment")
     wait: WaitMode | None = Field(

@@ -7,8 +7,11 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from rmw_manycore_py.errors import MapfileError
-from rmw_manycore_py.mapfile.document import Document, read_yaml
+from pydantic_core import PydanticCustomError
+
+from rmw_manycore_py.errors import MapfileError, Problem
+from rmw_manycore_py.mapfile.document import Document, dotted, read_yaml
+from rmw_manycore_py.mapfile.validation import describe
 from rmw_manycore_py.mapfile.values import flatten_parameters
 
 
@@ -40,8 +43,19 @@ def parameters_in(file: Path, full_name: str) -> dict[str, Any]:
         raise MapfileError(_not_a_parameter_file(document))
     found: dict[str, Any] = {}
     for section in sections_of(document.data, full_name):
-        found |= flatten_parameters(section)
+        try:
+            found |= flatten_parameters(section)
+        except PydanticCustomError as error:
+            raise MapfileError(_not_a_parameter(document, error)) from error
     return found
+
+
+def _not_a_parameter(document: Document, error: PydanticCustomError) -> Problem:
+    details = error.context or {}
+    name = str(details.get("name", ""))
+    lines = (line for path, line in document.lines.items() if dotted(path).endswith(f".{name}"))
+    found = describe(details.get("found"))
+    return Problem(document.file, next(lines, 1), name, str(details["expected"]), found)
 
 
 def _is_section(value: Any) -> bool:

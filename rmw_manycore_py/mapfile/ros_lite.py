@@ -53,6 +53,10 @@ def _join_topics(
     for name, value in ((key, topics), (f"{key}_type", types)):
         if not isinstance(value, list):
             raise MapfileError(document.problem((*path, name), "a list", describe(value)))
+    for index, topic in enumerate(topics):
+        if not isinstance(topic, str) or topic in topics[:index]:
+            expected = "names of topics, each once"
+            raise MapfileError(document.problem((*path, key, index), expected, describe(topic)))
     if len(topics) != len(types):
         expected = f"one type for each topic of '{key}', {len(topics)} in all"
         raise MapfileError(document.problem((*path, f"{key}_type"), expected, str(len(types))))

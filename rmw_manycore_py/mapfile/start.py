@@ -155,26 +155,35 @@ def _program(
         missing = problem(("nodes", name, "executable"), expected, f"'{node.executable}'")
     elif node.command is not None:
         found = executables.find_command(node.command, directory)
-        missing = problem(("nodes", name, "command"), "an executable", f"'{node.command[0]}'")
+        expected, word = _expected_command(node.command, directory)
+        missing = problem(("nodes", name, "command"), expected, f"'{word}'")
     else:
         assert launched is not None
-        return _launched_program(launched)
+        return _launched_program(launched, directory)
     if found is None:
         raise MapfileError(missing)
     return found
 
 
-def _launched_program(launched: LaunchedNode) -> Program:
+def _launched_program(launched: LaunchedNode, directory: Path) -> Program:
     if launched.package is not None and launched.executable is not None:
         found = executables.find_executable(launched.package, launched.executable)
         expected, wanted = _expected_executable(launched.package), launched.executable
     else:
-        found = executables.find_command(launched.command, launched.file.parent.resolve())
-        expected, wanted = "an executable", launched.command[0]
+        found = executables.find_command(launched.command, directory)
+        expected, wanted = _expected_command(launched.command, directory)
     if found is None:
         problem = Problem(launched.file, launched.line, launched.label, expected, f"'{wanted}'")
         raise MapfileError(problem)
     return found
+
+
+def _expected_command(words: Sequence[str], directory: Path) -> tuple[str, str]:
+    """Return what is expected, and the word of the command that does not name such a thing."""
+    word = executables.unfound_script(words, directory)
+    if word is None:
+        return "an executable", words[0]
+    return "an existing Python file" if word.endswith(".py") else "an installed Python module", word
 
 
 def _expected_executable(package: str) -> str:

@@ -38,6 +38,7 @@ _PATTERN_OF = {
     "topic_in": "a type such as std_msgs/msg/String or std_srvs/srv/SetBool",
     "topic_to": "a type such as std_msgs/msg/String or std_srvs/srv/SetBool",
     "namespace": "a namespace such as /demo",
+    "remappings": "the name of a topic, service or node",
     "name": "a platform name of letters, digits, '_', '.' and '-'",
 }
 _LONGEST_VALUE = 60
@@ -51,10 +52,11 @@ def problems_of(error: ValidationError, document: Document) -> list[Problem]:
 def _problem(details: ErrorDetails, document: Document) -> Problem:
     path: KeyPath = details["loc"]
     if path and path[-1] == "[key]":
-        expected = "a node name" if path[0] == "nodes" else "a topic name"
-        return document.problem(
-            path[:-1], f"{expected} of letters, digits and '_'", f"'{path[-2]}'"
-        )
+        named = "a node name" if path[:-2] == ("nodes",) else "a topic name"
+        expected = f"{named} of letters, digits and '_'"
+        if path[-3] == "remappings":
+            expected = _PATTERN_OF["remappings"]
+        return document.problem(path[:-1], expected, f"'{path[-2]}'")
     if details["type"] == "missing":
         return document.problem(path, f"the key '{path[-1]}'", "no such key")
     if details["type"] == "extra_forbidden":

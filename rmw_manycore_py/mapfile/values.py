@@ -39,15 +39,19 @@ def _environment_value(value: Any) -> str:
 
 def _arguments(value: Any) -> tuple[str, ...]:
     if isinstance(value, str):
-        return _nonempty(tuple(shlex.split(value)))
+        try:
+            return tuple(shlex.split(value))
+        except ValueError as error:
+            raise _expected("words as typed in a shell, each quotation closed") from error
     if isinstance(value, (list, tuple)):
         return tuple(_environment_value(item) for item in value)
     raise _expected("a list of strings, or one string as typed in a shell")
 
 
-def _nonempty(words: tuple[str, ...]) -> tuple[str, ...]:
-    if not words:
-        raise _expected("at least one word")
+def _command(value: Any) -> tuple[str, ...]:
+    words = _arguments(value)
+    if not words or not words[0]:
+        raise _expected("a program and its arguments")
     return words
 
 
@@ -100,18 +104,11 @@ EnvironmentValue = Annotated[
     BeforeValidator(_environment_value),
     WithJsonSchema(_SCALAR_SCHEMA),
 ]
-Arguments = Annotated[
-    tuple[str, ...],
-    BeforeValidator(_arguments),
-    WithJsonSchema(
-        {
-            "anyOf": [
-                {"type": "string"},
-                {"type": "array", "items": _SCALAR_SCHEMA},
-            ]
-        }
-    ),
-]
+_WORDS_SCHEMA = WithJsonSchema(
+    {"anyOf": [{"type": "string"}, {"type": "array", "items": _SCALAR_SCHEMA}]}
+)
+Arguments = Annotated[tuple[str, ...], BeforeValidator(_arguments), _WORDS_SCHEMA]
+Command = Annotated[tuple[str, ...], BeforeValidator(_command), _WORDS_SCHEMA]
 OneOrMore = Annotated[
     tuple[str, ...],
     BeforeValidator(_one_or_more),

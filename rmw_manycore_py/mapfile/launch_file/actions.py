@@ -10,9 +10,9 @@ from typing import Any
 
 from typing_extensions import override
 
-from rmw_manycore_py.errors import MapfileError
+from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.mapfile.launch_file.context import LaunchContext, LaunchedNode, RefusedError
-from rmw_manycore_py.mapfile.launch_file.guard import guarded
+from rmw_manycore_py.mapfile.launch_file.guard import failure, guarded
 from rmw_manycore_py.mapfile.launch_file.substitutions import is_true, perform
 
 _HERE = str(Path(__file__).parent)
@@ -83,8 +83,10 @@ class Action:
         try:
             if self.condition is None or self.condition.evaluate(context):
                 self.execute(context)
-        except RefusedError as refused:
-            raise MapfileError(refused.at(context.file, self.line)) from refused
+        except ManycoreError:
+            raise
+        except Exception as error:  # values of kinds that launch does not expect either
+            raise failure(context.file, error, self.line) from error
 
     def execute(self, context: LaunchContext) -> None:
         """Do it."""

@@ -17,15 +17,15 @@ def guarded(path: Path, function: Any, *arguments: Any, **named: Any) -> Any:
         return function(*arguments, **named)
     except ManycoreError:
         raise
-    except Exception as error:
+    except (Exception, SystemExit) as error:
         raise failure(path, error) from error
 
 
-def failure(path: Path, error: Exception) -> MapfileError:
+def failure(path: Path, error: BaseException, near_line: int = 0) -> MapfileError:
     """Return what went wrong in the code of a launch file, with the line it happened in."""
     frames = traceback.extract_tb(error.__traceback__)
     lines = [frame.lineno or 0 for frame in frames if frame.filename == str(path)]
-    line = lines[-1] if lines else getattr(error, "lineno", None) or 0
+    line = lines[-1] if lines else getattr(error, "lineno", None) or near_line
     if isinstance(error, RefusedError):
         return MapfileError(error.at(path, line))
     reason = error.msg if isinstance(error, SyntaxError) else error

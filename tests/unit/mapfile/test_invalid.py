@@ -15,7 +15,12 @@ from rmw_manycore_py.mapfile.launch_file import read_launch_file
 pytestmark = pytest.mark.unit
 
 HERE = Path(__file__).parent
-NO_FIXTURES = ("quiet.py", "imports_missing_types.py", "ruff.toml")
+NO_FIXTURES = (
+    "quiet.py",
+    "imports_missing_types.py",
+    "mixed_list_in_param_file.params.yaml",
+    "ruff.toml",
+)
 EXPECTED = re.compile(r"expected: (.*?)(?: -->)?$", re.MULTILINE)
 
 
