@@ -93,7 +93,12 @@ class _Reader:
                 return self._mapping(node, path)
             if isinstance(node, yaml.SequenceNode):
                 return [self.convert(item, (*path, i)) for i, item in enumerate(node.value)]
-            return self._loader.construct_object(node, deep=True)
+            value = self._loader.construct_object(node, deep=True)
+            if isinstance(value, str) and "\0" in value:
+                line, expected = node.start_mark.line + 1, "text without NUL characters"
+                problem = Problem(self._file, line, dotted(path), expected, repr(value))
+                self.problems.append(problem)
+            return value
         finally:
             self._open.discard(id(node))
 

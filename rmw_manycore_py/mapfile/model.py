@@ -20,6 +20,11 @@ from rmw_manycore_py.mapfile.values import (
 
 # Receiver clusters are a mask of 64 bits.
 MAX_CLUSTERS = 64
+# As many as the registry has places for processes.
+MAX_CORES = 1024
+# A node without topics of its own takes almost the one; a process can map some dozens of the other.
+MIN_SMEM_BYTES = 64 << 10
+MAX_SMEM_BYTES = 1 << 40
 Positive = Annotated[StrictInt, Field(ge=1)]
 CoreNumber = Annotated[StrictInt, Field(ge=0)]
 Text = Annotated[str, StringConstraints(min_length=1)]
@@ -50,10 +55,10 @@ class PlatformSection(Section):
     clusters: Annotated[StrictInt, Field(ge=1, le=MAX_CLUSTERS)] | None = Field(
         default=None, description="Number of clusters"
     )
-    cores_per_cluster: Annotated[StrictInt, Field(ge=2)] | None = Field(
+    cores_per_cluster: Annotated[StrictInt, Field(ge=2, le=MAX_CORES)] | None = Field(
         default=None, description="Cores of each cluster, the reserved ones included"
     )
-    smem_size: Size | None = Field(
+    smem_size: Annotated[Size, Field(ge=MIN_SMEM_BYTES, le=MAX_SMEM_BYTES)] | None = Field(
         default=None, description="Local memory of each cluster, in bytes"
     )
 

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -80,8 +81,8 @@ def ros_arguments(
 
 def parameter_text(value: Any) -> str:
     """Write a value so that rcl reads the same type: strings stay strings."""
-    if isinstance(value, float) and value in (float("inf"), float("-inf")):
-        return ".inf" if value > 0 else "-.inf"
+    if isinstance(value, float) and not math.isfinite(value):
+        return ".nan" if math.isnan(value) else ".inf" if value > 0 else "-.inf"
     if isinstance(value, (list, tuple)):
         return f"[{', '.join(parameter_text(item) for item in value)}]"
     return json.dumps(value, ensure_ascii=False)

@@ -125,7 +125,9 @@ def _add_key(document: Document, element: Element, key: str, item: Any, path: Ke
 
 
 def _add_children(document: Document, element: Element, items: Any, path: KeyPath) -> None:
-    for index, item in enumerate(items or ()):
+    if not isinstance(items, list):
+        raise element.problem("a list of tags", _kind(items))
+    for index, item in enumerate(items):
         if not isinstance(item, dict) or len(item) != 1:
             raise MapfileError(document.problem((*path, index), "one tag", _kind(item)))
         for tag, value in item.items():

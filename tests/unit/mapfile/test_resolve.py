@@ -246,6 +246,7 @@ def test_topic_names_are_expanded_as_rcl_does(topic: str, full: str) -> None:
         ("true", '"true"'),
         ("é 'x'", "\"é 'x'\""),
         (float("inf"), ".inf"),
+        (float("nan"), ".nan"),
         ([1.5, 2.0], "[1.5, 2.0]"),
         (["a", "1"], '["a", "1"]'),
     ],
