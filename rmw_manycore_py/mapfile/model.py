@@ -25,6 +25,8 @@ MAX_CORES = 1024
 # A node without topics of its own takes almost the one; a process can map some dozens of the other.
 MIN_SMEM_BYTES = 64 << 10
 MAX_SMEM_BYTES = 1 << 40
+# The topic table has 32 bits for it.
+MAX_TOPIC_DSM_BYTES = (1 << 32) - 1
 Positive = Annotated[StrictInt, Field(ge=1)]
 CoreNumber = Annotated[StrictInt, Field(ge=0)]
 Text = Annotated[str, StringConstraints(min_length=1)]
@@ -67,7 +69,7 @@ class TopicSection(Section):
     """A row of the topic table that is fixed by hand (Fig. 7)."""
 
     type: MessageType | None = Field(default=None, description="Message type, package/msg/Name")
-    topic_dsm_size: Size | None = Field(
+    topic_dsm_size: Annotated[Size, Field(le=MAX_TOPIC_DSM_BYTES)] | None = Field(
         default=None, description="Bytes of the ring of each publisher of this topic"
     )
 
