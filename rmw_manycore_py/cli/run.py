@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 import sys
 from pathlib import Path
 
@@ -13,6 +14,12 @@ from rmw_manycore_py.cli.run_printer import RunPrinter
 from rmw_manycore_py.launch.events import Event
 from rmw_manycore_py.launch.run import run_placement
 from rmw_manycore_py.mapfile import load_mapfile, resolve
+
+
+def _number(_context: click.Context, _option: click.Parameter, value: float | None) -> float | None:
+    if value is not None and math.isnan(value):
+        raise click.BadParameter("nan is not a number of seconds.")
+    return value
 
 
 @click.command(
@@ -29,6 +36,7 @@ from rmw_manycore_py.mapfile import load_mapfile, resolve
     "duration_s",
     type=click.FloatRange(min=0, min_open=True),
     metavar="S",
+    callback=_number,
     help="Stop after this many seconds, counted from the start of the last node.",
 )
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object per event.")

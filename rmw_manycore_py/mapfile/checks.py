@@ -14,6 +14,8 @@ from rmw_manycore_py.topology import Core
 if TYPE_CHECKING:
     from rmw_manycore_py.mapfile.loader import Mapfile
 
+# These follow from the placement; a node that is told otherwise would be somewhere else.
+PLACE_VARIABLES = ("MANYCORE_PLATFORM", "MANYCORE_CLUSTER", "MANYCORE_CORE")
 WAYS_TO_START = ("module", "script", "executable", "command")
 
 
@@ -73,6 +75,16 @@ def check_starts(mapfile: Mapfile) -> Iterator[Problem]:
         if not node.ros_arguments and node.command is None:
             expected = "true, except beside 'command'"
             yield mapfile.document.problem((*path, "ros_arguments"), expected, "false")
+
+
+def check_environment(mapfile: Mapfile) -> Iterator[Problem]:
+    """Yield variables by which a node would be elsewhere than where it is placed."""
+    for name, node in mapfile.sections.nodes.items():
+        for variable in PLACE_VARIABLES:
+            if variable in node.env:
+                expected = "no variable that platform, cluster and core already say"
+                path = ("nodes", name, "env", variable)
+                yield mapfile.document.problem(path, expected, f"'{variable}'")
 
 
 def check_files(mapfile: Mapfile) -> Iterator[Problem]:

@@ -9,7 +9,12 @@ from pathlib import Path
 from pydantic import ValidationError
 
 from rmw_manycore_py.errors import MapfileError, Problem
-from rmw_manycore_py.mapfile.checks import check_files, check_placement, check_starts
+from rmw_manycore_py.mapfile.checks import (
+    check_environment,
+    check_files,
+    check_placement,
+    check_starts,
+)
 from rmw_manycore_py.mapfile.document import Document, read_yaml
 from rmw_manycore_py.mapfile.model import MapfileSections, PlatformSection
 from rmw_manycore_py.mapfile.normalise import normalise
@@ -45,7 +50,12 @@ def load_mapfile(path: Path | str) -> Mapfile:
     notices = normalise(document)
     sections = _validate(document)
     mapfile = Mapfile(path, sections, _topology(sections.platform), document, tuple(notices))
-    problems = [*check_placement(mapfile), *check_starts(mapfile), *check_files(mapfile)]
+    problems = [
+        *check_placement(mapfile),
+        *check_starts(mapfile),
+        *check_environment(mapfile),
+        *check_files(mapfile),
+    ]
     if problems:
         raise MapfileError(*problems)
     return mapfile

@@ -173,17 +173,19 @@ def _place(
 
 
 def _environment(mapfile: Mapfile, name: str, core: Core, start: NodeStart) -> dict[str, str]:
-    env = {
-        "RMW_IMPLEMENTATION": "rmw_manycore",
+    place = {
         "MANYCORE_PLATFORM": platform_name(mapfile),
         "MANYCORE_CLUSTER": str(core.cluster),
         "MANYCORE_CORE": str(core.core),
+    }
+    env = {
+        "RMW_IMPLEMENTATION": "rmw_manycore",
         "MANYCORE_WAIT": mapfile.sections.nodes[name].wait or "block",
         "PYTHONUNBUFFERED": "1",
     }
     if mapfile.sections.malloc_tuning:
         env["MALLOC_TRIM_THRESHOLD_"] = env["MALLOC_MMAP_THRESHOLD_"] = _MALLOC_THRESHOLD
-    return {**env, **start.env}
+    return {**env, **start.env, **place}  # a launch file may set all but the place
 
 
 def _topics_of(

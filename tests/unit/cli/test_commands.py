@@ -112,6 +112,12 @@ def test_a_program_that_does_not_exist_is_found_before_the_run(mapfile: Path) ->
     assert "no-such-program" in result.output
 
 
+def test_a_duration_is_a_number(mapfile: Path) -> None:
+    result = manycore("run", str(mapfile), "--duration", "nan")
+    assert result.exit_code == EXIT_BAD_INPUT
+    assert "not a number of seconds" in result.output
+
+
 def test_map_check_and_show(mapfile: Path) -> None:
     assert f"{mapfile}: 1 node in 1 cluster, " in manycore("map", "check", str(mapfile)).output
     shown = manycore("map", "show", str(mapfile)).output
