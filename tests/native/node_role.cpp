@@ -8,6 +8,7 @@
 
 #include "messages.hpp"
 #include "patience.hpp"
+#include "platform/clock.hpp"
 
 using namespace manycore;
 
@@ -18,6 +19,17 @@ Qos qos_of(const std::string & word) {
     return keep_all();
   }
   const auto depth = static_cast<uint32_t>(std::stoul(word));
+  constexpr int64_t hour_ns = 3600 * ns_per_s;
+  if (word.find("+deadline") != std::string::npos) {
+    Qos qos = keep_last(depth);
+    qos.deadline_ns = hour_ns;
+    return qos;
+  }
+  if (word.find("+lease") != std::string::npos) {
+    Qos qos = keep_last(depth);
+    qos.liveliness_lease_ns = hour_ns;
+    return qos;
+  }
   if (word.find("+transient_local") != std::string::npos) {
     return transient_local(depth);
   }

@@ -31,25 +31,25 @@ Qos best_effort_transient_local() {
 
 }  // namespace
 
-TEST_CASE("an offer must be at least what is requested; the first failing policy is named") {
+TEST_CASE("an offer must be at least what is requested; the last failing policy is named") {
   const Qos reliable = keep_last(10);
-  CHECK(first_incompatible_policy(reliable, reliable) == QosPolicy::none);
-  CHECK(first_incompatible_policy(reliable, best_effort(1)) == QosPolicy::none);
-  CHECK(first_incompatible_policy(transient_local(1), keep_all()) == QosPolicy::none);
-  CHECK(first_incompatible_policy(best_effort(1), reliable) == QosPolicy::reliability);
-  CHECK(first_incompatible_policy(reliable, transient_local(1)) == QosPolicy::durability);
-  CHECK(first_incompatible_policy(best_effort(1), transient_local(1)) == QosPolicy::durability);
+  CHECK(last_incompatible_policy(reliable, reliable) == QosPolicy::none);
+  CHECK(last_incompatible_policy(reliable, best_effort(1)) == QosPolicy::none);
+  CHECK(last_incompatible_policy(transient_local(1), keep_all()) == QosPolicy::none);
+  CHECK(last_incompatible_policy(best_effort(1), reliable) == QosPolicy::reliability);
+  CHECK(last_incompatible_policy(reliable, transient_local(1)) == QosPolicy::durability);
+  CHECK(last_incompatible_policy(best_effort(1), transient_local(1)) == QosPolicy::reliability);
   Qos strict = reliable;
   strict.deadline_ns = 1000;
-  CHECK(first_incompatible_policy(reliable, strict) == QosPolicy::deadline);
-  CHECK(first_incompatible_policy(strict, reliable) == QosPolicy::none);
+  CHECK(last_incompatible_policy(reliable, strict) == QosPolicy::deadline);
+  CHECK(last_incompatible_policy(strict, reliable) == QosPolicy::none);
   strict = reliable;
   strict.liveliness = Liveliness::manual_by_topic;
-  CHECK(first_incompatible_policy(reliable, strict) == QosPolicy::liveliness);
-  CHECK(first_incompatible_policy(strict, reliable) == QosPolicy::none);
+  CHECK(last_incompatible_policy(reliable, strict) == QosPolicy::liveliness);
+  CHECK(last_incompatible_policy(strict, reliable) == QosPolicy::none);
   strict = reliable;
   strict.liveliness_lease_ns = 1000;
-  CHECK(first_incompatible_policy(reliable, strict) == QosPolicy::liveliness);
+  CHECK(last_incompatible_policy(reliable, strict) == QosPolicy::liveliness);
 }
 
 TEST_CASE("incompatible ends are counted on both sides, and exchange nothing") {
@@ -70,7 +70,7 @@ TEST_CASE("incompatible ends are counted on both sides, and exchange nothing") {
   CHECK(take_all(*modest) == numbers(1, 1));
 }
 
-TEST_CASE("another type, another topic or another role is no match, and no incompatibility") {
+TEST_CASE("another type, another topic or another role is no match; only the type is told") {
   Fixture f;
   const auto publisher = f.publisher(keep_last(10));
   EndpointSpec type = on_topic("/match", keep_last(10));
@@ -81,6 +81,8 @@ TEST_CASE("another type, another topic or another role is no match, and no incom
     const auto subscription = f.process->create_subscription(spec);
     CHECK(subscription->matched().total == 0);
     CHECK(subscription->incompatible().total == 0);
+    CHECK(subscription->incompatible_types() == (spec.type == type.type ? 1 : 0));
+    CHECK(publisher->incompatible_types() == 1);
     publish(*publisher, 1);
     CHECK_FALSE(subscription->has_data());
   }
@@ -210,16 +212,16 @@ TEST_CASE("a match wakes the process only while somebody watches events of endpo
   waiter.unwatch_endpoint_events();
 }
 
-TEST_CASE("policies that are not honoured are refused by name, and leave nothing behind") {
+TEST_CASE("values without a meaning are refused by name, and leave nothing behind") {
   Fixture f;
   Qos deadline = keep_last(10);
-  deadline.deadline_ns = 1000;
-  Qos liveliness = keep_last(10);
-  liveliness.liveliness = Liveliness::manual_by_topic;
+  deadline.deadline_ns = 0;
+  Qos lease = keep_last(10);
+  lease.liveliness_lease_ns = -1;
   const auto refused = [&](const Qos & qos) { return refusal_of([&] { f.publisher(qos); }); };
-  CHECK(refused(deadline).code == ErrorCode::unsupported);
-  CHECK(refused(deadline).says("DEADLINE"));
-  CHECK(refused(liveliness).says("LIVELINESS"));
+  CHECK(refused(deadline).code == ErrorCode::invalid_argument);
+  CHECK(refused(deadline).says("deadline of 0 ns"));
+  CHECK(refused(lease).says("liveliness lease duration of -1 ns"));
   CHECK(refused(keep_last(0)).code == ErrorCode::invalid_argument);
   CHECK(refused(keep_last(0)).says("depth 0"));
   CHECK(f.inspection.live_endpoints() == 0);

@@ -65,13 +65,23 @@ void CallbackThread::run() noexcept {
       wake_.wait(lock);
       continue;
     }
+    // Epoch and due time come before the look: what happens or falls due in between ends the wait at once.
     const uint32_t epoch = waiter_.epoch();
+    const std::optional<int64_t> due_ns = next_due_ns();
     report_all();
     lock.unlock();
-    waiter_.wait(epoch, std::nullopt);
+    waiter_.wait(epoch, due_ns);
     lock.lock();
   }
   waiter_.unwatch_endpoint_events();
+}
+
+std::optional<int64_t> CallbackThread::next_due_ns() const {
+  int64_t soonest = manycore::infinite_ns;
+  for (const Callback * const callback : active_) {
+    soonest = std::min(soonest, callback->next_due_ns_());
+  }
+  return soonest == manycore::infinite_ns ? std::nullopt : std::optional(soonest);
 }
 
 void CallbackThread::report_all() noexcept {

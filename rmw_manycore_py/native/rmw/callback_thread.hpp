@@ -5,10 +5,12 @@
 #include <cstdint>
 #include <functional>
 #include <mutex>
+#include <optional>
 #include <thread>
 #include <vector>
 
 #include "rmw/event_callback_type.h"
+#include "transport/qos.hpp"
 #include "transport/waiter.hpp"
 
 namespace rmw_manycore {
@@ -33,6 +35,7 @@ private:
   void remove(Callback & callback) noexcept;
   void run() noexcept;
   void report_all() noexcept;
+  std::optional<int64_t> next_due_ns() const;
 
   manycore::Waiter & waiter_;
   /// Held while a callback runs, so that none runs after it was taken away; recursive, because a
@@ -49,10 +52,16 @@ private:
 class Callback {
 public:
   using Count = std::function<uint64_t()>;
+  using Due = std::function<int64_t()>;
+  static int64_t never() noexcept { return manycore::infinite_ns; }
 
   /// `arrivals` counts since creation; `unread` says how many of them still wait to be taken.
-  Callback(CallbackThread & thread, Count arrivals, Count unread)
-  : thread_(thread), arrivals_(std::move(arrivals)), unread_(std::move(unread)) {}
+  /// `next_due_ns` says when time alone may raise `arrivals` (CLOCK_MONOTONIC).
+  Callback(CallbackThread & thread, Count arrivals, Count unread, Due next_due_ns = never)
+  : thread_(thread),
+    arrivals_(std::move(arrivals)),
+    unread_(std::move(unread)),
+    next_due_ns_(std::move(next_due_ns)) {}
   ~Callback() { clear(); }
   Callback(const Callback &) = delete;
   Callback & operator=(const Callback &) = delete;
@@ -69,6 +78,7 @@ private:
   CallbackThread & thread_;
   const Count arrivals_;
   const Count unread_;
+  const Due next_due_ns_;
   rmw_event_callback_t function_ = nullptr;
   const void * user_data_ = nullptr;
   uint64_t reported_ = 0;

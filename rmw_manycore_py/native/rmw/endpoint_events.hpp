@@ -9,19 +9,9 @@
 
 #include "rmw/callback_thread.hpp"
 #include "rmw/event.h"
-#include "transport/endpoint.hpp"
+#include "rmw/event_counts.hpp"
 
 namespace rmw_manycore {
-
-/// What one event counts: how often it happened, and how many of these still last. What cannot end
-/// lasts for ever.
-struct EventCounts {
-  uint64_t total = 0;
-  uint64_t current = 0;
-
-  /// Beginnings and ends; only rises.
-  uint64_t changes() const noexcept { return total + (total - current); }
-};
 
 /// The events of one publisher or subscription. The transport only counts; here is what of it was
 /// told to the user. `rmw_event_t::data` points to it. Thread-safe.
@@ -32,24 +22,22 @@ public:
   EndpointEvents(const EndpointEvents &) = delete;
   EndpointEvents & operator=(const EndpointEvents &) = delete;
 
-  static bool supports(rmw_event_type_t type) noexcept;
-
   bool ready(rmw_event_type_t type) const { return untold(type) != 0; }
+  /// When the event may become ready by the passing of time alone (CLOCK_MONOTONIC).
+  int64_t next_due_ns(rmw_event_type_t type) const { return counts(type).next_due_ns; }
   /// Writes the status structure of `type` to `status`; its changes are told thereby.
   void take(rmw_event_type_t type, void * status);
   void set_callback(rmw_event_type_t type, rmw_event_callback_t function, const void * user_data);
 
 protected:
-  virtual manycore::MatchedCount matched() const = 0;
-  virtual manycore::IncompatibleCount incompatible() const = 0;
-  virtual uint64_t lost() const = 0;
+  /// What the endpoint counts for events of `type`; thread-safe.
+  virtual EventCounts counts(rmw_event_type_t type) const = 0;
   /// Callbacks use the above: to be called by the destructor of the derived class.
   void clear_callbacks() noexcept;
 
 private:
-  EventCounts counts(rmw_event_type_t type) const;
   uint64_t untold(rmw_event_type_t type) const {
-    return counts(type).changes() - told_changes_[type].load(std::memory_order_relaxed);
+    return counts(type).changes - told_changes_[type].load(std::memory_order_relaxed);
   }
   Callback & callback(rmw_event_type_t type);
 

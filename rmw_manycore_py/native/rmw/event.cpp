@@ -17,7 +17,7 @@ bool is_of_publisher(rmw_event_type_t type) noexcept {
 
 rmw_ret_t initialize(
   rmw_event_t * event, EndpointEvents & events, rmw_event_type_t type, bool of_publisher) {
-  if (!EndpointEvents::supports(type) || is_of_publisher(type) != of_publisher) {
+  if (!rmw_event_type_is_supported(type) || is_of_publisher(type) != of_publisher) {
     RMW_SET_ERROR_MSG_WITH_FORMAT_STRING(
       "event type %d is not supported by rmw_manycore on a %s", static_cast<int>(type),
       of_publisher ? "publisher" : "subscription");
@@ -35,7 +35,7 @@ rmw_ret_t initialize(
 using rmw_manycore::EndpointEvents;
 
 bool rmw_event_type_is_supported(rmw_event_type_t rmw_event_type) {
-  return EndpointEvents::supports(rmw_event_type);
+  return rmw_event_type >= RMW_EVENT_LIVELINESS_CHANGED && rmw_event_type < RMW_EVENT_INVALID;
 }
 
 rmw_ret_t rmw_publisher_event_init(

@@ -29,6 +29,23 @@ Publisher::Publisher(
   handle.can_loan_messages = false;
 }
 
+EventCounts Publisher::counts(rmw_event_type_t type) const {
+  switch (type) {
+    case RMW_EVENT_LIVELINESS_LOST:
+      return EventCounts::of(transport_->liveliness_lost());
+    case RMW_EVENT_OFFERED_DEADLINE_MISSED:
+      return EventCounts::of(transport_->deadline_missed());
+    case RMW_EVENT_OFFERED_QOS_INCOMPATIBLE:
+      return EventCounts::of(transport_->incompatible());
+    case RMW_EVENT_PUBLISHER_INCOMPATIBLE_TYPE:
+      return EventCounts::of(transport_->incompatible_types());
+    case RMW_EVENT_PUBLICATION_MATCHED:
+      return EventCounts::of(transport_->matched());
+    default:
+      return {};
+  }
+}
+
 namespace {
 
 void check_options(const rmw_publisher_options_t & options) {
@@ -107,8 +124,11 @@ rmw_ret_t rmw_publisher_assert_liveliness(const rmw_publisher_t * publisher) {
   // Invariants
   MANYCORE_CHECK_HANDLE(publisher);
 
-  // Implementation: liveliness is automatic, a publisher asserts it by being there.
-  return RMW_RET_OK;
+  // Implementation
+  return rmw_manycore::guarded([&] {
+    Publisher::of(publisher).transport().assert_liveliness();
+    return RMW_RET_OK;
+  });
 }
 
 rmw_ret_t rmw_publisher_wait_for_all_acked(

@@ -30,9 +30,7 @@ public:
   manycore::Publisher & transport() const noexcept { return *transport_; }
 
 private:
-  manycore::MatchedCount matched() const override { return transport_->matched(); }
-  manycore::IncompatibleCount incompatible() const override { return transport_->incompatible(); }
-  uint64_t lost() const override { return 0; }
+  EventCounts counts(rmw_event_type_t type) const override;
 
   const std::string topic_;
   const Cdr cdr_;

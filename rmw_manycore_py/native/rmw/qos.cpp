@@ -13,10 +13,6 @@ namespace {
 
 using manycore::EndpointKind;
 
-[[noreturn]] void refuse(const std::string & what) {
-  throw manycore::Error(manycore::ErrorCode::unsupported, what);
-}
-
 [[noreturn]] void refuse_unknown(const char * policy) {
   throw manycore::Error(
     manycore::ErrorCode::invalid_argument,
@@ -77,7 +73,7 @@ manycore::Liveliness liveliness_of(const rmw_qos_profile_t & profile) {
     case RMW_QOS_POLICY_LIVELINESS_AUTOMATIC:
       return manycore::Liveliness::automatic;
     case RMW_QOS_POLICY_LIVELINESS_MANUAL_BY_TOPIC:
-      refuse("liveliness MANUAL_BY_TOPIC is not supported by rmw_manycore yet: use AUTOMATIC");
+      return manycore::Liveliness::manual_by_topic;
     default:
       refuse_unknown("liveliness");
   }
@@ -94,14 +90,6 @@ uint32_t depth_of(const rmw_qos_profile_t & profile) {
            : static_cast<uint32_t>(profile.depth);
 }
 
-void check_no_limit(int64_t ns, const char * policy) {
-  if (ns != manycore::infinite_ns) {
-    refuse(
-      std::string("a ") + policy + " of " + std::to_string(ns) +
-      " ns is not supported by rmw_manycore yet: leave it at its default (no limit)");
-  }
-}
-
 }  // namespace
 
 manycore::Qos to_transport(const rmw_qos_profile_t & profile, EndpointKind kind) {
@@ -114,8 +102,6 @@ manycore::Qos to_transport(const rmw_qos_profile_t & profile, EndpointKind kind)
   qos.lifespan_ns = to_ns(profile.lifespan);
   qos.liveliness = liveliness_of(profile);
   qos.liveliness_lease_ns = to_ns(profile.liveliness_lease_duration);
-  check_no_limit(qos.deadline_ns, "deadline");
-  check_no_limit(qos.liveliness_lease_ns, "liveliness lease duration");
   return qos;
 }
 

@@ -26,6 +26,10 @@ void resolve(Policy & policy, Policy best_available, Policy value) {
   }
 }
 
+bool is_manual(const EndpointInfo & endpoint) {
+  return endpoint.qos.liveliness == manycore::Liveliness::manual_by_topic;
+}
+
 bool has_best_available(const rmw_qos_profile_t & profile) {
   return profile.reliability == RMW_QOS_POLICY_RELIABILITY_BEST_AVAILABLE ||
          profile.durability == RMW_QOS_POLICY_DURABILITY_BEST_AVAILABLE ||
@@ -59,7 +63,8 @@ rmw_qos_profile_t resolve_for_subscription(
                     : RMW_QOS_POLICY_DURABILITY_VOLATILE);
   resolve(
     profile.liveliness, RMW_QOS_POLICY_LIVELINESS_BEST_AVAILABLE,
-    RMW_QOS_POLICY_LIVELINESS_AUTOMATIC);
+    !others.empty() && all(is_manual) ? RMW_QOS_POLICY_LIVELINESS_MANUAL_BY_TOPIC
+                                      : RMW_QOS_POLICY_LIVELINESS_AUTOMATIC);
   resolve(profile.deadline, best_available_deadline, longest(&manycore::Qos::deadline_ns));
   resolve(
     profile.liveliness_lease_duration, best_available_lease,
@@ -84,7 +89,9 @@ rmw_qos_profile_t resolve_for_publisher(
     RMW_QOS_POLICY_DURABILITY_TRANSIENT_LOCAL);
   resolve(
     profile.liveliness, RMW_QOS_POLICY_LIVELINESS_BEST_AVAILABLE,
-    RMW_QOS_POLICY_LIVELINESS_AUTOMATIC);
+    std::any_of(others.begin(), others.end(), is_manual)
+      ? RMW_QOS_POLICY_LIVELINESS_MANUAL_BY_TOPIC
+      : RMW_QOS_POLICY_LIVELINESS_AUTOMATIC);
   resolve(profile.deadline, best_available_deadline, shortest(&manycore::Qos::deadline_ns));
   resolve(
     profile.liveliness_lease_duration, best_available_lease,

@@ -41,6 +41,25 @@ Subscription::Subscription(
   handle.is_cft_enabled = false;
 }
 
+EventCounts Subscription::counts(rmw_event_type_t type) const {
+  switch (type) {
+    case RMW_EVENT_LIVELINESS_CHANGED:
+      return liveliness_changes_.observe(transport().liveliness());
+    case RMW_EVENT_REQUESTED_DEADLINE_MISSED:
+      return EventCounts::of(transport().deadline_missed());
+    case RMW_EVENT_REQUESTED_QOS_INCOMPATIBLE:
+      return EventCounts::of(transport().incompatible());
+    case RMW_EVENT_MESSAGE_LOST:
+      return EventCounts::of(transport().lost());
+    case RMW_EVENT_SUBSCRIPTION_INCOMPATIBLE_TYPE:
+      return EventCounts::of(transport().incompatible_types());
+    case RMW_EVENT_SUBSCRIPTION_MATCHED:
+      return EventCounts::of(transport().matched());
+    default:
+      return {};
+  }
+}
+
 }  // namespace rmw_manycore
 
 using rmw_manycore::Subscription;

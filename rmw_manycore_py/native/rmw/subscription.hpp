@@ -30,13 +30,12 @@ public:
   const manycore::Subscription & transport() const noexcept { return inbox_.transport(); }
 
 private:
-  manycore::MatchedCount matched() const override { return transport().matched(); }
-  manycore::IncompatibleCount incompatible() const override { return transport().incompatible(); }
-  uint64_t lost() const override { return transport().lost(); }
+  EventCounts counts(rmw_event_type_t type) const override;
 
   const std::string topic_;
   const Cdr cdr_;
   Inbox inbox_;
+  mutable LivelinessChanges liveliness_changes_;
 };
 
 }  // namespace rmw_manycore

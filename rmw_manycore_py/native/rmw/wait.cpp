@@ -1,4 +1,5 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <optional>
 
 #include "platform/clock.hpp"
@@ -44,6 +45,15 @@ public:
       }
     }
     return false;
+  }
+
+  template <typename Visit>
+  void for_each(Visit && visit) const {
+    for (size_t i = 0; i < count_; ++i) {
+      if (entries_[i] != nullptr) {
+        visit(at(i));
+      }
+    }
   }
 
   bool any_ready() const {
@@ -140,6 +150,17 @@ std::optional<int64_t> deadline_of(const rmw_time_t * timeout) noexcept {
   return now_ns + timeout_ns;
 }
 
+/// The earlier of the deadline and the moment when time alone makes an event ready.
+std::optional<int64_t> with_due_events(
+  const Waited & waited, std::optional<int64_t> deadline_ns) {
+  int64_t soonest = deadline_ns.value_or(manycore::infinite_ns);
+  waited.events.for_each([&](const rmw_event_t & event) {
+    soonest = std::min(
+      soonest, static_cast<const EndpointEvents *>(event.data)->next_due_ns(event.event_type));
+  });
+  return soonest == manycore::infinite_ns ? std::nullopt : std::optional(soonest);
+}
+
 /// Ends with the context as well: rclpy triggers its guard conditions before it shuts its contexts down on
 /// SIGTERM, and would wait for ever if it came back here in between.
 void sleep_until_ready(
@@ -147,9 +168,13 @@ void sleep_until_ready(
   manycore::Waiter & waiter = wait_set.waiter();
   const Watch watch(waiter, waited);
   while (true) {
-    // The epoch is read before the entities: what happens in between ends the wait at once.
+    // Epoch and due time are read before the entities: what happens or falls due in between ends the wait at once.
     const uint32_t epoch = waiter.epoch();
-    if (wait_set.is_shutdown() || waited.any_ready() || !waiter.wait(epoch, deadline_ns)) {
+    const std::optional<int64_t> until_ns = with_due_events(waited, deadline_ns);
+    if (wait_set.is_shutdown() || waited.any_ready()) {
+      return;
+    }
+    if (!waiter.wait(epoch, until_ns) && until_ns == deadline_ns) {
       return;
     }
   }

@@ -2,6 +2,7 @@
 #include "transport/closing.hpp"
 
 #include "transport/endpoint_blocks.hpp"
+#include "transport/liveliness.hpp"
 #include "transport/reader_table.hpp"
 #include "transport/source_table.hpp"
 
@@ -83,6 +84,9 @@ void close_publisher(Registry & registry, EndpointEntry & entry, bool died) {
       registry.clusters().find<SubscriptionHeader>(SegmentRef{reader.subscription.load()});
     if (!registry.endpoints().is_live(slot) || source == nullptr || header == nullptr) {
       return;
+    }
+    if (died) {
+      note_death(entry, registry.endpoints()[slot]);
     }
     count_unmatched(registry, registry.endpoints()[slot]);
     if (undelivered(*cluster, *dsm, *source, registry.endpoints()[slot].gid)) {

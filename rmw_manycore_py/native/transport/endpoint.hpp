@@ -47,6 +47,19 @@ struct MatchedCount {
   uint64_t current = 0;  ///< matches now
 };
 
+/// A count that rises with time (deadlines missed, leases lost), and when it will next unless something happens.
+struct TimedCount {
+  uint64_t total = 0;
+  int64_t next_due_ns = infinite_ns;  ///< CLOCK_MONOTONIC
+};
+
+/// A subscription's publishers, by liveliness.
+struct LivelinessCount {
+  uint64_t alive = 0;
+  uint64_t not_alive = 0;
+  int64_t next_due_ns = infinite_ns;  ///< CLOCK_MONOTONIC: the next lease runs out, unless asserted
+};
+
 /// Counts behind the incompatible-QoS event of one endpoint.
 struct IncompatibleCount {
   uint64_t total = 0;

@@ -4,6 +4,7 @@
 #include "platform/error.hpp"
 #include "transport/endpoint_blocks.hpp"
 #include "transport/last_published.hpp"
+#include "transport/liveliness.hpp"
 #include "transport/reader_table.hpp"
 #include "transport/source_table.hpp"
 
@@ -126,6 +127,7 @@ void join(Registry & registry, const Pair & pair) {
     header->resync.store(1, std::memory_order_seq_cst);
     notify_process(registry, pair.subscription.process);
   }
+  note_successor(pair.subscription);
   for (EndpointEntry * end : {&pair.publisher, &pair.subscription}) {
     end->matched_total.fetch_add(1);
     end->matched_current.fetch_add(1);
@@ -141,16 +143,24 @@ void count_incompatible(Registry & registry, const Pair & pair, QosPolicy policy
   }
 }
 
+void count_incompatible_type(Registry & registry, const Pair & pair) {
+  for (EndpointEntry * end : {&pair.publisher, &pair.subscription}) {
+    end->incompatible_types.fetch_add(1);
+    notify_event_watchers(registry, end->process);
+  }
+}
+
 void consider(Registry & registry, const Pair & pair) {
   if (
     pair.publisher.role != pair.subscription.role ||
-    std::strcmp(pair.publisher.type, pair.subscription.type) != 0) {
+    (pair.subscription.ignore_local != 0 && pair.publisher.process == pair.subscription.process)) {
     return;
   }
-  if (pair.subscription.ignore_local != 0 && pair.publisher.process == pair.subscription.process) {
+  if (std::strcmp(pair.publisher.type, pair.subscription.type) != 0) {
+    count_incompatible_type(registry, pair);
     return;
   }
-  const QosPolicy policy = first_incompatible_policy(pair.publisher.qos, pair.subscription.qos);
+  const QosPolicy policy = last_incompatible_policy(pair.publisher.qos, pair.subscription.qos);
   if (policy != QosPolicy::none) {
     count_incompatible(registry, pair, policy);
     return;

@@ -14,6 +14,7 @@
 #include "platform/os_process.hpp"
 #include "transport/lifecycle.hpp"
 #include "transport/closing.hpp"
+#include "transport/manual_liveliness.hpp"
 #include "transport/matching.hpp"
 #include "transport/publisher_impl.hpp"
 #include "transport/receive_thread_watcher.hpp"
@@ -94,18 +95,18 @@ Gid make_gid(const Registry & registry, uint32_t slot, uint32_t incarnation) {
   return gid;
 }
 
-void check_qos(const EndpointSpec & spec) {
-  const auto refuse = [&](const char * policy) {
+void check_duration(const EndpointSpec & spec, int64_t ns, const char * what) {
+  if (ns <= 0) {
     throw Error(
-      ErrorCode::unsupported, std::string("QoS policy ") + policy + " requested for '" +
-        spec.topic + "' is not supported by rmw_manycore yet; leave it at its default");
-  };
-  if (spec.qos.deadline_ns != infinite_ns) {
-    refuse("DEADLINE");
+      ErrorCode::invalid_argument, std::string("the ") + what + " of " + std::to_string(ns) +
+        " ns for '" + spec.topic + "' is out of range: expected more than 0");
   }
-  if (spec.qos.liveliness != Liveliness::automatic || spec.qos.liveliness_lease_ns != infinite_ns) {
-    refuse("LIVELINESS");
-  }
+}
+
+void check_qos(const EndpointSpec & spec) {
+  check_duration(spec, spec.qos.deadline_ns, "deadline");
+  check_duration(spec, spec.qos.lifespan_ns, "lifespan");
+  check_duration(spec, spec.qos.liveliness_lease_ns, "liveliness lease duration");
   constexpr uint32_t most = 1u << 20;
   if (spec.qos.depth == 0 || spec.qos.depth > most) {
     throw Error(
@@ -258,11 +259,13 @@ uint32_t Process::Impl::fill_endpoint(const EndpointSpec & spec, EndpointKind ki
   entry.topic_dsm_size = configured == nullptr ? 0 : configured->topic_dsm_size;
   for (std::atomic<uint64_t> * count :
        {&entry.matched_total, &entry.matched_current, &entry.incompatible_total,
-        &entry.counters.messages, &entry.counters.bytes, &entry.counters.lost,
+        &entry.incompatible_types, &entry.counters.messages, &entry.counters.bytes, &entry.counters.lost,
         &entry.counters.expired, &entry.counters.refused, &entry.counters.overwritten}) {
     count->store(0);
   }
   entry.incompatible_policy.store(0);
+  entry.asserted_ns.store(ManualLiveliness::never);
+  entry.dead_publishers.store(0);
   return taken;
 }
 

@@ -54,6 +54,12 @@ uint64_t Publisher::publish(
   const std::unique_lock<std::mutex> lock(impl.mutex, std::adopt_lock);
   draft.publisher_ = nullptr;
   const uint64_t sequence_number = ++impl.published;
+  if (impl.has_deadline()) {
+    impl.deadline.touch(impl.entry.qos.deadline_ns);
+  }
+  if (impl.is_manual()) {
+    impl.liveliness.assert_now();  // before the message, which tells readers to look
+  }
   const uint64_t number =
     impl.writer.commit(size_bytes, source_timestamp_ns, sequence_number, correlation);
   const bool targeted = impl.entry.role == EndpointRole::reply;
@@ -72,5 +78,35 @@ uint64_t Publisher::publish(
 MatchedCount Publisher::matched() const { return matched_of(impl_->entry); }
 
 IncompatibleCount Publisher::incompatible() const { return incompatible_of(impl_->entry); }
+
+uint64_t Publisher::incompatible_types() const noexcept {
+  return impl_->entry.incompatible_types.load();
+}
+
+TimedCount Publisher::deadline_missed() const noexcept {
+  return impl_->has_deadline() ? impl_->deadline.missed(impl_->entry.qos.deadline_ns)
+                               : TimedCount{};
+}
+
+TimedCount Publisher::liveliness_lost() const noexcept {
+  return impl_->is_manual() ? impl_->liveliness.lost() : TimedCount{};
+}
+
+void Publisher::assert_liveliness() {
+  if (impl_->is_manual() && impl_->liveliness.assert_now()) {
+    impl_->tell_event_watchers();
+  }
+}
+
+void Publisher::Impl::tell_event_watchers() {
+  const std::lock_guard<std::mutex> lock(mutex);
+  writer.enter();
+  for (const Reader & reader : writer.readers().readers()) {
+    if (reader.wake->event_watchers.load(std::memory_order_seq_cst) != 0) {
+      reader.wake->notify();
+    }
+  }
+  writer.leave();
+}
 
 }  // namespace manycore

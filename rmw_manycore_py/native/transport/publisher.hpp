@@ -53,8 +53,14 @@ public:
   uint64_t publish(Draft && draft, size_t size_bytes, int64_t source_timestamp_ns,
     const Correlation & correlation = {});
 
+  /// For MANUAL_BY_TOPIC liveliness, which publish() asserts as well; else nothing to do.
+  void assert_liveliness();
+
   MatchedCount matched() const;
   IncompatibleCount incompatible() const;
+  uint64_t incompatible_types() const noexcept;
+  TimedCount deadline_missed() const noexcept;
+  TimedCount liveliness_lost() const noexcept;
 
 private:
   friend class Draft;

@@ -3,6 +3,8 @@
 
 #include <mutex>
 
+#include "transport/deadline_clock.hpp"
+#include "transport/manual_liveliness.hpp"
 #include "transport/publisher.hpp"
 #include "transport/topic_dsm_writer.hpp"
 
@@ -14,7 +16,18 @@ struct Publisher::Impl {
     slot(slot_),
     entry(registry_.endpoints()[slot_]),
     cluster(registry_.clusters().at(entry.cluster)),
-    writer(registry_, cluster, entry) {}
+    writer(registry_, cluster, entry),
+    liveliness(entry.asserted_ns, entry.qos.liveliness_lease_ns) {
+    deadline.reset();
+  }
+
+  bool has_deadline() const noexcept { return entry.qos.deadline_ns != infinite_ns; }
+  bool is_manual() const noexcept {
+    return entry.qos.liveliness == Liveliness::manual_by_topic &&
+           entry.qos.liveliness_lease_ns != infinite_ns;
+  }
+  /// Wakes the processes of the readers that wait for events.
+  void tell_event_watchers();
 
   Registry & registry;
   uint32_t slot;
@@ -23,6 +36,8 @@ struct Publisher::Impl {
   std::mutex mutex;  ///< held from draft() to publish()
   TopicDsmWriter writer;
   uint64_t published = 0;
+  DeadlineClock deadline;
+  ManualLiveliness liveliness;
 };
 
 }  // namespace manycore

@@ -3,20 +3,20 @@
 
 namespace manycore {
 
-QosPolicy first_incompatible_policy(const Qos & offered, const Qos & requested) {
-  if (offered.durability < requested.durability) {
-    return QosPolicy::durability;
-  }
-  if (offered.deadline_ns > requested.deadline_ns) {
-    return QosPolicy::deadline;
+QosPolicy last_incompatible_policy(const Qos & offered, const Qos & requested) {
+  if (offered.reliability < requested.reliability) {
+    return QosPolicy::reliability;
   }
   if (
     offered.liveliness < requested.liveliness ||
     offered.liveliness_lease_ns > requested.liveliness_lease_ns) {
     return QosPolicy::liveliness;
   }
-  if (offered.reliability < requested.reliability) {
-    return QosPolicy::reliability;
+  if (offered.deadline_ns > requested.deadline_ns) {
+    return QosPolicy::deadline;
+  }
+  if (offered.durability < requested.durability) {
+    return QosPolicy::durability;
   }
   return QosPolicy::none;
 }

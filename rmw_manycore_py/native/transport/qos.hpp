@@ -27,10 +27,11 @@ struct Qos {
 };
 static_assert(sizeof(Qos) == 32 && std::is_trivially_copyable_v<Qos>);
 
-/// The policies by which an offer can fail a request, in the order in which they are checked.
+/// The policies by which an offer can fail a request, in the order of their DDS numbers.
 enum class QosPolicy : uint8_t { none, durability, deadline, liveliness, reliability };
 
-/// DDS request-offer rule: `none` when `offered` satisfies `requested`, else the first failing policy.
-QosPolicy first_incompatible_policy(const Qos & offered, const Qos & requested);
+/// DDS request-offer rule: `none` when `offered` satisfies `requested`, else the last failing policy (the one that
+/// Fast DDS tells of).
+QosPolicy last_incompatible_policy(const Qos & offered, const Qos & requested);
 
 }  // namespace manycore

@@ -114,7 +114,9 @@ void Registry::link_endpoint(uint32_t slot) noexcept {
 void Registry::unlink_endpoint(uint32_t slot) noexcept {
   EndpointEntry & entry = endpoints_[slot];
   uint32_t * link = &header().topic_buckets[entry.topic_hash % topic_bucket_count];
-  while (*link != nothing && *link != slot) {
+  // A damaged chain is not followed out of the table, nor round and round.
+  for (uint32_t i = 0; *link != slot && *link < endpoints_.high_water() && i < endpoint_capacity;
+       ++i) {
     link = &endpoints_[*link].next_of_topic;
   }
   if (*link == slot) {
@@ -126,7 +128,7 @@ void Registry::for_each_of_topic(
   const char * topic, const std::function<void(uint32_t, EndpointEntry &)> & visit) {
   const uint64_t hash = hash_name(topic);
   uint32_t slot = header().topic_buckets[hash % topic_bucket_count];
-  while (slot != nothing) {
+  for (uint32_t i = 0; slot < endpoints_.high_water() && i < endpoint_capacity; ++i) {
     EndpointEntry & entry = endpoints_[slot];
     const uint32_t next = entry.next_of_topic;
     if (entry.topic_hash == hash && std::strcmp(entry.topic, topic) == 0) {

@@ -80,11 +80,15 @@ struct EndpointEntry {
   std::atomic<uint64_t> incompatible_total;
   std::atomic<uint32_t> incompatible_policy;
   uint32_t topic_dsm_size;  ///< publisher: fixed size from the topic table; 0 = grows
+  std::atomic<uint64_t> incompatible_types;
+  std::atomic<int64_t> asserted_ns;  ///< publisher: last assertion of manual liveliness; 0 = never
+  std::atomic<uint32_t> dead_publishers;  ///< subscription: died and not yet replaced
+  uint32_t reserved;
   EndpointCounters counters;
   char topic[name_bytes];
   char type[name_bytes];
 };
-static_assert(sizeof(EndpointEntry) == 720);
+static_assert(sizeof(EndpointEntry) == 744);
 
 /// One line of the topic table (ROS-lite2 Fig. 7).
 struct TopicEntry {

@@ -71,6 +71,7 @@ inline void initialize(SubscriptionHeader & header) noexcept {
 /// pusher that died in between holds nobody up. `on_displaced(Hint)` is called for each that it displaces.
 template<typename OnDisplaced>
 void push(SubscriptionHeader & header, const Hint & hint, OnDisplaced on_displaced) noexcept {
+  header.note_arrival();
   const Slots slots(header);
   while (true) {
     uint64_t tail = header.tail.load(std::memory_order_acquire);

@@ -7,6 +7,7 @@
 #include "platform/clock.hpp"
 #include "transport/closing.hpp"
 #include "transport/endpoint_blocks.hpp"
+#include "transport/liveliness.hpp"
 #include "transport/subscription_impl.hpp"
 
 namespace manycore {
@@ -113,5 +114,18 @@ uint64_t Subscription::lost() const noexcept {
 MatchedCount Subscription::matched() const { return matched_of(impl_->entry); }
 
 IncompatibleCount Subscription::incompatible() const { return incompatible_of(impl_->entry); }
+
+uint64_t Subscription::incompatible_types() const noexcept {
+  return impl_->entry.incompatible_types.load();
+}
+
+TimedCount Subscription::deadline_missed() const noexcept {
+  const SubscriptionHeader & header = impl_->header;
+  return header.has_deadline != 0 ? header.deadline.missed(header.deadline_ns) : TimedCount{};
+}
+
+LivelinessCount Subscription::liveliness() const {
+  return liveliness_of(impl_->registry, impl_->entry);
+}
 
 }  // namespace manycore

@@ -75,6 +75,9 @@ public:
 
   MatchedCount matched() const;
   IncompatibleCount incompatible() const;
+  uint64_t incompatible_types() const noexcept;
+  TimedCount deadline_missed() const noexcept;
+  LivelinessCount liveliness() const;
 
 private:
   friend class Claim;

@@ -41,6 +41,9 @@ SubscriptionHeader & Subscription::Impl::create(Registry & registry, uint32_t en
   header.depth = depth;
   header.slot_count_log2 = log2;
   header.keep_all = displaces(entry) ? 0 : 1;
+  header.has_deadline = entry.qos.deadline_ns == infinite_ns ? 0 : 1;
+  header.deadline_ns = entry.qos.deadline_ns;
+  header.deadline.reset();
   subscriber_queue::initialize(header);
   header.magic.store(subscription_magic, std::memory_order_release);
   return header;
@@ -107,6 +110,9 @@ void Subscription::Impl::resync(uint64_t forgotten) {
   backlog.insert(backlog.end(), scratch.begin(), scratch.end());
   arrivals_by_resync.fetch_add(scratch.size() - forgotten, std::memory_order_relaxed);
   unsettled = true;
+  if (scratch.size() > forgotten) {
+    header.note_arrival();
+  }
   while (displaces(entry) && backlog.size() > header.depth) {
     const TopicDsmReader::Waiting oldest = backlog.front();
     backlog.pop_front();

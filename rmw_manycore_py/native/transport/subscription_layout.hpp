@@ -1,7 +1,7 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "transport/endpoint.hpp"
+#include "transport/deadline_clock.hpp"
 #include "transport/segment_layout.hpp"
 
 namespace manycore {
@@ -43,7 +43,8 @@ struct SubscriptionHeader {
   uint32_t depth;                     ///< capacity of the queue
   uint32_t slot_count_log2;           ///< slots are a power of two, at least depth
   uint8_t keep_all;
-  uint8_t reserved[3];
+  uint8_t has_deadline;
+  uint8_t reserved[2];
   std::atomic<uint32_t> resync;             ///< hints may be missing: scan the sources
   std::atomic<uint64_t> first_source_block;
   std::atomic<uint64_t> source_generation;  ///< raised whenever the source table changes
@@ -54,11 +55,21 @@ struct SubscriptionHeader {
   alignas(64) std::atomic<uint64_t> head;
   alignas(64) std::atomic<uint64_t> tail;
 
+  /// Arrivals, against the requested deadline; untouched without one.
+  alignas(64) DeadlineClock deadline;
+  int64_t deadline_ns;
+
+  void note_arrival() noexcept {
+    if (has_deadline != 0) {
+      deadline.touch(deadline_ns);
+    }
+  }
+
   std::atomic<uint64_t> * slots() noexcept {
     return reinterpret_cast<std::atomic<uint64_t> *>(this + 1);
   }
 };
-static_assert(sizeof(SubscriptionHeader) == 192);
+static_assert(sizeof(SubscriptionHeader) == 256);
 static_assert(offsetof(SubscriptionHeader, lost_beside_dropped) == 56);
 
 constexpr uint32_t keep_all_capacity = 1024;  ///< hints; beyond it the subscriber scans its sources

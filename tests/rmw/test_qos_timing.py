@@ -1,0 +1,232 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""DEADLINE and LIVELINESS: what their events count, and that they come by time alone."""
+
+from __future__ import annotations
+
+import time
+from typing import Any
+
+import pytest
+import rclpy
+from rclpy.duration import Duration
+from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
+from rclpy.experimental import EventsExecutor
+from rclpy.qos import LivelinessPolicy, QoSPolicyKind, QoSProfile
+from ros_support import announce, peer_node, spin_until
+from std_msgs.msg import String
+from support import IS_MANYCORE, PATIENCE_S
+
+SHORT_S, LONG_S = 0.1, 3600.0
+MANUAL = LivelinessPolicy.MANUAL_BY_TOPIC
+
+
+def deadline(seconds: float) -> QoSProfile:
+    return QoSProfile(depth=10, deadline=Duration(seconds=seconds))
+
+
+def lease(seconds: float, liveliness: LivelinessPolicy = MANUAL) -> QoSProfile:
+    return QoSProfile(
+        depth=10, liveliness=liveliness, liveliness_lease_duration=Duration(seconds=seconds)
+    )
+
+
+def subscribe(node, qos, **callbacks: Any) -> None:
+    node.create_subscription(
+        String,
+        "chatter",
+        lambda _: None,
+        qos,
+        event_callbacks=SubscriptionEventCallbacks(**callbacks),
+    )
+
+
+def publish_once(seconds: float) -> None:
+    """Publish one message, and tell of each missed deadline of this side."""
+    with peer_node() as node:
+        events = PublisherEventCallbacks(
+            deadline=lambda event: announce(f"missed {event.total_count}")
+        )
+        publisher = node.create_publisher(
+            String, "chatter", deadline(seconds), event_callbacks=events
+        )
+        spin_until(node, publisher.get_subscription_count)
+        publisher.publish(String())
+        announce("published")
+        rclpy.spin(node)
+
+
+def test_missed_deadlines_are_counted_on_both_sides(node, start_peer, peer_cluster):
+    missed = []
+    subscribe(node, deadline(SHORT_S), deadline=missed.append)
+    peer = start_peer(publish_once, SHORT_S, cluster=peer_cluster)
+    spin_until(node, lambda: missed and missed[-1].total_count >= 3)
+    assert sum(event.total_count_change for event in missed) == missed[-1].total_count
+    peer.wait_for(r"missed [3-9]")
+
+
+def test_a_deadline_that_is_met_is_not_missed(node, start_peer, peer_cluster):
+    missed, received = [], []
+    subscribe(node, deadline(LONG_S), deadline=missed.append)
+    node.create_subscription(String, "chatter", received.append, 10)
+    peer = start_peer(publish_once, LONG_S, cluster=peer_cluster)
+    spin_until(node, lambda: received)
+    assert missed == []
+    assert "missed" not in peer.output
+
+
+def test_before_the_first_message_no_deadline_is_missed(node):
+    missed = []
+    publisher = node.create_publisher(
+        String,
+        "chatter",
+        deadline(0.01),
+        event_callbacks=PublisherEventCallbacks(deadline=missed.append),
+    )
+    subscribe(node, deadline(0.01), deadline=missed.append)
+    spin_until(node, publisher.get_subscription_count)
+    time.sleep(0.05)  # some periods, not a wait for something to happen
+    rclpy.spin_once(node, timeout_sec=0)
+    assert missed == []
+
+
+def test_deadlines_that_nobody_watched_are_told_together(node):
+    missed = []
+    publisher = node.create_publisher(
+        String,
+        "chatter",
+        deadline(0.02),
+        event_callbacks=PublisherEventCallbacks(deadline=missed.append),
+    )
+    publisher.publish(String())
+    time.sleep(0.1)  # five periods
+    spin_until(node, lambda: missed)
+    assert missed[0].total_count_change == missed[0].total_count >= 4
+
+
+def test_a_longer_deadline_is_incompatible(node):
+    offered, requested = [], []
+    node.create_publisher(
+        String,
+        "chatter",
+        deadline(2),
+        event_callbacks=PublisherEventCallbacks(incompatible_qos=offered.append),
+    )
+    subscribe(node, deadline(1), incompatible_qos=requested.append)
+    spin_until(node, lambda: offered and requested)
+    assert offered[0].last_policy_kind == requested[0].last_policy_kind == QoSPolicyKind.DEADLINE
+
+
+def test_events_executor_hears_of_missed_deadlines(node):
+    """Nobody is in a wait set here, and nothing arrives: time alone has to call."""
+    missed = []
+    publisher = node.create_publisher(
+        String,
+        "chatter",
+        deadline(SHORT_S),
+        event_callbacks=PublisherEventCallbacks(deadline=missed.append),
+    )
+    executor = EventsExecutor()
+    executor.add_node(node)
+    publisher.publish(String())
+    end = time.monotonic() + PATIENCE_S
+    while not missed or missed[-1].total_count < 3:
+        assert time.monotonic() < end
+        executor.spin_once(1.0)
+    executor.shutdown()
+
+
+def assert_when_told(seconds: float) -> None:
+    """Assert manual liveliness for each line of input; tell of leases that ran out."""
+    with peer_node() as node:
+        events = PublisherEventCallbacks(
+            liveliness=lambda event: announce(f"lost {event.total_count}")
+        )
+        publisher = node.create_publisher(String, "chatter", lease(seconds), event_callbacks=events)
+        spin_until(node, publisher.get_subscription_count)
+        announce("ready")
+        while input() != "spin":
+            publisher.assert_liveliness()
+        rclpy.spin(node)
+
+
+def test_manual_liveliness_is_lost_on_both_sides(node, start_peer, peer_cluster):
+    changes = []
+    subscribe(node, lease(SHORT_S), liveliness=changes.append)
+    peer = start_peer(assert_when_told, SHORT_S, cluster=peer_cluster)
+    peer.wait_for("ready")
+    for round_ in (1, 2):
+        peer.say("assert")
+        spin_until(node, lambda n=round_: sum(e.alive_count == 1 for e in changes) == n)
+        spin_until(node, lambda: changes[-1].not_alive_count == 1)
+        assert (changes[-1].alive_count, changes[-1].alive_count_change) == (0, -1)
+    peer.say("spin")
+    peer.wait_for("lost 2")
+    assert sum(event.not_alive_count_change for event in changes) == 1
+
+
+def test_a_message_asserts_manual_liveliness(node):
+    changes = []
+    subscribe(node, lease(LONG_S), liveliness=changes.append)
+    publisher = node.create_publisher(String, "chatter", lease(LONG_S))
+    spin_until(node, publisher.get_subscription_count)
+    publisher.publish(String())
+    spin_until(node, lambda: changes)
+    assert (changes[0].alive_count, changes[0].not_alive_count) == (1, 0)
+    node.destroy_publisher(publisher)
+    spin_until(node, lambda: len(changes) == 2)
+    assert (changes[1].alive_count, changes[1].alive_count_change) == (0, -1)
+    assert (changes[1].not_alive_count, changes[1].not_alive_count_change) == (0, 0)
+
+
+def publish_alive(kind: str, seconds: float) -> None:
+    with peer_node() as node:
+        publisher = node.create_publisher(String, "chatter", lease(seconds, LivelinessPolicy[kind]))
+        spin_until(node, publisher.get_subscription_count)
+        publisher.publish(String())
+        rclpy.spin(node)
+
+
+@pytest.mark.skipif(not IS_MANYCORE, reason="Fast DDS notices a death when the lease is over")
+@pytest.mark.parametrize("kind", ["AUTOMATIC", "MANUAL_BY_TOPIC"])
+def test_a_killed_publisher_is_noticed_long_before_its_lease_is_over(
+    node, start_peer, peer_cluster, kind
+):
+    changes = []
+    subscribe(node, lease(LONG_S, LivelinessPolicy[kind]), liveliness=changes.append)
+    peer = start_peer(publish_alive, kind, LONG_S, cluster=peer_cluster)
+    spin_until(node, lambda: changes and changes[-1].alive_count == 1)
+    peer.kill()
+    spin_until(node, lambda: changes[-1].alive_count == 0)
+    assert changes[-1].not_alive_count == 1
+
+
+def test_events_executor_hears_of_lost_liveliness(node, start_peer, peer_cluster):
+    changes = []
+    subscribe(node, lease(SHORT_S), liveliness=changes.append)
+    executor = EventsExecutor()
+    executor.add_node(node)
+    start_peer(publish_alive, "MANUAL_BY_TOPIC", SHORT_S, cluster=peer_cluster)
+    end = time.monotonic() + PATIENCE_S
+    while not changes or changes[-1].not_alive_count == 0:
+        assert time.monotonic() < end
+        executor.spin_once(1.0)
+    executor.shutdown()
+
+
+def test_weaker_liveliness_is_incompatible(node):
+    requested = []
+    node.create_publisher(String, "chatter", 10)
+    subscribe(node, lease(1), incompatible_qos=requested.append)
+    spin_until(node, lambda: requested)
+    assert requested[0].last_policy_kind == QoSPolicyKind.LIVELINESS
+
+
+@pytest.mark.skipif(not IS_MANYCORE, reason="Fast DDS tells of liveliness only with a lease")
+def test_default_liveliness_follows_who_comes_and_goes(node):
+    changes = []
+    subscribe(node, 10, liveliness=changes.append)
+    publisher = node.create_publisher(String, "chatter", 10)
+    spin_until(node, lambda: changes and changes[-1].alive_count == 1)
+    node.destroy_publisher(publisher)
+    spin_until(node, lambda: changes[-1].alive_count == 0)
+    assert changes[-1].not_alive_count == 0
