@@ -20,7 +20,7 @@ NATIVE_BELOW = {
     "transport": {"platform"},
     "rmw": {"platform", "transport"},
     "python": {"platform", "transport"},
-    "ndt": {"platform", "transport"},
+    "ndt": {"platform"},
     "bench": {"platform", "transport"},
 }
 SEES_ROS = {"rmw", "bench"}

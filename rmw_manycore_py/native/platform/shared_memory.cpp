@@ -5,6 +5,7 @@
 #include <sys/mman.h>
 #include <sys/stat.h>
 #include <sys/statvfs.h>
+#include <unistd.h>
 
 #include <cerrno>
 #include <utility>
@@ -63,7 +64,15 @@ SharedMemory SharedMemory::create(const std::string & path, size_t size_bytes) {
 }
 
 SharedMemory SharedMemory::open(const std::string & path, size_t least_size_bytes) {
-  FileDescriptor fd(::open(path.c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW));
+  return open(path, least_size_bytes, O_NOFOLLOW);
+}
+
+SharedMemory SharedMemory::attach(const std::string & shared_path) {
+  return open(shared_path, 1, 0);  // the path is a link of the kernel's
+}
+
+SharedMemory SharedMemory::open(const std::string & path, size_t least_size_bytes, int flags) {
+  FileDescriptor fd(::open(path.c_str(), O_RDWR | O_CLOEXEC | flags));
   if (!fd) {
     throw_errno("cannot open " + path);
   }
@@ -78,6 +87,23 @@ SharedMemory SharedMemory::open(const std::string & path, size_t least_size_byte
         std::to_string(least_size_bytes) + "); remove it with 'manycore clean'");
   }
   return SharedMemory(std::move(fd), path, static_cast<size_t>(status.st_size));
+}
+
+SharedMemory SharedMemory::anonymous(const std::string & label, size_t size_bytes) {
+  FileDescriptor fd(memfd_create(label.c_str(), MFD_CLOEXEC));
+  if (!fd) {
+    throw_errno("cannot create shared memory for " + label);
+  }
+  if (ftruncate(fd.get(), static_cast<off_t>(size_bytes)) != 0) {
+    throw_errno("cannot size the shared memory for " + label);
+  }
+  SharedMemory memory(std::move(fd), label, size_bytes);
+  memory.reserve(0, size_bytes);
+  return memory;
+}
+
+std::string SharedMemory::shared_path() const {
+  return "/proc/" + std::to_string(getpid()) + "/fd/" + std::to_string(fd_.get());
 }
 
 void SharedMemory::reserve(uint64_t offset, uint64_t length) const {

@@ -22,9 +22,17 @@ public:
   static SharedMemory create(const std::string & path, size_t size_bytes);
   /// Maps an existing file of this user. Throws Error{corrupt} below `least_size_bytes`.
   static SharedMemory open(const std::string & path, size_t least_size_bytes);
+  /// Memory without a file, all of it reserved: it is gone with the last process that maps it.
+  /// `label` shows in /proc/<pid>/maps. Others attach() to its shared_path().
+  static SharedMemory anonymous(const std::string & label, size_t size_bytes);
+
+  /// Maps the memory that another process made with anonymous() and named by shared_path().
+  static SharedMemory attach(const std::string & shared_path);
 
   std::byte * data() const noexcept { return data_; }
   size_t size() const noexcept { return size_; }
+  /// Where another process of this user finds the same memory while this one lives.
+  std::string shared_path() const;
   explicit operator bool() const noexcept { return data_ != nullptr; }
 
   template<typename T>
@@ -40,6 +48,7 @@ public:
   void release(uint64_t offset, uint64_t length) const noexcept;
 
 private:
+  static SharedMemory open(const std::string & path, size_t least_size_bytes, int flags);
   SharedMemory(FileDescriptor fd, const std::string & path, size_t size_bytes);
   void unmap() noexcept;
 

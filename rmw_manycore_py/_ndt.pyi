@@ -1,0 +1,66 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""The native scan matcher."""
+
+import enum
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+class NdtError(RuntimeError): ...
+
+class Search(enum.Enum):
+    radius = 0
+    direct7 = 1
+    direct1 = 2
+
+class VoxelCovariance(enum.Enum):
+    pcl = 0
+    autoware = 1
+    pclomp = 2
+
+class StepRule(enum.Enum):
+    clamped = 0
+    more_thuente = 1
+
+class VoxelMap:
+    def __init__(
+        self,
+        points: NDArray[np.float64],
+        *,
+        voxel_size_m: float,
+        search: Search,
+        covariance: VoxelCovariance,
+        min_points_per_voxel: int,
+    ) -> None: ...
+    @property
+    def voxels(self) -> int: ...
+    @property
+    def size_bytes(self) -> int: ...
+
+class MatchOptions:
+    def __init__(
+        self,
+        *,
+        step_rule: StepRule,
+        max_iterations: int,
+        step_size: float,
+        trans_epsilon: float,
+        outlier_ratio: float,
+        regularization_scale_factor: float,
+    ) -> None: ...
+
+class SerialMatcher:
+    def __init__(self, options: MatchOptions) -> None: ...
+    def align(
+        self,
+        map: VoxelMap,
+        points: NDArray[np.float32],
+        guess: NDArray[np.float64],
+        regularization_position_m: tuple[float, float] | None = None,
+    ) -> dict[str, Any]: ...
+    def evaluate(
+        self, map: VoxelMap, points: NDArray[np.float32], pose: NDArray[np.float64]
+    ) -> dict[str, Any]: ...
+
+def simd() -> str: ...

@@ -1,0 +1,34 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdlib>
+#include <memory>
+#include <new>
+
+namespace manycore::ndt {
+
+/// Floats on a cache line's boundary; grows, never shrinks, forgets what it held when it grows.
+class AlignedFloats {
+public:
+  float * with_room_for(size_t count) {
+    if (count > capacity_) {
+      const size_t bytes = (count * sizeof(float) + 63) / 64 * 64;
+      floats_.reset(static_cast<float *>(std::aligned_alloc(64, bytes)));
+      if (!floats_) {
+        capacity_ = 0;
+        throw std::bad_alloc();
+      }
+      capacity_ = count;
+    }
+    return floats_.get();
+  }
+
+private:
+  struct Free {
+    void operator()(float * floats) const noexcept { std::free(floats); }
+  };
+  std::unique_ptr<float, Free> floats_;
+  size_t capacity_ = 0;
+};
+
+}  // namespace manycore::ndt

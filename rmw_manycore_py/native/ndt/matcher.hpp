@@ -1,0 +1,31 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "ndt/newton.hpp"
+#include "ndt/pass.hpp"
+#include "ndt/scan.hpp"
+
+namespace manycore::ndt {
+
+/// What is matched: a scan to a map.
+struct Problem {
+  MapView map;
+  ScanView scan;
+  MatchOptions options;
+  std::optional<Regularization> regularization;
+};
+
+/// All bins' sums added in the order of the bins, whoever computed them.
+TangentSums add_bins(const TangentSums (&bins)[bin_count]);
+
+/// Derivatives at a pose, from the sums of all bins there.
+Derivatives finish_pass(const Problem & problem, const TangentSums & sums, const Pose6 & pose);
+
+/// One core does all bins.
+Derivatives evaluate_alone(const Problem & problem, BinPass bin_pass, const Pose6 & pose);
+
+}  // namespace manycore::ndt

@@ -1,0 +1,44 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+namespace manycore::ndt {
+
+/// Which voxels a point is held against.
+enum class Search : uint32_t {
+  radius,   ///< those whose mean lies within one resolution of the point, as PCL's kd-tree finds
+  direct7,  ///< its own and those across the six faces
+  direct1,  ///< its own
+};
+
+/// How the covariance of a voxel follows from its n points, S being the sum of (x - mean)(x - mean)'.
+enum class VoxelCovariance : uint32_t {
+  pcl,       ///< S / (n - 1)
+  autoware,  ///< (I + S) / (n - 1): the accumulator starts as the identity (1 m^2)
+  pclomp,    ///< (I + S) / n * (n - 1) / n
+};
+
+/// How far to go along Newton's direction.
+enum class StepRule : uint32_t {
+  clamped,       ///< its length, at most step_size, without a line search (Autoware's default)
+  more_thuente,  ///< More and Thuente's line search up to step_size (PCL)
+};
+
+struct MapOptions {
+  double voxel_size_m = 2.0;
+  Search search = Search::direct7;
+  VoxelCovariance covariance = VoxelCovariance::autoware;
+  uint32_t min_points_per_voxel = 6;
+};
+
+struct MatchOptions {
+  StepRule step_rule = StepRule::clamped;
+  uint32_t max_iterations = 30;
+  double step_size = 0.1;  ///< longest step in (m, rad)
+  double trans_epsilon = 0.01;
+  double outlier_ratio = 0.55;
+  double regularization_scale_factor = 0.0;
+};
+
+}  // namespace manycore::ndt

@@ -1,0 +1,237 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+// The hot loop, for any width of registers. Included by pass_<simd>.cpp inside a namespace of its
+// own, after that file defined `Lanes`:
+//   width                 lanes of a register
+//   F, I                  registers of floats and of 32-bit integers, with C's operators
+//   load, store, set1     of floats
+//   to_int, to_float      truncating, exact
+//   fma(a, b, c)          a * b + c, fused where the CPU can
+//   min, max              the second operand where one is not a number
+//   at_most(a, b, c)      c where a <= b, else 0
+//   shift_exponent(f, n)  f * 2^n
+//   load_lines            of `width` voxel lines the first `line_fields` floats, transposed
+
+using F = Lanes::F;
+using I = Lanes::I;
+
+/// Of a voxel line: mean, weight, inverse covariance.
+constexpr size_t line_fields = 10;
+
+struct Constants {
+  F rotation[9];
+  F translation[3];
+  F inverse_size;
+  F first_cell[3];
+  F last_cell[3];
+  F squared_size;
+  F exponent;    // of 2, per unit of x'Bx: -d2 / 2 / ln 2
+  F minus_d2;
+  int32_t cells_x;
+  int32_t cells_y;
+};
+
+Constants constants_of(const MapHeader & map, const PassPose & pose, float d2) {
+  Constants c;
+  for (size_t i = 0; i < 9; ++i) {
+    c.rotation[i] = Lanes::set1(pose.rotation[i]);
+  }
+  for (size_t i = 0; i < 3; ++i) {
+    c.translation[i] = Lanes::set1(pose.translation_m[i]);
+    c.first_cell[i] = Lanes::set1(static_cast<float>(map.first_cell[i]));
+    c.last_cell[i] = Lanes::set1(static_cast<float>(map.cells[i] - 1));
+  }
+  const float size = static_cast<float>(map.voxel_size_m);
+  c.inverse_size = Lanes::set1(static_cast<float>(1 / map.voxel_size_m));
+  c.squared_size = Lanes::set1(size * size);
+  c.exponent = Lanes::set1(-0.5F * 1.44269504F * d2);
+  c.minus_d2 = Lanes::set1(-d2);
+  c.cells_x = map.cells[0];
+  c.cells_y = map.cells[1];
+  return c;
+}
+
+/// 2^x for x <= 0, to 2e-7; 0 below 2^-126. The polynomial is Taylor's for 2^r on [-1/2, 1/2].
+inline F exp2_negative(F x) {
+  const F bounded = Lanes::max(x, Lanes::set1(-126));
+  const I n = Lanes::to_int(bounded - Lanes::set1(0.5F));
+  const F r = bounded - Lanes::to_float(n);
+  F p = Lanes::set1(1.5403530e-4F);
+  p = Lanes::fma(p, r, Lanes::set1(1.3333558e-3F));
+  p = Lanes::fma(p, r, Lanes::set1(9.6181291e-3F));
+  p = Lanes::fma(p, r, Lanes::set1(5.5504109e-2F));
+  p = Lanes::fma(p, r, Lanes::set1(2.4022651e-1F));
+  p = Lanes::fma(p, r, Lanes::set1(6.9314718e-1F));
+  p = Lanes::fma(p, r, Lanes::set1(1));
+  return Lanes::at_most(Lanes::set1(-126), x, Lanes::shift_exponent(p, n));
+}
+
+/// The lanes' points: turned into the map frame (q), and their lists of voxels.
+struct Sight {
+  F q[3];
+  F p[3];  // q moved to its place, relative to the map's origin
+  const uint32_t * lists[Lanes::width];
+};
+
+inline Sight look(const MapView & map, const ScanView & scan, const Constants & c, size_t first) {
+  Sight s;
+  const F x = Lanes::load(scan.x_m + first);
+  const F y = Lanes::load(scan.y_m + first);
+  const F z = Lanes::load(scan.z_m + first);
+  I cell[3];
+  for (size_t i = 0; i < 3; ++i) {
+    const F * const row = c.rotation + 3 * i;
+    s.q[i] = Lanes::fma(row[0], x, Lanes::fma(row[1], y, row[2] * z));
+    s.p[i] = s.q[i] + c.translation[i];
+    // Outside the grid is its border, which is in no table; cells are counted from 0, so cutting
+    // off the fraction is rounding down.
+    const F place = Lanes::fma(s.p[i], c.inverse_size, -c.first_cell[i]);
+    cell[i] = Lanes::to_int(Lanes::min(Lanes::max(place, Lanes::set1(0)), c.last_cell[i]));
+  }
+  const I key = cell[0] + (cell[1] + cell[2] * c.cells_y) * c.cells_x;
+  uint32_t keys[Lanes::width];
+  std::memcpy(keys, &key, sizeof keys);
+  for (size_t lane = 0; lane < Lanes::width; ++lane) {
+    s.lists[lane] = lane > 0 && keys[lane] == keys[lane - 1]
+                      ? s.lists[lane - 1]
+                      : map.lists + find_list(map, keys[lane]);
+  }
+  return s;
+}
+
+/// Takes the next voxel of each lane's list, line 0 where a list is at its end; false when all are.
+inline bool next_voxels(const MapView & map, Sight & s, const float * (&lines)[Lanes::width]) {
+  uint32_t any = 0;
+  for (size_t lane = 0; lane < Lanes::width; ++lane) {
+    const uint32_t line = *s.lists[lane];
+    s.lists[lane] += line != 0;
+    lines[lane] = map.lines[line].mean_m;
+    any |= line;
+  }
+  return any != 0;
+}
+
+/// What the lanes' points add over the voxels they see: no term of q yet.
+struct PointSums {
+  F score;
+  F nearest;
+  F pairs;
+  F f[3];
+  F m[6];
+};
+
+template<bool by_radius>
+inline void add_voxels(
+  const Constants & c, const Sight & s, const float * const (&lines)[Lanes::width],
+  PointSums & sums) {
+  F v[line_fields];
+  Lanes::load_lines(lines, v);
+  const F x[3] = {s.p[0] - v[0], s.p[1] - v[1], s.p[2] - v[2]};
+  F weight = v[3];
+  if (by_radius) {
+    const F squared = Lanes::fma(x[0], x[0], Lanes::fma(x[1], x[1], x[2] * x[2]));
+    weight = Lanes::at_most(squared, c.squared_size, weight);
+  }
+  const F * const b = v + 4;
+  const F f[3] = {
+    Lanes::fma(b[0], x[0], Lanes::fma(b[1], x[1], b[2] * x[2])),
+    Lanes::fma(b[1], x[0], Lanes::fma(b[3], x[1], b[4] * x[2])),
+    Lanes::fma(b[2], x[0], Lanes::fma(b[4], x[1], b[5] * x[2]))};
+  const F distance = Lanes::fma(f[0], x[0], Lanes::fma(f[1], x[1], f[2] * x[2]));
+  const F e = exp2_negative(c.exponent * distance) * weight;
+  sums.score += e;
+  sums.nearest = Lanes::max(sums.nearest, e);
+  sums.pairs += weight;
+  size_t next = 0;
+  for (size_t i = 0; i < 3; ++i) {
+    const F ef = e * f[i];
+    sums.f[i] += ef;
+    const F bent = c.minus_d2 * ef;
+    for (size_t j = i; j < 3; ++j, ++next) {
+      sums.m[next] = Lanes::fma(e, b[next], Lanes::fma(bent, f[j], sums.m[next]));
+    }
+  }
+}
+
+/// M (e_k x q), k = 0, 1, 2, for one row of M.
+inline void turn(const F (&row)[3], const F (&q)[3], F (&out)[3]) {
+  out[0] = Lanes::fma(row[2], q[1], -(row[1] * q[2]));
+  out[1] = Lanes::fma(row[0], q[2], -(row[2] * q[0]));
+  out[2] = Lanes::fma(row[1], q[0], -(row[0] * q[1]));
+}
+
+/// Adds the points' sums with their factors of q.
+inline void add_points(const Sight & s, const PointSums & p, F (&sums)[sum_count]) {
+  sums[sum_score] += p.score;
+  sums[sum_nearest] += p.nearest;
+  sums[sum_pairs] += p.pairs;
+  sums[sum_points] += Lanes::min(p.pairs, Lanes::set1(1));
+  const F m[3][3] = {
+    {p.m[0], p.m[1], p.m[2]}, {p.m[1], p.m[3], p.m[4]}, {p.m[2], p.m[4], p.m[5]}};
+  F mq[3][3];
+  for (size_t i = 0; i < 3; ++i) {
+    sums[sum_f + i] += p.f[i];
+    turn(m[i], s.q, mq[i]);
+    for (size_t j = 0; j < 3; ++j) {
+      sums[sum_fq + 3 * i + j] = Lanes::fma(p.f[i], s.q[j], sums[sum_fq + 3 * i + j]);
+      sums[sum_mq + 3 * i + j] += mq[i][j];
+    }
+  }
+  size_t next = 0;
+  for (size_t j = 0; j < 3; ++j) {
+    const F column[3] = {mq[0][j], mq[1][j], mq[2][j]};
+    F turned[3];
+    turn(column, s.q, turned);
+    for (size_t i = j; i < 3; ++i, ++next) {
+      sums[sum_qmq + next] += turned[i];
+    }
+  }
+  for (size_t i = 0; i < 6; ++i) {
+    sums[sum_m + i] += p.m[i];
+  }
+}
+
+inline void drain(F (&sums)[sum_count], TangentSums & out) {
+  for (size_t i = 0; i < sum_count; ++i) {
+    float lanes[Lanes::width];
+    Lanes::store(lanes, sums[i]);
+    double total = 0;
+    for (const float lane : lanes) {
+      total += static_cast<double>(lane);
+    }
+    out.of[i] += total;
+    sums[i] = Lanes::set1(0);
+  }
+}
+
+template<bool by_radius>
+TangentSums run(const MapView & map, const ScanView & scan, const Constants & c, size_t bin) {
+  // Single precision is exact enough for the terms, not for sums of very many of them.
+  constexpr size_t groups_per_drain = 32;
+  F sums[sum_count] = {};
+  TangentSums out;
+  size_t undrained = 0;
+  for (size_t group = bin; group < scan.groups; group += bin_count) {
+    for (size_t part = 0; part < group_points; part += Lanes::width) {
+      Sight sight = look(map, scan, c, group * group_points + part);
+      PointSums points = {};
+      const float * lines[Lanes::width];
+      while (next_voxels(map, sight, lines)) {
+        add_voxels<by_radius>(c, sight, lines, points);
+      }
+      add_points(sight, points, sums);
+    }
+    if (++undrained == groups_per_drain) {
+      drain(sums, out);
+      undrained = 0;
+    }
+  }
+  drain(sums, out);
+  return out;
+}
+
+TangentSums run_bin(
+  const MapView & map, const ScanView & scan, const PassPose & pose, float d2, size_t bin) {
+  const Constants c = constants_of(*map.header, pose, d2);
+  return map.header->search == Search::radius ? run<true>(map, scan, c, bin)
+                                              : run<false>(map, scan, c, bin);
+}

@@ -1,0 +1,11 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <nanobind/nanobind.h>
+
+namespace manycore::ndt::python {
+
+void bind_voxel_map(nanobind::module_ & module);
+void bind_serial_matcher(nanobind::module_ & module);
+
+}  // namespace manycore::ndt::python

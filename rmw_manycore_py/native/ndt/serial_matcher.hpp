@@ -1,0 +1,35 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+
+#include "ndt/aligned_floats.hpp"
+#include "ndt/matcher.hpp"
+
+namespace manycore::ndt {
+
+/// Matches on the calling thread.
+class SerialMatcher {
+public:
+  explicit SerialMatcher(const MatchOptions & options)
+  : options_(options), bin_pass_(bin_pass(choose_simd())) {}
+
+  /// Points x, y, z [m] in the sensor frame, of which the finite ones count.
+  NewtonResult align(
+    const VoxelMap & map, const float * xyz_m, size_t count, const Pose6 & guess,
+    const std::optional<Regularization> & regularization);
+  /// Derivatives at a pose.
+  Derivatives evaluate(const VoxelMap & map, const float * xyz_m, size_t count, const Pose6 & pose);
+  /// Points that counted in the last call.
+  size_t used_points() const noexcept { return used_points_; }
+
+private:
+  Problem problem(const VoxelMap & map, const float * xyz_m, size_t count);
+
+  MatchOptions options_;
+  BinPass bin_pass_;
+  AlignedFloats scan_;
+  size_t used_points_ = 0;
+};
+
+}  // namespace manycore::ndt

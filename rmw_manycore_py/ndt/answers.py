@@ -1,0 +1,69 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""From the kernel's numbers to answers."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from rmw_manycore_py.ndt.alignment import Alignment, Score
+from rmw_manycore_py.ndt.arrays import Matrix6, Pose
+from rmw_manycore_py.ndt.options import MatcherOptions
+
+WHY = {
+    "converged": "",
+    "iteration_limit": "still moving after max_iterations steps",
+    "no_overlap": "no point of the scan lies in the map: wrong guess, or a map of another place",
+    "degenerate": "the scan does not say where it fits: too few points, or too far from the map",
+}
+
+
+def score_from(numbers: dict[str, Any], points: int) -> Score:
+    """Return the score of a scan with so many finite points."""
+    seen = numbers["points"]
+    return Score(
+        score=numbers["score"],
+        transform_probability=numbers["score"] / points if points else 0.0,
+        nearest_voxel_likelihood=numbers["nearest"] / seen if seen else 0.0,
+        points_in_map=int(seen),
+    )
+
+
+def alignment_from(numbers: dict[str, Any], points: int, options: MatcherOptions) -> Alignment:
+    """Return the alignment of a scan with so many finite points."""
+    score = score_from(numbers, points)
+    return Alignment(
+        T_map_sensor=np.array(numbers["pose"]).reshape(4, 4),
+        covariance=_covariance(np.array(numbers["hessian"]), options),
+        iterations=numbers["iterations"],
+        score=score.score,
+        transform_probability=score.transform_probability,
+        nearest_voxel_likelihood=score.nearest_voxel_likelihood,
+        converged=numbers["outcome"] == "converged",
+        why=WHY[numbers["outcome"]],
+    )
+
+
+def refused(guess: Pose | None, why: str, options: MatcherOptions) -> Alignment:
+    """Return the answer to what cannot be aligned at all."""
+    return Alignment(
+        T_map_sensor=np.eye(4) if guess is None else guess.copy(),
+        covariance=np.diag(options.fixed_pose_variances),
+        iterations=0,
+        score=0.0,
+        transform_probability=0.0,
+        nearest_voxel_likelihood=0.0,
+        converged=False,
+        why=why,
+    )
+
+
+def _covariance(hessian: Matrix6, options: MatcherOptions) -> Matrix6:
+    """Return Laplace's covariance, the fixed one where the score has no maximum to speak of."""
+    if options.pose_covariance == "laplace":
+        values, vectors = np.linalg.eigh(-hessian)
+        if values[0] > 0:
+            inverse: Matrix6 = (vectors / values) @ vectors.T
+            return inverse
+    return np.diag(options.fixed_pose_variances)

@@ -1,0 +1,51 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Arrays as the kernel takes them."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
+
+Points = NDArray[np.floating]
+Pose = NDArray[np.float64]
+Matrix6 = NDArray[np.float64]
+
+
+def scan_points(points: ArrayLike) -> NDArray[np.float32]:
+    """Return points (N, 3) as contiguous single precision."""
+    return np.ascontiguousarray(_of_three_columns(points), dtype=np.float32)
+
+
+def map_points(points: ArrayLike) -> NDArray[np.float64]:
+    """Return points (N, 3) as contiguous double precision."""
+    return np.ascontiguousarray(_of_three_columns(points), dtype=np.float64)
+
+
+def pose_matrix(pose: ArrayLike) -> Pose:
+    """Return a transform as a contiguous (4, 4); it may hold anything, even NaN."""
+    matrix = np.ascontiguousarray(pose, dtype=np.float64)
+    if matrix.shape != (4, 4):
+        raise ManycoreError(f"pose: expected shape (4, 4), found {matrix.shape}", EXIT_BAD_INPUT)
+    return matrix
+
+
+def why_no_pose(matrix: Pose) -> str:
+    """Return what keeps a (4, 4) from being a pose, "" when nothing does."""
+    if not np.isfinite(matrix).all():
+        return "is not finite"
+    rotation = matrix[:3, :3]
+    is_rotation = np.allclose(rotation @ rotation.T, np.eye(3), atol=1e-3)
+    if not is_rotation or np.linalg.det(rotation) < 0:
+        return "holds no rotation"
+    return ""
+
+
+def _of_three_columns(points: ArrayLike) -> NDArray[np.floating]:
+    array = np.asarray(points)
+    if array.size == 0:
+        return np.zeros((0, 3))
+    if array.ndim != 2 or array.shape[1] != 3:
+        raise ManycoreError(f"points: expected shape (N, 3), found {array.shape}", EXIT_BAD_INPUT)
+    return array

@@ -1,0 +1,149 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""The matcher, on the calling thread or on workers: one signature."""
+
+from __future__ import annotations
+
+from types import TracebackType
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from rmw_manycore_py import _ndt
+from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
+from rmw_manycore_py.ndt.alignment import Alignment, Score
+from rmw_manycore_py.ndt.answers import alignment_from, refused, score_from
+from rmw_manycore_py.ndt.arrays import Pose, pose_matrix, scan_points, why_no_pose
+from rmw_manycore_py.ndt.options import MatcherOptions
+from rmw_manycore_py.ndt.voxel_map import VoxelMap
+
+
+class NativeMatcher(Protocol):
+    """What the kernel offers, alone or with workers."""
+
+    def align(
+        self,
+        map: _ndt.VoxelMap,  # noqa: A002 - named as the binding names it
+        points: NDArray[np.float32],
+        guess: Pose,
+        regularization_position_m: tuple[float, float] | None = None,
+    ) -> dict[str, Any]:
+        """Align from a guess."""
+        ...
+
+    def evaluate(
+        self,
+        map: _ndt.VoxelMap,  # noqa: A002
+        points: NDArray[np.float32],
+        pose: Pose,
+    ) -> dict[str, Any]:
+        """Return score and derivatives at a pose."""
+        ...
+
+
+class Matcher:
+    """Matches scans to a map. Not for several threads at once; the map may be swapped in between.
+
+    Bad input is answered, not raised: see :class:`Alignment`. Raised are only mistakes of the
+    calling program: arrays of a wrong shape, no map, a map built for other options.
+    """
+
+    def __init__(self, options: MatcherOptions, native: NativeMatcher) -> None:
+        self.options = options
+        self._native = native
+        self._map: VoxelMap | None = None
+
+    def __enter__(self) -> Matcher:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Give back what the matcher holds."""
+        self._map = None
+
+    def set_map(self, voxel_map: VoxelMap) -> None:
+        """Match to this map from now on."""
+        for name in ("voxel_size_m", "search", "voxel_covariance"):
+            found = getattr(voxel_map.options, name)
+            expected = getattr(self.options, name)
+            if found != expected:
+                raise ManycoreError(
+                    f"map: expected one built with {name}={expected!r}, found {found!r}",
+                    EXIT_BAD_INPUT,
+                )
+        self._map = voxel_map
+
+    def align(
+        self,
+        points: ArrayLike,
+        T_map_guess: ArrayLike,
+        T_map_regularization: ArrayLike | None = None,
+    ) -> Alignment:
+        """Find the pose near the guess (4, 4) at which points (N, 3) [m, sensor frame] fit best.
+
+        :param T_map_regularization: a pose (4, 4) to keep near along the vehicle's axis.
+        """
+        voxel_map = self._require_map()
+        scan = scan_points(points)
+        guess = pose_matrix(T_map_guess)
+        wrong = why_no_pose(guess)
+        if wrong:
+            return refused(None, f"the guess {wrong}", self.options)
+        count = _finite(scan)
+        if count == 0:
+            return refused(guess, "the scan has no finite point", self.options)
+        position = None
+        if T_map_regularization is not None:
+            regularization = pose_matrix(T_map_regularization)
+            wrong = why_no_pose(regularization)
+            if wrong:
+                return refused(guess, f"the regularization pose {wrong}", self.options)
+            position = (float(regularization[0, 3]), float(regularization[1, 3]))
+        numbers = self._native.align(voxel_map.native, scan, guess, position)
+        return alignment_from(numbers, count, self.options)
+
+    def score(self, points: ArrayLike, T_map_sensor: ArrayLike) -> Score:
+        """Return how well points (N, 3) fit at a pose (4, 4); 0 for what is no scan or no pose."""
+        voxel_map = self._require_map()
+        scan = scan_points(points)
+        pose = pose_matrix(T_map_sensor)
+        count = _finite(scan)
+        if count == 0 or why_no_pose(pose):
+            return Score(0.0, 0.0, 0.0, 0)
+        return score_from(self._native.evaluate(voxel_map.native, scan, pose), count)
+
+    def _require_map(self) -> VoxelMap:
+        if self._map is None:
+            raise ManycoreError("the matcher has no map: call set_map first", EXIT_BAD_INPUT)
+        return self._map
+
+
+class SerialMatcher(Matcher):
+    """Matches on the calling thread."""
+
+    def __init__(self, options: MatcherOptions | None = None) -> None:
+        options = options or MatcherOptions()
+        super().__init__(options, _ndt.SerialMatcher(native_options(options)))
+
+
+def native_options(options: MatcherOptions) -> _ndt.MatchOptions:
+    """Return the options of a match as the kernel takes them."""
+    return _ndt.MatchOptions(
+        step_rule=getattr(_ndt.StepRule, options.step_rule),
+        max_iterations=options.max_iterations,
+        step_size=options.step_size,
+        trans_epsilon=options.trans_epsilon,
+        outlier_ratio=options.outlier_ratio,
+        regularization_scale_factor=options.regularization_scale_factor,
+    )
+
+
+def _finite(scan: NDArray[np.float32]) -> int:
+    return int(np.isfinite(scan).all(axis=1).sum())
