@@ -8,7 +8,7 @@ from typing import Any
 import click
 
 from rmw_manycore_py.cli.interface_types import load_type
-from rmw_manycore_py.cli.message_text import to_yaml
+from rmw_manycore_py.cli.message_text import ALL, to_yaml
 from rmw_manycore_py.cli.message_values import message_of, parse_values
 from rmw_manycore_py.cli.options import examples, platform_option
 from rmw_manycore_py.cli.tool_node import result_of, spin_once, tool_node
@@ -51,7 +51,7 @@ def command(action: str, type_name: str, goal: str, shows_feedback: bool, platfo
 
 
 def _text(message: Any) -> str:
-    return to_yaml(message, shown_length=None)
+    return to_yaml(message, ALL)
 
 
 def _show_feedback(message: Any) -> None:

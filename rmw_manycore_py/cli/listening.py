@@ -3,17 +3,20 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Iterable
 from typing import Any
 
 from rmw_manycore_py import _transport
 from rmw_manycore_py.cli import view
 from rmw_manycore_py.cli.interface_types import load_type
+from rmw_manycore_py.cli.qos_options import QosOptions
 from rmw_manycore_py.cli.tool_node import spin_once, tool_node
 from rmw_manycore_py.cli.view import Row
 from rmw_manycore_py.errors import ManycoreError
+from rmw_manycore_py.mapfile.names import expand
 
-DEPTH = 10
+ANY_QOS = QosOptions()
 
 
 class Listener:
@@ -27,8 +30,10 @@ class Listener:
         heard: Callable[[Any], None],
         *,
         raw: bool = False,
+        qos: QosOptions = ANY_QOS,
     ) -> None:
-        self._endpoints = _endpoints(platform, topic)
+        topic = expand(topic, "/")
+        self._endpoints, self._qos = _endpoints(platform, topic), qos
         self._message_type = load_type(type_name or type_of_topic(topic, self._endpoints))
         self._platform, self._topic = platform, topic
         self._heard, self._raw = heard, raw
@@ -43,17 +48,20 @@ class Listener:
         """End `run` after the present message."""
         self._over = True
 
-    def run(self) -> None:
-        """Listen until stopped or interrupted."""
+    def run(self, timeout_s: float | None = None) -> None:
+        """Listen until stopped or interrupted, or until the time is over."""
+        end_s = float("inf") if timeout_s is None else time.monotonic() + timeout_s
+        # No more than every publisher offers, so that all are heard.
+        reliable, kept = offered_policies(self._endpoints)
         with tool_node(self._platform) as node:
-            qos = _qos(self._endpoints)
+            qos = self._qos.profile(reliable=reliable, kept=kept)
             node.create_subscription(
                 self._message_type, self._topic, self._heard, qos, raw=self._raw
             )
             for period_s, call in self._timers:
                 node.create_timer(period_s, call)
-            while not self._over:
-                spin_once(node)
+            while not self._over and time.monotonic() < end_s:
+                spin_once(node, max(end_s - time.monotonic(), 0))
 
 
 def type_of_topic(topic: str, endpoints: Iterable[Row]) -> str:
@@ -78,15 +86,3 @@ def offered_policies(endpoints: Iterable[Row]) -> tuple[bool, bool]:
     reliable = all(qos["reliability"] == "reliable" for qos in offers)
     kept = bool(offers) and all(qos["durability"] == "transient_local" for qos in offers)
     return reliable, kept
-
-
-def _qos(endpoints: Iterable[Row]) -> Any:
-    """Ask for no more than every publisher offers, so that all are heard."""
-    from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
-
-    reliable, kept = offered_policies(endpoints)
-    return QoSProfile(
-        depth=DEPTH,
-        reliability=ReliabilityPolicy.RELIABLE if reliable else ReliabilityPolicy.BEST_EFFORT,
-        durability=DurabilityPolicy.TRANSIENT_LOCAL if kept else DurabilityPolicy.VOLATILE,
-    )

@@ -1,9 +1,11 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Messages as plain data and as the YAML that `ros2 topic echo` prints."""
+"""Messages as plain data, and as the YAML and CSV that `ros2 topic echo` prints."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import yaml
@@ -11,37 +13,90 @@ import yaml
 # What `ros2 topic echo` shows of a long string or array unless it is told otherwise.
 SHOWN_LENGTH = 128
 ELLIPSIS = "..."
+_SEQUENCE = re.compile(r"sequence<([^,>]+).*>")
+_ARRAY = re.compile(r"(.+)\[(\d+)\]")
 
 
-def to_plain(value: Any, shown_length: int | None = None) -> Any:
-    """Return a message, or a value in one, as dicts, lists and scalars; None = in full length."""
-    if hasattr(value, "get_fields_and_field_types"):
+@dataclass(frozen=True)
+class Shown:
+    """What is shown of a message; a length of None is the full one."""
+
+    length: int | None = None
+    arrays: bool = True
+    strings: bool = True
+
+
+ALL = Shown()
+BRIEFLY = Shown(SHOWN_LENGTH)
+
+
+def to_plain(value: Any, shown: Shown = ALL) -> Any:
+    """Return a message, or a value in one, as dicts, lists and scalars."""
+    if is_message(value):
         fields = value.get_fields_and_field_types()
-        return {name: to_plain(getattr(value, name), shown_length) for name in fields}
+        return {
+            name: _field(getattr(value, name), type_name, shown)
+            for name, type_name in fields.items()
+        }
     if isinstance(value, str):
-        return _shortened(value, shown_length, ELLIPSIS)
+        return _string(value, shown)
     if isinstance(value, bytes):
-        return value[0] if len(value) == 1 else to_plain(list(value), shown_length)
+        return value[0] if len(value) == 1 else to_plain(list(value), shown)
     if isinstance(value, (bool, int, float)):
         return value
-    return _list(value, shown_length)
+    return _list(value, shown)
 
 
-def to_yaml(message: Any, shown_length: int | None = SHOWN_LENGTH) -> str:
+def is_message(value: Any) -> bool:
+    """Tell a message from a value of one of its fields."""
+    return hasattr(value, "get_fields_and_field_types")
+
+
+def to_yaml(message: Any, shown: Shown = BRIEFLY, *, flow_style: bool = False) -> str:
     """Return a message as a YAML document without its separator."""
-    data = to_plain(message, shown_length)
-    return str(yaml.safe_dump(data, sort_keys=False, allow_unicode=True, width=float("inf")))
+    text = yaml.safe_dump(
+        to_plain(message, shown),
+        sort_keys=False,
+        allow_unicode=True,
+        width=float("inf"),
+        default_flow_style=flow_style,
+    )
+    return str(text).removesuffix("...\n")  # the end of a document that is one scalar
 
 
-def _list(values: Any, shown_length: int | None) -> list[Any]:
-    """Arrays of numbers are numpy's or array.array's; only what is shown is converted."""
-    shown = values[:shown_length] if shown_length is not None else values
-    items = shown.tolist() if hasattr(shown, "tolist") else list(shown)
-    plain = [to_plain(item, shown_length) for item in items]
-    return [*plain, ELLIPSIS] if len(shown) < len(values) else plain
+def to_csv(message: Any, shown: Shown = BRIEFLY) -> str:
+    """Return the values of a message, in the order of its fields, with commas between them."""
+    return ",".join(map(str, _values(to_plain(message, shown))))
 
 
-def _shortened(text: Sequence[Any], shown_length: int | None, end: str) -> Any:
-    if shown_length is None or len(text) <= shown_length:
+def _values(plain: Any) -> Iterator[Any]:
+    if isinstance(plain, (dict, list)):
+        for part in plain.values() if isinstance(plain, dict) else plain:
+            yield from _values(part)
+    else:
+        yield plain
+
+
+def _field(value: Any, type_name: str, shown: Shown) -> Any:
+    if not shown.arrays:
+        if match := _SEQUENCE.fullmatch(type_name):
+            return f"<sequence type: {match[1]}, length: {len(value)}>"
+        if match := _ARRAY.fullmatch(type_name):
+            return f"<array type: {match[1]}[{match[2]}]>"
+    return to_plain(value, shown)
+
+
+def _string(text: str, shown: Shown) -> str:
+    if not shown.strings:
+        return f"<string length: <{len(text)}>>"
+    if shown.length is None or len(text) <= shown.length:
         return text
-    return f"{text[:shown_length]}{end}"
+    return text[: shown.length] + ELLIPSIS
+
+
+def _list(values: Sequence[Any], shown: Shown) -> list[Any]:
+    """Arrays of numbers are numpy's or array.array's; only what is shown is converted."""
+    part: Any = values[: shown.length] if shown.length is not None else values
+    items = part.tolist() if hasattr(part, "tolist") else list(part)
+    plain = [to_plain(item, shown) for item in items]
+    return [*plain, ELLIPSIS] if len(part) < len(values) else plain

@@ -16,15 +16,17 @@ from rmw_manycore_py.cli.options import (
 
 
 @click.command("list", epilog=examples("manycore node list", "manycore node list --json"))
+@click.option("-a", "--all", "everything", is_flag=True, help="The same as --include-hidden.")
+@click.option("-c", "--count-nodes", "count", is_flag=True, help="Show their number only.")
 @hidden_option
 @json_option
 @platform_option
-def command(platform: str, as_json: bool, hidden: bool) -> None:
+def command(platform: str, as_json: bool, hidden: bool, everything: bool, count: bool) -> None:
     """List the nodes of a platform."""
     opened = view.open_platform(platform)
-    names = view.node_names(opened.nodes(), hidden=hidden)
+    names = view.node_names(opened.nodes(), hidden=hidden or everything)
     if as_json:
         print_json(view.placed_nodes(opened.nodes(), opened.processes(), set(names)))
         return
-    for name in names:
+    for name in [len(names)] if count else names:
         click.echo(name)

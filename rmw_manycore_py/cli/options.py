@@ -32,6 +32,8 @@ types_option = click.option("-t", "--show-types", is_flag=True, help="Show the t
 count_option = click.option("-c", "--count", is_flag=True, help="Show their number only.")
 hidden_option = click.option(
     "--include-hidden",
+    "--include-hidden-topics",
+    "--include-hidden-services",
     "hidden",
     is_flag=True,
     help="Show names with a part that starts with _ too.",

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The options --qos-* of verbs that publish."""
+"""The options --qos-* of verbs that publish, and of those that listen."""
 
 from __future__ import annotations
 
@@ -10,45 +10,69 @@ from typing import Any
 
 import click
 
+_Command = Callable[..., None]
+
 
 @dataclass(frozen=True)
 class QosOptions:
-    """What was asked for, as ROS 2 names it."""
+    """What was asked for, as ROS 2 names it; None = nothing in particular."""
 
-    reliability: str
-    durability: str
-    history: str
-    depth: int
+    reliability: str | None = None
+    durability: str | None = None
+    history: str | None = None
+    depth: int | None = None
 
-    def profile(self) -> Any:
-        """Return it as an rclpy QoSProfile."""
+    def profile(self, *, reliable: bool = True, kept: bool = False) -> Any:
+        """Return it as an rclpy QoSProfile, with these policies where none was asked for."""
         from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 
+        reliability = self.reliability or ("reliable" if reliable else "best_effort")
+        durability = self.durability or ("transient_local" if kept else "volatile")
         return QoSProfile(
-            reliability=ReliabilityPolicy[self.reliability.upper()],
-            durability=DurabilityPolicy[self.durability.upper()],
-            history=HistoryPolicy[self.history.upper()],
-            depth=self.depth,
+            reliability=ReliabilityPolicy[reliability.upper()],
+            durability=DurabilityPolicy[durability.upper()],
+            history=HistoryPolicy[(self.history or "keep_last").upper()],
+            depth=self.depth or 10,
         )
 
 
-def qos_options(function: Callable[..., None]) -> Callable[..., None]:
-    """Give a command the options --qos-*, which reach it as the argument `qos`."""
+def _qos_options(unasked: str | None) -> Callable[[_Command], _Command]:
+    """Return a decorator; `unasked` says what holds for policies that are not given."""
 
-    @_choice("reliability", "reliable", "best_effort")
-    @_choice("durability", "volatile", "transient_local")
-    @_choice("history", "keep_last", "keep_all")
-    @click.option("--qos-depth", type=click.IntRange(1), default=10, show_default=True)
-    @functools.wraps(function)
-    def with_qos(
-        qos_reliability: str, qos_durability: str, qos_history: str, qos_depth: int, **others: Any
-    ) -> None:
-        function(qos=QosOptions(qos_reliability, qos_durability, qos_history, qos_depth), **others)
+    def choice(policy: str, *values: str) -> Callable[[_Command], _Command]:
+        return click.option(
+            f"--qos-{policy}",
+            type=click.Choice(values),
+            default=None if unasked else values[0],
+            show_default=unasked or True,
+        )
 
-    return with_qos
+    def decorate(function: _Command) -> _Command:
+        @choice("reliability", "reliable", "best_effort")
+        @choice("durability", "volatile", "transient_local")
+        @click.option(
+            "--qos-history",
+            type=click.Choice(("keep_last", "keep_all")),
+            default="keep_last",
+            show_default=True,
+        )
+        @click.option("--qos-depth", type=click.IntRange(1), default=10, show_default=True)
+        @functools.wraps(function)
+        def with_qos(
+            qos_reliability: str | None,
+            qos_durability: str | None,
+            qos_history: str,
+            qos_depth: int,
+            **others: Any,
+        ) -> None:
+            qos = QosOptions(qos_reliability, qos_durability, qos_history, qos_depth)
+            function(qos=qos, **others)
+
+        return with_qos
+
+    return decorate
 
 
-def _choice(policy: str, *values: str) -> Callable[[Callable[..., None]], Callable[..., None]]:
-    return click.option(
-        f"--qos-{policy}", type=click.Choice(values), default=values[0], show_default=True
-    )
+# Give a command the options --qos-*, which reach it as the argument `qos`.
+qos_options = _qos_options(None)
+qos_request_options = _qos_options("what all publishers offer")

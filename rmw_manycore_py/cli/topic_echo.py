@@ -4,13 +4,16 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 from typing import Any
 
 import click
 
 from rmw_manycore_py.cli.listening import Listener
-from rmw_manycore_py.cli.message_text import to_plain, to_yaml
+from rmw_manycore_py.cli.message_part import message_filter, part_of
+from rmw_manycore_py.cli.message_text import SHOWN_LENGTH, Shown, to_csv, to_plain, to_yaml
 from rmw_manycore_py.cli.options import examples, platform_option
+from rmw_manycore_py.cli.qos_options import QosOptions, qos_request_options
 
 
 @click.command(
@@ -18,27 +21,70 @@ from rmw_manycore_py.cli.options import examples, platform_option
     epilog=examples(
         "manycore topic echo /chatter",
         "manycore topic echo --once /chatter std_msgs/msg/String",
+        "manycore topic echo /pose --field pose.position --csv",
+        "manycore topic echo /chatter --filter 'm.data.endswith(\"0\")'",
         "manycore topic echo /chatter --json | jq .data",
     ),
 )
 @click.argument("topic")
 @click.argument("type_name", metavar="[TYPE]", required=False)
 @click.option("--once", is_flag=True, help="End after the first message.")
-@click.option("--json", "as_json", is_flag=True, help="Print each message as a line of JSON.")
+@click.option("--timeout", "timeout_s", type=float, metavar="S", help="End after S seconds.")
+@click.option("--field", default="", metavar="PATH", help="Print only this part.")
+@click.option("--filter", "expression", metavar="EXPR", help="Print only what it holds for, as m.")
+@click.option("--csv", "style", flag_value="csv", help="Print values with commas between them.")
+@click.option("--flow-style", "style", flag_value="flow", help="Print each message in one line.")
+@click.option("--json", "style", flag_value="json", help="Print each as a line of JSON, in full.")
+@click.option("--raw", "style", flag_value="raw", help="Print the bytes of each message.")
+@click.option("-f", "--full-length", is_flag=True, help="Shorten nothing.")
+@click.option(
+    "-l",
+    "--truncate-length",
+    type=click.IntRange(0),
+    default=SHOWN_LENGTH,
+    show_default=True,
+    help="What is shown of strings and arrays.",
+)
+@click.option("--no-arr", "no_arrays", is_flag=True, help="Name arrays without their elements.")
+@click.option("--no-str", "no_strings", is_flag=True, help="Print only the lengths of strings.")
+@qos_request_options
 @platform_option
-def command(topic: str, type_name: str | None, platform: str, once: bool, as_json: bool) -> None:
-    """Print the messages of TOPIC, long strings and arrays shortened except in JSON.
-
-    TYPE is needed only while nobody uses the topic.
-    """
+def command(
+    topic: str,
+    type_name: str | None,
+    platform: str,
+    qos: QosOptions,
+    once: bool,
+    timeout_s: float | None,
+    field: str,
+    expression: str | None,
+    style: str | None,
+    full_length: bool,
+    truncate_length: int,
+    no_arrays: bool,
+    no_strings: bool,
+) -> None:
+    """Print the messages of TOPIC. TYPE is needed only while nobody uses the topic."""
+    shown = Shown(None if full_length else truncate_length, not no_arrays, not no_strings)
+    text, fulfils = _writer(style, shown), message_filter(expression)
 
     def heard(message: Any) -> None:
-        if as_json:
-            click.echo(json.dumps(to_plain(message)))
-        else:
-            click.echo(f"{to_yaml(message)}---")
+        part = message if style == "raw" else part_of(message, field)
+        if not fulfils(part):
+            return
+        click.echo(text(part))
         if once:
             listener.stop()
 
-    listener = Listener(platform, topic, type_name, heard)
-    listener.run()
+    listener = Listener(platform, topic, type_name, heard, raw=style == "raw", qos=qos)
+    listener.run(timeout_s)
+
+
+def _writer(style: str | None, shown: Shown) -> Callable[[Any], str]:
+    writers: dict[str | None, Callable[[Any], str]] = {
+        "csv": lambda part: to_csv(part, shown),
+        "json": lambda part: json.dumps(to_plain(part)),
+        "raw": lambda data: f"{data}\n---",
+        "flow": lambda part: f"{to_yaml(part, shown, flow_style=True)}---",
+    }
+    return writers.get(style, lambda part: f"{to_yaml(part, shown)}---")

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import json
+import re
 import subprocess
 import sys
 
@@ -82,6 +83,28 @@ def test_messages_are_printed_as_ros2_does(running, start, manycore) -> None:
         in json.loads(manycore("topic", "echo", "--once", "--json", "/chatter"))["data"]
     )
     assert "give its type" in manycore("topic", "echo", "/nothing", status=1)
+
+
+def test_echo_takes_what_ros2_topic_echo_takes(running, manycore) -> None:
+    def echo(*words: str) -> str:
+        return manycore("topic", "echo", "--once", "chatter", *words)
+
+    assert echo("--field", "data", "-l", "5").splitlines() == ["Hello...", "---"]
+    assert re.fullmatch(r"<string length: <\d+>>", echo("--csv", "--no-str"))
+    assert re.fullmatch(r"Hello World: \d+", echo("--csv"))
+    assert "Hello" in echo("--flow-style", "--qos-reliability", "best_effort")
+    assert "b'" in echo("--raw")
+    assert "Hello" in echo("--filter", "'World' in m.data")
+    words = ("topic", "echo", "/chatter", "--filter", "'?' in m.data", "--timeout", "0.5")
+    assert manycore(*words) == ""
+
+
+def test_lists_take_what_those_of_ros2_take(running, manycore) -> None:
+    shown = manycore("topic", "list", "-v")
+    assert " * /chatter [std_msgs/msg/String] 1 publisher\n" in shown
+    assert " * /chatter [std_msgs/msg/String] 1 subscriber\n" in shown
+    assert manycore("node", "list", "-c") == "2"
+    assert manycore("node", "list", "--all").splitlines() == ["/listener", "/talker"]
 
 
 def test_echo_waits_for_a_topic_whose_type_is_given(start, platform) -> None:

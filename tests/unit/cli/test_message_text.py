@@ -7,10 +7,17 @@ import json
 import pytest
 import yaml
 from geometry_msgs.msg import PoseStamped
-from sensor_msgs.msg import Image
+from sensor_msgs.msg import CameraInfo, Image
 from std_msgs.msg import Byte, Float64MultiArray, String
 
-from rmw_manycore_py.cli.message_text import ELLIPSIS, SHOWN_LENGTH, to_plain, to_yaml
+from rmw_manycore_py.cli.message_text import (
+    ELLIPSIS,
+    SHOWN_LENGTH,
+    Shown,
+    to_csv,
+    to_plain,
+    to_yaml,
+)
 
 pytestmark = pytest.mark.unit
 
@@ -39,3 +46,26 @@ def test_json_has_everything() -> None:
 
 def test_a_byte_is_a_number() -> None:
     assert to_plain(Byte(data=b"\x07")) == {"data": 7}
+
+
+def test_arrays_and_strings_may_be_left_out() -> None:
+    info = CameraInfo(d=[1.0, 2.0], distortion_model="plumb_bob")
+    plain = to_plain(info, Shown(arrays=False, strings=False))
+    assert plain["d"] == "<sequence type: double, length: 2>"
+    assert plain["k"] == "<array type: double[9]>"
+    assert plain["distortion_model"] == "<string length: <9>>"
+
+
+def test_csv_has_the_values_in_the_order_of_the_fields() -> None:
+    pose = PoseStamped()
+    pose.header.frame_id, pose.pose.position.y = "map", 2.5
+    assert to_csv(pose) == "0,0,map,0.0,2.5,0.0,0.0,0.0,0.0,1.0"
+
+
+def test_a_single_value_is_a_line() -> None:
+    assert to_yaml(3) == "3\n"
+    assert to_yaml("text") == "text\n"
+
+
+def test_flow_style_is_one_line() -> None:
+    assert to_yaml(String(data="a"), flow_style=True) == "{data: a}\n"
