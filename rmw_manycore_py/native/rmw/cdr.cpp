@@ -1,6 +1,7 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #include "rmw/cdr.hpp"
 
+#include <cstddef>
 #include <string>
 
 #include "fastcdr/Cdr.h"
@@ -19,6 +20,8 @@ Cdr::Cdr(const message_type_support_callbacks_t & callbacks) : callbacks_(&callb
   const size_t max_size = callbacks.max_serialized_size(bounds);
   if (bounds == ROSIDL_TYPESUPPORT_FASTRTPS_PLAIN_TYPE) {
     empty_ = max_size == 0;
+    // In memory the last member may be followed by padding, up to the largest alignment.
+    plain_bytes_ = (max_size / alignof(max_align_t) + 1) * alignof(max_align_t);
     // Rounded up to 4 bytes as rmw_fastrtps_cpp does, so that rmw_serialize gives equal lengths.
     fixed_size_bound_ = (encapsulation_bytes + (empty_ ? 1 : max_size) + 3) & ~size_t{3};
   }

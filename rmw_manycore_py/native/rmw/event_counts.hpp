@@ -18,7 +18,7 @@ struct EventCounts {
   manycore::QosPolicy last_policy = manycore::QosPolicy::none;  ///< incompatible QoS
   int64_t next_due_ns = manycore::infinite_ns;  ///< when time alone changes it (CLOCK_MONOTONIC)
 
-  static EventCounts of(uint64_t total) { return {total, total, total, 0, {}, manycore::infinite_ns}; }
+  static EventCounts of(uint64_t total) { return of(manycore::TimedCount{total}); }
   static EventCounts of(const manycore::TimedCount & count) {
     return {count.total, count.total, count.total, 0, {}, count.next_due_ns};
   }

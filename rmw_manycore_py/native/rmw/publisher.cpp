@@ -20,13 +20,14 @@ Publisher::Publisher(
 : EndpointEvents(node.callback_thread()),
   topic_(topic),
   cdr_(type.cdr),
+  loans_(cdr_.plain_bytes()),
   transport_(node.process().create_publisher(
     endpoint_spec(node, EndpointRole::topic, topic, type, profile, EndpointKind::publisher))) {
   handle.implementation_identifier = identifier;
   handle.data = this;
   handle.topic_name = topic_.c_str();
   handle.options = options;
-  handle.can_loan_messages = false;
+  handle.can_loan_messages = loans_.lends();
 }
 
 EventCounts Publisher::counts(rmw_event_type_t type) const {

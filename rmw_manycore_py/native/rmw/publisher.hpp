@@ -5,6 +5,7 @@
 #include <string>
 
 #include "rmw/endpoint_events.hpp"
+#include "rmw/loans.hpp"
 #include "rmw/node.hpp"
 #include "rmw/type_support.hpp"
 #include "rmw/types.h"
@@ -27,6 +28,7 @@ public:
   rmw_publisher_t handle{};
 
   const Cdr & cdr() const noexcept { return cdr_; }
+  Loans & loans() const noexcept { return loans_; }
   manycore::Publisher & transport() const noexcept { return *transport_; }
 
 private:
@@ -34,6 +36,7 @@ private:
 
   const std::string topic_;
   const Cdr cdr_;
+  mutable Loans loans_;
   const std::unique_ptr<manycore::Publisher> transport_;
 };
 

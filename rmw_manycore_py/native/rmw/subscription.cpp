@@ -29,6 +29,7 @@ Subscription::Subscription(
 : EndpointEvents(node.callback_thread()),
   topic_(topic),
   cdr_(type.cdr),
+  loans_(cdr_.plain_bytes()),
   inbox_(
     node.process().create_subscription(
       spec_of(node, type, topic, profile, options.ignore_local_publications)),
@@ -37,7 +38,7 @@ Subscription::Subscription(
   handle.data = this;
   handle.topic_name = topic_.c_str();
   handle.options = options;
-  handle.can_loan_messages = false;
+  handle.can_loan_messages = loans_.lends();
   handle.is_cft_enabled = false;
 }
 

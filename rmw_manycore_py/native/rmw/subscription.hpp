@@ -5,6 +5,7 @@
 
 #include "rmw/endpoint_events.hpp"
 #include "rmw/inbox.hpp"
+#include "rmw/loans.hpp"
 #include "rmw/node.hpp"
 #include "rmw/type_support.hpp"
 #include "rmw/types.h"
@@ -26,6 +27,7 @@ public:
   rmw_subscription_t handle{};
 
   const Cdr & cdr() const noexcept { return cdr_; }
+  Loans & loans() noexcept { return loans_; }
   Inbox & inbox() noexcept { return inbox_; }
   const manycore::Subscription & transport() const noexcept { return inbox_.transport(); }
 
@@ -34,6 +36,7 @@ private:
 
   const std::string topic_;
   const Cdr cdr_;
+  Loans loans_;
   Inbox inbox_;
   mutable LivelinessChanges liveliness_changes_;
 };
