@@ -7,7 +7,7 @@ import click
 
 from rmw_manycore_py.cli.group import LazyGroup
 
-VERBS = {verb: f"rmw_manycore_py.cli.ndt_{verb}:command" for verb in ("simulate", "map")}
+VERBS = {verb: f"rmw_manycore_py.cli.ndt_{verb}:command" for verb in ("simulate", "map", "replay")}
 
 
 @click.group("ndt", cls=LazyGroup, commands_at=VERBS)

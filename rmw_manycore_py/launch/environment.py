@@ -20,6 +20,12 @@ def program_environment(
     return rmw_manycore_hook.substituted_environment(environment, sys.prefix)
 
 
+def leave_middleware(implementation: str) -> None:
+    """Restart this program with another middleware; the hook has restored the search path."""
+    environment = {**os.environ, "RMW_IMPLEMENTATION": implementation}
+    os.execve(sys.executable, [sys.executable, *sys.orig_argv[1:]], environment)
+
+
 def enter_middleware() -> None:
     """Restart this program with rmw_manycore loaded, unless the start-up hook has done so."""
     if os.environ.get("RMW_IMPLEMENTATION") != IMPLEMENTATION:

@@ -62,6 +62,17 @@ class Recording:
         scans = [transform(self.poses[i], self.scan(i)) for i in indices]
         return np.concatenate(scans) if scans else np.zeros((0, 3), np.float32)
 
+    def first(self, count: int) -> Recording:
+        """Return the first scans only."""
+        return Recording(
+            self.points,
+            self.scale_m,
+            self.offsets[: count + 1],
+            self.poses[:count],
+            self.stamps[:count],
+            self.note,
+        )
+
     def save(self, path: Path) -> None:
         """Write the file."""
         np.savez_compressed(

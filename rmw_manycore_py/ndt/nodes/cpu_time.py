@@ -1,0 +1,23 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""CPU time of this process and the processes it has started."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+TICKS_PER_S = os.sysconf("SC_CLK_TCK")
+USER, SYSTEM = 11, 12  # fields of /proc/PID/stat behind the program's name
+
+
+def tree_cpu_s(pid: int | None = None) -> float:
+    """Return user and system time of a process and of its living descendants, in seconds."""
+    own = os.getpid() if pid is None else pid
+    try:
+        stat = Path(f"/proc/{own}/stat").read_text().rpartition(")")[2].split()
+        tasks = list(Path(f"/proc/{own}/task").iterdir())
+        children = [child for task in tasks for child in (task / "children").read_text().split()]
+    except OSError:  # it has ended meanwhile
+        return 0.0
+    ticks = int(stat[USER]) + int(stat[SYSTEM])
+    return ticks / TICKS_PER_S + sum(tree_cpu_s(int(child)) for child in children)

@@ -1,0 +1,167 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""`ekf_localizer`: the vehicle's pose now, from poses that arrive late and from its speed."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from geometry_msgs.msg import (
+    PoseStamped,
+    PoseWithCovarianceStamped,
+    TwistStamped,
+    TwistWithCovarianceStamped,
+)
+from nav_msgs.msg import Odometry
+from rclpy.node import Node
+from std_srvs.srv import SetBool
+from tf2_msgs.msg import TFMessage
+
+from rmw_manycore_py.ndt.nodes.conversions import (
+    PoseError,
+    covariance_of,
+    matrix_of,
+    pose_stamped,
+    pose_with_covariance,
+    seconds,
+    transform_stamped,
+)
+from rmw_manycore_py.ndt.nodes.declared import declare, parameter
+from rmw_manycore_py.ndt.nodes.running import run_node
+from rmw_manycore_py.ndt.pose_filter import FilterOptions, PoseFilter, State
+from rmw_manycore_py.ndt.poses import Matrix
+
+REPEAT_S = 1.0
+LEAST_VARIANCE = 1e-8  # of a measurement: one without noise cannot be weighed
+
+
+@dataclass(frozen=True)
+class EkfParameters:
+    """Autoware's names; frequencies in Hz."""
+
+    frequency_hz: float = parameter("predict_frequency", 50.0, least=1.0, most=1000.0)
+    pose_frame: str = parameter("pose_frame_id", "map")
+    child_frame: str = parameter("child_frame_id", "base_link")
+    stddev_yaw: float = parameter("proc_stddev_yaw_c", 0.005, least=0.0)
+    stddev_vx: float = parameter("proc_stddev_vx_c", 10.0, least=0.0)
+    stddev_wz: float = parameter("proc_stddev_wz_c", 5.0, least=0.0)
+    publish_tf: bool = parameter("publish_tf", True)
+    activated: bool = parameter("activated", True)
+
+
+class EkfLocalizer(Node):
+    """Publishes predictions for now, at a fixed rate, once it has a first pose."""
+
+    def __init__(self) -> None:
+        super().__init__("ekf_localizer")
+        self._p = declare(self, EkfParameters)
+        self._is_activated = self._p.activated
+        self._filter = PoseFilter(
+            FilterOptions(
+                stddev_yaw_c=self._p.stddev_yaw,
+                stddev_v_c=self._p.stddev_vx,
+                stddev_w_c=self._p.stddev_wz,
+            )
+        )
+        pose = PoseWithCovarianceStamped
+        self._odometry = self.create_publisher(Odometry, "ekf_odom", 10)
+        self._pose = self.create_publisher(PoseStamped, "ekf_pose", 10)
+        self._with_covariance = self.create_publisher(pose, "ekf_pose_with_covariance", 10)
+        self._twist = self.create_publisher(TwistStamped, "ekf_twist", 10)
+        self._tf = self.create_publisher(TFMessage, "/tf", 100)
+        self.create_subscription(pose, "initialpose", self._on_initial_pose, 10)
+        self.create_subscription(pose, "in_pose_with_covariance", self._on_pose, 10)
+        self.create_subscription(
+            TwistWithCovarianceStamped, "in_twist_with_covariance", self._on_twist, 100
+        )
+        self.create_service(SetBool, "trigger_node", self._on_trigger)
+        self.create_timer(1.0 / self._p.frequency_hz, self._publish)
+
+    def _on_initial_pose(self, message: Any) -> None:
+        measured = self._measured(message)
+        if measured is not None:
+            self._filter.initialize(self._now_s(), *measured)
+
+    def _on_pose(self, message: Any) -> None:
+        measured = self._measured(message)
+        if measured is None or not self._is_activated:
+            return
+        stamp_s = seconds(message.header.stamp)
+        if not self._filter.is_initialized:
+            self._filter.initialize(stamp_s, *measured)
+        elif not self._filter.add_pose(stamp_s, *measured):
+            self._warn("a pose is older than what is kept: it is passed over")
+
+    def _on_twist(self, message: Any) -> None:
+        twist = message.twist.twist
+        covariance = np.asarray(message.twist.covariance).reshape(6, 6)
+        noise = np.diag(np.maximum(np.diag(covariance)[[0, 5]], LEAST_VARIANCE))
+        v, w = float(twist.linear.x), float(twist.angular.z)
+        if not np.isfinite([v, w, *noise.ravel()]).all():
+            self._warn("a twist is not finite: it is passed over")
+        elif self._is_activated and self._filter.is_initialized:
+            self._filter.add_twist(seconds(message.header.stamp), v, w, noise)
+
+    def _measured(self, message: Any) -> tuple[Matrix, Matrix] | None:
+        """Return pose and covariance of a message, None for one that cannot be used."""
+        covariance = covariance_of(message)
+        try:
+            if not np.isfinite(covariance).all():
+                raise PoseError("the covariance is not finite")
+            if message.header.frame_id != self._p.pose_frame:
+                raise PoseError(
+                    f"the pose is in the frame '{message.header.frame_id}', expected "
+                    f"'{self._p.pose_frame}'"
+                )
+            T = matrix_of(message.pose.pose)
+        except PoseError as error:
+            self._warn(f"{error}: it is passed over")
+            return None
+        diagonal = np.maximum(np.diag(covariance), LEAST_VARIANCE) - np.diag(covariance)
+        return T, covariance + np.diag(diagonal)
+
+    def _on_trigger(self, request: Any, response: Any) -> Any:
+        self._is_activated = bool(request.data)
+        response.success = True
+        return response
+
+    def _publish(self) -> None:
+        if not (self._is_activated and self._filter.is_initialized):
+            return
+        stamp = self.get_clock().now().to_msg()
+        state = self._filter.predicted(seconds(stamp))
+        T, covariance = state.pose(), state.pose_covariance()
+        frame, child = self._p.pose_frame, self._p.child_frame
+        full = pose_with_covariance(T, covariance, stamp, frame)
+        self._with_covariance.publish(full)
+        self._pose.publish(pose_stamped(T, stamp, frame))
+        self._publish_motion(state, full)
+        if self._p.publish_tf:
+            self._tf.publish(TFMessage(transforms=[transform_stamped(T, stamp, frame, child)]))
+
+    def _publish_motion(self, state: State, pose: Any) -> None:
+        twist = TwistStamped(header=pose.header)
+        twist.header.frame_id = self._p.child_frame
+        twist.twist.linear.x, twist.twist.angular.z = (float(value) for value in state.mean[3:])
+        self._twist.publish(twist)
+        odometry = Odometry(child_frame_id=self._p.child_frame, pose=pose.pose)
+        odometry.header.stamp = pose.header.stamp
+        odometry.header.frame_id = self._p.pose_frame
+        odometry.twist.twist = twist.twist
+        self._odometry.publish(odometry)
+
+    def _now_s(self) -> float:
+        return seconds(self.get_clock().now().to_msg())
+
+    def _warn(self, text: str) -> None:
+        self.get_logger().warning(text, throttle_duration_sec=REPEAT_S)
+
+
+def main() -> None:
+    """Run the node until it is interrupted."""
+    run_node(EkfLocalizer)
+
+
+if __name__ == "__main__":
+    main()

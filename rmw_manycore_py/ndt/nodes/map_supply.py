@@ -1,0 +1,91 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Where `ndt_scan_matcher` has its map from: a topic, or files of its own around the vehicle."""
+
+from __future__ import annotations
+
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from rmw_manycore_py.ndt.map_area import MapArea
+from rmw_manycore_py.ndt.map_builder import MapBuilder
+from rmw_manycore_py.ndt.map_tiles import open_map
+from rmw_manycore_py.ndt.nodes.diagnostics import Diagnostics
+from rmw_manycore_py.ndt.nodes.matcher_parameters import MatcherParameters, OwnParameters
+from rmw_manycore_py.ndt.nodes.point_cloud import decode
+from rmw_manycore_py.ndt.options import MatcherOptions
+from rmw_manycore_py.ndt.voxel_map import VoxelMap
+
+
+class MapSupply:
+    """Has maps built beside the matching, and says what is wrong with them."""
+
+    def __init__(
+        self, options: MatcherOptions, parameters: MatcherParameters, own: OwnParameters
+    ) -> None:
+        self._p = parameters
+        self._builder = MapBuilder(options)
+        self._area: MapArea | None = None
+        if own.map_path:
+            tiles = open_map(Path(own.map_path).expanduser(), own.map_leaf_m)
+            self._area = MapArea(tiles, parameters.map_radius_m, parameters.update_distance_m)
+        self._vehicle: tuple[float, float] | None = None
+        self._problem = ""
+        self._duration_ms = 0.0
+        self.is_set = False
+
+    def on_message(self, message: Any) -> None:
+        """Take a map from the topic; the newest one holds."""
+        if self._area is None:
+            self._builder.submit(partial(decode, message))
+
+    def vehicle_is_at(self, x: float, y: float) -> None:
+        """Load other tiles when the vehicle has moved far enough."""
+        self._vehicle = (x, y)
+        area = self._area
+        if area is None or not self._builder.is_idle:
+            return
+        if area.distance_m(x, y) > self._p.update_distance_m:
+            self._builder.submit(partial(area.update, x, y))
+
+    def take(self, wait: bool = False) -> VoxelMap | None:
+        """Return a map that was built since the last call."""
+        built = self._builder.take(wait)
+        if built is None:
+            return None
+        self._problem = built.problem
+        if built.voxel_map is not None:
+            self.is_set = True
+            self._duration_ms = built.duration_ms
+        return built.voxel_map
+
+    def is_leaving(self, x: float, y: float) -> bool:
+        """Tell whether the LiDAR sees beyond what is loaded."""
+        if self._area is None:
+            return False
+        return self._area.distance_m(x, y) + self._p.lidar_radius_m > self._p.map_radius_m
+
+    def what_is_missing(self) -> str:
+        """Say why there is no map."""
+        if self._problem:
+            return self._problem
+        if self._area is not None:
+            return "it is being loaded, or ekf_pose_with_covariance says nothing of the place"
+        return "publish pointcloud_map or set the parameter map_path"
+
+    def report(self, diagnostics: Diagnostics) -> None:
+        """Add the state of the map to a report."""
+        diagnostics.value("is_set_last_update_position", self._vehicle is not None)
+        diagnostics.value("is_set_map_points", self.is_set)
+        diagnostics.value("map_update_execution_time", round(self._duration_ms, 3))
+        if self._problem:
+            diagnostics.error(f"the map cannot be used: {self._problem}")
+        if self._area is not None and self._vehicle is not None:
+            distance_m = self._area.distance_m(*self._vehicle)
+            diagnostics.value("distance_last_update_position_to_current_position", distance_m)
+            if self.is_set and self.is_leaving(*self._vehicle):
+                diagnostics.error("Dynamic map loading is not keeping up.")
+
+    def close(self) -> None:
+        """End the building of maps."""
+        self._builder.close()

@@ -1,0 +1,365 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""`ndt_scan_matcher`: the pose of the vehicle from LiDAR scans, with Autoware's interface."""
+
+from __future__ import annotations
+
+import time
+from typing import Any
+
+import numpy as np
+from geometry_msgs.msg import PoseWithCovarianceStamped
+from rclpy.node import Node
+from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+from sensor_msgs.msg import PointCloud2
+from std_srvs.srv import SetBool
+from tier4_localization_msgs.srv import PoseWithCovarianceStamped as AlignService
+
+from rmw_manycore_py.ndt import poses
+from rmw_manycore_py.ndt.initial_pose import Particle, particles
+from rmw_manycore_py.ndt.matcher import SerialMatcher
+from rmw_manycore_py.ndt.nodes import judgement
+from rmw_manycore_py.ndt.nodes.conversions import (
+    PoseError,
+    covariance_of,
+    matrix_of,
+    pose_with_covariance,
+    seconds,
+)
+from rmw_manycore_py.ndt.nodes.cpu_time import tree_cpu_s
+from rmw_manycore_py.ndt.nodes.declared import declare
+from rmw_manycore_py.ndt.nodes.diagnostics import Diagnostics
+from rmw_manycore_py.ndt.nodes.frame_tree import FrameError, FrameTree
+from rmw_manycore_py.ndt.nodes.map_supply import MapSupply
+from rmw_manycore_py.ndt.nodes.matcher_options import matcher_options
+from rmw_manycore_py.ndt.nodes.matcher_outputs import MatcherOutputs
+from rmw_manycore_py.ndt.nodes.matcher_parameters import MatcherParameters, OwnParameters
+from rmw_manycore_py.ndt.nodes.point_cloud import CloudError, decode
+from rmw_manycore_py.ndt.nodes.pose_buffer import Interpolated, PoseBuffer
+from rmw_manycore_py.ndt.nodes.running import run_node
+from rmw_manycore_py.ndt.poses import Matrix
+from rmw_manycore_py.ndt.thinning import Points
+
+MAP_UPDATE_PERIOD_S = 1.0
+SCAN_DEPTH = 5  # a scan that waits is late, one that is overwritten is lost
+UNLIMITED = 1000.0  # as Autoware has it for regularization poses, in s and m
+SEED = 0
+
+
+class Rejected(Exception):  # noqa: N818
+    """A scan that gives no pose, and why."""
+
+
+class NdtScanMatcher(Node):
+    """Matches each scan against the map around the vehicle."""
+
+    def __init__(self) -> None:
+        super().__init__("ndt_scan_matcher")
+        self._p = declare(self, MatcherParameters)
+        self._own = declare(self, OwnParameters)
+        options = matcher_options(self._p, self._own)
+        self._matcher = SerialMatcher(options)
+        self._map = MapSupply(options, self._p, self._own)
+        self._frames = FrameTree()
+        self._guesses = PoseBuffer(self._p.initial_pose_timeout_s, self._p.initial_pose_distance_m)
+        self._regularization = PoseBuffer(UNLIMITED, UNLIMITED)
+        self._is_activated = self._own.activated
+        self._scan: Points | None = None
+        self._rejected_in_a_row = 0
+        self._outputs = MatcherOutputs(self, self._p.map_frame, self._p.ndt_base_frame)
+        self._diagnostics = {
+            name: Diagnostics(self, name)
+            for name in (
+                "scan_matching_status",
+                "initial_pose_subscriber_status",
+                "regularization_pose_subscriber_status",
+                "map_update_status",
+                "ndt_align_service_status",
+                "trigger_node_service_status",
+            )
+        }
+        self._listen()
+
+    def _listen(self) -> None:
+        pose = PoseWithCovarianceStamped
+        sensor = QoSProfile(depth=SCAN_DEPTH, reliability=ReliabilityPolicy.BEST_EFFORT)
+        kept = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+        self.create_subscription(pose, "ekf_pose_with_covariance", self._on_guess, 100)
+        self.create_subscription(PointCloud2, "points_raw", self._on_scan, sensor)
+        self.create_subscription(PointCloud2, "pointcloud_map", self._map.on_message, kept)
+        if self._p.regularization:
+            self.create_subscription(
+                pose, "regularization_pose_with_covariance", self._on_regularization, 10
+            )
+        self._frames.listen(self)
+        self.create_service(SetBool, "trigger_node_srv", self._on_trigger)
+        self.create_service(AlignService, "ndt_align_srv", self._on_align)
+        self.create_timer(MAP_UPDATE_PERIOD_S, self._on_timer)
+
+    def destroy_node(self) -> None:
+        """Release map and workers."""
+        self._map.close()
+        self._matcher.close()
+        super().destroy_node()
+
+    def _on_guess(self, message: Any) -> None:
+        report = self._diagnostics["initial_pose_subscriber_status"]
+        report.clear()
+        report.value("topic_time_stamp", seconds(message.header.stamp))
+        report.value("is_activated", self._is_activated)
+        expected = message.header.frame_id == self._p.map_frame
+        if not self._is_activated:
+            report.note("Node is not activated: call trigger_node_srv")
+        else:
+            report.value("is_expected_frame_id", expected)
+            if not expected:
+                report.error(
+                    f"the initial pose is in the frame '{message.header.frame_id}', expected "
+                    f"'{self._p.map_frame}': check the publisher of ekf_pose_with_covariance"
+                )
+            else:
+                self._add_pose(self._guesses, message, report)
+        report.publish(message.header.stamp)
+
+    def _on_regularization(self, message: Any) -> None:
+        report = self._diagnostics["regularization_pose_subscriber_status"]
+        report.clear()
+        report.value("topic_time_stamp", seconds(message.header.stamp))
+        self._add_pose(self._regularization, message, report)
+        report.publish(message.header.stamp)
+
+    def _add_pose(self, buffer: PoseBuffer, message: Any, report: Diagnostics) -> None:
+        try:
+            T = matrix_of(message.pose.pose)
+        except PoseError as error:
+            report.error(f"{error}: it is passed over")
+            return
+        buffer.push(seconds(message.header.stamp), T)
+        if buffer is self._guesses:
+            self._map.vehicle_is_at(float(T[0, 3]), float(T[1, 3]))
+
+    def _on_scan(self, message: Any) -> None:
+        report = self._diagnostics["scan_matching_status"]
+        report.clear()
+        try:
+            reliable = self._match(message, report)
+        except Rejected as why:
+            report.warn(str(why))
+            reliable = False
+        failed = self._is_activated and not reliable
+        self._rejected_in_a_row = self._rejected_in_a_row + 1 if failed else 0
+        report.value("skipping_publish_num", self._rejected_in_a_row)
+        if self._rejected_in_a_row >= self._p.skipping_publish_num:
+            report.note(f"{self._rejected_in_a_row} scans in a row gave no pose")
+        report.value("cpu_time_s", round(tree_cpu_s(), 2))
+        report.publish(message.header.stamp)
+
+    def _match(self, message: Any, report: Diagnostics) -> bool:
+        """Go through Autoware's steps; the result is published even if it is not reliable."""
+        start = time.perf_counter()
+        stamp, stamp_s = message.header.stamp, seconds(message.header.stamp)
+        points = self._points_in_base(message, report)
+        self._scan = points
+        report.value("is_activated", self._is_activated)
+        if not self._is_activated:
+            raise Rejected("Node is not activated: call trigger_node_srv")
+        guess = self._guess_at(stamp_s, report)
+        self._take_new_map()
+        report.value("is_set_map_points", self._map.is_set)
+        if not self._map.is_set:
+            raise Rejected(f"there is no map yet: {self._map.what_is_missing()}")
+        if self._map.is_leaving(float(guess.T[0, 3]), float(guess.T[1, 3])):
+            report.note("Lidar has gone out of the map range")
+        alignment = self._matcher.align(points, guess.T, self._regularization_at(stamp_s))
+        if not np.isfinite(alignment.T_map_sensor).all():
+            raise Rejected(f"the alignment has no finite result: {alignment.why}")
+        reliable = judgement.is_reliable(alignment, self._p, report)
+        distance_m = poses.distance_m(guess.T, alignment.T_map_sensor)
+        report.value("distance_initial_to_result", distance_m)
+        if distance_m > self._p.result_distance_m:
+            report.warn(f"distance_initial_to_result is too large ({distance_m:.2f} m)")
+        if reliable:
+            covariance = judgement.output_covariance(alignment, self._p)
+            self._outputs.accepted_pose(stamp, alignment.T_map_sensor, covariance)
+        exe_time_ms = 1e3 * (time.perf_counter() - start)
+        report.value("execution_time", round(exe_time_ms, 3))
+        if exe_time_ms > self._p.critical_exe_time_ms:
+            report.warn(f"NDT exe time is too long (took {exe_time_ms:.1f} ms)")
+        self._outputs.number("exe_time_ms", stamp, exe_time_ms)
+        self._outputs.result(stamp, alignment, guess)
+        self._publish_clouds(stamp, points, alignment.T_map_sensor)
+        return reliable
+
+    def _points_in_base(self, message: Any, report: Diagnostics) -> Points:
+        """Return the scan in the base frame, checked and at most as large as allowed."""
+        stamp_s = seconds(message.header.stamp)
+        report.value("topic_time_stamp", stamp_s)
+        report.value("sensor_points_size", message.width * message.height)
+        try:
+            points = decode(message)
+        except CloudError as error:
+            raise Rejected(str(error)) from error
+        if len(points) == 0:
+            raise Rejected("Sensor points is empty: it has no point that is finite")
+        delay_s = seconds(self.get_clock().now().to_msg()) - stamp_s
+        report.value("sensor_points_delay_time_sec", round(delay_s, 4))
+        if delay_s > self._p.timeout_s:
+            report.warn(f"sensor points are {delay_s:.2f} s old (tolerance {self._p.timeout_s} s)")
+        if len(points) > self._own.scan_limit:
+            step = -(-len(points) // self._own.scan_limit)
+            report.warn(
+                f"{len(points)} points are more than sensor_points.limit "
+                f"({self._own.scan_limit}): every {step}th is used; put a filter in front"
+            )
+            points = points[::step]
+        points = self._in_base(points, message.header.frame_id, report)
+        farthest_m = float(np.sqrt(np.square(points, dtype=np.float64).sum(axis=1).max()))
+        report.value("sensor_points_max_distance", round(farthest_m, 3))
+        if farthest_m < self._p.required_distance_m:
+            raise Rejected(
+                f"Max distance of sensor points = {farthest_m:.3f} m < "
+                f"{self._p.required_distance_m} m (sensor_points.required_distance)"
+            )
+        return np.ascontiguousarray(points, np.float32)
+
+    def _in_base(self, points: Points, frame: str, report: Diagnostics) -> Points:
+        if frame == self._p.base_frame:
+            report.value("is_succeed_transform_sensor_points", True)
+            return points
+        try:
+            T_base_sensor = self._frames.lookup(self._p.base_frame, frame)
+        except FrameError as error:
+            report.value("is_succeed_transform_sensor_points", False)
+            raise Rejected(f"{error}. Please publish TF {frame} to {self._p.base_frame}") from error
+        report.value("is_succeed_transform_sensor_points", True)
+        return poses.transform(T_base_sensor, points)
+
+    def _guess_at(self, stamp_s: float, report: Diagnostics) -> Interpolated:
+        guess = self._guesses.at(stamp_s)
+        report.value("is_succeed_interpolate_initial_pose", guess is not None)
+        if guess is None:
+            raise Rejected(
+                "Couldn't interpolate pose: check that ekf_pose_with_covariance is published, with "
+                "stamps near those of the scans and without jumps"
+            )
+        self._guesses.forget_before(stamp_s)
+        return guess
+
+    def _regularization_at(self, stamp_s: float) -> Matrix | None:
+        if not self._p.regularization:
+            return None
+        pose = self._regularization.at(stamp_s)
+        return None if pose is None else pose.T
+
+    def _publish_clouds(self, stamp: Any, points: Points, T_map_base: Matrix) -> None:
+        self._outputs.cloud("points_aligned", stamp, points, T_map_base)
+        if not self._p.no_ground:
+            return
+        height_m = poses.transform(T_map_base, points)[:, 2] - T_map_base[2, 3]
+        above = points[height_m > self._p.ground_margin_m]
+        self._outputs.cloud("points_aligned_no_ground", stamp, above, T_map_base)
+        score = self._matcher.score(above, T_map_base)
+        prefix = "no_ground_"
+        self._outputs.number(f"{prefix}transform_probability", stamp, score.transform_probability)
+        self._outputs.number(
+            f"{prefix}nearest_voxel_transformation_likelihood",
+            stamp,
+            score.nearest_voxel_likelihood,
+        )
+
+    def _take_new_map(self, wait: bool = False) -> None:
+        """Swap in the map that was built meanwhile, if there is one."""
+        voxel_map = self._map.take(wait)
+        if voxel_map is not None:
+            self._matcher.set_map(voxel_map)
+
+    def _on_timer(self) -> None:
+        report = self._diagnostics["map_update_status"]
+        report.clear()
+        now = self.get_clock().now().to_msg()
+        report.value("timer_callback_time_stamp", seconds(now))
+        report.value("is_activated", self._is_activated)
+        if not self._is_activated:
+            report.note("Node is not activated: call trigger_node_srv")
+        self._take_new_map()
+        self._map.report(report)
+        report.publish(now)
+
+    def _on_trigger(self, request: Any, response: Any) -> Any:
+        report = self._diagnostics["trigger_node_service_status"]
+        report.clear()
+        now = self.get_clock().now().to_msg()
+        report.value("service_call_time_stamp", seconds(now))
+        self._is_activated = bool(request.data)
+        if self._is_activated:
+            self._guesses.clear()
+        response.success = True
+        report.value("is_activated", self._is_activated)
+        report.value("is_succeed_service", True)
+        report.publish(now)
+        return response
+
+    def _on_align(self, request: Any, response: Any) -> Any:
+        report = self._diagnostics["ndt_align_service_status"]
+        report.clear()
+        now = self.get_clock().now().to_msg()
+        report.value("service_call_time_stamp", seconds(now))
+        try:
+            self._align(request.pose_with_covariance, response, report)
+        except (Rejected, PoseError, FrameError) as why:
+            report.warn(f"ndt_align_srv failed: {why}")
+            response.success = False
+        report.value("is_succeed_service", bool(response.success))
+        report.publish(now)
+        return response
+
+    def _align(self, guess: Any, response: Any, report: Diagnostics) -> None:
+        """Search around a pose for the likeliest one."""
+        T_map_frame = np.eye(4)
+        if guess.header.frame_id != self._p.map_frame:
+            T_map_frame = self._frames.lookup(self._p.map_frame, guess.header.frame_id)
+        report.value("is_succeed_transform_initial_pose", True)
+        T_map_base = T_map_frame @ matrix_of(guess.pose.pose)
+        covariance = covariance_of(guess)
+        if not np.isfinite(covariance).all():
+            raise Rejected("the covariance of the pose is not finite")
+        self._map.vehicle_is_at(float(T_map_base[0, 3]), float(T_map_base[1, 3]))
+        self._take_new_map(wait=True)
+        report.value("is_set_map_points", self._map.is_set)
+        if not self._map.is_set:
+            raise Rejected(f"there is no map yet: {self._map.what_is_missing()}")
+        report.value("is_set_sensor_points", self._scan is not None)
+        if self._scan is None:
+            raise Rejected("no scan has come yet: check points_raw")
+        best = self._best_particle(T_map_base, covariance)
+        report.value("best_particle_score", best.score)
+        if not np.isfinite(best.alignment.T_map_sensor).all():
+            raise Rejected("no alignment has a finite result")
+        response.success = True
+        response.reliable = best.score > self._p.least_nearest_voxel_likelihood
+        if not response.reliable:
+            report.warn(f"the best of {self._p.particles} results has a score of {best.score:.3f}")
+        response.pose_with_covariance = pose_with_covariance(
+            best.alignment.T_map_sensor, covariance, guess.header.stamp, self._p.map_frame
+        )
+
+    def _best_particle(self, T_map_base: Matrix, covariance: Matrix) -> Particle:
+        scan = self._scan
+        assert scan is not None
+        tried = particles(
+            lambda T: self._matcher.align(scan, T, None),
+            T_map_base,
+            covariance,
+            self._p.particles,
+            self._p.startup_trials,
+            np.random.default_rng(SEED),
+        )
+        return max(tried, key=lambda particle: particle.score)
+
+
+def main() -> None:
+    """Run the node until it is interrupted."""
+    run_node(NdtScanMatcher)
+
+
+if __name__ == "__main__":
+    main()

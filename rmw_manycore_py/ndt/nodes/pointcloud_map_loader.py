@@ -1,0 +1,81 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""`pointcloud_map_loader`: publishes a map from files, all of it or what is near the vehicle."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from builtin_interfaces.msg import Time
+from geometry_msgs.msg import PoseWithCovarianceStamped
+from rclpy.node import Node
+from rclpy.qos import DurabilityPolicy, QoSProfile
+from sensor_msgs.msg import PointCloud2
+
+from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
+from rmw_manycore_py.ndt.map_area import MapArea
+from rmw_manycore_py.ndt.map_tiles import open_map
+from rmw_manycore_py.ndt.nodes.conversions import PoseError, matrix_of
+from rmw_manycore_py.ndt.nodes.declared import declare, parameter
+from rmw_manycore_py.ndt.nodes.point_cloud import encode
+from rmw_manycore_py.ndt.nodes.running import run_node
+from rmw_manycore_py.ndt.thinning import Points
+
+
+@dataclass(frozen=True)
+class LoaderParameters:
+    """Autoware's where it has them; metres."""
+
+    whole: bool = parameter("enable_whole_load", True)
+    path: str = parameter("pcd_paths_or_directory", "")
+    leaf_m: float = parameter("leaf_size", 0.0, least=0.0)
+    map_frame: str = parameter("map_frame", "map")
+    radius_m: float = parameter("map_radius", 150.0, above=0.0)
+    update_distance_m: float = parameter("update_distance", 20.0, above=0.0)
+
+
+class PointcloudMapLoader(Node):
+    """Publishes `pointcloud_map`, which late subscribers get too."""
+
+    def __init__(self) -> None:
+        super().__init__("pointcloud_map_loader")
+        self._p = declare(self, LoaderParameters)
+        if not self._p.path:
+            raise ManycoreError(
+                "parameter pcd_paths_or_directory: expected a map file or a folder of tiles",
+                EXIT_BAD_INPUT,
+            )
+        tiles = open_map(Path(self._p.path).expanduser(), self._p.leaf_m)
+        kept = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+        self._publisher = self.create_publisher(PointCloud2, "pointcloud_map", kept)
+        self._area = MapArea(tiles, self._p.radius_m, self._p.update_distance_m)
+        if self._p.whole:
+            self._publish(tiles.around(0.0, 0.0, float("inf"))[1])
+        else:
+            self.create_subscription(
+                PoseWithCovarianceStamped, "ekf_pose_with_covariance", self._on_pose, 1
+            )
+
+    def _on_pose(self, message: Any) -> None:
+        try:
+            T = matrix_of(message.pose.pose)
+            points = self._area.update(float(T[0, 3]), float(T[1, 3]))
+        except (PoseError, ManycoreError) as error:
+            self.get_logger().error(str(error), throttle_duration_sec=1.0)
+            return
+        if points is not None:
+            self._publish(points)
+
+    def _publish(self, points: Points) -> None:
+        self.get_logger().info(f"publishing a map of {len(points)} points")
+        self._publisher.publish(encode(points, Time(), self._p.map_frame))
+
+
+def main() -> None:
+    """Run the node until it is interrupted."""
+    run_node(PointcloudMapLoader)
+
+
+if __name__ == "__main__":
+    main()

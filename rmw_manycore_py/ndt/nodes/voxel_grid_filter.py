@@ -1,0 +1,56 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""`voxel_grid_filter`: thins scans to one point per voxel, as Autoware's downsample filter."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from rclpy.node import Node
+from rclpy.qos import QoSProfile, ReliabilityPolicy
+from sensor_msgs.msg import PointCloud2
+
+from rmw_manycore_py.ndt.nodes.declared import declare, parameter
+from rmw_manycore_py.ndt.nodes.point_cloud import CloudError, decode, encode
+from rmw_manycore_py.ndt.nodes.running import run_node
+from rmw_manycore_py.ndt.thinning import voxel_centroids
+
+REPEAT_S = 1.0
+
+
+@dataclass(frozen=True)
+class FilterParameters:
+    """Autoware's; metres."""
+
+    x_m: float = parameter("voxel_size_x", 0.3, least=0.01, most=100.0)
+    y_m: float = parameter("voxel_size_y", 0.3, least=0.01, most=100.0)
+    z_m: float = parameter("voxel_size_z", 0.1, least=0.01, most=100.0)
+
+
+class VoxelGridFilter(Node):
+    """From `input` to `output`, with stamp and frame as they were."""
+
+    def __init__(self) -> None:
+        super().__init__("voxel_grid_filter")
+        p = declare(self, FilterParameters)
+        self._voxel_m = (p.x_m, p.y_m, p.z_m)
+        sensor = QoSProfile(depth=5, reliability=ReliabilityPolicy.BEST_EFFORT)
+        self._output = self.create_publisher(PointCloud2, "output", 5)
+        self.create_subscription(PointCloud2, "input", self._on_scan, sensor)
+
+    def _on_scan(self, message: Any) -> None:
+        try:
+            points = voxel_centroids(decode(message), self._voxel_m)
+        except (CloudError, ValueError) as error:
+            self.get_logger().warning(f"scan dropped: {error}", throttle_duration_sec=REPEAT_S)
+            return
+        self._output.publish(encode(points, message.header.stamp, message.header.frame_id))
+
+
+def main() -> None:
+    """Run the node until it is interrupted."""
+    run_node(VoxelGridFilter)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,145 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Playing a recording to a scan matcher: guess and scan at their time, poses as they come back."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import rclpy
+from builtin_interfaces.msg import Time
+from diagnostic_msgs.msg import DiagnosticArray
+from geometry_msgs.msg import PoseStamped, PoseWithCovarianceStamped
+from rclpy.node import Node
+from rclpy.qos import DurabilityPolicy, QoSProfile
+from sensor_msgs.msg import PointCloud2
+
+from rmw_manycore_py.errors import ManycoreError
+from rmw_manycore_py.ndt.nodes.conversions import (
+    matrix_of,
+    nanoseconds,
+    pose_with_covariance,
+)
+from rmw_manycore_py.ndt.nodes.point_cloud import encode
+from rmw_manycore_py.ndt.poses import Matrix
+from rmw_manycore_py.ndt.recording import Recording
+from rmw_manycore_py.ndt.replay.prediction import MEASURED, Prediction
+from rmw_manycore_py.ndt.replay.tally import Played, Tally
+from rmw_manycore_py.ndt.thinning import Points, voxel_centroids
+
+MAP_FRAME, BASE_FRAME = "map", "base_link"
+WARM_UP_PERIOD_S = 0.25
+FOLLOW_UP_S = 1.0  # how long answers are waited for after the last scan
+
+
+class Player(Node):
+    """Publishes what a laptop's stack would, and measures what comes back."""
+
+    def __init__(
+        self, drive: Recording, prediction: Prediction, tally: Tally, voxel_m: float
+    ) -> None:
+        super().__init__("ndt_replay")
+        self._drive = drive
+        self._prediction = prediction
+        self._tally = tally
+        self._voxel_m = voxel_m
+        self._waiting: dict[int, Played] = {}  # by stamp, ns
+        self._warm_stamps: set[int] = set()
+        self._is_warm = False
+        kept = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+        self._map = self.create_publisher(PointCloud2, "pointcloud_map", kept)
+        self._guesses = self.create_publisher(
+            PoseWithCovarianceStamped, "ekf_pose_with_covariance", 10
+        )
+        self._scans = self.create_publisher(PointCloud2, "points_raw", 5)
+        self.create_subscription(PoseStamped, "ndt_pose", self._on_pose, 100)
+        self.create_subscription(DiagnosticArray, "/diagnostics", self._on_diagnostics, 100)
+
+    def publish_map(self, points: Points) -> None:
+        """Publish the map, for nodes that come later too."""
+        self._map.publish(encode(points, Time(), MAP_FRAME))
+
+    def warm_up(self, timeout_s: float) -> None:
+        """Send the first scan until it is answered: then all are connected, and there is a map."""
+        scan = self._scan(0)
+        deadline = time.monotonic() + timeout_s
+        while not self._is_warm:
+            if time.monotonic() > deadline:
+                raise ManycoreError(self._why_cold(timeout_s))
+            stamp_ns = time.time_ns()
+            self._warm_stamps.add(stamp_ns)
+            self._send(stamp_ns, self._drive.poses[0], scan)
+            self._spin_until(time.monotonic() + WARM_UP_PERIOD_S, lambda: self._is_warm)
+
+    def play(self, rate_hz: float | None, report: Callable[[Played], None]) -> None:
+        """Play all scans, by their stamps or at a rate, and call `report` after each."""
+        times_s = self._drive.times_s()
+        if rate_hz is not None:
+            times_s = np.arange(len(self._drive)) / rate_hz
+        start = time.monotonic() + 0.05
+        for index, time_s in enumerate(times_s):
+            scan = self._scan(index)
+            self._spin_until(start + float(time_s))
+            stamp_ns = time.time_ns()
+            guess = self._prediction.guess(index, float(time_s))
+            row = Played(index, self._drive.poses[index], guess, time.monotonic())
+            self._tally.rows.append(row)
+            self._waiting[stamp_ns] = row
+            self._send(stamp_ns, guess, scan)
+            report(row)
+        end = time.monotonic() + FOLLOW_UP_S
+        self._spin_until(end, lambda: not self._waiting)
+
+    def _scan(self, index: int) -> Any:
+        points = self._drive.scan(index)
+        if self._voxel_m > 0.0:
+            points = voxel_centroids(points, (self._voxel_m,) * 3)
+        return encode(points, Time(), BASE_FRAME)
+
+    def _send(self, stamp_ns: int, guess: Matrix, scan: Any) -> None:
+        """Send a guess for the time of the scan (two, as a matcher interpolates), and the scan."""
+        stamp = _stamp(stamp_ns)
+        for time_ns in (stamp_ns - 1_000_000, stamp_ns):
+            self._guesses.publish(pose_with_covariance(guess, MEASURED, _stamp(time_ns), MAP_FRAME))
+        scan.header.stamp = stamp
+        self._scans.publish(scan)
+
+    def _on_pose(self, message: Any) -> None:
+        stamp_ns = nanoseconds(message.header.stamp)
+        if stamp_ns in self._warm_stamps:
+            self._is_warm = True
+        row = self._waiting.pop(stamp_ns, None)
+        if row is None:
+            return
+        row.latency_ms = 1e3 * (time.monotonic() - row.sent_s)
+        row.result = matrix_of(message.pose)
+        time_s = float(self._drive.times_s()[row.index])
+        self._prediction.result(row.index, time_s, row.result)
+
+    def _on_diagnostics(self, message: Any) -> None:
+        for status in message.status:
+            values = {pair.key: pair.value for pair in status.values}
+            if "cpu_time_s" in values and self._tally.rows:
+                self._tally.cpu_s.append((time.monotonic(), float(values["cpu_time_s"])))
+
+    def _spin_until(self, deadline: float, done: Callable[[], bool] = lambda: False) -> None:
+        """Handle what arrives until a time or a condition."""
+        while not done() and (left_s := deadline - time.monotonic()) > 0.0:
+            rclpy.spin_once(self, timeout_sec=left_s)
+
+    def _why_cold(self, timeout_s: float) -> str:
+        if self._scans.get_subscription_count() == 0:
+            return (
+                "nobody subscribes points_raw: start a scan matcher first, for example "
+                "`manycore run mapfiles/ndt_offload.yaml`, in the same ROS_DOMAIN_ID"
+            )
+        return (
+            f"no ndt_pose within {timeout_s:g} s, though points_raw has a subscriber: its "
+            "/diagnostics and its log say why (no map, not activated, a score below its threshold)"
+        )
+
+
+def _stamp(time_ns: int) -> Time:
+    return Time(sec=time_ns // 1_000_000_000, nanosec=time_ns % 1_000_000_000)

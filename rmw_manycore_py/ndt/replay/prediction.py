@@ -1,0 +1,98 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Where a scan is guessed to be: what the rest of a laptop's stack supplies."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+import numpy as np
+
+from rmw_manycore_py.ndt import poses
+from rmw_manycore_py.ndt.pose_filter import PoseFilter
+from rmw_manycore_py.ndt.poses import Matrix
+from rmw_manycore_py.ndt.recording import Recording
+
+MEASURED = np.diag([0.0225, 0.0225, 0.0225, 0.000625, 0.000625, 0.000625])  # m^2, rad^2
+
+
+class Prediction(Protocol):
+    """Guesses the pose of each scan in turn, and is told the results."""
+
+    def guess(self, index: int, stamp_s: float) -> Matrix:
+        """Return the guess for a scan at a time."""
+
+    def result(self, index: int, stamp_s: float, T_map_sensor: Matrix) -> None:
+        """Take the pose that a scan was found to have."""
+
+
+class Perturbed:
+    """The reference pose, moved and turned by fixed amounts in random directions."""
+
+    def __init__(self, drive: Recording, offset_m: float, turn_deg: float, seed: int) -> None:
+        self._drive = drive
+        self._offset_m, self._turn_rad = offset_m, float(np.radians(turn_deg))
+        self._generator = np.random.default_rng(seed)
+
+    def guess(self, index: int, stamp_s: float) -> Matrix:  # noqa: ARG002
+        """Return a guess that no result has an influence on."""
+        reference = self._drive.poses[index]
+        return poses.perturbed(reference, self._offset_m, self._turn_rad, self._generator)
+
+    def result(self, index: int, stamp_s: float, T_map_sensor: Matrix) -> None:
+        """Be indifferent."""
+
+
+class Odometry:
+    """Closed loop: the last result, moved on as wheels and gyroscope say, which is not exact.
+
+    The motion between two scans is that of the reference poses with an error of `drift` of its
+    length and angle, in a random direction, and what was not answered is bridged with more of it.
+    """
+
+    def __init__(self, drive: Recording, drift: float, seed: int) -> None:
+        self._drive = drive
+        self._drift = drift
+        self._generator = np.random.default_rng(seed)
+        self._last = (0, drive.poses[0])
+        self._motions: list[Matrix] = []
+
+    def guess(self, index: int, stamp_s: float) -> Matrix:  # noqa: ARG002
+        """Return the pose of the last result and all motion since."""
+        while len(self._motions) < index:
+            self._motions.append(self._motion(len(self._motions)))
+        since = self._last[0]
+        T: Matrix = self._last[1]
+        for motion in self._motions[since:index]:
+            T = T @ motion
+        return T
+
+    def result(self, index: int, stamp_s: float, T_map_sensor: Matrix) -> None:  # noqa: ARG002
+        """Go on from a pose, if it is newer than what is known."""
+        if index >= self._last[0]:
+            self._last = (index, T_map_sensor)
+
+    def _motion(self, index: int) -> Matrix:
+        before, after = self._drive.poses[index], self._drive.poses[index + 1]
+        motion = poses.inverse(before) @ after
+        length_m = float(np.linalg.norm(motion[:3, 3]))
+        angle_rad = float(np.linalg.norm(poses.rotation_vector(motion[:3, :3])))
+        drift = self._drift
+        return poses.perturbed(motion, drift * length_m, drift * angle_rad, self._generator)
+
+
+class Velocity:
+    """Closed loop: the filter of `ekf_localizer`, which knows nothing but the results."""
+
+    def __init__(self, drive: Recording) -> None:
+        self._first = drive.poses[0]
+        self._filter = PoseFilter()
+
+    def guess(self, index: int, stamp_s: float) -> Matrix:  # noqa: ARG002
+        """Return the filter's prediction."""
+        if not self._filter.is_initialized:
+            self._filter.initialize(stamp_s, self._first, MEASURED)
+        return self._filter.predicted(stamp_s).pose()
+
+    def result(self, index: int, stamp_s: float, T_map_sensor: Matrix) -> None:  # noqa: ARG002
+        """Give a result to the filter."""
+        self._filter.add_pose(stamp_s, T_map_sensor, MEASURED)

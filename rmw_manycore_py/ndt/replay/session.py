@@ -1,0 +1,39 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""One replay from beginning to end."""
+
+from __future__ import annotations
+
+import gc
+
+import rclpy
+
+from rmw_manycore_py.ndt.recording import Recording
+from rmw_manycore_py.ndt.replay.player import Player
+from rmw_manycore_py.ndt.replay.prediction import Prediction
+from rmw_manycore_py.ndt.replay.progress import ReplayProgress
+from rmw_manycore_py.ndt.replay.tally import Tally
+from rmw_manycore_py.ndt.thinning import Points
+
+
+def run(
+    drive: Recording,
+    prediction: Prediction,
+    tally: Tally,
+    map_points: Points | None,
+    voxel_m: float,
+    rate_hz: float | None,
+    timeout_s: float,
+) -> None:
+    """Publish the map if there is one, wait for the matcher, play; all goes into the tally."""
+    rclpy.init()
+    player = Player(drive, prediction, tally, voxel_m)
+    try:
+        if map_points is not None:
+            player.publish_map(map_points)
+        player.warm_up(timeout_s)
+        gc.freeze()  # what was loaded so far is not looked through while scans are timed
+        with ReplayProgress(tally, len(drive)) as progress:
+            player.play(rate_hz, progress.played)
+    finally:
+        player.destroy_node()
+        rclpy.try_shutdown()

@@ -1,0 +1,147 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""What became of each scan that was played, and the figures of all of them."""
+
+from __future__ import annotations
+
+import csv
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from rmw_manycore_py.ndt import poses
+from rmw_manycore_py.ndt.poses import Matrix
+
+DIVERGED_M, DIVERGED_DEG = 1.0, 10.0
+
+
+@dataclass
+class Played:
+    """A scan; errors are against the reference pose, latency from before sending to the pose."""
+
+    index: int
+    reference: Matrix
+    guess: Matrix
+    sent_s: float
+    latency_ms: float | None = None
+    result: Matrix | None = None
+
+    @property
+    def guess_error(self) -> tuple[float, float]:
+        """Return the error of the guess in metres and degrees."""
+        return _error(self.reference, self.guess)
+
+    @property
+    def error(self) -> tuple[float, float] | None:
+        """Return the error of the result in metres and degrees."""
+        return None if self.result is None else _error(self.reference, self.result)
+
+
+@dataclass(frozen=True)
+class Summary:
+    """The figures of a replay; errors and latencies of scans that were answered."""
+
+    scans: int
+    answered: int
+    lost: int
+    late: int
+    diverged: int
+    guess_error_m_max: float
+    guess_error_deg_max: float
+    error_m_median: float
+    error_m_p99: float
+    error_m_max: float
+    error_deg_median: float
+    error_deg_max: float
+    within_share: float  # of all scans: within 0.2 m and 1 degree
+    latency_ms_median: float
+    latency_ms_p99: float
+    latency_ms_max: float
+    node_cpu_percent: float | None
+
+    @property
+    def is_good(self) -> bool:
+        """Tell whether every scan had an answer, in time and near the truth."""
+        return self.lost == 0 and self.late == 0 and self.diverged == 0
+
+
+@dataclass
+class Tally:
+    """All scans played so far."""
+
+    deadline_ms: float
+    rows: list[Played] = field(default_factory=list)
+    cpu_s: list[tuple[float, float]] = field(default_factory=list)  # wall and CPU time of the node
+
+    def answered(self) -> list[Played]:
+        """Return the scans that have a result."""
+        return [row for row in self.rows if row.result is not None]
+
+    def late(self) -> int:
+        """Count the answers after the deadline."""
+        return sum((row.latency_ms or 0.0) > self.deadline_ms for row in self.answered())
+
+    def lost(self) -> int:
+        """Count the scans without an answer."""
+        return sum(row.result is None for row in self.rows)
+
+    def summary(self) -> Summary:
+        """Return the figures."""
+        answered = self.answered()
+        errors = np.array([row.error for row in answered]).reshape(-1, 2)
+        guesses = np.array([row.guess_error for row in self.rows]).reshape(-1, 2)
+        latencies = np.array([row.latency_ms for row in answered], np.float64)
+        diverged = (errors[:, 0] > DIVERGED_M) | (errors[:, 1] > DIVERGED_DEG)
+        within = (errors[:, 0] <= 0.2) & (errors[:, 1] <= 1.0)
+        return Summary(
+            scans=len(self.rows),
+            answered=len(answered),
+            lost=self.lost(),
+            late=self.late(),
+            diverged=int(diverged.sum()),
+            guess_error_m_max=_figure(guesses[:, 0], 100),
+            guess_error_deg_max=_figure(guesses[:, 1], 100),
+            error_m_median=_figure(errors[:, 0], 50),
+            error_m_p99=_figure(errors[:, 0], 99),
+            error_m_max=_figure(errors[:, 0], 100),
+            error_deg_median=_figure(errors[:, 1], 50),
+            error_deg_max=_figure(errors[:, 1], 100),
+            within_share=float(within.sum()) / max(len(self.rows), 1),
+            latency_ms_median=_figure(latencies, 50),
+            latency_ms_p99=_figure(latencies, 99),
+            latency_ms_max=_figure(latencies, 100),
+            node_cpu_percent=self._cpu_percent(),
+        )
+
+    def write_csv(self, path: Path) -> None:
+        """Write one line per scan."""
+        with path.open("w", newline="") as file:
+            writer = csv.writer(file)
+            writer.writerow(
+                ["scan", "guess_error_m", "guess_error_deg", "error_m", "error_deg", "latency_ms"]
+            )
+            for row in self.rows:
+                error = row.error or ("", "")
+                writer.writerow([row.index, *row.guess_error, *error, row.latency_ms])
+
+    def _cpu_percent(self) -> float | None:
+        """Return CPU time over wall time between the node's first and last report."""
+        if len(self.cpu_s) < 2:
+            return None
+        (first_wall, first_cpu), (last_wall, last_cpu) = self.cpu_s[0], self.cpu_s[-1]
+        wall_s = last_wall - first_wall
+        return 100.0 * (last_cpu - first_cpu) / wall_s if wall_s > 0.0 else None
+
+
+def as_json(summary: Summary) -> dict[str, Any]:
+    """Return the figures for printing; NaN, where nothing was answered, as None."""
+    return {k: None if v != v else v for k, v in asdict(summary).items()}
+
+
+def _error(reference: Matrix, T: Matrix) -> tuple[float, float]:
+    return poses.distance_m(reference, T), float(np.degrees(poses.angle_rad(reference, T)))
+
+
+def _figure(values: Matrix, percentile: float) -> float:
+    return float(np.percentile(values, percentile)) if len(values) else float("nan")

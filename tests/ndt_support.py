@@ -1,0 +1,124 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""A small street, and what the rest of a stack does around a scan matcher."""
+
+from __future__ import annotations
+
+import sys
+import time
+from typing import Any
+
+import numpy as np
+from diagnostic_msgs.msg import DiagnosticArray
+from geometry_msgs.msg import PoseStamped, PoseWithCovarianceStamped
+from rclpy.node import Node
+from rclpy.qos import DurabilityPolicy, QoSProfile
+from ros_support import spin_until
+from sensor_msgs.msg import PointCloud2
+from support import PATIENCE_S
+
+from rmw_manycore_py.ndt import poses
+from rmw_manycore_py.ndt.drive import poses_along
+from rmw_manycore_py.ndt.lidar import Lidar
+from rmw_manycore_py.ndt.nodes.conversions import matrix_of, nanoseconds, pose_with_covariance
+from rmw_manycore_py.ndt.nodes.point_cloud import encode
+from rmw_manycore_py.ndt.street import build_street
+
+LIDAR = Lidar(rings=16, azimuths=360)
+COVARIANCE = np.diag([0.04, 0.04, 0.04, 0.01, 0.01, 0.01])
+TRUTH = poses_along([5.0])[0]
+
+
+def matcher_command(**parameters: object) -> list[str]:
+    """Return the command of an activated matcher."""
+    words = [sys.executable, "-m", "rmw_manycore_py.ndt.nodes.ndt_scan_matcher", "--ros-args"]
+    for name, value in {"activated": "true", **parameters}.items():
+        words += ["-p", f"{name.replace('__', '.')}:={value}"]
+    return words
+
+
+def street_map() -> np.ndarray:
+    """Return the points of a map, made from six places."""
+    generator = np.random.default_rng(1)
+    street = build_street(10.0, generator)
+    places = poses_along(np.arange(-5.0, 20.0, 4.0), side_m=0.5)
+    scans = [poses.transform(T, LIDAR.scan(street, T, generator)) for T in places]
+    return np.concatenate(scans)
+
+
+def street_scan(T: np.ndarray = TRUTH) -> np.ndarray:
+    """Return what the LiDAR sees in the street of the map."""
+    street = build_street(10.0, np.random.default_rng(1))
+    return LIDAR.scan(street, T, np.random.default_rng(2))
+
+
+class Stack:
+    """Publishers and subscriptions of a stack, at a node of the test."""
+
+    def __init__(self, node: Node) -> None:
+        self.node = node
+        self.poses: dict[int, np.ndarray] = {}
+        self.reports: list[Any] = []
+        kept = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+        self.maps = node.create_publisher(PointCloud2, "pointcloud_map", kept)
+        self.guesses = node.create_publisher(
+            PoseWithCovarianceStamped, "ekf_pose_with_covariance", 10
+        )
+        self.scans = node.create_publisher(PointCloud2, "points_raw", 5)
+        node.create_subscription(PoseStamped, "ndt_pose", self._on_pose, 10)
+        node.create_subscription(DiagnosticArray, "/diagnostics", self._on_report, 1000)
+
+    def _on_pose(self, message: Any) -> None:
+        self.poses[nanoseconds(message.header.stamp)] = matrix_of(message.pose)
+
+    def _on_report(self, message: Any) -> None:
+        self.reports += [(nanoseconds(message.header.stamp), status) for status in message.status]
+
+    def wait_for_matcher(self) -> None:
+        """Wait until everything is connected."""
+        ends = (self.maps, self.guesses, self.scans)
+        spin_until(self.node, lambda: all(end.get_subscription_count() for end in ends))
+        spin_until(self.node, lambda: self.node.count_publishers("ndt_pose"))
+
+    def stamp(self) -> Any:
+        """Return the present time."""
+        return self.node.get_clock().now().to_msg()
+
+    def publish_map(self, points: np.ndarray) -> None:
+        self.maps.publish(encode(points, self.stamp(), "map"))
+
+    def send(self, scan: Any, guess: Any = TRUTH) -> int:
+        """Send a scan (points or a message) after its guess; return its stamp in ns."""
+        stamp = self.stamp()
+        if guess is not None:
+            message = guess
+            if isinstance(guess, np.ndarray):
+                message = pose_with_covariance(guess, COVARIANCE, stamp, "map")
+            for _ in range(2):
+                message.header.stamp = stamp
+                self.guesses.publish(message)
+        message = encode(scan, stamp, "base_link") if isinstance(scan, np.ndarray) else scan
+        message.header.stamp = stamp
+        self.scans.publish(message)
+        return nanoseconds(stamp)
+
+    def report_of(self, stamp_ns: int, name: str = "scan_matching_status") -> Any:
+        """Wait for the diagnostics of a scan, and return them."""
+
+        def found() -> list[Any]:
+            return [s for at, s in self.reports if at == stamp_ns and s.name.endswith(name)]
+
+        spin_until(self.node, found)
+        return found()[0]
+
+    def pose_of(self, scan: Any, guess: Any = TRUTH) -> np.ndarray:
+        """Send a scan until there is a pose for it: the map may still be on its way."""
+        deadline = time.monotonic() + PATIENCE_S
+        while (report := self.report_of(stamp_ns := self.send(scan, guess))).level != b"\x00":
+            assert time.monotonic() < deadline, f"no pose: {report.message}"
+        spin_until(self.node, lambda: stamp_ns in self.poses)
+        return self.poses[stamp_ns]
+
+
+def error_m(T: np.ndarray) -> float:
+    """Return how far a pose is from the truth."""
+    return poses.distance_m(T, TRUTH)

@@ -1,0 +1,277 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""The node `ndt_scan_matcher`: what it publishes, its services, and bad input of all kinds."""
+
+from __future__ import annotations
+
+from array import array
+
+import numpy as np
+import pytest
+from autoware_internal_debug_msgs.msg import Float32Stamped, Int32Stamped
+from diagnostic_msgs.msg import DiagnosticStatus
+from geometry_msgs.msg import PoseWithCovarianceStamped, TransformStamped
+from ndt_support import COVARIANCE, TRUTH, Stack, error_m, matcher_command, street_map, street_scan
+from rclpy.qos import DurabilityPolicy, QoSProfile
+from ros_support import spin_until
+from sensor_msgs.msg import PointCloud2
+from std_srvs.srv import SetBool
+from support import PATIENCE_S
+from tf2_msgs.msg import TFMessage
+from tier4_localization_msgs.srv import PoseWithCovarianceStamped as AlignService
+
+from rmw_manycore_py.ndt.map_tiles import write_tiles
+from rmw_manycore_py.ndt.nodes.conversions import (
+    matrix_of,
+    matrix_of_transform,
+    nanoseconds,
+    pose_with_covariance,
+    transform_stamped,
+)
+from rmw_manycore_py.ndt.nodes.point_cloud import decode, encode
+from rmw_manycore_py.ndt.poses import from_xyz_rpy, inverse, perturbed, transform
+
+GENERATOR = np.random.default_rng(3)
+NEAR = perturbed(TRUTH, 0.3, 0.03, GENERATOR)
+WARN, ERROR = b"\x01", b"\x02"
+
+
+@pytest.fixture
+def stack(node):
+    return Stack(node)
+
+
+@pytest.fixture
+def matched(stack, start):
+    """Yield a stack whose matcher runs in cluster 2 and has the map."""
+    start(matcher_command(), cluster=2)
+    stack.wait_for_matcher()
+    stack.publish_map(street_map())
+    return stack
+
+
+def test_a_pose_and_all_that_belongs_to_it(matched):
+    heard = {}
+
+    def listen(kind: type, topic: str) -> None:
+        keep = lambda message: heard.__setitem__(topic, message)  # noqa: E731
+        matched.node.create_subscription(kind, topic, keep, 10)
+
+    floats = [
+        "exe_time_ms",
+        "transform_probability",
+        "nearest_voxel_transformation_likelihood",
+        "initial_to_result_distance",
+    ]
+    for topic in floats:
+        listen(Float32Stamped, topic)
+    listen(Int32Stamped, "iteration_num")
+    listen(PoseWithCovarianceStamped, "ndt_pose_with_covariance")
+    listen(PointCloud2, "points_aligned")
+    listen(TFMessage, "/tf")
+    while len(heard) < len(floats) + 4:
+        matched.pose_of(street_scan(), NEAR)
+    heard.clear()
+    matched.pose_of(street_scan(), NEAR)
+    spin_until(matched.node, lambda: len(heard) == len(floats) + 4)
+
+    stamp_ns, T = max(matched.poses.items())
+    assert error_m(T) < 0.1
+    with_covariance = heard["ndt_pose_with_covariance"]
+    np.testing.assert_array_equal(matrix_of(with_covariance.pose.pose), T)
+    assert with_covariance.pose.covariance[0] == pytest.approx(0.0225, rel=0.01)
+    transformed = heard["/tf"].transforms[0]
+    assert (transformed.header.frame_id, transformed.child_frame_id) == ("map", "ndt_base_link")
+    np.testing.assert_allclose(matrix_of_transform(transformed.transform), T, atol=1e-9)
+    expected = transform(T, street_scan())
+    np.testing.assert_allclose(decode(heard["points_aligned"]), expected, atol=1e-3)
+    assert {nanoseconds(heard[topic].stamp) for topic in [*floats, "iteration_num"]} == {stamp_ns}
+    assert heard["initial_to_result_distance"].data == pytest.approx(0.3, abs=0.1)
+    assert heard["iteration_num"].data > 0
+
+
+def few(count: int) -> np.ndarray:
+    return np.float32([[15.0, n, 0.0] for n in range(count)])
+
+
+def nan_points() -> np.ndarray:
+    return np.full((100, 3), np.nan, np.float32)
+
+
+def cut_off() -> PointCloud2:
+    message = encode(street_scan(), TransformStamped().header.stamp, "base_link")
+    message.data = array("B", bytes(10))
+    return message
+
+
+def in_frame(name: str) -> PointCloud2:
+    return encode(street_scan(), TransformStamped().header.stamp, name)
+
+
+def guess_with(value: float) -> PoseWithCovarianceStamped:
+    message = pose_with_covariance(TRUTH, COVARIANCE, TransformStamped().header.stamp, "map")
+    message.pose.pose.position.x = value
+    return message
+
+
+def without_orientation() -> PoseWithCovarianceStamped:
+    message = guess_with(0.0)
+    message.pose.pose.orientation.w = message.pose.pose.orientation.z = 0.0
+    message.pose.pose.orientation.x = message.pose.pose.orientation.y = 0.0
+    return message
+
+
+BAD_SCANS = {
+    "empty": (few(0), "no point that is finite"),
+    "all NaN": (nan_points(), "no point that is finite"),
+    "tiny": (few(3), "no convergence"),
+    "too near": (street_scan() * np.float32(0.01), "required_distance"),
+    "cut off": (cut_off(), "bytes of data, found 10"),
+    "unknown frame": (in_frame("lidar"), "Please publish TF lidar to base_link"),
+    "of nowhere": (GENERATOR.uniform(-40, 40, (3000, 3)).astype(np.float32), "score"),
+}
+BAD_GUESSES = {
+    "NaN": guess_with(float("nan")),
+    "infinite": guess_with(float("inf")),
+    "too far for a number": guess_with(1e30),
+    "no orientation": without_orientation(),
+}
+
+
+def test_bad_scans_and_guesses_give_a_diagnostic_and_no_pose(matched):
+    matched.pose_of(street_scan())
+    for name, (scan, words) in BAD_SCANS.items():
+        report = matched.report_of(stamp_ns := matched.send(scan))
+        assert report.level == WARN, name
+        assert words in report.message, name
+        assert stamp_ns not in matched.poses, name
+        assert error_m(matched.pose_of(street_scan(), NEAR)) < 0.1, name
+    for name, guess in BAD_GUESSES.items():
+        stamp_ns = matched.send(few(0), guess)
+        report = matched.report_of(stamp_ns, "initial_pose_subscriber_status")
+        assert report.level == ERROR, name
+        assert "passed over" in report.message, name
+        assert error_m(matched.pose_of(street_scan(), NEAR)) < 0.1, name
+    far = from_xyz_rpy((1e5, 0.0, 0.0))
+    report = matched.report_of(matched.send(street_scan(), far))
+    assert "no convergence" in report.message or "interpolate" in report.message
+    in_wrong_frame = guess_with(5.0)
+    in_wrong_frame.header.frame_id = "odom"
+    stamp_ns = matched.send(few(0), in_wrong_frame)
+    report = matched.report_of(stamp_ns, "initial_pose_subscriber_status")
+    assert "'odom', expected 'map'" in report.message
+    assert all(np.isfinite(T).all() for T in matched.poses.values())
+
+
+def test_a_scan_of_two_million_points(matched):
+    scan = np.tile(street_scan(), (2_000_000 // len(street_scan()) + 1, 1))
+    matched.pose_of(street_scan())
+    stamp_ns = matched.send(scan)
+    report = matched.report_of(stamp_ns)
+    assert "more than sensor_points.limit" in report.message
+    assert error_m(matched.poses[stamp_ns]) < 0.1
+
+
+def again(stack: Stack) -> DiagnosticStatus:
+    """Send the scan, and return what the matcher reports of it."""
+    return stack.report_of(stack.send(street_scan()))
+
+
+def test_a_map_of_another_place_and_back(matched):
+    """Maps are swapped while scans come; the one without the place gives no pose."""
+    matched.pose_of(street_scan())
+    matched.publish_map(street_map() + np.float32([5000.0, 0.0, 0.0]))
+    spin_until(matched.node, lambda: "no convergence" in again(matched).message)
+    matched.publish_map(street_map())
+    assert error_m(matched.pose_of(street_scan(), NEAR)) < 0.1
+
+
+def test_maps_that_are_none(matched):
+    """They are reported, and the map before them stays."""
+    matched.pose_of(street_scan())
+    for points in (few(0), few(2), nan_points()):
+        matched.reports.clear()
+        matched.publish_map(points)
+        spin_until(
+            matched.node,
+            lambda: any("map cannot be used" in status.message for _, status in matched.reports),
+        )
+    assert error_m(matched.pose_of(street_scan(), NEAR)) < 0.1
+
+
+def test_the_sensor_is_mounted_somewhere(matched):
+    T_base_lidar = from_xyz_rpy((1.2, 0.0, 0.4), (0.0, 0.1, 0.5))
+    kept = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+    mounting = matched.node.create_publisher(TFMessage, "/tf_static", kept)
+    stamp = matched.stamp()
+    mounting.publish(
+        TFMessage(transforms=[transform_stamped(T_base_lidar, stamp, "base_link", "lidar")])
+    )
+    points = transform(inverse(T_base_lidar), street_scan())
+    message = encode(points, stamp, "lidar")
+    spin_until(matched.node, mounting.get_subscription_count)
+    spin_until(matched.node, lambda: "TF" not in matched.report_of(matched.send(message)).message)
+    assert error_m(matched.pose_of(message, NEAR)) < 0.1
+
+
+def test_activation_and_initial_pose(stack, start):
+    """Deactivated it gives no pose; ndt_align_srv finds the place from metres away, any yaw."""
+    start(matcher_command(activated="false"), cluster=2)
+    stack.wait_for_matcher()
+    stack.publish_map(street_map())
+    report = stack.report_of(stack.send(street_scan()))
+    assert "not activated" in report.message
+    align = stack.node.create_client(AlignService, "ndt_align_srv")
+    assert align.wait_for_service(PATIENCE_S)
+    rough = from_xyz_rpy((TRUTH[0, 3] + 1.5, TRUTH[1, 3] - 1.0, TRUTH[2, 3]), (0.0, 0.0, 2.5))
+    spread = np.diag([1.0, 1.0, 0.01, 0.0001, 0.0001, 0.2])
+    request = AlignService.Request(
+        pose_with_covariance=pose_with_covariance(rough, spread, stack.stamp(), "map")
+    )
+    answer = align.call_async(request)
+    spin_until(stack.node, answer.done)
+    assert answer.result().success
+    assert answer.result().reliable
+    assert error_m(matrix_of(answer.result().pose_with_covariance.pose.pose)) < 0.1
+
+    trigger = stack.node.create_client(SetBool, "trigger_node_srv")
+    assert trigger.wait_for_service(PATIENCE_S)
+    answer = trigger.call_async(SetBool.Request(data=True))
+    spin_until(stack.node, answer.done)
+    assert error_m(stack.pose_of(street_scan(), NEAR)) < 0.1
+
+    request.pose_with_covariance.header.frame_id = "nowhere"
+    answer = align.call_async(request)
+    spin_until(stack.node, answer.done)
+    assert not answer.result().success
+
+
+def test_tiles_around_the_vehicle(stack, start, tmp_path):
+    """The map comes from files; far away there is none, and back at the place there is again."""
+    write_tiles(tmp_path / "tiles", street_map(), 20.0, ".npz")
+    more = {"dynamic_map_loading__map_radius": 30.0, "dynamic_map_loading__lidar_radius": 5.0}
+    start(matcher_command(map_path=tmp_path / "tiles", **more), cluster=2)
+    stack.wait_for_matcher()
+    assert error_m(stack.pose_of(street_scan(), NEAR)) < 0.1
+    away = from_xyz_rpy((500.0, 0.0, 0.0))
+    spin_until(stack.node, lambda: "no" in stack.report_of(stack.send(street_scan(), away)).message)
+    assert error_m(stack.pose_of(street_scan(), NEAR)) < 0.1
+
+
+@pytest.mark.parametrize(
+    ("parameters", "words"),
+    [
+        ({"ndt__resolution": -1.0}, "ndt.resolution: expected at least 0.1"),
+        ({"ndt__resolution": ".nan"}, "ndt.resolution: expected at least 0.1"),
+        ({"ndt__max_iterations": 0}, "ndt.max_iterations: expected at least 1"),
+        ({"ndt__search": "kdtree"}, "expected one of radius, direct7, direct1, found 'kdtree'"),
+        ({"ndt__step_size": "fast"}, "ndt.step_size: expected a number"),
+        ({"covariance__output_pose_covariance": "[1.0]"}, "36 finite numbers"),
+        ({"map_path": "/nonexistent.pcd"}, "no such file"),
+        ({"map_path": "/etc/passwd"}, "ends in .pcd, .ply, .npz"),
+    ],
+)
+def test_wrong_parameters_end_the_node_with_a_message(start, parameters, words):
+    program = start(matcher_command(**parameters))
+    assert program.wait() == 2
+    assert words in program.output
+    assert "Traceback" not in program.output
