@@ -14,7 +14,7 @@ export PIP_USE_PEP517=1 PIP_DISABLE_PIP_VERSION_CHECK=1
 missing_packages() {
   command -v g++ >/dev/null || echo g++
   command -v make >/dev/null || echo make
-  command -v "$PYTHON" >/dev/null || { echo python3 python3-venv python3-dev; return; }
+  command -v python3 >/dev/null || { echo python3 python3-venv python3-dev; return; }
   "$PYTHON" -c 'import ensurepip, venv' 2>/dev/null || echo python3-venv
   "$PYTHON" -c 'import os, sysconfig as s
 os.stat(os.path.join(s.get_path("include"), "Python.h"))' 2>/dev/null || echo python3-dev
@@ -31,6 +31,13 @@ install_packages() {
     echo "  sudo apt-get update && sudo apt-get install -y $*" >&2
     exit 1
   fi
+}
+
+check_python() {
+  "$PYTHON" -c 'import sys; sys.exit(sys.version_info < (3, 10))' 2>/dev/null && return
+  found=$("$PYTHON" --version 2>&1) || found="no such program"
+  echo "Python 3.10 or newer is needed. $PYTHON: $found. Name another: PYTHON=/path/to/python3 make" >&2
+  exit 1
 }
 
 # All that pyproject.toml asks for: with it in .venv a rebuild takes seconds and no network.
@@ -67,6 +74,8 @@ if [ "${1:-}" = system ]; then
   shift
   install_packages $(missing_packages) "$@"
 else
+  [ "$PYTHON" = python3 ] || check_python
   install_packages $(missing_packages)
+  check_python
   install_checkout
 fi
