@@ -40,7 +40,9 @@ bench: setup  ## every bench, briefly; tables, and CSV in build/bench
 lint: setup  ## style and types
 	$(VENV)/ruff check
 	$(VENV)/ruff format --check
-	$(VENV)/mypy
+	mkdir -p build/types/rmw_manycore_py
+	ln -sfn $(CURDIR)/rmw_manycore_py/* $(CURDIR)/bridge build/types/rmw_manycore_py
+	cd build/types && ../../$(VENV)/mypy --config-file ../../pyproject.toml
 
 docs: setup  ## the documentation as HTML in build/docs, links checked
 	$(VENV)/mkdocs build --quiet --strict --site-dir build/docs

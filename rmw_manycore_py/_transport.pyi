@@ -64,15 +64,48 @@ class Platform:
         """Return topic_name, topic_id, topic_dsm_size, receiver_clusters (bit mask) of each."""
 
 class Publisher:
-    """Publishes serialized messages."""
+    """Publishes serialized messages; `gid` is what subscriptions know it by, 16 bytes."""
 
-    def publish(self, data: bytes) -> int:
-        """Publish and return the sequence number."""
+    gid: bytes
+    def publish(
+        self,
+        data: bytes,
+        source_timestamp_ns: int | None = None,
+        client: bytes | None = None,
+        number: int = 0,
+    ) -> int:
+        """Publish and return the sequence number; the time is now where none is given.
+
+        Requests and replies carry the client, by the gid of its reply subscription, and the
+        client's number of the request; a reply reaches that client only.
+        """
+
+    def publish_from(self, address: int, size: int, source_timestamp_ns: int | None = None) -> int:
+        """Publish `size` bytes of this process's memory."""
 
     def matched(self) -> int: ...
 
+class Claim:
+    """A record in its place in the topic DSM. The publisher cannot reuse it before `release`.
+
+    A subscription has one claim at a time.
+    """
+
+    address: int
+    size: int
+    data: bytes
+    publisher: bytes
+    client: bytes
+    number: int
+    source_timestamp_ns: int
+    def release(self) -> None: ...
+
 class Subscription:
-    """Takes serialized messages."""
+    """Takes serialized messages; `gid` names a client where it is the one of its replies."""
+
+    gid: bytes
+    def claim(self) -> Claim | None:
+        """Return the next record without a copy."""
 
     def take(self) -> tuple[bytes, _Row] | None: ...
     def has_data(self) -> bool: ...
@@ -85,8 +118,35 @@ class Process:
     def __init__(
         self, platform: str, cluster: int = 1, core: int | None = None, label: str = "tool"
     ) -> None: ...
-    def publisher(self, topic: str, type: str, qos: Mapping[str, Any]) -> Publisher: ...
-    def subscription(self, topic: str, type: str, qos: Mapping[str, Any]) -> Subscription: ...
+    def publisher(
+        self,
+        topic: str,
+        type: str,
+        qos: Mapping[str, Any],
+        role: str = "topic",
+        type_hash: str = "",
+    ) -> Publisher:
+        """Return a publisher of a topic, or of a service's requests or replies (its role)."""
+
+    def subscription(
+        self,
+        topic: str,
+        type: str,
+        qos: Mapping[str, Any],
+        role: str = "topic",
+        type_hash: str = "",
+    ) -> Subscription:
+        """Return a subscription of a topic, or of a service's requests or replies (its role)."""
+
+    def endpoints_of(self, topic: str) -> list[_Row]:
+        """Return rows as `Platform.endpoints` of one topic or service."""
+
+    def graph_generation(self) -> int:
+        """Return a number that changes when a node or endpoint comes or goes."""
+
+    def watch_graph(self) -> None:
+        """Have changes of the graph end `wait` too, from now on."""
+
     def epoch(self) -> int:
         """Return a number that changes when something comes in."""
 

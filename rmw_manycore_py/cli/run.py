@@ -12,7 +12,7 @@ import click
 from rmw_manycore_py.cli.options import examples, mapfile_argument
 from rmw_manycore_py.cli.run_printer import RunPrinter
 from rmw_manycore_py.launch.events import Event
-from rmw_manycore_py.launch.run import run_placement
+from rmw_manycore_py.launch.run import program_names, run_placement
 from rmw_manycore_py.mapfile import load_mapfile, resolve
 
 
@@ -47,7 +47,7 @@ def command(mapfile: Path, duration_s: float | None, as_json: bool) -> None:
     not wait for nodes that take their time. The exit status is 0 unless a node failed.
     """
     placement = resolve(load_mapfile(mapfile))
-    names = [node.name for node in placement.nodes]
+    names = program_names(placement)
     report = _print_json if as_json else RunPrinter(names).report
     sys.exit(run_placement(placement, report, duration_s))
 

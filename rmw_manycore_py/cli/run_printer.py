@@ -17,6 +17,7 @@ from rmw_manycore_py.launch.events import (
     Notice,
     Output,
     Platform,
+    Restarting,
     Started,
     Stopping,
 )
@@ -40,7 +41,9 @@ class RunPrinter:
     """Prints events as they come."""
 
     def __init__(self, nodes: Sequence[str]) -> None:
-        self._width = max(len(name) for name in (*nodes, RUNNER))
+        # What serves the nodes prints little: its longer names may stick out.
+        named = [name for name in nodes if not name.startswith("(")]
+        self._width = max(len(name) for name in (*named, RUNNER))
         self._prefixes = {
             name: click.style(f"{name:<{self._width}} | ", fg=colour)
             for name, colour in zip(nodes, cycle(COLOURS), strict=False)
@@ -64,6 +67,8 @@ class RunPrinter:
             self._say(f"stopping: {event.reason}")
         elif isinstance(event, Insisting):
             self._say(f"{event.node} does not end: {event.signal}", fg="yellow")
+        elif isinstance(event, Restarting):
+            self._say(f"{event.node} is started again: {event.reason}", fg="yellow")
         elif isinstance(event, Ended):
             self._ended(event)
         elif isinstance(event, Finished):

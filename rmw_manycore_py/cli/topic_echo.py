@@ -13,6 +13,7 @@ from rmw_manycore_py.cli.listening import Listener
 from rmw_manycore_py.cli.message_part import message_filter, part_of
 from rmw_manycore_py.cli.message_text import SHOWN_LENGTH, Shown, to_csv, to_plain, to_yaml
 from rmw_manycore_py.cli.options import examples, platform_option
+from rmw_manycore_py.cli.outside import OutsideListener
 from rmw_manycore_py.cli.qos_options import QosOptions, qos_request_options
 
 
@@ -23,6 +24,7 @@ from rmw_manycore_py.cli.qos_options import QosOptions, qos_request_options
         "manycore topic echo --once /chatter std_msgs/msg/String",
         "manycore topic echo /pose --field pose.position --csv",
         "manycore topic echo /chatter --filter 'm.data.endswith(\"0\")'",
+        "manycore topic echo --outside /chatter",
         "manycore topic echo /chatter --json | jq .data",
     ),
 )
@@ -47,6 +49,7 @@ from rmw_manycore_py.cli.qos_options import QosOptions, qos_request_options
 )
 @click.option("--no-arr", "no_arrays", is_flag=True, help="Name arrays without their elements.")
 @click.option("--no-str", "no_strings", is_flag=True, help="Print only the lengths of strings.")
+@click.option("--outside", is_flag=True, help="Listen in the DDS domain $ROS_DOMAIN_ID instead.")
 @qos_request_options
 @platform_option
 def command(
@@ -63,6 +66,7 @@ def command(
     truncate_length: int,
     no_arrays: bool,
     no_strings: bool,
+    outside: bool,
 ) -> None:
     """Print the messages of TOPIC. TYPE is needed only while nobody uses the topic."""
     shown = Shown(None if full_length else truncate_length, not no_arrays, not no_strings)
@@ -76,7 +80,11 @@ def command(
         if once:
             listener.stop()
 
-    listener = Listener(platform, topic, type_name, heard, raw=style == "raw", qos=qos)
+    listener: Listener | OutsideListener
+    if outside:
+        listener = OutsideListener(topic, type_name, heard, raw=style == "raw", qos=qos)
+    else:
+        listener = Listener(platform, topic, type_name, heard, raw=style == "raw", qos=qos)
     listener.run(timeout_s)
 
 

@@ -10,6 +10,7 @@ from collections.abc import Mapping
 import rmw_manycore_hook
 
 IMPLEMENTATION = "rmw_manycore"
+OUTSIDE_IMPLEMENTATION = "rmw_fastrtps_cpp"
 
 
 def program_environment(
@@ -24,6 +25,14 @@ def leave_middleware(implementation: str) -> None:
     """Restart this program with another middleware; the hook has restored the search path."""
     environment = {**os.environ, "RMW_IMPLEMENTATION": implementation}
     os.execve(sys.executable, [sys.executable, *sys.orig_argv[1:]], environment)
+
+
+def outside_environment(base: Mapping[str, str] = os.environ) -> dict[str, str]:
+    """Return `base` as a program needs it to load Fast DDS, even in a shell of rmw_manycore."""
+    environment = {**base, "RMW_IMPLEMENTATION": OUTSIDE_IMPLEMENTATION, "PYTHONUNBUFFERED": "1"}
+    stand_ins = rmw_manycore_hook.stand_in_directory(sys.prefix)
+    paths = [path for path in rmw_manycore_hook.library_path(base) if path != stand_ins]
+    return {**environment, rmw_manycore_hook.LIBRARY_PATH: os.pathsep.join(paths)}
 
 
 def enter_middleware() -> None:

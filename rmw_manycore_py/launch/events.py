@@ -82,6 +82,15 @@ class Insisting(Event):
 
 
 @dataclass(frozen=True)
+class Restarting(Event):
+    """A supervised process, as those of the bridge are, ended by itself and is started again."""
+
+    node: str
+    reason: str
+    last_lines: tuple[str, ...]
+
+
+@dataclass(frozen=True)
 class Ended(Event):
     """A node is over; `last_lines` are those of a failed one."""
 

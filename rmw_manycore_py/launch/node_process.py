@@ -30,6 +30,7 @@ class NodeProcess:
         self.state = NodeState.WAITING
         self.ending: Ending | None = None
         self.deadline_s = float("inf")  # on the monotonic clock: when the next step is due
+        self.start_at_s = 0.0  # on the monotonic clock: not before, and later when it was started
         self.pidfd = -1  # open while the node itself runs
         self._process: subprocess.Popen[bytes] | None = None
         self._output: OutputReader | None = None
@@ -68,6 +69,7 @@ class NodeProcess:
 
     def start(self) -> bool:
         """Start the node on its CPU; where that fails the ending says why."""
+        self.start_at_s = time.monotonic()
         try:
             with pinned_to(self.program.host_cpu):
                 self._process = subprocess.Popen(

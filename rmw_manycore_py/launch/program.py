@@ -14,7 +14,11 @@ from rmw_manycore_py.topology import Core
 
 @dataclass(frozen=True)
 class NodeProgram:
-    """One node as a process: its command line, its whole environment, its core."""
+    """One node as a process: its command line, its whole environment, its core.
+
+    A `supervised` one serves the others: it is started again whenever it ends, and a run is over
+    without it.
+    """
 
     name: str
     command: tuple[str, ...]
@@ -22,6 +26,7 @@ class NodeProgram:
     core: Core
     host_cpu: int
     directory: Path | None = None
+    supervised: bool = False
 
     @classmethod
     def of(cls, node: PlacedNode) -> NodeProgram:

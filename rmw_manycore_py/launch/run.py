@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from rmw_manycore_py.launch.bridge import bridge_programs
 from rmw_manycore_py.launch.events import Finished, Notice, PlacedCore, Platform
 from rmw_manycore_py.launch.platform import configured_platform, remaining_users
 from rmw_manycore_py.launch.program import NodeProgram
@@ -13,13 +14,19 @@ from rmw_manycore_py.topology import RECEIVE_THREAD_CORE
 RECEIVE_THREAD = "(receive thread)"  # no node can have a name with blanks
 
 
+def program_names(placement: Placement) -> list[str]:
+    """Return the names under which the processes of a run print."""
+    return [p.name for p in bridge_programs(placement)] + [node.name for node in placement.nodes]
+
+
 def run_placement(placement: Placement, report: Report, duration_s: float | None = None) -> int:
     """Run the nodes of a placement on a platform of their own; return the exit status."""
-    for text in (*placement.notices, *_bridge_notices(placement)):
+    for text in placement.notices:
         report(Notice(text))
     with configured_platform(placement):
         report(_describe(placement))
-        runner = Runner([NodeProgram.of(node) for node in placement.nodes], report)
+        nodes = [NodeProgram.of(node) for node in placement.nodes]
+        runner = Runner([*bridge_programs(placement), *nodes], report)
         exit_status = runner.run(duration_s)
     if users := remaining_users(placement.name):
         report(Notice(f"platform {placement.name} stays, for {', '.join(users)}"))
@@ -27,15 +34,13 @@ def run_placement(placement: Placement, report: Report, duration_s: float | None
     return exit_status
 
 
-def _bridge_notices(placement: Placement) -> list[str]:
-    if placement.bridge is None:
-        return []
-    return ["topic_in and topic_to join nothing yet: no bridge to the outside is started"]
-
-
 def _describe(placement: Placement) -> Platform:
     topology = placement.topology
     nodes = [PlacedCore(node.name, *node.place, node.host_cpu) for node in placement.nodes]
+    bridge = [
+        PlacedCore(program.name, *program.core, program.host_cpu)
+        for program in bridge_programs(placement)
+    ]
     receive_threads = [
         PlacedCore(RECEIVE_THREAD, *core, cpu)
         for core, cpu in placement.host_cpus.items()
@@ -47,5 +52,5 @@ def _describe(placement: Placement) -> Platform:
         clusters=len(topology.clusters),
         cores_per_cluster=topology.cores_per_cluster,
         smem_size=topology.smem_size,
-        cores=(*nodes, *receive_threads),
+        cores=(*nodes, *bridge, *receive_threads),
     )

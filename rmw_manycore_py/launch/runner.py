@@ -10,7 +10,15 @@ from contextlib import ExitStack
 from typing import Protocol
 
 from rmw_manycore_py.errors import EXIT_FAILURE
-from rmw_manycore_py.launch.events import Ended, Event, Insisting, Output, Started, Stopping
+from rmw_manycore_py.launch.events import (
+    Ended,
+    Event,
+    Insisting,
+    Output,
+    Restarting,
+    Started,
+    Stopping,
+)
 from rmw_manycore_py.launch.node_process import NodeProcess
 from rmw_manycore_py.launch.program import NodeProgram
 from rmw_manycore_py.launch.signals import SignalInbox, signal_inbox
@@ -18,6 +26,9 @@ from rmw_manycore_py.launch.state import NodeState
 
 Report = Callable[[Event], None]
 Handler = Callable[[], None]
+
+# A supervised process that cannot live is started at this rate.
+RESTART_PAUSE_S = 1.0
 
 
 class _Readable(Protocol):
@@ -33,6 +44,7 @@ class Runner:
         self._selector = selectors.DefaultSelector()
         self._stopping = False
         self._silent = False
+        self._is_timed = False
         self._end_s = float("inf")  # when the run's duration is over, on the monotonic clock
 
     @property
@@ -45,16 +57,20 @@ class Runner:
         with ExitStack() as stack:
             inbox = stack.enter_context(signal_inbox())
             stack.callback(self._selector.close)
-            for node in self._nodes:
-                stack.callback(node.destroy)
+            stack.callback(self._destroy_all)
             self._watch(inbox, lambda: self._take_signals(inbox))
             while not self._is_over():
                 self._start_next(duration_s)
+                self._end_without_nodes()
                 for key, _ in self._selector.select(self._patience_s()):
                     handler: Handler = key.data
                     handler()
                 self._keep_deadlines()
         return EXIT_FAILURE if self.failed else 0
+
+    def _destroy_all(self) -> None:
+        for node in self._nodes:
+            node.destroy()
 
     def _is_over(self) -> bool:
         if self._stopping:
@@ -62,8 +78,10 @@ class Runner:
         return all(node.is_over for node in self._nodes)
 
     def _next_node(self) -> NodeProcess | None:
+        now_s = time.monotonic()
         waiting = (node for node in self._nodes if node.state is NodeState.WAITING)
-        return None if self._stopping else next(waiting, None)
+        due = (node for node in waiting if node.start_at_s <= now_s)
+        return None if self._stopping else next(due, None)
 
     def _start_next(self, duration_s: float | None) -> None:
         node = self._next_node()
@@ -74,7 +92,8 @@ class Runner:
         else:
             self._report_end(node)
             self._stop(f"{node.program.name} {node.ending.reason}" if node.ending else "")
-        if duration_s is not None and self._next_node() is None:
+        if duration_s is not None and not self._is_timed and self._next_node() is None:
+            self._is_timed = True
             self._end_s = time.monotonic() + duration_s
 
     def _watch_node(self, node: NodeProcess) -> None:
@@ -103,7 +122,23 @@ class Runner:
         if not node.output.at_end:
             self._selector.unregister(node.output)
         self._report_lines(node, node.collect())
-        self._report_end(node)
+        if node.program.supervised and not self._stopping:
+            self._restart(node)
+        else:
+            self._report_end(node)
+
+    def _restart(self, node: NodeProcess) -> None:
+        assert node.ending is not None
+        self._report(Restarting(node.program.name, node.ending.reason, node.last_lines))
+        successor = NodeProcess(node.program)
+        successor.start_at_s = max(time.monotonic(), node.start_at_s + RESTART_PAUSE_S)
+        self._nodes[self._nodes.index(node)] = successor
+
+    def _end_without_nodes(self) -> None:
+        """Stop what is supervised when those are over for whom it is there."""
+        served = [node for node in self._nodes if not node.program.supervised]
+        if served and len(served) < len(self._nodes) and all(node.is_over for node in served):
+            self._stop("all nodes have ended")
 
     def _take_signals(self, inbox: SignalInbox) -> None:
         for number in inbox.take():
@@ -143,7 +178,8 @@ class Runner:
         """Return how long nothing is due; None = nothing ever is."""
         if self._next_node() or self._is_over():
             return 0
-        due_s = min([self._end_s, *(node.deadline_s for node in self._nodes)])
+        starts = [node.start_at_s for node in self._nodes if node.state is NodeState.WAITING]
+        due_s = min([self._end_s, *starts, *(node.deadline_s for node in self._nodes)])
         return None if due_s == float("inf") else max(due_s - time.monotonic(), 0)
 
     def _report_lines(self, node: NodeProcess, lines: list[str]) -> None:

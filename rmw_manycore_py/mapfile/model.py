@@ -8,6 +8,7 @@ from typing import Annotated, Literal
 from pydantic import BaseModel, ConfigDict, Field, StrictBool, StrictInt, StringConstraints
 
 from rmw_manycore_py.mapfile.values import (
+    ActionType,
     Arguments,
     Command,
     EnvironmentValue,
@@ -15,6 +16,7 @@ from rmw_manycore_py.mapfile.values import (
     MessageType,
     OneOrMore,
     Parameters,
+    ServiceType,
     Size,
 )
 
@@ -27,6 +29,8 @@ MIN_SMEM_BYTES = 64 << 10
 MAX_SMEM_BYTES = 1 << 40
 # The topic table has 32 bits for it.
 MAX_TOPIC_DSM_BYTES = (1 << 32) - 1
+# The last domain whose ports lie below the ephemeral ones of Linux's largest choice.
+MAX_DOMAIN = 232
 Positive = Annotated[StrictInt, Field(ge=1)]
 CoreNumber = Annotated[StrictInt, Field(ge=0)]
 Text = Annotated[str, StringConstraints(min_length=1)]
@@ -74,6 +78,63 @@ class TopicSection(Section):
     )
 
 
+Domain = Annotated[StrictInt, Field(ge=0, le=MAX_DOMAIN)]
+PositiveNumber = Annotated[float, Field(gt=0, allow_inf_nan=False)]
+
+
+class QosSection(Section):
+    """Policies of a topic's endpoints, where they are not to be the publishers' own."""
+
+    reliability: Literal["reliable", "best_effort"] | None = Field(
+        default=None, description="Instead of the publishers' own"
+    )
+    durability: Literal["volatile", "transient_local"] | None = Field(
+        default=None, description="Instead of the publishers' own"
+    )
+    history: Literal["keep_last", "keep_all"] | None = Field(
+        default=None, description="keep_last is the default"
+    )
+    depth: Positive | None = Field(default=None, description="Messages kept, for keep_last")
+    deadline: StrictInt | Literal["auto"] | None = Field(
+        default=None, description="Nanoseconds, -1 = none; auto = the publishers' own"
+    )
+    lifespan: StrictInt | Literal["auto"] | None = Field(
+        default=None, description="Nanoseconds, -1 = none; auto = the publishers' own"
+    )
+    liveliness: Literal["automatic", "manual_by_topic", "system_default"] | None = Field(
+        default=None, description="Instead of the publishers' own"
+    )
+    liveliness_lease_duration: StrictInt | None = Field(
+        default=None, description="Nanoseconds, -1 = none"
+    )
+
+
+class RouteSection(Section):
+    """How one topic, service or action crosses."""
+
+    name: TopicName | None = Field(default=None, description="Full name outside")
+    domain: Domain | None = Field(default=None, description="ROS domain outside")
+    qos: QosSection = Field(default=QosSection(), description="QoS of the bridge's endpoints")
+    max_hz: PositiveNumber | None = Field(default=None, description="Most messages per second")
+    max_size: Size | None = Field(default=None, description="Largest message, in bytes")
+    timeout: PositiveNumber | None = Field(
+        default=None, description="Seconds that a request may stay unanswered"
+    )
+
+
+class BridgeSection(Section):
+    """The bridge to DDS domains outside."""
+
+    domain: Domain | None = Field(
+        default=None, description="ROS domain outside; $ROS_DOMAIN_ID is the default"
+    )
+    prefix: Namespace | None = Field(default=None, description="Namespace of all names outside")
+    lanes: Positive = Field(default=1, description="Pairs of processes")
+    routes: dict[TopicName, RouteSection] = Field(
+        default_factory=dict, description="Topics, services and actions that need more than a type"
+    )
+
+
 class NodeSection(Section):
     """A node: where it runs, how it is started, what it says to the outside."""
 
@@ -113,6 +174,21 @@ class NodeSection(Section):
     topic_to: dict[TopicName, InterfaceType] = Field(
         default_factory=dict, description="Topics and services sent outside"
     )
+    service_in: dict[TopicName, ServiceType] = Field(
+        default_factory=dict, description="Services of this node that are called from outside"
+    )
+    service_to: dict[TopicName, ServiceType] = Field(
+        default_factory=dict, description="Services outside that this node calls"
+    )
+    action_in: dict[TopicName, ActionType] = Field(
+        default_factory=dict, description="Actions of this node that get goals from outside"
+    )
+    action_to: dict[TopicName, ActionType] = Field(
+        default_factory=dict, description="Actions outside that this node sends goals to"
+    )
+    parameters_in: StrictBool = Field(
+        default=False, description="Parameters are read and set from outside too"
+    )
 
 
 class MapfileSections(Section):
@@ -134,6 +210,9 @@ class MapfileSections(Section):
     malloc_tuning: StrictBool = Field(
         default=True,
         description="Keep glibc from giving memory back to the system after each message",
+    )
+    bridge: BridgeSection = Field(
+        default=BridgeSection(), description="How topics and services cross to the outside"
     )
     topics: dict[TopicName, TopicSection] = Field(
         default_factory=dict, description="Topics whose type or topic DSM size is fixed"

@@ -9,7 +9,10 @@ from rmw_manycore_py.errors import MapfileError
 from rmw_manycore_py.mapfile.ament import canonical_type
 from rmw_manycore_py.mapfile.document import Document, KeyPath, dotted
 
-_TOPIC_KEYS = ("topic_in", "topic_to", "publish", "subscribe")
+_TOPIC_KEYS = (
+    *("topic_in", "topic_to", "publish", "subscribe"),
+    *("service_in", "service_to", "action_in", "action_to"),
+)
 _EMPTIED_BY_NONE = (*_TOPIC_KEYS, "param_file", "param_path", "parameters", "remappings")
 
 
@@ -38,6 +41,8 @@ def _normalise_node(
         if key in node and node[key] in (None, {}, "none", "None"):
             del node[key]
     _rename_param_path(document, node, path, notices)
+    if node.get("parameters") is True:
+        node["parameters_in"] = node.pop("parameters")
     for key in _TOPIC_KEYS:
         for topic in _mapping(node.get(key)):
             _normalise_type(document, node[key], (*path, key, topic), notices)

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from rmw_manycore_py.routes import DIRECTIONS, Direction, Route
 from rmw_manycore_py.topology import Core, Topology
 
 
@@ -79,12 +80,14 @@ class ClusterMemory:
 
 @dataclass(frozen=True)
 class BridgePlacement:
-    """What crosses the platform's border: full names with types, and where the bridge runs."""
+    """What crosses the platform's border, and the inward and outward core of each lane."""
 
-    inward: Mapping[str, str]
-    outward: Mapping[str, str]
-    inward_core: Core
-    outward_core: Core
+    routes: tuple[Route, ...]
+    cores: tuple[tuple[Core, Core], ...]
+
+    def core(self, direction: Direction, lane: int) -> Core:
+        """Return where a process of the bridge runs."""
+        return self.cores[lane][DIRECTIONS.index(direction)]
 
 
 @dataclass(frozen=True)

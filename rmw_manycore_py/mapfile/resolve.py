@@ -9,6 +9,7 @@ from pathlib import Path
 
 from rmw_manycore_py.errors import MapfileError, Problem
 from rmw_manycore_py.mapfile.ament import canonical_type
+from rmw_manycore_py.mapfile.crossings import bridge_placement
 from rmw_manycore_py.mapfile.imports import check_imports
 from rmw_manycore_py.mapfile.launch_file import LaunchFile, read_launch_file
 from rmw_manycore_py.mapfile.loader import Mapfile
@@ -17,7 +18,6 @@ from rmw_manycore_py.mapfile.placement import PlacedNode, Placement
 from rmw_manycore_py.mapfile.source import SourceNode, scan
 from rmw_manycore_py.mapfile.start import NodeStart, node_start, ros_arguments
 from rmw_manycore_py.mapfile.topics import (
-    bridge_placement,
     check_memory,
     check_types,
     memory_of_clusters,
@@ -39,8 +39,8 @@ def resolve(mapfile: Mapfile) -> Placement:
     launch = _launch_file(mapfile)
     starts = _starts(mapfile, launch)
     cores = _cores(mapfile)
-    bridge = bridge_placement(mapfile, starts)
-    bridge_cores = [bridge.inward_core, bridge.outward_core] if bridge else []
+    bridge = bridge_placement(mapfile, starts, set(cores.values()))
+    bridge_cores = [core for lane in bridge.cores for core in lane] if bridge else []
     cpus = usable_cpus()
     host_cpus = _host_cpus(mapfile, [*cores.values(), *bridge_cores], cpus)
     nodes = tuple(

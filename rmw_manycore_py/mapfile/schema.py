@@ -6,6 +6,7 @@ from __future__ import annotations
 import json
 from typing import Any
 
+from rmw_manycore_py.mapfile.crossings import CROSSINGS
 from rmw_manycore_py.mapfile.model import MapfileSections, PlatformSection
 from rmw_manycore_py.topology import PROFILES
 
@@ -33,7 +34,8 @@ def _allow_none_entries(node: dict[str, Any]) -> None:
     for key in ("param_file", "param_path"):
         options = node[key].pop("anyOf")
         node[key]["anyOf"] = [*options, {**empty, "additionalProperties": False}]
-    for key in ("topic_in", "topic_to", "publish", "subscribe"):
+    node["parameters"] = {"anyOf": [node["parameters"], {"const": True}]}
+    for key in (*CROSSINGS, "publish", "subscribe"):
         # A type is checked when the file is read: there also the spellings of ROS 1 are known.
         node[key].pop("propertyNames", None)
         node[key].pop("patternProperties", None)

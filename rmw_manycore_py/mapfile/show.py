@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from typing import Any
 
 from rmw_manycore_py.mapfile.placement import BridgePlacement, PlacedNode, Placement, TopicEntry
@@ -60,6 +61,6 @@ def _topic(topic: TopicEntry) -> dict[str, Any]:
 
 def _bridge(bridge: BridgePlacement) -> dict[str, Any]:
     return {
-        "inward": {"core": list(bridge.inward_core), "topics": dict(bridge.inward)},
-        "outward": {"core": list(bridge.outward_core), "topics": dict(bridge.outward)},
+        "cores": [[list(core) for core in lane] for lane in bridge.cores],
+        "routes": [asdict(route) for route in bridge.routes],
     }

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The topic table, the memory of the clusters and what the bridge carries."""
+"""The topic table, and the memory of the clusters."""
 
 from __future__ import annotations
 
@@ -8,18 +8,12 @@ from typing import TYPE_CHECKING
 
 from rmw_manycore_py.errors import Problem
 from rmw_manycore_py.mapfile import ament
-from rmw_manycore_py.mapfile.names import expand, resolve_topic
-from rmw_manycore_py.mapfile.placement import (
-    BridgePlacement,
-    ClusterMemory,
-    PlacedNode,
-    TopicEntry,
-)
-from rmw_manycore_py.topology import Core
+from rmw_manycore_py.mapfile.crossings import CROSSINGS
+from rmw_manycore_py.mapfile.names import expand
+from rmw_manycore_py.mapfile.placement import ClusterMemory, PlacedNode, TopicEntry
 
 if TYPE_CHECKING:
     from rmw_manycore_py.mapfile.loader import Mapfile
-    from rmw_manycore_py.mapfile.start import NodeStart
 
 
 def topic_table(mapfile: Mapfile, nodes: Sequence[PlacedNode]) -> tuple[TopicEntry, ...]:
@@ -53,7 +47,7 @@ def check_types(mapfile: Mapfile, topics: Iterable[TopicEntry]) -> Iterator[Prob
         if topic.type is not None:
             yield from _check_installed(mapfile, ("topics", name, "type"), topic.type)
     for node, section in sections.nodes.items():
-        for key in ("publish", "subscribe", "topic_in", "topic_to"):
+        for key in ("publish", "subscribe", *CROSSINGS):
             for name, type_name in getattr(section, key).items():
                 yield from _check_installed(mapfile, ("nodes", node, key, name), type_name)
     for entry in topics:
@@ -109,22 +103,3 @@ def check_memory(mapfile: Mapfile, memory: Iterable[ClusterMemory]) -> Iterator[
 
 def _as_written(mapfile: Mapfile, topic: str) -> str:
     return next(name for name in mapfile.sections.topics if expand(name, "/") == topic)
-
-
-def bridge_placement(mapfile: Mapfile, starts: dict[str, NodeStart]) -> BridgePlacement | None:
-    """Return what crosses the border; the bridge takes the first two cores left in cluster 1."""
-    crossing: dict[str, dict[str, str]] = {"topic_in": {}, "topic_to": {}}
-    for name, node in mapfile.sections.nodes.items():
-        start = starts[name]
-        for key, topics in crossing.items():
-            for topic, type_name in getattr(node, key).items():
-                full = resolve_topic(topic, start.full_name, start.remappings)
-                topics[full] = type_name
-    if not any(crossing.values()):
-        return None
-    used = {(node.cluster, node.core) for node in mapfile.sections.nodes.values()}
-    first = mapfile.topology.clusters[0]
-    free = [Core(1, core) for core in first.free if (1, core) not in used]
-    # With every core taken the bridge shares the last free one rather than refuse to run.
-    cores = [*free, Core(1, first.free[-1]), Core(1, first.free[-1])]
-    return BridgePlacement(crossing["topic_in"], crossing["topic_to"], cores[0], cores[1])

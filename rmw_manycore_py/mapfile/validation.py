@@ -12,9 +12,12 @@ from pydantic_core import ErrorDetails
 from rmw_manycore_py.errors import Problem
 from rmw_manycore_py.mapfile.document import Document, KeyPath
 from rmw_manycore_py.mapfile.model import (
+    BridgeSection,
     MapfileSections,
     NodeSection,
     PlatformSection,
+    QosSection,
+    RouteSection,
     TopicSection,
 )
 
@@ -26,6 +29,9 @@ _EXPECTED = {
     "model_type": "a mapping",
     "string_too_short": "a non-empty string",
     "too_short": "at least one entry",
+    "greater_than": "more than {gt}",
+    "float_type": "a number",
+    "finite_number": "a number",
     "greater_than_equal": "at least {ge}",
     "less_than_equal": "at most {le}",
     "literal_error": "{expected}",
@@ -37,6 +43,11 @@ _PATTERN_OF = {
     "subscribe": "a message type such as std_msgs/msg/String",
     "topic_in": "a type such as std_msgs/msg/String or std_srvs/srv/SetBool",
     "topic_to": "a type such as std_msgs/msg/String or std_srvs/srv/SetBool",
+    "service_in": "a service type such as std_srvs/srv/SetBool",
+    "service_to": "a service type such as std_srvs/srv/SetBool",
+    "action_in": "an action type such as example_interfaces/action/Fibonacci",
+    "action_to": "an action type such as example_interfaces/action/Fibonacci",
+    "prefix": "a namespace such as /robot1",
     "namespace": "a namespace such as /demo",
     "remappings": "the name of a topic, service or node",
     "name": "a platform name of letters, digits, '_', '.' and '-'",
@@ -94,6 +105,9 @@ def _known_keys(path: KeyPath) -> str:
 
 
 def _section(path: KeyPath) -> type[BaseModel]:
+    if path[0] == "bridge" and len(path) > 1:
+        parts: dict[int, type[BaseModel]] = {2: BridgeSection, 4: RouteSection}
+        return parts.get(len(path), QosSection)
     sections: dict[Any, type[BaseModel]] = {
         "platform": PlatformSection,
         "topics": TopicSection,

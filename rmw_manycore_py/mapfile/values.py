@@ -121,3 +121,5 @@ MessageType = Annotated[str, StringConstraints(pattern=r"^[A-Za-z]\w*/msg/[A-Z][
 InterfaceType = Annotated[
     str, StringConstraints(pattern=r"^[A-Za-z]\w*/(msg|srv)/[A-Z][A-Za-z0-9]*$")
 ]
+ServiceType = Annotated[str, StringConstraints(pattern=r"^[A-Za-z]\w*/srv/[A-Z][A-Za-z0-9]*$")]
+ActionType = Annotated[str, StringConstraints(pattern=r"^[A-Za-z]\w*/action/[A-Z][A-Za-z0-9]*$")]

@@ -69,7 +69,12 @@ def test_talker_listener(run):
     heard = [running.wait_for("listener", r"I heard: 'Hello World: (\d+)'") for _ in range(5)]
     assert_consecutive(int(match.group(1)) for match in heard)
     running.stop()
-    assert running.places() == {"talker": (1, 1), "listener": (2, 1)}
+    assert running.places() == {
+        "talker": (1, 1),
+        "listener": (2, 1),
+        "(bridge inward)": (1, 2),
+        "(bridge outward)": (1, 3),
+    }
 
 
 @pytest.mark.parametrize("mapfile", ["three_nodes.yaml", "three_nodes.map"])

@@ -104,7 +104,9 @@ def test_lists_take_what_those_of_ros2_take(running, manycore) -> None:
     assert " * /chatter [std_msgs/msg/String] 1 publisher\n" in shown
     assert " * /chatter [std_msgs/msg/String] 1 subscriber\n" in shown
     assert manycore("node", "list", "-c") == "2"
-    assert manycore("node", "list", "--all").splitlines() == ["/listener", "/talker"]
+    hidden = ["/_manycore_bridge_inward", "/_manycore_bridge_outward"]
+    nodes = [*hidden, "/listener", "/talker"]
+    assert manycore("node", "list", "--all").splitlines() == nodes
 
 
 def test_echo_waits_for_a_topic_whose_type_is_given(start, platform) -> None:
@@ -126,10 +128,8 @@ def test_the_rate_is_printed_as_ros2_does(running, start) -> None:
 def test_status_shows_who_runs_where(running, manycore, platform) -> None:
     state = json.loads(manycore("status", "--platform", platform, "--json"))[0]
     assert state["alive"]
-    assert {node for process in state["processes"] for node in process["nodes"]} == {
-        "/talker",
-        "/listener",
-    }
+    nodes = {node for process in state["processes"] for node in process["nodes"]}
+    assert {"/talker", "/listener"} <= nodes
     assert [cluster["alive"] for cluster in state["clusters"]] == [True, True]
     assert f"platform {platform}: alive" in manycore("status", "--platform", platform)
 

@@ -3,6 +3,8 @@
 
 #include <nanobind/stl/string.h>
 
+#include <cstdio>
+
 namespace nb = nanobind;
 
 namespace manycore::python {
@@ -83,6 +85,50 @@ nb::dict to_dict(const CounterValues & counters) {
   out["refused"] = counters.refused;
   out["overwritten"] = counters.overwritten;
   return out;
+}
+
+nb::dict to_dict(const EndpointInfo & endpoint, const std::vector<NodeInfo> & nodes) {
+  constexpr const char * roles[] = {"topic", "request", "reply"};
+  nb::dict entry;
+  entry["kind"] = endpoint.kind == EndpointKind::publisher ? "publisher" : "subscription";
+  entry["role"] = roles[static_cast<size_t>(endpoint.role)];
+  entry["topic"] = endpoint.topic;
+  entry["type"] = endpoint.type;
+  char version[16];
+  std::snprintf(version, sizeof version, "RIHS%02u_", endpoint.type_hash.version);
+  entry["type_hash"] =
+    version + hex(endpoint.type_hash.value.data(), endpoint.type_hash.value.size());
+  entry["gid"] = hex(endpoint.gid.data(), endpoint.gid.size());
+  entry["node"] = "";
+  entry["namespace"] = "";
+  for (const NodeInfo & node : nodes) {
+    if (node.handle == endpoint.node) {
+      entry["node"] = node.name;
+      entry["namespace"] = node.ns;
+    }
+  }
+  entry["cluster"] = endpoint.cluster;
+  entry["process"] = endpoint.process;
+  entry["qos"] = to_dict(endpoint.qos);
+  entry["matched"] = endpoint.matched.current;
+  entry["counters"] = to_dict(endpoint.counters);
+  return entry;
+}
+
+TypeHash type_hash_from(const std::string & text) {
+  TypeHash hash;
+  unsigned version = 0;
+  int digits = 0;
+  const bool prefixed = std::sscanf(text.c_str(), "RIHS%2u_%n", &version, &digits) == 1;
+  if (!prefixed || text.size() != digits + 2 * hash.value.size()) {
+    throw nb::value_error(("no type hash: '" + text + "'").c_str());
+  }
+  hash.version = static_cast<uint8_t>(version);
+  for (uint8_t & byte : hash.value) {
+    byte = static_cast<uint8_t>(std::stoi(text.substr(digits, 2), nullptr, 16));
+    digits += 2;
+  }
+  return hash;
 }
 
 Qos qos_from(const nb::dict & values) {

@@ -71,7 +71,7 @@ public:
     const std::vector<NodeInfo> nodes = graph_.nodes();
     nb::list all;
     for (const EndpointInfo & endpoint : graph_.endpoints()) {
-      all.append(describe(endpoint, nodes));
+      all.append(to_dict(endpoint, nodes));
     }
     return all;
   }
@@ -91,34 +91,6 @@ public:
   }
 
 private:
-  static nb::dict describe(const EndpointInfo & endpoint, const std::vector<NodeInfo> & nodes) {
-    constexpr const char * roles[] = {"topic", "request", "reply"};
-    nb::dict entry;
-    entry["kind"] = endpoint.kind == EndpointKind::publisher ? "publisher" : "subscription";
-    entry["role"] = roles[static_cast<size_t>(endpoint.role)];
-    entry["topic"] = endpoint.topic;
-    entry["type"] = endpoint.type;
-    char version[16];
-    std::snprintf(version, sizeof version, "RIHS%02u_", endpoint.type_hash.version);
-    entry["type_hash"] =
-      version + hex(endpoint.type_hash.value.data(), endpoint.type_hash.value.size());
-    entry["gid"] = hex(endpoint.gid.data(), endpoint.gid.size());
-    entry["node"] = "";
-    entry["namespace"] = "";
-    for (const NodeInfo & node : nodes) {
-      if (node.handle == endpoint.node) {
-        entry["node"] = node.name;
-        entry["namespace"] = node.ns;
-      }
-    }
-    entry["cluster"] = endpoint.cluster;
-    entry["process"] = endpoint.process;
-    entry["qos"] = to_dict(endpoint.qos);
-    entry["matched"] = endpoint.matched.current;
-    entry["counters"] = to_dict(endpoint.counters);
-    return entry;
-  }
-
   std::string name_;
   mutable Registry registry_;
   Graph graph_;

@@ -149,9 +149,12 @@ def test_the_bridge_takes_cores_that_no_node_uses(resolved: Check) -> None:
         " topic_in: {/goal: std_msgs/msg/String}}\n"
     ).bridge
     assert bridge is not None
-    assert bridge.inward == {"/goal": "std_msgs/msg/String"}
-    assert bridge.outward == {"/a/chatter": "std_msgs/msg/String"}
-    assert (bridge.inward_core, bridge.outward_core) == (Core(1, 1), Core(1, 3))
+    crossing = {route.inside: (route.direction, route.type) for route in bridge.routes}
+    assert crossing == {
+        "/goal": ("inward", "std_msgs/msg/String"),
+        "/a/chatter": ("outward", "std_msgs/msg/String"),
+    }
+    assert bridge.cores == ((Core(1, 1), Core(1, 3)),)
 
 
 def test_the_mapfile_overrules_the_launch_file(resolved: Check, tmp_path: Path) -> None:

@@ -1,0 +1,23 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""A process of the bridge: python -m rmw_manycore_py.bridge PLAN DIRECTION LANE CLUSTER CORE."""
+
+from __future__ import annotations
+
+import sys
+
+from rmw_manycore_py.bridge.plan import Plan
+from rmw_manycore_py.bridge.process import BridgeProcess
+
+from rmw_manycore_py.routes import DIRECTIONS
+
+
+def main(arguments: list[str]) -> int:
+    """Run one process; `manycore run` and `manycore bridge` start it."""
+    plan, direction, lane, cluster, core = arguments
+    way = DIRECTIONS[DIRECTIONS.index(direction)]
+    place = (int(cluster), int(core))
+    return BridgeProcess(Plan.from_json(plan), way, int(lane), place).run()
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

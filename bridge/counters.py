@@ -1,0 +1,176 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""What each route has done, in a file that `manycore bridge status` reads without asking anybody.
+
+One file per bridge process in the platform's directory, so that it goes with the platform. Only its
+process writes; it holds a lock on the file for as long as it lives.
+"""
+
+from __future__ import annotations
+
+import fcntl
+import json
+import mmap
+import os
+from collections.abc import Iterable, Sequence
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+from rmw_manycore_py import _transport
+from rmw_manycore_py.routes import Route
+
+_MAGIC = b"MCBRIDG1"
+_HEADER_BYTES = 24  # magic, process id, bytes of the routes' JSON
+# Of 64 bits each. `latency_ns` is a sum over all messages: from source timestamp to passing on.
+FIELDS = (
+    "messages",
+    "bytes",
+    "lost",
+    "too_fast",
+    "too_large",
+    "refused",
+    "own",
+    "timed_out",
+    "unanswered",
+    "latency_ns",
+    "latency_max_ns",
+    "state",
+)
+DROPS = ("lost", "too_fast", "too_large", "refused", "timed_out", "unanswered")
+STATES = ("waiting", "ready", "forwarding", "failed")
+_INDEX = {name: index for index, name in enumerate(FIELDS)}
+_LATENCY, _LATENCY_MAX, _STATE = _INDEX["latency_ns"], _INDEX["latency_max_ns"], _INDEX["state"]
+_GIDS = 4  # a message of a publisher before the last may still be on its way
+_GID_BYTES = 16
+_REASON_BYTES = 248
+_WORDS = len(FIELDS)
+_ROW_BYTES = 8 * _WORDS + 8 + _GIDS * _GID_BYTES + _REASON_BYTES
+
+
+def status_path(platform: str, direction: str, lane: int) -> Path:
+    """Return where a bridge process counts."""
+    return Path(_transport.platform_directory(platform)) / f"bridge-{direction}-{lane}"
+
+
+class Row:
+    """The counters of one route."""
+
+    def __init__(self, memory: memoryview) -> None:
+        self._memory = memory
+        self._words = memory[: 8 * _WORDS].cast("Q")
+        self._gid_count = memory[8 * _WORDS : 8 * _WORDS + 8].cast("Q")
+
+    def passed(self, size: int, latency_ns: int) -> None:
+        """Count a message that was passed on."""
+        words = self._words
+        words[0] += 1
+        words[1] += size
+        if latency_ns > 0:  # the clocks of two hosts may disagree
+            words[_LATENCY] += latency_ns
+            if latency_ns > words[_LATENCY_MAX]:
+                words[_LATENCY_MAX] = latency_ns
+
+    def add(self, field: str, count: int = 1) -> int:
+        """Count something else; return how often it has been by now."""
+        self._words[_INDEX[field]] += count
+        return self._words[_INDEX[field]]
+
+    def set_state(self, state: str, reason: str = "") -> None:
+        """Note how the route is, and why it cannot work."""
+        text = reason.encode()[: _REASON_BYTES - 1]
+        self._memory[-_REASON_BYTES:] = text.ljust(_REASON_BYTES, b"\0")
+        self._words[_STATE] = STATES.index(state)
+
+    def add_gid(self, gid: bytes) -> None:
+        """Note a publisher of ours before it publishes."""
+        start = 8 * _WORDS + 8 + self._gid_count[0] % _GIDS * _GID_BYTES
+        self._memory[start : start + _GID_BYTES] = gid
+        self._gid_count[0] += 1
+
+    def has_gid(self, gid: bytes) -> bool:
+        """Tell whether a publisher is one of ours."""
+        start = 8 * _WORDS + 8
+        gids = bytes(self._memory[start : start + _GIDS * _GID_BYTES])
+        return any(gids[i : i + _GID_BYTES] == gid for i in range(0, len(gids), _GID_BYTES))
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return all fields by name."""
+        row: dict[str, Any] = dict(zip(FIELDS, self._words, strict=True))
+        row["state"] = STATES[row["state"]]
+        row["reason"] = bytes(self._memory[-_REASON_BYTES:]).rstrip(b"\0").decode(errors="ignore")
+        return row
+
+
+class CounterFile:
+    """The rows of one bridge process."""
+
+    def __init__(self, file: Any, memory: mmap.mmap) -> None:
+        self._file = file  # keeps the lock
+        view = memoryview(memory)
+        self.pid = int.from_bytes(view[8:16], "little")
+        text_bytes = int.from_bytes(view[16:24], "little")
+        self.routes = json.loads(bytes(view[_HEADER_BYTES : _HEADER_BYTES + text_bytes]))
+        start = _rows_start(text_bytes)
+        self.rows = [
+            Row(view[at : at + _ROW_BYTES])
+            for at in range(start, start + len(self.routes) * _ROW_BYTES, _ROW_BYTES)
+        ]
+
+    @classmethod
+    def create(cls, path: Path, routes: Sequence[Route]) -> CounterFile:
+        """Start counting in a new file, which takes the place of a dead process's."""
+        text = json.dumps([asdict(route) for route in routes]).encode()
+        header = _MAGIC + os.getpid().to_bytes(8, "little") + len(text).to_bytes(8, "little")
+        start = _rows_start(len(text))
+        fresh = path.with_name(f".{path.name}")
+        file = fresh.open("wb+")
+        fresh.chmod(0o600)
+        fcntl.flock(file, fcntl.LOCK_EX)
+        file.write((header + text).ljust(start + len(routes) * _ROW_BYTES, b"\0"))
+        file.flush()
+        fresh.rename(path)
+        return cls(file, mmap.mmap(file.fileno(), 0))
+
+    @classmethod
+    def open(cls, path: Path) -> CounterFile | None:
+        """Open another process's file; None where there is none, or none that can be read."""
+        try:
+            with path.open("rb") as file:
+                memory = mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ)
+        except (OSError, ValueError):
+            return None
+        return cls(None, memory) if memory[:8] == _MAGIC else None
+
+
+def _rows_start(text_bytes: int) -> int:
+    return (_HEADER_BYTES + text_bytes + 7) // 8 * 8
+
+
+def is_locked(path: Path) -> bool:
+    """Tell whether the process that counts in a file lives."""
+    try:
+        with path.open("rb") as file:
+            fcntl.flock(file, fcntl.LOCK_SH | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return True
+    except OSError:
+        return False
+    return False
+
+
+def status(platform: str) -> list[dict[str, Any]]:
+    """Return a row for each route of a platform's bridge."""
+    found: list[dict[str, Any]] = []
+    for path in sorted(Path(_transport.platform_directory(platform)).glob("bridge-*")):
+        counters = CounterFile.open(path)
+        if counters is not None:
+            found += _rows_of(counters, alive=is_locked(path))
+    return found
+
+
+def _rows_of(counters: CounterFile, *, alive: bool) -> Iterable[dict[str, Any]]:
+    for route, row in zip(counters.routes, counters.rows, strict=True):
+        values = row.as_dict()
+        latency_ns, messages = values.pop("latency_ns"), values["messages"]
+        values["latency_mean_ns"] = latency_ns // messages if messages else None
+        yield {**route, "pid": counters.pid, "alive": alive, **values}

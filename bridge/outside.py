@@ -1,0 +1,119 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""A DDS domain's side: rclpy's context and node, and a wait set of the bridge's own."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, Protocol
+
+import rclpy
+from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
+from rclpy.node import Node
+from rclpy.parameter import Parameter
+from rclpy.signals import SignalHandlerOptions
+from rmw_manycore_py.bridge import rcl
+from rmw_manycore_py.bridge.loop import Loop
+
+_GRAPH, _WAKE = 0, 1  # places of the guard conditions in the wait set
+_NS_PER_S = 1e9
+
+
+class OutsideReader(Protocol):
+    """A subscription, service or client outside: `kind` and `entity` are for the wait set."""
+
+    kind: str
+    entity: Any
+
+    def pump_outside(self) -> None:
+        """Move what has arrived."""
+
+
+class Outside(Loop):
+    """Waits for messages and for changes of the domain's graph."""
+
+    def __init__(self, domain: int, name: str, changed: Callable[[], None]) -> None:
+        super().__init__(f"domain {domain}")
+        self.domain = domain
+        self.context = rclpy.Context()
+        rclpy.init(
+            args=[],
+            context=self.context,
+            domain_id=domain,
+            signal_handler_options=SignalHandlerOptions.NO,
+        )
+        self.node = _quiet_node(name, self.context)
+        self.readers: list[OutsideReader] = []
+        self._changed = changed
+        with self.context.handle:
+            self._wake = _rclpy.GuardCondition(self.context.handle)
+
+    def publishers(self, topic: str) -> list[Any]:
+        """Return the publishers of a topic that are not this bridge's."""
+        return self._others(self.node.get_publishers_info_by_topic(topic))
+
+    def subscriptions(self, topic: str) -> list[Any]:
+        """Return the subscriptions of a topic that are not this bridge's."""
+        return self._others(self.node.get_subscriptions_info_by_topic(topic))
+
+    def _others(self, endpoints: list[Any]) -> list[Any]:
+        own = self.node.get_name().rpartition("_")[0]
+        return [e for e in endpoints if e.node_name.rpartition("_")[0] != own]
+
+    def wake(self) -> None:
+        """End the sleep."""
+        self._wake.trigger_guard_condition()
+
+    def turn(self, timeout_s: float | None) -> None:
+        """Sleep until something changes, then move what has arrived."""
+        readers = list(self.readers)
+        wait_set = self._new_wait_set(readers)
+        wait_set.wait(-1 if timeout_s is None else int(timeout_s * _NS_PER_S))
+        if wait_set.is_ready("guard_condition", _GRAPH):
+            self._changed()
+        places = {"subscription": 0, "service": 0, "client": 0}
+        for reader in readers:
+            place = places[reader.kind]
+            places[reader.kind] += 1
+            if wait_set.is_ready(reader.kind, place):
+                reader.pump_outside()
+
+    def _new_wait_set(self, readers: list[OutsideReader]) -> Any:
+        counts = {kind: sum(r.kind == kind for r in readers) for kind in _KINDS}
+        wait_set = self._wait_set_of(counts)
+        wait_set.clear_entities()
+        rcl.add_graph_of(self.node, wait_set)
+        wait_set.add_guard_condition(self._wake)
+        for reader in readers:
+            getattr(wait_set, f"add_{reader.kind}")(reader.entity.handle)
+        return wait_set
+
+    def _wait_set_of(self, counts: dict[str, int]) -> Any:
+        if getattr(self, "_counts", None) != counts:
+            self._counts = counts
+            with self.context.handle:
+                self._wait_set = _rclpy.WaitSet(
+                    *(counts["subscription"], 2, 0, counts["client"], counts["service"], 0),
+                    self.context.handle,
+                )
+        return self._wait_set
+
+    def close(self) -> None:
+        """Leave the domain."""
+        self.readers.clear()
+        self.node.destroy_node()
+        rclpy.shutdown(context=self.context)
+
+
+_KINDS = ("subscription", "service", "client")
+
+
+def _quiet_node(name: str, context: rclpy.Context) -> Node:
+    """Return a node that adds as little to the domain as rclpy allows."""
+    return rclpy.create_node(
+        name,
+        context=context,
+        enable_rosout=False,
+        start_parameter_services=False,
+        use_global_arguments=False,
+        parameter_overrides=[Parameter("start_type_description_service", value=False)],
+    )

@@ -1,0 +1,94 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""One process of the bridge: both sides, and its routes between them."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import re
+import signal
+import socket
+import sys
+import threading
+from collections.abc import Iterable
+
+from rmw_manycore_py.bridge.counters import CounterFile, status_path
+from rmw_manycore_py.bridge.inside import NODE_PREFIX, Inside
+from rmw_manycore_py.bridge.loop import Loop, Mover
+from rmw_manycore_py.bridge.outside import Outside
+from rmw_manycore_py.bridge.plan import Plan
+from rmw_manycore_py.bridge.sides import OwnPublishers, Sides
+from rmw_manycore_py.bridge.topic_inward import InwardTopic
+from rmw_manycore_py.bridge.topic_outward import OutwardTopic
+
+from rmw_manycore_py.routes import Direction
+
+_STOP_SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+
+
+class BridgeProcess:
+    """Runs until it is told to end, or until one of its threads fails."""
+
+    def __init__(self, plan: Plan, direction: Direction, lane: int, core: tuple[int, int]) -> None:
+        routes = plan.of(direction, lane)
+        name = f"{node_stem(plan.platform)}_{direction}{lane or ''}"
+        self._over = threading.Event()
+        self._inside = Inside(
+            plan, core, f"{NODE_PREFIX}{direction}{lane or ''}", self._graphs_changed
+        )
+        counters = CounterFile.create(status_path(plan.platform, direction, lane), routes)
+        self._outsides = {
+            domain: Outside(domain, name, self._graphs_changed)
+            for domain in sorted({route.domain for route in routes})
+        }
+        self._loops: list[Loop] = [self._inside, *self._outsides.values()]
+        own = OwnPublishers(plan.platform)
+        for route, row in zip(routes, counters.rows, strict=True):
+            outside = self._outsides[route.domain]
+            self._add(Sides(route, row, self._inside, outside, own))
+
+    def _add(self, sides: Sides) -> None:
+        try:
+            mover, loop = self._mover(sides)
+        except ImportError as error:
+            sides.fail(str(error))
+            return
+        loop.movers.append(mover)
+
+    def _mover(self, sides: Sides) -> tuple[Mover, Loop]:
+        if sides.route.direction == "inward":
+            return InwardTopic(sides), sides.outside
+        return OutwardTopic(sides), self._inside
+
+    def _graphs_changed(self) -> None:
+        for loop in self._loops:
+            loop.graphs_changed()
+
+    def run(self) -> int:
+        """Move messages until a signal comes; return the exit status."""
+        for number in _STOP_SIGNALS:
+            signal.signal(number, lambda *_: self._over.set())
+        for loop in self._loops:
+            loop.on_failure(self._over.set)
+            loop.start()
+        self._over.wait()
+        for loop in reversed(self._loops):
+            loop.stop()
+        return _report(self._loops)
+
+
+def _report(loops: Iterable[Loop]) -> int:
+    failures = [(loop.name, loop.failure) for loop in loops if loop.failure is not None]
+    for name, failure in failures:
+        print(f"{name}: {type(failure).__name__}: {failure}", file=sys.stderr)
+    return 1 if failures else 0
+
+
+def node_stem(platform: str) -> str:
+    """Return the name of a bridge's nodes up to their direction, the same at each start.
+
+    Two platforms of one name on two hosts are two bridges to everybody who sees both.
+    """
+    text = f"{socket.gethostname()}/{os.getuid()}/{platform}"
+    readable = re.sub(r"\W", "_", platform, flags=re.ASCII).strip("_")
+    return f"manycore_bridge_{readable}_{hashlib.blake2s(text.encode(), digest_size=4).hexdigest()}"

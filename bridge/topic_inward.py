@@ -1,0 +1,137 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""A topic on its way in: DDS subscription -> publisher on the platform."""
+
+from __future__ import annotations
+
+import time
+from typing import Any
+
+from rclpy.event_handler import SubscriptionEventCallbacks
+from rmw_manycore_py.bridge import types
+from rmw_manycore_py.bridge.limits import Gaps, Limits
+from rmw_manycore_py.bridge.loop import Mover
+from rmw_manycore_py.bridge.policies import (
+    Policies,
+    common_offer,
+    from_rclpy,
+    request_for,
+    satisfies,
+    to_rclpy,
+)
+from rmw_manycore_py.bridge.rcl import RawReader
+from rmw_manycore_py.bridge.sides import Sides
+
+from rmw_manycore_py import _transport
+
+BATCH = 16  # messages of one route before the others have their turn
+
+
+class InwardTopic(Mover):
+    """Works in the thread of its domain."""
+
+    kind = "subscription"
+
+    def __init__(self, sides: Sides) -> None:
+        self._sides = sides
+        self._type = types.load(sides.route.type)
+        self._limits = Limits(sides.route)
+        self._offer: Policies | None = None
+        self._publisher: _transport.Publisher | None = None
+        self.entity: Any = None  # the subscription outside
+        self._reader: RawReader | None = None
+
+    def reconcile(self) -> None:
+        """Publish inside while somebody does outside; listen outside while somebody does inside."""
+        route, outside = self._sides.route, self._sides.outside
+        publishers = outside.publishers(route.outside)
+        fitting = [p for p in publishers if p.topic_type == route.type]
+        if not fitting:
+            self.close()
+            if publishers:
+                self._sides.fail(f"is {publishers[0].topic_type} outside, not {route.type}")
+            return
+        offer = common_offer((from_rclpy(p.qos_profile) for p in fitting), route.qos)
+        if self._offer is None or not satisfies(self._offer, offer):
+            self.close()
+            if not self._appear(offer):
+                return
+        listeners = self._sides.inside.subscriptions(route.inside)
+        if listeners or offer["durability"] == "transient_local":
+            self._listen(max((e["qos"]["depth"] for e in listeners), default=1))
+        else:
+            self._stop_listening()
+        self._sides.row.set_state("ready" if self.entity is None else "forwarding")
+
+    def _appear(self, offer: Policies) -> bool:
+        route = self._sides.route
+        try:
+            self._publisher = self._sides.inside.process.publisher(
+                route.inside, route.type, offer, type_hash=types.hash_of(route.type)
+            )
+        except _transport.PlatformError as error:
+            self._sides.fail(str(error))
+            return False
+        self._sides.row.add_gid(self._publisher.gid)
+        self._offer = offer
+        return True
+
+    def _listen(self, depth: int) -> None:
+        if self.entity is not None:
+            return
+        assert self._offer is not None
+        self.entity = self._sides.outside.node.create_subscription(
+            self._type,
+            self._sides.route.outside,
+            _never_called,
+            to_rclpy(request_for(self._offer, depth)),
+            raw=True,
+            event_callbacks=SubscriptionEventCallbacks(use_default_callbacks=False),
+        )
+        self._reader = RawReader(self.entity)
+        self._gaps = Gaps(self._sides.row)
+        self._sides.outside.readers.append(self)
+
+    def _stop_listening(self) -> None:
+        if self.entity is None or self._reader is None:
+            return
+        self._sides.outside.readers.remove(self)
+        self._reader.close()
+        self._sides.outside.node.destroy_subscription(self.entity)
+        self.entity = self._reader = None
+
+    def pump_outside(self) -> None:
+        """Pass on what has arrived."""
+        reader = self._reader
+        for _ in range(BATCH):
+            if reader is None or not reader.take():
+                return
+            self._pass_on(reader)
+
+    def _pass_on(self, reader: RawReader) -> None:
+        row, info = self._sides.row, reader.info
+        gid = info.publisher
+        if self._sides.route.mirrored and self._sides.own.has(gid):
+            row.add("own")
+            return
+        self._gaps.note(gid, info.publication_sequence_number)
+        if refusal := self._limits.refusal(reader.size):
+            row.add(refusal)
+            return
+        assert self._publisher is not None
+        try:
+            self._publisher.publish_from(reader.address, reader.size, info.source_timestamp)
+        except _transport.PlatformError as error:
+            if row.add("refused") == 1:
+                self._sides.say(str(error))
+            return
+        row.passed(reader.size, time.time_ns() - info.source_timestamp)
+
+    def close(self) -> None:
+        """Leave both sides."""
+        self._stop_listening()
+        self._publisher = self._offer = None
+        self._sides.row.set_state("waiting")
+
+
+def _never_called(_: Any) -> None:
+    """Stand in where rclpy wants a callback: the bridge takes messages itself."""

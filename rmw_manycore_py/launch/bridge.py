@@ -1,0 +1,43 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""The processes of the bridge as the runner starts them."""
+
+from __future__ import annotations
+
+import sys
+
+from rmw_manycore_py.bridge.plan import Plan
+from rmw_manycore_py.launch.environment import outside_environment
+from rmw_manycore_py.launch.program import NodeProgram
+from rmw_manycore_py.mapfile.placement import Placement
+from rmw_manycore_py.routes import DIRECTIONS, Direction
+from rmw_manycore_py.topology import Core
+
+
+def bridge_programs(placement: Placement) -> list[NodeProgram]:
+    """Return a program for each process of the bridge that has something to carry."""
+    bridge = placement.bridge
+    if bridge is None:
+        return []
+    plan = Plan(placement.name, bridge.routes)
+    return [
+        bridge_program(plan, direction, lane, core, placement.host_cpus[core])
+        for lane in range(len(bridge.cores))
+        for direction in DIRECTIONS
+        if plan.of(direction, lane)
+        for core in [bridge.core(direction, lane)]
+    ]
+
+
+def bridge_program(
+    plan: Plan, direction: Direction, lane: int, core: Core, host_cpu: int
+) -> NodeProgram:
+    """Return one process of the bridge."""
+    words = (plan.to_json(), direction, *map(str, (lane, *core)))
+    return NodeProgram(
+        name=f"(bridge {direction}{f' {lane}' if lane else ''})",
+        command=(sys.executable, "-m", "rmw_manycore_py.bridge", *words),
+        environment=outside_environment(),
+        core=core,
+        host_cpu=host_cpu,
+        supervised=True,
+    )

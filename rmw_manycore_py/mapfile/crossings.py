@@ -1,0 +1,125 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""What a mapfile lets cross to the outside, and where the bridge runs."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Collection, Iterator
+from typing import TYPE_CHECKING, Any
+
+from rmw_manycore_py.errors import MapfileError
+from rmw_manycore_py.mapfile.model import BridgeSection, NodeSection, QosSection, RouteSection
+from rmw_manycore_py.mapfile.names import expand, resolve_topic
+from rmw_manycore_py.mapfile.placement import BridgePlacement
+from rmw_manycore_py.routes import (
+    REQUEST_TIMEOUT_S,
+    Direction,
+    Route,
+    action_routes,
+    arranged,
+    parameter_routes,
+)
+from rmw_manycore_py.topology import Core
+
+if TYPE_CHECKING:
+    from rmw_manycore_py.mapfile.loader import Mapfile
+    from rmw_manycore_py.mapfile.start import NodeStart
+
+# Keys of a node that name what crosses.
+CROSSINGS: dict[str, Direction] = {
+    "topic_in": "inward",
+    "topic_to": "outward",
+    "service_in": "inward",
+    "service_to": "outward",
+    "action_in": "inward",
+    "action_to": "outward",
+}
+
+
+def bridge_placement(
+    mapfile: Mapfile, starts: dict[str, NodeStart], used: Collection[Core]
+) -> BridgePlacement | None:
+    """Return what crosses; the bridge takes the first cores left in cluster 1, two per lane."""
+    bridge = mapfile.sections.bridge
+    routes: list[Route] = []
+    for name, node in mapfile.sections.nodes.items():
+        routes += _routes_of(bridge, node, starts[name])
+    _check_routes(mapfile, routes)
+    if not routes:
+        return None
+    first = mapfile.topology.clusters[0]
+    free = [Core(1, core) for core in first.free if Core(1, core) not in used]
+    # With every core taken the bridge shares the last one rather than refuse to run.
+    cores = [*free, *[Core(1, first.free[-1])] * 2 * bridge.lanes]
+    lanes = tuple((cores[2 * i], cores[2 * i + 1]) for i in range(bridge.lanes))
+    return BridgePlacement(arranged(routes, bridge.lanes), lanes)
+
+
+def _routes_of(bridge: BridgeSection, node: NodeSection, start: NodeStart) -> Iterator[Route]:
+    for key, direction in CROSSINGS.items():
+        for name, type_name in getattr(node, key).items():
+            inside = resolve_topic(name, start.full_name, start.remappings)
+            route = _route(bridge, inside, type_name, direction)
+            yield from action_routes(route) if key.startswith("action") else (route,)
+    if node.parameters_in:
+        yield from parameter_routes(_route(bridge, start.full_name, "", "inward"))
+
+
+def _route(bridge: BridgeSection, inside: str, type_name: str, direction: Direction) -> Route:
+    section = _section_of(bridge, inside)
+    domain = section.domain if section.domain is not None else bridge.domain
+    outside = section.name or f"{(bridge.prefix or '').rstrip('/')}{inside}"
+    return Route(
+        kind="topic" if "/msg/" in type_name else "service",
+        direction=direction,
+        inside=inside,
+        outside=expand(outside, "/"),
+        type=type_name,
+        domain=int(os.environ.get("ROS_DOMAIN_ID") or 0) if domain is None else domain,
+        qos=overrides(section.qos),
+        max_hz=section.max_hz,
+        max_size=section.max_size,
+        timeout_s=section.timeout or REQUEST_TIMEOUT_S,
+    )
+
+
+def _section_of(bridge: BridgeSection, inside: str) -> RouteSection:
+    named = {expand(name, "/"): section for name, section in bridge.routes.items()}
+    return named.get(inside, RouteSection())
+
+
+def _check_routes(mapfile: Mapfile, routes: list[Route]) -> None:
+    """Refuse options for what does not cross."""
+    crossing = {route.inside for route in routes}
+    crossing |= {inside.rpartition("/_action/")[0] for inside in crossing if "/_action/" in inside}
+    problems = [
+        mapfile.document.problem(
+            ("bridge", "routes", name),
+            f"the name of something that crosses ({', '.join(sorted(crossing)) or 'nothing does'})",
+            f"'{name}'",
+        )
+        for name in mapfile.sections.bridge.routes
+        if expand(name, "/") not in crossing
+    ]
+    if problems:
+        raise MapfileError(*problems)
+
+
+def overrides(qos: QosSection) -> dict[str, Any]:
+    """Return the policies that were written, by their names in the registry."""
+    found: dict[str, Any] = {
+        key: getattr(qos, key)
+        for key in ("reliability", "durability", "history", "depth")
+        if getattr(qos, key) is not None
+    }
+    if qos.liveliness not in (None, "system_default"):
+        found["liveliness"] = qos.liveliness
+    times = {
+        "deadline_ns": qos.deadline,
+        "lifespan_ns": qos.lifespan,
+        "liveliness_lease_ns": qos.liveliness_lease_duration,
+    }
+    for key, value in times.items():
+        if isinstance(value, int):
+            found[key] = value if value > 0 else None
+    return found

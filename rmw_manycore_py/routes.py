@@ -1,0 +1,102 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""What crosses the border of a platform: topics and services, and what actions are made of."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any, Literal
+
+# The directions of the paper: topic_in and service_in are inward, topic_to and service_to outward.
+Direction = Literal["inward", "outward"]
+DIRECTIONS: tuple[Direction, Direction] = ("inward", "outward")
+
+# How long a request may stay unanswered where its route does not say.
+REQUEST_TIMEOUT_S = 60.0
+
+
+@dataclass(frozen=True)
+class Route:
+    """One topic or service. A service is inward when its server is on the platform.
+
+    `qos` overrides policies of a topic by their names in the registry; `timeout_s` is how long a
+    request may stay unanswered, None = as long as its server is there. A `mirrored` topic crosses
+    in both directions, so that its own messages have to be told from others.
+    """
+
+    kind: Literal["topic", "service"]
+    direction: Direction
+    inside: str
+    outside: str
+    type: str
+    domain: int
+    qos: Mapping[str, Any] = field(default_factory=dict)
+    max_hz: float | None = None
+    max_size: int | None = None
+    timeout_s: float | None = REQUEST_TIMEOUT_S
+    mirrored: bool = False
+    lane: int = 0
+
+
+def action_routes(action: Route) -> Iterator[Route]:
+    """Yield the parts of an action, given as if it were a service: goals go its direction."""
+    back: Direction = "outward" if action.direction == "inward" else "inward"
+    parts = (
+        ("service", "send_goal", f"{action.type}_SendGoal", action.timeout_s),
+        ("service", "cancel_goal", "action_msgs/srv/CancelGoal", action.timeout_s),
+        ("service", "get_result", f"{action.type}_GetResult", None),  # as long as the goal takes
+        ("topic", "feedback", f"{action.type}_FeedbackMessage", None),
+        ("topic", "status", "action_msgs/msg/GoalStatusArray", None),
+    )
+    for kind, name, type_name, timeout_s in parts:
+        yield replace(
+            action,
+            kind=kind,  # type: ignore[arg-type]
+            direction=action.direction if kind == "service" else back,
+            inside=f"{action.inside}/_action/{name}",
+            outside=f"{action.outside}/_action/{name}",
+            type=type_name,
+            timeout_s=timeout_s,
+        )
+
+
+def parameter_routes(node: Route) -> Iterator[Route]:
+    """Yield the parameter services of a node, given as a route with the node's full names."""
+    services = {
+        "describe_parameters": "DescribeParameters",
+        "get_parameters": "GetParameters",
+        "get_parameter_types": "GetParameterTypes",
+        "list_parameters": "ListParameters",
+        "set_parameters": "SetParameters",
+        "set_parameters_atomically": "SetParametersAtomically",
+    }
+    for name, type_name in services.items():
+        yield replace(
+            node,
+            kind="service",
+            direction="inward",
+            inside=f"{node.inside}/{name}",
+            outside=f"{node.outside}/{name}",
+            type=f"rcl_interfaces/srv/{type_name}",
+        )
+
+
+def arranged(routes: Iterable[Route], lanes: int) -> tuple[Route, ...]:
+    """Return each route once, spread over the lanes, and marked where it crosses both ways."""
+    unique = list({_key(route): route for route in routes}.values())
+    ways = {(r.inside, r.direction) for r in unique} | {
+        ((r.outside, r.domain), r.direction) for r in unique
+    }
+    numbers = dict.fromkeys(DIRECTIONS, 0)
+    result = []
+    for route in unique:
+        back = "outward" if route.direction == "inward" else "inward"
+        mirrored = (route.inside, back) in ways or ((route.outside, route.domain), back) in ways
+        lane = numbers[route.direction] % lanes
+        numbers[route.direction] += 1
+        result.append(replace(route, mirrored=mirrored, lane=lane))
+    return tuple(result)
+
+
+def _key(route: Route) -> tuple[Any, ...]:
+    return (route.kind, route.direction, route.inside, route.outside, route.domain)

@@ -1,0 +1,62 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""A bridge by itself, and nodes on both of its sides."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable
+from typing import Any
+
+from rmw_manycore_py.bridge.counters import status
+from rmw_manycore_py.bridge.plan import Plan
+from support import Program, environment, peer_command
+
+from rmw_manycore_py.routes import DIRECTIONS, Direction, Route, arranged
+
+OUTSIDE = {"RMW_IMPLEMENTATION": "rmw_fastrtps_cpp"}
+STRING = "std_msgs/msg/String"
+
+
+def domain_of(platform: str) -> int:
+    """Return the domain in which programs of a test meet outside."""
+    return int(environment(platform)["ROS_DOMAIN_ID"])
+
+
+class Bridge:
+    """Starts what a test needs; every program ends with the test."""
+
+    def __init__(self, start: Callable[..., Program], platform: str) -> None:
+        self._start = start
+        self.platform = platform
+        self.domain = domain_of(platform)
+
+    def route(self, direction: Direction, name: str, type_name: str = STRING, **more: Any) -> Route:
+        """Return a route that has one name on both sides."""
+        kind: Any = "topic" if "/msg/" in type_name else "service"
+        settings = {"inside": name, "outside": name, "domain": self.domain, **more}
+        return Route(kind=kind, direction=direction, type=type_name, **settings)
+
+    def run(self, *routes: Route) -> dict[str, Program]:
+        """Start the processes that the routes need; return them by direction."""
+        plan = Plan(self.platform, arranged(routes, 1))
+        return {way: self.run_one(plan, way) for way in DIRECTIONS if plan.of(way, 0)}
+
+    def run_one(self, plan: Plan, way: Direction) -> Program:
+        """Start one process."""
+        words = [plan.to_json(), way, "0", "1", str(2 + DIRECTIONS.index(way))]
+        command = [sys.executable, "-m", "rmw_manycore_py.bridge", *words]
+        return self._start(command, **OUTSIDE)
+
+    def inside(self, function: Callable[..., None], *arguments: Any, **env: str) -> Program:
+        """Start a peer on the platform."""
+        return self._start(peer_command(function, *arguments), **env)
+
+    def outside(self, function: Callable[..., None], *arguments: Any, **env: str) -> Program:
+        """Start a peer in the DDS domain."""
+        return self._start(peer_command(function, *arguments), **{**OUTSIDE, **env})
+
+    def row(self, direction: Direction, name: str) -> dict[str, Any]:
+        """Return the counters of a route; none before its process counts."""
+        rows = status(self.platform)
+        found = [r for r in rows if (r["direction"], r["inside"]) == (direction, name)]
+        return found[0] if found else {}

@@ -1,0 +1,204 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Topics through the bridge, between real nodes on rmw_manycore and real nodes on Fast DDS."""
+
+from __future__ import annotations
+
+import time
+from typing import Any
+
+import pytest
+from bridging import OUTSIDE, Bridge
+from ros_support import announce, peer_node, spin_until, type_of
+from support import IS_MANYCORE, MAPFILES, example_command, leftovers, manycore_command, wait_until
+
+pytestmark = [
+    pytest.mark.integration,
+    pytest.mark.skipif(not IS_MANYCORE, reason="the bridge is part of rmw_manycore"),
+]
+
+TALKER_LISTENER = MAPFILES / "talker_listener.yaml"
+HEARD = "I heard: 'Hello World"
+
+
+@pytest.fixture
+def bridge(start, platform) -> Bridge:
+    return Bridge(start, platform)
+
+
+def qos(words: dict[str, Any]) -> Any:
+    """Return a profile of names of policies, as JSON can carry them."""
+    from rclpy.duration import Duration
+    from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+
+    durability = DurabilityPolicy[words.get("durability", "volatile").upper()]
+    reliability = ReliabilityPolicy[words.get("reliability", "reliable").upper()]
+    times = {key: Duration(nanoseconds=words[key]) for key in ("deadline",) if key in words}
+    depth = words.get("depth", 10)
+    return QoSProfile(depth=depth, durability=durability, reliability=reliability, **times)
+
+
+def say(topic: str, words: dict[str, Any], period_s: float | None, *texts: str) -> None:
+    """Publish texts at once, or one each period for ever where there is a period."""
+    with peer_node("speaker") as node:
+        publisher = node.create_publisher(type_of("std_msgs/msg/String"), topic, qos(words))
+        message = type_of("std_msgs/msg/String")
+        for text in texts:
+            publisher.publish(message(data=text))
+        if period_s:
+            node.create_timer(period_s, lambda: publisher.publish(message(data="again")))
+        announce("said")
+        spin_until(node, lambda: False, 1e6)
+
+
+def hear(topic: str, words: dict[str, Any]) -> None:
+    """Print what is heard, the age of its source timestamp, and the publishers' policies."""
+    with peer_node("hearer") as node:
+
+        def heard(message: Any, info: Any) -> None:
+            age_ms = (time.time_ns() - info["source_timestamp"]) / 1e6
+            announce(f"heard {message.data} {age_ms:.0f}")
+
+        node.create_subscription(type_of("std_msgs/msg/String"), topic, heard, qos(words))
+        announce("listening")
+        spin_until(node, lambda: False, 1e6)
+
+
+def show_publishers(topic: str) -> None:
+    """Print the policies of a topic's publishers whenever they change."""
+    with peer_node("watcher") as node:
+        shown = [""]
+
+        def look() -> bool:
+            found = node.get_publishers_info_by_topic(topic)
+            text = ", ".join(
+                f"{p.qos_profile.reliability.name} {p.qos_profile.durability.name} "
+                f"{p.qos_profile.deadline.nanoseconds} {p.topic_type_hash}"
+                for p in found
+            )
+            if text != shown[0]:
+                shown[0] = text
+                announce(f"publishers: {text or 'none'}")
+            return False
+
+        announce("publishers: none")
+        spin_until(node, look, 1e6)
+
+
+def test_the_demo_is_heard_inside_and_outside(start, platform) -> None:
+    run = start(manycore_command("run", TALKER_LISTENER))
+    outside = start(example_command("listener"), **OUTSIDE)
+    echo = start(manycore_command("topic", "echo", "--outside", "/chatter"))
+    run.wait_for(rf"^listener +\| .*{HEARD}")
+    outside.wait_for(HEARD)
+    echo.wait_for(r"^data: '?Hello World: \d+'?$")
+    run.skip_output()
+    numbers = [int(run.wait_for(rf"^listener .*{HEARD}: (\d+)").group(1)) for _ in range(4)]
+    assert numbers == list(range(numbers[0], numbers[0] + 4))  # each once: no echo
+    assert run.stop() == 0
+    assert leftovers(platform) == []
+
+
+def test_a_talker_outside_is_heard_inside(bridge) -> None:
+    bridge.run(bridge.route("inward", "/news"))
+    bridge.outside(say, "/news", {}, 0.05)
+    age_ms = float(bridge.inside(hear, "/news", {}).wait_for(r"^heard again (-?\d+)$").group(1))
+    assert 0 <= age_ms < 5000  # the time is that of the talker
+    wait_until(lambda: bridge.row("inward", "/news")["messages"], "what was heard is counted")
+    row = bridge.row("inward", "/news")
+    assert row["lost"] == row["refused"] == row["too_fast"] == 0
+
+
+def test_names_may_differ_outside(bridge) -> None:
+    bridge.run(bridge.route("outward", "/a", outside="/robot/a"))
+    bridge.inside(say, "/a", {}, 0.05)
+    bridge.outside(hear, "/robot/a", {}).wait_for("^heard again")
+
+
+@pytest.mark.parametrize("direction", ["inward", "outward"])
+def test_a_late_subscriber_gets_what_was_latched(bridge, direction) -> None:
+    latched = {"durability": "transient_local", "depth": 1}
+    bridge.run(bridge.route(direction, "/map"))
+    source, target = bridge.outside, bridge.inside
+    if direction == "outward":
+        source, target = target, source
+    source(say, "/map", latched, None, "the map").wait_for("^said$")
+    target(hear, "/map", latched).wait_for("^heard the map")
+    target(hear, "/map", latched).wait_for("^heard the map")  # a second one, later still
+
+
+def test_the_outside_publisher_offers_what_the_inside_one_does(bridge) -> None:
+    bridge.run(bridge.route("outward", "/scan"))
+    watcher = bridge.outside(show_publishers, "/scan")
+    watcher.wait_for("^publishers: none$")
+    speaker = bridge.inside(say, "/scan", {"reliability": "best_effort"}, 0.1)
+    watcher.wait_for("^publishers: BEST_EFFORT VOLATILE .*RIHS01_[0-9a-f]{64}")
+    speaker.stop()
+    watcher.wait_for("^publishers: none$")
+    bridge.inside(say, "/scan", {"durability": "transient_local"}, 0.1)
+    watcher.wait_for("^publishers: RELIABLE TRANSIENT_LOCAL")
+
+
+def test_a_killed_publisher_takes_the_bridges_with_it(bridge) -> None:
+    bridge.run(bridge.route("inward", "/scan"))
+    watcher = bridge.inside(show_publishers, "/scan")
+    speaker = bridge.outside(say, "/scan", {"reliability": "best_effort"}, 0.1)
+    watcher.wait_for("^publishers: BEST_EFFORT VOLATILE")
+    speaker.stop()
+    watcher.wait_for("^publishers: none$")
+
+
+def test_nobody_outside_means_no_work(bridge) -> None:
+    bridge.run(bridge.route("outward", "/busy"))
+    bridge.inside(say, "/busy", {}, 0.01)
+    wait_until(lambda: bridge.row("outward", "/busy").get("state") == "ready", "the route is up")
+    hearer = bridge.outside(hear, "/busy", {})
+    hearer.wait_for("^heard again")
+    assert bridge.row("outward", "/busy")["state"] == "forwarding"
+    hearer.stop()
+    wait_until(lambda: bridge.row("outward", "/busy")["state"] == "ready", "the bridge rests")
+
+
+def test_both_directions_make_no_echo(bridge) -> None:
+    bridge.run(bridge.route("inward", "/chat"), bridge.route("outward", "/chat"))
+    inside, outside = (side(hear, "/chat", {}) for side in (bridge.inside, bridge.outside))
+    bridge.inside(say, "/chat", {}, 0.05)
+    bridge.outside(say, "/chat", {}, 0.05)
+    for side in (inside, outside):
+        side.wait_for("^heard again")
+    # The bridge sees its own messages come back, and keeps them.
+    wait_until(lambda: bridge.row("inward", "/chat")["own"] > 10, "own messages outside")
+    wait_until(lambda: bridge.row("outward", "/chat")["own"] > 10, "own messages inside")
+    for way in ("inward", "outward"):
+        assert bridge.row(way, "/chat")["messages"] < 100 * len(inside.lines)
+
+
+def test_rate_and_size_limits_count_what_they_keep(bridge) -> None:
+    bridge.run(
+        bridge.route("outward", "/fast", max_hz=5),
+        bridge.route("outward", "/large", max_size=100),
+    )
+    bridge.inside(say, "/fast", {}, 0.01)
+    bridge.inside(say, "/large", {"durability": "transient_local"}, 0.05, "x" * 200)
+    hearers = [bridge.outside(hear, name, {}) for name in ("/fast", "/large")]
+    for hearer in hearers:
+        hearer.wait_for("^heard again")
+    wait_until(lambda: bridge.row("outward", "/fast")["too_fast"] > 20, "some were too fast")
+    fast = bridge.row("outward", "/fast")
+    assert fast["messages"] < fast["too_fast"]
+    assert bridge.row("outward", "/large")["too_large"] == 1
+
+
+def test_a_type_that_is_not_installed_is_said(bridge) -> None:
+    routes = bridge.run(
+        bridge.route("outward", "/odd", "no_such_msgs/msg/Thing"), bridge.route("outward", "/ok")
+    )
+    routes["outward"].wait_for("^/odd: type no_such_msgs/msg/Thing is not installed")
+    assert bridge.row("outward", "/odd")["state"] == "failed"
+    bridge.inside(say, "/ok", {}, 0.05)
+    bridge.outside(hear, "/ok", {}).wait_for("^heard again")
+
+
+def test_a_type_that_does_not_fit_is_said(bridge) -> None:
+    processes = bridge.run(bridge.route("outward", "/odd", "std_msgs/msg/Int32"))
+    bridge.inside(say, "/odd", {}, 0.05)
+    processes["outward"].wait_for("^/odd: is std_msgs/msg/String inside, not std_msgs/msg/Int32$")
