@@ -20,8 +20,9 @@ class VoxelCovariance(enum.Enum):
     pclomp = 2
 
 class StepRule(enum.Enum):
-    clamped = 0
-    more_thuente = 1
+    trust_region = 0
+    clamped = 1
+    more_thuente = 2
 
 class VoxelMap:
     def __init__(
@@ -62,5 +63,22 @@ class SerialMatcher:
     def evaluate(
         self, map: VoxelMap, points: NDArray[np.float32], pose: NDArray[np.float64]
     ) -> dict[str, Any]: ...
+
+class WorkerGroup:
+    def __init__(self, options: MatchOptions, program: str, host_cpus: list[int]) -> None: ...
+    def align(
+        self,
+        map: VoxelMap,
+        points: NDArray[np.float32],
+        guess: NDArray[np.float64],
+        regularization_position_m: tuple[float, float] | None = None,
+    ) -> dict[str, Any]: ...
+    def evaluate(
+        self, map: VoxelMap, points: NDArray[np.float32], pose: NDArray[np.float64]
+    ) -> dict[str, Any]: ...
+    def prepare(self, map: VoxelMap) -> None: ...
+    def pids(self) -> list[int]: ...
+    def busy_ns(self) -> list[float]: ...
+    def replaced(self) -> int: ...
 
 def simd() -> str: ...

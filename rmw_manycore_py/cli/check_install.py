@@ -24,6 +24,7 @@ START_TIMEOUT_S = 60
 FILES = {
     "library": "lib/librmw_manycore.so",
     "receive thread": "lib/rmw_manycore/manycore_receive_thread",
+    "scan matching worker": "lib/rmw_manycore/manycore_ndt_worker",
     "stand-ins": "lib/rmw_manycore/standin/librmw_fastrtps_cpp.so",
     "ament index": "share/ament_index/resource_index/rmw_typesupport/rmw_manycore",
 }

@@ -5,5 +5,14 @@ from rmw_manycore_py.ndt.alignment import Alignment, Score
 from rmw_manycore_py.ndt.matcher import Matcher, SerialMatcher
 from rmw_manycore_py.ndt.options import MatcherOptions
 from rmw_manycore_py.ndt.voxel_map import VoxelMap
+from rmw_manycore_py.ndt.worker_matcher import WorkerMatcher
 
-__all__ = ["Alignment", "Matcher", "MatcherOptions", "Score", "SerialMatcher", "VoxelMap"]
+__all__ = [
+    "Alignment",
+    "Matcher",
+    "MatcherOptions",
+    "Score",
+    "SerialMatcher",
+    "VoxelMap",
+    "WorkerMatcher",
+]

@@ -11,7 +11,7 @@ from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
 
 Search = Literal["radius", "direct7", "direct1"]
 VoxelCovariance = Literal["pcl", "autoware", "pclomp"]
-StepRule = Literal["clamped", "more_thuente"]
+StepRule = Literal["trust_region", "clamped", "more_thuente"]
 PoseCovariance = Literal["laplace", "fixed"]
 
 
@@ -27,9 +27,10 @@ class MatcherOptions:
         S / (n - 1); ``autoware``: (I + S) / (n - 1); ``pclomp``: (I + S) (n - 1) / n^2. The
         identity, 1 m^2, widens voxels of few points.
     :param min_points_per_voxel: voxels with fewer points are left out; at least 3.
-    :param step_rule: ``clamped``: Newton's step, at most ``step_size`` long (Autoware's default);
+    :param step_rule: ``trust_region``: uphill also where the score is not concave, as far as the
+        steps before turned out well (ours; docs/design/ndt.md); ``clamped``: Newton's step, at most ``step_size`` long (Autoware's default);
         ``more_thuente``: a line search up to ``step_size`` (PCL).
-    :param step_size: longest step, in metres and radians together.
+    :param step_size: longest step of the latter two, in metres and radians together.
     :param trans_epsilon: a shorter step ends the alignment.
     :param max_iterations: the alignment ends unconverged after so many steps.
     :param outlier_ratio: share of points expected to belong to nothing in the map.
@@ -45,7 +46,7 @@ class MatcherOptions:
     search: Search = "direct7"
     voxel_covariance: VoxelCovariance = "autoware"
     min_points_per_voxel: int = 6
-    step_rule: StepRule = "clamped"
+    step_rule: StepRule = "trust_region"
     step_size: float = 0.1
     trans_epsilon: float = 0.01
     max_iterations: int = 30

@@ -2,6 +2,7 @@
 // From points to the memory image of a voxel map.
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -77,6 +78,8 @@ MapHeader lay_out(const Grid & grid, Search search, size_t voxels, const Neighbo
   h.magic = MapHeader::magic_value;
   h.version = MapHeader::layout_version;
   h.search = search;
+  static std::atomic<uint64_t> maps{0};
+  h.id = ++maps;
   h.voxel_size_m = grid.voxel_size_m;
   std::copy(grid.origin_m.begin(), grid.origin_m.end(), h.origin_m);
   std::copy(grid.first.begin(), grid.first.end(), h.first_cell);

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "ndt/more_thuente.hpp"
+#include "ndt/trust_region.hpp"
 
 namespace manycore::ndt {
 namespace {
@@ -17,18 +18,23 @@ Pose6 moved(const Pose6 & pose, const Vector6 & direction, double length) {
   return out;
 }
 
-bool is_usable(const Derivatives & d) {
-  return std::isfinite(d.score) && is_finite(d.gradient) && norm(d.gradient) > 0;
-}
-
-/// Moves `at` along `direction`, of length 1 and uphill; returns how far.
-double step(
-  NewtonResult & result, const Vector6 & direction, double newton_length,
-  const MatchOptions & options, const Evaluate & evaluate) {
+/// A rule of the published matchers: Newton's direction, then how far. Returns how far, 0 where
+/// there is no direction.
+double step_along_newton(
+  NewtonResult & result, const MatchOptions & options, const Evaluate & evaluate) {
+  Vector6 direction = newton_step(result.at.hessian, result.at.gradient);
+  const double newton_length = norm(direction);
+  if (!std::isfinite(newton_length) || newton_length == 0) {
+    return 0;
+  }
+  // Where the score is not concave Newton's step may lead downhill: then the other way.
+  const double way = dot(direction, result.at.gradient) < 0 ? -1 : 1;
+  for (double & element : direction) {
+    element *= way / newton_length;
+  }
   const double least = options.trans_epsilon / 2;
   const double first = std::max(std::min(newton_length, options.step_size), least);
   const Pose6 start = result.pose;
-  const Derivatives before = result.at;
   const auto try_length = [&](double length) {
     result.pose = moved(start, direction, length);
     result.at = evaluate(result.pose);
@@ -38,8 +44,12 @@ double step(
   if (options.step_rule == StepRule::clamped) {
     return try_length(first).length;
   }
-  const LinePoint origin{0, -before.score, -dot(before.gradient, direction)};
+  const LinePoint origin{0, -result.at.score, -dot(result.at.gradient, direction)};
   return more_thuente(origin, first, least, options.step_size, try_length);
+}
+
+bool is_usable(const Derivatives & d) {
+  return std::isfinite(d.score) && is_finite(d.gradient) && norm(d.gradient) > 0;
 }
 
 }  // namespace
@@ -58,6 +68,7 @@ Vector6 newton_step(const Matrix6 & hessian, const Vector6 & gradient) {
 
 NewtonResult maximise(const Pose6 & guess, const MatchOptions & options, const Evaluate & evaluate) {
   NewtonResult result{Outcome::iteration_limit, 0, guess, evaluate(guess)};
+  TrustRegion trust_region;
   while (result.iterations < options.max_iterations) {
     if (result.at.pairs == 0) {
       result.outcome = Outcome::no_overlap;
@@ -67,19 +78,14 @@ NewtonResult maximise(const Pose6 & guess, const MatchOptions & options, const E
       result.outcome = Outcome::degenerate;
       return result;
     }
-    Vector6 direction = newton_step(result.at.hessian, result.at.gradient);
-    const double newton_length = norm(direction);
-    if (!std::isfinite(newton_length) || newton_length == 0) {
+    const double length = options.step_rule == StepRule::trust_region
+                            ? trust_region.step(result, evaluate)
+                            : step_along_newton(result, options, evaluate);
+    ++result.iterations;
+    if (length == 0) {
       result.outcome = Outcome::degenerate;
       return result;
     }
-    // Where the score is not concave Newton's step may lead downhill: then the other way.
-    const double way = dot(direction, result.at.gradient) < 0 ? -1 : 1;
-    for (double & element : direction) {
-      element *= way / newton_length;
-    }
-    const double length = step(result, direction, newton_length, options, evaluate);
-    ++result.iterations;
     if (length < options.trans_epsilon) {
       result.outcome = result.at.pairs > 0 ? Outcome::converged : Outcome::no_overlap;
       return result;

@@ -21,6 +21,7 @@ enum class VoxelCovariance : uint32_t {
 
 /// How far to go along Newton's direction.
 enum class StepRule : uint32_t {
+  trust_region,  ///< uphill by the curvature's size, as far as earlier steps turned out well (ours)
   clamped,       ///< its length, at most step_size, without a line search (Autoware's default)
   more_thuente,  ///< More and Thuente's line search up to step_size (PCL)
 };
@@ -33,9 +34,9 @@ struct MapOptions {
 };
 
 struct MatchOptions {
-  StepRule step_rule = StepRule::clamped;
+  StepRule step_rule = StepRule::trust_region;
   uint32_t max_iterations = 30;
-  double step_size = 0.1;  ///< longest step in (m, rad)
+  double step_size = 0.1;  ///< longest step in (m, rad), of the other two rules
   double trans_epsilon = 0.01;
   double outlier_ratio = 0.55;
   double regularization_scale_factor = 0.0;

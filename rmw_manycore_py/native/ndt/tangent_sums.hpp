@@ -23,10 +23,11 @@ enum TangentSum : size_t {
   sum_count = 37,
 };
 
-/// One bin's sums, in cache lines of its own.
-struct alignas(64) TangentSums {
+/// One bin's sums: whole cache lines. Not alignas(64), which GCC 12 does not keep for temporaries;
+/// arrays of them in shared memory are.
+struct TangentSums {
   double of[40] = {};
 };
-static_assert(sizeof(TangentSums) == 320);
+static_assert(sizeof(TangentSums) % 64 == 0);
 
 }  // namespace manycore::ndt

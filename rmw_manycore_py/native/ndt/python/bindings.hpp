@@ -6,6 +6,6 @@
 namespace manycore::ndt::python {
 
 void bind_voxel_map(nanobind::module_ & module);
-void bind_serial_matcher(nanobind::module_ & module);
+void bind_matchers(nanobind::module_ & module);
 
 }  // namespace manycore::ndt::python

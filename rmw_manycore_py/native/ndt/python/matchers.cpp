@@ -1,0 +1,104 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+// The matchers, alone and with workers: one signature.
+
+#include <nanobind/nanobind.h>
+#include <nanobind/ndarray.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include <utility>
+
+#include "ndt/python/arrays.hpp"
+#include "ndt/python/bindings.hpp"
+#include "ndt/serial_matcher.hpp"
+#include "ndt/worker_group.hpp"
+
+namespace nb = nanobind;
+
+namespace manycore::ndt::python {
+namespace {
+
+MatchOptions * options(
+  StepRule step_rule, uint32_t max_iterations, double step_size, double trans_epsilon,
+  double outlier_ratio, double regularization_scale_factor) {
+  return new MatchOptions{step_rule,     max_iterations, step_size,
+                          trans_epsilon, outlier_ratio,  regularization_scale_factor};
+}
+
+template<typename Matcher>
+class Bound {
+public:
+  template<typename... More>
+  explicit Bound(const MatchOptions & options, const More &... more)
+  : scale_factor_(options.regularization_scale_factor), matcher_(options, more...) {}
+
+  nb::dict align(
+    const VoxelMap & map, const FloatPoints & points, const PoseMatrix & guess,
+    const std::optional<std::pair<double, double>> & position_m) {
+    std::optional<Regularization> regularization;
+    if (position_m) {
+      regularization = Regularization{scale_factor_, position_m->first, position_m->second};
+    }
+    return to_dict(without_gil([&] {
+      return matcher_.align(
+        map, points.data(), points.shape(0), pose_from(guess), regularization);
+    }));
+  }
+
+  nb::dict evaluate(const VoxelMap & map, const FloatPoints & points, const PoseMatrix & pose) {
+    return to_dict(without_gil([&] {
+      return matcher_.evaluate(map, points.data(), points.shape(0), pose_from(pose));
+    }));
+  }
+
+  Matcher & matcher() { return matcher_; }
+
+private:
+  template<typename F>
+  static auto without_gil(F && f) {
+    const nb::gil_scoped_release released;
+    return f();
+  }
+
+  double scale_factor_;
+  Matcher matcher_;
+};
+
+template<typename Matcher>
+nb::class_<Bound<Matcher>> bind(nb::module_ & module, const char * name) {
+  using Self = Bound<Matcher>;
+  return nb::class_<Self>(module, name)
+    .def("align", &Self::align, nb::arg("map"), nb::arg("points"), nb::arg("guess"),
+         nb::arg("regularization_position_m") = nb::none())
+    .def("evaluate", &Self::evaluate, nb::arg("map"), nb::arg("points"), nb::arg("pose"));
+}
+
+}  // namespace
+
+void bind_matchers(nb::module_ & module) {
+  nb::enum_<StepRule>(module, "StepRule")
+    .value("trust_region", StepRule::trust_region)
+    .value("clamped", StepRule::clamped)
+    .value("more_thuente", StepRule::more_thuente);
+  nb::class_<MatchOptions>(module, "MatchOptions")
+    .def(nb::new_(&options), nb::kw_only(), nb::arg("step_rule"), nb::arg("max_iterations"),
+         nb::arg("step_size"), nb::arg("trans_epsilon"), nb::arg("outlier_ratio"),
+         nb::arg("regularization_scale_factor"));
+  bind<SerialMatcher>(module, "SerialMatcher")
+    .def(nb::init<const MatchOptions &>(), nb::arg("options"));
+  using Group = Bound<WorkerGroup>;
+  bind<WorkerGroup>(module, "WorkerGroup")
+    .def(nb::init<const MatchOptions &, const std::string &, const std::vector<int> &>(),
+         nb::arg("options"), nb::arg("program"), nb::arg("host_cpus"))
+    .def("prepare", [](Group & group, const VoxelMap & map) {
+      const nb::gil_scoped_release released;
+      group.matcher().prepare(map);
+    }, nb::arg("map"))
+    .def("pids", [](Group & group) { return group.matcher().pids(); })
+    .def("busy_ns", [](Group & group) { return group.matcher().busy_ns(); })
+    .def("replaced", [](Group & group) { return group.matcher().replaced(); });
+}
+
+}  // namespace manycore::ndt::python

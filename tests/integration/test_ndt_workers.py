@@ -1,0 +1,202 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Workers find what one core finds, whatever happens to them."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import threading
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from ndt_world import pose, scan_at, street
+from support import wait_until
+
+from rmw_manycore_py.errors import ManycoreError
+from rmw_manycore_py.ndt import MatcherOptions, SerialMatcher, VoxelMap, WorkerMatcher
+
+pytestmark = pytest.mark.integration
+
+WORLD = street()
+TRUE = pose(40, 0.5, 1.8, 0.01, -0.02, 0.3)
+GUESS = pose(40.4, 0.2, 1.9, 0, 0, 0.34)
+SCAN = scan_at(WORLD, TRUE)
+OPTIONS = MatcherOptions()
+MAP = VoxelMap.from_points(WORLD, OPTIONS)
+CPUS = sorted(os.sched_getaffinity(0))
+
+
+def workers(count: int) -> WorkerMatcher:
+    matcher = WorkerMatcher(OPTIONS, [CPUS[i % len(CPUS)] for i in range(count)])
+    matcher.set_map(MAP)
+    return matcher
+
+
+def alone() -> SerialMatcher:
+    matcher = SerialMatcher(OPTIONS)
+    matcher.set_map(MAP)
+    return matcher
+
+
+def numbers(alignment: Any) -> tuple[Any, ...]:
+    return (
+        alignment.T_map_sensor.tolist(),
+        alignment.covariance.tolist(),
+        alignment.iterations,
+        alignment.score,
+        alignment.nearest_voxel_likelihood,
+    )
+
+
+def has_ended(pid: int) -> bool:
+    try:
+        return Path(f"/proc/{pid}/stat").read_text().rsplit(")")[-1].split()[0] in "ZX"
+    except (FileNotFoundError, ProcessLookupError):
+        return True
+
+
+def cpu_ticks(pid: int) -> int:
+    fields = Path(f"/proc/{pid}/stat").read_text().rsplit(")")[-1].split()
+    return int(fields[11]) + int(fields[12])
+
+
+@pytest.mark.parametrize("count", [1, 2, 3, 7, 16])
+def test_any_number_of_workers_finds_the_same_pose_bit_for_bit(count: int) -> None:
+    with workers(count) as matcher:
+        for guess in (GUESS, TRUE, pose(40.9, 0, 1.8, 0, 0, 0.25)):
+            assert numbers(matcher.align(SCAN, guess)) == numbers(alone().align(SCAN, guess))
+        assert matcher.score(SCAN, GUESS) == alone().score(SCAN, GUESS)
+
+
+def test_each_worker_is_a_process_on_its_cpu() -> None:
+    with workers(2) as matcher:
+        pids = matcher.worker_pids
+        assert len(set(pids)) == 2
+        for pid, cpu in zip(pids, [CPUS[0], CPUS[1 % len(CPUS)]], strict=True):
+            assert os.sched_getaffinity(pid) == {cpu}
+    wait_until(lambda: all(has_ended(pid) for pid in pids), "the workers end with the matcher")
+
+
+def test_sixteen_workers_share_the_points_evenly() -> None:
+    # What each worker does is fixed: groups of 16 points, dealt to 96 bins, dealt to workers.
+    groups = [len(range(bin_, (len(SCAN) + 15) // 16, 96)) for bin_ in range(96)]
+    shares = [sum(groups[worker::16]) for worker in range(16)]
+    assert max(shares) / np.mean(shares) <= 1.05
+
+
+@pytest.mark.parametrize("end", [signal.SIGKILL, signal.SIGTERM])
+def test_a_worker_killed_between_alignments_is_replaced(end: signal.Signals) -> None:
+    expected = numbers(alone().align(SCAN, GUESS))
+    with workers(3) as matcher:
+        victim = matcher.worker_pids[1]
+        os.kill(victim, end)
+        wait_until(lambda: has_ended(victim), "the worker is gone")
+        assert numbers(matcher.align(SCAN, GUESS)) == expected
+        assert matcher.replaced_workers == 1
+        assert victim not in matcher.worker_pids
+
+
+def test_workers_killed_in_the_middle_of_alignments_are_replaced() -> None:
+    big = np.tile(SCAN, (30, 1))
+    expected = numbers(alone().align(big, GUESS))
+    with workers(3) as matcher:
+        done = threading.Event()
+
+        def kill_now_and_then() -> None:
+            victims = iter(range(1000))
+            while not done.wait(0.05):
+                os.kill(matcher.worker_pids[next(victims) % 3], signal.SIGKILL)
+
+        killer = threading.Thread(target=kill_now_and_then)
+        killer.start()
+        try:
+            while matcher.replaced_workers < 4:
+                assert numbers(matcher.align(big, GUESS)) == expected
+        finally:
+            done.set()
+            killer.join()
+        assert numbers(matcher.align(big, GUESS)) == expected
+
+
+def test_a_stopped_worker_is_replaced() -> None:
+    expected = numbers(alone().align(SCAN, GUESS))
+    with workers(2) as matcher:
+        os.kill(matcher.worker_pids[1], signal.SIGSTOP)
+        assert numbers(matcher.align(SCAN, GUESS)) == expected
+        assert matcher.replaced_workers == 1
+
+
+def test_workers_sleep_between_alignments() -> None:
+    with workers(2) as matcher:
+        matcher.align(SCAN, GUESS)
+        before = [cpu_ticks(pid) for pid in matcher.worker_pids]
+        assert not threading.Event().wait(1.0)  # a second in which nothing is due
+        assert [cpu_ticks(pid) for pid in matcher.worker_pids] == before
+
+
+def test_workers_end_when_their_coordinator_is_killed() -> None:
+    program = (
+        "import time; from rmw_manycore_py.ndt import WorkerMatcher; "
+        f"m = WorkerMatcher(None, [{CPUS[0]}, {CPUS[0]}]); "
+        "print(*m.worker_pids, flush=True); time.sleep(600)"
+    )
+    process = subprocess.Popen([sys.executable, "-c", program], stdout=subprocess.PIPE, text=True)
+    assert process.stdout is not None
+    pids = [int(word) for word in process.stdout.readline().split()]
+    assert len(pids) == 2
+    assert not any(has_ended(pid) for pid in pids)
+    process.kill()
+    process.communicate()
+    wait_until(lambda: all(has_ended(pid) for pid in pids), "the workers end with their parent")
+
+
+def test_the_map_is_swapped_between_alignments() -> None:
+    moved = VoxelMap.from_points(WORLD + [0, 5, 0], OPTIONS)
+    with workers(2) as matcher:
+        first = matcher.align(SCAN, GUESS)
+        matcher.set_map(moved)
+        second = matcher.align(
+            SCAN, GUESS + np.array([[0, 0, 0, 0], [0, 0, 0, 5.0], [0] * 4, [0] * 4])
+        )
+    assert second.T_map_sensor[1, 3] - first.T_map_sensor[1, 3] == pytest.approx(5, abs=0.02)
+
+
+def test_two_million_points_are_aligned() -> None:
+    huge = np.tile(SCAN, (2_000_000 // len(SCAN) + 1, 1))
+    with workers(2) as matcher:
+        found = matcher.align(huge, GUESS)
+    assert found.converged
+    assert found.T_map_sensor == pytest.approx(alone().align(SCAN, GUESS).T_map_sensor, abs=1e-3)
+
+
+@pytest.mark.parametrize("scan", [np.zeros((0, 3)), np.full((9, 3), np.nan), SCAN[:1], SCAN[:5]])
+def test_scans_of_nothing_leave_the_workers_well(scan: Any) -> None:
+    with workers(2) as matcher:
+        found = matcher.align(scan, GUESS)
+        assert np.isfinite(found.T_map_sensor).all()
+        assert matcher.align(SCAN, GUESS).converged
+
+
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        (lambda: WorkerMatcher(OPTIONS, []), "host_cpus: expected 1 to 64"),
+        (lambda: WorkerMatcher(OPTIONS, [4095]), "host CPU 4095 cannot be had"),
+    ],
+)
+def test_cores_that_are_not_there_are_refused(make: Callable[[], Any], message: str) -> None:
+    with pytest.raises(ManycoreError, match=message):
+        make()
+
+
+def test_a_closed_matcher_says_so() -> None:
+    matcher = workers(1)
+    matcher.close()
+    matcher.close()
+    with pytest.raises(ManycoreError, match="closed"):
+        _ = matcher.worker_pids
