@@ -63,6 +63,9 @@ class SerialMatcher:
     def evaluate(
         self, map: VoxelMap, points: NDArray[np.float32], pose: NDArray[np.float64]
     ) -> dict[str, Any]: ...
+    def time_passes_ns(
+        self, map: VoxelMap, points: NDArray[np.float32], pose: NDArray[np.float64], passes: int
+    ) -> list[float]: ...
 
 class WorkerGroup:
     def __init__(self, options: MatchOptions, program: str, host_cpus: list[int]) -> None: ...

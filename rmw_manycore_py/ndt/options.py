@@ -28,8 +28,9 @@ class MatcherOptions:
         identity, 1 m^2, widens voxels of few points.
     :param min_points_per_voxel: voxels with fewer points are left out; at least 3.
     :param step_rule: ``trust_region``: uphill also where the score is not concave, as far as the
-        steps before turned out well (ours; docs/design/ndt.md); ``clamped``: Newton's step, at most ``step_size`` long (Autoware's default);
-        ``more_thuente``: a line search up to ``step_size`` (PCL).
+        steps before turned out well (ours; docs/design/ndt.md); ``clamped``: Newton's step, at
+        most ``step_size`` long (Autoware's default); ``more_thuente``: a line search up to
+        ``step_size`` (PCL).
     :param step_size: longest step of the latter two, in metres and radians together.
     :param trans_epsilon: a shorter step ends the alignment.
     :param max_iterations: the alignment ends unconverged after so many steps.

@@ -156,7 +156,9 @@ def test_workers_end_when_their_coordinator_is_killed() -> None:
 
 
 def test_the_map_is_swapped_between_alignments() -> None:
-    moved = VoxelMap.from_points(WORLD + [0, 5, 0], OPTIONS)
+    moved = VoxelMap.from_points(WORLD + np.array([0, 5, 0]), OPTIONS)
+    beside = GUESS.copy()
+    beside[1, 3] += 5
     with workers(2) as matcher:
         first = matcher.align(SCAN, GUESS)
         matcher.set_map(moved)

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "ndt/aligned_floats.hpp"
 #include "ndt/matcher.hpp"
@@ -20,6 +21,9 @@ public:
     const std::optional<Regularization> & regularization);
   /// Derivatives at a pose.
   Derivatives evaluate(const VoxelMap & map, const float * xyz_m, size_t count, const Pose6 & pose);
+  /// What each of so many passes at a pose takes, without laying out the scan.
+  std::vector<double> time_passes_ns(
+    const VoxelMap & map, const float * xyz_m, size_t count, const Pose6 & pose, size_t passes);
   /// Points that counted in the last call.
   size_t used_points() const noexcept { return used_points_; }
 

@@ -86,8 +86,16 @@ void bind_matchers(nb::module_ & module) {
     .def(nb::new_(&options), nb::kw_only(), nb::arg("step_rule"), nb::arg("max_iterations"),
          nb::arg("step_size"), nb::arg("trans_epsilon"), nb::arg("outlier_ratio"),
          nb::arg("regularization_scale_factor"));
+  using Serial = Bound<SerialMatcher>;
   bind<SerialMatcher>(module, "SerialMatcher")
-    .def(nb::init<const MatchOptions &>(), nb::arg("options"));
+    .def(nb::init<const MatchOptions &>(), nb::arg("options"))
+    .def("time_passes_ns", [](
+      Serial & serial, const VoxelMap & map, const FloatPoints & points, const PoseMatrix & pose,
+      size_t passes) {
+      const nb::gil_scoped_release released;
+      return serial.matcher().time_passes_ns(
+        map, points.data(), points.shape(0), pose_from(pose), passes);
+    }, nb::arg("map"), nb::arg("points"), nb::arg("pose"), nb::arg("passes"));
   using Group = Bound<WorkerGroup>;
   bind<WorkerGroup>(module, "WorkerGroup")
     .def(nb::init<const MatchOptions &, const std::string &, const std::vector<int> &>(),
