@@ -6,6 +6,7 @@ from __future__ import annotations
 import pytest
 import rclpy
 from rclpy._rclpy_pybind11 import RCLError
+from rclpy.duration import Duration
 from rclpy.event_handler import (
     PublisherEventCallbacks,
     QoSPublisherMatchedInfo,
@@ -27,9 +28,19 @@ BEST_EFFORT = QoSProfile(depth=10, reliability=ReliabilityPolicy.BEST_EFFORT)
 VOLATILE = QoSProfile(depth=10)
 TRANSIENT_LOCAL = QoSProfile(depth=10, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
+STRICT = QoSProfile(
+    depth=10,
+    durability=DurabilityPolicy.TRANSIENT_LOCAL,
+    deadline=Duration(seconds=1),
+    liveliness=LivelinessPolicy.MANUAL_BY_TOPIC,
+)
+
+# What is offered and requested, and the policy that events name: of several the last by number.
 INCOMPATIBLE = {
     "reliability": (BEST_EFFORT, VOLATILE, QoSPolicyKind.RELIABILITY),
     "durability": (VOLATILE, TRANSIENT_LOCAL, QoSPolicyKind.DURABILITY),
+    "all": (BEST_EFFORT, STRICT, QoSPolicyKind.RELIABILITY),
+    "all but reliability": (VOLATILE, STRICT, QoSPolicyKind.LIVELINESS),
 }
 
 

@@ -7,13 +7,21 @@ import time
 
 import pytest
 import rclpy
-from rclpy.duration import Duration
-from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
+from rclpy.duration import Duration, Infinite
+from rclpy.qos import (
+    DurabilityPolicy,
+    HistoryPolicy,
+    LivelinessPolicy,
+    QoSPresetProfiles,
+    QoSProfile,
+    ReliabilityPolicy,
+)
 from ros_support import announce, peer_node, spin_until
 from std_msgs.msg import String, UInt8MultiArray
 from support import IS_MANYCORE
 
 TRANSIENT_LOCAL = DurabilityPolicy.TRANSIENT_LOCAL
+LIFESPAN = Duration(seconds=0.1)
 
 
 def publish_burst(count: int, depth: int, end: bool) -> None:
@@ -130,13 +138,15 @@ def test_late_joiner_of_the_same_process(node):
     assert received == [2, 3, 4]
 
 
-def test_expired_messages_are_not_delivered(node, start_peer, peer_cluster):
-    """The lifespan runs out while the message waits; one without a lifespan marks the end."""
+@pytest.mark.parametrize("side", ["publisher", "subscription"])
+def test_expired_messages_are_not_delivered(node, start_peer, peer_cluster, side):
+    """The lifespan runs out while the message waits; a later one marks the end."""
+    if side == "publisher" and not IS_MANYCORE:
+        pytest.skip("Fast DDS only looks at the subscription's lifespan")
     received = []
-    # The publisher's lifespan counts; Fast DDS only looks at the subscription's.
-    qos = 10 if IS_MANYCORE else QoSProfile(depth=10, lifespan=Duration(seconds=0.1))
+    qos = 10 if side == "publisher" else QoSProfile(depth=10, lifespan=LIFESPAN)
     node.create_subscription(String, "numbers", lambda m: received.append(m.data), qos)
-    peer = start_peer(publish_short_lived, cluster=peer_cluster)
+    peer = start_peer(publish_short_lived, side == "publisher", cluster=peer_cluster)
     peer.wait_for("published")
     time.sleep(0.3)  # the lifespan itself, not a wait for something to happen
     peer.say("go on")
@@ -144,9 +154,9 @@ def test_expired_messages_are_not_delivered(node, start_peer, peer_cluster):
     assert received == ["lasting"]
 
 
-def publish_short_lived() -> None:
+def publish_short_lived(has_lifespan: bool) -> None:
     with peer_node() as node:
-        short = QoSProfile(depth=10, lifespan=Duration(seconds=0.1))
+        short = QoSProfile(depth=10, lifespan=LIFESPAN) if has_lifespan else 10
         expiring = node.create_publisher(String, "numbers", short)
         lasting = node.create_publisher(String, "numbers", 10)
         for publisher in (expiring, lasting):
@@ -190,3 +200,67 @@ def test_system_default_and_best_available(node):
     info = node.get_subscriptions_info_by_topic(subscription.topic_name)[0].qos_profile
     assert info.reliability == ReliabilityPolicy.BEST_EFFORT
     assert info.durability == DurabilityPolicy.VOLATILE
+
+
+MANUAL = QoSProfile(
+    depth=1,
+    deadline=Duration(seconds=3),
+    liveliness=LivelinessPolicy.MANUAL_BY_TOPIC,
+    liveliness_lease_duration=Duration(seconds=5),
+)
+
+
+def profile_of(infos) -> QoSProfile:
+    return infos[0].qos_profile
+
+
+def check_times_are_those_of_manual(profile: QoSProfile) -> None:
+    assert profile.deadline == MANUAL.deadline
+    assert profile.liveliness == MANUAL.liveliness
+    assert profile.liveliness_lease_duration == MANUAL.liveliness_lease_duration
+
+
+def test_best_available_deadline_and_liveliness(node):
+    """Each side takes what the other one has."""
+    node.create_publisher(String, "offered", MANUAL)
+    node.create_subscription(String, "requested", lambda _: None, MANUAL)
+    spin_until(node, lambda: node.count_publishers("offered"))
+    spin_until(node, lambda: node.count_subscribers("requested"))
+    publisher = node.create_publisher(String, "requested", QoSPresetProfiles.BEST_AVAILABLE.value)
+    node.create_subscription(
+        String, "offered", lambda _: None, QoSPresetProfiles.BEST_AVAILABLE.value
+    )
+    spin_until(node, lambda: node.get_subscriptions_info_by_topic("offered"))
+    spin_until(node, publisher.get_subscription_count)
+    check_times_are_those_of_manual(profile_of(node.get_subscriptions_info_by_topic("offered")))
+    check_times_are_those_of_manual(profile_of(node.get_publishers_info_by_topic("requested")))
+
+
+def test_best_available_where_nobody_is(node):
+    """Nobody offers less than the best."""
+    node.create_subscription(
+        String, "chatter", lambda _: None, QoSPresetProfiles.BEST_AVAILABLE.value
+    )
+    spin_until(node, lambda: node.get_subscriptions_info_by_topic("chatter"))
+    profile = profile_of(node.get_subscriptions_info_by_topic("chatter"))
+    assert profile.reliability == ReliabilityPolicy.RELIABLE
+    assert profile.durability == TRANSIENT_LOCAL
+    assert profile.liveliness == LivelinessPolicy.MANUAL_BY_TOPIC
+    assert profile.deadline == profile.liveliness_lease_duration == Infinite
+
+
+def test_system_default(node):
+    profile = QoSPresetProfiles.SYSTEM_DEFAULT.value
+    node.create_publisher(String, "chatter", profile)
+    node.create_subscription(String, "chatter", lambda _: None, profile)
+    spin_until(node, lambda: node.get_publishers_info_by_topic("chatter"))
+    spin_until(node, lambda: node.get_subscriptions_info_by_topic("chatter"))
+    published = profile_of(node.get_publishers_info_by_topic("chatter"))
+    subscribed = profile_of(node.get_subscriptions_info_by_topic("chatter"))
+    assert published.reliability == ReliabilityPolicy.RELIABLE
+    assert published.durability == TRANSIENT_LOCAL
+    assert subscribed.reliability == ReliabilityPolicy.BEST_EFFORT
+    assert subscribed.durability == DurabilityPolicy.VOLATILE
+    for chosen in (published, subscribed):
+        assert chosen.deadline == chosen.lifespan == chosen.liveliness_lease_duration == Infinite
+        assert chosen.liveliness == LivelinessPolicy.AUTOMATIC

@@ -63,8 +63,8 @@ rmw_qos_profile_t resolve_for_subscription(
                     : RMW_QOS_POLICY_DURABILITY_VOLATILE);
   resolve(
     profile.liveliness, RMW_QOS_POLICY_LIVELINESS_BEST_AVAILABLE,
-    !others.empty() && all(is_manual) ? RMW_QOS_POLICY_LIVELINESS_MANUAL_BY_TOPIC
-                                      : RMW_QOS_POLICY_LIVELINESS_AUTOMATIC);
+    all(is_manual) ? RMW_QOS_POLICY_LIVELINESS_MANUAL_BY_TOPIC
+                   : RMW_QOS_POLICY_LIVELINESS_AUTOMATIC);
   resolve(profile.deadline, best_available_deadline, longest(&manycore::Qos::deadline_ns));
   resolve(
     profile.liveliness_lease_duration, best_available_lease,

@@ -81,6 +81,12 @@ bool TopicDsmReader::is_for_us(const RecordDescriptor & record) const noexcept {
          record.correlation.client == subscription_->gid;
 }
 
+/// The shorter of the publisher's lifespan and the subscription's counts.
+bool TopicDsmReader::is_expired(const RecordDescriptor & record) const noexcept {
+  const int64_t lifespan_ns = std::min(dsm_->lifespan_ns, subscription_->qos.lifespan_ns);
+  return lifespan_ns != infinite_ns && realtime_ns() - record.source_timestamp_ns > lifespan_ns;
+}
+
 bool TopicDsmReader::may_look() const noexcept {
   return source_->state.load(std::memory_order_seq_cst) == SourceState::active &&
          source_->incarnation.load(std::memory_order_seq_cst) == incarnation_;
@@ -126,9 +132,7 @@ TopicDsmReader::ClaimResult TopicDsmReader::look_at(uint64_t number, View & view
   }
   count_missing(record.publication_sequence_number - 1);
   accounted_ = std::max(accounted_, record.publication_sequence_number);
-  if (
-    dsm_->lifespan_ns != infinite_ns &&
-    realtime_ns() - record.source_timestamp_ns > dsm_->lifespan_ns) {
+  if (is_expired(record)) {
     return ClaimResult::expired;
   }
   view.record = &record;

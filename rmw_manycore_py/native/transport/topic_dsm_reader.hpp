@@ -68,6 +68,7 @@ private:
   ClaimResult look_at(uint64_t number, View & view) noexcept;
   RecordDescriptor * descriptors_of(const GenerationEntry & generation) const noexcept;
   bool is_for_us(const RecordDescriptor & record) const noexcept;
+  bool is_expired(const RecordDescriptor & record) const noexcept;
   /// The source is still this one, and open: to be asked after storing `reading`.
   bool may_look() const noexcept;
   void scan(const GenerationEntry & generation, uint64_t last, std::vector<Waiting> & out) noexcept;
