@@ -24,9 +24,14 @@ class Ending:
     signal: str | None = None
 
 
-def judge(return_code: int, state: NodeState) -> Ending:
-    """Judge the return code (minus a signal's number, as in subprocess) of a node in `state`."""
+def judge(return_code: int, state: NodeState, last_line: str = "") -> Ending:
+    """Judge the return code (minus a signal's number, as in subprocess) of a node in `state`.
+
+    Python that is interrupted while it starts ends with status 1; only its last line says why.
+    """
     asked = state in (NodeState.INTERRUPTED, NodeState.TERMINATED)
+    if asked and return_code == 1 and last_line == "KeyboardInterrupt":
+        return Ending(False, "stopped", exit_status=return_code)
     if state is NodeState.KILLED:
         return Ending(True, _stubborn(), signal=_signal_name(signal.SIGKILL))
     if return_code == 0 or (asked and return_code in _ENDED_ON_REQUEST):

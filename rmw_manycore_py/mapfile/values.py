@@ -76,10 +76,17 @@ def flatten_parameters(value: Any, prefix: str = "") -> dict[str, Any]:
         raise _expected("a mapping from parameter names to values")
     flat: dict[str, Any] = {}
     for name, item in value.items():
+        if not isinstance(name, str):
+            raise _expected(
+                "parameter names, in quotes where YAML reads something else", found=name
+            )
         if isinstance(item, dict):
             flat |= flatten_parameters(item, f"{prefix}{name}.")
-        elif isinstance(item, _SCALARS) or _is_array(item):
-            flat[f"{prefix}{name}"] = list(item) if isinstance(item, tuple) else item
+        elif isinstance(item, _SCALARS):
+            flat[f"{prefix}{name}"] = item
+        elif _is_array(item):
+            has_floats = any(isinstance(part, float) for part in item)
+            flat[f"{prefix}{name}"] = [float(p) for p in item] if has_floats else list(item)
         else:
             expected = "a bool, a number, a string or a non-empty list of one of these"
             raise _expected(expected, found=item, name=f"{prefix}{name}")

@@ -63,13 +63,23 @@ def test_a_node_that_fails_is_shown_with_its_reason(start, tmp_path, platform) -
 
 
 def test_a_message_type_that_is_not_installed(start, tmp_path, platform) -> None:
+    mapfile = write_mapfile(tmp_path, node="{cluster: 1, script: node.py}")
     source = tmp_path / "node.py"
     source.write_text("from no_such_msgs.msg import Thing\n")
-    run = start(
-        manycore_command("run", write_mapfile(tmp_path, node="{cluster: 1, script: node.py}"))
-    )
+    run = start(manycore_command("run", mapfile))
     assert run.wait() == EXIT_BAD_INPUT
-    assert "expected no_such_msgs/msg/Thing to be installed" in " ".join(run.output.split())
+    assert "no_such_msgs/msg/Thing to be installed, which node.py:1 imports" in run.output
+    assert leftovers(platform) == []
+
+
+def test_a_message_type_that_is_missed_later(start, tmp_path, platform) -> None:
+    """What a source imports on the way is not known before it runs."""
+    mapfile = write_mapfile(tmp_path, node="{cluster: 1, script: node.py}")
+    source = tmp_path / "node.py"
+    source.write_text("if True:\n    from no_such_msgs.msg import Thing\n")
+    run = start(manycore_command("run", mapfile))
+    assert run.wait() == 1
+    assert "ModuleNotFoundError: No module named 'no_such_msgs'" in run.output
     assert leftovers(platform) == []
 
 

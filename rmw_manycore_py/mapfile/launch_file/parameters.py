@@ -87,8 +87,17 @@ def _value(context: LaunchContext, value: Any) -> Any:
     if isinstance(value, (list, tuple)):
         if any(isinstance(part, Substitution) for part in value):
             return _typed(perform(context, value))
-        return [_value(context, part) for part in value]
+        return _of_one_type([_value(context, part) for part in value])
     raise RefusedError("a parameter value", repr(value))
+
+
+def _of_one_type(items: list[Any]) -> list[Any]:
+    """Return an array as ROS 2 launch makes one of mixed values: of floats, else of strings."""
+    kinds = {type(item) for item in items}
+    if len(kinds) > 1:
+        convert = float if kinds == {int, float} else str
+        return [convert(item) for item in items]
+    return items
 
 
 def _typed(words: str) -> Any:

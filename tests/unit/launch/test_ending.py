@@ -32,6 +32,12 @@ def test_judgement(return_code: int, state: NodeState, failed: bool, reason: str
     assert (ending.failed, ending.reason) == (failed, reason)
 
 
+def test_python_that_was_interrupted_while_it_started_was_stopped() -> None:
+    ending = judge(1, NodeState.INTERRUPTED, "KeyboardInterrupt")
+    assert (ending.failed, ending.reason) == (False, "stopped")
+    assert judge(1, NodeState.RUNNING, "KeyboardInterrupt").failed
+
+
 def test_one_that_had_to_be_killed_failed() -> None:
     ending = judge(-signal.SIGKILL, NodeState.KILLED)
     assert (ending.failed, ending.signal, ending.exit_status) == (True, "SIGKILL", None)

@@ -290,3 +290,19 @@ def test_an_installed_launch_package_is_left_as_it_was(
     read("demo.launch.py", PYTHON)
     assert sys.modules["launch"] is real
     assert "launch_ros" not in sys.modules
+
+
+def test_arrays_are_of_one_type(read: Read) -> None:
+    """ROS 2 launch makes floats of numbers, and strings of everything else that is mixed."""
+    text = """\
+launch:
+  - node:
+      pkg: demo
+      exec: talker
+      param: [{name: x, value: [1, 2.5]}, {name: y, value: [1, a]}, {name: z, value: [1, 2]}]
+"""
+    assert values(read("demo.launch.yaml", text).nodes[0]) == {
+        "x": [1.0, 2.5],
+        "y": ["1", "a"],
+        "z": [1, 2],
+    }

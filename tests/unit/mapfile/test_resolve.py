@@ -256,3 +256,10 @@ def test_topic_names_are_expanded_as_rcl_does(topic: str, full: str) -> None:
 )
 def test_parameters_keep_their_type(value: object, text: str) -> None:
     assert parameter_text(value) == text
+
+
+def test_integers_among_floats_are_floats(resolved: Check) -> None:
+    (node,) = resolved(
+        "nodes:\n  t: {cluster: 1, script: talker.py, parameters: {x: [1, 2.5]}}\n"
+    ).nodes
+    assert node.argv[-2:] == ["-p", "x:=[1.0, 2.5]"]
