@@ -51,6 +51,23 @@ function(manycore_interfaces package)
   install(TARGETS ${module} DESTINATION ${MANYCORE_SITE_PACKAGES}/${package})
   install(DIRECTORY ${root}/rosidl_generator_py/${package} DESTINATION ${MANYCORE_SITE_PACKAGES}
     FILES_MATCHING PATTERN "*.py")
+
+  # What tools look up in the ament index: the package, its definitions, their hashes.
+  set(share ${MANYCORE_PREFIX}/share)
+  set(index ${share}/ament_index/resource_index)
+  set(names "")
+  foreach(definition IN LISTS definitions)
+    file(RELATIVE_PATH name ${source} ${definition})
+    string(APPEND names "${name}\n")
+  endforeach()
+  file(WRITE ${root}/rosidl_interfaces/${package} "${names}")
+  file(WRITE ${root}/packages/${package} "")
+  install(FILES ${root}/packages/${package} DESTINATION ${index}/packages)
+  install(FILES ${root}/rosidl_interfaces/${package} DESTINATION ${index}/rosidl_interfaces)
+  foreach(directory ${source} ${root}/idl/${package} ${root}/rosidl_generator_type_description/${package})
+    install(DIRECTORY ${directory} DESTINATION ${share}
+      FILES_MATCHING REGEX "\\.(msg|srv|idl|json)$" PATTERN arguments.json EXCLUDE)
+  endforeach()
 endfunction()
 
 # In the scope of manycore_interfaces.
