@@ -16,12 +16,15 @@ help:  ## this list
 .venv/installed: pyproject.toml scripts/setup.sh $(NATIVE_SOURCES)
 	scripts/setup.sh
 
+.venv/ndt: .venv/installed
+	scripts/setup.sh extra ndt
+
 setup: .venv/installed  ## build, and install this checkout into .venv
 
 demo: setup  ## run talker and listener in two clusters for ten seconds
 	$(VENV)/manycore run mapfiles/talker_listener.yaml --duration 10
 
-test: setup test-native  ## all tests but the long ones
+test: setup .venv/ndt test-native  ## all tests but the long ones
 	$(VENV)/pytest
 
 stress: setup  ## the long tests: random kills, many nodes

@@ -4,6 +4,7 @@
 # Makes .venv and installs this checkout into it, with everything that is needed for that:
 #   scripts/setup.sh                the system's packages (if any is missing), then .venv
 #   scripts/setup.sh system [PKG..] the system's packages only, and PKG too
+#   scripts/setup.sh extra NAME     what an extra of pyproject.toml asks for, into .venv
 set -eu
 cd "$(dirname "$0")/.."
 : "${PYTHON:=python3}"
@@ -40,9 +41,11 @@ check_python() {
   exit 1
 }
 
-# All that pyproject.toml asks for: with it in .venv a rebuild takes seconds and no network.
+# What pyproject.toml asks for, line by line: with all of it in .venv a rebuild takes seconds and no network.
+# requirements [EXTRA]
 requirements() {
-  .venv/bin/python - <<'END'
+  .venv/bin/python - "$@" <<'END'
+import sys
 try:
     import tomllib
 except ModuleNotFoundError:  # Python 3.10
@@ -50,12 +53,9 @@ except ModuleNotFoundError:  # Python 3.10
 with open("pyproject.toml", "rb") as file:
     settings = tomllib.load(file)
 project = settings["project"]
-for requirements in (
-    settings["build-system"]["requires"],
-    project["dependencies"],
-    project["optional-dependencies"]["dev"],
-):
-    print("\n".join(requirements))
+extras = project["optional-dependencies"]
+everything = settings["build-system"]["requires"] + project["dependencies"] + extras["dev"]
+print("\n".join(extras[sys.argv[1]] if len(sys.argv) > 1 else everything))
 END
 }
 
@@ -70,9 +70,17 @@ install_checkout() {
   touch .venv/installed
 }
 
+install_extra() {
+  requirements "$1" >.venv/requirements.txt
+  .venv/bin/pip install --quiet --requirement .venv/requirements.txt
+  touch ".venv/$1"
+}
+
 if [ "${1:-}" = system ]; then
   shift
   install_packages $(missing_packages) "$@"
+elif [ "${1:-}" = extra ]; then
+  install_extra "$2"
 else
   [ "$PYTHON" = python3 ] || check_python
   install_packages $(missing_packages)
