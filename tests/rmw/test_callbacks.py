@@ -3,8 +3,11 @@
 
 from __future__ import annotations
 
+import ctypes
+import sys
 import time
 from collections.abc import Callable, Iterator
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -14,7 +17,9 @@ from rclpy.experimental import EventsExecutor
 from ros_support import announce, peer_node
 from std_msgs.msg import String
 from std_srvs.srv import Trigger
-from support import PATIENCE_S
+from support import PATIENCE_S, RMW
+
+PUBLISHER_MATCHED = 4  # of rcl_publisher_event_type_t
 
 
 @pytest.fixture
@@ -116,3 +121,47 @@ def test_entities_that_go_while_messages_arrive(node, executor, start_peer, peer
         subscription = node.create_subscription(String, "chatter", received.append, 10)
         run_until(executor, lambda got=received: got)
         node.destroy_subscription(subscription)
+
+
+class EventsToWaitFor(ctypes.Structure):
+    """rmw_events_t with one event."""
+
+    _fields_ = (("count", ctypes.c_size_t), ("events", ctypes.POINTER(ctypes.c_void_p)))
+
+
+def library(name: str, *functions: str) -> ctypes.CDLL:
+    """Return a C library, some of whose functions return pointers."""
+    found = ctypes.CDLL(str(Path(sys.prefix, "lib", name)))
+    for function in functions:
+        getattr(found, function).restype = ctypes.c_void_p
+    return found
+
+
+def test_the_callback_of_an_event_is_called_before_a_wait_ends(node):
+    """rclpy offers either callbacks or waits, so this is in C, on the handles of rclpy."""
+    rcl = library("librcl.so", "rcl_publisher_get_context", "rcl_context_get_rmw_context")
+    rcl.rcl_event_get_rmw_handle.restype = ctypes.c_void_p
+    rmw = library(f"lib{RMW}.so", "rmw_create_wait_set")
+    publisher = node.create_publisher(String, "chatter", 10)
+    handle = ctypes.c_void_p(publisher.handle.pointer)
+    context = ctypes.c_void_p(rcl.rcl_publisher_get_context(handle))
+    rmw_context = ctypes.c_void_p(rcl.rcl_context_get_rmw_context(context))
+    wait_set = ctypes.c_void_p(rmw.rmw_create_wait_set(rmw_context, ctypes.c_size_t(1)))
+
+    calls = []
+    callback = ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_size_t)(
+        lambda _, count: calls.append(count)
+    )
+    event = ctypes.c_void_p()  # rcl_event_t holds one pointer
+    assert rcl.rcl_publisher_event_init(ctypes.byref(event), handle, PUBLISHER_MATCHED) == 0
+    assert rcl.rcl_event_set_callback(ctypes.byref(event), callback, None) == 0
+    rmw_event = rcl.rcl_event_get_rmw_handle(ctypes.byref(event))
+    status = (ctypes.c_size_t * 4)()
+    for round_number in range(1, 21):
+        node.create_subscription(String, "chatter", print, 10)
+        waited = EventsToWaitFor(1, (ctypes.c_void_p * 1)(rmw_event))
+        assert rmw.rmw_wait(None, None, None, None, ctypes.byref(waited), wait_set, None) == 0
+        assert sum(calls) == round_number
+        assert rcl.rcl_take_event(ctypes.byref(event), status) == 0
+    assert rcl.rcl_event_fini(ctypes.byref(event)) == 0
+    assert rmw.rmw_destroy_wait_set(wait_set) == 0

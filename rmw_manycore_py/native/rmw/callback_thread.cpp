@@ -110,6 +110,13 @@ void Callback::set(rmw_event_callback_t function, const void * user_data) {
   thread_.add(*this);
 }
 
+void Callback::report_now() {
+  const std::lock_guard lock(thread_.mutex_);
+  if (function_ != nullptr) {
+    report();
+  }
+}
+
 void Callback::clear() noexcept {
   const std::lock_guard lock(thread_.mutex_);
   function_ = nullptr;

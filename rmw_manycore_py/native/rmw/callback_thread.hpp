@@ -69,6 +69,8 @@ public:
   /// Sets, replaces or (nullptr) clears. What arrived before and is neither reported nor taken is
   /// reported at once, from the calling thread.
   void set(rmw_event_callback_t function, const void * user_data);
+  /// Reports from the calling thread what is not reported yet, if a function is set.
+  void report_now();
 
 private:
   friend class CallbackThread;

@@ -18,6 +18,17 @@ void EndpointEvents::set_callback(
   callback(type).set(function, user_data);
 }
 
+void EndpointEvents::report(rmw_event_type_t type) {
+  Callback * found = nullptr;
+  {
+    const std::lock_guard lock(mutex_);
+    found = callbacks_[type].get();
+  }
+  if (found != nullptr) {
+    found->report_now();
+  }
+}
+
 Callback & EndpointEvents::callback(rmw_event_type_t type) {
   const std::lock_guard lock(mutex_);
   if (!callbacks_[type]) {

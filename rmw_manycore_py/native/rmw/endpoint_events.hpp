@@ -28,6 +28,8 @@ public:
   /// Writes the status structure of `type` to `status`; its changes are told thereby.
   void take(rmw_event_type_t type, void * status);
   void set_callback(rmw_event_type_t type, rmw_event_callback_t function, const void * user_data);
+  /// Calls the callback now, if there is one, for what the callback thread has not got to yet.
+  void report(rmw_event_type_t type);
 
 protected:
   /// What the endpoint counts for events of `type`; thread-safe.

@@ -26,6 +26,14 @@ bool is_ready(const rmw_event_t & event) {
 }
 
 bool take(GuardCondition & condition) { return condition.take(); }
+/// Who is told of an event by a wait finds its callback called, as with other middlewares.
+bool take(rmw_event_t & event) {
+  const bool ready = is_ready(event);
+  if (ready) {
+    static_cast<EndpointEvents *>(event.data)->report(event.event_type);
+  }
+  return ready;
+}
 template <typename Entity>
 bool take(Entity & entity) {
   return is_ready(entity);
