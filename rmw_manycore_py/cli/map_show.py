@@ -42,6 +42,8 @@ def _show_nodes(placement: Placement) -> None:
     for node in placement.nodes:
         place = (str(node.cluster), str(node.core), str(node.host_cpu))
         table.add_row(node.full_name, *place, " ".join(node.program))
+        for core, cpu in node.workers:
+            table.add_row("  worker", str(core.cluster), str(core.core), str(cpu), "")
     print_table(table)
 
 

@@ -37,6 +37,11 @@ def run_placement(placement: Placement, report: Report, duration_s: float | None
 def _describe(placement: Placement) -> Platform:
     topology = placement.topology
     nodes = [PlacedCore(node.name, *node.place, node.host_cpu) for node in placement.nodes]
+    workers = [
+        PlacedCore(f"(worker of {node.name})", *core, cpu)
+        for node in placement.nodes
+        for core, cpu in node.workers
+    ]
     bridge = [
         PlacedCore(program.name, *program.core, program.host_cpu)
         for program in bridge_programs(placement)
@@ -52,5 +57,5 @@ def _describe(placement: Placement) -> Platform:
         clusters=len(topology.clusters),
         cores_per_cluster=topology.cores_per_cluster,
         smem_size=topology.smem_size,
-        cores=(*nodes, *bridge, *receive_threads),
+        cores=(*nodes, *workers, *bridge, *receive_threads),
     )

@@ -32,6 +32,7 @@ MAX_TOPIC_DSM_BYTES = (1 << 32) - 1
 # The last domain whose ports lie below the ephemeral ones of Linux's largest choice.
 MAX_DOMAIN = 232
 Positive = Annotated[StrictInt, Field(ge=1)]
+WorkerCount = Annotated[StrictInt, Field(ge=0, le=64)]
 CoreNumber = Annotated[StrictInt, Field(ge=0)]
 Text = Annotated[str, StringConstraints(min_length=1)]
 TopicName = Annotated[str, StringConstraints(pattern=r"^~?/?[A-Za-z_]\w*(/[A-Za-z_]\w*)*$")]
@@ -161,6 +162,9 @@ class NodeSection(Section):
     env: dict[Text, EnvironmentValue] = Field(default_factory=dict, description="Environment")
     wait: WaitMode | None = Field(
         default=None, description="How the node waits; block is the default"
+    )
+    workers: WorkerCount = Field(
+        default=0, description="Further cores of the cluster, for workers of the node"
     )
     publish: dict[TopicName, MessageType] = Field(
         default_factory=dict, description="Topics published, where the source does not show them"

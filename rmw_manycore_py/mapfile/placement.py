@@ -30,6 +30,7 @@ class PlacedNode:
     param_files: tuple[Path, ...]
     publish: Mapping[str, str]
     subscribe: Mapping[str, str]
+    workers: tuple[tuple[Core, int], ...]  # with the host CPU of each
 
     @property
     def place(self) -> Core:

@@ -23,6 +23,7 @@ from rmw_manycore_py.mapfile.topics import (
     memory_of_clusters,
     topic_table,
 )
+from rmw_manycore_py.mapfile.workers import WORKER_CPUS, worker_cores
 from rmw_manycore_py.topology import (
     RECEIVE_THREAD_CORE,
     Core,
@@ -39,12 +40,15 @@ def resolve(mapfile: Mapfile) -> Placement:
     launch = _launch_file(mapfile)
     starts = _starts(mapfile, launch)
     cores = _cores(mapfile)
-    bridge = bridge_placement(mapfile, starts, set(cores.values()))
+    workers = worker_cores(mapfile, cores.values())
+    of_workers = [core for one in workers.values() for core in one]
+    bridge = bridge_placement(mapfile, starts, {*cores.values(), *of_workers})
     bridge_cores = [core for lane in bridge.cores for core in lane] if bridge else []
     cpus = usable_cpus()
-    host_cpus = _host_cpus(mapfile, [*cores.values(), *bridge_cores], cpus)
+    host_cpus = _host_cpus(mapfile, [*cores.values(), *of_workers, *bridge_cores], cpus)
     nodes = tuple(
-        _place(mapfile, name, start, cores[name], host_cpus) for name, start in starts.items()
+        _place(mapfile, name, start, cores[name], workers[name], host_cpus)
+        for name, start in starts.items()
     )
     topics = topic_table(mapfile, nodes)
     memory = memory_of_clusters(mapfile, topics)
@@ -132,7 +136,7 @@ def _cores(mapfile: Mapfile) -> dict[str, Core]:
 
 
 def _host_cpus(mapfile: Mapfile, used: Sequence[Core], cpus: Sequence[int]) -> dict[Core, int]:
-    """Return the CPU of every used core: nodes first, then bridge, then receive threads."""
+    """Return the CPU of every used core: nodes, workers, bridge, then receive threads."""
     fixed: dict[Core, int] = {}
     problems = []
     for (name, node), core in zip(mapfile.sections.nodes.items(), used, strict=False):
@@ -150,10 +154,18 @@ def _host_cpus(mapfile: Mapfile, used: Sequence[Core], cpus: Sequence[int]) -> d
 
 
 def _place(
-    mapfile: Mapfile, name: str, start: NodeStart, core: Core, host_cpus: dict[Core, int]
+    mapfile: Mapfile,
+    name: str,
+    start: NodeStart,
+    core: Core,
+    workers: tuple[Core, ...],
+    host_cpus: dict[Core, int],
 ) -> PlacedNode:
     words = ros_arguments(start, start.parameters, start.param_files)
     publish, subscribe = _topics_of(mapfile, name, start)
+    placed_workers = tuple((worker, host_cpus[worker]) for worker in workers)
+    worker_cpus = ",".join(str(cpu) for _, cpu in placed_workers)
+    worker_environment = {WORKER_CPUS: worker_cpus} if workers else {}
     return PlacedNode(
         name=name,
         full_name=start.full_name,
@@ -161,7 +173,7 @@ def _place(
         core=core.core,
         host_cpu=host_cpus[core],
         argv=[*start.program.argv, *start.arguments, *words],
-        env=_environment(mapfile, name, core, start),
+        env={**_environment(mapfile, name, core, start), **worker_environment},
         cwd=mapfile.path.parent.resolve(),
         program=(*start.program.argv, *start.arguments),
         ros_arguments=words,
@@ -169,6 +181,7 @@ def _place(
         param_files=start.param_files,
         publish=publish,
         subscribe=subscribe,
+        workers=placed_workers,
     )
 
 

@@ -40,6 +40,10 @@ def _node(node: PlacedNode) -> dict[str, Any]:
         "cluster": node.cluster,
         "core": node.core,
         "host_cpu": node.host_cpu,
+        "workers": [
+            {"cluster": core.cluster, "core": core.core, "host_cpu": cpu}
+            for core, cpu in node.workers
+        ],
         "command": node.argv,
         "environment": node.env,
         "directory": str(node.cwd),

@@ -16,7 +16,6 @@ from tier4_localization_msgs.srv import PoseWithCovarianceStamped as AlignServic
 
 from rmw_manycore_py.ndt import poses
 from rmw_manycore_py.ndt.initial_pose import Particle, particles
-from rmw_manycore_py.ndt.matcher import SerialMatcher
 from rmw_manycore_py.ndt.nodes import judgement
 from rmw_manycore_py.ndt.nodes.conversions import (
     PoseError,
@@ -33,6 +32,7 @@ from rmw_manycore_py.ndt.nodes.map_supply import MapSupply
 from rmw_manycore_py.ndt.nodes.matcher_options import matcher_options
 from rmw_manycore_py.ndt.nodes.matcher_outputs import MatcherOutputs
 from rmw_manycore_py.ndt.nodes.matcher_parameters import MatcherParameters, OwnParameters
+from rmw_manycore_py.ndt.nodes.matchers import make_matcher
 from rmw_manycore_py.ndt.nodes.point_cloud import CloudError, decode
 from rmw_manycore_py.ndt.nodes.pose_buffer import Interpolated, PoseBuffer
 from rmw_manycore_py.ndt.nodes.running import run_node
@@ -57,7 +57,7 @@ class NdtScanMatcher(Node):
         self._p = declare(self, MatcherParameters)
         self._own = declare(self, OwnParameters)
         options = matcher_options(self._p, self._own)
-        self._matcher = SerialMatcher(options)
+        self._matcher = make_matcher(options, self._own.worker_cpus)
         self._map = MapSupply(options, self._p, self._own)
         self._frames = FrameTree()
         self._guesses = PoseBuffer(self._p.initial_pose_timeout_s, self._p.initial_pose_distance_m)

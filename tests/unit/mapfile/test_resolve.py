@@ -263,3 +263,21 @@ def test_integers_among_floats_are_floats(resolved: Check) -> None:
         "nodes:\n  t: {cluster: 1, script: talker.py, parameters: {x: [1, 2.5]}}\n"
     ).nodes
     assert node.argv[-2:] == ["-p", "x:=[1.0, 2.5]"]
+
+
+def test_workers_get_the_next_free_cores_and_their_host_cpus(resolved: Check) -> None:
+    text = "platform: {profile: coolidge}\nnodes:\n"
+    text += "  talker: {cluster: 3, core: 2, script: talker.py, workers: 3}\n"
+    text += "  listener: {cluster: 3, core: 3, script: listener.py, workers: 1}\n"
+    talker, listener = resolved(text).nodes
+    assert [core for core, _ in talker.workers] == [Core(3, 1), Core(3, 4), Core(3, 5)]
+    assert [core for core, _ in listener.workers] == [Core(3, 6)]
+    cpus = [str(cpu) for _, cpu in talker.workers]
+    assert talker.env["MANYCORE_WORKER_CPUS"] == ",".join(cpus)
+
+
+def test_more_workers_than_cores_are_an_error(resolved: Check) -> None:
+    text = "platform: {profile: coolidge}\nnodes:\n"
+    text += "  talker: {cluster: 3, core: 1, script: talker.py, workers: 14}\n"
+    with pytest.raises(MapfileError, match="at most 13, the cores that are left in cluster 3"):
+        resolved(text)
