@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import shlex
 from pathlib import Path
 
 import click
@@ -41,7 +42,7 @@ def _show_nodes(placement: Placement) -> None:
     table = new_table("node", "#cluster", "#core", "#host CPU", "command")
     for node in placement.nodes:
         place = (str(node.cluster), str(node.core), str(node.host_cpu))
-        table.add_row(node.full_name, *place, " ".join(node.program))
+        table.add_row(node.full_name, *place, shlex.join(node.program))
         for core, cpu in node.workers:
             table.add_row("  worker", str(core.cluster), str(core.core), str(cpu), "")
     print_table(table)
@@ -49,10 +50,10 @@ def _show_nodes(placement: Placement) -> None:
 
 def _show_topics(placement: Placement) -> None:
     click.echo("\ntopic table")
-    columns = ("#id", "topic", "type", "#topic DSM size", "publishers in", "receivers in")
+    columns = ("#id", "topic", "type", "#topic DSM bytes", "publishers in", "receivers in")
     table = new_table(*columns)
     for topic in placement.topics:
-        size = size_text(topic.topic_dsm_size) if topic.topic_dsm_size else "grows"
+        size = str(topic.topic_dsm_size or "grows")
         clusters = (topic.publisher_clusters, topic.receiver_clusters)
         places = (", ".join(map(str, numbers)) or "-" for numbers in clusters)
         table.add_row(str(topic.id), topic.name, topic.type or "?", size, *places)

@@ -112,8 +112,12 @@ def _clear(directory: Path) -> None:
         raise ManycoreError(f"{directory}: expected a directory", EXIT_BAD_INPUT)
     if not directory.exists() or not any(directory.iterdir()):
         return
-    if not (directory / TOPIC_TABLE).is_file():
+    if not _is_ours(directory / TOPIC_TABLE):
         expected = "an empty directory, or one that manycore create made"
         raise ManycoreError(f"{directory}: expected {expected}", EXIT_BAD_INPUT)
     for part in (NODES, PARAMETERS):
         shutil.rmtree(directory / part, ignore_errors=True)
+
+
+def _is_ours(file: Path) -> bool:
+    return file.is_file() and file.read_bytes().startswith(_HEADER.encode())

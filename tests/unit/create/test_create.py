@@ -148,3 +148,12 @@ def test_nothing_is_written_for_a_wrong_mapfile(mapfile: Path, tmp_path: Path) -
     with pytest.raises(ManycoreError):
         create(mapfile, tmp_path / "out")
     assert not (tmp_path / "out").exists()
+
+
+def test_a_topic_table_of_somebody_else_is_left_alone(mapfile: Path, tmp_path: Path) -> None:
+    directory = tmp_path / "mine"
+    (directory / "nodes").mkdir(parents=True)
+    (directory / "topic_table.yaml").write_text("mine: true\n")
+    with pytest.raises(ManycoreError, match="expected an empty directory"):
+        create(mapfile, directory)
+    assert (directory / "nodes").is_dir()
