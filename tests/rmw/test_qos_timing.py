@@ -103,6 +103,33 @@ def test_deadlines_that_nobody_watched_are_told_together(node):
     assert missed[0].total_count_change == missed[0].total_count >= 4
 
 
+def test_a_wait_ends_when_a_deadline_falls_due(node):
+    """Where time did not end it, the event would come with the misses of the whole timeout."""
+    missed = []
+    publisher = node.create_publisher(
+        String,
+        "chatter",
+        deadline(SHORT_S),
+        event_callbacks=PublisherEventCallbacks(deadline=missed.append),
+    )
+    publisher.publish(String())
+    while not missed:
+        rclpy.spin_once(node, timeout_sec=PATIENCE_S)
+    assert missed[0].total_count < PATIENCE_S / SHORT_S / 2
+
+
+def test_a_wait_ends_when_a_lease_runs_out(node):
+    lost, missed = [], []
+    events = PublisherEventCallbacks(liveliness=lost.append, deadline=missed.append)
+    qos = lease(5 * SHORT_S)
+    qos.deadline = Duration(seconds=SHORT_S)
+    publisher = node.create_publisher(String, "chatter", qos, event_callbacks=events)
+    publisher.publish(String())
+    while not lost:
+        rclpy.spin_once(node, timeout_sec=PATIENCE_S)
+    assert missed[-1].total_count < PATIENCE_S / SHORT_S / 2
+
+
 def test_a_longer_deadline_is_incompatible(node):
     offered, requested = [], []
     node.create_publisher(
