@@ -22,8 +22,12 @@ if TYPE_CHECKING:
 LIBRARY_PATH = "LD_LIBRARY_PATH"
 # The wheels' own start-up hook does the same trick without keeping an order; this tells it not to.
 WHEELS_BOOTSTRAPPED = "_ROS_WHEELS_BOOTSTRAP_COMPLETE"
-# Holds the id of the process that replaced itself, so that it cannot do so a second time.
+# Holds the id of the process that replaced itself, so that it cannot do so a second time, and the
+# names of the variables that are for this process only.
 REPLACED = "_RMW_MANYCORE_REPLACED"
+# By default glibc gives the memory of each large message back and gets it again, page by page, for
+# the next; rclpy takes each message into fresh memory.
+MALLOC_TUNING = {"MALLOC_TRIM_THRESHOLD_": str(1 << 30), "MALLOC_MMAP_THRESHOLD_": str(1 << 30)}
 
 
 # In a virtual environment site.py processes each .pth file twice.
@@ -36,7 +40,10 @@ def substitute() -> None:
     if _ran:
         return
     _ran = True
-    replaced = os.environ.pop(REPLACED, None) == str(os.getpid())
+    replacer, *own_variables = os.environ.pop(REPLACED, "none").split()
+    replaced = replacer == str(os.getpid())
+    for name in own_variables if replaced else ():
+        os.environ.pop(name, None)  # read by the loader and by glibc before python started
     stand_ins = stand_in_directory(sys.prefix)
     if library_path(os.environ)[:1] == [stand_ins]:
         rest = [path for path in library_path(os.environ) if path != stand_ins]
@@ -50,7 +57,9 @@ def substitute() -> None:
         )
     else:
         environment = substituted_environment(os.environ, sys.prefix)
-        environment[REPLACED] = str(os.getpid())
+        tuning = {k: v for k, v in MALLOC_TUNING.items() if k not in environment}
+        environment.update(tuning)
+        environment[REPLACED] = " ".join([str(os.getpid()), *tuning])
         os.execve(sys.executable, [sys.executable, *sys.orig_argv[1:]], environment)
 
 

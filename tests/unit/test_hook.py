@@ -132,6 +132,18 @@ def test_the_environment_of_an_ordinary_ros_is_not_changed(tmp_path: Path) -> No
     assert hook.substituted_environment({"A": "b"}, str(tmp_path)) == {"A": "b"}
 
 
+def test_memory_of_large_messages_is_kept_by_this_process_only(prefix: Prefix) -> None:
+    shown = prefix.show()
+    loader = dict(entry.split("=", 1) for entry in shown["loader"] if "=" in entry)
+    assert {name: loader.get(name) for name in hook.MALLOC_TUNING} == hook.MALLOC_TUNING
+    assert not [name for name in shown["environ"] if name.startswith("MALLOC_")]
+
+
+def test_settings_of_malloc_that_are_there_stay(prefix: Prefix) -> None:
+    own = {"MALLOC_TRIM_THRESHOLD_": "65536"}
+    assert prefix.show(**own)["environ"]["MALLOC_TRIM_THRESHOLD_"] == "65536"
+
+
 def test_options_and_arguments_survive(prefix: Prefix, tmp_path: Path) -> None:
     (tmp_path / "shown.py").write_text(SHOW)
     script = str(tmp_path / "shown.py")
