@@ -3,16 +3,20 @@
 
 from __future__ import annotations
 
+import signal
 import sys
 
 from rmw_manycore_py.bridge.plan import Plan
-from rmw_manycore_py.bridge.process import BridgeProcess
 
 from rmw_manycore_py.routes import DIRECTIONS
 
 
 def main(arguments: list[str]) -> int:
     """Run one process; `manycore run` and `manycore bridge` start it."""
+    # Until the process can end in order it ends quietly, and not in the middle of loading rclpy.
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+    from rmw_manycore_py.bridge.process import BridgeProcess
+
     plan, direction, lane, cluster, core = arguments
     way = DIRECTIONS[DIRECTIONS.index(direction)]
     place = (int(cluster), int(core))

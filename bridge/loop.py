@@ -14,6 +14,16 @@ class Mover(ABC):
 
     due_s = float("inf")  # on the monotonic clock: when `expire` has something to do
 
+    def __init__(self, fail: Callable[[str], None]) -> None:
+        self._fail = fail
+
+    def try_to_reconcile(self) -> None:
+        """Let a route that cannot work say so, and the others go on."""
+        try:
+            self.reconcile()
+        except Exception as error:
+            self._fail(f"{type(error).__name__}: {error}")
+
     @abstractmethod
     def reconcile(self) -> None:
         """Make or end endpoints, now that somebody came or went on either side."""
@@ -75,7 +85,7 @@ class Loop(ABC):
                 if self._stale:
                     self._stale = False
                     for mover in self.movers:
-                        mover.reconcile()
+                        mover.try_to_reconcile()
                 self.turn(self._expire())
         except BaseException as error:
             self.failure = error

@@ -17,6 +17,8 @@ from rmw_manycore_py.bridge.inside import NODE_PREFIX, Inside
 from rmw_manycore_py.bridge.loop import Loop, Mover
 from rmw_manycore_py.bridge.outside import Outside
 from rmw_manycore_py.bridge.plan import Plan
+from rmw_manycore_py.bridge.service_inward import InwardService
+from rmw_manycore_py.bridge.service_outward import OutwardService
 from rmw_manycore_py.bridge.sides import OwnPublishers, Sides
 from rmw_manycore_py.bridge.topic_inward import InwardTopic
 from rmw_manycore_py.bridge.topic_outward import OutwardTopic
@@ -56,9 +58,13 @@ class BridgeProcess:
         loop.movers.append(mover)
 
     def _mover(self, sides: Sides) -> tuple[Mover, Loop]:
-        if sides.route.direction == "inward":
-            return InwardTopic(sides), sides.outside
-        return OutwardTopic(sides), self._inside
+        inward = sides.route.direction == "inward"
+        if sides.route.kind == "service":
+            service = InwardService(sides) if inward else OutwardService(sides)
+            return service, sides.outside
+        return (
+            (InwardTopic(sides), sides.outside) if inward else (OutwardTopic(sides), self._inside)
+        )
 
     def _graphs_changed(self) -> None:
         for loop in self._loops:

@@ -32,6 +32,7 @@ class InwardTopic(Mover):
     kind = "subscription"
 
     def __init__(self, sides: Sides) -> None:
+        super().__init__(sides.fail)
         self._sides = sides
         self._type = types.load(sides.route.type)
         self._limits = Limits(sides.route)
@@ -56,7 +57,7 @@ class InwardTopic(Mover):
             if not self._appear(offer):
                 return
         listeners = self._sides.inside.subscriptions(route.inside)
-        if listeners or offer["durability"] == "transient_local":
+        if listeners or route.eager or offer["durability"] == "transient_local":
             self._listen(max((e["qos"]["depth"] for e in listeners), default=1))
         else:
             self._stop_listening()
@@ -82,7 +83,7 @@ class InwardTopic(Mover):
         self.entity = self._sides.outside.node.create_subscription(
             self._type,
             self._sides.route.outside,
-            _never_called,
+            never_called,
             to_rclpy(request_for(self._offer, depth)),
             raw=True,
             event_callbacks=SubscriptionEventCallbacks(use_default_callbacks=False),
@@ -133,5 +134,5 @@ class InwardTopic(Mover):
         self._sides.row.set_state("waiting")
 
 
-def _never_called(_: Any) -> None:
+def never_called(*_: Any) -> None:
     """Stand in where rclpy wants a callback: the bridge takes messages itself."""

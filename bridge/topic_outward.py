@@ -28,6 +28,7 @@ class OutwardTopic(Mover):
     """Works in the thread of the platform's side."""
 
     def __init__(self, sides: Sides) -> None:
+        super().__init__(sides.fail)
         self._sides = sides
         self._type = types.load(sides.route.type)
         self._limits = Limits(sides.route)
@@ -58,8 +59,8 @@ class OutwardTopic(Mover):
         self._sides.row.set_state("ready" if self._subscription is None else "forwarding")
 
     def _is_wanted(self, offer: Policies) -> bool:
-        kept = offer["durability"] == "transient_local"
-        return kept or bool(self._sides.outside.subscriptions(self._sides.route.outside))
+        route, kept = self._sides.route, offer["durability"] == "transient_local"
+        return kept or route.eager or bool(self._sides.outside.subscriptions(route.outside))
 
     def _appear(self, offer: Policies) -> None:
         self._publisher = self._sides.outside.node.create_publisher(

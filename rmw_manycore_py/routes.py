@@ -21,7 +21,8 @@ class Route:
 
     `qos` overrides policies of a topic by their names in the registry; `timeout_s` is how long a
     request may stay unanswered, None = as long as its server is there. A `mirrored` topic crosses
-    in both directions, so that its own messages have to be told from others.
+    in both directions, so that its own messages have to be told from others. An `eager` one listens
+    as soon as somebody publishes: what an action says first must not wait for a listener.
     """
 
     kind: Literal["topic", "service"]
@@ -35,6 +36,7 @@ class Route:
     max_size: int | None = None
     timeout_s: float | None = REQUEST_TIMEOUT_S
     mirrored: bool = False
+    eager: bool = False
     lane: int = 0
 
 
@@ -57,6 +59,7 @@ def action_routes(action: Route) -> Iterator[Route]:
             outside=f"{action.outside}/_action/{name}",
             type=type_name,
             timeout_s=timeout_s,
+            eager=kind == "topic",
         )
 
 

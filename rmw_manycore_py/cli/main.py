@@ -26,6 +26,7 @@ VERBS = {
     "doctor": "rmw_manycore_py.cli.doctor:command",
     "env": "rmw_manycore_py.cli.env:command",
     "ndt": "rmw_manycore_py.cli.ndt:command",
+    "bridge": "rmw_manycore_py.cli.bridge:command",
     "bench": "rmw_manycore_py.bench.cli:bench",
 }
 

@@ -7,10 +7,15 @@ import sys
 
 from rmw_manycore_py.bridge.plan import Plan
 from rmw_manycore_py.launch.environment import outside_environment
+from rmw_manycore_py.launch.events import Finished
 from rmw_manycore_py.launch.program import NodeProgram
+from rmw_manycore_py.launch.runner import Report, Runner
 from rmw_manycore_py.mapfile.placement import Placement
 from rmw_manycore_py.routes import DIRECTIONS, Direction
-from rmw_manycore_py.topology import Core
+from rmw_manycore_py.topology import Core, usable_cpus
+
+# Where the bridge runs that no mapfile places: cores 1 and 2 are the first that are not reserved.
+_STANDALONE_CORES = (Core(1, 1), Core(1, 2))
 
 
 def bridge_programs(placement: Placement) -> list[NodeProgram]:
@@ -26,6 +31,20 @@ def bridge_programs(placement: Placement) -> list[NodeProgram]:
         if plan.of(direction, lane)
         for core in [bridge.core(direction, lane)]
     ]
+
+
+def run_bridge(plan: Plan, report: Report) -> int:
+    """Run the bridge of a platform that others have started, until a signal comes."""
+    cpus = usable_cpus()
+    programs = [
+        bridge_program(plan, direction, 0, core, cpus[core.core % len(cpus)])
+        for direction, core in zip(DIRECTIONS, _STANDALONE_CORES, strict=True)
+        if plan.of(direction, 0)
+    ]
+    runner = Runner(programs, report)
+    exit_status = runner.run()
+    report(Finished(runner.failed, exit_status))
+    return exit_status
 
 
 def bridge_program(

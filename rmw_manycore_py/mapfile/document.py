@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -50,12 +50,15 @@ def read_text(path: Path, problem: Problem | None = None) -> str:
         ) from error
 
 
-def read_yaml(path: Path) -> Document:
-    """Read a YAML file; duplicate keys are errors, all of them reported."""
+def read_yaml(path: Path, repeated: Collection[str] = ()) -> Document:
+    """Read a YAML file; duplicate keys are errors, all of them reported.
+
+    Mappings of the top-level keys in `repeated` become lists of pairs, whose keys may be equal.
+    """
     loader = yaml.SafeLoader(read_text(path))
     try:
         root = loader.get_single_node()
-        reader = _Reader(path, loader)
+        reader = _Reader(path, loader, repeated)
         document = Document(path, reader.convert(root, ()) if root else None, reader.lines)
     except yaml.MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
@@ -75,8 +78,9 @@ def read_yaml(path: Path) -> Document:
 class _Reader:
     """Turns YAML nodes into data, noting lines and duplicate keys."""
 
-    def __init__(self, file: Path, loader: yaml.SafeLoader) -> None:
+    def __init__(self, file: Path, loader: yaml.SafeLoader, repeated: Collection[str]) -> None:
         self._file = file
+        self._repeated = repeated
         self._loader = loader
         self._open: set[int] = set()
         self.lines: dict[KeyPath, int] = {}
@@ -90,6 +94,8 @@ class _Reader:
         self._open.add(id(node))
         try:
             if isinstance(node, yaml.MappingNode):
+                if len(path) == 1 and path[0] in self._repeated:
+                    return self._pairs(node, path)
                 return self._mapping(node, path)
             if isinstance(node, yaml.SequenceNode):
                 return [self.convert(item, (*path, i)) for i, item in enumerate(node.value)]
@@ -120,6 +126,16 @@ class _Reader:
             self.lines[here] = key_node.start_mark.line + 1
             data[key] = self.convert(value_node, here)
         return data
+
+    def _pairs(self, node: yaml.MappingNode, path: KeyPath) -> list[tuple[Any, Any]]:
+        pairs = []
+        for index, (key_node, value_node) in enumerate(node.value):
+            key = self._loader.construct_object(key_node, deep=True)
+            here = (*path, index)
+            value_path = (*here, 1)
+            self.lines[here] = self.lines[value_path] = key_node.start_mark.line + 1
+            pairs.append((key, self.convert(value_node, value_path)))
+        return pairs
 
     def _keys(self, node: yaml.MappingNode) -> Iterator[tuple[Any, yaml.Node]]:
         for key_node, _ in node.value:

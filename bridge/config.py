@@ -1,0 +1,197 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""A bridge file, in the YAML schema of ros2/domain_bridge, as routes of a platform.
+
+The domain that is the platform's own (`inside`) stands for the platform; the others are real ones.
+Services, actions, rate and size limits go beyond that schema.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any, Literal
+
+from pydantic import Field, StrictBool, ValidationError
+
+from rmw_manycore_py.errors import MapfileError, Problem
+from rmw_manycore_py.mapfile.crossings import overrides
+from rmw_manycore_py.mapfile.document import Document, read_yaml
+from rmw_manycore_py.mapfile.model import (
+    Domain,
+    PositiveNumber,
+    QosSection,
+    Section,
+    Text,
+    TopicName,
+)
+from rmw_manycore_py.mapfile.names import expand
+from rmw_manycore_py.mapfile.validation import describe
+from rmw_manycore_py.mapfile.values import ActionType, MessageType, ServiceType, Size
+from rmw_manycore_py.routes import REQUEST_TIMEOUT_S, Direction, Route, action_routes, arranged
+
+_KINDS = ("topics", "services", "actions")
+
+
+class Crossing(Section):
+    """What topics, services and actions have in common; a server is in `from_domain`."""
+
+    from_domain: Domain | None = None
+    to_domain: Domain | None = None
+    remap: TopicName | None = None
+
+
+class TopicCrossing(Crossing):
+    """A topic, published in `from_domain`."""
+
+    type: MessageType
+    qos: QosSection = QosSection()
+    bidirectional: StrictBool = False
+    reversed: StrictBool = False
+    max_hz: PositiveNumber | None = None
+    max_size: Size | None = None
+
+
+class ServiceCrossing(Crossing):
+    """A service."""
+
+    type: ServiceType
+    timeout: PositiveNumber = REQUEST_TIMEOUT_S
+
+
+class ActionCrossing(Crossing):
+    """An action."""
+
+    type: ActionType
+    timeout: PositiveNumber = REQUEST_TIMEOUT_S
+
+
+class BridgeFile(Section):
+    """A whole file. A name may stand there several times."""
+
+    name: Text | None = None
+    mode: Literal["normal"] = "normal"
+    from_domain: Domain | None = None
+    to_domain: Domain | None = None
+    topics: tuple[tuple[TopicName, TopicCrossing], ...] = Field(default=())
+    services: tuple[tuple[TopicName, ServiceCrossing], ...] = Field(default=())
+    actions: tuple[tuple[TopicName, ActionCrossing], ...] = Field(default=())
+
+
+def load_bridge_file(path: Path, inside: int) -> tuple[Route, ...]:
+    """Read and check a bridge file of the platform whose domain is `inside`."""
+    document = read_yaml(path, repeated=_KINDS)
+    if not isinstance(document.data, dict):
+        raise MapfileError(document.problem((), "a mapping", describe(document.data)))
+    try:
+        sections = BridgeFile.model_validate(document.data)
+    except ValidationError as error:
+        problems = [_problem(document, dict(details)) for details in error.errors()]
+    else:
+        return _Resolver(document, sections, inside).routes()
+    raise MapfileError(*problems)
+
+
+def _problem(document: Document, details: dict[str, Any]) -> Problem:
+    path = tuple(details["loc"])
+    if details["type"] == "missing":
+        return _named(document, path, f"the key '{path[-1]}'", "no such key")
+    if details["type"] == "extra_forbidden":
+        return _named(document, path, "a key of domain_bridge's schema", f"'{path[-1]}'")
+    return _named(document, path, details["msg"].lower(), describe(details["input"]))
+
+
+def _named(document: Document, path: tuple[Any, ...], expected: str, found: str) -> Problem:
+    """Return a problem whose key says the name of a topic instead of its place."""
+    shown = list(path)
+    if len(path) > 1 and path[0] in _KINDS and isinstance(path[1], int):
+        shown[1:3] = [document.data[path[0]][path[1]][0]]
+    key = ".".join(map(str, shown))
+    return Problem(document.file, document.line(path), key, expected, found)
+
+
+class _Resolver:
+    """Gives each entry its domains, and the platform its place among them."""
+
+    def __init__(self, document: Document, sections: BridgeFile, inside: int) -> None:
+        self._document, self._sections, self._inside = document, sections, inside
+        self._problems: list[Problem] = []
+
+    def routes(self) -> tuple[Route, ...]:
+        """Return all routes; what is wrong with the domains comes in one error."""
+        found = [*self._topics(), *self._servers("services"), *self._servers("actions")]
+        if not found and not self._problems:
+            expected = "something to bridge in topics, services or actions"
+            self._problems.append(self._document.problem((), expected, "nothing"))
+        if self._problems:
+            raise MapfileError(*self._problems)
+        return arranged(found, 1)
+
+    def _topics(self) -> Iterator[Route]:
+        for index, (name, topic) in enumerate(self._sections.topics):
+            domains = self._domains("topics", index, topic)
+            if domains is None:
+                continue
+            source, target = reversed(domains) if topic.reversed else domains
+            yield self._topic(name, topic, source, target)
+            if topic.bidirectional:
+                yield self._topic(name, topic, target, source)
+
+    def _topic(self, name: str, topic: TopicCrossing, source: int, target: int) -> Route:
+        direction: Direction = "outward" if source == self._inside else "inward"
+        names = expand(name, "/"), expand(topic.remap or name, "/")
+        return Route(
+            kind="topic",
+            direction=direction,
+            inside=names[0] if direction == "outward" else names[1],
+            outside=names[1] if direction == "outward" else names[0],
+            type=topic.type,
+            domain=target if direction == "outward" else source,
+            qos=overrides(topic.qos),
+            max_hz=topic.max_hz,
+            max_size=topic.max_size,
+        )
+
+    def _servers(self, kind: Literal["services", "actions"]) -> Iterator[Route]:
+        for index, (name, service) in enumerate(getattr(self._sections, kind)):
+            domains = self._domains(kind, index, service)
+            if domains is None:
+                continue
+            server, client = domains
+            inward = server == self._inside
+            names = expand(name, "/"), expand(service.remap or name, "/")
+            route = Route(
+                kind="service",
+                direction="inward" if inward else "outward",
+                inside=names[0] if inward else names[1],
+                outside=names[1] if inward else names[0],
+                type=service.type,
+                domain=client if inward else server,
+                timeout_s=service.timeout,
+            )
+            yield from action_routes(route) if kind == "actions" else (route,)
+
+    def _domains(self, kind: str, index: int, crossing: Crossing) -> tuple[int, int] | None:
+        """Return from and to; a problem where there is none, or a loop, or no platform."""
+        pair = [
+            own if own is not None else default
+            for own, default in (
+                (crossing.from_domain, self._sections.from_domain),
+                (crossing.to_domain, self._sections.to_domain),
+            )
+        ]
+        source, target = pair
+        if source is None or target is None:
+            key = "from_domain" if source is None else "to_domain"
+            self._wrong(kind, index, f"the key '{key}' here or at the top", "no such key")
+            return None
+        if source == target:
+            self._wrong(kind, index, "two different domains", f"{source} on both sides")
+            return None
+        if self._inside not in (source, target):
+            expected = f"{self._inside}, the platform's domain (--inside), on one side"
+            self._wrong(kind, index, expected, f"{source} and {target}")
+            return None
+        return source, target
+
+    def _wrong(self, kind: str, index: int, expected: str, found: str) -> None:
+        self._problems.append(_named(self._document, (kind, index, 1), expected, found))

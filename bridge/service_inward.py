@@ -1,0 +1,84 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""A service whose server is on the platform, called from outside."""
+
+from __future__ import annotations
+
+import itertools
+from typing import Any
+
+from rclpy.serialization import deserialize_message, serialize_message
+from rmw_manycore_py.bridge.service import Service
+from rmw_manycore_py.bridge.sides import Sides
+from rmw_manycore_py.bridge.topic_inward import never_called
+
+from rmw_manycore_py import _transport
+
+
+class InwardService(Service):
+    """DDS service -> client on the platform."""
+
+    kind = "service"
+
+    def __init__(self, sides: Sides) -> None:
+        super().__init__(sides)
+        self._numbers = itertools.count(1)
+        self._servers: set[str] = set()
+        self._requests: _transport.Publisher | None = None
+        self._replies: _transport.Subscription | None = None
+        self.entity: Any = None  # the service outside
+
+    def reconcile(self) -> None:
+        """Offer the service outside while a server is there inside."""
+        servers = {row["gid"] for row in self._sides.inside.servers(self._sides.route.inside)}
+        if self._servers and not self._servers & servers:
+            self._abandon()  # whoever replaces them knows nothing of the requests
+        self._servers = servers
+        if not servers:
+            self.close()
+        elif self.entity is None:
+            self._appear()
+            self._sides.row.set_state("forwarding")
+
+    def _appear(self) -> None:
+        self._replies = self._endpoint("subscription", "reply")
+        self._requests = self._endpoint("publisher", "request")
+        self.entity = self._sides.outside.node.create_service(
+            self._type, self._sides.route.outside, never_called
+        )
+        self._sides.inside.readers.append(self)
+        self._sides.outside.readers.append(self)
+
+    def pump_outside(self) -> None:
+        """Pass a request on."""
+        request, header = self.entity.handle.service_take_request(self._type.Request)
+        if request is None or self._requests is None or self._replies is None:
+            return
+        data, number = serialize_message(request), next(self._numbers)
+        self._pending.note(header, number)
+        self._requests.publish(data, client=self._replies.gid, number=number)
+
+    def pump_inside(self) -> None:
+        """Return replies."""
+        replies = self._replies
+        while replies is not None and (claim := replies.claim()) is not None:
+            try:
+                asked, data = self._pending.answered(claim.number), claim.data
+            finally:
+                claim.release()
+            if asked is not None:
+                self._answer(asked, deserialize_message(data, self._type.Response), len(data))
+
+    def _reply(self, caller: Any, response: Any) -> None:
+        entity = self.entity
+        if entity is not None:
+            entity.handle.service_send_response(response, caller.request_id)
+
+    def close(self) -> None:
+        """Leave both sides; who still waits gets an answer first."""
+        self._abandon()
+        if self.entity is not None:
+            self._sides.inside.readers.remove(self)
+            self._sides.outside.readers.remove(self)
+            self._sides.outside.node.destroy_service(self.entity)
+        self.entity = self._requests = self._replies = None
+        self._sides.row.set_state("waiting")

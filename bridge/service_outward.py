@@ -1,0 +1,97 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""A service whose server is outside, called by nodes of the platform."""
+
+from __future__ import annotations
+
+import time
+from functools import partial
+from typing import Any
+
+from rclpy.serialization import deserialize_message, serialize_message
+from rmw_manycore_py.bridge.service import Service
+from rmw_manycore_py.bridge.sides import Sides
+
+from rmw_manycore_py import _transport
+
+# A server is in the graph a moment before it is matched, which nobody announces.
+_MATCHING_S = 0.02
+Caller = tuple[bytes, int]  # the client's gid, and its number of the request
+
+
+class OutwardService(Service):
+    """Server on the platform -> DDS client."""
+
+    kind = "client"
+
+    def __init__(self, sides: Sides) -> None:
+        super().__init__(sides)
+        self._look_s = float("inf")  # on the monotonic clock: when to look again for the server
+        self._requests: _transport.Subscription | None = None
+        self._replies: _transport.Publisher | None = None
+        self.entity = sides.outside.node.create_client(self._type, sides.route.outside)
+        sides.outside.readers.append(self)
+
+    def reconcile(self) -> None:
+        """Offer the service inside while a server is there outside."""
+        self._look_s = float("inf")
+        if not self.entity.service_is_ready():
+            self._leave_platform()
+            if self._sides.outside.node.count_services(self._sides.route.outside):
+                self._look_s = time.monotonic() + _MATCHING_S
+        elif self._requests is None:
+            self._replies = self._endpoint("publisher", "reply")
+            self._requests = self._endpoint("subscription", "request")
+            self._sides.inside.readers.append(self)
+            self._sides.inside.wake()
+            self._sides.row.set_state("forwarding")
+
+    @property
+    def due_s(self) -> float:  # type: ignore[override]
+        """When a request is overdue, or a server that was seen may be matched."""
+        return min(self._pending.due_s, self._look_s)
+
+    def expire(self, now_s: float) -> None:
+        """Answer the requests whose time is over; look for the server."""
+        super().expire(now_s)
+        if self._look_s <= now_s:
+            self.reconcile()
+
+    def pump_inside(self) -> None:
+        """Pass requests on."""
+        requests = self._requests
+        while requests is not None and (claim := requests.claim()) is not None:
+            try:
+                caller, data = (claim.client, claim.number), claim.data
+            finally:
+                claim.release()
+            request = deserialize_message(data, self._type.Request)
+            self._pending.ask(caller, partial(self.entity.handle.send_request, request))
+            self._sides.outside.wake()  # it sleeps until something is due
+
+    def pump_outside(self) -> None:
+        """Return a reply."""
+        header, response = self.entity.handle.take_response(self._type.Response)
+        if response is None:
+            return
+        asked = self._pending.answered(header.request_id.sequence_number)
+        if asked is not None:
+            self._answer(asked, response, len(serialize_message(response)))
+
+    def _reply(self, caller: Caller, response: Any) -> None:
+        replies = self._replies
+        if replies is not None:
+            client, number = caller
+            replies.publish(serialize_message(response), client=client, number=number)
+
+    def _leave_platform(self) -> None:
+        self._abandon()
+        if self._requests is not None:
+            self._sides.inside.readers.remove(self)
+        self._requests = self._replies = None
+        self._sides.row.set_state("waiting")
+
+    def close(self) -> None:
+        """Leave both sides; who still waits gets an answer first."""
+        self._leave_platform()
+        self._sides.outside.readers.remove(self)
+        self._sides.outside.node.destroy_client(self.entity)

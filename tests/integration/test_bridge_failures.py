@@ -1,0 +1,140 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""The bridge under supervision, its tools, and its neighbours."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+
+import pytest
+from bridging import OUTSIDE, Bridge, domain_of
+from support import (
+    IS_MANYCORE,
+    MAPFILES,
+    environment,
+    example_command,
+    leftovers,
+    manycore_command,
+    unique_platform,
+    wait_until,
+)
+
+pytestmark = [
+    pytest.mark.integration,
+    pytest.mark.skipif(not IS_MANYCORE, reason="the bridge is part of rmw_manycore"),
+]
+
+TALKER_LISTENER = MAPFILES / "talker_listener.yaml"
+HEARD = "I heard: 'Hello World"
+
+
+def started(run, node: str) -> int:
+    """Return the pid of the next process that is started as `node`."""
+    while True:
+        event = json.loads(run.wait_for(r"^\{.*").group())
+        if event["event"] == "started" and event["node"] == node:
+            return int(event["pid"])
+
+
+def test_a_killed_bridge_is_started_again(start, platform) -> None:
+    run = start(manycore_command("run", TALKER_LISTENER, "--json"))
+    pid = started(run, "(bridge outward)")
+    listener = start(example_command("listener"), **OUTSIDE)
+    listener.wait_for(HEARD)
+    os.kill(pid, signal.SIGKILL)
+    assert started(run, "(bridge outward)") != pid
+    listener.skip_output()
+    listener.wait_for(HEARD)
+    assert run.stop() == 0
+    events = [json.loads(line) for line in run.lines if line.startswith("{")]
+    assert [e["reason"] for e in events if e["event"] == "restarting"] == [
+        "killed by SIGKILL (Killed)"
+    ]
+    numbers = [
+        int(e["line"].rstrip("'").rpartition(" ")[2])
+        for e in events
+        if e["event"] == "output" and e["node"] == "listener"
+    ]
+    assert numbers == list(range(numbers[0], numbers[0] + len(numbers)))  # nothing inside noticed
+    assert leftovers(platform) == []
+
+
+def test_the_bridge_ends_with_the_nodes(start, tmp_path, platform) -> None:
+    mapfile = tmp_path / "map.yaml"
+    mapfile.write_text(
+        "nodes:\n  short: {cluster: 1, command: [python3, -c, ''], ros_arguments: false,"
+        " topic_to: {chatter: std_msgs/msg/String}}\n"
+    )
+    run = start(manycore_command("run", mapfile))
+    assert run.wait() == 0
+    assert "manycore | stopping: all nodes have ended" in run.lines
+
+
+def test_status_shows_the_routes(start, platform) -> None:
+    run = start(manycore_command("run", TALKER_LISTENER))
+    start(example_command("listener"), **OUTSIDE).wait_for(HEARD)
+
+    def status(*options: str) -> str:
+        command = [str(word) for word in manycore_command("bridge", "status", *options)]
+        return subprocess.run(
+            command, env=environment(platform), text=True, capture_output=True, check=True
+        ).stdout
+
+    wait_until(lambda: json.loads(status("--json"))[1]["messages"], "a message has passed")
+    inward, outward = json.loads(status("--json"))
+    assert (inward["direction"], outward["direction"]) == ("inward", "outward")
+    assert (outward["inside"], outward["state"], outward["alive"]) == (
+        "/chatter",
+        "forwarding",
+        True,
+    )
+    assert 0 < outward["latency_mean_ns"] <= outward["latency_max_ns"]
+    assert "/chatter  ->  /chatter" in status()
+    assert run.stop() == 0
+
+
+def test_a_bridge_file_of_domain_bridge(start, tmp_path, platform) -> None:
+    config = tmp_path / "bridge.yaml"
+    domain = domain_of(platform)
+    config.write_text(
+        f"from_domain: {domain + 100}\nto_domain: {domain}\n"
+        "topics:\n"
+        "  chatter: {type: std_msgs/msg/String, reversed: true, remap: news}\n"
+    )
+    command = manycore_command("bridge", config, "--inside", str(domain + 100))
+    start(command).wait_for(r"\(bridge inward\) started")
+    start(example_command("talker"), **OUTSIDE)
+    start(example_command("listener", "--ros-args", "-r", "chatter:=news")).wait_for(HEARD)
+
+
+def test_a_loop_is_refused(start, tmp_path, platform) -> None:
+    config = tmp_path / "bridge.yaml"
+    config.write_text(
+        "from_domain: 2\nto_domain: 2\ntopics: {chatter: {type: std_msgs/msg/String}}\n"
+    )
+    bridge = start(manycore_command("bridge", config))
+    assert bridge.wait() == 2
+    assert "expected two different domains, found 2 on both sides" in bridge.output
+
+
+def test_two_platforms_meet_outside_only(start, platform) -> None:
+    other = unique_platform()
+    domain = str(domain_of(platform))
+    one = Bridge(start, platform)
+    one.run(one.route("outward", "/chatter"))
+    two = Bridge(
+        lambda command, **env: start(
+            command, **{"MANYCORE_PLATFORM": other, "ROS_DOMAIN_ID": domain, **env}
+        ),
+        other,
+    )
+    two.domain = one.domain
+    two.run(two.route("inward", "/chatter"))
+    start(example_command("talker"))
+    start(example_command("listener"), MANYCORE_PLATFORM=other, ROS_DOMAIN_ID=domain).wait_for(
+        HEARD
+    )
+    wait_until(lambda: two.row("inward", "/chatter")["messages"], "it came through two bridges")
+    assert one.row("outward", "/chatter")["own"] == 0

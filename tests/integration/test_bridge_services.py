@@ -1,0 +1,202 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Services, parameters and actions through the bridge, in both directions."""
+
+from __future__ import annotations
+
+import threading
+import time
+from typing import Any
+
+import pytest
+from bridging import Bridge
+from ros_support import announce, peer_node, spin_until, type_of
+from support import IS_MANYCORE, PATIENCE_S, wait_until
+
+from rmw_manycore_py.routes import action_routes, parameter_routes
+
+pytestmark = [
+    pytest.mark.integration,
+    pytest.mark.skipif(not IS_MANYCORE, reason="the bridge is part of rmw_manycore"),
+]
+
+SET_BOOL = "std_srvs/srv/SetBool"
+FIBONACCI = "test_msgs/action/Fibonacci"
+
+
+@pytest.fixture
+def bridge(start, platform) -> Bridge:
+    return Bridge(start, platform)
+
+
+@pytest.fixture(params=["inward", "outward"])
+def direction(request) -> str:
+    return str(request.param)
+
+
+def sides(bridge: Bridge, direction: str) -> tuple[Any, Any]:
+    """Return how a server and its client are started."""
+    if direction == "inward":
+        return bridge.inside, bridge.outside
+    return bridge.outside, bridge.inside
+
+
+def serve(answers: bool) -> None:
+    """Serve SetBool; without answers, stay in the first request for ever."""
+    with peer_node("server") as node:
+
+        def answer(request: Any, response: Any) -> Any:
+            announce("asked")
+            if not answers:
+                threading.Event().wait()
+            response.success, response.message = request.data, "served"
+            return response
+
+        node.create_service(type_of(SET_BOOL), "/lamp", answer)
+        announce("serving")
+        spin_until(node, lambda: False, 1e6)
+
+
+def call(times: int) -> None:
+    """Call SetBool one time after the other."""
+    with peer_node("caller") as node:
+        kind = type_of(SET_BOOL)
+        client = node.create_client(kind, "/lamp")
+        assert client.wait_for_service(PATIENCE_S)
+        for number in range(times):
+            future = client.call_async(kind.Request(data=number % 2 == 0))
+            announce("called")
+            spin_until(node, future.done)
+            announce(f"answer {future.result().success} {future.result().message}")
+        spin_until(node, lambda: not client.service_is_ready())
+        announce("no service")
+
+
+def test_a_service_is_called(bridge, direction) -> None:
+    bridge.run(bridge.route(direction, "/lamp", SET_BOOL))
+    server, client = sides(bridge, direction)
+    serving = server(serve, True)
+    caller = client(call, 3)
+    for expected in ("True", "False", "True"):
+        caller.wait_for(f"^answer {expected} served$")
+    serving.stop()
+    caller.wait_for("^no service$")
+    row = bridge.row(direction, "/lamp")
+    assert (row["messages"], row["timed_out"], row["unanswered"]) == (3, 0, 0)
+
+
+def test_a_server_that_never_answers(bridge, direction) -> None:
+    bridge.run(bridge.route(direction, "/lamp", SET_BOOL, timeout_s=0.5))
+    server, client = sides(bridge, direction)
+    server(serve, False)
+    client(call, 1).wait_for(r"^answer False bridge: no reply within 0\.5 s$")
+    assert bridge.row(direction, "/lamp")["timed_out"] == 1
+
+
+def test_a_server_that_dies(bridge) -> None:
+    bridge.run(bridge.route("inward", "/lamp", SET_BOOL))
+    serving = bridge.inside(serve, False)
+    caller = bridge.outside(call, 1)
+    serving.wait_for("^asked$")
+    serving.kill()
+    caller.wait_for("^answer False bridge: the server is gone$")
+    caller.wait_for("^no service$")
+    assert bridge.row("inward", "/lamp")["unanswered"] == 1
+
+
+def has_parameters() -> None:
+    """Have a parameter, and say when it is set."""
+    with peer_node("tuned") as node:
+        node.declare_parameter("gain", 1)
+        announce("ready")
+        spin_until(node, lambda: node.get_parameter("gain").value == 7)
+        announce("gain is 7")
+        spin_until(node, lambda: False, 1e6)
+
+
+def tune() -> None:
+    """List, get and set the parameters of the node over there."""
+    from rclpy.parameter import Parameter
+    from rclpy.parameter_client import AsyncParameterClient
+
+    with peer_node("tuner") as node:
+        client = AsyncParameterClient(node, "/tuned")
+        assert client.wait_for_services(PATIENCE_S)
+        listed, got = client.list_parameters([], 10), client.get_parameters(["gain"])
+        spin_until(node, lambda: listed.done() and got.done())
+        announce(f"listed {'gain' in listed.result().result.names}")
+        announce(f"got {got.result().values[0].integer_value}")
+        done = client.set_parameters([Parameter("gain", value=7)])
+        spin_until(node, done.done)
+        announce(f"set {done.result().results[0].successful}")
+
+
+def test_parameters_from_outside(bridge) -> None:
+    bridge.run(*parameter_routes(bridge.route("inward", "/tuned", "")))
+    tuned = bridge.inside(has_parameters)
+    tuner = bridge.outside(tune)
+    for line in ("listed True", "got 1", "set True"):
+        tuner.wait_for(f"^{line}$")
+    tuned.wait_for("^gain is 7$")
+
+
+def count(forever: bool) -> None:
+    """Serve Fibonacci; with feedback for ever, or with two and a result."""
+    from rclpy.action import ActionServer
+
+    kind = type_of(FIBONACCI)
+    with peer_node("counter") as node:
+
+        def execute(goal: Any) -> Any:
+            announce("executing")
+            for _ in range(10):
+                goal.publish_feedback(kind.Feedback(sequence=[0, 1]))
+                time.sleep(0.02)  # as an action that takes its time
+            if forever:
+                threading.Event().wait()
+            goal.succeed()
+            return kind.Result(sequence=[0, 1, 1])
+
+        ActionServer(node, kind, "count", execute)
+        announce("serving")
+        spin_until(node, lambda: False, 1e6)
+
+
+def send_goal() -> None:
+    """Send a goal, and print what comes of it."""
+    from rclpy.action import ActionClient
+
+    kind = type_of(FIBONACCI)
+    with peer_node("sender") as node:
+        client = ActionClient(node, kind, "count")
+        spin_until(node, client.server_is_ready)
+        sent = client.send_goal_async(
+            kind.Goal(order=3),
+            lambda message: announce(f"feedback {list(message.feedback.sequence)}"),
+        )
+        spin_until(node, sent.done)
+        announce(f"accepted {sent.result().accepted}")
+        result = sent.result().get_result_async()
+        spin_until(node, result.done)
+        announce(f"status {result.result().status} {list(result.result().result.sequence)}")
+
+
+def test_an_action(bridge, direction) -> None:
+    bridge.run(*action_routes(bridge.route(direction, "/count", FIBONACCI)))
+    server, client = sides(bridge, direction)
+    server(count, False)
+    sender = client(send_goal)
+    sender.wait_for("^accepted True$")
+    sender.wait_for(r"^status 4 \[0, 1, 1\]$")  # succeeded
+    assert "feedback [0, 1]" in sender.output
+
+
+def test_an_action_server_that_dies(bridge) -> None:
+    bridge.run(*action_routes(bridge.route("inward", "/count", FIBONACCI)))
+    serving = bridge.inside(count, True)
+    sender = bridge.outside(send_goal)
+    serving.wait_for("^executing$")
+    sender.wait_for("^accepted True$")
+    result = "/count/_action/get_result"
+    wait_until(lambda: bridge.row("inward", result)["state"] == "forwarding", "the route is up")
+    serving.kill()
+    sender.wait_for(r"^status 0 \[\]$")  # unknown
