@@ -66,6 +66,24 @@ class SerialMatcher:
     def time_passes_ns(
         self, map: VoxelMap, points: NDArray[np.float32], pose: NDArray[np.float64], passes: int
     ) -> list[float]: ...
+    def profile_ns(
+        self, map: VoxelMap, points: NDArray[np.float32], guess: NDArray[np.float64]
+    ) -> dict[str, float]: ...
+
+class ThreadMatcher:
+    def __init__(
+        self, options: MatchOptions, derivative_cpus: list[int], search_cpus: list[int]
+    ) -> None: ...
+    def align(
+        self,
+        map: VoxelMap,
+        points: NDArray[np.float32],
+        guess: NDArray[np.float64],
+        regularization_position_m: tuple[float, float] | None = None,
+    ) -> dict[str, Any]: ...
+    def evaluate(
+        self, map: VoxelMap, points: NDArray[np.float32], pose: NDArray[np.float64]
+    ) -> dict[str, Any]: ...
 
 class WorkerGroup:
     def __init__(self, options: MatchOptions, program: str, host_cpus: list[int]) -> None: ...

@@ -22,6 +22,7 @@ from rmw_manycore_py.bench import (
     throughput,
 )
 from rmw_manycore_py.bench.machine import machine_header
+from rmw_manycore_py.bench.ndt import alignments, passes, split
 from rmw_manycore_py.bench.plot import plot
 from rmw_manycore_py.bench.question import Question, Run
 from rmw_manycore_py.bench.report import Report
@@ -102,6 +103,19 @@ def idle_command(nodes: int, **options: Any) -> None:
 def memory_command(**options: Any) -> None:
     """Memory of the platform, of a cluster and of a node."""
     _answer([memory.QUESTION], **options)
+
+
+@bench.command("ndt")
+@click.option(
+    "--pclomp",
+    type=click.Path(exists=True, file_okay=False, path_type=Path),
+    help="A checkout of ndt_omp, to let it take part; PCL does where libpcl-dev is installed.",
+)
+@_common_options
+def ndt_command(pclomp: Path | None, **options: Any) -> None:
+    """Scan matching beside PCL, pclomp, small_gicp and Open3D, and over workers."""
+    questions = [passes.question(pclomp), alignments.QUESTION, split.QUESTION]
+    _answer(questions, **options)
 
 
 @bench.command("all")

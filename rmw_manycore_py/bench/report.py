@@ -124,6 +124,8 @@ def in_words(verdict: Verdict) -> str:
     """Return a goal as a person would say it."""
     goal = verdict.goal
     statistic = "" if goal.statistic == "median" else f" ({goal.statistic})"
+    if goal.kind == "better" and goal.peer is None:
+        return f">= {goal.factor:g}{statistic}"
     if goal.kind == "better":
         return f">= {goal.factor:g} x better than {goal.peer}{statistic}"
     against = f" x {goal.peer}" if goal.peer else ""

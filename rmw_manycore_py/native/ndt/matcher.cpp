@@ -23,13 +23,17 @@ Derivatives finish_pass(const Problem & problem, const TangentSums & sums, const
   return d;
 }
 
-Derivatives evaluate_alone(const Problem & problem, BinPass bin_pass, const Pose6 & pose) {
-  const MapHeader & map = *problem.map.header;
-  const PassPose at = pass_pose(pose, map);
-  const Gaussian constants = gaussian(problem.options.outlier_ratio, map.voxel_size_m);
+float kernel_d2(const Problem & problem) {
+  const double voxel_size_m = problem.map.header->voxel_size_m;
+  return static_cast<float>(gaussian(problem.options.outlier_ratio, voxel_size_m).d2);
+}
+
+Derivatives evaluate_alone(const Problem & problem, const Kernel & kernel, const Pose6 & pose) {
+  const PassPose at = pass_pose(pose, *problem.map.header);
+  const float d2 = kernel_d2(problem);
   TangentSums bins[bin_count];
   for (size_t bin = 0; bin < bin_count; ++bin) {
-    bins[bin] = bin_pass(problem.map, problem.scan, at, static_cast<float>(constants.d2), bin);
+    bins[bin] = kernel.pass(problem.map, problem.scan, at, d2, bin);
   }
   return finish_pass(problem, add_bins(bins), pose);
 }

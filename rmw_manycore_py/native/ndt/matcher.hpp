@@ -19,6 +19,9 @@ struct Problem {
   std::optional<Regularization> regularization;
 };
 
+/// d2 of eq. 6.8 as the kernel takes it.
+float kernel_d2(const Problem & problem);
+
 /// All bins' sums added in the order of the bins, whoever computed them.
 TangentSums add_bins(const TangentSums (&bins)[bin_count]);
 
@@ -26,6 +29,6 @@ TangentSums add_bins(const TangentSums (&bins)[bin_count]);
 Derivatives finish_pass(const Problem & problem, const TangentSums & sums, const Pose6 & pose);
 
 /// One core does all bins.
-Derivatives evaluate_alone(const Problem & problem, BinPass bin_pass, const Pose6 & pose);
+Derivatives evaluate_alone(const Problem & problem, const Kernel & kernel, const Pose6 & pose);
 
 }  // namespace manycore::ndt

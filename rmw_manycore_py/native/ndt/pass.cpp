@@ -45,20 +45,20 @@ Simd choose_simd() {
       std::string(name_of(most)) + ", which this CPU has, found '" + wanted + "'");
 }
 
-BinPass bin_pass(Simd simd) noexcept {
+Kernel kernel_of(Simd simd) noexcept {
 #if defined(__x86_64__)
   switch (simd) {
     case Simd::avx512:
-      return &bin_pass_avx512;
+      return kernel_avx512();
     case Simd::avx2:
-      return &bin_pass_avx2;
+      return kernel_avx2();
     case Simd::portable:
       break;
   }
 #else
   static_cast<void>(simd);
 #endif
-  return &bin_pass_portable;
+  return kernel_portable();
 }
 
 PassPose pass_pose(const Pose6 & pose, const MapHeader & map) {

@@ -18,9 +18,20 @@ struct PassPose {
 
 PassPose pass_pose(const Pose6 & pose, const MapHeader & map);
 
-/// Sums of one bin of the scan. `d2` is the constant of eq. 6.8.
-using BinPass = TangentSums (*)(
-  const MapView & map, const ScanView & scan, const PassPose & pose, float d2, size_t bin);
+/// The hot loops over one bin of a scan. `d2` is the constant of eq. 6.8.
+struct Kernel {
+  /// All of it: search, and the sums of the derivatives.
+  TangentSums (*pass)(
+    const MapView & map, const ScanView & scan, const PassPose & pose, float d2, size_t bin);
+  /// The search alone: the list index of each point of the bin, at the point's place in `found`.
+  void (*search)(
+    const MapView & map, const ScanView & scan, const PassPose & pose, size_t bin,
+    uint32_t * found);
+  /// The sums alone, from what a search at the same pose found.
+  TangentSums (*derive)(
+    const MapView & map, const ScanView & scan, const PassPose & pose, float d2, size_t bin,
+    const uint32_t * found);
+};
 
 enum class Simd { portable, avx2, avx512 };
 
@@ -28,14 +39,11 @@ enum class Simd { portable, avx2, avx512 };
 /// lowers it. Throws Error{invalid_argument} for another word or what the CPU lacks.
 Simd choose_simd();
 const char * name_of(Simd simd) noexcept;
-BinPass bin_pass(Simd simd) noexcept;
+Kernel kernel_of(Simd simd) noexcept;
 
-/// The same function compiled for each kind of CPU.
-TangentSums bin_pass_portable(
-  const MapView & map, const ScanView & scan, const PassPose & pose, float d2, size_t bin);
-TangentSums bin_pass_avx2(
-  const MapView & map, const ScanView & scan, const PassPose & pose, float d2, size_t bin);
-TangentSums bin_pass_avx512(
-  const MapView & map, const ScanView & scan, const PassPose & pose, float d2, size_t bin);
+/// The same loops compiled for each kind of CPU.
+Kernel kernel_portable() noexcept;
+Kernel kernel_avx2() noexcept;
+Kernel kernel_avx512() noexcept;
 
 }  // namespace manycore::ndt

@@ -74,10 +74,7 @@ struct Lanes {
 
 }  // namespace avx2
 
-TangentSums bin_pass_avx2(
-  const MapView & map, const ScanView & scan, const PassPose & pose, float d2, size_t bin) {
-  return avx2::run_bin(map, scan, pose, d2, bin);
-}
+Kernel kernel_avx2() noexcept { return {&avx2::pass, &avx2::search, &avx2::derive}; }
 
 }  // namespace manycore::ndt
 

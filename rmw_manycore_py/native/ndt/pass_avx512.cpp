@@ -84,10 +84,7 @@ struct Lanes {
 
 }  // namespace avx512
 
-TangentSums bin_pass_avx512(
-  const MapView & map, const ScanView & scan, const PassPose & pose, float d2, size_t bin) {
-  return avx512::run_bin(map, scan, pose, d2, bin);
-}
+Kernel kernel_avx512() noexcept { return {&avx512::pass, &avx512::search, &avx512::derive}; }
 
 }  // namespace manycore::ndt
 

@@ -72,7 +72,33 @@ struct Sight {
   const uint32_t * lists[Lanes::width];
 };
 
-inline Sight look(const MapView & map, const ScanView & scan, const Constants & c, size_t first) {
+/// Finds the lists of cells in the map's table; neighbours in memory often share a cell.
+struct LookUp {
+  void operator()(const MapView & map, size_t, const I & key, Sight & s) const {
+    uint32_t keys[Lanes::width];
+    std::memcpy(keys, &key, sizeof keys);
+    for (size_t lane = 0; lane < Lanes::width; ++lane) {
+      s.lists[lane] = lane > 0 && keys[lane] == keys[lane - 1]
+                        ? s.lists[lane - 1]
+                        : map.lists + find_list(map, keys[lane]);
+    }
+  }
+};
+
+/// Takes the lists that somebody else found.
+struct Found {
+  const uint32_t * list_of_point;
+
+  void operator()(const MapView & map, size_t first, const I &, Sight & s) const {
+    for (size_t lane = 0; lane < Lanes::width; ++lane) {
+      s.lists[lane] = map.lists + list_of_point[first + lane];
+    }
+  }
+};
+
+template<typename Find>
+inline Sight look(
+  const MapView & map, const ScanView & scan, const Constants & c, size_t first, Find find) {
   Sight s;
   const F x = Lanes::load(scan.x_m + first);
   const F y = Lanes::load(scan.y_m + first);
@@ -88,13 +114,7 @@ inline Sight look(const MapView & map, const ScanView & scan, const Constants & 
     cell[i] = Lanes::to_int(Lanes::min(Lanes::max(place, Lanes::set1(0)), c.last_cell[i]));
   }
   const I key = cell[0] + (cell[1] + cell[2] * c.cells_y) * c.cells_x;
-  uint32_t keys[Lanes::width];
-  std::memcpy(keys, &key, sizeof keys);
-  for (size_t lane = 0; lane < Lanes::width; ++lane) {
-    s.lists[lane] = lane > 0 && keys[lane] == keys[lane - 1]
-                      ? s.lists[lane - 1]
-                      : map.lists + find_list(map, keys[lane]);
-  }
+  find(map, first, key, s);
   return s;
 }
 
@@ -203,8 +223,9 @@ inline void drain(F (&sums)[sum_count], TangentSums & out) {
   }
 }
 
-template<bool by_radius>
-TangentSums run(const MapView & map, const ScanView & scan, const Constants & c, size_t bin) {
+template<bool by_radius, typename Find>
+TangentSums run(
+  const MapView & map, const ScanView & scan, const Constants & c, size_t bin, Find find) {
   // Single precision is exact enough for the terms, not for sums of very many of them.
   constexpr size_t groups_per_drain = 32;
   F sums[sum_count] = {};
@@ -212,7 +233,7 @@ TangentSums run(const MapView & map, const ScanView & scan, const Constants & c,
   size_t undrained = 0;
   for (size_t group = bin; group < scan.groups; group += bin_count) {
     for (size_t part = 0; part < group_points; part += Lanes::width) {
-      Sight sight = look(map, scan, c, group * group_points + part);
+      Sight sight = look(map, scan, c, group * group_points + part, find);
       PointSums points = {};
       const float * lines[Lanes::width];
       while (next_voxels(map, sight, lines)) {
@@ -229,9 +250,37 @@ TangentSums run(const MapView & map, const ScanView & scan, const Constants & c,
   return out;
 }
 
+template<typename Find>
 TangentSums run_bin(
-  const MapView & map, const ScanView & scan, const PassPose & pose, float d2, size_t bin) {
+  const MapView & map, const ScanView & scan, const PassPose & pose, float d2, size_t bin,
+  Find find) {
   const Constants c = constants_of(*map.header, pose, d2);
-  return map.header->search == Search::radius ? run<true>(map, scan, c, bin)
-                                              : run<false>(map, scan, c, bin);
+  return map.header->search == Search::radius ? run<true>(map, scan, c, bin, find)
+                                              : run<false>(map, scan, c, bin, find);
+}
+
+TangentSums pass(
+  const MapView & map, const ScanView & scan, const PassPose & pose, float d2, size_t bin) {
+  return run_bin(map, scan, pose, d2, bin, LookUp{});
+}
+
+TangentSums derive(
+  const MapView & map, const ScanView & scan, const PassPose & pose, float d2, size_t bin,
+  const uint32_t * found) {
+  return run_bin(map, scan, pose, d2, bin, Found{found});
+}
+
+void search(
+  const MapView & map, const ScanView & scan, const PassPose & pose, size_t bin,
+  uint32_t * found) {
+  const Constants c = constants_of(*map.header, pose, 0);
+  for (size_t group = bin; group < scan.groups; group += bin_count) {
+    for (size_t part = 0; part < group_points; part += Lanes::width) {
+      const size_t first = group * group_points + part;
+      const Sight sight = look(map, scan, c, first, LookUp{});
+      for (size_t lane = 0; lane < Lanes::width; ++lane) {
+        found[first + lane] = static_cast<uint32_t>(sight.lists[lane] - map.lists);
+      }
+    }
+  }
 }

@@ -46,9 +46,6 @@ struct Lanes {
 
 }  // namespace portable
 
-TangentSums bin_pass_portable(
-  const MapView & map, const ScanView & scan, const PassPose & pose, float d2, size_t bin) {
-  return portable::run_bin(map, scan, pose, d2, bin);
-}
+Kernel kernel_portable() noexcept { return {&portable::pass, &portable::search, &portable::derive}; }
 
 }  // namespace manycore::ndt

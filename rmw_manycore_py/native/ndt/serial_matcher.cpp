@@ -4,6 +4,16 @@
 #include "platform/clock.hpp"
 
 namespace manycore::ndt {
+namespace {
+
+template<typename F>
+double time_ns(F && f) {
+  const int64_t start_ns = monotonic_ns();
+  f();
+  return static_cast<double>(monotonic_ns() - start_ns);
+}
+
+}  // namespace
 
 Problem SerialMatcher::problem(const VoxelMap & map, const float * xyz_m, size_t count) {
   const ScanView scan =
@@ -18,13 +28,13 @@ NewtonResult SerialMatcher::align(
   Problem matched = problem(map, xyz_m, count);
   matched.regularization = regularization;
   return maximise(guess, options_, [&](const Pose6 & pose) {
-    return evaluate_alone(matched, bin_pass_, pose);
+    return evaluate_alone(matched, kernel_, pose);
   });
 }
 
 Derivatives SerialMatcher::evaluate(
   const VoxelMap & map, const float * xyz_m, size_t count, const Pose6 & pose) {
-  return evaluate_alone(problem(map, xyz_m, count), bin_pass_, pose);
+  return evaluate_alone(problem(map, xyz_m, count), kernel_, pose);
 }
 
 std::vector<double> SerialMatcher::time_passes_ns(
@@ -32,11 +42,33 @@ std::vector<double> SerialMatcher::time_passes_ns(
   const Problem matched = problem(map, xyz_m, count);
   std::vector<double> times_ns;
   for (size_t i = 0; i < passes; ++i) {
-    const int64_t start_ns = monotonic_ns();
-    evaluate_alone(matched, bin_pass_, pose);
-    times_ns.push_back(static_cast<double>(monotonic_ns() - start_ns));
+    times_ns.push_back(time_ns([&] { evaluate_alone(matched, kernel_, pose); }));
   }
   return times_ns;
+}
+
+Profile SerialMatcher::profile(
+  const VoxelMap & map, const float * xyz_m, size_t count, const Pose6 & guess) {
+  Profile times{};
+  times.total_ns = time_ns([&] {
+    Problem matched{};
+    times.lay_out_ns = time_ns([&] { matched = problem(map, xyz_m, count); });
+    std::vector<uint32_t> found(matched.scan.groups * group_points);
+    const float d2 = kernel_d2(matched);
+    maximise(guess, options_, [&](const Pose6 & pose) {
+      const PassPose at = pass_pose(pose, *matched.map.header);
+      TangentSums bins[bin_count];
+      for (size_t bin = 0; bin < bin_count; ++bin) {
+        times.search_ns +=
+          time_ns([&] { kernel_.search(matched.map, matched.scan, at, bin, found.data()); });
+        times.derivatives_ns += time_ns([&] {
+          bins[bin] = kernel_.derive(matched.map, matched.scan, at, d2, bin, found.data());
+        });
+      }
+      return finish_pass(matched, add_bins(bins), pose);
+    });
+  });
+  return times;
 }
 
 }  // namespace manycore::ndt

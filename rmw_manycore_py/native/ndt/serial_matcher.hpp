@@ -9,11 +9,19 @@
 
 namespace manycore::ndt {
 
+/// Where the time of an alignment goes.
+struct Profile {
+  double lay_out_ns;
+  double search_ns;
+  double derivatives_ns;
+  double total_ns;
+};
+
 /// Matches on the calling thread.
 class SerialMatcher {
 public:
   explicit SerialMatcher(const MatchOptions & options)
-  : options_(options), bin_pass_(bin_pass(choose_simd())) {}
+  : options_(options), kernel_(kernel_of(choose_simd())) {}
 
   /// Points x, y, z [m] in the sensor frame, of which the finite ones count.
   NewtonResult align(
@@ -24,6 +32,8 @@ public:
   /// What each of so many passes at a pose takes, without laying out the scan.
   std::vector<double> time_passes_ns(
     const VoxelMap & map, const float * xyz_m, size_t count, const Pose6 & pose, size_t passes);
+  /// An alignment with search and derivatives one after the other, each timed.
+  Profile profile(const VoxelMap & map, const float * xyz_m, size_t count, const Pose6 & guess);
   /// Points that counted in the last call.
   size_t used_points() const noexcept { return used_points_; }
 
@@ -31,7 +41,7 @@ private:
   Problem problem(const VoxelMap & map, const float * xyz_m, size_t count);
 
   MatchOptions options_;
-  BinPass bin_pass_;
+  Kernel kernel_;
   AlignedFloats scan_;
   size_t used_points_ = 0;
 };

@@ -19,7 +19,7 @@ Worker::Worker(SharedMemory session, uint32_t index)
   session_(memory_.at<Session>(0)),
   own_(session_.lines[index]),
   index_(index),
-  bin_pass_(bin_pass(choose_simd())) {
+  kernel_(kernel_of(choose_simd())) {
   own_.pinned.store(only_cpu() >= 0 ? 1 : 0, std::memory_order_relaxed);
 }
 
@@ -98,13 +98,11 @@ void Worker::do_job(uint32_t job) {
 }
 
 std::optional<TangentSums> Worker::pass(const Problem & problem, const Pose6 & pose) {
-  const MapHeader & map = *problem.map.header;
-  const PassPose at = pass_pose(pose, map);
-  const auto d2 =
-    static_cast<float>(gaussian(problem.options.outlier_ratio, map.voxel_size_m).d2);
+  const PassPose at = pass_pose(pose, *problem.map.header);
+  const float d2 = kernel_d2(problem);
   auto & bins = session_.bins[pass_ % 2];
   for (size_t bin = index_; bin < bin_count; bin += session_.workers) {
-    bins[bin] = bin_pass_(problem.map, problem.scan, at, d2, bin);
+    bins[bin] = kernel_.pass(problem.map, problem.scan, at, d2, bin);
   }
   ++pass_;
   if (!wait_for_all((uint64_t{job_} << 32) + pass_)) {

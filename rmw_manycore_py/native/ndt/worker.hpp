@@ -29,7 +29,7 @@ private:
   Session & session_;
   WorkerLine & own_;
   uint32_t index_;
-  BinPass bin_pass_;
+  Kernel kernel_;
   std::optional<VoxelMap> map_;
   uint64_t map_id_ = 0;
   SharedMemory scan_;

@@ -13,6 +13,7 @@
 #include "ndt/python/arrays.hpp"
 #include "ndt/python/bindings.hpp"
 #include "ndt/serial_matcher.hpp"
+#include "ndt/thread_matcher.hpp"
 #include "ndt/worker_group.hpp"
 
 namespace nb = nanobind;
@@ -95,7 +96,21 @@ void bind_matchers(nb::module_ & module) {
       const nb::gil_scoped_release released;
       return serial.matcher().time_passes_ns(
         map, points.data(), points.shape(0), pose_from(pose), passes);
-    }, nb::arg("map"), nb::arg("points"), nb::arg("pose"), nb::arg("passes"));
+    }, nb::arg("map"), nb::arg("points"), nb::arg("pose"), nb::arg("passes"))
+    .def("profile_ns", [](
+      Serial & serial, const VoxelMap & map, const FloatPoints & points, const PoseMatrix & guess) {
+      const Profile times =
+        serial.matcher().profile(map, points.data(), points.shape(0), pose_from(guess));
+      nb::dict out;
+      out["lay_out"] = times.lay_out_ns;
+      out["search"] = times.search_ns;
+      out["derivatives"] = times.derivatives_ns;
+      out["total"] = times.total_ns;
+      return out;
+    }, nb::arg("map"), nb::arg("points"), nb::arg("guess"));
+  bind<ThreadMatcher>(module, "ThreadMatcher")
+    .def(nb::init<const MatchOptions &, const std::vector<int> &, const std::vector<int> &>(),
+         nb::arg("options"), nb::arg("derivative_cpus"), nb::arg("search_cpus"));
   using Group = Bound<WorkerGroup>;
   bind<WorkerGroup>(module, "WorkerGroup")
     .def(nb::init<const MatchOptions &, const std::string &, const std::vector<int> &>(),

@@ -1,0 +1,55 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""The project's own matchers as contenders."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from rmw_manycore_py import _ndt
+from rmw_manycore_py.ndt import MatcherOptions, VoxelMap
+from rmw_manycore_py.ndt.matcher import native_options
+
+SIMD_VARIABLE = "MANYCORE_NDT_SIMD"
+SIMDS = ("avx512", "avx2", "portable")
+VOXEL_SIZE_M = 2.0
+
+
+def usable() -> list[int]:
+    """Return the host CPUs this process may use."""
+    return sorted(os.sched_getaffinity(0))
+
+
+@contextmanager
+def on_cpu(cpu: int) -> Iterator[None]:
+    """Keep the calling thread on one CPU for a while."""
+    before = os.sched_getaffinity(0)
+    os.sched_setaffinity(0, {cpu})
+    try:
+        yield
+    finally:
+        os.sched_setaffinity(0, before)
+
+
+def serial_of_each_kind(options: MatcherOptions) -> dict[str, _ndt.SerialMatcher]:
+    """Return a matcher for each kind of CPU code that this CPU can run."""
+    before = os.environ.get(SIMD_VARIABLE)
+    found = {}
+    for simd in SIMDS:
+        os.environ[SIMD_VARIABLE] = simd
+        try:
+            found[simd] = _ndt.SerialMatcher(native_options(options))
+        except _ndt.NdtError:
+            continue
+    os.environ.pop(SIMD_VARIABLE)
+    if before is not None:
+        os.environ[SIMD_VARIABLE] = before
+    return found
+
+
+def map_for(options: MatcherOptions) -> VoxelMap:
+    """Return the world's map for these options."""
+    from rmw_manycore_py.bench.ndt.world import world
+
+    return VoxelMap.from_points(world().map_points, options)

@@ -1,0 +1,81 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""What a point costs in one pass: search, score, gradient and Hessian."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from rmw_manycore_py import _ndt
+from rmw_manycore_py.bench.ndt.contenders import (
+    VOXEL_SIZE_M,
+    map_for,
+    on_cpu,
+    serial_of_each_kind,
+    usable,
+)
+from rmw_manycore_py.bench.ndt.peers import Peer, all_peers
+from rmw_manycore_py.bench.ndt.world import world
+from rmw_manycore_py.bench.question import Measure, Question, Run
+from rmw_manycore_py.bench.summary import Goal, Result
+from rmw_manycore_py.ndt import MatcherOptions
+from rmw_manycore_py.ndt.options import Search, VoxelCovariance
+
+PASSES = 20
+# What each peer does: its search and its covariance.
+KINDS: dict[str, tuple[Search, VoxelCovariance]] = {
+    "pclomp": ("direct7", "pclomp"),
+    "PCL": ("radius", "pcl"),
+}
+
+
+def question(pclomp: Path | None) -> Question:
+    """Return the question; pclomp takes part where a checkout of it is given."""
+
+    def measure(run: Run) -> list[Result]:
+        cpu = usable()[-1]
+        with on_cpu(cpu), all_peers(cpu, VOXEL_SIZE_M, pclomp, tuple(KINDS)) as peers:
+            return [
+                result
+                for name, (search, covariance) in KINDS.items()
+                for result in _measure_kind(run, search, covariance, peers.get(name))
+            ]
+
+    return Question("pass", measure, _goals(), "all contenders in turn on the last usable CPU")
+
+
+def title(search: Search) -> str:
+    """Return the name of the question for one kind of search."""
+    return f"a pass by {search}, {VOXEL_SIZE_M:g} m"
+
+
+def _goals() -> tuple[Goal, ...]:
+    by_faces, by_radius = title("direct7"), title("radius")
+    return (
+        Goal(by_faces, "rmw_manycore avx512", "better", 40, "pclomp"),
+        Goal(by_faces, "rmw_manycore portable", "better", 10, "pclomp"),
+        Goal(by_radius, "rmw_manycore avx512", "better", 30, "PCL"),
+    )
+
+
+def _measure_kind(
+    run: Run, search: Search, covariance: VoxelCovariance, peer: Peer | None
+) -> list[Result]:
+    options = MatcherOptions(voxel_size_m=VOXEL_SIZE_M, search=search, voxel_covariance=covariance)
+    voxel_map = map_for(options)
+    contenders: dict[str, Measure] = {}
+    for simd, matcher in serial_of_each_kind(options).items():
+
+        def own(matcher: _ndt.SerialMatcher = matcher) -> list[float]:
+            found = []
+            for scan, pose in zip(world().scans, world().poses, strict=True):
+                passes = run.iterations(PASSES)
+                times = matcher.time_passes_ns(voxel_map.native, scan, pose, passes)
+                found += [time_ns / len(scan) for time_ns in times]
+            return found
+
+        contenders[f"rmw_manycore {simd}"] = own
+    if peer is not None:
+        contenders[peer.name] = lambda: [
+            peer.ask("evaluate", i)[0] / len(scan) for i, scan in enumerate(world().scans)
+        ]
+    return run.interleave(title(search), "ns/point", contenders)

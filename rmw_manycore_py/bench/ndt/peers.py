@@ -1,0 +1,120 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Published matchers as processes that answer line by line, each on its CPU."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+from collections.abc import Iterator, Sequence
+from contextlib import ExitStack, contextmanager
+from importlib.util import find_spec
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from rmw_manycore_py.bench.ndt.world import world
+from rmw_manycore_py.errors import ManycoreError
+
+SOURCE = Path(__file__).with_name("peer.cpp")
+PCL_PACKAGES = ("pcl_registration", "pcl_registration-1.12", "pcl_registration-1.14")
+PCL_FLAGS = ("-O3", "-DNDEBUG", "-std=c++17")
+# As its own CMakeLists.txt says.
+PCLOMP_FLAGS = (
+    *("-O3", "-DNDEBUG", "-std=c++14", "-fopenmp", "-DPEER_PCLOMP"),
+    *("-msse", "-msse2", "-msse3", "-msse4", "-msse4.1", "-msse4.2"),
+)
+PYTHON_PEERS = ("small_gicp", "open3d")
+
+
+class Peer:
+    """One peer; asks it, waits for its answer."""
+
+    def __init__(self, name: str, process: subprocess.Popen[str]) -> None:
+        self.name = name
+        self._process = process
+        while (line := self._read()) != "ready":
+            if not line:
+                raise ManycoreError(f"{name} ended with status {process.wait()}")
+
+    def ask(self, question: str, scan: int) -> list[float]:
+        """Return the numbers of its answer, of which the first is a time in ns."""
+        assert self._process.stdin is not None
+        self._process.stdin.write(f"{question} {scan}\n")
+        self._process.stdin.flush()
+        return [float(word) for word in self._read().split()]
+
+    def _read(self) -> str:
+        assert self._process.stdout is not None
+        return self._process.stdout.readline().strip()
+
+
+@contextmanager
+def all_peers(
+    cpu: int, voxel_size_m: float, pclomp: Path | None, wanted: Sequence[str]
+) -> Iterator[dict[str, Peer]]:
+    """Start the peers that this machine has; what is missing is said on standard error."""
+    with ExitStack() as stack:
+        directory = Path(stack.enter_context(TemporaryDirectory(prefix="manycore-bench-")))
+        world().write(directory / "world")
+        peers = {}
+        for name in wanted:
+            command = _command(name, directory, pclomp)
+            if command:
+                words = [*command, str(directory / "world"), str(voxel_size_m)]
+                peers[name] = stack.enter_context(_started(name, words, cpu))
+        yield peers
+
+
+@contextmanager
+def _started(name: str, command: Sequence[str], cpu: int) -> Iterator[Peer]:
+    process = subprocess.Popen(
+        command,
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        text=True,
+        env={**os.environ, "OMP_NUM_THREADS": "1"},
+        preexec_fn=lambda: os.sched_setaffinity(0, {cpu}),
+    )
+    try:
+        yield Peer(name, process)
+    finally:
+        process.kill()
+        process.communicate()
+
+
+def _command(name: str, directory: Path, pclomp: Path | None) -> list[str]:
+    if name in PYTHON_PEERS:
+        if find_spec(name) is None:
+            return _missing(name, f"pip install {name.replace('open3d', 'open3d-cpu')}")
+        return [sys.executable, "-m", "rmw_manycore_py.bench.ndt.python_peer", name]
+    flags = _pcl_flags()
+    if not flags:
+        return _missing(name, "apt-get install libpcl-dev pkg-config g++")
+    if name == "pclomp" and pclomp is None:
+        return _missing(name, "--pclomp DIRECTORY, a checkout of ndt_omp")
+    program = directory / name
+    own = (*PCLOMP_FLAGS, f"-I{pclomp}/include") if name == "pclomp" else PCL_FLAGS
+    built = subprocess.run(
+        ["g++", *own, str(SOURCE), "-o", str(program), *flags], capture_output=True, text=True
+    )
+    if built.returncode != 0:
+        raise ManycoreError(f"{name} does not compile:\n{built.stderr[:2000]}")
+    return [str(program)]
+
+
+def _pcl_flags() -> list[str]:
+    if shutil.which("pkg-config") is None or shutil.which("g++") is None:
+        return []
+    for package in PCL_PACKAGES:
+        found = subprocess.run(
+            ["pkg-config", "--cflags", "--libs", package], capture_output=True, text=True
+        )
+        if found.returncode == 0:
+            return found.stdout.split()
+    return []
+
+
+def _missing(name: str, remedy: str) -> list[str]:
+    print(f"{name} takes no part: {remedy}", file=sys.stderr)
+    return []

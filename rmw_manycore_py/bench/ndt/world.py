@@ -1,0 +1,82 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""The map and the scans that all contenders get, and their binary form for peers."""
+
+from __future__ import annotations
+
+import os
+import struct
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rmw_manycore_py.ndt.drive import poses_along, record, scans_along
+from rmw_manycore_py.ndt.lidar import Lidar
+from rmw_manycore_py.ndt.recording import Recording, load_recording
+from rmw_manycore_py.ndt.street import build_street
+
+DATA_VARIABLE = "MANYCORE_DATA"
+RECORDING = "balm_seq177_v0.10.npz"
+SCANS = 6
+GUESS_OFFSET_M = (0.3, -0.3, 0.1)
+
+
+@dataclass(frozen=True)
+class World:
+    """A map of every second scan of a drive, and some of the others.
+
+    :param map_points: (N, 3) [m, map frame].
+    :param scans: (n, 3) each [m, sensor frame].
+    :param poses: T_map_sensor (S, 4, 4).
+    :param guesses: 0.44 m beside them.
+    """
+
+    name: str
+    map_points: NDArray[np.float32]
+    scans: list[NDArray[np.float32]]
+    poses: NDArray[np.float64]
+    guesses: NDArray[np.float64]
+
+    def write(self, path: Path) -> None:
+        """Write what bench/ndt/peer.cpp reads."""
+        with path.open("wb") as file:
+            _write_points(file.write, self.map_points)
+            file.write(struct.pack("<Q", len(self.scans)))
+            for scan, pose, guess in zip(self.scans, self.poses, self.guesses, strict=True):
+                file.write(pose.astype("<f8").tobytes() + guess.astype("<f8").tobytes())
+                _write_points(file.write, scan)
+
+
+def _write_points(write: object, points: NDArray[np.float32]) -> None:
+    assert callable(write)
+    write(struct.pack("<Q", len(points)) + points.astype("<f4").tobytes())
+
+
+@cache
+def world() -> World:
+    """Return the recorded drive, or a simulated one where there is no recording."""
+    recording, name = _recording()
+    odd = np.linspace(1, (len(recording) - 1) // 2 * 2 - 1, SCANS).astype(int) // 2 * 2 + 1
+    poses = recording.poses[odd]
+    guesses = poses.copy()
+    guesses[:, :3, 3] += GUESS_OFFSET_M
+    return World(
+        name=name,
+        map_points=recording.accumulated(range(0, len(recording), 2)).astype(np.float32),
+        scans=[np.ascontiguousarray(recording.scan(i)) for i in odd],
+        poses=poses,
+        guesses=guesses,
+    )
+
+
+def _recording() -> tuple[Recording, str]:
+    checkout = Path(__file__).resolve().parents[3]
+    directory = Path(os.environ.get(DATA_VARIABLE, checkout.parent / "shared" / "data"))
+    if (directory / RECORDING).exists():
+        return load_recording(directory / RECORDING), RECORDING
+    generator = np.random.default_rng(1)
+    poses = poses_along(np.arange(0.0, 40.0, 2.0))
+    scans = list(scans_along(build_street(40.0, generator), poses, Lidar(), generator))
+    return record(scans, poses, np.zeros(0), 1), "synthetic street"
