@@ -19,9 +19,9 @@ WHY = {
 }
 
 
-def score_from(numbers: dict[str, Any], points: int) -> Score:
-    """Return the score of a scan with so many finite points."""
-    seen = numbers["points"]
+def score_from(numbers: dict[str, Any]) -> Score:
+    """Return the score that the kernel found."""
+    seen, points = numbers["points"], numbers["used_points"]
     return Score(
         score=numbers["score"],
         transform_probability=numbers["score"] / points if points else 0.0,
@@ -30,9 +30,9 @@ def score_from(numbers: dict[str, Any], points: int) -> Score:
     )
 
 
-def alignment_from(numbers: dict[str, Any], points: int, options: MatcherOptions) -> Alignment:
-    """Return the alignment of a scan with so many finite points."""
-    score = score_from(numbers, points)
+def alignment_from(numbers: dict[str, Any], options: MatcherOptions) -> Alignment:
+    """Return the alignment that the kernel found."""
+    score = score_from(numbers)
     return Alignment(
         T_map_sensor=np.array(numbers["pose"]).reshape(4, 4),
         covariance=_covariance(np.array(numbers["hessian"]), options),

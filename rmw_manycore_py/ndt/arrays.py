@@ -8,12 +8,14 @@ from numpy.typing import ArrayLike, NDArray
 
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
 
-Points = NDArray[np.floating]
+ScanPoints = NDArray[np.float32]
 Pose = NDArray[np.float64]
 Matrix6 = NDArray[np.float64]
 
+ROTATION_TOLERANCE = 1e-3
 
-def scan_points(points: ArrayLike) -> NDArray[np.float32]:
+
+def scan_points(points: ArrayLike) -> ScanPoints:
     """Return points (N, 3) as contiguous single precision."""
     return np.ascontiguousarray(_of_three_columns(points), dtype=np.float32)
 
@@ -36,7 +38,7 @@ def why_no_pose(matrix: Pose) -> str:
     if not np.isfinite(matrix).all():
         return "is not finite"
     rotation = matrix[:3, :3]
-    is_rotation = np.allclose(rotation @ rotation.T, np.eye(3), atol=1e-3)
+    is_rotation = np.abs(rotation @ rotation.T - np.eye(3)).max() < ROTATION_TOLERANCE
     if not is_rotation or np.linalg.det(rotation) < 0:
         return "holds no rotation"
     return ""

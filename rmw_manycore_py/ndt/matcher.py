@@ -6,14 +6,13 @@ from __future__ import annotations
 from types import TracebackType
 from typing import Any, Protocol
 
-import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from rmw_manycore_py import _ndt
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
 from rmw_manycore_py.ndt.alignment import Alignment, Score
 from rmw_manycore_py.ndt.answers import alignment_from, refused, score_from
-from rmw_manycore_py.ndt.arrays import Pose, pose_matrix, scan_points, why_no_pose
+from rmw_manycore_py.ndt.arrays import Pose, ScanPoints, pose_matrix, scan_points, why_no_pose
 from rmw_manycore_py.ndt.options import MatcherOptions
 from rmw_manycore_py.ndt.voxel_map import VoxelMap
 
@@ -24,7 +23,7 @@ class NativeMatcher(Protocol):
     def align(
         self,
         map: _ndt.VoxelMap,  # noqa: A002 - named as the binding names it
-        points: NDArray[np.float32],
+        points: ScanPoints,
         guess: Pose,
         regularization_position_m: tuple[float, float] | None = None,
     ) -> dict[str, Any]:
@@ -34,7 +33,7 @@ class NativeMatcher(Protocol):
     def evaluate(
         self,
         map: _ndt.VoxelMap,  # noqa: A002
-        points: NDArray[np.float32],
+        points: ScanPoints,
         pose: Pose,
     ) -> dict[str, Any]:
         """Return score and derivatives at a pose."""
@@ -96,9 +95,6 @@ class Matcher:
         wrong = why_no_pose(guess)
         if wrong:
             return refused(None, f"the guess {wrong}", self.options)
-        count = _finite(scan)
-        if count == 0:
-            return refused(guess, "the scan has no finite point", self.options)
         position = None
         if T_map_regularization is not None:
             regularization = pose_matrix(T_map_regularization)
@@ -107,17 +103,18 @@ class Matcher:
                 return refused(guess, f"the regularization pose {wrong}", self.options)
             position = (float(regularization[0, 3]), float(regularization[1, 3]))
         numbers = self._native.align(voxel_map.native, scan, guess, position)
-        return alignment_from(numbers, count, self.options)
+        if numbers["used_points"] == 0:
+            return refused(guess, "the scan has no finite point", self.options)
+        return alignment_from(numbers, self.options)
 
     def score(self, points: ArrayLike, T_map_sensor: ArrayLike) -> Score:
         """Return how well points (N, 3) fit at a pose (4, 4); 0 for what is no scan or no pose."""
         voxel_map = self._require_map()
         scan = scan_points(points)
         pose = pose_matrix(T_map_sensor)
-        count = _finite(scan)
-        if count == 0 or why_no_pose(pose):
+        if why_no_pose(pose):
             return Score(0.0, 0.0, 0.0, 0)
-        return score_from(self._native.evaluate(voxel_map.native, scan, pose), count)
+        return score_from(self._native.evaluate(voxel_map.native, scan, pose))
 
     def _require_map(self) -> VoxelMap:
         if self._map is None:
@@ -143,7 +140,3 @@ def native_options(options: MatcherOptions) -> _ndt.MatchOptions:
         outlier_ratio=options.outlier_ratio,
         regularization_scale_factor=options.regularization_scale_factor,
     )
-
-
-def _finite(scan: NDArray[np.float32]) -> int:
-    return int(np.isfinite(scan).all(axis=1).sum())

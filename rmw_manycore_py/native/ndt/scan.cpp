@@ -2,6 +2,7 @@
 #include "ndt/scan.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -9,66 +10,71 @@ namespace manycore::ndt {
 namespace {
 
 constexpr float far_away_m = 1e9F;
+/// Cubes as large as a usual voxel; beyond 64 m they repeat, which costs order, not correctness.
+constexpr float cube_m = 2;
+constexpr uint32_t cubes_per_axis_bits = 5;
+constexpr uint32_t cube_count = 1 << (3 * cubes_per_axis_bits);
+constexpr uint16_t no_cube = 0xFFFF;
 
-/// Spreads the low 10 bits of x so that two zeros follow each.
-uint32_t spread(uint32_t x) {
-  x = (x | (x << 16)) & 0x030000FF;
-  x = (x | (x << 8)) & 0x0300F00F;
-  x = (x | (x << 4)) & 0x030C30C3;
-  return (x | (x << 2)) & 0x09249249;
+/// Spreads the low 5 bits of x so that two zeros follow each.
+constexpr uint32_t spread(uint32_t x) {
+  uint32_t out = 0;
+  for (uint32_t bit = 0; bit < cubes_per_axis_bits; ++bit) {
+    out |= ((x >> bit) & 1) << (3 * bit);
+  }
+  return out;
 }
 
-/// Place on the Morton curve through cubes of 0.5 m, modulo 512 m.
-uint32_t morton_code(const float * xyz_m) {
-  constexpr float cubes_per_m = 2;
+struct SpreadTable {
+  std::array<uint16_t, 1 << cubes_per_axis_bits> of{};
+  constexpr SpreadTable() {
+    for (uint32_t i = 0; i < of.size(); ++i) {
+      of[i] = static_cast<uint16_t>(spread(i));
+    }
+  }
+};
+constexpr SpreadTable spread_table;
+
+/// Place of a point's cube on the Morton curve; no_cube for a point that is not finite.
+uint16_t cube_of(const float * xyz_m) {
+  constexpr float farthest_m = 1e6F;
   uint32_t code = 0;
   for (uint32_t i = 0; i < 3; ++i) {
-    const float cube = std::clamp(std::floor(xyz_m[i] * cubes_per_m) + 512, 0.0F, 1023.0F);
-    code |= spread(static_cast<uint32_t>(cube)) << i;
+    if (!std::isfinite(xyz_m[i])) {
+      return no_cube;
+    }
+    const float place_m = std::clamp(xyz_m[i], -farthest_m, farthest_m) + farthest_m;
+    const auto cube = static_cast<uint32_t>(place_m * (1 / cube_m));
+    code |= static_cast<uint32_t>(spread_table.of[cube % spread_table.of.size()]) << i;
   }
-  return code;
-}
-
-using Place = std::pair<uint32_t, uint32_t>;  // Morton code, index
-
-/// Sorts by code, stably, in three rounds of 10 bits.
-void radix_sort(std::vector<Place> & places) {
-  std::vector<Place> other(places.size());
-  for (uint32_t shift = 0; shift < 30; shift += 10) {
-    std::vector<uint32_t> begin(1025);
-    for (const Place & place : places) {
-      ++begin[((place.first >> shift) & 1023) + 1];
-    }
-    for (size_t i = 1; i < begin.size(); ++i) {
-      begin[i] += begin[i - 1];
-    }
-    for (const Place & place : places) {
-      other[begin[(place.first >> shift) & 1023]++] = place;
-    }
-    places.swap(other);
-  }
+  return static_cast<uint16_t>(code);
 }
 
 }  // namespace
 
 ScanView lay_out_scan(const float * xyz_m, size_t count, float * floats) {
-  std::vector<Place> places;
-  places.reserve(count);
+  std::vector<uint16_t> cubes(count);
+  std::vector<uint32_t> next(cube_count + 1);  // of each cube the place of its next point
   for (size_t i = 0; i < count; ++i) {
-    const float * const point = xyz_m + 3 * i;
-    if (std::isfinite(point[0]) && std::isfinite(point[1]) && std::isfinite(point[2])) {
-      places.emplace_back(morton_code(point), static_cast<uint32_t>(i));
+    cubes[i] = cube_of(xyz_m + 3 * i);
+    next[cubes[i] == no_cube ? cube_count : cubes[i]]++;
+  }
+  uint32_t points = 0;
+  for (uint32_t cube = 0; cube < cube_count; ++cube) {
+    points += std::exchange(next[cube], points);
+  }
+  const ScanView scan = view_scan(floats, points);
+  const size_t stride = scan.groups * group_points;
+  for (size_t i = 0; i < count; ++i) {
+    if (cubes[i] != no_cube) {
+      const uint32_t place = next[cubes[i]]++;
+      for (size_t axis = 0; axis < 3; ++axis) {
+        floats[axis * stride + place] = xyz_m[3 * i + axis];
+      }
     }
   }
-  radix_sort(places);
-
-  const ScanView scan = view_scan(floats, places.size());
-  const size_t stride = scan.groups * group_points;
-  for (size_t i = 0; i < stride; ++i) {
-    for (size_t axis = 0; axis < 3; ++axis) {
-      floats[axis * stride + i] =
-        i < places.size() ? xyz_m[3 * size_t{places[i].second} + axis] : far_away_m;
-    }
+  for (size_t axis = 0; axis < 3; ++axis) {
+    std::fill(floats + axis * stride + points, floats + (axis + 1) * stride, far_away_m);
   }
   return scan;
 }

@@ -31,6 +31,8 @@ public:
   /// Time each worker was busy in the last job.
   std::vector<double> busy_ns() const;
   uint64_t replaced() const noexcept { return replaced_; }
+  /// Points that counted in the last call.
+  size_t used_points() const noexcept { return session_.what.points; }
 
 private:
   void put_scan(const float * xyz_m, size_t count);

@@ -42,25 +42,31 @@ public:
     if (position_m) {
       regularization = Regularization{scale_factor_, position_m->first, position_m->second};
     }
-    return to_dict(without_gil([&] {
+    return answer([&] {
       return matcher_.align(
         map, points.data(), points.shape(0), pose_from(guess), regularization);
-    }));
+    });
   }
 
   nb::dict evaluate(const VoxelMap & map, const FloatPoints & points, const PoseMatrix & pose) {
-    return to_dict(without_gil([&] {
+    return answer([&] {
       return matcher_.evaluate(map, points.data(), points.shape(0), pose_from(pose));
-    }));
+    });
   }
 
   Matcher & matcher() { return matcher_; }
 
 private:
+  /// The numbers that `f` finds, without the GIL, and how many points counted.
   template<typename F>
-  static auto without_gil(F && f) {
-    const nb::gil_scoped_release released;
-    return f();
+  nb::dict answer(F && f) {
+    const auto found = [&] {
+      const nb::gil_scoped_release released;
+      return f();
+    }();
+    nb::dict out = to_dict(found);
+    out["used_points"] = matcher_.used_points();
+    return out;
   }
 
   double scale_factor_;
