@@ -16,6 +16,8 @@ from rmw_manycore_py.ndt.arrays import Pose, ScanPoints, pose_matrix, scan_point
 from rmw_manycore_py.ndt.options import MatcherOptions
 from rmw_manycore_py.ndt.voxel_map import VoxelMap
 
+FEWEST_POINTS = 6  # a pose has six unknowns, and the surface that a point lies on fixes one
+
 
 class NativeMatcher(Protocol):
     """What the kernel offers, alone or with workers."""
@@ -105,6 +107,9 @@ class Matcher:
         numbers = self._native.align(voxel_map.native, scan, guess, position)
         if numbers["used_points"] == 0:
             return refused(guess, "the scan has no finite point", self.options)
+        if numbers["used_points"] < FEWEST_POINTS:
+            few = f"{numbers['used_points']} finite points do not say where a scan fits"
+            return refused(guess, f"too few points: {few}", self.options)
         return alignment_from(numbers, self.options)
 
     def score(self, points: ArrayLike, T_map_sensor: ArrayLike) -> Score:

@@ -59,6 +59,7 @@ def test_every_kind_of_cpu_finds_the_same_place(simd: str, monkeypatch: pytest.M
     [
         (np.zeros((0, 3)), GUESS, "no finite point"),
         (np.full((50, 3), np.nan), GUESS, "no finite point"),
+        (SCAN[:5], GUESS, "too few points"),
         (SCAN, GUESS * np.nan, "not finite"),
         (SCAN, np.zeros((4, 4)), "no rotation"),
         (SCAN, pose(1e9, 0, 0, 0, 0, 0), "no point of the scan lies in the map"),
