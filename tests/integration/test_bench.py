@@ -77,6 +77,13 @@ def test_idle_nodes_do_nothing() -> None:
     assert all_reached(run_bench("idle", "--nodes", "6", "--only", "manycore"))
 
 
+def test_scan_matching_is_measured_alone_and_split() -> None:
+    report = run_bench("ndt", "--only", "rmw_manycore")
+    units = {result["unit"] for result in report["results"]}
+    assert units == {"ns/point", "ms", "x", "%"}
+    assert all(result["median"] > 0 for result in report["results"])
+
+
 def test_the_report_is_written(tmp_path: Path) -> None:
     run_bench("rmw", "round-trip", "--only", "futex", "--output", str(tmp_path))
     assert {path.name for path in tmp_path.iterdir()} == {

@@ -41,7 +41,7 @@ def measure(run: Run) -> list[Result]:
             threads._native = _ndt.ThreadMatcher(native_options(options), cpus[:count], [])
             threads.set_map(voxel_map)
             contenders[f"{count} thread{'s' if count > 1 else ''}"] = _own(run, threads)
-        names = ("PCL", *PYTHON_PEERS)
+        names = [name for name in ("PCL", *PYTHON_PEERS) if run.wants(name)]
         peers = stack.enter_context(all_peers(cpus[0], VOXEL_SIZE_M, None, names))
         contenders.update({name: _peer(peer) for name, peer in peers.items()})
         results = run.interleave(NAME, "ms", contenders)

@@ -33,7 +33,8 @@ def question(pclomp: Path | None) -> Question:
 
     def measure(run: Run) -> list[Result]:
         cpu = usable()[-1]
-        with on_cpu(cpu), all_peers(cpu, VOXEL_SIZE_M, pclomp, tuple(KINDS)) as peers:
+        wanted = [name for name in KINDS if run.wants(name)]
+        with on_cpu(cpu), all_peers(cpu, VOXEL_SIZE_M, pclomp, wanted) as peers:
             return [
                 result
                 for name, (search, covariance) in KINDS.items()

@@ -9,7 +9,7 @@ from rmw_manycore_py import _ndt
 from rmw_manycore_py.bench.ndt.contenders import VOXEL_SIZE_M, map_for, on_cpu, usable
 from rmw_manycore_py.bench.ndt.world import world
 from rmw_manycore_py.bench.question import Measure, Question, Run
-from rmw_manycore_py.bench.summary import Goal, Result
+from rmw_manycore_py.bench.summary import Result
 from rmw_manycore_py.ndt import MatcherOptions
 from rmw_manycore_py.ndt.arrays import scan_points
 from rmw_manycore_py.ndt.matcher import native_options
@@ -72,6 +72,6 @@ def _measure_profile(run: Run, options: MatcherOptions) -> list[Result]:
 QUESTION = Question(
     "search and derivatives",
     measure,
-    (Goal(PROFILE, "both", "better", 99),),
+    (),
     "threads on the first usable CPUs",
 )
