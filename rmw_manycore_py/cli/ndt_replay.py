@@ -44,10 +44,10 @@ FILE = click.Path(dir_okay=False, path_type=Path)
 @click.option(
     "--guess",
     "kind",
-    type=click.Choice(["odometry", "velocity", "perturbed"]),
+    type=click.Choice(["odometry", "velocity", "perturbed", "stack"]),
     default="odometry",
     show_default=True,
-    help="Closed loop with odometry or with a constant velocity, or the reference, perturbed.",
+    help="Closed loop with odometry or constant velocity; the reference, perturbed; or no guesses.",
 )
 @click.option(
     "--drift",
@@ -113,20 +113,22 @@ def command(
     error, latency and what was lost. The exit status is 1 if a scan was lost, late or diverged.
     """
     _enter(rmw)
-    from rmw_manycore_py.ndt.replay import prediction as guesses
+    from rmw_manycore_py.ndt.replay import prediction
+    from rmw_manycore_py.ndt.replay.guess_source import Guesses, GuessSource, StackInputs
     from rmw_manycore_py.ndt.replay.session import run
 
     drive = load_recording(recording)
     if scans is not None:
         drive = drive.first(scans)
-    predictions: dict[str, Callable[[], guesses.Prediction]] = {
-        "odometry": lambda: guesses.Odometry(drive, drift, seed),
-        "velocity": lambda: guesses.Velocity(drive),
-        "perturbed": lambda: guesses.Perturbed(drive, offset_m, turn_deg, seed),
+    sources: dict[str, Callable[[], GuessSource]] = {
+        "odometry": lambda: Guesses(drive, prediction.Odometry(drive, drift, seed)),
+        "velocity": lambda: Guesses(drive, prediction.Velocity(drive)),
+        "perturbed": lambda: Guesses(drive, prediction.Perturbed(drive, offset_m, turn_deg, seed)),
+        "stack": lambda: StackInputs(drive, drift, seed),
     }
     points = None if no_map else _map_of(recording, drive, map_path)
     tally = Tally(deadline_ms)
-    run(drive, predictions[kind](), tally, points, voxel_m, rate_hz, timeout_s)
+    run(drive, sources[kind](), tally, points, voxel_m, rate_hz, timeout_s)
     if csv_path is not None:
         tally.write_csv(csv_path)
     if plot_path is not None:
@@ -168,6 +170,8 @@ def _print(summary: Summary, deadline_ms: float) -> None:
         ("guess error, degrees", None, None, s.guess_error_deg_max),
     ]
     for name, *values in rows:
+        if all(value is None or value != value for value in values):
+            continue  # nothing was answered, or no guess made here
         table.add_row(name, *("" if value is None else f"{value:.3f}" for value in values))
     print_table(table)
     cpu = "" if s.node_cpu_percent is None else f"; matcher's CPU: {s.node_cpu_percent:.1f} %"

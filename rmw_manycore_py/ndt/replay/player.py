@@ -11,38 +11,31 @@ import numpy as np
 import rclpy
 from builtin_interfaces.msg import Time
 from diagnostic_msgs.msg import DiagnosticArray
-from geometry_msgs.msg import PoseStamped, PoseWithCovarianceStamped
+from geometry_msgs.msg import PoseStamped
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from sensor_msgs.msg import PointCloud2
 
 from rmw_manycore_py.errors import ManycoreError
-from rmw_manycore_py.ndt.nodes.conversions import (
-    matrix_of,
-    nanoseconds,
-    pose_with_covariance,
-)
+from rmw_manycore_py.ndt.nodes.conversions import matrix_of, nanoseconds
 from rmw_manycore_py.ndt.nodes.point_cloud import encode
-from rmw_manycore_py.ndt.poses import Matrix
 from rmw_manycore_py.ndt.recording import Recording
-from rmw_manycore_py.ndt.replay.prediction import MEASURED, Prediction
+from rmw_manycore_py.ndt.replay.guess_source import MAP_FRAME, GuessSource, stamp_of
 from rmw_manycore_py.ndt.replay.tally import Played, Tally
 from rmw_manycore_py.ndt.thinning import Points, voxel_centroids
 
-MAP_FRAME, BASE_FRAME = "map", "base_link"
+BASE_FRAME = "base_link"
 WARM_UP_PERIOD_S = 0.25
 FOLLOW_UP_S = 1.0  # how long answers are waited for after the last scan
 
 
 class Player(Node):
-    """Publishes what a laptop's stack would, and measures what comes back."""
+    """Publishes map and scans as a laptop would, and measures what comes back."""
 
-    def __init__(
-        self, drive: Recording, prediction: Prediction, tally: Tally, voxel_m: float
-    ) -> None:
+    def __init__(self, drive: Recording, source: GuessSource, tally: Tally, voxel_m: float) -> None:
         super().__init__("ndt_replay")
         self._drive = drive
-        self._prediction = prediction
+        self._source = source
         self._tally = tally
         self._voxel_m = voxel_m
         self._waiting: dict[int, Played] = {}  # by stamp, ns
@@ -50,9 +43,7 @@ class Player(Node):
         self._is_warm = False
         kept = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
         self._map = self.create_publisher(PointCloud2, "pointcloud_map", kept)
-        self._guesses = self.create_publisher(
-            PoseWithCovarianceStamped, "ekf_pose_with_covariance", 10
-        )
+        self._source.advertise(self)
         self._scans = self.create_publisher(PointCloud2, "points_raw", 5)
         self.create_subscription(PoseStamped, "ndt_pose", self._on_pose, 100)
         self.create_subscription(DiagnosticArray, "/diagnostics", self._on_diagnostics, 100)
@@ -70,7 +61,8 @@ class Player(Node):
                 raise ManycoreError(self._why_cold(timeout_s))
             stamp_ns = time.time_ns()
             self._warm_stamps.add(stamp_ns)
-            self._send(stamp_ns, self._drive.poses[0], scan)
+            self._source.send_first(stamp_ns)
+            self._send(stamp_ns, scan)
             self._spin_until(time.monotonic() + WARM_UP_PERIOD_S, lambda: self._is_warm)
 
     def play(self, rate_hz: float | None, report: Callable[[Played], None]) -> None:
@@ -83,11 +75,12 @@ class Player(Node):
             scan = self._scan(index)
             self._spin_until(start + float(time_s))
             stamp_ns = time.time_ns()
-            guess = self._prediction.guess(index, float(time_s))
-            row = Played(index, self._drive.poses[index], guess, time.monotonic())
+            sent_s = time.monotonic()
+            guess = self._source.send(index, float(time_s), stamp_ns)
+            row = Played(index, self._drive.poses[index], guess, sent_s)
             self._tally.rows.append(row)
             self._waiting[stamp_ns] = row
-            self._send(stamp_ns, guess, scan)
+            self._send(stamp_ns, scan)
             report(row)
         end = time.monotonic() + FOLLOW_UP_S
         self._spin_until(end, lambda: not self._waiting)
@@ -98,12 +91,8 @@ class Player(Node):
             points = voxel_centroids(points, (self._voxel_m,) * 3)
         return encode(points, Time(), BASE_FRAME)
 
-    def _send(self, stamp_ns: int, guess: Matrix, scan: Any) -> None:
-        """Send a guess for the time of the scan (two, as a matcher interpolates), and the scan."""
-        stamp = _stamp(stamp_ns)
-        for time_ns in (stamp_ns - 1_000_000, stamp_ns):
-            self._guesses.publish(pose_with_covariance(guess, MEASURED, _stamp(time_ns), MAP_FRAME))
-        scan.header.stamp = stamp
+    def _send(self, stamp_ns: int, scan: Any) -> None:
+        scan.header.stamp = stamp_of(stamp_ns)
         self._scans.publish(scan)
 
     def _on_pose(self, message: Any) -> None:
@@ -116,7 +105,7 @@ class Player(Node):
         row.latency_ms = 1e3 * (time.monotonic() - row.sent_s)
         row.result = matrix_of(message.pose)
         time_s = float(self._drive.times_s()[row.index])
-        self._prediction.result(row.index, time_s, row.result)
+        self._source.result(row.index, time_s, row.result)
 
     def _on_diagnostics(self, message: Any) -> None:
         for status in message.status:
@@ -139,7 +128,3 @@ class Player(Node):
             f"no ndt_pose within {timeout_s:g} s, though points_raw has a subscriber: its "
             "/diagnostics and its log say why (no map, not activated, a score below its threshold)"
         )
-
-
-def _stamp(time_ns: int) -> Time:
-    return Time(sec=time_ns // 1_000_000_000, nanosec=time_ns % 1_000_000_000)

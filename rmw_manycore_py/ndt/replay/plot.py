@@ -35,8 +35,9 @@ def plot(tally: Tally, map_points: Points | None, path: Path) -> None:
 
     indices = [row.index for row in answered]
     errors = np.array([row.error for row in answered]).reshape(-1, 2)
-    guesses = np.array([row.guess_error for row in tally.rows])
-    axes[1].plot([row.index for row in tally.rows], guesses[:, 0], color="0.7", label="guess [m]")
+    guesses = [(row.index, row.guess_error[0]) for row in tally.rows if row.guess_error]
+    if guesses:
+        axes[1].plot(*np.array(guesses).T, color="0.7", label="guess [m]")
     axes[1].plot(indices, errors[:, 0], label="result [m]")
     axes[1].plot(indices, errors[:, 1], label="result [degrees]")
     axes[1].set(xlabel="scan", yscale="log", title="error")

@@ -8,8 +8,8 @@ import gc
 import rclpy
 
 from rmw_manycore_py.ndt.recording import Recording
+from rmw_manycore_py.ndt.replay.guess_source import GuessSource
 from rmw_manycore_py.ndt.replay.player import Player
-from rmw_manycore_py.ndt.replay.prediction import Prediction
 from rmw_manycore_py.ndt.replay.progress import ReplayProgress
 from rmw_manycore_py.ndt.replay.tally import Tally
 from rmw_manycore_py.ndt.thinning import Points
@@ -17,7 +17,7 @@ from rmw_manycore_py.ndt.thinning import Points
 
 def run(
     drive: Recording,
-    prediction: Prediction,
+    source: GuessSource,
     tally: Tally,
     map_points: Points | None,
     voxel_m: float,
@@ -26,7 +26,7 @@ def run(
 ) -> None:
     """Publish the map if there is one, wait for the matcher, play; all goes into the tally."""
     rclpy.init()
-    player = Player(drive, prediction, tally, voxel_m)
+    player = Player(drive, source, tally, voxel_m)
     try:
         if map_points is not None:
             player.publish_map(map_points)

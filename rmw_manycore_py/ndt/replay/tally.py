@@ -22,15 +22,15 @@ class Played:
 
     index: int
     reference: Matrix
-    guess: Matrix
+    guess: Matrix | None  # None: the stack on the platform makes it
     sent_s: float
     latency_ms: float | None = None
     result: Matrix | None = None
 
     @property
-    def guess_error(self) -> tuple[float, float]:
+    def guess_error(self) -> tuple[float, float] | None:
         """Return the error of the guess in metres and degrees."""
-        return _error(self.reference, self.guess)
+        return None if self.guess is None else _error(self.reference, self.guess)
 
     @property
     def error(self) -> tuple[float, float] | None:
@@ -90,7 +90,7 @@ class Tally:
         """Return the figures."""
         answered = self.answered()
         errors = np.array([row.error for row in answered]).reshape(-1, 2)
-        guesses = np.array([row.guess_error for row in self.rows]).reshape(-1, 2)
+        guesses = np.array([r.guess_error for r in self.rows if r.guess is not None]).reshape(-1, 2)
         latencies = np.array([row.latency_ms for row in answered], np.float64)
         diverged = (errors[:, 0] > DIVERGED_M) | (errors[:, 1] > DIVERGED_DEG)
         within = (errors[:, 0] <= 0.2) & (errors[:, 1] <= 1.0)
@@ -122,8 +122,8 @@ class Tally:
                 ["scan", "guess_error_m", "guess_error_deg", "error_m", "error_deg", "latency_ms"]
             )
             for row in self.rows:
-                error = row.error or ("", "")
-                writer.writerow([row.index, *row.guess_error, *error, row.latency_ms])
+                errors = [*(row.guess_error or ("", "")), *(row.error or ("", ""))]
+                writer.writerow([row.index, *errors, row.latency_ms])
 
     def _cpu_percent(self) -> float | None:
         """Return CPU time over wall time between the node's first and last report."""

@@ -1,0 +1,127 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""How a replay lets the matcher know where a scan may be: with guesses, or with what makes them."""
+
+from __future__ import annotations
+
+import time
+from typing import Protocol
+
+import numpy as np
+from builtin_interfaces.msg import Time
+from geometry_msgs.msg import PoseWithCovarianceStamped, TwistWithCovarianceStamped
+from rclpy.node import Node
+
+from rmw_manycore_py.ndt import poses
+from rmw_manycore_py.ndt.nodes.conversions import pose_with_covariance
+from rmw_manycore_py.ndt.poses import Matrix
+from rmw_manycore_py.ndt.recording import Recording
+from rmw_manycore_py.ndt.replay.prediction import MEASURED, Prediction
+
+MAP_FRAME = "map"
+FIRST_POSE_PERIOD_S = 5.0  # between first poses: the initializer matches many guesses for each
+ROUGH = np.diag([0.25, 0.25, 0.01, 0.0001, 0.0001, 0.1])  # m^2, rad^2
+SPEED_VARIANCE, TURN_VARIANCE = 0.04, 0.01  # (m/s)^2, (rad/s)^2
+
+
+class GuessSource(Protocol):
+    """What is sent besides scans."""
+
+    def advertise(self, node: Node) -> None:
+        """Create the publishers."""
+
+    def send_first(self, stamp_ns: int) -> None:
+        """Send what belongs to the first scan, while all wait for it to be answered."""
+
+    def send(self, index: int, time_s: float, stamp_ns: int) -> Matrix | None:
+        """Send what belongs to a scan; return the guess if there is one."""
+
+    def result(self, index: int, time_s: float, T_map_sensor: Matrix) -> None:
+        """Take the pose that a scan was found to have."""
+
+
+class Guesses:
+    """Guesses of a prediction, as the EKF of a laptop sends them."""
+
+    def __init__(self, drive: Recording, prediction: Prediction) -> None:
+        self._first = drive.poses[0]
+        self._prediction = prediction
+
+    def advertise(self, node: Node) -> None:
+        """Create the publisher."""
+        self._publisher = node.create_publisher(
+            PoseWithCovarianceStamped, "ekf_pose_with_covariance", 10
+        )
+
+    def send_first(self, stamp_ns: int) -> None:
+        """Send the first pose, exactly."""
+        self._publish(stamp_ns, self._first)
+
+    def send(self, index: int, time_s: float, stamp_ns: int) -> Matrix:
+        """Send the prediction."""
+        guess = self._prediction.guess(index, time_s)
+        self._publish(stamp_ns, guess)
+        return guess
+
+    def result(self, index: int, time_s: float, T_map_sensor: Matrix) -> None:
+        """Tell the prediction."""
+        self._prediction.result(index, time_s, T_map_sensor)
+
+    def _publish(self, stamp_ns: int, guess: Matrix) -> None:
+        """Send a guess for the time of the scan: two, as a matcher interpolates."""
+        for time_ns in (stamp_ns - 1_000_000, stamp_ns):
+            message = pose_with_covariance(guess, MEASURED, stamp_of(time_ns), MAP_FRAME)
+            self._publisher.publish(message)
+
+
+class StackInputs:
+    """A first pose and the speed, for a stack on the platform that makes its guesses itself."""
+
+    def __init__(self, drive: Recording, drift: float, seed: int) -> None:
+        self._drive = drive
+        self._drift = drift
+        self._generator = np.random.default_rng(seed)
+        self._next_first_s = 0.0
+
+    def advertise(self, node: Node) -> None:
+        """Create the publishers."""
+        self._first = node.create_publisher(PoseWithCovarianceStamped, "initialpose", 10)
+        self._twist = node.create_publisher(
+            TwistWithCovarianceStamped, "in_twist_with_covariance", 10
+        )
+
+    def send_first(self, stamp_ns: int) -> None:
+        """Send a rough first pose now and then, and that the vehicle stands."""
+        self._publish_twist(stamp_ns, 0.0, 0.0)
+        if time.monotonic() >= self._next_first_s and self._first.get_subscription_count():
+            self._next_first_s = time.monotonic() + FIRST_POSE_PERIOD_S
+            rough = poses.perturbed(self._drive.poses[0], 0.3, 0.05, self._generator)
+            message = pose_with_covariance(rough, ROUGH, stamp_of(stamp_ns), MAP_FRAME)
+            self._first.publish(message)
+
+    def send(self, index: int, time_s: float, stamp_ns: int) -> None:  # noqa: ARG002
+        """Send speed and turn rate from this scan to the next, with an error of `drift`."""
+        times_s = self._drive.times_s()
+        nearest = min(index, len(self._drive) - 2)
+        before, after = self._drive.poses[nearest : nearest + 2]
+        period_s = float(times_s[nearest + 1] - times_s[nearest])
+        motion = poses.inverse(before) @ after
+        errors = 1.0 + self._drift * self._generator.normal(size=2)
+        speed_m_s = float(motion[0, 3] / period_s * errors[0])
+        turn_rad_s = float(poses.to_rpy(motion)[2] / period_s * errors[1])
+        self._publish_twist(stamp_ns, speed_m_s, turn_rad_s)
+
+    def result(self, index: int, time_s: float, T_map_sensor: Matrix) -> None:
+        """Be indifferent: the stack knows."""
+
+    def _publish_twist(self, stamp_ns: int, speed_m_s: float, turn_rad_s: float) -> None:
+        message = TwistWithCovarianceStamped()
+        message.header.stamp = stamp_of(stamp_ns)
+        message.header.frame_id = "base_link"
+        message.twist.twist.linear.x, message.twist.twist.angular.z = speed_m_s, turn_rad_s
+        message.twist.covariance[0], message.twist.covariance[35] = SPEED_VARIANCE, TURN_VARIANCE
+        self._twist.publish(message)
+
+
+def stamp_of(time_ns: int) -> Time:
+    """Return nanoseconds as a builtin_interfaces/msg/Time."""
+    return Time(sec=time_ns // 1_000_000_000, nanosec=time_ns % 1_000_000_000)

@@ -1,0 +1,109 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Drives played from Fast DDS through the bridge to a matcher or a whole stack on the platform.
+
+Latency is not tested here, so the deadline is that of a machine with other things to do.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from pathlib import Path
+from typing import Any
+
+import pytest
+from support import IS_MANYCORE, MAPFILES, PATIENCE_S, REPOSITORY, Program, manycore_command
+
+pytestmark = [
+    pytest.mark.integration,
+    pytest.mark.skipif(not IS_MANYCORE, reason="the bridge is part of rmw_manycore"),
+]
+
+DATA = Path(os.environ.get("MANYCORE_DATA", REPOSITORY.parent / "shared" / "data"))
+BALM = DATA / "balm_seq177_v0.10.npz"
+needs_data = pytest.mark.skipif(not BALM.exists(), reason=f"no {BALM}; set MANYCORE_DATA")
+LONG_S = 4 * PATIENCE_S
+
+
+@pytest.fixture(scope="module")
+def street(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return a directory with a drive of ten scans and its map."""
+    from click.testing import CliRunner
+
+    from rmw_manycore_py.cli.main import cli
+
+    directory = tmp_path_factory.mktemp("street")
+    arguments = ["ndt", "simulate", str(directory), "--length", "8"]
+    result = CliRunner().invoke(cli, arguments)
+    assert result.exit_code == 0, result.output
+    return directory
+
+
+@pytest.fixture
+def offload(start, platform) -> Program:
+    """Return the off-loaded matcher, running."""
+    program = start(manycore_command("run", MAPFILES / "ndt_offload.yaml"))
+    program.wait_for("ndt_scan_matcher started")
+    return program
+
+
+def replayed(start: Any, recording: Path, *options: str, status: int = 0) -> dict[str, Any]:
+    """Return the figures of a replay."""
+    options = ("--deadline", "5000", "--json", *options)
+    replay = start(manycore_command("ndt", "replay", recording, *options))
+    assert replay.wait(LONG_S) == status, replay
+    figures: dict[str, Any] = json.loads(replay.output[replay.output.index("{") :])
+    return figures
+
+
+def test_every_scan_of_a_drive_is_answered(start, offload, street, tmp_path):
+    files = ("--csv", str(tmp_path / "scans.csv"))
+    figures = replayed(start, street / "drive.npz", *files)
+    assert (figures["scans"], figures["answered"]) == (10, 10)
+    assert figures["within_share"] == 1.0
+    assert figures["node_cpu_percent"] >= 0.0
+    assert len((tmp_path / "scans.csv").read_text().splitlines()) == 11
+    assert offload.stop() == 0, offload
+    assert "Traceback" not in offload.output
+
+
+@pytest.mark.parametrize("guess", ["velocity", "perturbed"])
+def test_guesses_of_all_kinds(start, offload, street, guess):
+    figures = replayed(start, street / "drive.npz", "--guess", guess)
+    assert figures["within_share"] == 1.0
+    if guess == "perturbed":
+        assert figures["guess_error_m_max"] == pytest.approx(0.5)
+        assert figures["guess_error_deg_max"] == pytest.approx(3.0)
+
+
+def test_a_plot(start, offload, street, tmp_path):
+    pytest.importorskip("matplotlib", reason="plots need matplotlib")
+    replayed(start, street / "drive.npz", "--plot", str(tmp_path / "replay.png"))
+    assert (tmp_path / "replay.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_a_whole_stack_on_the_platform(start, platform, street):
+    """Voxel filter, pose initializer and EKF close the loop at 10 Hz with the matcher."""
+    stack = start(manycore_command("run", MAPFILES / "ndt_stack.yaml"))
+    figures = replayed(start, street / "drive.npz", "--guess", "stack")
+    assert (figures["answered"], figures["diverged"]) == (10, 0)
+    assert figures["within_share"] == 1.0
+    assert stack.stop() == 0, stack
+    assert "Traceback" not in stack.output
+
+
+@needs_data
+def test_a_recorded_drive_in_closed_loop(start, offload):
+    """Carried by hand, turning by up to 50 degrees between scans; half of them made the map."""
+    figures = replayed(start, BALM, "--rate", "10", "--scans", "120")
+    assert (figures["scans"], figures["answered"], figures["diverged"]) == (120, 120, 0)
+    assert figures["within_share"] >= 0.99
+    assert figures["error_m_median"] < 0.06
+
+
+def test_nobody_there(start, street):
+    """The error says what to start."""
+    options = ("--timeout", "1")
+    replay = start(manycore_command("ndt", "replay", street / "drive.npz", *options))
+    assert replay.wait(LONG_S) == 1
+    assert "nobody subscribes points_raw: start a scan matcher" in replay.output
