@@ -113,12 +113,13 @@ def _stale_platforms() -> Finding:
         return Finding(subject, Verdict.FAILURE, f"not checked: {error}")
     dead = [name for name in _transport.platforms() if not is_alive(name)]
     alive = len(_transport.platforms()) - len(dead)
-    found = f"{alive} alive" + (f", dead: {', '.join(dead)}" if dead else "")
-    return advised(subject, not dead, found, "manycore clean")
+    found = f"{alive} alive" + (f", dead or unreadable: {', '.join(dead)}" if dead else "")
+    advice = "manycore clean; one that stays is used by nodes of another version: stop them first"
+    return advised(subject, not dead, found, advice)
 
 
 def is_alive(name: str) -> bool:
-    """Tell whether somebody is on a platform; a platform that cannot be read is dead."""
+    """Tell whether somebody is on a platform; one that cannot be read counts as dead."""
     from rmw_manycore_py import _transport
 
     try:
