@@ -89,6 +89,19 @@ def test_segment_that_is_random_after_its_header(start, directory, name, seed):
     assert "RCLError" in newcomer.output, newcomer
 
 
+def test_segment_of_another_version(start, directory):
+    """It is smaller than ours, and still the version is what the error is about."""
+
+    def damage(head: bytes, size: int) -> tuple[bytes, int]:
+        magic, version, rest = head[:8], head[8:12], head[12:]
+        return magic + bytes([version[0] + 1]) + version[1:] + rest, size // 2
+
+    damage_file(directory / "registry", damage)
+    newcomer = start(example_command("listener"))
+    assert_refuses(newcomer, directory)
+    assert "has layout version" in newcomer.output, newcomer
+
+
 def test_segment_of_another_platform(start, directory):
     """A whole and valid registry, but of somebody else."""
     other = f"{directory.name}-other"

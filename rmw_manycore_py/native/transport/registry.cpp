@@ -17,14 +17,18 @@ uint64_t random_nonce() {
 }
 
 SharedMemory open_registry(const PlatformPaths & paths) {
-  SharedMemory memory = SharedMemory::open(paths.registry(), registry_bytes);
+  // The version before the size: a registry of another version may well be smaller.
+  SharedMemory memory = SharedMemory::open(paths.registry(), sizeof(SegmentHeader));
   check_segment(
     memory.at<SegmentHeader>(0), registry_magic, memory.size(), paths.registry().c_str());
+  const std::string damaged =
+    paths.registry() + " is damaged; stop the platform's nodes and run 'manycore clean'";
+  if (memory.size() < registry_bytes) {
+    throw Error(ErrorCode::corrupt, damaged);
+  }
   const Profile & profile = memory.at<RegistryHeader>(0).profile;
   if (profile.clusters == 0 || profile.clusters > max_clusters) {
-    throw Error(
-      ErrorCode::corrupt,
-      paths.registry() + " is damaged; stop the platform's nodes and run 'manycore clean'");
+    throw Error(ErrorCode::corrupt, damaged);
   }
   return memory;
 }
