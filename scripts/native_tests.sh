@@ -2,7 +2,7 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #
 # Builds and runs the native tests: scripts/native_tests.sh BUILD_DIR [CMAKE_OPTION..]
-# They test platform and transport, so they need no ROS.
+# They test platform, transport and scan matcher, so they need no ROS.
 set -eu
 cd "$(dirname "$0")/.."
 build=$1

@@ -1,0 +1,123 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+// The kernel for each kind of CPU against the portable one, at the sizes where groups and bins
+// begin and end; its parts where they have a known answer. Sanitizers see what Python tests do not.
+
+#include <doctest/doctest.h>
+
+#include <random>
+#include <vector>
+
+#include "ndt/aligned_floats.hpp"
+#include "ndt/matcher.hpp"
+#include "ndt/more_thuente.hpp"
+#include "ndt/table.hpp"
+
+namespace manycore::ndt {
+namespace {
+
+/// A noisy ground with steps, 40 m x 40 m.
+std::vector<double> ground() {
+  std::mt19937 random(5);
+  std::normal_distribution<double> noise(0, 0.05);
+  std::vector<double> xyz_m;
+  for (double x = -20; x < 20; x += 0.25) {
+    for (double y = -20; y < 20; y += 0.25) {
+      const double z = x > 3 ? 1.5 : 0;
+      xyz_m.insert(xyz_m.end(), {x + noise(random), y + noise(random), z + noise(random)});
+    }
+  }
+  return xyz_m;
+}
+
+std::vector<float> scan_of(size_t points) {
+  std::mt19937 random(9);
+  std::uniform_real_distribution<float> place(-25, 25);
+  std::vector<float> xyz_m;
+  for (size_t i = 0; i < 3 * points; ++i) {
+    xyz_m.push_back(i % 3 == 2 ? place(random) / 20 : place(random));
+  }
+  return xyz_m;
+}
+
+std::vector<Simd> kinds() {
+  std::vector<Simd> found;
+  for (const Simd simd : {Simd::portable, Simd::avx2, Simd::avx512}) {
+    if (simd <= choose_simd()) {
+      found.push_back(simd);
+    }
+  }
+  return found;
+}
+
+const Pose6 pose{0.3, -0.2, 0.1, 0.02, -0.03, 0.4};
+
+}  // namespace
+
+TEST_CASE("every kind of CPU adds up the same, whatever the size of the scan") {
+  const std::vector<double> points = ground();
+  for (const Search search : {Search::radius, Search::direct7, Search::direct1}) {
+    MapOptions options;
+    options.search = search;
+    const VoxelMap map = build_voxel_map(points.data(), points.size() / 3, options);
+    for (const size_t count : {0, 1, 15, 16, 17, 1535, 1536, 1537, 60000}) {
+      const std::vector<float> scan = scan_of(count);
+      AlignedFloats floats;
+      const ScanView view =
+        lay_out_scan(scan.data(), count, floats.with_room_for(scan_floats(count)));
+      const Problem problem{map.view(), view, {}, {}};
+      const Derivatives expected = evaluate_alone(problem, kernel_portable(), pose);
+      for (const Simd simd : kinds()) {
+        const Derivatives found = evaluate_alone(problem, kernel_of(simd), pose);
+        CHECK(found.pairs == expected.pairs);
+        CHECK(found.points == expected.points);
+        CHECK(found.score == doctest::Approx(expected.score).epsilon(1e-5));
+        for (size_t i = 0; i < 6; ++i) {
+          CHECK(found.hessian[i][i] == doctest::Approx(expected.hessian[i][i]).epsilon(1e-3));
+        }
+      }
+    }
+  }
+}
+
+TEST_CASE("search and derivatives apart are the pass") {
+  const std::vector<double> points = ground();
+  const VoxelMap map = build_voxel_map(points.data(), points.size() / 3, {});
+  const std::vector<float> scan = scan_of(5000);
+  AlignedFloats floats;
+  const ScanView view = lay_out_scan(scan.data(), 5000, floats.with_room_for(scan_floats(5000)));
+  std::vector<uint32_t> found(view.groups * group_points);
+  const PassPose at = pass_pose(pose, map.header());
+  for (const Simd simd : kinds()) {
+    const Kernel kernel = kernel_of(simd);
+    for (size_t bin = 0; bin < bin_count; ++bin) {
+      kernel.search(map.view(), view, at, bin, found.data());
+      const TangentSums apart = kernel.derive(map.view(), view, at, 0.1F, bin, found.data());
+      const TangentSums whole = kernel.pass(map.view(), view, at, 0.1F, bin);
+      CHECK(std::equal(apart.of, apart.of + sum_count, whole.of));
+    }
+  }
+}
+
+TEST_CASE("cells that see nothing have the empty list") {
+  const std::vector<double> points = ground();
+  const VoxelMap map = build_voxel_map(points.data(), points.size() / 3, {});
+  CHECK(find_list(map.view(), 0) == empty_list);
+  CHECK(map.view().lists[empty_list] == 0);
+}
+
+TEST_CASE("eigenvalues and eigenvectors make the matrix") {
+  const Matrix3 matrix{{{4, 1, -2}, {1, 2, 0}, {-2, 0, 3}}};
+  const Matrix3 again = symmetric_eigen(matrix).map([](double value) { return value; });
+  for (size_t i = 0; i < 3; ++i) {
+    for (size_t j = 0; j < 3; ++j) {
+      CHECK(again[i][j] == doctest::Approx(matrix[i][j]));
+    }
+  }
+}
+
+TEST_CASE("the line search comes near the minimum of a parabola") {
+  const auto parabola = [](double x) { return LinePoint{x, (x - 2) * (x - 2), 2 * (x - 2)}; };
+  CHECK(more_thuente(parabola(0), 4.5, 0.01, 5, parabola) == doctest::Approx(2).epsilon(0.5));
+}
+
+}  // namespace manycore::ndt
