@@ -210,15 +210,18 @@ inline void add_points(const Sight & s, const PointSums & p, F (&sums)[sum_count
   }
 }
 
+/// Moves the lanes' sums to double precision; halves are added first, which the compiler does in
+/// registers.
 inline void drain(F (&sums)[sum_count], TangentSums & out) {
   for (size_t i = 0; i < sum_count; ++i) {
     float lanes[Lanes::width];
     Lanes::store(lanes, sums[i]);
-    double total = 0;
-    for (const float lane : lanes) {
-      total += static_cast<double>(lane);
+    for (size_t half = Lanes::width / 2; half > 0; half /= 2) {
+      for (size_t lane = 0; lane < half; ++lane) {
+        lanes[lane] += lanes[lane + half];
+      }
     }
-    out.of[i] += total;
+    out.of[i] += static_cast<double>(lanes[0]);
     sums[i] = Lanes::set1(0);
   }
 }
