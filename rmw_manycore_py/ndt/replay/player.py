@@ -26,6 +26,9 @@ from rmw_manycore_py.ndt.thinning import Points, voxel_centroids
 
 BASE_FRAME = "base_link"
 WARM_UP_PERIOD_S = 0.25
+# Topics may overtake each other on their way; a filter's prediction is there before the scan, which
+# a LiDAR takes a tenth of a second for.
+GUESS_LEAD_S = 0.005
 FOLLOW_UP_S = 1.0  # how long answers are waited for after the last scan
 
 
@@ -75,9 +78,9 @@ class Player(Node):
             scan = self._scan(index)
             self._spin_until(start + float(time_s))
             stamp_ns = time.time_ns()
-            sent_s = time.monotonic()
             guess = self._source.send(index, float(time_s), stamp_ns)
-            row = Played(index, self._drive.poses[index], guess, sent_s)
+            self._spin_until(time.monotonic() + GUESS_LEAD_S)
+            row = Played(index, self._drive.poses[index], guess, time.monotonic())
             self._tally.rows.append(row)
             self._waiting[stamp_ns] = row
             self._send(stamp_ns, scan)
