@@ -75,7 +75,7 @@ install_extra() {
   .venv/bin/pip install --quiet --requirement .venv/requirements.txt
   # Open3D's wheel needs libraries of the system that a machine without a display lacks.
   [ "$1" != ndt ] || .venv/bin/python -c 'import open3d' 2>/dev/null ||
-    install_packages libusb-1.0-0 libgl1 libgomp1 libx11-6
+    install_packages libusb-1.0-0 libgl1 libegl1 libgomp1 libx11-6
   touch ".venv/$1"
 }
 

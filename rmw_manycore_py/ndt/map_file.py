@@ -54,7 +54,7 @@ def load_open3d() -> ModuleType:
         raise ManycoreError(
             f"Open3D cannot be loaded ({error}). Maps as PCD and PLY, and thinning, need it: "
             "pip install 'rmw-manycore[ndt]'; its system libraries: "
-            "apt install libusb-1.0-0 libgl1 libgomp1 libx11-6"
+            "apt install libusb-1.0-0 libgl1 libegl1 libgomp1 libx11-6"
         ) from error
     assert isinstance(open3d, ModuleType)
     open3d.utility.set_verbosity_level(open3d.utility.VerbosityLevel.Error)
