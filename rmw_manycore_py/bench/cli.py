@@ -11,6 +11,7 @@ import click
 from rich.console import Console
 
 from rmw_manycore_py.bench import (
+    bridge,
     fan_out,
     first_message,
     idle,
@@ -116,6 +117,13 @@ def ndt_command(pclomp: Path | None, **options: Any) -> None:
     """Scan matching beside PCL, pclomp, small_gicp and Open3D, and over workers."""
     questions = [passes.question(pclomp), alignments.QUESTION, split.QUESTION]
     _answer(questions, **options)
+
+
+@bench.command("bridge")
+@_common_options
+def bridge_command(**options: Any) -> None:
+    """Round trips of a node outside with one inside, and what an idle bridge costs."""
+    _answer([bridge.QUESTION], **options)
 
 
 @bench.command("all")

@@ -140,7 +140,7 @@ class Session:
         self._cpus = cpus
         self._stack = ExitStack()
         # Fast DDS takes its ports from the domain; above 100 they reach into those of clients.
-        self._domain = (os.getpid() + next(_numbers)) % 100 + 1
+        self.domain = (os.getpid() + next(_numbers)) % 100 + 1
 
     def __enter__(self) -> Session:
         self._profile = self._write_profile()
@@ -158,6 +158,10 @@ class Session:
         """Start an rclpy program as a party; by hand means without the library path set."""
         command = [sys.executable, "-m", f"{NODES}.{module}", *map(str, arguments)]
         return self._start(command, party, with_library_path=not by_hand)
+
+    def module(self, name: str, party: int, *arguments: object) -> Process:
+        """Start any Python program as a party."""
+        return self._start([sys.executable, "-m", name, *map(str, arguments)], party)
 
     def _start(
         self, command: Sequence[str | Path], party: int, with_library_path: bool = True
@@ -196,7 +200,7 @@ class Session:
             **middleware.variables,
             "MANYCORE_PLATFORM": self.platform,
             "MANYCORE_CLUSTER": str(middleware.cluster_of(party)),
-            "ROS_DOMAIN_ID": str(self._domain),
+            "ROS_DOMAIN_ID": str(self.domain),
         }
         for name in ("MANYCORE_CORE", WHEELS_BOOTSTRAPPED):
             result.pop(name, None)

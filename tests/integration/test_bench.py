@@ -15,6 +15,7 @@ from support import PATIENCE_S, PLATFORMS, manycore_command, wait_until
 pytestmark = pytest.mark.integration
 
 OWN = ("--only", "(block)")
+FAST_DDS_AND_OURS = "Fast DDS + platform"
 OTHERS = ("--only", "futex", "--only", "pipe", "--only", "Fast DDS")
 
 
@@ -98,3 +99,8 @@ def test_a_plot_needs_a_place() -> None:
     result = subprocess.run([str(word) for word in command], text=True, capture_output=True)
     assert result.returncode == 2
     assert "--output" in result.stderr
+
+
+def test_bridge() -> None:
+    report = run_bench("bridge")
+    assert {result["contender"] for result in report["results"]} >= {"bridged", FAST_DDS_AND_OURS}

@@ -1,0 +1,114 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""What the bridge adds: round trips of an rclpy node outside with one inside, and an idle bridge.
+
+There and back a message takes two hops of Fast DDS and two of the platform. So the bridged round
+trip is held against the sum of a round trip in Fast DDS and one on the platform, of the same run.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+
+from rmw_manycore_py.bench.contenders import BETWEEN, FAST_DDS, Middleware
+from rmw_manycore_py.bench.idle import cpu_ns, wait_until_quiet
+from rmw_manycore_py.bench.question import PAYLOADS, Question, Run
+from rmw_manycore_py.bench.rclpy_round_trip import WARM_UP, iterations
+from rmw_manycore_py.bench.round_trip import in_us
+from rmw_manycore_py.bench.session import Process, Session
+from rmw_manycore_py.bench.summary import Goal, Result
+from rmw_manycore_py.bridge.plan import Plan
+from rmw_manycore_py.routes import DIRECTIONS, Direction, Route, arranged
+
+SIZES = ("64 B", "1 MiB")
+BRIDGED = "bridged"
+SUM = "Fast DDS + platform"
+IDLE = "idle bridge, CPU"
+WINDOW_S = 10.0
+_TYPE = "std_msgs/msg/UInt8MultiArray"
+
+
+def measure(run: Run) -> list[Result]:
+    """Measure all sizes, then the idle bridge."""
+    results = []
+    for size in SIZES:
+        results += _measure_size(run, size)
+    if run.wants(BRIDGED):
+        results.append(Result(IDLE, BRIDGED, "ms/s", (_idle_ms(run),)))
+    return results
+
+
+def _measure_size(run: Run, size: str) -> list[Result]:
+    messages = run.iterations(iterations(PAYLOADS[size]))
+    arguments = (PAYLOADS[size], WARM_UP, messages)
+
+    def direct(middleware: Middleware) -> Sequence[float]:
+        with Session(middleware, run.cpus) as session:
+            return _talk(session, session, arguments)
+
+    def bridged() -> Sequence[float]:
+        with Session(BETWEEN, run.cpus) as inside, Session(FAST_DDS, run.cpus) as outside:
+            _start_bridge(inside, outside)
+            return _talk(outside, inside, arguments)
+
+    question = f"bridged round trip {size}"
+    results = run.interleave(
+        question,
+        "us",
+        {
+            BRIDGED: bridged,
+            FAST_DDS.name: lambda: direct(FAST_DDS),
+            BETWEEN.name: lambda: direct(BETWEEN),
+        },
+    )
+    medians = {result.contender: result.summary.median for result in results}
+    if FAST_DDS.name in medians and BETWEEN.name in medians:
+        total = medians[FAST_DDS.name] + medians[BETWEEN.name]
+        results.append(Result(question, SUM, "us", (total,)))
+    return results
+
+
+def _talk(asking: Session, answering: Session, arguments: Sequence[int]) -> list[float]:
+    pong = answering.python("pong", 1)
+    ping = asking.python("ping", 0, *arguments)
+    found = ping.finish()
+    pong.finish()
+    return in_us(found["samples_ns"])
+
+
+def _start_bridge(inside: Session, outside: Session) -> list[Process]:
+    """Start both processes, each on the CPU of the node that it receives from."""
+    ways: tuple[tuple[str, Direction], ...] = (("/ping", "inward"), ("/pong", "outward"))
+    routes = [Route("topic", way, name, name, _TYPE, outside.domain) for name, way in ways]
+    plan = Plan(inside.platform, arranged(routes, 1)).to_json()
+    return [
+        outside.module("rmw_manycore_py.bridge", party, plan, way, 0, 1, party + 2)
+        for party, way in enumerate(DIRECTIONS)
+    ]
+
+
+def _idle_ms(run: Run) -> float:
+    """Return milliseconds of CPU a second of both processes, with a node on either side."""
+    window_s = WINDOW_S * max(run.share, 0.1)
+    with Session(BETWEEN, run.cpus) as inside, Session(FAST_DDS, run.cpus) as outside:
+        pids = [process.pid for process in _start_bridge(inside, outside)]
+        inside.python("pong", 1)
+        outside.python("pong", 0)
+        time.sleep(2)  # DDS speaks of itself for a while
+        wait_until_quiet(pids)
+        before_ns = cpu_ns(pids)
+        time.sleep(window_s)
+        return (cpu_ns(pids) - before_ns) / 1e6 / window_s
+
+
+QUESTION = Question(
+    "bridge",
+    measure,
+    (
+        Goal("bridged round trip 64 B", BRIDGED, "within", 1.3, SUM),
+        # The same bytes in the same time: what 0.8 of the throughput comes to in round trips.
+        Goal("bridged round trip 1 MiB", BRIDGED, "better", 0.8, FAST_DDS.name),
+        Goal(IDLE, BRIDGED, "within", 10),
+    ),
+    "ping outside on the first CPU, pong in cluster 2 on the second; inward process on the first",
+)

@@ -1,0 +1,154 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""The platform on one host and its listeners on another, as network namespaces; large messages."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import socket
+import subprocess
+import time
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+from bridging import OUTSIDE, Bridge
+from ros_support import announce, peer_node, spin_until, type_of
+from support import (
+    IS_MANYCORE,
+    MAPFILES,
+    example_command,
+    manycore_command,
+    peer_command,
+    wait_until,
+)
+
+pytestmark = [
+    pytest.mark.integration,
+    pytest.mark.skipif(not IS_MANYCORE, reason="the bridge is part of rmw_manycore"),
+]
+
+HEARD = "I heard: 'Hello World"
+# No shared memory: namespaces of one machine share that, hosts do not.
+NETWORK = {"ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET", "FASTDDS_BUILTIN_TRANSPORTS": "UDPv4"}
+_RTPS_MAGIC = b"RTPS"
+_PREFIX = slice(8, 20)  # of a participant's GUID, in the header of an RTPS message
+_ETH_P_ALL = 3
+
+
+def ip(*words: str) -> None:
+    subprocess.run(["ip", *words], check=True, capture_output=True)
+
+
+@pytest.fixture
+def hosts() -> Iterator[tuple[list[str], list[str]]]:
+    """Yield what runs a command on either of two hosts with a cable between them."""
+    names = [f"mc{os.getpid()}{side}" for side in "ab"]
+    try:
+        for name in names:
+            ip("netns", "add", name)
+    except (OSError, subprocess.CalledProcessError):
+        pytest.skip("network namespaces need root and iproute2")
+    ip("link", "add", "cable", "netns", names[0], "type", "veth", "peer", "name", "cable",
+       "netns", names[1])  # fmt: skip
+    for number, name in enumerate(names, start=1):
+        inside = ("-n", name)
+        ip(*inside, "addr", "add", f"10.77.0.{number}/24", "dev", "cable")
+        for device in ("lo", "cable"):
+            ip(*inside, "link", "set", device, "up")
+        ip(*inside, "route", "add", "224.0.0.0/4", "dev", "cable")
+    exec_in = [[shutil.which("ip") or "ip", "netns", "exec", name] for name in names]
+    yield exec_in[0], exec_in[1]
+    for name in names:
+        ip("netns", "del", name)
+
+
+def show_participants() -> None:
+    """Print each DDS participant whose packets come in, by the prefix of its GUID."""
+    seen = set()
+    with socket.socket(socket.AF_PACKET, socket.SOCK_DGRAM, socket.htons(_ETH_P_ALL)) as cable:
+        cable.bind(("cable", 0))
+        announce("sniffing")
+        while True:
+            packet, address = cable.recvfrom(65536)
+            at = packet.find(_RTPS_MAGIC)
+            if at < 0 or address[2] == socket.PACKET_OUTGOING:
+                continue
+            prefix = packet[at:][_PREFIX].hex()
+            if prefix not in seen:
+                seen.add(prefix)
+                announce(f"participant {prefix}")
+
+
+def test_only_the_bridge_speaks_to_another_host(start, platform, hosts) -> None:
+    here, there = hosts
+    sniffer = start([*there, *peer_command(show_participants)])
+    sniffer.wait_for("^sniffing$")
+    mapfile = MAPFILES / "talker_listener.yaml"
+    run = start([*here, *map(str, manycore_command("run", mapfile))], **NETWORK)
+    run.wait_for(HEARD)
+    more = [start([*here, *example_command("listener")], cluster=3, **NETWORK) for _ in range(3)]
+    listener = start([*there, *example_command("listener")], **OUTSIDE, **NETWORK)
+    listener.wait_for(HEARD)
+    for node in more:
+        node.wait_for(HEARD)
+    for _ in range(4):
+        listener.wait_for(HEARD)
+    participants = {line for line in sniffer.lines if line.startswith("participant")}
+    assert len(participants) == 2  # the inward and the outward process, for five nodes inside
+    assert run.is_running()
+
+
+def send_large(topic: str, type_name: str, size: int, period_s: float, count: int) -> None:
+    """Publish numbered messages of a size at a rate, once somebody listens."""
+    with peer_node("camera") as node:
+        message = type_of(type_name)()
+        message.data = bytes(size)
+        publisher = node.create_publisher(type(message), topic, 10)
+        spin_until(node, publisher.get_subscription_count)
+        announce("matched")
+        due_s = time.monotonic()
+        for number in range(count):
+            message.header.frame_id = str(number)
+            publisher.publish(message)
+            due_s += period_s
+            spin_until(node, lambda: time.monotonic() >= due_s)  # noqa: B023
+        announce("sent")
+        spin_until(node, lambda: False, 1e6)
+
+
+def count_large(topic: str, type_name: str, count: int) -> None:
+    """Print the numbers that came, once the last one has."""
+    with peer_node("viewer") as node:
+        numbers: list[int] = []
+
+        def heard(message: Any) -> None:
+            numbers.append(int(message.header.frame_id))
+
+        node.create_subscription(type_of(type_name), topic, heard, 10)
+        announce("listening")
+        spin_until(node, lambda: numbers and numbers[-1] == count - 1, 120)
+        announce(f"received {len(numbers)}")
+
+
+@pytest.mark.parametrize(
+    ("direction", "type_name", "size", "rate_hz"),
+    [
+        ("inward", "sensor_msgs/msg/PointCloud2", 8_000_000, 10),
+        ("outward", "sensor_msgs/msg/Image", 6_000_000, 30),
+    ],
+)
+def test_large_messages_arrive_all(start, platform, direction, type_name, size, rate_hz) -> None:
+    bridge, count = Bridge(start, platform), 3 * rate_hz
+    bridge.run(bridge.route(direction, "/large", type_name, qos={"depth": 30}))
+    source, target = bridge.outside, bridge.inside
+    if direction == "outward":
+        source, target = target, source
+    viewer = target(count_large, "/large", type_name, count)
+    viewer.wait_for("^listening$")
+    camera = source(send_large, "/large", type_name, size, 1 / rate_hz, count)
+    camera.wait_for("^sent$")
+    viewer.wait_for(f"^received {count}$")
+    wait_until(lambda: bridge.row(direction, "/large")["messages"] == count, "all are counted")
+    row = bridge.row(direction, "/large")
+    assert (row["lost"], row["refused"]) == (0, 0)

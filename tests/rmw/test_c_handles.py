@@ -1,0 +1,175 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Functions that rclpy never calls: in C, on the handles of rclpy's entities."""
+
+from __future__ import annotations
+
+import ctypes
+import struct
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+from geometry_msgs.msg import Point
+from rclpy.qos import HistoryPolicy, QoSProfile, ReliabilityPolicy
+from rclpy.serialization import serialize_message
+from ros_support import spin_until
+from std_srvs.srv import Trigger
+from support import RMW
+
+LIBRARIES = Path(sys.prefix, "lib")
+POINT_BYTES = 24  # three doubles in memory, and behind four bytes of header in CDR
+INFO_BYTES = 128  # at least sizeof(rmw_message_info_t)
+
+
+class Sequence(ctypes.Structure):
+    """rmw_message_sequence_t, and rmw_message_info_sequence_t."""
+
+    _fields_ = (
+        ("data", ctypes.c_void_p),
+        ("size", ctypes.c_size_t),
+        ("capacity", ctypes.c_size_t),
+        ("allocator", ctypes.c_void_p),
+    )
+
+
+class Allocator(ctypes.Structure):
+    _fields_ = tuple((name, ctypes.c_void_p) for name in ("a", "d", "r", "z", "state"))
+
+
+class Bytes(ctypes.Structure):
+    """rmw_serialized_message_t."""
+
+    _fields_ = (
+        ("buffer", ctypes.POINTER(ctypes.c_uint8)),
+        ("length", ctypes.c_size_t),
+        ("capacity", ctypes.c_size_t),
+        ("allocator", Allocator),
+    )
+
+
+class Gid(ctypes.Structure):
+    _fields_ = (("identifier", ctypes.c_char_p), ("data", ctypes.c_uint8 * 16))
+
+
+class Qos(ctypes.Structure):
+    """The first fields of rmw_qos_profile_t."""
+
+    _fields_ = (
+        ("history", ctypes.c_int),
+        ("depth", ctypes.c_size_t),
+        ("reliability", ctypes.c_int),
+        ("durability", ctypes.c_int),
+    )
+
+
+rmw = ctypes.CDLL(str(LIBRARIES / f"lib{RMW}.so"))
+rcl = ctypes.CDLL(str(LIBRARIES / "librcl.so"))
+rcutils = ctypes.CDLL(str(LIBRARIES / "librcutils.so"))
+rcutils.rcutils_get_default_allocator.restype = Allocator
+
+
+def rmw_handle(kind: str, entity: Any) -> ctypes.c_void_p:
+    function = getattr(rcl, f"rcl_{kind}_get_rmw_handle")
+    function.restype = ctypes.c_void_p
+    return ctypes.c_void_p(function(ctypes.c_void_p(entity.handle.pointer)))
+
+
+@pytest.fixture
+def publisher(node) -> Any:
+    return node.create_publisher(Point, "points", 10)
+
+
+@pytest.fixture
+def subscription(node, publisher) -> ctypes.c_void_p:
+    """Return a subscription that matches the publisher, and that nobody spins."""
+    entity = node.create_subscription(Point, "points", print, 10)
+    spin_until(node, lambda: publisher.get_subscription_count() == 1)
+    return rmw_handle("subscription", entity)
+
+
+def publish(publisher, count: int) -> None:
+    for number in range(count):
+        publisher.publish(Point(x=float(number)))
+
+
+def take_until_taken(take) -> None:
+    """Fast DDS delivers some time after publishing."""
+    taken = ctypes.c_bool()
+    while not taken:
+        assert take(ctypes.byref(taken)) == 0
+
+
+def test_take(publisher, subscription):
+    publish(publisher, 2)
+    for number in range(2):
+        point = (ctypes.c_double * 3)()
+        take_until_taken(lambda taken, p=point: rmw.rmw_take(subscription, p, taken, None))
+        assert list(point) == [number, 0, 0]
+    taken = ctypes.c_bool(True)
+    assert rmw.rmw_take(subscription, point, ctypes.byref(taken), None) == 0
+    assert not taken
+
+
+def test_take_sequence(publisher, subscription):
+    publish(publisher, 3)
+    points = [(ctypes.c_double * 3)() for _ in range(5)]
+    found: list[float] = []
+    while len(found) < 3:
+        data = (ctypes.c_void_p * 5)(*(ctypes.addressof(point) for point in points))
+        messages = Sequence(ctypes.addressof(data), 0, 5, None)
+        infos = Sequence(
+            ctypes.addressof(buffer := ctypes.create_string_buffer(5 * INFO_BYTES)), 0, 5, None
+        )
+        count = ctypes.c_size_t()
+        arguments = (ctypes.byref(messages), ctypes.byref(infos), ctypes.byref(count), None)
+        assert rmw.rmw_take_sequence(subscription, ctypes.c_size_t(5), *arguments) == 0
+        assert messages.size == infos.size == count.value
+        found += [point[0] for point in points[: count.value]]
+        del buffer
+    assert found == [0.0, 1.0, 2.0]
+
+
+def test_take_serialized_message(publisher, subscription):
+    publish(publisher, 1)
+    message = Bytes(allocator=rcutils.rcutils_get_default_allocator())
+    address = ctypes.byref(message)
+    take_until_taken(
+        lambda taken: rmw.rmw_take_serialized_message(subscription, address, taken, None)
+    )
+    assert bytes(message.buffer[: message.length]) == serialize_message(Point())
+    assert struct.unpack("<3d", bytes(message.buffer[4 : 4 + POINT_BYTES])) == (0, 0, 0)
+    assert rcutils.rcutils_uint8_array_fini(address) == 0
+
+
+def test_gids_are_compared(node, publisher):
+    other = node.create_publisher(Point, "points", 10)
+    gids = [Gid(), Gid(), Gid()]
+    for gid, entity in zip(gids, (publisher, publisher, other), strict=True):
+        handle = rmw_handle("publisher", entity)
+        assert rmw.rmw_get_gid_for_publisher(handle, ctypes.byref(gid)) == 0
+    same = ctypes.c_bool()
+    for gid, expected in ((gids[1], True), (gids[2], False)):
+        arguments = (ctypes.byref(gids[0]), ctypes.byref(gid), ctypes.byref(same))
+        assert rmw.rmw_compare_gids_equal(*arguments) == 0
+        assert same.value is expected
+
+
+@pytest.mark.parametrize(
+    "function",
+    [
+        "rcl_client_request_publisher_get_actual_qos",
+        "rcl_client_response_subscription_get_actual_qos",
+        "rcl_service_request_subscription_get_actual_qos",
+        "rcl_service_response_publisher_get_actual_qos",
+    ],
+)
+def test_qos_of_both_directions_of_a_service(node, function):
+    qos = QoSProfile(depth=7, reliability=ReliabilityPolicy.RELIABLE)
+    client = node.create_client(Trigger, "ask", qos_profile=qos)
+    service = node.create_service(Trigger, "ask", lambda _, reply: reply, qos_profile=qos)
+    entity = client if "_client_" in function else service
+    getattr(rcl, function).restype = ctypes.POINTER(Qos)
+    actual = getattr(rcl, function)(ctypes.c_void_p(entity.handle.pointer)).contents
+    assert (actual.history, actual.depth) == (HistoryPolicy.KEEP_LAST, 7)
+    assert actual.reliability == ReliabilityPolicy.RELIABLE
