@@ -3,34 +3,20 @@
 
 from __future__ import annotations
 
-import json
 import time
-from dataclasses import asdict
 from typing import Any
 
 import click
 
 from rmw_manycore_py.cli.delay import Delay, DelayMeter
 from rmw_manycore_py.cli.listening import Listener
-from rmw_manycore_py.cli.options import examples, platform_option
+from rmw_manycore_py.cli.measuring import PERIOD_S, measuring_options, print_result
+from rmw_manycore_py.cli.options import examples
 from rmw_manycore_py.errors import ManycoreError
-
-PERIOD_S = 1.0
 
 
 @click.command("delay", epilog=examples("manycore topic delay /points"))
-@click.argument("topic")
-@click.argument("type_name", metavar="[TYPE]", required=False)
-@click.option(
-    "-w",
-    "--window",
-    type=click.IntRange(1),
-    default=10000,
-    show_default=True,
-    help="Number of messages to look back on.",
-)
-@click.option("--json", "as_json", is_flag=True, help="Print each result as a line of JSON.")
-@platform_option
+@measuring_options(1, 10000, "messages")
 def command(topic: str, type_name: str | None, platform: str, window: int, as_json: bool) -> None:
     """Print how old the messages of TOPIC are by the stamp in their header, once per second.
 
@@ -49,7 +35,7 @@ def command(topic: str, type_name: str | None, platform: str, window: int, as_js
         nonlocal printed
         delay = meter.delay()
         if delay is not None and delay != printed:
-            click.echo(json.dumps(asdict(delay)) if as_json else delay)
+            print_result(delay, as_json)
             printed = delay
 
     listener = Listener(platform, topic, type_name, heard)

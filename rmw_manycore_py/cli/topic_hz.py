@@ -3,36 +3,22 @@
 
 from __future__ import annotations
 
-import json
 import time
-from dataclasses import asdict
 from typing import Any
 
 import click
 
 from rmw_manycore_py.cli.listening import Listener
+from rmw_manycore_py.cli.measuring import PERIOD_S, measuring_options, print_result
 from rmw_manycore_py.cli.message_part import message_filter
-from rmw_manycore_py.cli.options import examples, platform_option
+from rmw_manycore_py.cli.options import examples
 from rmw_manycore_py.cli.rate import Rate, RateMeter
-
-PERIOD_S = 1.0
 
 
 @click.command("hz", epilog=examples("manycore topic hz /chatter"))
-@click.argument("topic")
-@click.argument("type_name", metavar="[TYPE]", required=False)
-@click.option(
-    "-w",
-    "--window",
-    type=click.IntRange(1),
-    default=10000,
-    show_default=True,
-    help="Number of intervals to look back on.",
-)
+@measuring_options(1, 10000, "intervals")
 @click.option("--filter", "expression", metavar="EXPR", help="Count what it holds for, as m.")
 @click.option("--wall-time", is_flag=True, help="Accepted as of ros2: no other time is used.")
-@click.option("--json", "as_json", is_flag=True, help="Print each result as a line of JSON.")
-@platform_option
 def command(
     topic: str,
     type_name: str | None,
@@ -55,7 +41,7 @@ def command(
         nonlocal printed
         rate = meter.rate()
         if rate is not None and rate != printed:
-            click.echo(json.dumps(asdict(rate)) if as_json else rate)
+            print_result(rate, as_json)
             printed = rate
 
     def heard(message: Any) -> None:
