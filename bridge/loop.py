@@ -62,10 +62,15 @@ class Loop(ABC):
         self.wake()
 
     def stop(self) -> None:
-        """End the thread and all endpoints of the movers."""
+        """End the thread. What it had open is for close_movers() and close(), once all have ended."""
         self._stopping = True
         self.wake()
         self._thread.join()
+
+    def close_movers(self) -> None:
+        """End all endpoints of the movers; both their sides are still there."""
+        for mover in self.movers:
+            mover.close()
 
     @abstractmethod
     def wake(self) -> None:
@@ -77,7 +82,7 @@ class Loop(ABC):
 
     @abstractmethod
     def close(self) -> None:
-        """Leave this side. In the loop's thread."""
+        """Leave this side."""
 
     def _run(self) -> None:
         try:
@@ -90,10 +95,6 @@ class Loop(ABC):
         except BaseException as error:
             self.failure = error
             self._failed()
-        finally:
-            for mover in self.movers:
-                mover.close()
-            self.close()
 
     def _expire(self) -> float | None:
         """Return how long nothing is due, None = for ever."""

@@ -78,8 +78,12 @@ class BridgeProcess:
             loop.on_failure(self._over.set)
             loop.start()
         self._over.wait()
-        for loop in reversed(self._loops):
+        for loop in self._loops:
             loop.stop()
+        for loop in self._loops:
+            loop.close_movers()
+        for loop in reversed(self._loops):
+            loop.close()
         return _report(self._loops)
 
 
