@@ -62,7 +62,7 @@ class Loop(ABC):
         self.wake()
 
     def stop(self) -> None:
-        """End the thread. What it had open is for close_movers() and close(), once all have ended."""
+        """End the thread; close_movers() and close() follow once all threads have ended."""
         self._stopping = True
         self.wake()
         self._thread.join()
