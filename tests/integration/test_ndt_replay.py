@@ -77,7 +77,6 @@ def test_guesses_of_all_kinds(start, offload, street, guess):
 
 
 def test_a_plot(start, offload, street, tmp_path):
-    pytest.importorskip("matplotlib", reason="plots need matplotlib")
     replayed(start, street / "drive.npz", "--plot", str(tmp_path / "replay.png"))
     assert (tmp_path / "replay.png").read_bytes().startswith(b"\x89PNG")
 
