@@ -111,8 +111,12 @@ def _stale_platforms() -> Finding:
         from rmw_manycore_py import _transport
     except ImportError as error:
         return Finding(subject, Verdict.FAILURE, f"not checked: {error}")
-    dead = [name for name in _transport.platforms() if not is_alive(name)]
-    alive = len(_transport.platforms()) - len(dead)
+    try:
+        names = _transport.platforms()
+    except _transport.PlatformError as error:
+        return Finding(subject, Verdict.FAILURE, str(error))
+    dead = [name for name in names if not is_alive(name)]
+    alive = len(names) - len(dead)
     found = f"{alive} alive" + (f", dead or unreadable: {', '.join(dead)}" if dead else "")
     advice = "manycore clean; one that stays is used by nodes of another version: stop them first"
     return advised(subject, not dead, found, advice)

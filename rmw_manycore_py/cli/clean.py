@@ -7,6 +7,7 @@ import click
 
 from rmw_manycore_py import _transport
 from rmw_manycore_py.cli.options import examples, json_option, print_json
+from rmw_manycore_py.cli.view import platform_names
 from rmw_manycore_py.errors import ManycoreError
 
 
@@ -19,7 +20,7 @@ def command(platforms: tuple[str, ...], as_json: bool) -> None:
     Living platforms are left alone. The next start of a platform does the same by itself.
     """
     removed: list[str] = []
-    known = _transport.platforms()
+    known = platform_names()
     for name in platforms or known:
         if name not in known:
             raise ManycoreError(f"no platform '{name}'")

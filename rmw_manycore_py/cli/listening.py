@@ -7,7 +7,6 @@ import time
 from collections.abc import Callable, Iterable
 from typing import Any
 
-from rmw_manycore_py import _transport
 from rmw_manycore_py.cli import view
 from rmw_manycore_py.cli.interface_types import load_type
 from rmw_manycore_py.cli.qos_options import QosOptions
@@ -75,7 +74,7 @@ def type_of_topic(topic: str, endpoints: Iterable[Row]) -> str:
 
 
 def _endpoints(platform: str, topic: str) -> list[Row]:
-    if platform not in _transport.platforms():
+    if platform not in view.platform_names():
         return []
     return view.endpoints_of_topic(view.open_platform(platform).endpoints(), topic)
 

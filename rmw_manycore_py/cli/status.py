@@ -27,7 +27,7 @@ def command(platform: str | None, as_json: bool) -> None:
     if platform:
         states = [view.platform_state(view.open_platform(platform))]
     else:
-        states = [_look_at(name) for name in _transport.platforms()]
+        states = [_look_at(name) for name in view.platform_names()]
     if as_json:
         print_json(states)
         return

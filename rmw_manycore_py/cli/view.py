@@ -12,9 +12,17 @@ from rmw_manycore_py.errors import ManycoreError
 Row = dict[str, Any]
 
 
+def platform_names() -> list[str]:
+    """Return the names of this user's platforms, dead ones included."""
+    try:
+        return _transport.platforms()
+    except _transport.PlatformError as error:  # no permission
+        raise ManycoreError(str(error)) from error
+
+
 def open_platform(name: str) -> _transport.Platform:
     """Return the view of a platform; where there is none, say which ones there are."""
-    names = _transport.platforms()
+    names = platform_names()
     if name not in names:
         others = f"; there is {', '.join(names)} (--platform)" if names else "; none is running"
         raise ManycoreError(f"no platform '{name}'{others}")

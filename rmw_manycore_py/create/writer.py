@@ -78,7 +78,7 @@ def _memory(placement: Placement) -> str:
 
 def _node_files(node: PlacedNode) -> dict[PurePosixPath, str]:
     """Return the launch script of a node and copies of its parameters, the last ones to win."""
-    name = node.name.strip("/").replace("/", "__")
+    name = node.name.strip("/").replace("/", ".")  # no name of ROS 2 has a dot: no two are alike
     texts: dict[PurePosixPath, str] = {}
     for number, file in enumerate(node.param_files, start=1):
         texts[PurePosixPath(PARAMETERS, f"{name}.{number}.yaml")] = file.read_text(encoding="utf-8")

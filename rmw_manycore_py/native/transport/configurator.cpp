@@ -4,6 +4,9 @@
 #include <dirent.h>
 
 #include <algorithm>
+#include <cerrno>
+
+#include "platform/error.hpp"
 
 namespace manycore {
 
@@ -37,14 +40,19 @@ Configurator::~Configurator() {
 std::vector<std::string> platform_names() {
   const std::string directory = PlatformPaths::of("any").user_directory;
   std::vector<std::string> names;
-  if (DIR * const handle = opendir(directory.c_str())) {
-    while (const dirent * const entry = readdir(handle)) {
-      if (entry->d_type == DT_DIR && entry->d_name[0] != '.') {
-        names.emplace_back(entry->d_name);
-      }
+  DIR * const handle = opendir(directory.c_str());
+  if (!handle) {
+    if (errno != ENOENT) {
+      throw_errno("cannot list " + directory);
     }
-    closedir(handle);
+    return names;
   }
+  while (const dirent * const entry = readdir(handle)) {
+    if (entry->d_type == DT_DIR && entry->d_name[0] != '.') {
+      names.emplace_back(entry->d_name);
+    }
+  }
+  closedir(handle);
   std::sort(names.begin(), names.end());
   return names;
 }

@@ -136,6 +136,17 @@ def test_what_was_created_before_is_replaced(mapfile: Path, tmp_path: Path) -> N
     assert not (tmp_path / "out/parameters").exists()
 
 
+def test_names_that_differ_in_a_slash_only_have_files_of_their_own(tmp_path: Path) -> None:
+    (tmp_path / "talker.py").write_text(NODE.format(kind="publisher"))
+    mapfile = tmp_path / "mapfile.yaml"
+    node = "{{cluster: 1, core: {}, script: talker.py}}"
+    names = enumerate(("a/b", "a__b", "a_b"), start=1)
+    mapfile.write_text("nodes:\n" + "".join(f"  {n}: {node.format(i)}\n" for i, n in names))
+    create(mapfile, tmp_path / "out")
+    scripts = sorted(file.name for file in (tmp_path / "out/nodes").iterdir())
+    assert scripts == ["a.b.sh", "a__b.sh", "a_b.sh"]
+
+
 def test_a_directory_with_other_things_is_left_alone(mapfile: Path, tmp_path: Path) -> None:
     with pytest.raises(ManycoreError, match="expected an empty directory"):
         create(mapfile, tmp_path)
