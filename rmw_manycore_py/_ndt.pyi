@@ -66,6 +66,9 @@ class SerialMatcher:
     def time_passes_ns(
         self, map: VoxelMap, points: NDArray[np.float32], pose: NDArray[np.float64], passes: int
     ) -> list[float]: ...
+    def time_shares_ns(
+        self, map: VoxelMap, points: NDArray[np.float32], pose: NDArray[np.float64], workers: int
+    ) -> list[float]: ...
     def profile_ns(
         self, map: VoxelMap, points: NDArray[np.float32], guess: NDArray[np.float64]
     ) -> dict[str, float]: ...

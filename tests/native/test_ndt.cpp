@@ -4,13 +4,18 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <array>
+#include <atomic>
 #include <random>
+#include <thread>
 #include <vector>
 
 #include "ndt/aligned_floats.hpp"
 #include "ndt/matcher.hpp"
 #include "ndt/more_thuente.hpp"
 #include "ndt/table.hpp"
+#include "ndt/worker_session.hpp"
 
 namespace manycore::ndt {
 namespace {
@@ -103,6 +108,27 @@ TEST_CASE("cells that see nothing have the empty list") {
   const VoxelMap map = build_voxel_map(points.data(), points.size() / 3, {});
   CHECK(find_list(map.view(), 0) == empty_list);
   CHECK(map.view().lists[empty_list] == 0);
+}
+
+TEST_CASE("every bin of a pass is begun once, whoever begins it") {
+  constexpr size_t workers = 3;
+  constexpr uint32_t passes = 200;
+  std::array<Share, workers> shares{};
+  std::array<std::atomic<uint32_t>, bin_count> begun{};
+  const auto work = [&](size_t index, uint64_t ticket) {
+    for (size_t i = 0; i < workers; ++i) {
+      const size_t owner = (index + i) % workers;
+      while (const auto bin = shares[owner].begin(ticket, owner, workers)) {
+        ++begun[*bin];
+      }
+    }
+  };
+  for (uint32_t pass = 1; pass <= passes; ++pass) {
+    std::thread other(work, 0, ticket_of(7, pass));
+    work(1, ticket_of(7, pass));  // worker 2 does not come: its share is done all the same
+    other.join();
+    CHECK(std::all_of(begun.begin(), begun.end(), [&](uint32_t times) { return times == pass; }));
+  }
 }
 
 TEST_CASE("eigenvalues and eigenvectors make the matrix") {

@@ -4,19 +4,23 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Sequence
 from contextlib import ExitStack
 
 from rmw_manycore_py import _ndt
-from rmw_manycore_py.bench.ndt.contenders import VOXEL_SIZE_M, map_for, usable
+from rmw_manycore_py.bench.ndt.contenders import VOXEL_SIZE_M, map_for, on_cpu, usable
 from rmw_manycore_py.bench.ndt.peers import PYTHON_PEERS, Peer, all_peers
 from rmw_manycore_py.bench.ndt.world import world
 from rmw_manycore_py.bench.question import Measure, Question, Run
 from rmw_manycore_py.bench.summary import Goal, Result
 from rmw_manycore_py.ndt import MatcherOptions, SerialMatcher, WorkerMatcher
+from rmw_manycore_py.ndt.arrays import scan_points
 from rmw_manycore_py.ndt.matcher import Matcher, native_options
 
 NAME = f"time per scan, direct7, {VOXEL_SIZE_M:g} m"
-TAIL = "the same, as p99 / median"
+TAIL = "time per scan / median of that scan"
+MIXED = "time per scan / median of all scans"
+IMBALANCE = "largest share of a pass / mean share"
 MOST_WORKERS = 16
 REPEATS = 20
 
@@ -24,6 +28,11 @@ REPEATS = 20
 def workers(count: int) -> str:
     """Return the name of the contender with so many workers."""
     return f"rmw_manycore {count} worker{'s' if count > 1 else ''}"
+
+
+def threads(count: int) -> str:
+    """Return the name of the contender with so many threads."""
+    return f"{count} thread{'s' if count > 1 else ''}"
 
 
 def measure(run: Run) -> list[Result]:
@@ -37,15 +46,16 @@ def measure(run: Run) -> list[Result]:
             matcher: Matcher = stack.enter_context(WorkerMatcher(options, cpus[:count]))
             matcher.set_map(voxel_map)
             contenders[workers(count)] = _own(run, matcher)
-            threads = SerialMatcher(options)
-            threads._native = _ndt.ThreadMatcher(native_options(options), cpus[:count], [])
-            threads.set_map(voxel_map)
-            contenders[f"{count} thread{'s' if count > 1 else ''}"] = _own(run, threads)
+            threaded = SerialMatcher(options)
+            threaded._native = _ndt.ThreadMatcher(native_options(options), cpus[:count], [])
+            threaded.set_map(voxel_map)
+            contenders[threads(count)] = _own(run, threaded)
         names = [name for name in ("PCL", *PYTHON_PEERS) if run.wants(name)]
         peers = stack.enter_context(all_peers(cpus[0], VOXEL_SIZE_M, None, names))
         contenders.update({name: _peer(peer) for name, peer in peers.items()})
         results = run.interleave(NAME, "ms", contenders)
-    return results + [_tail(result) for result in results if "rmw_manycore" in result.contender]
+    own = [result for result in results if "rmw_manycore" in result.contender]
+    return [*results, *map(_tail, own), *map(_mixed, own), *_imbalance(run, options)]
 
 
 def _own(run: Run, matcher: Matcher) -> Measure:
@@ -66,20 +76,45 @@ def _peer(peer: Peer) -> Measure:
 
 
 def _tail(result: Result) -> Result:
-    """Return p99 / median, scan by scan so that easy and hard scans do not count as jitter."""
+    """Return each time over the median of its scan: what is left when the same work is repeated."""
     count = len(world().scans)
-    ratios = []
-    for scan in range(count):
-        ordered = sorted(result.samples[scan::count])
-        median = ordered[len(ordered) // 2]
-        ratios.append(ordered[int(0.99 * (len(ordered) - 1))] / median)
+    medians = [_median(result.samples[scan::count]) for scan in range(count)]
+    ratios = (time / medians[i % count] for i, time in enumerate(result.samples))
     return Result(TAIL, result.contender, "x", tuple(ratios))
+
+
+def _mixed(result: Result) -> Result:
+    """Return each time over the median of all: hard scans, which need more passes, count too."""
+    median = result.summary.median
+    return Result(MIXED, result.contender, "x", tuple(time / median for time in result.samples))
+
+
+def _imbalance(run: Run, options: MatcherOptions) -> list[Result]:
+    """Return how evenly a pass is dealt to 16 workers, each scan's shares timed on one CPU."""
+    voxel_map = map_for(options)
+    matcher = _ndt.SerialMatcher(native_options(options))
+    found = []
+    with on_cpu(usable()[0]):
+        for scan, pose in zip(world().scans, world().poses, strict=True):
+            points = scan_points(scan)
+            shares = [
+                matcher.time_shares_ns(voxel_map.native, points, pose, MOST_WORKERS)
+                for _ in range(run.iterations(REPEATS))
+            ]
+            times = [_median(share) for share in zip(*shares, strict=True)]
+            found.append(max(times) * len(times) / sum(times))
+    return [Result(IMBALANCE, workers(MOST_WORKERS), "x", tuple(found))]
+
+
+def _median(samples: Sequence[float]) -> float:
+    return sorted(samples)[len(samples) // 2]
 
 
 def _goals() -> tuple[Goal, ...]:
     return (
         Goal(NAME, workers(2), "better", 1.8, workers(1)),
-        *(Goal(TAIL, workers(count), "within", 1.5) for count in (1, 2)),
+        *(Goal(TAIL, workers(count), "within", 1.5, statistic="p99") for count in (1, 2)),
+        Goal(IMBALANCE, workers(MOST_WORKERS), "within", 1.05),
     )
 
 

@@ -47,6 +47,22 @@ std::vector<double> SerialMatcher::time_passes_ns(
   return times_ns;
 }
 
+std::vector<double> SerialMatcher::time_shares_ns(
+  const VoxelMap & map, const float * xyz_m, size_t count, const Pose6 & pose, size_t workers) {
+  const Problem matched = problem(map, xyz_m, count);
+  const PassPose at = pass_pose(pose, map.header());
+  const float d2 = kernel_d2(matched);
+  std::vector<double> times_ns;
+  for (size_t worker = 0; worker < workers; ++worker) {
+    times_ns.push_back(time_ns([&] {
+      for (size_t bin = worker; bin < bin_count; bin += workers) {
+        kernel_.pass(matched.map, matched.scan, at, d2, bin);
+      }
+    }));
+  }
+  return times_ns;
+}
+
 Profile SerialMatcher::profile(
   const VoxelMap & map, const float * xyz_m, size_t count, const Pose6 & guess) {
   Profile times{};

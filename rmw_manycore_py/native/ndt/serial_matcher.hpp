@@ -32,6 +32,9 @@ public:
   /// What each of so many passes at a pose takes, without laying out the scan.
   std::vector<double> time_passes_ns(
     const VoxelMap & map, const float * xyz_m, size_t count, const Pose6 & pose, size_t passes);
+  /// What each of so many workers' shares of a pass takes when this thread does all of them.
+  std::vector<double> time_shares_ns(
+    const VoxelMap & map, const float * xyz_m, size_t count, const Pose6 & pose, size_t workers);
   /// An alignment with search and derivatives one after the other, each timed.
   Profile profile(const VoxelMap & map, const float * xyz_m, size_t count, const Pose6 & guess);
   /// Points that counted in the last call.

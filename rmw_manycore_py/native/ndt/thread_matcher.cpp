@@ -8,11 +8,11 @@
 namespace manycore::ndt {
 namespace {
 
-constexpr int64_t spin_ns = 200'000;
+constexpr int64_t thread_spin_ns = 200'000;
 
 /// Looks for a while, then sleeps.
 template<typename Condition>
-void wait_at(Gate & gate, Condition is_due) {
+void wait_at(Gate & gate, Condition is_due, int64_t spin_ns) {
   const int64_t patience_ns = monotonic_ns() + spin_ns;
   while (monotonic_ns() < patience_ns) {
     if (is_due()) {
@@ -31,7 +31,11 @@ ThreadMatcher::ThreadMatcher(
 : options_(options),
   kernel_(kernel_of(choose_simd())),
   derivative_threads_(derivative_cpus.size()),
-  search_threads_(search_cpus.size()) {
+  search_threads_(search_cpus.size()),
+  // The caller must not take a CPU from the threads it waits for.
+  caller_spin_ns_(
+    derivative_threads_ + search_threads_ < std::thread::hardware_concurrency() ? thread_spin_ns
+                                                                                : 0) {
   for (size_t i = 0; i < search_cpus.size(); ++i) {
     threads_.emplace_back([=] { run(search_cpus[i], true, i); });
   }
@@ -74,14 +78,14 @@ Derivatives ThreadMatcher::run_pass(const Pose6 & pose) {
   busy_ = static_cast<uint32_t>(threads_.size());
   ++pass_;
   announce(start_);
-  wait_at(end_, [&] { return busy_ == 0; });
+  wait_at(end_, [&] { return busy_ == 0; }, caller_spin_ns_);
   return finish_pass(problem_, add_bins(bins_), pose);
 }
 
 void ThreadMatcher::run(int cpu, bool is_search, size_t index) {
   pin_to_cpu(cpu);
   for (uint32_t seen = 0;; ++seen) {
-    wait_at(start_, [&] { return pass_ != seen; });
+    wait_at(start_, [&] { return pass_ != seen; }, thread_spin_ns);
     if (stop_) {
       return;
     }

@@ -41,6 +41,7 @@ private:
   Kernel kernel_;
   size_t derivative_threads_;
   size_t search_threads_;
+  int64_t caller_spin_ns_;
   AlignedFloats scan_;
   std::vector<uint32_t> found_;
   Problem problem_{};

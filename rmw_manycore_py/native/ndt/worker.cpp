@@ -101,22 +101,27 @@ std::optional<TangentSums> Worker::pass(const Problem & problem, const Pose6 & p
   const PassPose at = pass_pose(pose, *problem.map.header);
   const float d2 = kernel_d2(problem);
   auto & bins = session_.bins[pass_ % 2];
-  for (size_t bin = index_; bin < bin_count; bin += session_.workers) {
-    bins[bin] = kernel_.pass(problem.map, problem.scan, at, d2, bin);
+  const uint64_t ticket = ticket_of(job_, ++pass_);
+  const uint32_t workers = session_.workers;
+  // First the own share, then what others, disturbed on their CPUs, have not begun.
+  for (uint32_t i = 0; i < workers; ++i) {
+    const uint32_t owner = (index_ + i) % workers;
+    while (const auto bin = session_.shares[owner].begin(ticket, owner, workers)) {
+      bins[*bin] = kernel_.pass(problem.map, problem.scan, at, d2, *bin);
+    }
   }
-  ++pass_;
-  if (!wait_for_all((uint64_t{job_} << 32) + pass_)) {
+  if (!wait_for_all(ticket)) {
     return std::nullopt;
   }
   return add_bins(bins);
 }
 
-bool Worker::wait_for_all(uint64_t arrival) {
-  own_.arrived.store(arrival, std::memory_order_release);
+bool Worker::wait_for_all(uint64_t ticket) {
+  own_.arrived.store(ticket, std::memory_order_release);
   announce(session_.barrier);
   const auto all_are_here = [&] {
     for (uint32_t i = 0; i < session_.workers; ++i) {
-      if (session_.lines[i].arrived.load(std::memory_order_acquire) < arrival) {
+      if (session_.lines[i].arrived.load(std::memory_order_acquire) < ticket) {
         return session_.aborted.load(std::memory_order_acquire) == job_;
       }
     }

@@ -9,8 +9,8 @@
 
 namespace manycore::ndt {
 
-/// The loop of one worker process: sleeps until there is a job, then does every n-th bin of every
-/// pass, in step with the other workers. Each worker adds up all bins and takes Newton's step
+/// The loop of one worker process: sleeps until there is a job, then does its share of the bins of
+/// every pass, in step with the other workers. Each worker adds up all bins and takes Newton's step
 /// itself: the same numbers in the same order give the same pose, so one barrier a pass is enough.
 class Worker {
 public:
@@ -23,7 +23,7 @@ private:
   void do_job(uint32_t job);
   /// The sums of all bins at a pose; empty when the job is aborted.
   std::optional<TangentSums> pass(const Problem & problem, const Pose6 & pose);
-  bool wait_for_all(uint64_t arrival);
+  bool wait_for_all(uint64_t ticket);
 
   SharedMemory memory_;
   Session & session_;

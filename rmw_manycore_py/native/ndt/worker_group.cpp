@@ -184,7 +184,7 @@ void WorkerGroup::end_stuck_workers(uint32_t job) noexcept {
   for (size_t i = 0; i < workers_.size(); ++i) {
     const WorkerLine & line = session_.lines[i];
     const bool is_behind =
-      furthest >> 32 != job || line.arrived.load(std::memory_order_relaxed) < furthest;
+      job_of(furthest) != job || line.arrived.load(std::memory_order_relaxed) < furthest;
     if (is_behind && line.finished.load(std::memory_order_relaxed) != job) {
       workers_[i].kill();
     }

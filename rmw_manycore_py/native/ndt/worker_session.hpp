@@ -36,12 +36,39 @@ static_assert(std::is_trivially_copyable_v<Job>);
 
 /// A worker's own cache line, which the others read.
 struct alignas(64) WorkerLine {
-  std::atomic<uint64_t> arrived;   ///< job * 2^32 + pass it has done its bins of
+  std::atomic<uint64_t> arrived;   ///< ticket of the pass it has reached the barrier of
   std::atomic<uint32_t> finished;  ///< job it is done with
   std::atomic<uint32_t> pinned;    ///< 1 once it runs on its host CPU alone
   std::atomic<uint64_t> busy_ns;   ///< time of the last job outside barriers
 };
 static_assert(sizeof(WorkerLine) == 64 && std::atomic<uint64_t>::is_always_lock_free);
+
+/// A pass of a job; greater than all before it.
+inline uint64_t ticket_of(uint32_t job, uint32_t pass) { return (uint64_t{job} << 24) + pass; }
+inline uint32_t job_of(uint64_t ticket) { return static_cast<uint32_t>(ticket >> 24); }
+
+/// A worker's bins of a pass: those from its index in steps of the number of workers. It begins
+/// them in this order, and so does everybody who is done with his own.
+struct alignas(64) Share {
+  std::atomic<uint64_t> begun;  ///< ticket * 2^8 + how many are begun
+
+  /// Begins another bin; empty when all of this pass are begun.
+  std::optional<size_t> begin(uint64_t ticket, size_t first, size_t workers) noexcept {
+    uint64_t seen = begun.load(std::memory_order_relaxed);
+    for (;;) {
+      const uint64_t before = seen >> 8 == ticket ? seen & 0xFF : 0;
+      const size_t bin = first + before * workers;
+      if (bin >= bin_count) {
+        return std::nullopt;
+      }
+      const uint64_t after = (ticket << 8) + before + 1;
+      if (begun.compare_exchange_weak(seen, after, std::memory_order_relaxed)) {
+        return bin;
+      }
+    }
+  }
+};
+static_assert(bin_count < 256);
 
 /// Where processes wait for what others do. Zero is its initial state.
 struct alignas(64) Gate {
@@ -61,6 +88,7 @@ struct Session {
   Job what;
   NewtonResult result;  ///< written by worker 0
   std::array<WorkerLine, most_workers> lines;
+  std::array<Share, most_workers> shares;
   /// Of even and odd passes: who is ahead by one must not overwrite what others still add up.
   alignas(64) TangentSums bins[2][bin_count];
 };

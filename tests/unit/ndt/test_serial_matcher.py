@@ -38,7 +38,8 @@ def test_a_scan_finds_its_place(
         found = found_by.align(SCAN, GUESS)
     assert found.converged, found.why
     distance_m, angle_deg = errors(found.T_map_sensor, TRUE)
-    assert distance_m < 0.06
+    # With its own cell alone a point's score jumps at the borders, and the best pose is less exact.
+    assert distance_m < (0.08 if search == "direct1" else 0.06)
     assert angle_deg < 0.3
 
 

@@ -103,6 +103,13 @@ void bind_matchers(nb::module_ & module) {
       return serial.matcher().time_passes_ns(
         map, points.data(), points.shape(0), pose_from(pose), passes);
     }, nb::arg("map"), nb::arg("points"), nb::arg("pose"), nb::arg("passes"))
+    .def("time_shares_ns", [](
+      Serial & serial, const VoxelMap & map, const FloatPoints & points, const PoseMatrix & pose,
+      size_t workers) {
+      const nb::gil_scoped_release released;
+      return serial.matcher().time_shares_ns(
+        map, points.data(), points.shape(0), pose_from(pose), workers);
+    }, nb::arg("map"), nb::arg("points"), nb::arg("pose"), nb::arg("workers"))
     .def("profile_ns", [](
       Serial & serial, const VoxelMap & map, const FloatPoints & points, const PoseMatrix & guess) {
       const Profile times =
