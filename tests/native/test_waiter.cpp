@@ -5,10 +5,13 @@
 #include <doctest/doctest.h>
 
 #include <future>
+#include <memory>
 #include <vector>
 
 #include "patience.hpp"
 #include "platform/clock.hpp"
+#include "platform/futex_any.hpp"
+#include "transport/joint_wait.hpp"
 #include "transport/wake_word.hpp"
 #include "transport/waiter.hpp"
 
@@ -145,4 +148,46 @@ TEST_CASE("watchers are counted") {
   side.waiter.unwatch_endpoint_events();
   CHECK(side.word.graph_watchers == 0);
   CHECK(side.word.event_watchers == 0);
+}
+
+TEST_CASE("a wait on several platforms ends with a notification on any of them") {
+  for (const size_t notified : {0, 1, 2}) {
+    std::vector<std::unique_ptr<Side>> sides;
+    std::vector<SeenEpoch> seen;
+    for (int i = 0; i < 3; ++i) {
+      sides.push_back(std::make_unique<Side>(WaitMode::block));
+      seen.push_back({&sides.back()->waiter, sides.back()->waiter.epoch()});
+    }
+    std::future<bool> woken =
+      std::async(std::launch::async, [&] { return wait_for_any(seen, long_from_now()); });
+    wait_until("it sleeps everywhere", [&] {
+      return sides[0]->word.sleepers + sides[1]->word.sleepers + sides[2]->word.sleepers == 3;
+    });
+    sides[notified]->waiter.notify();
+    CHECK(woken.get());
+    CHECK(wait_for_any(seen, 0));  // what has happened already, even after the deadline
+    CHECK(sides[notified]->word.sleepers == 0);
+  }
+}
+
+TEST_CASE("a wait on several platforms ends at its deadline, and not before") {
+  Side one(WaitMode::block), other(WaitMode::spin);
+  const std::vector<SeenEpoch> seen{
+    {&one.waiter, one.waiter.epoch()}, {&other.waiter, other.waiter.epoch()}};
+  for (const int64_t duration_ns : {0, 1000, 2'000'000}) {
+    const int64_t deadline = monotonic_ns() + duration_ns;
+    CHECK_FALSE(wait_for_any(seen, deadline));
+    CHECK(monotonic_ns() >= deadline);
+  }
+}
+
+TEST_CASE("more words than the kernel takes at once are looked at again and again") {
+  FutexWord word{};
+  std::vector<AwaitedWord> words(129, AwaitedWord(word, 0));
+  const int64_t before = monotonic_ns();
+  futex_wait_any(words, std::nullopt);  // comes back by itself
+  CHECK(monotonic_ns() > before);
+  const int64_t deadline = monotonic_ns() + 1000;
+  futex_wait_any(words, deadline);
+  CHECK(monotonic_ns() >= deadline);
 }

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import os
 import threading
 import time
 from collections.abc import Iterator
@@ -12,6 +13,7 @@ import pytest
 import rclpy
 from rclpy._rclpy_pybind11 import GuardCondition, RCLError, WaitSet
 from rclpy.callback_groups import ReentrantCallbackGroup
+from rclpy.event_handler import SubscriptionEventCallbacks
 from rclpy.executors import Executor, MultiThreadedExecutor, SingleThreadedExecutor
 from rclpy.node import Node
 from ros_support import announce, peer_node, spin_until
@@ -217,3 +219,44 @@ def test_shutdown_with_everything_still_there():
     for entity in (publisher, subscription, client):
         entity.destroy()
     node.destroy_node()
+
+
+def test_a_node_of_another_domain_wakes_an_executor(start_peer, monkeypatch):
+    """One executor serves nodes of two domains, as a bridge between them does."""
+    monkeypatch.delenv("MANYCORE_PLATFORM", raising=False)
+    rclpy.init(domain_id=101)
+    foreign = rclpy.Context()
+    rclpy.init(context=foreign, domain_id=102)
+    own_node = rclpy.create_node("own")
+    foreign_node = rclpy.create_node("foreign", context=foreign)
+    messages, requests, matches = (threading.Semaphore(0) for _ in range(3))
+
+    def answer(_, response):
+        requests.release()
+        return response
+
+    events = SubscriptionEventCallbacks(matched=lambda _: matches.release())
+    foreign_node.create_subscription(
+        String, "numbers", lambda _: messages.release(), 10, event_callbacks=events
+    )
+    foreign_node.create_service(Trigger, "trigger", answer)
+    executor = SingleThreadedExecutor()
+    executor.add_node(foreign_node)
+    with spinning(own_node, executor):
+        start_peer(talk_and_ask, 102)
+        for happened in (matches, *[messages] * 3, *[requests] * 3):
+            assert happened.acquire(timeout=PATIENCE_S)
+    rclpy.shutdown(context=foreign)
+    rclpy.shutdown()
+
+
+def talk_and_ask(domain: int) -> None:
+    """Slowly, so that the other side sleeps in between."""
+    os.environ.pop("MANYCORE_PLATFORM", None)
+    os.environ["ROS_DOMAIN_ID"] = str(domain)
+    with peer_node() as node:
+        publisher = node.create_publisher(String, "numbers", 10)
+        client = node.create_client(Trigger, "trigger")
+        node.create_timer(0.05, lambda: publisher.publish(String()))
+        node.create_timer(0.05, lambda: client.call_async(Trigger.Request()))
+        rclpy.spin(node)

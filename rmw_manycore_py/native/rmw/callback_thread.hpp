@@ -26,6 +26,7 @@ public:
   CallbackThread(const CallbackThread &) = delete;
   CallbackThread & operator=(const CallbackThread &) = delete;
 
+  manycore::Waiter & waiter() const noexcept { return waiter_; }
   /// After it no callback is called any more. Not from within a callback.
   void stop() noexcept;
 
@@ -66,6 +67,7 @@ public:
   Callback(const Callback &) = delete;
   Callback & operator=(const Callback &) = delete;
 
+  manycore::Waiter & waiter() const noexcept { return thread_.waiter(); }
   /// Sets, replaces or (nullptr) clears. What arrived before and is neither reported nor taken is
   /// reported at once, from the calling thread.
   void set(rmw_event_callback_t function, const void * user_data);

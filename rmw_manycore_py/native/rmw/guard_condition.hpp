@@ -23,6 +23,8 @@ public:
   rmw_guard_condition_t handle{};
 
   Source source() const noexcept { return source_; }
+  /// Where who waits for it sleeps.
+  manycore::Waiter & waiter() const noexcept { return process_->waiter(); }
   void trigger() noexcept;
   bool ready() const noexcept;
   /// As `ready`, and resets: the next wait needs a new trigger or change.

@@ -18,6 +18,8 @@ public:
       thread, [this] { return subscription_->arrivals(); }, [this] { return unread(); }) {}
 
   const manycore::Subscription & transport() const noexcept { return *subscription_; }
+  /// Where who waits for arrivals sleeps.
+  manycore::Waiter & waiter() const noexcept { return on_arrival_.waiter(); }
   Callback & on_arrival() noexcept { return on_arrival_; }
   bool has_data() const noexcept { return subscription_->has_data(); }
 

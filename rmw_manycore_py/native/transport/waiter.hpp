@@ -4,9 +4,11 @@
 #include <atomic>
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 namespace manycore {
 
+struct SeenEpoch;
 struct WakeWord;
 
 /// How a process waits for its next notification.
@@ -40,6 +42,7 @@ public:
   void unwatch_endpoint_events() noexcept;
 
 private:
+  friend bool wait_for_any(const std::vector<SeenEpoch> &, std::optional<int64_t>);
   bool spin(uint32_t seen, std::optional<int64_t> deadline_ns) noexcept;
   bool sleep(uint32_t seen, std::optional<int64_t> deadline_ns) noexcept;
   void learn(bool served) noexcept;

@@ -1,0 +1,32 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#include "platform/futex_any.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <ctime>
+
+namespace manycore {
+namespace {
+
+constexpr long futex_waitv_number = 449;  // on every architecture but Alpha
+constexpr int64_t look_again_ns = 10'000'000;
+
+void sleep_until(int64_t deadline_ns) noexcept {
+  const timespec until = to_timespec(deadline_ns);
+  clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr);
+}
+
+}  // namespace
+
+void futex_wait_any(
+  std::vector<AwaitedWord> & words, std::optional<int64_t> deadline_ns) noexcept {
+  const timespec until = to_timespec(deadline_ns.value_or(0));
+  const long woken = syscall(
+    futex_waitv_number, words.data(), words.size(), 0, deadline_ns ? &until : nullptr,
+    CLOCK_MONOTONIC);
+  if (woken < 0 && errno != EAGAIN && errno != EINTR && errno != ETIMEDOUT) {
+    sleep_until(std::min(deadline_ns.value_or(INT64_MAX), monotonic_ns() + look_again_ns));
+  }
+}
+
+}  // namespace manycore
