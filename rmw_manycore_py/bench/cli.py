@@ -29,6 +29,7 @@ from rmw_manycore_py.bench.question import Question, Run
 from rmw_manycore_py.bench.report import Report
 from rmw_manycore_py.bench.session import usable_cpus
 from rmw_manycore_py.bench.summary import Goal, Result, judge
+from rmw_manycore_py.figures import load_figure
 
 RMW_QUESTIONS = {
     "round-trip": round_trip.QUESTION,
@@ -147,6 +148,8 @@ def _answer(
 ) -> None:
     if with_plot and output is None:
         raise click.UsageError("--plot needs --output, the directory to write to")
+    if with_plot:
+        load_figure()
     progress = Console(stderr=True)
     with progress.status("bench") as status:
         run = Run(

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""A picture of the results, where matplotlib is installed."""
+"""A picture of the results."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from rmw_manycore_py.bench.summary import Result
-from rmw_manycore_py.errors import ManycoreError
+from rmw_manycore_py.bench.summary import SPREAD, Result, nearest_rank
+from rmw_manycore_py.figures import load_figure
 
 COLUMNS = 2
 # Beyond this ratio of the longest line to the shortest bar the bar could not be seen.
@@ -17,33 +17,63 @@ LINEAR_UP_TO = 20
 
 
 def plot(results: Sequence[Result], path: Path) -> None:
-    """Draw a panel per question: a bar to the median, a line to the 99th percentile."""
-    try:
-        from matplotlib.figure import Figure
-    except ImportError:
-        raise ManycoreError(
-            "the plot needs matplotlib: pip install 'rmw-manycore[bench]'"
-        ) from None
+    """Draw a panel per question: curves over the number of cores, or bars side by side."""
     questions = list(dict.fromkeys(r.question for r in results if r.summary.largest > 0))
     rows = math.ceil(len(questions) / COLUMNS)
-    figure = Figure(figsize=(7 * COLUMNS, 2.4 * rows), layout="constrained")
+    figure = load_figure()(figsize=(7 * COLUMNS, 2.8 * rows), layout="constrained")
     panels = figure.subplots(rows, COLUMNS, squeeze=False).flatten()
     for panel, question in zip(panels, questions, strict=False):
-        _draw(panel, question, [r for r in results if r.question == question])
+        asked = [r for r in results if r.question == question]
+        panel.set_title(question)
+        draw = _draw_curves if any(r.curve for r in asked) else _draw_bars
+        draw(panel, asked)
     for panel in panels[len(questions) :]:
         panel.remove()
     figure.savefig(path)
 
 
-def _draw(panel: Any, question: str, results: Sequence[Result]) -> None:
+def _draw_bars(panel: Any, results: Sequence[Result]) -> None:
+    """Draw a bar to the median, and a line to the 99th percentile."""
     names = [result.contender for result in results]
     medians = [result.summary.median for result in results]
     tails = [result.summary.p99 - result.summary.median for result in results]
     colours = ["tab:blue" if "manycore" in name else "tab:gray" for name in names]
     panel.barh(names, medians, xerr=[[0.0] * len(tails), tails], color=colours, ecolor="0.3")
     panel.invert_yaxis()
-    panel.set_title(question)
     panel.set_xlabel(results[0].unit)
     if 0 < LINEAR_UP_TO * min(medians) < max(r.summary.p99 for r in results):
         panel.set_xscale("log")
         panel.set_xlim(left=10 ** math.floor(math.log10(min(medians))))
+
+
+def _draw_curves(panel: Any, results: Sequence[Result]) -> None:
+    """Draw medians over cores in a band from the 5th to the 95th percentile.
+
+    What is on no curve is a curve of its own: a single mark, its spread a line.
+    """
+    names = list(dict.fromkeys(r.curve.name if r.curve else r.contender for r in results))
+    for name in names:
+        found = [r for r in results if name == (r.curve.name if r.curve else r.contender)]
+        found.sort(key=_cores)
+        cores = [_cores(result) for result in found]
+        low, high = ([_rank(r, share) for r in found] for share in SPREAD)
+        medians = [result.summary.median for result in found]
+        (line,) = panel.plot(cores, medians, marker="o", markersize=4, label=name)
+        panel.fill_between(cores, low, high, alpha=0.2, color=line.get_color())
+        panel.vlines(cores, low, high, alpha=0.5, color=line.get_color())
+    panel.set(xlabel="cores", ylabel=results[0].unit, xticks=sorted({_cores(r) for r in results}))
+    if max(r.summary.median for r in results) > LINEAR_UP_TO * min(
+        r.summary.median for r in results
+    ):
+        panel.set_yscale("log")
+    else:
+        panel.set_ylim(bottom=0)
+    panel.legend(fontsize="small")
+
+
+def _cores(result: Result) -> int:
+    return result.curve.cores if result.curve else 1
+
+
+def _rank(result: Result, share: float) -> float:
+    return nearest_rank(sorted(result.samples), share)

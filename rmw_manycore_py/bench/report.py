@@ -13,7 +13,7 @@ from typing import Any
 import click
 from rich.table import Table
 
-from rmw_manycore_py.bench.summary import Result, Verdict
+from rmw_manycore_py.bench.summary import SPREAD, Result, Verdict, nearest_rank
 from rmw_manycore_py.cli.options import new_table, print_table
 
 
@@ -80,7 +80,12 @@ def write_csv(path: Path, rows: Sequence[dict[str, Any]]) -> None:
 
 def _row(result: Result) -> dict[str, Any]:
     names = {"question": result.question, "contender": result.contender, "unit": result.unit}
-    return {**names, **asdict(result.summary)}
+    curve = {
+        "curve": result.curve.name if result.curve else "",
+        "cores": result.curve.cores if result.curve else "",
+    }
+    spread = {f"p{100 * share:g}": nearest_rank(sorted(result.samples), share) for share in SPREAD}
+    return {**names, **curve, **asdict(result.summary), **spread}
 
 
 def _results_table(results: Sequence[Result]) -> Table:

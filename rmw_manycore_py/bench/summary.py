@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 Statistic = Literal["median", "mean", "p99", "largest"]
+SPREAD = (0.05, 0.95)  # of the samples, between which most of them lie
 
 
 @dataclass(frozen=True)
@@ -41,6 +42,14 @@ def nearest_rank(ordered: Sequence[float], share: float) -> float:
 
 
 @dataclass(frozen=True)
+class Curve:
+    """Where a result lies on a curve over the number of cores."""
+
+    name: str
+    cores: int
+
+
+@dataclass(frozen=True)
 class Result:
     """All samples of one contender at one question, for example "64 B"."""
 
@@ -49,6 +58,7 @@ class Result:
     unit: str
     samples: tuple[float, ...]
     higher_is_better: bool = False
+    curve: Curve | None = None
     summary: Summary = field(init=False)
 
     def __post_init__(self) -> None:

@@ -11,6 +11,7 @@ from pathlib import Path
 import click
 
 from rmw_manycore_py.cli.options import examples, new_table, print_json, print_table
+from rmw_manycore_py.figures import load_figure
 from rmw_manycore_py.launch.environment import enter_middleware, leave_middleware
 from rmw_manycore_py.ndt.map_file import read_points
 from rmw_manycore_py.ndt.map_tiles import open_map
@@ -112,6 +113,8 @@ def command(
     Publishes pointcloud_map, ekf_pose_with_covariance and points_raw, takes ndt_pose, and reports
     error, latency and what was lost. The exit status is 1 if a scan was lost, late or diverged.
     """
+    if plot_path is not None:
+        load_figure()
     _enter(rmw)
     from rmw_manycore_py.ndt.replay import prediction
     from rmw_manycore_py.ndt.replay.guess_source import Guesses, GuessSource, StackInputs

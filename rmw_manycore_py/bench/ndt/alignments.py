@@ -6,13 +6,14 @@ from __future__ import annotations
 import time
 from collections.abc import Sequence
 from contextlib import ExitStack
+from dataclasses import replace
 
 from rmw_manycore_py import _ndt
 from rmw_manycore_py.bench.ndt.contenders import VOXEL_SIZE_M, map_for, on_cpu, usable
 from rmw_manycore_py.bench.ndt.peers import PYTHON_PEERS, Peer, all_peers
 from rmw_manycore_py.bench.ndt.world import world
 from rmw_manycore_py.bench.question import Measure, Question, Run
-from rmw_manycore_py.bench.summary import Goal, Result
+from rmw_manycore_py.bench.summary import Curve, Goal, Result
 from rmw_manycore_py.ndt import MatcherOptions, SerialMatcher, WorkerMatcher
 from rmw_manycore_py.ndt.arrays import scan_points
 from rmw_manycore_py.ndt.matcher import Matcher, native_options
@@ -42,18 +43,24 @@ def measure(run: Run) -> list[Result]:
     cpus = usable()
     with ExitStack() as stack:
         contenders: dict[str, Measure] = {}
+        curves: dict[str, Curve] = {}
         for count in range(1, min(len(cpus), MOST_WORKERS) + 1):
             matcher: Matcher = stack.enter_context(WorkerMatcher(options, cpus[:count]))
             matcher.set_map(voxel_map)
             contenders[workers(count)] = _own(run, matcher)
+            curves[workers(count)] = Curve("rmw_manycore workers", count)
             threaded = SerialMatcher(options)
             threaded._native = _ndt.ThreadMatcher(native_options(options), cpus[:count], [])
             threaded.set_map(voxel_map)
             contenders[threads(count)] = _own(run, threaded)
+            curves[threads(count)] = Curve("threads", count)
         names = [name for name in ("PCL", *PYTHON_PEERS) if run.wants(name)]
         peers = stack.enter_context(all_peers(cpus[0], VOXEL_SIZE_M, None, names))
         contenders.update({name: _peer(peer) for name, peer in peers.items()})
-        results = run.interleave(NAME, "ms", contenders)
+        results = [
+            replace(result, curve=curves.get(result.contender))
+            for result in run.interleave(NAME, "ms", contenders)
+        ]
     own = [result for result in results if "rmw_manycore" in result.contender]
     return [*results, *map(_tail, own), *map(_mixed, own), *_imbalance(run, options)]
 
@@ -101,7 +108,8 @@ def _imbalance(run: Run, options: MatcherOptions) -> list[Result]:
                 matcher.time_shares_ns(voxel_map.native, points, pose, MOST_WORKERS)
                 for _ in range(run.iterations(REPEATS))
             ]
-            times = [_median(share) for share in zip(*shares, strict=True)]
+            # The fastest of each: what the share itself takes, undisturbed.
+            times = [min(share) for share in zip(*shares, strict=True)]
             found.append(max(times) * len(times) / sum(times))
     return [Result(IMBALANCE, workers(MOST_WORKERS), "x", tuple(found))]
 

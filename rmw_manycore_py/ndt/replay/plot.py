@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
+from rmw_manycore_py.figures import load_figure
 from rmw_manycore_py.ndt.replay.tally import Tally
 from rmw_manycore_py.ndt.thinning import Points
 
@@ -15,12 +16,8 @@ MAP_POINTS = 30_000
 
 def plot(tally: Tally, map_points: Points | None, path: Path) -> None:
     """Write the picture; the suffix of the path chooses its format."""
-    import matplotlib
-
-    matplotlib.use("Agg")
-    from matplotlib import pyplot
-
-    figure, axes = pyplot.subplots(1, 3, figsize=(15, 5), layout="constrained")
+    figure = load_figure()(figsize=(15, 5), layout="constrained")
+    axes = figure.subplots(1, 3)
     if map_points is not None:
         shown = map_points[:: max(1, len(map_points) // MAP_POINTS)]
         axes[0].scatter(shown[:, 0], shown[:, 1], s=0.2, c="0.75", rasterized=True)
@@ -47,4 +44,3 @@ def plot(tally: Tally, map_points: Points | None, path: Path) -> None:
     axes[2].axhline(tally.deadline_ms, color="tab:red", linewidth=1)
     axes[2].set(xlabel="scan", ylabel="ms", title="end to end", ylim=0)
     figure.savefig(path, dpi=120)
-    pyplot.close(figure)

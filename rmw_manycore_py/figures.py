@@ -1,0 +1,26 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Pictures, where matplotlib is installed."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rmw_manycore_py.errors import ManycoreError
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+def load_figure() -> type[Figure]:
+    """Return matplotlib's class of figures; without it an error says how to get it.
+
+    Figures of this class need no display. Call this before a long run whose picture is wanted.
+    """
+    try:
+        from matplotlib.figure import Figure
+    except ImportError as error:
+        raise ManycoreError(
+            f"matplotlib cannot be loaded ({error}). Plots need it: "
+            "pip install 'rmw-manycore[bench]', or [ndt]"
+        ) from error
+    return Figure

@@ -1,0 +1,87 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""A picture has a panel per question; where it cannot be drawn, that is said before the run."""
+
+from __future__ import annotations
+
+import csv
+import os
+import subprocess
+from pathlib import Path
+
+import pytest
+from support import manycore_command
+
+from rmw_manycore_py.bench.plot import plot
+from rmw_manycore_py.bench.report import Report
+from rmw_manycore_py.bench.summary import Curve, Result
+from rmw_manycore_py.figures import load_figure
+
+pytestmark = pytest.mark.unit
+
+RESULTS = [
+    *(
+        Result("time", f"{n} workers", "ms", (6 / n, 6.5 / n, 7 / n), curve=Curve("workers", n))
+        for n in (1, 2, 4)
+    ),
+    Result("time", "PCL", "ms", (200.0, 210.0, 250.0)),
+    Result("share", "search", "%", (10.0, 11.0)),
+]
+
+
+def test_curves_and_bars_are_drawn(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    pytest.importorskip("matplotlib", reason="needs the extra bench (matplotlib)")
+    drawn = []
+    figure = load_figure()
+    monkeypatch.setattr(figure, "savefig", lambda self, path: drawn.append(self))
+    plot(RESULTS, tmp_path / "plot.svg")
+    over_cores, bars = drawn[0].axes
+    assert {line.get_label(): list(line.get_xdata()) for line in over_cores.lines} == {
+        "workers": [1, 2, 4],
+        "PCL": [1],
+    }
+    assert [line.get_ydata()[0] for line in over_cores.lines] == [6.5, 210.0]
+    assert over_cores.get_yscale() == "log"
+    assert bars.get_title() == "share"
+    assert len(bars.patches) == 1
+
+
+def test_a_picture_is_a_file(tmp_path: Path) -> None:
+    pytest.importorskip("matplotlib", reason="needs the extra bench (matplotlib)")
+    plot(RESULTS, tmp_path / "plot.svg")
+    assert "<svg" in (tmp_path / "plot.svg").read_text()
+
+
+def test_the_table_has_curve_and_spread(tmp_path: Path) -> None:
+    Report({}, {}, RESULTS, []).write(tmp_path)
+    with (tmp_path / "results.csv").open() as file:
+        rows = list(csv.DictReader(file))
+    assert [(row["curve"], row["cores"]) for row in rows[2:4]] == [("workers", "4"), ("", "")]
+    assert (float(rows[3]["p5"]), float(rows[3]["p95"])) == (200.0, 250.0)
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        ("bench", "ndt", "--plot", "-o", "results"),
+        ("ndt", "replay", "drive.npz", "--plot", "replay.png"),
+    ],
+    ids=["bench", "replay"],
+)
+def test_a_missing_matplotlib_is_said_before_the_run(
+    command: tuple[str, ...], tmp_path: Path
+) -> None:
+    (tmp_path / "matplotlib.py").write_text("raise ImportError('not here')\n")
+    (tmp_path / "drive.npz").touch()
+    run = subprocess.run(
+        [str(word) for word in manycore_command(*command)],
+        cwd=tmp_path,
+        env={**os.environ, "PYTHONPATH": str(tmp_path)},
+        capture_output=True,
+        text=True,
+        timeout=60,
+    )
+    assert run.returncode != 0
+    assert "matplotlib cannot be loaded" in run.stderr
+    assert "pip install" in run.stderr
+    assert "Traceback" not in run.stderr
+    assert not (tmp_path / "results").exists()
