@@ -60,7 +60,7 @@ def refused(guess: Pose | None, why: str, options: MatcherOptions) -> Alignment:
 
 
 def _covariance(hessian: Matrix6, options: MatcherOptions) -> Matrix6:
-    """Return Laplace's covariance, the fixed one where the score has no maximum to speak of."""
+    """Return Laplace's covariance where it is wanted and the score has a maximum, or the fixed."""
     if options.pose_covariance == "laplace":
         values, vectors = np.linalg.eigh(-hessian)
         if values[0] > 0:

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from types import TracebackType
 from typing import Any, Protocol
 
@@ -10,11 +11,14 @@ from numpy.typing import ArrayLike
 
 from rmw_manycore_py import _ndt
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
+from rmw_manycore_py.ndt import covariance
 from rmw_manycore_py.ndt.alignment import Alignment, Score
 from rmw_manycore_py.ndt.answers import alignment_from, refused, score_from
 from rmw_manycore_py.ndt.arrays import Pose, ScanPoints, pose_matrix, scan_points, why_no_pose
 from rmw_manycore_py.ndt.options import MatcherOptions
 from rmw_manycore_py.ndt.voxel_map import VoxelMap
+
+Position = tuple[float, float]
 
 FEWEST_POINTS = 6  # a pose has six unknowns, and the surface that a point lies on fixes one
 
@@ -27,7 +31,7 @@ class NativeMatcher(Protocol):
         map: _ndt.VoxelMap,  # noqa: A002 - named as the binding names it
         points: ScanPoints,
         guess: Pose,
-        regularization_position_m: tuple[float, float] | None = None,
+        regularization_position_m: Position | None = None,
     ) -> dict[str, Any]:
         """Align from a guess."""
         ...
@@ -104,6 +108,14 @@ class Matcher:
             if wrong:
                 return refused(guess, f"the regularization pose {wrong}", self.options)
             position = (float(regularization[0, 3]), float(regularization[1, 3]))
+        alignment = self._aligned(voxel_map, scan, guess, position)
+        if not alignment.converged:
+            return alignment
+        return self._with_covariance(alignment, voxel_map, scan, position)
+
+    def _aligned(
+        self, voxel_map: VoxelMap, scan: ScanPoints, guess: Pose, position: Position | None
+    ) -> Alignment:
         numbers = self._native.align(voxel_map.native, scan, guess, position)
         if numbers["used_points"] == 0:
             return refused(guess, "the scan has no finite point", self.options)
@@ -111,6 +123,30 @@ class Matcher:
             few = f"{numbers['used_points']} finite points do not say where a scan fits"
             return refused(guess, f"too few points: {few}", self.options)
         return alignment_from(numbers, self.options)
+
+    def _with_covariance(
+        self,
+        alignment: Alignment,
+        voxel_map: VoxelMap,
+        scan: ScanPoints,
+        position: Position | None,
+    ) -> Alignment:
+        """Return the alignment with what takes more than itself to know its covariance."""
+        offsets_m = self.options.offsets_m
+        if self.options.pose_covariance == "multi_ndt":
+            found = covariance.from_alignments(
+                alignment, lambda T: self._aligned(voxel_map, scan, T, position), offsets_m
+            )
+        elif self.options.pose_covariance == "multi_ndt_score":
+            found = covariance.from_scores(
+                alignment,
+                lambda T: self.score(scan, T).nearest_voxel_likelihood,
+                offsets_m,
+                self.options.temperature,
+            )
+        else:
+            return alignment
+        return replace(alignment, covariance=found)
 
     def score(self, points: ArrayLike, T_map_sensor: ArrayLike) -> Score:
         """Return how well points (N, 3) fit at a pose (4, 4); 0 for what is no scan or no pose."""

@@ -12,7 +12,8 @@ from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
 Search = Literal["radius", "direct7", "direct1"]
 VoxelCovariance = Literal["pcl", "autoware", "pclomp"]
 StepRule = Literal["trust_region", "clamped", "more_thuente"]
-PoseCovariance = Literal["laplace", "fixed"]
+PoseCovariance = Literal["laplace", "fixed", "multi_ndt", "multi_ndt_score"]
+Offsets = tuple[tuple[float, float], ...]
 
 
 @dataclass(frozen=True)
@@ -38,8 +39,12 @@ class MatcherOptions:
     :param regularization_scale_factor: pull towards the regularization pose, along the vehicle's
         axis; 0 is none.
     :param pose_covariance: ``laplace``: the inverse of the score's negative Hessian; ``fixed``: the
-        diagonal ``fixed_pose_variances``.
+        diagonal ``fixed_pose_variances``; ``multi_ndt`` and ``multi_ndt_score``: the same, but x
+        and y as alignments from ``offsets_m`` around the result scatter, and as the likelihoods
+        there say (Autoware's types 2 and 3; covariance.py).
     :param fixed_pose_variances: of x, y, z [m^2], roll, pitch, yaw [rad^2].
+    :param offsets_m: ahead and to the left of the result.
+    :param temperature: difference of likelihoods by which a place counts e times less.
     :raises ManycoreError: when a value is out of its range.
     """
 
@@ -58,6 +63,11 @@ class MatcherOptions:
         *(0.0225, 0.0225, 0.0225),
         *(0.000625, 0.000625, 0.000625),
     )
+    offsets_m: Offsets = (
+        *((0.0, 0.5), (0.0, -0.5)),
+        *((0.5, 0.0), (-0.5, 0.0), (1.0, 0.0), (-1.0, 0.0)),
+    )
+    temperature: float = 0.05
 
     def __post_init__(self) -> None:
         self._check_words()
@@ -72,6 +82,8 @@ class MatcherOptions:
         )
         for variance in self.fixed_pose_variances:
             self._check_number("fixed_pose_variances", variance, 0, math.inf)
+        self._check_number("temperature", self.temperature, 1e-6, 1e6)
+        self._check_offsets()
 
     def _check_words(self) -> None:
         hints = get_type_hints(type(self))
@@ -80,6 +92,15 @@ class MatcherOptions:
             if words and isinstance(words[0], str) and getattr(self, field.name) not in words:
                 found = getattr(self, field.name)
                 raise _error(field.name, f"one of {', '.join(words)}", found)
+
+    def _check_offsets(self) -> None:
+        for offset in self.offsets_m:
+            if len(offset) != 2:
+                raise _error("offsets_m", "pairs of numbers", offset)
+            for distance_m in offset:
+                self._check_number("offsets_m", distance_m, -100, 100)
+        if not self.offsets_m:
+            raise _error("offsets_m", "at least one pair of numbers", self.offsets_m)
 
     def _check_number(self, name: str, value: float, least: float, most: float) -> None:
         if isinstance(value, bool) or not isinstance(value, (int, float)):

@@ -1,0 +1,78 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""How well x and y are known, from what is found around the result.
+
+Both ways are those of Autoware's `ndt_scan_matcher`. In a tunnel alignments from points along it
+end at as many places, and the score is as good there as at the result: x along it is not known.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rmw_manycore_py.ndt.alignment import Alignment
+from rmw_manycore_py.ndt.arrays import Matrix6, Pose
+from rmw_manycore_py.ndt.options import Offsets
+
+Array = NDArray[np.float64]
+
+
+def poses_around(T_map_sensor: Pose, offsets_m: Offsets) -> list[Pose]:
+    """Return poses (4, 4) that lie so far ahead and to the left of one."""
+    found = []
+    for offset in offsets_m:
+        T = T_map_sensor.copy()
+        T[:2, 3] += T_map_sensor[:2, :2] @ offset
+        found.append(T)
+    return found
+
+
+def from_alignments(
+    result: Alignment, align: Callable[[Pose], Alignment], offsets_m: Offsets
+) -> Matrix6:
+    """Return the result's covariance (6, 6), of x and y as alignments from around it scatter.
+
+    The mean square deviation is multiplied by (n - 1) / n, n being the number of alignments with
+    the first, as in Autoware.
+    """
+    poses = [align(T).T_map_sensor for T in poses_around(result.T_map_sensor, offsets_m)]
+    places = np.array([result.T_map_sensor[:2, 3], *(T[:2, 3] for T in poses)])
+    count = len(places)
+    scatter = _scatter(places, np.full(count, 1 / count))
+    return _with_xy(result.covariance, scatter * (count - 1) / count)
+
+
+def from_scores(
+    result: Alignment,
+    likelihood: Callable[[Pose], float],
+    offsets_m: Offsets,
+    temperature: float,
+) -> Matrix6:
+    """Return the result's covariance (6, 6), of x and y from the likelihoods of poses around it.
+
+    Each place weighs exp(likelihood / temperature), the likelihood being that of the nearest
+    voxels (:class:`Score`).
+    """
+    poses = poses_around(result.T_map_sensor, offsets_m)
+    likelihoods = [result.nearest_voxel_likelihood, *map(likelihood, poses)]
+    places = np.array([result.T_map_sensor[:2, 3], *(T[:2, 3] for T in poses)])
+    return _with_xy(result.covariance, _scatter(places, _weights(likelihoods, temperature)))
+
+
+def _weights(likelihoods: Sequence[float], temperature: float) -> Array:
+    weights: Array = np.exp((np.array(likelihoods) - max(likelihoods)) / temperature)
+    return weights / weights.sum()
+
+
+def _scatter(places_m: Array, weights: Array) -> Array:
+    deviations = places_m - weights @ places_m
+    scatter: Array = (weights * deviations.T) @ deviations
+    return scatter
+
+
+def _with_xy(covariance: Matrix6, xy: Array) -> Matrix6:
+    changed = covariance.copy()
+    changed[:2, :2] = xy
+    return changed
