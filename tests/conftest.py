@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import os
+import signal
 import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -20,6 +21,8 @@ StartProgram = Callable[..., Program]
 
 
 def pytest_configure(config: pytest.Config) -> None:
+    # A shell's background jobs ignore Ctrl-C, and so would whatever the tests start.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     # The wheels of rosidl bring an old parser along, which uses modules that Python gave up.
     config.addinivalue_line("filterwarnings", "ignore:module 'sre_:DeprecationWarning")
     if report_path := os.environ.get(isolation.REPORT_VARIABLE):
