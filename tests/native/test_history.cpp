@@ -139,6 +139,21 @@ TEST_CASE("RELIABLE + KEEP_ALL: a reader that goes away lets the publisher go on
   }
 }
 
+TEST_CASE("an expired message is deleted: its room is free, although nobody took it") {
+  Fixture f;
+  Qos qos = keep_all();
+  qos.durability = Durability::transient_local;
+  qos.lifespan_ns = 3600 * ns_per_s;
+  const auto publisher = f.publisher(qos, "/fixed");
+  const auto subscription = f.subscription(keep_all(), "/fixed");
+  const int64_t expired_ns = realtime_ns() - 2 * qos.lifespan_ns;
+  for (int i = 0; i < 1000; ++i) {  // far more than there is room for
+    publisher->publish(publisher->draft(100), 100, expired_ns);
+  }
+  publish(*publisher, 1, 100);
+  CHECK(take(*subscription)->number == 1);
+}
+
 TEST_CASE("KEEP_ALL holds more messages than the queue holds hints") {
   Fixture f;
   const auto publisher = f.publisher(keep_last(1));

@@ -5,19 +5,17 @@ from __future__ import annotations
 
 import ctypes
 import struct
-import sys
-from pathlib import Path
 from typing import Any
 
 import pytest
+from c_support import rcl, rcl_handle, rcutils, rmw, rmw_handle
 from geometry_msgs.msg import Point
 from rclpy.qos import HistoryPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.serialization import serialize_message
 from ros_support import spin_until
 from std_srvs.srv import Trigger
-from support import RMW
+from support import IS_MANYCORE
 
-LIBRARIES = Path(sys.prefix, "lib")
 POINT_BYTES = 24  # three doubles in memory, and behind four bytes of header in CDR
 INFO_BYTES = 128  # at least sizeof(rmw_message_info_t)
 
@@ -63,16 +61,7 @@ class Qos(ctypes.Structure):
     )
 
 
-rmw = ctypes.CDLL(str(LIBRARIES / f"lib{RMW}.so"))
-rcl = ctypes.CDLL(str(LIBRARIES / "librcl.so"))
-rcutils = ctypes.CDLL(str(LIBRARIES / "librcutils.so"))
 rcutils.rcutils_get_default_allocator.restype = Allocator
-
-
-def rmw_handle(kind: str, entity: Any) -> ctypes.c_void_p:
-    function = getattr(rcl, f"rcl_{kind}_get_rmw_handle")
-    function.restype = ctypes.c_void_p
-    return ctypes.c_void_p(function(ctypes.c_void_p(entity.handle.pointer)))
 
 
 @pytest.fixture
@@ -142,6 +131,19 @@ def test_take_serialized_message(publisher, subscription):
     assert rcutils.rcutils_uint8_array_fini(address) == 0
 
 
+@pytest.mark.skipif(not IS_MANYCORE, reason="Fast DDS lends only with data sharing")
+def test_take_loaned_message(publisher, subscription):
+    publish(publisher, 2)
+    for number in range(2):
+        loan = ctypes.c_void_p()
+        address = ctypes.byref(loan)
+        take_until_taken(
+            lambda taken, a=address: rmw.rmw_take_loaned_message(subscription, a, taken, None)
+        )
+        assert list((ctypes.c_double * 3).from_address(loan.value)) == [number, 0, 0]
+        assert rmw.rmw_return_loaned_message_from_subscription(subscription, loan) == 0
+
+
 def test_gids_are_compared(node, publisher):
     other = node.create_publisher(Point, "points", 10)
     gids = [Gid(), Gid(), Gid()]
@@ -170,6 +172,6 @@ def test_qos_of_both_directions_of_a_service(node, function):
     service = node.create_service(Trigger, "ask", lambda _, reply: reply, qos_profile=qos)
     entity = client if "_client_" in function else service
     getattr(rcl, function).restype = ctypes.POINTER(Qos)
-    actual = getattr(rcl, function)(ctypes.c_void_p(entity.handle.pointer)).contents
+    actual = getattr(rcl, function)(rcl_handle(entity)).contents
     assert (actual.history, actual.depth) == (HistoryPolicy.KEEP_LAST, 7)
     assert actual.reliability == ReliabilityPolicy.RELIABLE

@@ -4,12 +4,11 @@
 from __future__ import annotations
 
 import ctypes
-import sys
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 import pytest
+from c_support import rcl, rcl_handle, rcutils, type_support
 from geometry_msgs.msg import Point, PoseWithCovariance
 from ros_support import spin_until
 from std_msgs.msg import Empty, String, UInt8MultiArray
@@ -27,31 +26,20 @@ def point_at(address: ctypes.c_void_p) -> PointInMemory:
     return PointInMemory.from_address(address.value)
 
 
-def type_support(message_type: Any) -> ctypes.c_void_p:
-    get_pointer = ctypes.pythonapi.PyCapsule_GetPointer
-    get_pointer.restype = ctypes.c_void_p
-    get_pointer.argtypes = [ctypes.py_object, ctypes.c_char_p]
-    if message_type.__class__._TYPE_SUPPORT is None:
-        message_type.__class__.__import_type_support__()
-    return ctypes.c_void_p(get_pointer(message_type.__class__._TYPE_SUPPORT, None))
-
-
 class Lender:
     """The loan functions of a publisher or a subscription; each returns rcl's code."""
 
     def __init__(self, entity: Any, message_type: Any) -> None:
-        self.rcl = ctypes.CDLL(str(Path(sys.prefix, "lib", "librcl.so")))
-        self.errors = ctypes.CDLL(str(Path(sys.prefix, "lib", "librcutils.so")))
-        self.pointer = ctypes.c_void_p(entity.handle.pointer)
+        self.pointer = rcl_handle(entity)
         self.type_support = type_support(message_type)
 
     def _call(self, function: str, *arguments: Any) -> int:
-        code = getattr(self.rcl, function)(self.pointer, *arguments)
-        self.errors.rcutils_reset_error()
+        code = getattr(rcl, function)(self.pointer, *arguments)
+        rcutils.rcutils_reset_error()
         return int(code)
 
     def lends(self) -> bool:
-        function = self.rcl.rcl_publisher_can_loan_messages
+        function = rcl.rcl_publisher_can_loan_messages
         function.restype = ctypes.c_bool
         return bool(function(self.pointer))
 

@@ -8,10 +8,13 @@ import os
 import pytest
 import rclpy
 from rcl_interfaces.msg import Log
+from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from ros_support import announce, peer_node, spin_until
 from std_msgs.msg import String
-from support import example_command
+from support import IS_MANYCORE, example_command
+
+needs_manycore = pytest.mark.skipif(not IS_MANYCORE, reason="about what only DDS has")
 
 
 def test_namespace_and_remapping(node, start, peer_cluster):
@@ -109,3 +112,55 @@ def talk_in_domain(domain: int) -> None:
         spin_until(node, lambda: len(heard) > 2)
         announce("published")
         rclpy.spin(node)
+
+
+def meet(node: Node, start_peer, **env: str) -> list[String]:
+    """Return what a node has heard when a peer with these variables has heard itself."""
+    heard: list[String] = []
+    node.create_subscription(String, "chatter", heard.append, 10)
+    peer = start_peer(talk_to_itself, **env)
+    peer.wait_for("published")
+    rclpy.spin_once(node, timeout_sec=0.1)
+    return heard
+
+
+def talk_to_itself() -> None:
+    with peer_node() as node:
+        heard = []
+        publisher = node.create_publisher(String, "chatter", 10)
+        node.create_subscription(String, "chatter", heard.append, 10)
+        node.create_timer(0.02, lambda: publisher.publish(String()))
+        spin_until(node, lambda: len(heard) > 2)
+        announce("published")
+        rclpy.spin(node)
+
+
+@pytest.mark.parametrize("name", ["LOCALHOST", "SUBNET", "SYSTEM_DEFAULT"])
+def test_discovery_ranges_that_include_this_machine(node, start_peer, name):
+    assert meet(node, start_peer, ROS_AUTOMATIC_DISCOVERY_RANGE=name)
+
+
+def test_the_discovery_range_off_keeps_a_process_alone(node, start_peer):
+    assert meet(node, start_peer, ROS_AUTOMATIC_DISCOVERY_RANGE="OFF") == []
+    assert node.get_node_names() == ["tester"]
+
+
+@needs_manycore
+def test_static_peers_are_ignored_with_a_warning(node, start_peer):
+    peer = start_peer(talk_to_itself, ROS_STATIC_PEERS="192.168.0.1")
+    peer.wait_for("static discovery peers are ignored")
+    peer.wait_for("published")
+
+
+@needs_manycore
+def test_security_that_must_be_enforced_is_refused(start_peer, tmp_path):
+    """A node must not run unprotected because its middleware knows no DDS security."""
+    (tmp_path / "enclaves").mkdir()
+    security = {
+        "ROS_SECURITY_ENABLE": "true",
+        "ROS_SECURITY_STRATEGY": "Enforce",
+        "ROS_SECURITY_KEYSTORE": str(tmp_path),
+    }
+    peer = start_peer(talk_to_itself, **security)
+    peer.wait_for("rmw_manycore has no DDS security")
+    assert peer.wait() != 0

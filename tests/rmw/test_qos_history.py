@@ -3,10 +3,12 @@
 
 from __future__ import annotations
 
+import os
 import time
 
 import pytest
 import rclpy
+from rclpy._rclpy_pybind11 import RCLError
 from rclpy.duration import Duration, Infinite
 from rclpy.qos import (
     DurabilityPolicy,
@@ -63,6 +65,52 @@ def test_depth_of_one(node, start_peer, peer_cluster):
 def test_keep_all_keeps_all(node, start_peer, peer_cluster):
     qos = QoSProfile(history=HistoryPolicy.KEEP_ALL)
     assert receive_after_burst(node, start_peer, peer_cluster, qos, 500) == list(range(500))
+
+
+@pytest.mark.skipif(not IS_MANYCORE, reason="sizes are of platforms")
+def test_keep_all_blocks_the_publisher_up_to_its_bound(small_topic):
+    """Reliable and keep all: nothing is overwritten; publishing fails when nobody makes room."""
+    qos = QoSProfile(history=HistoryPolicy.KEEP_ALL, reliability=ReliabilityPolicy.RELIABLE)
+    node, received = rclpy.create_node("tester"), []
+    node.create_subscription(String, small_topic, lambda m: received.append(int(m.data)), qos)
+    publisher = node.create_publisher(String, small_topic, qos)
+    spin_until(node, publisher.get_subscription_count)
+    published = publish_until_refused(publisher)
+    assert published > 10
+    with pytest.raises(RCLError, match="has not taken its messages for 100 ms"):
+        publisher.publish(String(data=str(published)))
+    spin_until(node, lambda: len(received) == published)
+    publisher.publish(String(data=str(published)))
+    spin_until(node, lambda: len(received) == published + 1)
+    assert received == list(range(published + 1))
+
+
+def publish_until_refused(publisher) -> int:
+    for number in range(10_000):
+        try:
+            publisher.publish(String(data=str(number)))
+        except RCLError:
+            return number
+    raise AssertionError("never refused")
+
+
+@pytest.fixture
+def small_topic():
+    """Return a topic with little room, on a platform that rclpy has joined."""
+    from rmw_manycore_py import _transport
+
+    configurator = _transport.Configurator(
+        os.environ["MANYCORE_PLATFORM"],
+        clusters=2,
+        cores_per_cluster=4,
+        smem_size=0,
+        host_cpu_of_receive_thread={},
+        topics=[("/small", 1, 8192, 0)],
+    )
+    rclpy.init()
+    yield "/small"
+    rclpy.shutdown()
+    del configurator
 
 
 def test_depth_is_reached_with_large_messages(node, start_peer, peer_cluster):

@@ -3,7 +3,10 @@
 
 from __future__ import annotations
 
+import os
+import re
 import time
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -14,7 +17,7 @@ from rclpy.experimental import EventsExecutor
 from rclpy.qos import LivelinessPolicy, QoSPolicyKind, QoSProfile
 from ros_support import announce, peer_node, spin_until
 from std_msgs.msg import String
-from support import IS_MANYCORE, PATIENCE_S
+from support import IS_MANYCORE, PATIENCE_S, wait_until
 
 SHORT_S, LONG_S = 0.1, 3600.0
 MANUAL = LivelinessPolicy.MANUAL_BY_TOPIC
@@ -257,3 +260,49 @@ def test_default_liveliness_follows_who_comes_and_goes(node):
     node.destroy_publisher(publisher)
     spin_until(node, lambda: changes[-1].alive_count == 0)
     assert changes[-1].not_alive_count == 0
+
+
+@pytest.mark.skipif(not IS_MANYCORE, reason="Fast DDS has timers anyway")
+@pytest.mark.parametrize("period_s", [None, 0.02], ids=["no_policy", "deadline"])
+def test_without_a_policy_nobody_wakes_up(start_peer, peer_cluster, period_s):
+    """A node that waits costs nothing without a policy of time; with one, wake-ups are seen."""
+    one, other = (start_peer(wait_for_events, period_s, cluster=c) for c in (1, peer_cluster))
+    for peer in (one, other):
+        peer.wait_for("matched")
+    if period_s is None:
+        wait_until(lambda: are_silent(one, other), "nothing wakes them")
+    else:
+        assert not are_silent(one, other)
+
+
+def are_silent(*peers) -> bool:
+    """Tell whether no thread wakes up during a second."""
+    before = [switches(peer) for peer in peers]
+    time.sleep(1.0)  # what is watched, not a wait for something to happen
+    return [switches(peer) for peer in peers] == before
+
+
+def switches(peer) -> int:
+    """How often threads of a process have gone to sleep."""
+    threads = Path(f"/proc/{peer.pid}/task").glob("*/status")
+    pattern = re.compile(r"^voluntary_ctxt_switches:\s+(\d+)", re.MULTILINE)
+    return sum(int(pattern.search(status.read_text())[1]) for status in threads)
+
+
+def wait_for_events(period_s: float | None) -> None:
+    """Wait for messages and for all events, of a publisher and a subscription."""
+    qos = 10 if period_s is None else deadline(period_s)
+    told = []
+
+    def deny(event) -> None:
+        told.append(event)
+
+    with peer_node(f"peer_{os.getpid()}") as node:
+        publisher = node.create_publisher(
+            String, "chatter", qos, event_callbacks=PublisherEventCallbacks(deadline=deny)
+        )
+        subscribe(node, qos, deadline=deny, liveliness=deny)
+        spin_until(node, lambda: publisher.get_subscription_count() == 2)
+        publisher.publish(String())
+        announce("matched")
+        rclpy.spin(node)
