@@ -62,8 +62,9 @@ def from_scores(
 
 
 def _weights(likelihoods: Sequence[float], temperature: float) -> Array:
-    weights: Array = np.exp((np.array(likelihoods) - max(likelihoods)) / temperature)
-    return weights / weights.sum()
+    exponents = (np.array(likelihoods) - max(likelihoods)) / temperature
+    weights: Array = np.exp(exponents) / np.exp(exponents).sum()
+    return weights
 
 
 def _scatter(places_m: Array, weights: Array) -> Array:
@@ -73,6 +74,6 @@ def _scatter(places_m: Array, weights: Array) -> Array:
 
 
 def _with_xy(covariance: Matrix6, xy: Array) -> Matrix6:
-    changed = covariance.copy()
+    changed: Matrix6 = covariance.copy()
     changed[:2, :2] = xy
     return changed
