@@ -15,6 +15,7 @@ from rmw_manycore_py.ndt import covariance
 from rmw_manycore_py.ndt.alignment import Alignment, Score
 from rmw_manycore_py.ndt.answers import alignment_from, refused, score_from
 from rmw_manycore_py.ndt.arrays import Pose, ScanPoints, pose_matrix, scan_points, why_no_pose
+from rmw_manycore_py.ndt.level import levelled
 from rmw_manycore_py.ndt.options import MatcherOptions
 from rmw_manycore_py.ndt.voxel_map import VoxelMap
 
@@ -116,13 +117,15 @@ class Matcher:
     def _aligned(
         self, voxel_map: VoxelMap, scan: ScanPoints, guess: Pose, position: Position | None
     ) -> Alignment:
-        numbers = self._native.align(voxel_map.native, scan, guess, position)
+        level = levelled(scan, guess)
+        numbers = self._native.align(voxel_map.native, level.points, level.guess, position)
         if numbers["used_points"] == 0:
             return refused(guess, "the scan has no finite point", self.options)
         if numbers["used_points"] < FEWEST_POINTS:
             few = f"{numbers['used_points']} finite points do not say where a scan fits"
             return refused(guess, f"too few points: {few}", self.options)
-        return alignment_from(numbers, self.options)
+        found = alignment_from(numbers, self.options)
+        return replace(found, T_map_sensor=level.result(found.T_map_sensor))
 
     def _with_covariance(
         self,

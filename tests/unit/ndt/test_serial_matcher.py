@@ -43,6 +43,35 @@ def test_a_scan_finds_its_place(
     assert angle_deg < 0.3
 
 
+@pytest.mark.parametrize(
+    "angles",
+    [(np.pi, 0, 0), (0, np.pi, 0.4), (0, np.pi / 2, 0), (0.3, -np.pi / 2, 0), (1.5, 1.4, -2)],
+    ids=str,
+)
+def test_a_sensor_may_look_anywhere(angles: tuple[float, float, float]) -> None:
+    mounted = pose(0, 0, 0, *angles)  # T_vehicle_sensor
+    scan = (SCAN @ mounted[:3, :3]).astype(np.float32)
+    level, turned = matcher().align(SCAN, GUESS), matcher().align(scan, GUESS @ mounted)
+    assert turned.converged, turned.why
+    distance_m, angle_deg = errors(turned.T_map_sensor, level.T_map_sensor @ mounted)
+    assert distance_m < 0.02
+    assert angle_deg < 0.1
+
+
+@pytest.mark.parametrize("origin_m", [(4e5, 5e6, 100.0), (-3e6, -4e6, 5e6)], ids=str)
+def test_a_map_may_be_far_from_the_origin(origin_m: tuple[float, float, float]) -> None:
+    there = np.eye(4)
+    there[:3, 3] = origin_m
+    with SerialMatcher() as far_off:
+        far_off.set_map(VoxelMap.from_points(WORLD + origin_m))
+        found = far_off.align(SCAN, there @ GUESS)
+    distance_m, angle_deg = errors(
+        found.T_map_sensor, there @ matcher().align(SCAN, GUESS).T_map_sensor
+    )
+    assert distance_m < 0.02
+    assert angle_deg < 0.1
+
+
 @pytest.mark.parametrize("simd", ["portable", "avx2", "avx512"])
 def test_every_kind_of_cpu_finds_the_same_place(simd: str, monkeypatch: pytest.MonkeyPatch) -> None:
     wide = matcher().align(SCAN, GUESS)
