@@ -46,8 +46,11 @@ def command(action: str, type_name: str, goal: str, shows_feedback: bool, platfo
         handle = result_of(node, accepted, action)
         if not handle.accepted:
             raise ManycoreError("Goal was rejected.")
-        click.echo(f"Goal accepted with ID: {bytes(handle.goal_id.uuid).hex()}\n")
-        _show_result(node, handle, action)
+        try:
+            click.echo(f"Goal accepted with ID: {bytes(handle.goal_id.uuid).hex()}\n")
+            _show_result(result_of(node, handle.get_result_async(), action))
+        except KeyboardInterrupt:
+            _cancel(node, handle, action)
 
 
 def _text(message: Any) -> str:
@@ -58,14 +61,13 @@ def _show_feedback(message: Any) -> None:
     click.echo(f"Feedback:\n    {_text(message.feedback)}")
 
 
-def _show_result(node: Any, handle: Any, action: str) -> None:
-    try:
-        answer = result_of(node, handle.get_result_async(), action)
-    except KeyboardInterrupt:
-        click.echo("Canceling goal...")
-        if not result_of(node, handle.cancel_goal_async(), action).goals_canceling:
-            raise ManycoreError(f"{action}: the goal could not be canceled") from None
-        click.echo("Goal canceled.")
-        return
+def _show_result(answer: Any) -> None:
     click.echo(f"Result:\n    {_text(answer.result)}")
     click.echo(f"Goal finished with status: {STATUSES[answer.status]}")
+
+
+def _cancel(node: Any, handle: Any, action: str) -> None:
+    click.echo("Canceling goal...")
+    if not result_of(node, handle.cancel_goal_async(), action).goals_canceling:
+        raise ManycoreError(f"{action}: the goal could not be canceled")
+    click.echo("Goal canceled.")

@@ -7,6 +7,7 @@ rclpy is imported late: the other commands do without it, and it must find rmw_m
 from __future__ import annotations
 
 import os
+import signal
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from typing import Any
@@ -44,10 +45,24 @@ def tool_node(platform: str, name: str | None = None) -> Iterator[Any]:
 
 
 def spin_once(node: Any, timeout_s: float = _LOOK_PERIOD_S) -> None:
-    """Handle what has come in, or wait a moment for it."""
+    """Handle what has come in, or wait a moment for it; an interrupt is raised afterwards."""
     import rclpy
 
-    rclpy.spin_once(node, timeout_sec=min(timeout_s, _LOOK_PERIOD_S))
+    with _interrupts_held():
+        rclpy.spin_once(node, timeout_sec=min(timeout_s, _LOOK_PERIOD_S))
+
+
+@contextmanager
+def _interrupts_held() -> Iterator[None]:
+    """Let no interrupt in between the taking of a message and its handling, which would lose it."""
+    noted: list[int] = []
+    handler = signal.signal(signal.SIGINT, lambda number, _frame: noted.append(number))
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, handler)
+    if noted and callable(handler):
+        handler(noted[0], None)
 
 
 def result_of(node: Any, future: Any, whose: str) -> Any:
