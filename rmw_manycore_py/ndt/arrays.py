@@ -13,6 +13,7 @@ Pose = NDArray[np.float64]
 Matrix6 = NDArray[np.float64]
 
 ROTATION_TOLERANCE = 1e-3
+FARTHEST_M = 1e9
 
 
 def scan_points(points: ArrayLike) -> ScanPoints:
@@ -37,6 +38,8 @@ def why_no_pose(matrix: Pose) -> str:
     """Return what keeps a (4, 4) from being a pose, "" when nothing does."""
     if not np.isfinite(matrix).all():
         return "is not finite"
+    if np.abs(matrix[:3, 3]).max() > FARTHEST_M:
+        return f"is more than {FARTHEST_M:g} m from the map's origin"
     rotation = matrix[:3, :3]
     is_rotation = np.abs(rotation @ rotation.T - np.eye(3)).max() < ROTATION_TOLERANCE
     if not is_rotation or np.linalg.det(rotation) < 0:

@@ -17,10 +17,11 @@ from rmw_manycore_py.bench.ndt.peers import Peer, all_peers
 from rmw_manycore_py.bench.ndt.world import world
 from rmw_manycore_py.bench.question import Measure, Question, Run
 from rmw_manycore_py.bench.summary import Goal, Result
-from rmw_manycore_py.ndt import MatcherOptions
+from rmw_manycore_py.ndt import MatcherOptions, SerialMatcher
 from rmw_manycore_py.ndt.options import Search, VoxelCovariance
 
 PASSES = 20
+SCORE = "score, off the peer's"
 # What each peer does: its search and its covariance.
 KINDS: dict[str, tuple[Search, VoxelCovariance]] = {
     "pclomp": ("direct7", "pclomp"),
@@ -35,11 +36,12 @@ def question(pclomp: Path | None) -> Question:
         cpu = usable()[-1]
         wanted = [name for name in KINDS if run.wants(name)]
         with on_cpu(cpu), all_peers(cpu, VOXEL_SIZE_M, pclomp, wanted) as peers:
-            return [
-                result
-                for name, (search, covariance) in KINDS.items()
-                for result in _measure_kind(run, search, covariance, peers.get(name))
-            ]
+            results = []
+            for name, (search, covariance) in KINDS.items():
+                results += _measure_kind(run, search, covariance, peers.get(name))
+            for name, peer in peers.items():
+                results.append(_compare(peer, *KINDS[name]))
+            return results
 
     return Question("pass", measure, _goals(), "all contenders in turn on the last usable CPU")
 
@@ -55,6 +57,7 @@ def _goals() -> tuple[Goal, ...]:
         Goal(by_faces, "rmw_manycore avx512", "better", 40, "pclomp"),
         Goal(by_faces, "rmw_manycore portable", "better", 10, "pclomp"),
         Goal(by_radius, "rmw_manycore avx512", "better", 30, "PCL"),
+        *(Goal(SCORE, f"as {name}", "within", 1000, statistic="largest") for name in KINDS),
     )
 
 
@@ -80,3 +83,15 @@ def _measure_kind(
             peer.ask("evaluate", i)[0] / len(scan) for i, scan in enumerate(world().scans)
         ]
     return run.interleave(title(search), "ns/point", contenders)
+
+
+def _compare(peer: Peer, search: Search, covariance: VoxelCovariance) -> Result:
+    """Return by how much the scores of the scans at their poses differ from the peer's."""
+    options = MatcherOptions(voxel_size_m=VOXEL_SIZE_M, search=search, voxel_covariance=covariance)
+    found = []
+    with SerialMatcher(options) as matcher:
+        matcher.set_map(map_for(options))
+        for i, (scan, pose) in enumerate(zip(world().scans, world().poses, strict=True)):
+            expected = peer.ask("evaluate", i)[1]
+            found.append(1e6 * abs(matcher.score(scan, pose).score / expected - 1))
+    return Result(SCORE, f"as {peer.name}", "ppm", tuple(found))

@@ -35,12 +35,12 @@ struct SpreadTable {
 };
 constexpr SpreadTable spread_table;
 
-/// Place of a point's cube on the Morton curve; no_cube for a point that is not finite.
+/// Place of a point's cube on the Morton curve; no_cube for a point that does not count.
 uint16_t cube_of(const float * xyz_m) {
   constexpr float farthest_m = 1e6F;
   uint32_t code = 0;
   for (uint32_t i = 0; i < 3; ++i) {
-    if (!std::isfinite(xyz_m[i])) {
+    if (!(std::abs(xyz_m[i]) <= far_away_m)) {  // nor where it is not a number
       return no_cube;
     }
     const float place_m = std::clamp(xyz_m[i], -farthest_m, farthest_m) + farthest_m;

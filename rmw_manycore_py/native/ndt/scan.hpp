@@ -30,9 +30,9 @@ constexpr size_t scan_floats(size_t points) {
   return 3 * ((points + group_points - 1) / group_points) * group_points;
 }
 
-/// Lays out the finite ones of count points (x, y, z [m]) in `floats`, which has room for
-/// scan_floats(count). Neighbours in space become neighbours in memory (Morton order), so that a
-/// group sees few voxels.
+/// Lays out those of count points (x, y, z [m]) that are finite and within 1e9 m in `floats`, which
+/// has room for scan_floats(count). Neighbours in space become neighbours in memory (Morton order),
+/// so that a group sees few voxels.
 ScanView lay_out_scan(const float * xyz_m, size_t count, float * floats);
 
 /// The scan that lay_out_scan() left in `floats`, seen from another process.

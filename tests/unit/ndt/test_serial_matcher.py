@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import importlib
 from typing import Any, get_args
 
 import numpy as np
@@ -89,9 +90,11 @@ def test_every_kind_of_cpu_finds_the_same_place(simd: str, monkeypatch: pytest.M
     [
         (np.zeros((0, 3)), GUESS, "no finite point"),
         (np.full((50, 3), np.nan), GUESS, "no finite point"),
+        (np.full((50, 3), 3e38), GUESS, "no finite point"),
         (SCAN[:5], GUESS, "too few points"),
         (SCAN, GUESS * np.nan, "not finite"),
         (SCAN, np.zeros((4, 4)), "no rotation"),
+        (SCAN, pose(1e300, 0, 0, 0, 0, 0), "more than 1e+09 m"),
         (SCAN, pose(1e9, 0, 0, 0, 0, 0), "no point of the scan lies in the map"),
         (SCAN + np.float32(1e6), GUESS, "no point of the scan lies in the map"),
     ],
@@ -115,6 +118,12 @@ def test_points_that_are_not_finite_do_not_count() -> None:
 def test_a_map_of_nothing_is_refused(points: Any) -> None:
     with pytest.raises(ManycoreError, match="expected voxels of 2"):
         VoxelMap.from_points(points)
+
+
+def test_errors_are_the_matchers_own_beside_the_transport() -> None:
+    importlib.import_module("rmw_manycore_py._transport")
+    with pytest.raises(ManycoreError, match="no finite point"):
+        VoxelMap.from_points(np.zeros((0, 3)))
 
 
 def test_a_map_too_wide_to_number_is_refused() -> None:
