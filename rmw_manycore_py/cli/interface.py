@@ -7,7 +7,10 @@ import click
 
 from rmw_manycore_py.cli.group import LazyGroup
 
-VERBS = {verb: f"rmw_manycore_py.cli.interface_{verb}:command" for verb in ("list", "show")}
+VERBS = {
+    verb: f"rmw_manycore_py.cli.interface_{verb}:command"
+    for verb in ("list", "package", "packages", "proto", "show")
+}
 
 
 @click.group("interface", cls=LazyGroup, commands_at=VERBS)

@@ -5,22 +5,19 @@ from __future__ import annotations
 
 import click
 
+from rmw_manycore_py.cli.interface_kinds import TITLES, kind_of, kind_options
 from rmw_manycore_py.cli.options import examples, json_option, print_json
 from rmw_manycore_py.mapfile.ament import interfaces, packages_with_interfaces
 
-TITLES = {"msg": "Messages", "srv": "Services", "action": "Actions"}
-
 
 @click.command("list", epilog=examples("manycore interface list", "manycore interface list -s"))
-@click.option("-m", "--only-msgs", "kinds", flag_value="msg", multiple=True, help="Messages.")
-@click.option("-s", "--only-srvs", "kinds", flag_value="srv", multiple=True, help="Services.")
-@click.option("-a", "--only-actions", "kinds", flag_value="action", multiple=True, help="Actions.")
+@kind_options
 @json_option
 def command(kinds: tuple[str, ...], as_json: bool) -> None:
     """List the types that are installed, by default of all three kinds."""
     names = sorted(name for package in packages_with_interfaces() for name in interfaces(package))
     found = {
-        kind: [name for name in names if name.split("/")[1] == kind]
+        kind: [name for name in names if kind_of(name) == kind]
         for kind in TITLES
         if not kinds or kind in kinds
     }

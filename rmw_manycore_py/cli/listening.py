@@ -19,15 +19,20 @@ ANY_QOS = QosOptions()
 
 
 class Listener:
-    """Subscribes to a topic of a platform, as its publishers offer it."""
+    """Subscribes to a topic of a platform, as its publishers offer it.
+
+    `heard` is called with each message, and with what rclpy knows of it if it takes two arguments;
+    `lost` with the status of each event of lost messages.
+    """
 
     def __init__(
         self,
         platform: str,
         topic: str,
         type_name: str | None,
-        heard: Callable[[Any], None],
+        heard: Callable[..., None],
         *,
+        lost: Callable[[Any], None] | None = None,
         raw: bool = False,
         qos: QosOptions = ANY_QOS,
     ) -> None:
@@ -35,7 +40,7 @@ class Listener:
         self._endpoints, self._qos = _endpoints(platform, topic), qos
         self._message_type = load_type(type_name or type_of_topic(topic, self._endpoints))
         self._platform, self._topic = platform, topic
-        self._heard, self._raw = heard, raw
+        self._heard, self._lost, self._raw = heard, lost, raw
         self._timers: list[tuple[float, Callable[[], None]]] = []
         self._over = False
 
@@ -49,13 +54,20 @@ class Listener:
 
     def run(self, timeout_s: float | None = None) -> None:
         """Listen until stopped or interrupted, or until the time is over."""
+        from rclpy.event_handler import SubscriptionEventCallbacks
+
         end_s = float("inf") if timeout_s is None else time.monotonic() + timeout_s
         # No more than every publisher offers, so that all are heard.
         reliable, kept = offered_policies(self._endpoints)
         with tool_node(self._platform) as node:
             qos = self._qos.profile(reliable=reliable, kept=kept)
             node.create_subscription(
-                self._message_type, self._topic, self._heard, qos, raw=self._raw
+                self._message_type,
+                self._topic,
+                self._heard,
+                qos,
+                event_callbacks=SubscriptionEventCallbacks(message_lost=self._lost),
+                raw=self._raw,
             )
             for period_s, call in self._timers:
                 node.create_timer(period_s, call)

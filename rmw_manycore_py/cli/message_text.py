@@ -52,10 +52,23 @@ def is_message(value: Any) -> bool:
     return hasattr(value, "get_fields_and_field_types")
 
 
+class _LinePerField(yaml.SafeDumper):
+    """Writes arrays alone in the flow style, as `ros2 topic echo --flow-style` does."""
+
+
+_LinePerField.add_representer(
+    dict,
+    lambda dumper, fields: dumper.represent_mapping(
+        "tag:yaml.org,2002:map", fields, flow_style=False
+    ),
+)
+
+
 def to_yaml(message: Any, shown: Shown = BRIEFLY, *, flow_style: bool = False) -> str:
     """Return a message as a YAML document without its separator."""
-    text = yaml.safe_dump(
+    text = yaml.dump(
         to_plain(message, shown),
+        Dumper=_LinePerField,
         sort_keys=False,
         allow_unicode=True,
         width=float("inf"),

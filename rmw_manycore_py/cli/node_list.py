@@ -7,6 +7,7 @@ import click
 
 from rmw_manycore_py.cli import view
 from rmw_manycore_py.cli.options import (
+    count_option,
     examples,
     hidden_option,
     json_option,
@@ -17,7 +18,7 @@ from rmw_manycore_py.cli.options import (
 
 @click.command("list", epilog=examples("manycore node list", "manycore node list --json"))
 @click.option("-a", "--all", "everything", is_flag=True, help="The same as --include-hidden.")
-@click.option("-c", "--count-nodes", "count", is_flag=True, help="Show their number only.")
+@count_option
 @hidden_option
 @json_option
 @platform_option

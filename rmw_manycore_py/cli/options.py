@@ -29,7 +29,17 @@ platform_option = click.option(
 )
 values_argument = click.argument("values", default="{}")
 types_option = click.option("-t", "--show-types", is_flag=True, help="Show the types too.")
-count_option = click.option("-c", "--count", is_flag=True, help="Show their number only.")
+count_option = click.option(
+    "-c",
+    "--count",
+    "--count-topics",
+    "--count-services",
+    "--count-nodes",
+    "--count-actions",
+    "count",
+    is_flag=True,
+    help="Show their number only.",
+)
 hidden_option = click.option(
     "--include-hidden",
     "--include-hidden-topics",

@@ -27,7 +27,7 @@ class OutsideListener:
         self,
         topic: str,
         type_name: str | None,
-        heard: Callable[[Any], None],
+        heard: Callable[..., None],
         *,
         raw: bool,
         qos: QosOptions,

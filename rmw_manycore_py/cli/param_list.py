@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import re
+
 import click
 
 from rmw_manycore_py.cli import view
@@ -16,6 +18,7 @@ from rmw_manycore_py.cli.options import (
 )
 from rmw_manycore_py.cli.parameters import TYPES, Parameters
 from rmw_manycore_py.cli.tool_node import tool_node
+from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
 
 
 @click.command("list", epilog=examples("manycore param list", "manycore param list /controller"))
@@ -27,6 +30,7 @@ from rmw_manycore_py.cli.tool_node import tool_node
     metavar="PREFIX",
     help="Only parameters below PREFIX; may be given several times.",
 )
+@click.option("--filter", "expression", metavar="REGEX", help="Only names that begin like that.")
 @click.option("--param-type", "shows_types", is_flag=True, help="Show the type of each.")
 @hidden_option
 @json_option
@@ -34,12 +38,14 @@ from rmw_manycore_py.cli.tool_node import tool_node
 def command(
     node: str | None,
     prefixes: tuple[str, ...],
+    expression: str | None,
     shows_types: bool,
     platform: str,
     as_json: bool,
     hidden: bool,
 ) -> None:
     """List the parameters of NODE, or of all nodes that have some."""
+    wanted = _pattern(expression or "")
     opened = view.open_platform(platform)
     if node:
         names = [existing_node(opened, node)]
@@ -48,6 +54,10 @@ def command(
         names = [name for name in owners if hidden or not view.is_hidden(name)]
     with tool_node(platform) as tool:
         found = {name: _types(Parameters(tool, name), prefixes) for name in names}
+    found = {
+        name: {parameter: kind for parameter, kind in types.items() if wanted.match(parameter)}
+        for name, types in found.items()
+    }
     if as_json:
         print_json(found)
         return
@@ -56,6 +66,13 @@ def command(
             click.echo(f"{name}:")
         for parameter, type_name in types.items():
             click.echo(f"  {parameter}" + (f" (type: {type_name})" if shows_types else ""))
+
+
+def _pattern(expression: str) -> re.Pattern[str]:
+    try:
+        return re.compile(expression)
+    except re.error as error:
+        raise ManycoreError(f"--filter: {error}", EXIT_BAD_INPUT) from error
 
 
 def _types(parameters: Parameters, prefixes: tuple[str, ...]) -> dict[str, str]:

@@ -7,15 +7,23 @@ import click
 
 from rmw_manycore_py.cli import view
 from rmw_manycore_py.cli.names import show_names
-from rmw_manycore_py.cli.options import examples, hidden_option, json_option, platform_option
+from rmw_manycore_py.cli.options import (
+    count_option,
+    examples,
+    hidden_option,
+    json_option,
+    platform_option,
+)
 
 
 @click.command("find", epilog=examples("manycore topic find std_msgs/msg/String"))
 @click.argument("type_name", metavar="TYPE")
+@count_option
 @hidden_option
 @json_option
 @platform_option
-def command(type_name: str, platform: str, as_json: bool, hidden: bool) -> None:
+def command(type_name: str, platform: str, as_json: bool, hidden: bool, count: bool) -> None:
     """List the topics of TYPE."""
     rows = view.topics(view.open_platform(platform).endpoints(), hidden=hidden)
-    show_names([row for row in rows if type_name in row["types"]], as_json=as_json)
+    rows = [row for row in rows if type_name in row["types"]]
+    show_names(rows, as_json=as_json, count=count)

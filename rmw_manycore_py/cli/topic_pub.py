@@ -15,9 +15,12 @@ from rmw_manycore_py.cli.message_values import message_of, parse_values
 from rmw_manycore_py.cli.options import examples, platform_option, values_argument
 from rmw_manycore_py.cli.qos_options import QosOptions, qos_options
 from rmw_manycore_py.cli.tool_node import spin_once, tool_node
+from rmw_manycore_py.errors import ManycoreError
 
 # How long the node stays after its last message, for late ends of its matches to see it.
 KEEP_ALIVE_S = 0.1
+# How often a waiting publisher says so.
+TOLD_PERIOD_S = 1.0
 
 
 @click.command(
@@ -59,6 +62,23 @@ KEEP_ALIVE_S = 0.1
     type=click.IntRange(0),
     help="Begin when that many subscriptions match; by default 1 with --once and --times, else 0.",
 )
+@click.option(
+    "--max-wait-time-secs",
+    "patience_s",
+    metavar="S",
+    type=click.FloatRange(min=0, min_open=True),
+    help="Give up when they do not match within S seconds.",
+)
+@click.option(
+    "--keep-alive",
+    "keep_alive_s",
+    metavar="S",
+    type=click.FloatRange(min=0),
+    default=KEEP_ALIVE_S,
+    show_default=True,
+    help="Stay S seconds after the last message.",
+)
+@click.option("-n", "--node-name", metavar="NAME", help="Name of the publishing node.")
 @qos_options
 @platform_option
 def command(
@@ -70,6 +90,9 @@ def command(
     times: int,
     shown: int,
     wanted: int | None,
+    patience_s: float | None,
+    keep_alive_s: float,
+    node_name: str | None,
     qos: QosOptions,
     platform: str,
 ) -> None:
@@ -80,24 +103,33 @@ def command(
     message_type, fields = load_type(type_name), parse_values(values)
     message_of(message_type, fields, Time())
     times = 1 if once else times
-    with tool_node(platform) as node:
+    with tool_node(platform, node_name) as node:
         publisher = node.create_publisher(message_type, topic, qos.profile())
-        _wait_for_subscriptions(node, publisher, int(times > 0) if wanted is None else wanted)
+        wanted = int(times > 0) if wanted is None else wanted
+        _wait_for_subscriptions(node, publisher, wanted, patience_s)
         click.echo("publisher: beginning loop")
         for number in _ticks(node, 1 / rate_hz, times):
             message = message_of(message_type, fields, node.get_clock().now().to_msg())
             if shown and number % shown == 0:
                 click.echo(f"publishing #{number}: {message!r}\n")
             publisher.publish(message)
-        time.sleep(KEEP_ALIVE_S)
+        time.sleep(keep_alive_s)
 
 
-def _wait_for_subscriptions(node: Any, publisher: Any, wanted: int) -> None:
-    told = False
-    while publisher.get_subscription_count() < wanted:
-        if not told:
+def _wait_for_subscriptions(
+    node: Any, publisher: Any, wanted: int, patience_s: float | None
+) -> None:
+    start_s = time.monotonic()
+    told = 0  # once per second
+    while (found := publisher.get_subscription_count()) < wanted:
+        waited_s = time.monotonic() - start_s
+        if patience_s is not None and waited_s >= patience_s:
+            raise ManycoreError(
+                f"timed out waiting for subscriptions: {wanted} wanted, {found} matched"
+            )
+        if waited_s >= told * TOLD_PERIOD_S:
             click.echo(f"Waiting for at least {wanted} matching subscription(s)...")
-            told = True
+            told += 1
         spin_once(node)
 
 

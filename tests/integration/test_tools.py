@@ -95,6 +95,17 @@ def test_echo_takes_what_ros2_topic_echo_takes(running, manycore) -> None:
     assert "Hello" in echo("--flow-style", "--qos-reliability", "best_effort")
     assert "b'" in echo("--raw")
     assert "Hello" in echo("--filter", "'World' in m.data")
+    with_info = echo("--include-message-info").splitlines()
+    assert [line.split(":")[0] for line in with_info] == [
+        "publication_sequence_number",
+        "received_timestamp",
+        "reception_sequence_number",
+        "source_timestamp",
+        "---",
+        "data",
+        "---",
+    ]
+    assert re.fullmatch(r"(\d+,){4}Hello World: \d+", echo("-i", "--csv"))
     words = ("topic", "echo", "/chatter", "--filter", "'?' in m.data", "--timeout", "0.5")
     assert manycore(*words) == ""
 
@@ -103,7 +114,12 @@ def test_lists_take_what_those_of_ros2_take(running, manycore) -> None:
     shown = manycore("topic", "list", "-v")
     assert " * /chatter [std_msgs/msg/String] 1 publisher\n" in shown
     assert " * /chatter [std_msgs/msg/String] 1 subscriber\n" in shown
-    assert manycore("node", "list", "-c") == "2"
+    for words in (("node", "list", "-c"), ("node", "list", "--count-nodes")):
+        assert manycore(*words) == "2"
+    for words in (("topic", "find", "-c"), ("topic", "find", "--count-topics")):
+        assert manycore(*words, "std_msgs/msg/String") == "1"
+    count = ("service", "find", "--count-services", "rcl_interfaces/srv/GetParameters")
+    assert manycore(*count) == "2"
     hidden = ["/_manycore_bridge_inward", "/_manycore_bridge_outward"]
     nodes = [*hidden, "/listener", "/talker"]
     assert manycore("node", "list", "--all").splitlines() == nodes

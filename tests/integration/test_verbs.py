@@ -80,6 +80,8 @@ def test_parameters_are_read_and_changed(start, manycore, tmp_path) -> None:
     listed = manycore("param", "list").splitlines()
     assert listed[:4] == ["/filter:", "  gain", "  limits.low", "  name"]
     assert "  gain (type: double)" in manycore("param", "list", "filter", "--param-type")
+    assert manycore("param", "list", "/filter", "--filter", "na|lim") == "  limits.low\n  name"
+    assert "--filter: " in manycore("param", "list", "--filter", "[", status=2)
     assert manycore("param", "get", "/filter", "gain") == "Double value is: 2.5"
     assert manycore("param", "get", "/filter", "limits.low") == "Integer values are: [1, 2]"
     assert manycore("param", "set", "/filter", "gain", "3.5") == "Set parameter successful"
@@ -173,6 +175,40 @@ def test_messages_are_published_as_ros2_does(start, manycore) -> None:
     for _ in range(2):
         echo.wait_for("^data: hello$")
     assert echo.stop() == 0
+    nobody = manycore(*pub[:2], "-1", "--max-wait-time-secs", "0.2", *pub[-2:], status=1)
+    assert nobody.splitlines() == [
+        "Waiting for at least 1 matching subscription(s)...",
+        "manycore: timed out waiting for subscriptions: 1 wanted, 0 matched",
+    ]
+
+
+def publish_bursts() -> None:
+    import rclpy
+    from std_msgs.msg import String
+
+    with peer_node() as node:
+        publisher = node.create_publisher(String, "/bursts", 100)
+
+        def burst() -> None:
+            for number in range(100):
+                publisher.publish(String(data=str(number)))
+
+        node.create_timer(0.1, burst)
+        announce("ready")
+        rclpy.spin(node)
+
+
+def test_echo_tells_of_lost_messages(start, manycore) -> None:
+    start(peer_command(publish_bursts)).wait_for("ready")
+    echo = ("topic", "echo", "/bursts", "--qos-depth", "1")
+    told = start(manycore_command(*echo))
+    told.wait_for("^A message was lost!!!$")
+    told.wait_for(r"^\ttotal count change:\d+$")
+    told.wait_for(r"^\ttotal count: \d+---$")
+    assert told.stop() == 0
+    silent = manycore(*echo, "--no-lost-messages", "--timeout", "2")
+    assert "lost" not in silent
+    assert "data: " in silent
 
 
 def test_bandwidth_delay_and_load_of_a_topic(start, manycore) -> None:

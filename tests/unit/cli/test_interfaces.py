@@ -57,6 +57,33 @@ def test_types_that_are_not_there() -> None:
             list(definition(name))
 
 
+def test_packages_and_their_types() -> None:
+    assert show("package", "std_srvs") == [
+        "std_srvs/srv/Empty",
+        "std_srvs/srv/SetBool",
+        "std_srvs/srv/Trigger",
+    ]
+    assert show("package", "std_srvs", "--only-msgs") == []
+    assert "not installed" in CliRunner().invoke(cli, ["interface", "package", "none"]).output
+    packages = show("packages")
+    assert {"std_msgs", "std_srvs", "test_msgs"} <= set(packages)
+    assert "test_msgs" in show("packages", "--only-actions")
+    assert "std_srvs" not in show("packages", "--only-actions")
+
+
+@pytest.mark.parametrize(
+    ("name", "text"),
+    [
+        ("std_srvs/srv/SetBool", "data: false\n"),
+        ("test_msgs/action/Fibonacci", "order: 0\n"),
+        ("geometry_msgs/msg/Point", "x: 0.0\ny: 0.0\nz: 0.0\n"),
+    ],
+)
+def test_values_to_copy(name: str, text: str) -> None:
+    assert CliRunner().invoke(cli, ["interface", "proto", name]).output == f'"{text}"\n'
+    assert show("proto", "--no-quotes", name)[:-1] == text.splitlines()
+
+
 def test_types_are_listed_by_kind() -> None:
     assert "    test_msgs/action/Fibonacci" in show("list", "-a")
     lines = show("list")

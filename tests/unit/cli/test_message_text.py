@@ -8,7 +8,7 @@ import pytest
 import yaml
 from geometry_msgs.msg import PoseStamped
 from sensor_msgs.msg import CameraInfo, Image
-from std_msgs.msg import Byte, Float64MultiArray, String
+from std_msgs.msg import Byte, Float64MultiArray, MultiArrayDimension, MultiArrayLayout, String
 
 from rmw_manycore_py.cli.message_text import (
     ELLIPSIS,
@@ -67,5 +67,13 @@ def test_a_single_value_is_a_line() -> None:
     assert to_yaml("text") == "text\n"
 
 
-def test_flow_style_is_one_line() -> None:
-    assert to_yaml(String(data="a"), flow_style=True) == "{data: a}\n"
+def test_flow_style_is_for_arrays() -> None:
+    """As with ros2: a line per field, and each array in one line."""
+    layout = MultiArrayLayout(dim=[MultiArrayDimension(label="x", size=2, stride=2)])
+    text = to_yaml(Float64MultiArray(layout=layout, data=[1.0, 2.0]), flow_style=True)
+    assert text.splitlines() == [
+        "layout:",
+        "  dim: [{label: x, size: 2, stride: 2}]",
+        "  data_offset: 0",
+        "data: [1.0, 2.0]",
+    ]
