@@ -21,7 +21,7 @@ from std_msgs.msg import String
 from std_srvs.srv import Trigger
 from support import IS_MANYCORE, PATIENCE_S
 
-# The EventsExecutor of the wheels calls nothing on any middleware, not even timers.
+# The EventsExecutor does not wait: see test_executors.py and test_callbacks.py.
 EXECUTORS = [SingleThreadedExecutor, MultiThreadedExecutor]
 
 
