@@ -11,7 +11,8 @@ import fcntl
 import json
 import mmap
 import os
-from collections.abc import Iterable, Sequence
+import time
+from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -22,6 +23,8 @@ from rmw_manycore_py.routes import Route
 _MAGIC = b"MCBRIDG1"
 _HEADER_BYTES = 24  # magic, process id, bytes of the routes' JSON
 # Of 64 bits each. `latency_ns` is a sum over all messages: from source timestamp to passing on.
+# `busy_ns` is CPU time spent on a topic, `load_ppm` its share of a CPU in the last window that
+# ended; the present one began at `window_ns` (CLOCK_MONOTONIC) with `window_busy_ns`.
 FIELDS = (
     "messages",
     "bytes",
@@ -35,11 +38,19 @@ FIELDS = (
     "latency_ns",
     "latency_max_ns",
     "state",
+    "latched",
+    "busy_ns",
+    "load_ppm",
+    "window_ns",
+    "window_busy_ns",
 )
 DROPS = ("lost", "too_fast", "too_large", "refused", "timed_out", "unanswered")
 STATES = ("waiting", "ready", "forwarding", "failed")
 _INDEX = {name: index for index, name in enumerate(FIELDS)}
 _LATENCY, _LATENCY_MAX, _STATE = _INDEX["latency_ns"], _INDEX["latency_max_ns"], _INDEX["state"]
+_BUSY, _LOAD = _INDEX["busy_ns"], _INDEX["load_ppm"]
+_WINDOW, _WINDOW_BUSY = _INDEX["window_ns"], _INDEX["window_busy_ns"]
+_WINDOW_NS = 1_000_000_000
 _GIDS = 4  # a message of a publisher before the last may still be on its way
 _GID_BYTES = 16
 _REASON_BYTES = 248
@@ -74,6 +85,31 @@ class Row:
         """Count something else; return how often it has been by now."""
         self._words[_INDEX[field]] += count
         return self._words[_INDEX[field]]
+
+    def worked(self, cpu_ns: int) -> None:
+        """Count CPU time spent on the topic."""
+        words, now_ns = self._words, time.monotonic_ns()
+        words[_BUSY] += cpu_ns
+        window_ns = now_ns - words[_WINDOW]
+        if window_ns >= _WINDOW_NS:
+            words[_LOAD] = (words[_BUSY] - words[_WINDOW_BUSY]) * 1_000_000 // window_ns
+            words[_WINDOW], words[_WINDOW_BUSY] = now_ns, words[_BUSY]
+
+    @property
+    def load(self) -> float:
+        """The share of a CPU that the topic took lately; nothing when no message comes any more."""
+        words = self._words
+        is_recent = time.monotonic_ns() - words[_WINDOW] < 3 * _WINDOW_NS
+        return words[_LOAD] / 1e6 if is_recent else 0.0
+
+    def set_latched(self, latched: bool) -> None:
+        """Note whether late subscribers get what was said before: such a topic does not move."""
+        self._words[_INDEX["latched"]] = latched
+
+    @property
+    def is_latched(self) -> bool:
+        """Whether the topic is latched."""
+        return bool(self._words[_INDEX["latched"]])
 
     def set_state(self, state: str, reason: str = "") -> None:
         """Note how the route is, and why it cannot work."""
@@ -156,21 +192,3 @@ def is_locked(path: Path) -> bool:
     except OSError:
         return False
     return False
-
-
-def status(platform: str) -> list[dict[str, Any]]:
-    """Return a row for each route of a platform's bridge."""
-    found: list[dict[str, Any]] = []
-    for path in sorted(Path(_transport.platform_directory(platform)).glob("bridge-*")):
-        counters = CounterFile.open(path)
-        if counters is not None:
-            found += _rows_of(counters, alive=is_locked(path))
-    return found
-
-
-def _rows_of(counters: CounterFile, *, alive: bool) -> Iterable[dict[str, Any]]:
-    for route, row in zip(counters.routes, counters.rows, strict=True):
-        values = row.as_dict()
-        latency_ns, messages = values.pop("latency_ns"), values["messages"]
-        values["latency_mean_ns"] = latency_ns // messages if messages else None
-        yield {**route, "pid": counters.pid, "alive": alive, **values}

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Mapping
 
 from rmw_manycore_py.bridge.counters import Row
 
@@ -39,6 +40,10 @@ class Gaps:
     def __init__(self, row: Row) -> None:
         self._row = row
         self._last: dict[bytes, int] = {}
+
+    def begin_after(self, last: Mapping[bytes, int]) -> None:
+        """Go on where another lane stopped."""
+        self._last.update(last)
 
     def note(self, publisher: bytes, number: int) -> None:
         """Note a message's number; numbers of a publisher count up by one."""

@@ -17,8 +17,16 @@ class Plan:
     routes: tuple[Route, ...]
 
     def of(self, direction: Direction, lane: int) -> tuple[Route, ...]:
-        """Return the routes of one process."""
+        """Return the routes that one process begins with."""
         return tuple(r for r in self.routes if r.direction == direction and r.lane == lane)
+
+    def lanes(self, direction: Direction) -> int:
+        """Return how many lanes have something to carry."""
+        return 1 + max((r.lane for r in self.routes if r.direction == direction), default=-1)
+
+    def topics(self, direction: Direction) -> tuple[Route, ...]:
+        """Return the topics of all lanes; they may move from one to another."""
+        return tuple(r for r in self.routes if (r.kind, r.direction) == ("topic", direction))
 
     def to_json(self) -> str:
         """Return the plan as one word of a command line."""

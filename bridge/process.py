@@ -14,6 +14,7 @@ from collections.abc import Iterable
 
 from rmw_manycore_py.bridge.counters import CounterFile, status_path
 from rmw_manycore_py.bridge.inside import NODE_PREFIX, Inside
+from rmw_manycore_py.bridge.lane import Lanes
 from rmw_manycore_py.bridge.loop import Loop, Mover
 from rmw_manycore_py.bridge.outside import Outside
 from rmw_manycore_py.bridge.plan import Plan
@@ -32,7 +33,8 @@ class BridgeProcess:
     """Runs until it is told to end, or until one of its threads fails."""
 
     def __init__(self, plan: Plan, direction: Direction, lane: int, core: tuple[int, int]) -> None:
-        routes = plan.of(direction, lane)
+        services = [route for route in plan.of(direction, lane) if route.kind == "service"]
+        routes = [*plan.topics(direction), *services]
         name = f"{node_stem(plan.platform)}_{direction}{lane or ''}"
         self._over = threading.Event()
         self._inside = Inside(
@@ -44,27 +46,29 @@ class BridgeProcess:
             for domain in sorted({route.domain for route in routes})
         }
         self._loops: list[Loop] = [self._inside, *self._outsides.values()]
+        self._lanes = Lanes(plan, direction, lane)
         own = OwnPublishers(plan.platform)
-        for route, row in zip(routes, counters.rows, strict=True):
+        for index, (route, row) in enumerate(zip(routes, counters.rows, strict=True)):
             outside = self._outsides[route.domain]
-            self._add(Sides(route, row, self._inside, outside, own))
+            self._add(Sides(route, row, self._inside, outside, own), index)
 
-    def _add(self, sides: Sides) -> None:
+    def _add(self, sides: Sides, index: int) -> None:
         try:
-            mover, loop = self._mover(sides)
+            mover, loop = self._mover(sides, index)
         except ImportError as error:
             sides.fail(str(error))
             return
         loop.movers.append(mover)
 
-    def _mover(self, sides: Sides) -> tuple[Mover, Loop]:
+    def _mover(self, sides: Sides, index: int) -> tuple[Mover, Loop]:
         inward = sides.route.direction == "inward"
         if sides.route.kind == "service":
             service = InwardService(sides) if inward else OutwardService(sides)
             return service, sides.outside
-        return (
-            (InwardTopic(sides), sides.outside) if inward else (OutwardTopic(sides), self._inside)
-        )
+        place = self._lanes.place(index)
+        if inward:
+            return InwardTopic(sides, place), sides.outside
+        return OutwardTopic(sides, place), self._inside
 
     def _graphs_changed(self) -> None:
         for loop in self._loops:
@@ -77,7 +81,9 @@ class BridgeProcess:
         for loop in self._loops:
             loop.on_failure(self._over.set)
             loop.start()
-        self._over.wait()
+        while not self._over.wait(self._lanes.period_s):
+            if self._lanes.look():
+                self._graphs_changed()
         for loop in self._loops:
             loop.stop()
         for loop in self._loops:

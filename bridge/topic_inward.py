@@ -3,13 +3,13 @@
 
 from __future__ import annotations
 
-import time
+from collections.abc import Mapping
 from typing import Any
 
 from rclpy.event_handler import SubscriptionEventCallbacks
 from rmw_manycore_py.bridge import types
-from rmw_manycore_py.bridge.limits import Gaps, Limits
-from rmw_manycore_py.bridge.loop import Mover
+from rmw_manycore_py.bridge.limits import Gaps
+from rmw_manycore_py.bridge.place import Place
 from rmw_manycore_py.bridge.policies import (
     Policies,
     common_offer,
@@ -20,28 +20,24 @@ from rmw_manycore_py.bridge.policies import (
 )
 from rmw_manycore_py.bridge.rcl import RawReader
 from rmw_manycore_py.bridge.sides import Sides
+from rmw_manycore_py.bridge.topic import BATCH, Topic
 
 from rmw_manycore_py import _transport
 
-BATCH = 16  # messages of one route before the others have their turn
 
-
-class InwardTopic(Mover):
+class InwardTopic(Topic):
     """Works in the thread of its domain."""
 
     kind = "subscription"
 
-    def __init__(self, sides: Sides) -> None:
-        super().__init__(sides.fail)
-        self._sides = sides
-        self._type = types.load(sides.route.type)
-        self._limits = Limits(sides.route)
-        self._offer: Policies | None = None
+    def __init__(self, sides: Sides, place: Place) -> None:
+        super().__init__(sides, place)
         self._publisher: _transport.Publisher | None = None
         self.entity: Any = None  # the subscription outside
         self._reader: RawReader | None = None
+        self._gaps = Gaps(sides.row)
 
-    def reconcile(self) -> None:
+    def match(self) -> None:
         """Publish inside while somebody does outside; listen outside while somebody does inside."""
         route, outside = self._sides.route, self._sides.outside
         publishers = outside.publishers(route.outside)
@@ -60,7 +56,7 @@ class InwardTopic(Mover):
         if listeners or route.eager or offer["durability"] == "transient_local":
             self._listen(max((e["qos"]["depth"] for e in listeners), default=1))
         else:
-            self._stop_listening()
+            self.stop_listening()
         self._sides.row.set_state("ready" if self.entity is None else "forwarding")
 
     def _appear(self, offer: Policies) -> bool:
@@ -92,44 +88,60 @@ class InwardTopic(Mover):
         self._gaps = Gaps(self._sides.row)
         self._sides.outside.readers.append(self)
 
-    def _stop_listening(self) -> None:
+    def stop_listening(self) -> None:
+        """End the subscription."""
         if self.entity is None or self._reader is None:
             return
-        self._sides.outside.readers.remove(self)
+        if self in self._sides.outside.readers:
+            self._sides.outside.readers.remove(self)
         self._reader.close()
         self._sides.outside.node.destroy_subscription(self.entity)
         self.entity = self._reader = None
 
     def pump_outside(self) -> None:
         """Pass on what has arrived."""
+        with self.work():
+            self._take()
+
+    def _take(self) -> None:
         reader = self._reader
         for _ in range(BATCH):
             if reader is None or not reader.take():
                 return
-            self._pass_on(reader)
+            info = reader.info
+            number, sent_ns = info.publication_sequence_number, info.source_timestamp
+            self.arrived(info.publisher, number, reader.address, reader.size, sent_ns)
 
-    def _pass_on(self, reader: RawReader) -> None:
-        row, info = self._sides.row, reader.info
-        gid = info.publisher
-        if self._sides.route.mirrored and self._sides.own.has(gid):
-            row.add("own")
-            return
-        self._gaps.note(gid, info.publication_sequence_number)
-        if refusal := self._limits.refusal(reader.size):
-            row.add(refusal)
-            return
+    def send(self, address: int, size: int, sent_ns: int) -> None:
+        """Publish inside, with the time of the publisher outside."""
         assert self._publisher is not None
-        try:
-            self._publisher.publish_from(reader.address, reader.size, info.source_timestamp)
-        except _transport.PlatformError as error:
-            if row.add("refused") == 1:
-                self._sides.say(str(error))
-            return
-        row.passed(reader.size, time.time_ns() - info.source_timestamp)
+        self._publisher.publish_from(address, size, sent_ns)
+
+    def begin_after(self, last: Mapping[bytes, int]) -> None:
+        """Count what is missing between the lane before and this one."""
+        self._gaps.begin_after(last)
+
+    def count_gap(self, publisher: bytes, number: int) -> None:
+        """Count what DDS did not bring."""
+        self._gaps.note(publisher, number)
+
+    def pause(self) -> None:
+        """Leave messages where they are."""
+        if self in self._sides.outside.readers:
+            self._sides.outside.readers.remove(self)
+
+    def resume(self) -> None:
+        """Go on after a pause."""
+        if self.entity is not None:
+            self._sides.outside.readers.append(self)
+
+    def is_acknowledged(self) -> bool:
+        """Tell that all is there: on the platform a message is with its readers at once."""
+        return True
 
     def close(self) -> None:
         """Leave both sides."""
-        self._stop_listening()
+        self.stop_listening()
         self._publisher = self._offer = None
         self._sides.row.set_state("waiting")
 

@@ -3,13 +3,12 @@
 
 from __future__ import annotations
 
-import time
 from typing import Any
 
+from rclpy.duration import Duration
 from rclpy.event_handler import PublisherEventCallbacks
 from rmw_manycore_py.bridge import types
-from rmw_manycore_py.bridge.limits import Limits
-from rmw_manycore_py.bridge.loop import Mover
+from rmw_manycore_py.bridge.place import Place
 from rmw_manycore_py.bridge.policies import (
     Policies,
     common_offer,
@@ -17,28 +16,24 @@ from rmw_manycore_py.bridge.policies import (
     satisfies,
     to_rclpy,
 )
-from rmw_manycore_py.bridge.rcl import OutsideError, RawWriter
+from rmw_manycore_py.bridge.rcl import RawWriter
 from rmw_manycore_py.bridge.sides import Sides
-from rmw_manycore_py.bridge.topic_inward import BATCH
+from rmw_manycore_py.bridge.topic import BATCH, Topic
 
 from rmw_manycore_py import _transport
 
 
-class OutwardTopic(Mover):
+class OutwardTopic(Topic):
     """Works in the thread of the platform's side."""
 
-    def __init__(self, sides: Sides) -> None:
-        super().__init__(sides.fail)
-        self._sides = sides
-        self._type = types.load(sides.route.type)
-        self._limits = Limits(sides.route)
-        self._offer: Policies | None = None
+    def __init__(self, sides: Sides, place: Place) -> None:
+        super().__init__(sides, place)
         self._publisher: Any = None
         self._writer: RawWriter | None = None
         self._subscription: _transport.Subscription | None = None
         self._lost = 0
 
-    def reconcile(self) -> None:
+    def match(self) -> None:
         """Publish outside while somebody does inside; listen inside while somebody does outside."""
         route, inside = self._sides.route, self._sides.inside
         publishers = inside.publishers(route.inside)
@@ -55,7 +50,7 @@ class OutwardTopic(Mover):
         if self._is_wanted(offer):
             self._listen()
         else:
-            self._stop_listening()
+            self.stop_listening()
         self._sides.row.set_state("ready" if self._subscription is None else "forwarding")
 
     def _is_wanted(self, offer: Policies) -> bool:
@@ -86,53 +81,61 @@ class OutwardTopic(Mover):
         self._lost = 0
         self._sides.inside.readers.append(self)
 
-    def _stop_listening(self) -> None:
-        if self._subscription is None:
-            return
-        self._sides.inside.readers.remove(self)
+    def stop_listening(self) -> None:
+        """End the subscription."""
+        self.pause()
         self._subscription = None
 
     def pump_inside(self) -> None:
         """Pass on what has arrived."""
-        subscription = self._subscription
+        if self._subscription is None or not self._subscription.has_data():
+            return
+        with self.work():
+            self._take(self._subscription)
+
+    def _take(self, subscription: _transport.Subscription) -> None:
         for _ in range(BATCH):
-            claim = subscription.claim() if subscription else None
+            claim = subscription.claim()
             if claim is None:
-                self._count_lost()
+                self._count_lost(subscription)
                 return
             try:
-                self._pass_on(claim)
+                self.arrived(
+                    *(claim.publisher, claim.sequence),
+                    *(claim.address, claim.size, claim.source_timestamp_ns),
+                )
             finally:
                 claim.release()
         self._sides.inside.wake()  # the others have their turn first
 
-    def _pass_on(self, claim: _transport.Claim) -> None:
-        row = self._sides.row
-        if self._sides.route.mirrored and self._sides.own.has(claim.publisher):
-            row.add("own")
-            return
-        if refusal := self._limits.refusal(claim.size):
-            row.add(refusal)
-            return
+    def send(self, address: int, size: int, _: int) -> None:
+        """Publish outside; rmw cannot publish with another time than now."""
         assert self._writer is not None
-        try:
-            self._writer.publish(claim.address, claim.size)
-        except OutsideError as error:
-            if row.add("refused") == 1:
-                self._sides.say(str(error))
-            return
-        row.passed(claim.size, time.time_ns() - claim.source_timestamp_ns)
+        self._writer.publish(address, size)
 
-    def _count_lost(self) -> None:
-        assert self._subscription is not None
-        lost = self._subscription.lost()
+    def _count_lost(self, subscription: _transport.Subscription) -> None:
+        lost = subscription.lost()
         if lost != self._lost:
             self._sides.row.add("lost", lost - self._lost)
             self._lost = lost
 
+    def pause(self) -> None:
+        """Leave messages where they are."""
+        if self in self._sides.inside.readers:
+            self._sides.inside.readers.remove(self)
+
+    def resume(self) -> None:
+        """Go on after a pause."""
+        if self._subscription is not None:
+            self._sides.inside.readers.append(self)
+
+    def is_acknowledged(self) -> bool:
+        """Tell whether every reliable subscriber has all that was sent."""
+        return bool(self._publisher.wait_for_all_acked(Duration(seconds=0)))
+
     def close(self) -> None:
         """Leave both sides."""
-        self._stop_listening()
+        self.stop_listening()
         if self._publisher is not None:
             self._sides.outside.node.destroy_publisher(self._publisher)
         self._publisher = self._writer = self._offer = None

@@ -88,7 +88,8 @@ class Publisher:
 class Claim:
     """A record in its place in the topic DSM. The publisher cannot reuse it before `release`.
 
-    A subscription has one claim at a time.
+    A subscription has one claim at a time. `number` is the client's of a request or reply;
+    `sequence` counts up by one with each message of the publisher.
     """
 
     address: int
@@ -98,6 +99,7 @@ class Claim:
     client: bytes
     number: int
     source_timestamp_ns: int
+    sequence: int
     def release(self) -> None: ...
 
 class Subscription:

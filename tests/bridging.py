@@ -7,8 +7,8 @@ import sys
 from collections.abc import Callable
 from typing import Any
 
-from rmw_manycore_py.bridge.counters import status
 from rmw_manycore_py.bridge.plan import Plan
+from rmw_manycore_py.bridge.status import status
 from support import Program, environment, peer_command
 
 from rmw_manycore_py.routes import DIRECTIONS, Direction, Route, arranged
@@ -41,9 +41,14 @@ class Bridge:
         plan = Plan(self.platform, arranged(routes, 1))
         return {way: self.run_one(plan, way) for way in DIRECTIONS if plan.of(way, 0)}
 
-    def run_one(self, plan: Plan, way: Direction) -> Program:
+    def run_lanes(self, lanes: int, way: Direction, *routes: Route) -> list[Program]:
+        """Start all lanes of one direction."""
+        plan = Plan(self.platform, arranged(routes, lanes))
+        return [self.run_one(plan, way, lane) for lane in range(lanes)]
+
+    def run_one(self, plan: Plan, way: Direction, lane: int = 0) -> Program:
         """Start one process."""
-        words = [plan.to_json(), way, "0", "1", str(2 + DIRECTIONS.index(way))]
+        words = [plan.to_json(), way, str(lane), "1", str(2 + DIRECTIONS.index(way))]
         command = [sys.executable, "-m", "rmw_manycore_py.bridge", *words]
         return self._start(command, **OUTSIDE)
 

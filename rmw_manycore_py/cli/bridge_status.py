@@ -7,7 +7,8 @@ from typing import Any
 
 import click
 
-from rmw_manycore_py.bridge.counters import DROPS, status
+from rmw_manycore_py.bridge.counters import DROPS
+from rmw_manycore_py.bridge.status import status
 from rmw_manycore_py.cli.options import (
     examples,
     json_option,
@@ -38,13 +39,14 @@ def command(platform: str, as_json: bool) -> None:
 
 
 def _show(rows: list[dict[str, Any]]) -> None:
-    columns = ("inside", "", "outside", "#domain", "state", "#messages", "#size", "#mean", "#max")
-    table = new_table(*columns, "kept back")
+    columns = ("inside", "", "outside", "#domain", "#lane", "#load", "state", "#messages")
+    table = new_table(*columns, "#size", "#mean", "#max", "kept back")
     for row in rows:
         state = row["state"] if row["alive"] else "process is gone"
         drops = ", ".join(f"{row[name]} {name}" for name in DROPS if row[name])
         table.add_row(
-            *(row["inside"], _ARROWS[row["direction"]], row["outside"], str(row["domain"]), state),
+            *(row["inside"], _ARROWS[row["direction"]], row["outside"], str(row["domain"])),
+            *(str(row["lane"]), f"{row['load']:.1%}", state),
             *(str(row["messages"]), size_text(row["bytes"])),
             *(_time_text(row["latency_mean_ns"]), _time_text(row["latency_max_ns"])),
             drops or row["reason"],

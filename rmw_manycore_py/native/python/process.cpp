@@ -80,6 +80,7 @@ public:
   nb::bytes client() const { return to_bytes(held().info().correlation.client); }
   int64_t number() const { return held().info().correlation.number; }
   int64_t source_timestamp_ns() const { return held().info().source_timestamp_ns; }
+  uint64_t sequence() const { return held().info().publication_sequence_number; }
   void release() { claim_.reset(); }
 
 private:
@@ -225,6 +226,7 @@ void bind_process(nb::module_ & module) {
     .def_prop_ro("client", &BoundClaim::client)
     .def_prop_ro("number", &BoundClaim::number)
     .def_prop_ro("source_timestamp_ns", &BoundClaim::source_timestamp_ns)
+    .def_prop_ro("sequence", &BoundClaim::sequence)
     .def("release", &BoundClaim::release);
   nb::class_<BoundSubscription>(module, "Subscription")
     .def("claim", &BoundSubscription::claim)

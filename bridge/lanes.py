@@ -1,0 +1,125 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Which lane has which topic, in a file of the platform's directory that all lanes share.
+
+A file for each direction. It is replaced as a whole under a lock, so readers see one state or the
+next, and a process that dies leaves either.
+"""
+
+from __future__ import annotations
+
+import fcntl
+import json
+import threading
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+from typing import Any
+
+from rmw_manycore_py import _transport
+from rmw_manycore_py.routes import Direction, Route
+
+
+@dataclass
+class Share:
+    """Who passes on the messages of a topic, and how far a move has come.
+
+    Numbers are those of the publishers, by gid. `first` is what the heir has all messages from,
+    None before it is ready; `last` is what the owner before this one passed on last.
+    """
+
+    owner: int
+    heir: int | None = None
+    first: dict[str, int] | None = None
+    last: dict[str, int] = field(default_factory=dict)
+
+
+def name_of(route: Mapping[str, Any]) -> str:
+    """Return what tells a topic from the others of its direction, given the fields of its route."""
+    return f"{route['inside']} {route['outside']} {route['domain']}"
+
+
+class LaneTable:
+    """The shares of all topics of one direction, by their place in the plan. Thread-safe."""
+
+    def __init__(self, path: Path) -> None:
+        self._path = path
+        self._lock = threading.Lock()
+        self._seen: tuple[int, int] | None = None
+        self._told: tuple[int, int] | None = None
+        self._shares: list[Share] = []
+
+    @classmethod
+    def of(cls, platform: str, direction: Direction) -> LaneTable:
+        """Return the table of a platform's bridge; its file may be missing."""
+        directory = Path(_transport.platform_directory(platform))
+        return cls(directory / f"lanes-{direction}")
+
+    def join(self, routes: Sequence[Route], lane: int) -> None:
+        """Make the file unless it is there for these routes, and give up this lane's moves."""
+        names = [name_of(asdict(route)) for route in routes]
+        with self._locked():
+            data = self._load()
+            if data.get("names") != names:
+                data = {"names": names, "shares": [asdict(Share(r.lane)) for r in routes]}
+            shares = [Share(**share) for share in data["shares"]]
+            for share in shares:
+                if lane in (share.owner, share.heir):
+                    share.heir = share.first = None
+            self._store(names, shares)
+
+    @property
+    def shares(self) -> list[Share]:
+        """The present shares, to look at only; none where there is no file."""
+        with self._lock:
+            stamp = self._stamp()
+            if stamp != self._seen:
+                self._seen = stamp
+                self._shares = [Share(**share) for share in self._load().get("shares", [])]
+            return self._shares
+
+    def owners(self) -> dict[str, int]:
+        """Return the owner's lane by the name of the topic."""
+        data = self._load()
+        names, shares = data.get("names", []), data.get("shares", [])
+        return {name: share["owner"] for name, share in zip(names, shares, strict=True)}
+
+    def has_changed(self) -> bool:
+        """Tell whether the file has changed since the last call."""
+        before, self._told = self._told, self._stamp()
+        return self._told != before
+
+    @contextmanager
+    def change(self, index: int) -> Iterator[Share]:
+        """Give the present share of a topic to look at and to change."""
+        with self._locked():
+            data = self._load()
+            shares = [Share(**share) for share in data["shares"]]
+            yield shares[index]
+            self._store(data["names"], shares)
+
+    @contextmanager
+    def _locked(self) -> Iterator[None]:
+        with self._lock, self._path.with_name(f".{self._path.name}.lock").open("w") as lock:
+            fcntl.flock(lock, fcntl.LOCK_EX)
+            yield
+
+    def _load(self) -> dict[str, list[Any]]:
+        try:
+            loaded: dict[str, list[Any]] = json.loads(self._path.read_text())
+        except OSError:
+            return {}
+        return loaded
+
+    def _store(self, names: list[str], shares: list[Share]) -> None:
+        fresh = self._path.with_name(f".{self._path.name}")
+        fresh.write_text(json.dumps({"names": names, "shares": [asdict(s) for s in shares]}))
+        fresh.chmod(0o600)
+        fresh.rename(self._path)
+
+    def _stamp(self) -> tuple[int, int] | None:
+        try:
+            stat = self._path.stat()
+        except OSError:
+            return None
+        return stat.st_ino, stat.st_mtime_ns
