@@ -91,10 +91,13 @@ class Matcher:
         points: ArrayLike,
         T_map_guess: ArrayLike,
         T_map_regularization: ArrayLike | None = None,
+        *,
+        only_pose: bool = False,
     ) -> Alignment:
         """Find the pose near the guess (4, 4) at which points (N, 3) [m, sensor frame] fit best.
 
         :param T_map_regularization: a pose (4, 4) to keep near along the vehicle's axis.
+        :param only_pose: spare the alignments and scores that only the covariance is made of.
         """
         voxel_map = self._require_map()
         scan = scan_points(points)
@@ -110,7 +113,7 @@ class Matcher:
                 return refused(guess, f"the regularization pose {wrong}", self.options)
             position = (float(regularization[0, 3]), float(regularization[1, 3]))
         alignment = self._aligned(voxel_map, scan, guess, position)
-        if not alignment.converged:
+        if only_pose or not alignment.converged:
             return alignment
         return self._with_covariance(alignment, voxel_map, scan, position)
 

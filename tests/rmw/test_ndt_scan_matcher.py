@@ -89,6 +89,28 @@ def test_a_pose_and_all_that_belongs_to_it(matched):
     assert heard["iteration_num"].data > 0
 
 
+@pytest.mark.parametrize("kind", [1, 2, 3], ids=["laplace", "multi_ndt", "multi_ndt_score"])
+def test_the_covariance_may_be_estimated(stack, start, kind):
+    fixed = ", ".join("1.0e-9" if i % 7 == 0 else "0.0" for i in range(36))
+    parameters = {
+        "covariance__covariance_estimation__covariance_estimation_type": kind,
+        "covariance__output_pose_covariance": f"[{fixed}]",
+    }
+    start(matcher_command(**parameters), cluster=2)
+    heard = []
+    stack.node.create_subscription(
+        PoseWithCovarianceStamped, "ndt_pose_with_covariance", heard.append, 10
+    )
+    stack.wait_for_matcher()
+    stack.publish_map(street_map())
+    while not heard:
+        stack.pose_of(street_scan(), NEAR)
+    covariance = np.reshape(heard[-1].pose.covariance, (6, 6))
+    assert (np.linalg.eigvalsh(covariance[:2, :2]) > 0).all()
+    assert 1e-8 < np.trace(covariance[:2, :2]) < 0.25
+    assert covariance[2, 2] == pytest.approx(1e-9)
+
+
 def few(count: int) -> np.ndarray:
     return np.float32([[15.0, n, 0.0] for n in range(count)])
 
@@ -266,6 +288,11 @@ def test_tiles_around_the_vehicle(stack, start, tmp_path):
         ({"ndt__search": "kdtree"}, "expected one of radius, direct7, direct1, found 'kdtree'"),
         ({"ndt__step_size": "fast"}, "ndt.step_size: expected a number"),
         ({"covariance__output_pose_covariance": "[1.0]"}, "36 finite numbers"),
+        (
+            {"covariance__covariance_estimation__initial_pose_offset_model_x": "[1.0]"},
+            "as many numbers in either, found 1 and 6",
+        ),
+        ({"covariance__covariance_estimation__temperature": 0.0}, "temperature: expected more"),
         ({"map_path": "/nonexistent.pcd"}, "no such file"),
         ({"map_path": "/etc/passwd"}, "ends in .pcd, .ply, .npz"),
     ],

@@ -106,7 +106,7 @@ def _imbalance(run: Run, options: MatcherOptions) -> list[Result]:
             points = scan_points(scan)
             shares = [
                 matcher.time_shares_ns(voxel_map.native, points, pose, MOST_WORKERS)
-                for _ in range(run.iterations(REPEATS))
+                for _ in range(run.iterations(5 * REPEATS))
             ]
             # The fastest of each: what the share itself takes, undisturbed.
             times = [min(share) for share in zip(*shares, strict=True)]

@@ -8,7 +8,7 @@ import numpy as np
 from rmw_manycore_py.ndt.alignment import Alignment
 from rmw_manycore_py.ndt.nodes.diagnostics import Diagnostics
 from rmw_manycore_py.ndt.nodes.matcher_parameters import (
-    LAPLACE_APPROXIMATION,
+    FIXED_VALUE,
     TRANSFORM_PROBABILITY,
     MatcherParameters,
 )
@@ -38,14 +38,14 @@ def is_reliable(
 def output_covariance(alignment: Alignment, parameters: MatcherParameters) -> Matrix:
     """Return the covariance (6, 6) in the map frame.
 
-    Fixed: the parameter, which is in the vehicle's frame, turned. Laplace: x and y from the
-    Hessian, at least the fixed ones along the vehicle's axes.
+    Fixed: the parameter, which is in the vehicle's frame, turned. Else x and y are the
+    alignment's, at least the fixed ones along the vehicle's axes.
     """
     R = alignment.T_map_sensor[:3, :3]
     fixed: Matrix = np.asarray(parameters.covariance, np.float64).reshape(6, 6)
     covariance: Matrix = fixed.copy()
     covariance[:3, :3] = R @ fixed[:3, :3] @ R.T
-    if parameters.covariance_type == LAPLACE_APPROXIMATION:
+    if parameters.covariance_type != FIXED_VALUE:
         yaw = np.arctan2(R[1, 0], R[0, 0])
         turn = np.array([[np.cos(yaw), -np.sin(yaw)], [np.sin(yaw), np.cos(yaw)]])
         estimated = turn.T @ (parameters.covariance_scale * alignment.covariance[:2, :2]) @ turn

@@ -9,7 +9,7 @@ from rmw_manycore_py.ndt.nodes.declared import parameter
 from rmw_manycore_py.ndt.options import Search, VoxelCovariance
 
 TRANSFORM_PROBABILITY, NEAREST_VOXEL_LIKELIHOOD = 0, 1
-FIXED_VALUE, LAPLACE_APPROXIMATION = 0, 1
+FIXED_VALUE, LAPLACE_APPROXIMATION, MULTI_NDT, MULTI_NDT_SCORE = range(4)
 VARIANCES = (0.0225, 0.0225, 0.0225, 0.000625, 0.000625, 0.000625)  # m^2, rad^2
 DIAGONAL = tuple(VARIANCES[i] if i == j else 0.0 for i in range(6) for j in range(6))
 
@@ -70,8 +70,17 @@ class MatcherParameters:
     covariance_type: int = parameter(
         "covariance.covariance_estimation.covariance_estimation_type",
         FIXED_VALUE,
-        choices=(FIXED_VALUE, LAPLACE_APPROXIMATION),
+        choices=(FIXED_VALUE, LAPLACE_APPROXIMATION, MULTI_NDT, MULTI_NDT_SCORE),
     )
+    offsets_x_m: tuple[float, ...] = parameter(
+        "covariance.covariance_estimation.initial_pose_offset_model_x",
+        (0.0, 0.0, 0.5, -0.5, 1.0, -1.0),
+    )
+    offsets_y_m: tuple[float, ...] = parameter(
+        "covariance.covariance_estimation.initial_pose_offset_model_y",
+        (0.5, -0.5, 0.0, 0.0, 0.0, 0.0),
+    )
+    temperature: float = parameter("covariance.covariance_estimation.temperature", 0.05, above=0.0)
     covariance_scale: float = parameter(
         "covariance.covariance_estimation.scale_factor", 1.0, above=0.0
     )

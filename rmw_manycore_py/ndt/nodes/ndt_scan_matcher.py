@@ -346,7 +346,7 @@ class NdtScanMatcher(Node):
         scan = self._scan
         assert scan is not None
         tried = particles(
-            lambda T: self._matcher.align(scan, T, None),
+            lambda T: self._matcher.align(scan, T, only_pose=True),
             T_map_base,
             covariance,
             self._p.particles,
