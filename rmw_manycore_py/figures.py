@@ -17,10 +17,11 @@ def load_figure() -> type[Figure]:
     Figures of this class need no display. Call this before a long run whose picture is wanted.
     """
     try:
-        from matplotlib.figure import Figure
+        from matplotlib import figure
     except ImportError as error:
         raise ManycoreError(
             f"matplotlib cannot be loaded ({error}). Plots need it: "
             "pip install 'rmw-manycore[bench]', or [ndt]"
         ) from error
-    return Figure
+    figure_class: type[Figure] = figure.Figure  # unknown to type checkers without matplotlib
+    return figure_class
