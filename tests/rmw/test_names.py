@@ -8,7 +8,6 @@ import os
 import pytest
 import rclpy
 from rcl_interfaces.msg import Log
-from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from ros_support import announce, peer_node, spin_until
 from std_msgs.msg import String
@@ -114,16 +113,6 @@ def talk_in_domain(domain: int) -> None:
         rclpy.spin(node)
 
 
-def meet(node: Node, start_peer, **env: str) -> list[String]:
-    """Return what a node has heard when a peer with these variables has heard itself."""
-    heard: list[String] = []
-    node.create_subscription(String, "chatter", heard.append, 10)
-    peer = start_peer(talk_to_itself, **env)
-    peer.wait_for("published")
-    rclpy.spin_once(node, timeout_sec=0.1)
-    return heard
-
-
 def talk_to_itself() -> None:
     with peer_node() as node:
         heard = []
@@ -135,13 +124,22 @@ def talk_to_itself() -> None:
         rclpy.spin(node)
 
 
+@needs_manycore
 @pytest.mark.parametrize("name", ["LOCALHOST", "SUBNET", "SYSTEM_DEFAULT"])
 def test_discovery_ranges_that_include_this_machine(node, start_peer, name):
-    assert meet(node, start_peer, ROS_AUTOMATIC_DISCOVERY_RANGE=name)
+    heard = []
+    node.create_subscription(String, "chatter", heard.append, 10)
+    start_peer(talk_to_itself, ROS_AUTOMATIC_DISCOVERY_RANGE=name)
+    spin_until(node, lambda: heard)
 
 
 def test_the_discovery_range_off_keeps_a_process_alone(node, start_peer):
-    assert meet(node, start_peer, ROS_AUTOMATIC_DISCOVERY_RANGE="OFF") == []
+    heard = []
+    node.create_subscription(String, "chatter", heard.append, 10)
+    peer = start_peer(talk_to_itself, ROS_AUTOMATIC_DISCOVERY_RANGE="OFF")
+    peer.wait_for("published")
+    rclpy.spin_once(node, timeout_sec=0.1)
+    assert heard == []
     assert node.get_node_names() == ["tester"]
 
 
