@@ -15,6 +15,7 @@ from rclpy.topic_endpoint_info import TopicEndpointTypeEnum
 from ros_support import peer_node, spin_until
 from std_msgs.msg import String, UInt8MultiArray
 from std_srvs.srv import Trigger
+from support import example_command
 
 QOS = QoSProfile(
     depth=7,
@@ -54,6 +55,12 @@ def test_node_names(node, peer):
     assert sorted(node.get_node_names_and_namespaces()) == [("peer", "/far"), ("tester", "/")]
     names = node.get_node_names_and_namespaces_with_enclaves()
     assert ("peer", "/far", "/") in names
+
+
+def test_enclaves(node, start, peer_cluster):
+    start(example_command("talker", "--ros-args", "--enclave", "/robot/arm"), peer_cluster)
+    talker = ("talker", "/", "/robot/arm")
+    spin_until(node, lambda: talker in node.get_node_names_and_namespaces_with_enclaves())
 
 
 def test_topics_and_types(node, peer):
