@@ -7,11 +7,11 @@ Services, actions, rate and size limits go beyond that schema.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any, Literal
 
-from pydantic import Field, StrictBool, ValidationError
+from pydantic import Field, StrictBool, ValidationError, field_validator
 
 from rmw_manycore_py.errors import MapfileError, Problem
 from rmw_manycore_py.mapfile.crossings import overrides
@@ -38,6 +38,12 @@ class Crossing(Section):
     from_domain: Domain | None = None
     to_domain: Domain | None = None
     remap: TopicName | None = None
+
+    @field_validator("remap", mode="before")
+    @classmethod
+    def _no_name(cls, value: Any) -> Any:
+        """In that schema an empty name is none."""
+        return None if value == "" else value
 
 
 class TopicCrossing(Crossing):
@@ -77,8 +83,13 @@ class BridgeFile(Section):
     actions: tuple[tuple[TopicName, ActionCrossing], ...] = Field(default=())
 
 
-def load_bridge_file(path: Path, inside: int) -> tuple[Route, ...]:
-    """Read and check a bridge file of the platform whose domain is `inside`."""
+def load_bridge_file(
+    path: Path, inside: int, note: Callable[[str], None] = lambda _: None
+) -> tuple[Route, ...]:
+    """Read and check a bridge file of the platform whose domain is `inside`.
+
+    What joins two other domains is not this bridge's: `note` is told, unless nothing else is there.
+    """
     document = read_yaml(path, repeated=_KINDS)
     if not isinstance(document.data, dict):
         raise MapfileError(document.problem((), "a mapping", describe(document.data)))
@@ -87,7 +98,7 @@ def load_bridge_file(path: Path, inside: int) -> tuple[Route, ...]:
     except ValidationError as error:
         problems = [_problem(document, dict(details)) for details in error.errors()]
     else:
-        return _Resolver(document, sections, inside).routes()
+        return _Resolver(document, sections, inside, note).routes()
     raise MapfileError(*problems)
 
 
@@ -97,6 +108,8 @@ def _problem(document: Document, details: dict[str, Any]) -> Problem:
         return _named(document, path, f"the key '{path[-1]}'", "no such key")
     if details["type"] == "extra_forbidden":
         return _named(document, path, "a key of domain_bridge's schema", f"'{path[-1]}'")
+    if details["type"] == "tuple_type":
+        return _named(document, path, "a name and its settings: a mapping, no list", "a list")
     return _named(document, path, details["msg"].lower(), describe(details["input"]))
 
 
@@ -104,7 +117,8 @@ def _named(document: Document, path: tuple[Any, ...], expected: str, found: str)
     """Return a problem whose key says the name of a topic instead of its place."""
     shown = list(path)
     if len(path) > 1 and path[0] in _KINDS and isinstance(path[1], int):
-        shown[1:3] = [document.data[path[0]][path[1]][0]]
+        entry = document.data[path[0]][path[1]]
+        shown[1:3] = [entry[0]] if isinstance(entry, tuple) else []
     key = ".".join(map(str, shown))
     return Problem(document.file, document.line(path), key, expected, found)
 
@@ -112,18 +126,26 @@ def _named(document: Document, path: tuple[Any, ...], expected: str, found: str)
 class _Resolver:
     """Gives each entry its domains, and the platform its place among them."""
 
-    def __init__(self, document: Document, sections: BridgeFile, inside: int) -> None:
+    def __init__(
+        self, document: Document, sections: BridgeFile, inside: int, note: Callable[[str], None]
+    ) -> None:
         self._document, self._sections, self._inside = document, sections, inside
+        self._note = note
         self._problems: list[Problem] = []
+        self._foreign: list[Problem] = []
 
     def routes(self) -> tuple[Route, ...]:
         """Return all routes; what is wrong with the domains comes in one error."""
         found = [*self._topics(), *self._servers("services"), *self._servers("actions")]
+        if not found:
+            self._problems += self._foreign
         if not found and not self._problems:
             expected = "something to bridge in topics, services or actions"
             self._problems.append(self._document.problem((), expected, "nothing"))
         if self._problems:
             raise MapfileError(*self._problems)
+        for problem in self._foreign:
+            self._note(f"{problem}; left out")
         return arranged(found, 1)
 
     def _topics(self) -> Iterator[Route]:
@@ -189,7 +211,8 @@ class _Resolver:
             return None
         if self._inside not in (source, target):
             expected = f"{self._inside}, the platform's domain (--inside), on one side"
-            self._wrong(kind, index, expected, f"{source} and {target}")
+            problem = _named(self._document, (kind, index, 1), expected, f"{source} and {target}")
+            self._foreign.append(problem)
             return None
         return source, target
 

@@ -6,8 +6,7 @@ from __future__ import annotations
 import ctypes
 import time
 from abc import abstractmethod
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Mapping
 from typing import Any
 
 from rmw_manycore_py.bridge import types
@@ -153,13 +152,6 @@ class Topic(Mover):
                 self._sides.say(str(error))
             return
         row.passed(size, time.time_ns() - sent_ns)
-
-    @contextmanager
-    def work(self) -> Iterator[None]:
-        """Count the CPU time of what is done meanwhile as this topic's load."""
-        began_ns = time.thread_time_ns()
-        yield
-        self._sides.row.worked(time.thread_time_ns() - began_ns)
 
     @abstractmethod
     def match(self) -> None:

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What the bridge adds: round trips of an rclpy node outside with one inside, and an idle bridge.
+"""Round trips and throughput between an rclpy node outside and one inside, and an idle bridge.
 
 There and back a message takes two hops of Fast DDS and two of the platform. So the bridged round
 trip is held against the sum of a round trip in Fast DDS and one on the platform, of the same run.
@@ -21,10 +21,17 @@ from rmw_manycore_py.bridge.plan import Plan
 from rmw_manycore_py.routes import DIRECTIONS, Direction, Route, arranged
 
 SIZES = ("64 B", "1 MiB")
+INWARD, OUTWARD = "bridged inward", "bridged outward"
+IN_FLIGHT = 8
+STRETCH = 40  # messages of a sample of throughput
+STRETCHES = 10
 BRIDGED = "bridged"
 SUM = "Fast DDS + platform"
 IDLE = "idle bridge, CPU"
 WINDOW_S = 10.0
+# Parties whose CPU the inward and the outward process share. In round trips it is that of the node
+# they receive from; in a flood the inside node's: DDS goes from CPU to CPU, bridge or not.
+BESIDE_SENDER, BESIDE_INSIDE = (0, 1), (1, 0)
 _TYPE = "std_msgs/msg/UInt8MultiArray"
 
 
@@ -33,6 +40,7 @@ def measure(run: Run) -> list[Result]:
     results = []
     for size in SIZES:
         results += _measure_size(run, size)
+    results += _measure_throughput(run)
     if run.wants(BRIDGED):
         results.append(Result(IDLE, BRIDGED, "ms/s", (_idle_ms(run),)))
     return results
@@ -76,14 +84,64 @@ def _talk(asking: Session, answering: Session, arguments: Sequence[int]) -> list
     return in_us(found["samples_ns"])
 
 
-def _start_bridge(inside: Session, outside: Session) -> list[Process]:
-    """Start both processes, each on the CPU of the node that it receives from."""
+def _measure_throughput(run: Run) -> list[Result]:
+    """Measure 1 MiB with eight under way, in both directions beside Fast DDS alone."""
+    lost: dict[str, list[float]] = {}
+
+    def direct() -> Sequence[float]:
+        with Session(FAST_DDS, run.cpus) as session:
+            return _flood(run, session, session, ("/ping", "/pong"), lost, FAST_DDS.name)
+
+    def bridged(name: str) -> Sequence[float]:
+        with Session(BETWEEN, run.cpus) as inside, Session(FAST_DDS, run.cpus) as outside:
+            _start_bridge(inside, outside, BESIDE_INSIDE)
+            if name == INWARD:
+                return _flood(run, outside, inside, ("/ping", "/pong"), lost, name)
+            return _flood(run, inside, outside, ("/pong", "/ping"), lost, name)
+
+    question = "bridged throughput 1 MiB"
+    rates = run.interleave(
+        question,
+        "1/s",
+        {
+            INWARD: lambda: bridged(INWARD),
+            OUTWARD: lambda: bridged(OUTWARD),
+            FAST_DDS.name: direct,
+        },
+        higher_is_better=True,
+    )
+    return rates + [
+        Result(f"{question}, lost", name, "messages", tuple(counts))
+        for name, counts in lost.items()
+    ]
+
+
+def _flood(
+    run: Run,
+    sending: Session,
+    hearing: Session,
+    topics: tuple[str, str],
+    lost: dict[str, list[float]],
+    name: str,
+) -> list[float]:
+    sink = hearing.python("sink", 1, *topics, IN_FLIGHT)
+    stretches = run.iterations(STRETCHES)
+    sizes = (PAYLOADS["1 MiB"], IN_FLIGHT, STRETCH, STRETCH, stretches)
+    found = sending.python("source", 0, *topics, *sizes).finish()
+    lost.setdefault(name, []).append(sink.finish()["lost"])
+    return [STRETCH / sample_ns * 1e9 for sample_ns in found["samples_ns"]]
+
+
+def _start_bridge(
+    inside: Session, outside: Session, parties: tuple[int, int] = BESIDE_SENDER
+) -> list[Process]:
+    """Start both processes, each on the CPU of a party."""
     ways: tuple[tuple[str, Direction], ...] = (("/ping", "inward"), ("/pong", "outward"))
     routes = [Route("topic", way, name, name, _TYPE, outside.domain) for name, way in ways]
     plan = Plan(inside.platform, arranged(routes, 1)).to_json()
     return [
-        outside.module("rmw_manycore_py.bridge", party, plan, way, 0, 1, party + 2)
-        for party, way in enumerate(DIRECTIONS)
+        outside.module("rmw_manycore_py.bridge", party, plan, way, 0, 1, core)
+        for core, (party, way) in enumerate(zip(parties, DIRECTIONS, strict=True), 2)
     ]
 
 
@@ -106,9 +164,16 @@ QUESTION = Question(
     measure,
     (
         Goal("bridged round trip 64 B", BRIDGED, "within", 1.3, SUM),
-        # The same bytes in the same time: what 0.8 of the throughput comes to in round trips.
-        Goal("bridged round trip 1 MiB", BRIDGED, "better", 0.8, FAST_DDS.name),
+        *(
+            Goal("bridged throughput 1 MiB", name, "better", 0.8, FAST_DDS.name)
+            for name in (INWARD, OUTWARD)
+        ),
+        *(
+            Goal("bridged throughput 1 MiB, lost", name, "within", 0, statistic="largest")
+            for name in (INWARD, OUTWARD)
+        ),
         Goal(IDLE, BRIDGED, "within", 10),
     ),
-    "ping outside on the first CPU, pong in cluster 2 on the second; inward process on the first",
+    "ping outside on the first CPU, pong in cluster 2 on the second; inward process on the first; "
+    "source on the first and sink on the second, bridge on that of the one inside",
 )

@@ -31,5 +31,9 @@ def command(config: Path, inside: int, platform: str) -> None:
 
     One side of each entry is the platform's domain; the other one is a real DDS domain.
     """
-    plan = Plan(platform, load_bridge_file(config, inside))
+    plan = Plan(platform, load_bridge_file(config, inside, _warn))
     sys.exit(run_bridge(plan, RunPrinter([]).report))
+
+
+def _warn(text: str) -> None:
+    click.echo(text, err=True)

@@ -56,6 +56,26 @@ def test_both_directions_keep_the_new_name_on_each_target(tmp_path) -> None:
     assert ways(routes) == [("outward", "/a", "/b", 3), ("inward", "/b", "/a", 3)]
 
 
+def test_what_joins_two_other_domains_is_left_out(tmp_path) -> None:
+    path = tmp_path / "bridge.yaml"
+    path.write_text(
+        "from_domain: 2\nto_domain: 3\ntopics:\n"
+        f"  a: {STRING}\n"
+        "  a: {type: std_msgs/msg/String, from_domain: 7, to_domain: 8}\n"
+    )
+    notes: list[str] = []
+    assert ways(load_bridge_file(path, 2, notes.append)) == [("outward", "/a", "/a", 3)]
+    (note,) = notes
+    assert "5: topics.a: expected 2, the platform's domain" in note
+    assert note.endswith("found 7 and 8; left out")
+
+
+def test_an_empty_new_name_is_none(tmp_path) -> None:
+    topic = "{type: std_msgs/msg/String, remap: '', qos: {lifespan: -5, deadline: auto}}"
+    routes = load(tmp_path, f"from_domain: 2\nto_domain: 3\ntopics: {{a: {topic}}}\n")
+    assert ways(routes) == [("outward", "/a", "/a", 3)]
+
+
 def test_policies(tmp_path) -> None:
     qos = "{reliability: best_effort, depth: 3, deadline: 5, lifespan: auto, history: keep_last}"
     (route,) = load(
@@ -110,6 +130,10 @@ def test_a_server_is_in_the_first_domain(tmp_path) -> None:
         ("topics: {a: {type: 5, colour: red}}", "1: topics.a.colour: expected a key of"),
         ("mode: compress", "1: mode: expected input should be 'normal', found string 'compress'"),
         ("name: nothing", "1: expected something to bridge in topics, services or actions"),
+        (
+            "topics: [{a: {type: std_msgs/msg/String}}]",
+            "1: topics: expected a name and its settings: a mapping, no list",
+        ),
         ("[]", "1: expected a mapping, found list []"),
     ],
 )
