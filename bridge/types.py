@@ -5,10 +5,9 @@ from __future__ import annotations
 
 import importlib
 import json
-from pathlib import Path
 from typing import Any
 
-from ament_index_python.packages import PackageNotFoundError, get_package_share_directory
+from rmw_manycore_py.mapfile.ament import package_share
 
 # Parts of an action, and where rclpy keeps them in the action's class.
 _ACTION_PARTS = {
@@ -40,10 +39,10 @@ def hash_of(name: str) -> str:
     """Return a type's hash (REP 2016), or nothing where the installed package has none."""
     package, kind, type_name = name.split("/")
     whole = type_name.rpartition("_")[0] if kind == "action" else type_name
-    try:
-        share = Path(get_package_share_directory(package))
-        data = json.loads((share / kind / f"{whole}.json").read_text())
-    except (PackageNotFoundError, OSError):
+    share = package_share(package)
+    description = share / kind / f"{whole}.json" if share else None
+    if description is None or not description.is_file():
         return ""
+    data = json.loads(description.read_text())
     hashes = {entry["type_name"]: entry["hash_string"] for entry in data["type_hashes"]}
     return str(hashes.get(name, ""))
