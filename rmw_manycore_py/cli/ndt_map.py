@@ -7,10 +7,11 @@ from pathlib import Path
 
 import click
 
+from rmw_manycore_py.cli.ndt_recording import recording_options
 from rmw_manycore_py.cli.options import examples
 from rmw_manycore_py.ndt.map_file import SUFFIXES, write_points
 from rmw_manycore_py.ndt.map_tiles import write_tiles
-from rmw_manycore_py.ndt.recording import load_recording
+from rmw_manycore_py.ndt.recordings.opening import open_recording
 from rmw_manycore_py.ndt.thinning import voxel_centroids
 
 
@@ -22,7 +23,8 @@ from rmw_manycore_py.ndt.thinning import voxel_centroids
         "manycore ndt map drive.npz -o tiles --tile-size 20",
     ),
 )
-@click.argument("recording", type=click.Path(dir_okay=False, exists=True, path_type=Path))
+@click.argument("recording", type=click.Path(exists=True, path_type=Path))
+@recording_options
 @click.option(
     "-o",
     "--output",
@@ -60,10 +62,18 @@ from rmw_manycore_py.ndt.thinning import voxel_centroids
     help="Of the tiles.",
 )
 def command(
-    recording: Path, output: Path, every: int, leaf_m: float, tile_m: float | None, suffix: str
+    recording: Path,
+    poses_path: Path | None,
+    topic: str,
+    pose_topic: str,
+    output: Path,
+    every: int,
+    leaf_m: float,
+    tile_m: float | None,
+    suffix: str,
 ) -> None:
     """Make a map of the scans of RECORDING and their poses."""
-    drive = load_recording(recording)
+    drive = open_recording(recording, poses_path, topic, pose_topic)
     points = drive.accumulated(range(0, len(drive), every))
     if leaf_m > 0.0:
         points = voxel_centroids(points, (leaf_m,) * 3)

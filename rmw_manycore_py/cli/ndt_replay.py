@@ -10,16 +10,25 @@ from pathlib import Path
 
 import click
 
+from rmw_manycore_py.cli.ndt_recording import recording_options
 from rmw_manycore_py.cli.options import examples, new_table, print_json, print_table
 from rmw_manycore_py.figures import load_figure
 from rmw_manycore_py.launch.environment import enter_middleware, leave_middleware
 from rmw_manycore_py.ndt.map_file import read_points
 from rmw_manycore_py.ndt.map_tiles import open_map
-from rmw_manycore_py.ndt.recording import Recording, load_recording
+from rmw_manycore_py.ndt.recording import Recording
+from rmw_manycore_py.ndt.recordings.opening import open_recording
 from rmw_manycore_py.ndt.replay.tally import Summary, Tally, as_json
 from rmw_manycore_py.ndt.thinning import Points, voxel_centroids
 
 MAP_VOXEL_M = 0.2
+MADE_OF = {
+    "odometry": "closed loop: last result and the REFERENCE's motion with {drift:.0%} error",
+    "velocity": "closed loop: EKF of the results alone; the reference tells the first pose only",
+    "perturbed": "open loop: the REFERENCE pose, {offset:g} m and {turn:g} degrees off",
+    "stack": "closed loop: EKF on the platform; a rough first pose, and the REFERENCE's speed with "
+    "{drift:.0%} error",
+}
 FILE = click.Path(dir_okay=False, path_type=Path)
 
 
@@ -31,7 +40,8 @@ FILE = click.Path(dir_okay=False, path_type=Path)
         "manycore ndt replay drive.npz --guess perturbed --offset 0.5 --turn 3",
     ),
 )
-@click.argument("recording", type=click.Path(dir_okay=False, exists=True, path_type=Path))
+@click.argument("recording", type=click.Path(exists=True, path_type=Path))
+@recording_options
 @click.option(
     "--map",
     "map_path",
@@ -91,6 +101,9 @@ FILE = click.Path(dir_okay=False, path_type=Path)
 @click.option("--plot", "plot_path", type=FILE, help="Draw map, path and error: .png, .svg, .pdf.")
 def command(
     recording: Path,
+    poses_path: Path | None,
+    topic: str,
+    pose_topic: str,
     map_path: Path | None,
     no_map: bool,
     rate_hz: float | None,
@@ -120,7 +133,7 @@ def command(
     from rmw_manycore_py.ndt.replay.guess_source import Guesses, GuessSource, StackInputs
     from rmw_manycore_py.ndt.replay.session import run
 
-    drive = load_recording(recording)
+    drive = open_recording(recording, poses_path, topic, pose_topic)
     if scans is not None:
         drive = drive.first(scans)
     sources: dict[str, Callable[[], GuessSource]] = {
@@ -130,6 +143,10 @@ def command(
         "stack": lambda: StackInputs(drive, drift, seed),
     }
     points = None if no_map else _map_of(recording, drive, map_path)
+    made_of = MADE_OF[kind].format(drift=drift, offset=offset_m, turn=turn_deg)
+    click.echo(f"guesses: {made_of}", err=True)
+    if drive.note:
+        click.echo(f"recording: {drive.note}", err=True)
     tally = Tally(deadline_ms)
     run(drive, sources[kind](), tally, points, voxel_m, rate_hz, timeout_s)
     if csv_path is not None:
@@ -139,7 +156,9 @@ def command(
 
         plot(tally, points, plot_path)
     summary = tally.summary()
-    print_json(as_json(summary)) if as_json_ else _print(summary, deadline_ms)
+    print_json({"guesses": made_of, **as_json(summary)}) if as_json_ else _print(
+        summary, deadline_ms
+    )
     sys.exit(0 if summary.is_good else 1)
 
 

@@ -19,6 +19,7 @@ from rmw_manycore_py.ndt.drive import (
 from rmw_manycore_py.ndt.lidar import Lidar
 from rmw_manycore_py.ndt.map_file import write_points
 from rmw_manycore_py.ndt.poses import transform
+from rmw_manycore_py.ndt.recording import save_recording
 from rmw_manycore_py.ndt.street import build_street
 from rmw_manycore_py.ndt.thinning import voxel_centroids
 
@@ -74,6 +75,6 @@ def command(directory: Path, length_m: float, speed_m_s: float, seed: int) -> No
     poses, stamps = drive_poses(length_m, speed_m_s)
     driven = scans_along(street, poses, lidar, generator)
     scans = list(track(driven, "drive", len(poses)))
-    record(scans, poses, stamps, seed).save(directory / "drive.npz")
+    save_recording(directory / "drive.npz", record(scans, poses, stamps, seed))
     click.echo(f"{directory / 'map.npz'}: {len(points)} points")
     click.echo(f"{directory / 'drive.npz'}: {len(scans)} scans of about {len(scans[0])} points")

@@ -9,7 +9,7 @@ import numpy as np
 
 from rmw_manycore_py.ndt.lidar import Lidar
 from rmw_manycore_py.ndt.poses import Matrix, from_xyz_rpy
-from rmw_manycore_py.ndt.recording import DEFAULT_PERIOD_S, Recording, recording_of
+from rmw_manycore_py.ndt.recording import DEFAULT_PERIOD_S, Recording
 from rmw_manycore_py.ndt.street import Street
 from rmw_manycore_py.ndt.thinning import Points
 
@@ -54,4 +54,4 @@ def mapping_poses(length_m: float) -> Matrix:
 
 def record(scans: list[Points], poses: Matrix, stamps: Matrix, seed: int) -> Recording:
     """Return the drive as a recording."""
-    return recording_of(scans, poses, stamps, f"synthetic street, seed {seed}")
+    return Recording(scans, poses, stamps, f"synthetic street, seed {seed}")

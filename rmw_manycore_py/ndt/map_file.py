@@ -9,7 +9,13 @@ from types import ModuleType
 import numpy as np
 
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
-from rmw_manycore_py.ndt.recording import DEFAULT_SCALE_M, INT16_MAX, load_recording, recording_of
+from rmw_manycore_py.ndt.recording import (
+    DEFAULT_SCALE_M,
+    INT16_MAX,
+    Recording,
+    load_recording,
+    save_recording,
+)
 from rmw_manycore_py.ndt.thinning import Points
 
 SUFFIXES = (".pcd", ".ply", ".npz")
@@ -25,7 +31,7 @@ def read_points(path: Path, leaf_m: float = 0.0) -> Points:
         raise _bad(path, f"expected a file that ends in {', '.join(SUFFIXES)}")
     if not path.is_file():
         raise _bad(path, "there is no such file")
-    points = _read_npz(path) if path.suffix == ".npz" else _read_cloud(path)
+    points = _read_npz(path) if path.suffix == ".npz" else read_cloud(path)
     points = points[np.isfinite(points).all(axis=1)]
     if len(points) == 0:
         raise _bad(path, "it has no points: it is empty, broken, or not what its name says")
@@ -36,7 +42,7 @@ def write_points(path: Path, points: Points) -> None:
     """Write a map of points (N, 3) in the map frame."""
     if path.suffix == ".npz":
         scale_m = max(DEFAULT_SCALE_M, float(np.abs(points).max()) / INT16_MAX)
-        recording_of([points], np.eye(4)[None], np.zeros(0), "map", scale_m).save(path)
+        save_recording(path, Recording([points], np.eye(4)[None], np.zeros(0), "map"), scale_m)
         return
     if path.suffix not in SUFFIXES:
         raise _bad(path, f"expected a file that ends in {', '.join(SUFFIXES)}")
@@ -66,7 +72,8 @@ def _read_npz(path: Path) -> Points:
     return recording.accumulated(range(len(recording)))
 
 
-def _read_cloud(path: Path) -> Points:
+def read_cloud(path: Path) -> Points:
+    """Return the points (N, 3) of a PCD or PLY file, finite or not."""
     o3d = load_open3d()
     try:
         cloud = o3d.io.read_point_cloud(str(path))

@@ -116,6 +116,30 @@ def interpolate(T_old: Matrix, T_new: Matrix, share: float) -> Matrix:
     return T
 
 
+ROTATION_TOLERANCE = 0.01
+
+
+def rigid(matrices: npt.NDArray[Any]) -> Matrix:
+    """Return (S, 4, 4) or (S, 3, 4) as rigid transforms, free of what rounding did to them.
+
+    A ValueError tells which one is not finite or far from rigid.
+    """
+    T = np.tile(np.eye(4), (len(matrices), 1, 1))
+    T[:, :3] = matrices[:, :3]
+    if not np.isfinite(T).all():
+        first = int(np.flatnonzero(~np.isfinite(T).all(axis=(1, 2)))[0])
+        raise ValueError(f"pose {first} is not finite")
+    U, _, V = np.linalg.svd(T[:, :3, :3])
+    R = U @ V
+    is_far = (np.abs(R - T[:, :3, :3]).max(axis=(1, 2)) > ROTATION_TOLERANCE) | (
+        np.linalg.det(R) < 0
+    )
+    if is_far.any():
+        raise ValueError(f"pose {int(np.flatnonzero(is_far)[0])} holds no rotation")
+    T[:, :3, :3] = R
+    return T
+
+
 def distance_m(T_a: Matrix, T_b: Matrix) -> float:
     """Return the distance between two positions."""
     return float(np.linalg.norm(T_a[:3, 3] - T_b[:3, 3]))

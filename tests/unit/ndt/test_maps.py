@@ -13,7 +13,7 @@ from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
 from rmw_manycore_py.ndt.map_file import read_points, write_points
 from rmw_manycore_py.ndt.map_tiles import METADATA, open_map, write_tiles
 from rmw_manycore_py.ndt.poses import from_xyz_rpy
-from rmw_manycore_py.ndt.recording import load_recording, recording_of
+from rmw_manycore_py.ndt.recording import Recording, load_recording, save_recording
 from rmw_manycore_py.ndt.thinning import voxel_centroids
 
 pytestmark = pytest.mark.unit
@@ -137,14 +137,15 @@ def test_broken_folders(tmp_path, text, words):
 def test_a_recording_there_and_back(tmp_path):
     scans = [cloud(100) / 2, cloud(50) / 2]
     two = np.stack([np.eye(4), from_xyz_rpy((1, 2, 3))])
-    recording_of(scans, two, np.array([5.0, 5.5]), "a note").save(tmp_path / "drive.npz")
+    made = Recording(scans, two, np.array([5.0, 5.5]), "a note")
+    save_recording(tmp_path / "drive.npz", made)
     drive = load_recording(tmp_path / "drive.npz")
     assert (len(drive), drive.note) == (2, "a note")
     np.testing.assert_allclose(drive.scan(1), scans[1], atol=0.002)
     np.testing.assert_allclose(drive.times_s(), [0.0, 0.5])
     np.testing.assert_allclose(drive.accumulated([1]), scans[1] + np.float32([1, 2, 3]), atol=0.002)
     with pytest.raises(ValueError, match="larger scale_m"):
-        recording_of([cloud() * 10], two[:1], np.zeros(0), "")
+        save_recording(tmp_path / "far.npz", Recording([cloud() * 10], two[:1], np.zeros(0)))
 
 
 @pytest.mark.parametrize(

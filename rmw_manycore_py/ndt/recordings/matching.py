@@ -1,0 +1,55 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Which pose belongs to which scan."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+
+from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
+from rmw_manycore_py.ndt.poses import Matrix
+from rmw_manycore_py.ndt.recording import Recording, Scans
+from rmw_manycore_py.ndt.recordings.pose_file import PoseLine
+from rmw_manycore_py.ndt.thinning import Points
+
+
+@dataclass(frozen=True)
+class SomeScans:
+    """Some scans of all, by their indices."""
+
+    scans: Scans
+    indices: npt.NDArray[np.int64]
+
+    def __getitem__(self, index: int) -> Points:
+        """Return the points of a scan."""
+        return self.scans[int(self.indices[index])]
+
+
+def recorded(path: Path, scans: Scans, count: int, stamps_s: Matrix, poses: PoseLine) -> Recording:
+    """Return a recording of `count` scans, with the poses at their stamps or one pose for each.
+
+    Scans before the first pose, after the last or in a gap between them are left out; `note` says
+    how many. Neither stamps on both sides nor equal numbers: an error.
+    """
+    if len(stamps_s) not in (0, count):
+        raise ManycoreError(f"{path}: {count} scans, but {len(stamps_s)} times", EXIT_BAD_INPUT)
+    if len(poses.poses) == count:
+        stamps = stamps_s if len(stamps_s) else poses.stamps
+        if not len(stamps_s) or not len(poses.stamps):
+            return Recording(scans, poses.poses, stamps, str(path))
+    if len(stamps_s) and len(poses.stamps):
+        known, T = poses.at(stamps_s)
+        if len(known):
+            note = f"{path}: {count - len(known)} of {count} scans have no pose"
+            return Recording(SomeScans(scans, known), T, stamps_s[known], note)
+        found = f"scans from {stamps_s[0]:.3f} to {stamps_s[-1]:.3f} s, poses from "
+        found += f"{poses.stamps[0]:.3f} to {poses.stamps[-1]:.3f} s"
+        raise ManycoreError(f"{path}: no scan has a pose near its time: {found}", EXIT_BAD_INPUT)
+    raise ManycoreError(
+        f"{path}: {count} scans, but {len(poses.poses)} poses: expected one for each, or times of "
+        "both (scans: times.txt or names; poses: TUM)",
+        EXIT_BAD_INPUT,
+    )

@@ -1,0 +1,30 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Opening a recording of any kind."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
+from rmw_manycore_py.ndt.recording import Recording, load_recording
+from rmw_manycore_py.ndt.recordings.bag import SUFFIXES, is_bag, open_bag
+from rmw_manycore_py.ndt.recordings.scan_folder import open_folder
+
+
+def open_recording(
+    path: Path, poses_path: Path | None = None, topic: str = "", pose_topic: str = ""
+) -> Recording:
+    """Return the recording at a path: npz, a bag, or a folder of scans.
+
+    Scans of the latter two are read when they are asked for. What is none is a ManycoreError.
+    """
+    if is_bag(path):
+        return open_bag(path, poses_path, topic, pose_topic)
+    if path.is_dir():
+        return open_folder(path, poses_path)
+    if path.suffix != ".npz":
+        kinds = ", ".join((".npz", *SUFFIXES))
+        raise ManycoreError(
+            f"{path}: no recording: expected {kinds} or a folder of scans", EXIT_BAD_INPUT
+        )
+    return load_recording(path)

@@ -1,0 +1,116 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""A recording as a folder with one file per scan, and a file of poses (pose_file.py).
+
+Scans are `.bin` (float32 x, y, z, intensity, as KITTI has them; `.pcd.bin` with a ring too, as
+nuScenes), `.npy` (N, 3 or more), `.pcd` or `.ply`; in the order of the numbers in their names.
+Times come from `times.txt` or `timestamps.txt`, names that are times since 1970, or the poses.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
+from rmw_manycore_py.ndt.map_file import read_cloud
+from rmw_manycore_py.ndt.poses import Matrix
+from rmw_manycore_py.ndt.recording import Recording
+from rmw_manycore_py.ndt.recordings.matching import recorded
+from rmw_manycore_py.ndt.recordings.pose_file import FORMATS, read_poses
+from rmw_manycore_py.ndt.recordings.stamps import of_names, read_stamps
+from rmw_manycore_py.ndt.thinning import Points
+
+SUFFIXES = (".bin", ".npy", ".pcd", ".ply")
+STAMP_FILES = ("times.txt", "timestamps.txt")
+POSE_FILE = re.compile(r"(poses?|gt|ground_?truth|traj|odom).*\.(txt|tum|kitti|csv)", re.IGNORECASE)
+DEPTH = 3  # folders, from the given one to that of the scans
+
+
+@dataclass(frozen=True)
+class ScanFiles:
+    """Scans in files, read when they are asked for."""
+
+    paths: tuple[Path, ...]
+
+    def __getitem__(self, index: int) -> Points:
+        """Read a scan; a broken file is a ManycoreError."""
+        return read_scan(self.paths[index])
+
+
+def read_scan(path: Path) -> Points:
+    """Return the points (n, 3) of a file."""
+    try:
+        if path.suffix == ".bin":
+            columns = 5 if path.name.endswith(".pcd.bin") else 4
+            return np.fromfile(path, np.float32).reshape(-1, columns)[:, :3]
+        if path.suffix == ".npy":
+            array = np.load(path, allow_pickle=False)
+            return np.asarray(array.reshape(-1, array.shape[-1])[:, :3], np.float32)
+    except (OSError, ValueError) as error:
+        raise ManycoreError(f"scan {path}: {error}", EXIT_BAD_INPUT) from error
+    return read_cloud(path)
+
+
+def open_folder(folder: Path, poses_path: Path | None) -> Recording:
+    """Return the recording in a folder or below it."""
+    scans = _scans_of(folder)
+    places = [scans[0].parent, *scans[0].parent.parents][: DEPTH + 1]
+    poses = read_poses(poses_path or _poses_beside(folder, places))
+    try:
+        stamps = _stamps_of(scans, places)
+    except ValueError as error:
+        raise ManycoreError(str(error), EXIT_BAD_INPUT) from error
+    return recorded(folder, ScanFiles(tuple(scans)), len(scans), stamps, poses)
+
+
+def _scans_of(folder: Path) -> list[Path]:
+    """Return the files of the one folder that has some, sorted as people count."""
+    found: dict[Path, list[Path]] = {}
+    for path in folder.rglob("*"):
+        if path.suffix in SUFFIXES and len(path.relative_to(folder).parts) <= DEPTH:
+            found.setdefault(path.parent, []).append(path)
+    if not found:
+        raise ManycoreError(
+            f"{folder}: no recording: expected scans as {', '.join(SUFFIXES)}, or a rosbag2 with "
+            "its metadata.yaml",
+            EXIT_BAD_INPUT,
+        )
+    if len(found) > 1:
+        names = ", ".join(sorted(str(path) for path in found))
+        raise ManycoreError(
+            f"{folder}: several folders have scans, name one: {names}", EXIT_BAD_INPUT
+        )
+    return sorted(next(iter(found.values())), key=_as_counted)
+
+
+def _as_counted(path: Path) -> list[tuple[bool, int, str]]:
+    """Return a key that sorts scan_2 before scan_10."""
+    words = re.split(r"(\d+)", path.name)
+    return [(word.isdigit(), int(word) if word.isdigit() else 0, word) for word in words]
+
+
+def _poses_beside(folder: Path, places: list[Path]) -> Path:
+    """Return the only file near the scans that is named like poses."""
+    for place in places:
+        found = sorted(path for path in place.iterdir() if POSE_FILE.fullmatch(path.name))
+        if len(found) == 1:
+            return found[0]
+        if found or place == folder:
+            break
+    names = ", ".join(path.name for path in found) or "none"
+    raise ManycoreError(
+        f"{folder}: no recording without reference poses: name their file with --poses, {FORMATS} "
+        f"(found: {names})",
+        EXIT_BAD_INPUT,
+    )
+
+
+def _stamps_of(scans: list[Path], places: list[Path]) -> Matrix:
+    for place in places:
+        for name in STAMP_FILES:
+            if (place / name).is_file():
+                return read_stamps(place / name)
+    return of_names(scans)

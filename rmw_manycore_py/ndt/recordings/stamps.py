@@ -1,0 +1,71 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Times of scans, in whatever unit a recording has them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from rmw_manycore_py.ndt.poses import Matrix
+
+# In seconds, milliseconds, microseconds and nanoseconds: the time since 1970 is at least, and the
+# time between two scans at most ...
+EPOCHS = ((1e17, 1e-9), (1e14, 1e-6), (1e11, 1e-3), (1e8, 1.0))
+PERIODS = ((1e7, 1e-9), (1e4, 1e-6), (10.0, 1e-3), (0.0, 1.0))
+FEWEST_DIGITS = 10  # of a file's name that is a time since 1970, not a number in a row
+
+
+def in_seconds(stamps: npt.NDArray[Any]) -> Matrix:
+    """Return increasing times (S) in seconds, the unit guessed from their size or their distance.
+
+    A time since 1970 tells its unit; of others the median distance does: up to 10 s are taken for
+    seconds, up to 10,000 for milliseconds and so on. A ValueError says that they do not increase.
+    """
+    if len(stamps) == 0:
+        return np.zeros(0)
+    if stamps.dtype.kind == "M":
+        stamps = stamps.astype("datetime64[ns]").astype(np.int64)
+    if stamps.dtype.kind not in "iuf" or not np.isfinite(stamps).all():
+        raise ValueError("a stamp is not a finite number")
+    steps = np.diff(stamps)
+    if (steps <= 0).any():
+        first = int(np.flatnonzero(steps <= 0)[0])
+        raise ValueError(f"stamps do not increase: {stamps[first]}, then {stamps[first + 1]}")
+    # The first one is taken away before nanoseconds since 1970 lose their last digits.
+    unit_s = _unit_s(float(stamps[0]), float(np.median(steps)) if len(steps) else 0.0)
+    times: Matrix = float(stamps[0]) * unit_s + (stamps - stamps[0]).astype(np.float64) * unit_s
+    return times
+
+
+def _unit_s(first: float, period: float) -> float:
+    for least, unit_s in EPOCHS:
+        if first >= least:
+            return unit_s
+    return next(unit_s for least, unit_s in PERIODS if period >= least)
+
+
+def of_names(paths: list[Path]) -> Matrix:
+    """Return the times that files are named by, empty where names are no times."""
+    names = [path.name.removesuffix(".bin").removesuffix(path.suffix) for path in paths]
+    try:
+        numbers = np.array([float(name.replace("_", ".", 1)) for name in names])
+    except ValueError:
+        return np.zeros(0)
+    is_time = all(len(name.split(".")[0].split("_")[0]) >= FEWEST_DIGITS for name in names)
+    return in_seconds(numbers) if is_time and (numbers >= EPOCHS[-1][0]).all() else np.zeros(0)
+
+
+def read_stamps(path: Path) -> Matrix:
+    """Read one time per line: numbers, or dates as KITTI's raw recordings have them."""
+    lines = [line.strip() for line in path.read_text().splitlines() if line.strip()]
+    try:
+        if lines and "-" in lines[0] and ":" in lines[0]:
+            return in_seconds(
+                np.array([line.replace(" ", "T") for line in lines], "datetime64[ns]")
+            )
+        return in_seconds(np.array([float(line.split()[0]) for line in lines]))
+    except ValueError as error:
+        raise ValueError(f"{path}: expected one time per line: {error}") from error

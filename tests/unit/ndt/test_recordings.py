@@ -1,0 +1,216 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Recordings of all kinds that users bring: bags, folders, poses, stamps in any unit."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from rmw_manycore_py.errors import ManycoreError
+from rmw_manycore_py.ndt.map_file import write_points
+from rmw_manycore_py.ndt.poses import from_xyz_rpy, inverse, to_quaternion
+from rmw_manycore_py.ndt.recording import load_recording
+from rmw_manycore_py.ndt.recordings.opening import open_recording
+from rmw_manycore_py.ndt.recordings.pose_file import read_poses
+from rmw_manycore_py.ndt.recordings.stamps import in_seconds
+
+GENERATOR = np.random.default_rng(4)
+SCANS = [GENERATOR.uniform(-20, 20, (50 + i, 3)).astype(np.float32) for i in range(12)]
+POSES = np.stack([from_xyz_rpy((i, 0.1 * i, 0.0), (0.0, 0.0, 0.05 * i)) for i in range(12)])
+T0_S = 1700000000.0
+
+
+def kitti(poses: np.ndarray) -> str:
+    return "\n".join(" ".join(map(str, T[:3].ravel())) for T in poses)
+
+
+def tum(poses: np.ndarray, stamps: np.ndarray) -> str:
+    rows = [[t, *T[:3, 3], *to_quaternion(T[:3, :3])] for t, T in zip(stamps, poses, strict=True)]
+    return "# t x y z q\n" + "\n".join(" ".join(map(repr, map(float, row))) for row in rows)
+
+
+def kitti_folder(folder: Path) -> Path:
+    (folder / "velodyne").mkdir(parents=True)
+    for i, scan in enumerate(SCANS):
+        full = np.hstack([scan, np.ones((len(scan), 1), np.float32)])
+        full.tofile(folder / "velodyne" / f"{i}.bin")
+    return folder
+
+
+def check(drive, poses=POSES) -> None:
+    assert len(drive) == len(poses)
+    np.testing.assert_allclose(drive.poses, poses, atol=1e-6)
+    for index in (0, len(drive) - 1):
+        np.testing.assert_allclose(drive.scan(index), SCANS[index], atol=1e-6)
+
+
+def test_a_folder_as_kitti_has_it(tmp_path):
+    """Scans are counted as people do, and poses of the camera taken to the LiDAR."""
+    T_camera_lidar = from_xyz_rpy((0.1, -0.3, 0.2), (1.5, 0.1, -1.4))
+    folder = kitti_folder(tmp_path / "00")
+    of_camera = T_camera_lidar @ POSES @ inverse(T_camera_lidar)
+    (folder / "poses.txt").write_text(kitti(of_camera))
+    (folder / "calib.txt").write_text("P0: 1 2\nTr: " + kitti(T_camera_lidar[None]))
+    (folder / "times.txt").write_text("\n".join(f"{0.1 * i:e}" for i in range(12)))
+    drive = open_recording(folder)
+    check(drive)
+    np.testing.assert_allclose(drive.times_s(), 0.1 * np.arange(12), atol=1e-9)
+
+
+def test_scans_between_poses(tmp_path):
+    """Poses at 20 Hz that begin late: interpolated, and scans before them left out."""
+    folder = kitti_folder(tmp_path / "drive")
+    for i, path in enumerate(sorted(folder.rglob("*.bin"), key=lambda p: int(p.stem))):
+        path.rename(path.with_name(f"{round(1e9 * T0_S) + i * 100_000_000}.bin"))
+    half = np.stack([from_xyz_rpy((0.5 * i, 0.05 * i, 0), (0, 0, 0.025 * i)) for i in range(24)])
+    stamps = T0_S + 0.02 + 0.05 * np.arange(24)
+    (tmp_path / "other.txt").write_text(tum(half, stamps))
+    drive = open_recording(folder, tmp_path / "other.txt")
+    assert len(drive) == 11
+    assert "1 of 12 scans have no pose" in drive.note
+    np.testing.assert_allclose(drive.poses[0][0, 3], 0.8, atol=1e-4)
+    np.testing.assert_allclose(drive.scan(0), SCANS[1])
+    with pytest.raises(
+        ManycoreError, match="without reference poses: name their file with --poses"
+    ):
+        open_recording(folder)
+
+
+@pytest.mark.parametrize("suffix", [".pcd", ".ply", ".npy"])
+def test_scans_of_other_kinds(tmp_path, suffix):
+    """Points that are not finite, as organised clouds have them, are left out."""
+    for i, scan in enumerate(SCANS):
+        holes = np.vstack([scan, np.full((3, 3), np.nan, np.float32)])
+        if suffix == ".npy":
+            np.save(tmp_path / f"scan_{i}.npy", holes)
+        else:
+            write_points(tmp_path / f"scan_{i}{suffix}", holes)
+    (tmp_path / "poses.txt").write_text(kitti(POSES))
+    check(open_recording(tmp_path))
+
+
+def test_a_bag(tmp_path):
+    """A rosbag2 of Autoware's kind: the LiDAR is mounted on base_link, whose odometry is known."""
+    T_base_lidar = from_xyz_rpy((1.0, 0.0, 2.0), (0.0, 0.1, 0.3))
+    write_bag(tmp_path / "bag", POSES @ inverse(T_base_lidar), T_base_lidar)
+    drive = open_recording(tmp_path / "bag")
+    check(drive)
+    np.testing.assert_allclose(drive.stamps, T0_S + 0.1 * np.arange(12), atol=1e-6)
+    with pytest.raises(ManycoreError, match=r"expected the topic /x .*found /points .*--topic"):
+        open_recording(tmp_path / "bag", topic="/x")
+
+
+def write_bag(path: Path, poses: np.ndarray, T_base_lidar: np.ndarray) -> None:
+    from rosbags.rosbag2 import Writer
+    from rosbags.typesys import Stores, get_typestore
+
+    store = get_typestore(Stores.ROS2_JAZZY)
+    T = store.types
+
+    def header(index: int, frame: str):
+        ns = 100_000_000 * index
+        stamp = T["builtin_interfaces/msg/Time"](int(T0_S) + ns // 10**9, ns % 10**9)
+        return T["std_msgs/msg/Header"](stamp, frame)
+
+    def quaternion(M: np.ndarray):
+        return T["geometry_msgs/msg/Quaternion"](*map(float, to_quaternion(M[:3, :3])))
+
+    def cloud(index: int):
+        points = SCANS[index]
+        kind = T["sensor_msgs/msg/PointField"]
+        fields = [kind(name, 4 * i, 7, 1) for i, name in enumerate("xyz")]
+        data, size = points.view(np.uint8).ravel(), len(points)
+        head = header(index, "lidar")
+        return T["sensor_msgs/msg/PointCloud2"](
+            head, 1, size, fields, False, 12, 12 * size, data, True
+        )
+
+    def odometry(index: int):
+        point = T["geometry_msgs/msg/Point"](*map(float, poses[index][:3, 3]))
+        pose = T["geometry_msgs/msg/Pose"](point, quaternion(poses[index]))
+        zero = T["geometry_msgs/msg/Vector3"](0.0, 0.0, 0.0)
+        twist = T["geometry_msgs/msg/Twist"](zero, zero)
+        return T["nav_msgs/msg/Odometry"](
+            header(index, "map"),
+            "base_link",
+            T["geometry_msgs/msg/PoseWithCovariance"](pose, np.zeros(36)),
+            T["geometry_msgs/msg/TwistWithCovariance"](twist, np.zeros(36)),
+        )
+
+    mounted = T["geometry_msgs/msg/TransformStamped"](
+        header(0, "base_link"),
+        "lidar",
+        T["geometry_msgs/msg/Transform"](
+            T["geometry_msgs/msg/Vector3"](*map(float, T_base_lidar[:3, 3])),
+            quaternion(T_base_lidar),
+        ),
+    )
+    messages = [("/tf_static", T["tf2_msgs/msg/TFMessage"]([mounted]), 0)]
+    for index in range(len(poses)):
+        messages += [("/odom", odometry(index), index), ("/points", cloud(index), index)]
+    with Writer(path, version=9) as writer:
+        topics = {}
+        for topic, message, index in messages:
+            kind = message.__msgtype__
+            if topic not in topics:
+                topics[topic] = writer.add_connection(topic, kind, typestore=store)
+            at_ns = round(1e9 * T0_S) + 100_000_000 * index
+            writer.write(topics[topic], at_ns, store.serialize_cdr(message, kind))
+
+
+@pytest.mark.parametrize("unit_s", [1.0, 1e-3, 1e-6, 1e-9])
+@pytest.mark.parametrize("start_s", [0.0, T0_S])
+def test_stamps_in_any_unit(unit_s, start_s):
+    stamps = np.rint((start_s + 0.5 * np.arange(5)) / unit_s * 2) / 2
+    found = in_seconds(stamps if unit_s == 1.0 else stamps.astype(np.int64))
+    np.testing.assert_allclose(found - found[0], 0.5 * np.arange(5), atol=1e-6)
+
+
+def test_an_npz_of_other_arrays(tmp_path):
+    """Without stamps, scale and note, with intensities, NaN, and poses of three rows."""
+    points = np.hstack([np.concatenate(SCANS), np.ones((sum(map(len, SCANS)), 1))])
+    points = np.vstack([points, [[np.nan, 0, 0, 0]]])
+    offsets = np.cumsum([0, *map(len, SCANS)])
+    offsets[-1] += 1
+    np.savez(tmp_path / "a.npz", points=points, offsets=offsets, poses=POSES[:, :3])
+    check(load_recording(tmp_path / "a.npz"))
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("", "found none"),
+        ("1 2 3", "found 3 numbers"),
+        ("1 2 3 4 5 6 7 8\n1 2", "pose 1 is '1 2'"),
+        (kitti(POSES * 2), "pose 0 holds no rotation"),
+        ("1 0 0 0 0 0 0 0", "a quaternion is zero"),
+        (tum(POSES[:2], np.array([2.0, 1.0])), "stamps do not increase"),
+    ],
+)
+def test_poses_that_are_none(tmp_path, text, words):
+    (tmp_path / "poses.txt").write_text(text)
+    with pytest.raises(ManycoreError, match=words):
+        read_poses(tmp_path / "poses.txt")
+
+
+def test_folders_that_are_none(tmp_path):
+    with pytest.raises(ManycoreError, match="no recording: expected scans as"):
+        open_recording(tmp_path)
+    folder = kitti_folder(tmp_path / "drive")
+    (folder / "poses.txt").write_text(kitti(POSES[:5]))
+    with pytest.raises(ManycoreError, match="12 scans, but 5 poses"):
+        open_recording(folder)
+    (folder / "poses.txt").write_text(tum(POSES, T0_S + np.arange(12)))
+    (folder / "times.txt").write_text("\n".join(map(str, range(12))))
+    with pytest.raises(ManycoreError, match="no scan has a pose near its time"):
+        open_recording(folder)
+    (folder / "velodyne" / "0.bin").write_bytes(b"12345")
+    (folder / "times.txt").unlink()
+    (folder / "poses.txt").write_text(kitti(POSES))
+    with pytest.raises(ManycoreError, match=r"scan .*0\.bin"):
+        open_recording(folder).scan(0)
+    (tmp_path / "broken.mcap").write_bytes(b"rubbish")
+    with pytest.raises(ManycoreError, match="no bag"):
+        open_recording(tmp_path / "broken.mcap")
