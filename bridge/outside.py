@@ -42,6 +42,7 @@ class Outside(Loop):
             signal_handler_options=SignalHandlerOptions.NO,
         )
         self.node = _quiet_node(name, self.context)
+        self._stand_ins: dict[str, tuple[Node, int]] = {}  # with the number of their services
         self.readers: list[OutsideReader] = []
         self._changed = changed
         with self.context.handle:
@@ -58,6 +59,29 @@ class Outside(Loop):
     def _others(self, endpoints: list[Any]) -> list[Any]:
         own = self.node.get_name().rpartition("_")[0]
         return [e for e in endpoints if e.node_name.rpartition("_")[0] != own]
+
+    def enter_node(self, full_name: str | None) -> Node:
+        """Return a node of that name for one more service of it; without a name the bridge's own.
+
+        Tools look for a node before they ask for its parameters.
+        """
+        if full_name is None:
+            return self.node
+        node, users = self._stand_ins.get(full_name, (None, 0))
+        if node is None:
+            namespace, _, name = full_name.rpartition("/")
+            node = _quiet_node(name, self.context, namespace or "/")
+        self._stand_ins[full_name] = node, users + 1
+        return node
+
+    def leave_node(self, full_name: str | None) -> None:
+        """End what `enter_node` gave; with its last service a node goes."""
+        if full_name is not None:
+            node, users = self._stand_ins.pop(full_name)
+            if users > 1:
+                self._stand_ins[full_name] = node, users - 1
+            else:
+                node.destroy_node()
 
     def wake(self) -> None:
         """End the sleep."""
@@ -107,11 +131,12 @@ class Outside(Loop):
 _KINDS = ("subscription", "service", "client")
 
 
-def _quiet_node(name: str, context: rclpy.Context) -> Node:
+def _quiet_node(name: str, context: rclpy.Context, namespace: str = "/") -> Node:
     """Return a node that adds as little to the domain as rclpy allows."""
     return rclpy.create_node(
         name,
         context=context,
+        namespace=namespace,
         enable_rosout=False,
         start_parameter_services=False,
         use_global_arguments=False,

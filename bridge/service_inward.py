@@ -26,6 +26,7 @@ class InwardService(Service):
         self._requests: _transport.Publisher | None = None
         self._replies: _transport.Subscription | None = None
         self.entity: Any = None  # the service outside
+        self._node: Any = None  # that it belongs to
 
     def reconcile(self) -> None:
         """Offer the service outside while a server is there inside."""
@@ -42,9 +43,8 @@ class InwardService(Service):
     def _appear(self) -> None:
         self._replies = self._endpoint("subscription", "reply")
         self._requests = self._endpoint("publisher", "request")
-        self.entity = self._sides.outside.node.create_service(
-            self._type, self._sides.route.outside, never_called
-        )
+        self._node = self._sides.outside.enter_node(self._sides.route.node)
+        self.entity = self._node.create_service(self._type, self._sides.route.outside, never_called)
         self._sides.inside.readers.append(self)
         self._sides.outside.readers.append(self)
 
@@ -79,6 +79,7 @@ class InwardService(Service):
         if self.entity is not None:
             self._sides.inside.readers.remove(self)
             self._sides.outside.readers.remove(self)
-            self._sides.outside.node.destroy_service(self.entity)
+            self._node.destroy_service(self.entity)
+            self._sides.outside.leave_node(self._sides.route.node)
         self.entity = self._requests = self._replies = None
         self._sides.row.set_state("waiting")

@@ -23,6 +23,7 @@ class Route:
     request may stay unanswered, None = as long as its server is there. A `mirrored` topic crosses
     in both directions, so that its own messages have to be told from others. An `eager` one listens
     as soon as somebody publishes: what an action says first must not wait for a listener.
+    `node` is the full name outside of the node whose service it is, where tools ask for it.
     """
 
     kind: Literal["topic", "service"]
@@ -38,6 +39,7 @@ class Route:
     mirrored: bool = False
     eager: bool = False
     lane: int = 0
+    node: str | None = None
 
 
 def action_routes(action: Route) -> Iterator[Route]:
@@ -81,6 +83,7 @@ def parameter_routes(node: Route) -> Iterator[Route]:
             inside=f"{node.inside}/{name}",
             outside=f"{node.outside}/{name}",
             type=f"rcl_interfaces/srv/{type_name}",
+            node=node.outside,
         )
 
 
@@ -91,11 +94,14 @@ def arranged(routes: Iterable[Route], lanes: int) -> tuple[Route, ...]:
         ((r.outside, r.domain), r.direction) for r in unique
     }
     numbers = dict.fromkeys(DIRECTIONS, 0)
+    of_nodes: dict[str, int] = {}  # one node outside: one lane
     result = []
     for route in unique:
         back = "outward" if route.direction == "inward" else "inward"
         mirrored = (route.inside, back) in ways or ((route.outside, route.domain), back) in ways
         lane = numbers[route.direction] % lanes
+        if route.node is not None:
+            lane = of_nodes.setdefault(route.node, lane)
         numbers[route.direction] += 1
         result.append(replace(route, mirrored=mirrored, lane=lane))
     return tuple(result)

@@ -119,6 +119,8 @@ def tune() -> None:
     from rclpy.parameter_client import AsyncParameterClient
 
     with peer_node("tuner") as node:
+        # Tools want to see the node itself.
+        spin_until(node, lambda: ("tuned", "/") in node.get_node_names_and_namespaces())
         client = AsyncParameterClient(node, "/tuned")
         assert client.wait_for_services(PATIENCE_S)
         listed, got = client.list_parameters([], 10), client.get_parameters(["gain"])
@@ -130,6 +132,15 @@ def tune() -> None:
         announce(f"set {done.result().results[0].successful}")
 
 
+def wait_until_it_is_gone() -> None:
+    """Say when the node over there is seen, and when it is not any more."""
+    with peer_node("watcher") as node:
+        spin_until(node, lambda: "tuned" in node.get_node_names())
+        announce("there")
+        spin_until(node, lambda: "tuned" not in node.get_node_names())
+        announce("gone")
+
+
 def test_parameters_from_outside(bridge) -> None:
     bridge.run(*parameter_routes(bridge.route("inward", "/tuned", "")))
     tuned = bridge.inside(has_parameters)
@@ -137,6 +148,10 @@ def test_parameters_from_outside(bridge) -> None:
     for line in ("listed True", "got 1", "set True"):
         tuner.wait_for(f"^{line}$")
     tuned.wait_for("^gain is 7$")
+    watcher = bridge.outside(wait_until_it_is_gone)
+    watcher.wait_for("^there$")
+    tuned.stop()
+    watcher.wait_for("^gone$")
 
 
 def count(forever: bool) -> None:
