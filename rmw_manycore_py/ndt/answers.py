@@ -31,17 +31,28 @@ def score_from(numbers: dict[str, Any]) -> Score:
 
 
 def alignment_from(numbers: dict[str, Any], options: MatcherOptions) -> Alignment:
-    """Return the alignment that the kernel found."""
+    """Return the alignment that the kernel found.
+
+    A pose from which the score does not fall in all directions is no result: scans of a few points
+    have no best place.
+    """
     score = score_from(numbers)
+    values, vectors = np.linalg.eigh(-np.array(numbers["hessian"]))
+    is_maximum = bool(values[0] > 0)
+    ended = numbers["outcome"]
+    outcome = "degenerate" if ended == "converged" and not is_maximum else ended
+    covariance: Matrix6 = np.diag(options.fixed_pose_variances)
+    if options.pose_covariance == "laplace" and is_maximum:
+        covariance = (vectors / values) @ vectors.T
     return Alignment(
         T_map_sensor=np.array(numbers["pose"]).reshape(4, 4),
-        covariance=_covariance(np.array(numbers["hessian"]), options),
+        covariance=covariance,
         iterations=numbers["iterations"],
         score=score.score,
         transform_probability=score.transform_probability,
         nearest_voxel_likelihood=score.nearest_voxel_likelihood,
-        converged=numbers["outcome"] == "converged",
-        why=WHY[numbers["outcome"]],
+        converged=outcome == "converged",
+        why=WHY[outcome],
     )
 
 
@@ -57,13 +68,3 @@ def refused(guess: Pose | None, why: str, options: MatcherOptions) -> Alignment:
         converged=False,
         why=why,
     )
-
-
-def _covariance(hessian: Matrix6, options: MatcherOptions) -> Matrix6:
-    """Return Laplace's covariance where it is wanted and the score has a maximum, or the fixed."""
-    if options.pose_covariance == "laplace":
-        values, vectors = np.linalg.eigh(-hessian)
-        if values[0] > 0:
-            inverse: Matrix6 = (vectors / values) @ vectors.T
-            return inverse
-    return np.diag(options.fixed_pose_variances)

@@ -77,9 +77,7 @@ class MatcherOptions:
         self._check_number("trans_epsilon", self.trans_epsilon, 1e-9, self.step_size)
         self._check_number("max_iterations", self.max_iterations, 1, 10_000)
         self._check_number("outlier_ratio", self.outlier_ratio, 0.001, 0.999)
-        self._check_number(
-            "regularization_scale_factor", self.regularization_scale_factor, 0, math.inf
-        )
+        self._check_number("regularization_scale_factor", self.regularization_scale_factor, 0, 1e6)
         for variance in self.fixed_pose_variances:
             self._check_number("fixed_pose_variances", variance, 0, math.inf)
         self._check_number("temperature", self.temperature, 1e-6, 1e6)

@@ -92,6 +92,7 @@ def test_every_kind_of_cpu_finds_the_same_place(simd: str, monkeypatch: pytest.M
         (np.full((50, 3), np.nan), GUESS, "no finite point"),
         (np.full((50, 3), 3e38), GUESS, "no finite point"),
         (SCAN[:5], GUESS, "too few points"),
+        (np.repeat(SCAN[:1], 1000, axis=0), GUESS, "does not say where it fits"),
         (SCAN, GUESS * np.nan, "not finite"),
         (SCAN, np.zeros((4, 4)), "no rotation"),
         (SCAN, pose(1e300, 0, 0, 0, 0, 0), "more than 1e+09 m"),
