@@ -3,7 +3,10 @@
 
 from __future__ import annotations
 
+import os
+import signal
 from array import array
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -18,6 +21,7 @@ from std_srvs.srv import SetBool
 from support import PATIENCE_S
 from tf2_msgs.msg import TFMessage
 from tier4_localization_msgs.srv import PoseWithCovarianceStamped as AlignService
+from visualization_msgs.msg import MarkerArray
 
 from rmw_manycore_py.ndt.map_tiles import write_tiles
 from rmw_manycore_py.ndt.nodes.conversions import (
@@ -68,11 +72,12 @@ def test_a_pose_and_all_that_belongs_to_it(matched):
     listen(PoseWithCovarianceStamped, "ndt_pose_with_covariance")
     listen(PointCloud2, "points_aligned")
     listen(TFMessage, "/tf")
-    while len(heard) < len(floats) + 4:
+    listen(MarkerArray, "ndt_marker")
+    while len(heard) < len(floats) + 5:
         matched.pose_of(street_scan(), NEAR)
     heard.clear()
     matched.pose_of(street_scan(), NEAR)
-    spin_until(matched.node, lambda: len(heard) == len(floats) + 4)
+    spin_until(matched.node, lambda: len(heard) == len(floats) + 5)
 
     stamp_ns, T = max(matched.poses.items())
     assert error_m(T) < 0.1
@@ -87,6 +92,9 @@ def test_a_pose_and_all_that_belongs_to_it(matched):
     assert {nanoseconds(heard[topic].stamp) for topic in [*floats, "iteration_num"]} == {stamp_ns}
     assert heard["initial_to_result_distance"].data == pytest.approx(0.3, abs=0.1)
     assert heard["iteration_num"].data > 0
+    guess, result = heard["ndt_marker"].markers
+    assert error_m(matrix_of(guess.pose)) == pytest.approx(0.3, abs=0.01)
+    np.testing.assert_allclose(matrix_of(result.pose), T, atol=1e-9)
 
 
 @pytest.mark.parametrize("kind", [1, 2, 3], ids=["laplace", "multi_ndt", "multi_ndt_score"])
@@ -184,6 +192,39 @@ def test_bad_scans_and_guesses_give_a_diagnostic_and_no_pose(matched):
     assert all(np.isfinite(T).all() for T in matched.poses.values())
 
 
+def test_workers_that_are_killed_are_replaced(stack, start):
+    """Killed between scans and during one: poses go on, and the workers are others."""
+    cpus = sorted(os.sched_getaffinity(0))[:2]
+    if len(cpus) < 2:
+        pytest.skip("workers need two host CPUs")
+    program = start(matcher_command(worker_host_cpus=cpus), cluster=2)
+    stack.wait_for_matcher()
+    stack.publish_map(street_map())
+    stack.pose_of(street_scan())
+    before = workers_below(program.pid)
+    assert len(before) == 2
+    for pid in before:
+        os.kill(pid, signal.SIGKILL)
+    assert error_m(stack.pose_of(street_scan(), NEAR)) < 0.1
+    after = workers_below(program.pid)
+    assert len(after) == 2
+    assert not set(before) & set(after)
+    stamps_ns = [stack.send(street_scan(), NEAR) for _ in range(3)]
+    os.kill(after[0], signal.SIGKILL)
+    spin_until(stack.node, lambda: all(stamp in stack.poses for stamp in stamps_ns))
+    assert all(error_m(T) < 0.1 for T in stack.poses.values())
+
+
+def workers_below(pid: int) -> list[int]:
+    """Return the worker processes that a process has, at any depth."""
+    found: list[int] = []
+    for children in Path(f"/proc/{pid}/task").glob("*/children"):
+        for child in map(int, children.read_text().split()):
+            is_worker = "ndt_worker" in Path(f"/proc/{child}/cmdline").read_text()
+            found += [child] if is_worker else workers_below(child)
+    return sorted(found)
+
+
 def test_a_scan_of_two_million_points(matched):
     scan = np.tile(street_scan(), (2_000_000 // len(street_scan()) + 1, 1))
     matched.pose_of(street_scan())
@@ -243,6 +284,8 @@ def test_activation_and_initial_pose(stack, start):
     report = stack.report_of(stack.send(street_scan()))
     assert "not activated" in report.message
     align = stack.node.create_client(AlignService, "ndt_align_srv")
+    shown = []
+    stack.node.create_subscription(MarkerArray, "monte_carlo_initial_pose_marker", shown.append, 10)
     assert align.wait_for_service(PATIENCE_S)
     rough = from_xyz_rpy((TRUTH[0, 3] + 1.5, TRUTH[1, 3] - 1.0, TRUTH[2, 3]), (0.0, 0.0, 2.5))
     spread = np.diag([1.0, 1.0, 0.01, 0.0001, 0.0001, 0.2])
@@ -253,6 +296,8 @@ def test_activation_and_initial_pose(stack, start):
     spin_until(stack.node, answer.done)
     assert answer.result().success
     assert answer.result().reliable
+    spin_until(stack.node, lambda: shown)
+    assert len(shown[0].markers) == 200
     assert error_m(matrix_of(answer.result().pose_with_covariance.pose.pose)) < 0.1
 
     trigger = stack.node.create_client(SetBool, "trigger_node_srv")

@@ -28,6 +28,7 @@ def matcher_options(parameters: MatcherParameters, own: OwnParameters) -> Matche
         voxel_size_m=parameters.resolution_m,
         search=own.search,
         voxel_covariance=own.voxel_covariance,
+        step_rule=own.step_rule,
         step_size=parameters.step_size,
         trans_epsilon=parameters.trans_epsilon,
         max_iterations=parameters.max_iterations,

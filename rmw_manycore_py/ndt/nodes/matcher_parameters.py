@@ -6,7 +6,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from rmw_manycore_py.ndt.nodes.declared import parameter
-from rmw_manycore_py.ndt.options import Search, VoxelCovariance
+from rmw_manycore_py.ndt.options import Search, StepRule, VoxelCovariance
 
 TRANSFORM_PROBABILITY, NEAREST_VOXEL_LIKELIHOOD = 0, 1
 FIXED_VALUE, LAPLACE_APPROXIMATION, MULTI_NDT, MULTI_NDT_SCORE = range(4)
@@ -97,6 +97,9 @@ class OwnParameters:
     search: Search = parameter("ndt.search", "radius", choices=("radius", "direct7", "direct1"))
     voxel_covariance: VoxelCovariance = parameter(
         "ndt.covariance", "autoware", choices=("autoware", "pcl", "pclomp")
+    )
+    step_rule: StepRule = parameter(
+        "ndt.step_rule", "trust_region", choices=("trust_region", "clamped", "more_thuente")
     )
     outlier_ratio: float = parameter("ndt.outlier_ratio", 0.55, above=0.0, most=0.99)
     scan_limit: int = parameter("sensor_points.limit", 200_000, least=100, most=10_000_000)

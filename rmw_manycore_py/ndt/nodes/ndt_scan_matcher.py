@@ -29,6 +29,7 @@ from rmw_manycore_py.ndt.nodes.declared import declare
 from rmw_manycore_py.ndt.nodes.diagnostics import Diagnostics
 from rmw_manycore_py.ndt.nodes.frame_tree import FrameError, FrameTree
 from rmw_manycore_py.ndt.nodes.map_supply import MapSupply
+from rmw_manycore_py.ndt.nodes.markers import PoseMarkers
 from rmw_manycore_py.ndt.nodes.matcher_options import matcher_options
 from rmw_manycore_py.ndt.nodes.matcher_outputs import MatcherOutputs
 from rmw_manycore_py.ndt.nodes.matcher_parameters import MatcherParameters, OwnParameters
@@ -66,6 +67,7 @@ class NdtScanMatcher(Node):
         self._scan: Points | None = None
         self._rejected_in_a_row = 0
         self._outputs = MatcherOutputs(self, self._p.map_frame, self._p.ndt_base_frame)
+        self._markers = PoseMarkers(self, self._p.map_frame)
         self._diagnostics = {
             name: Diagnostics(self, name)
             for name in (
@@ -186,6 +188,7 @@ class NdtScanMatcher(Node):
             report.warn(f"NDT exe time is too long (took {exe_time_ms:.1f} ms)")
         self._outputs.number("exe_time_ms", stamp, exe_time_ms)
         self._outputs.result(stamp, alignment, guess)
+        self._markers.alignment(stamp, guess.T, alignment.T_map_sensor)
         self._publish_clouds(stamp, points, alignment.T_map_sensor)
         return reliable
 
@@ -345,7 +348,7 @@ class NdtScanMatcher(Node):
     def _best_particle(self, T_map_base: Matrix, covariance: Matrix) -> Particle:
         scan = self._scan
         assert scan is not None
-        tried = particles(
+        found = particles(
             lambda T: self._matcher.align(scan, T, only_pose=True),
             T_map_base,
             covariance,
@@ -353,6 +356,8 @@ class NdtScanMatcher(Node):
             self._p.startup_trials,
             np.random.default_rng(SEED),
         )
+        tried = list(found)
+        self._markers.particles(self.get_clock().now().to_msg(), tried)
         return max(tried, key=lambda particle: particle.score)
 
 
