@@ -46,6 +46,15 @@ def common_offer(offers: Iterable[Mapping[str, Any]], overrides: Mapping[str, An
     }
 
 
+def unmet(offers: Iterable[Mapping[str, Any]], overrides: Mapping[str, Any]) -> str | None:
+    """Return what a route asks for that none of the publishers offers; else nothing."""
+    found = list(offers)
+    for policy, strong in (("reliability", "reliable"), ("durability", "transient_local")):
+        if overrides.get(policy) == strong and all(offer[policy] != strong for offer in found):
+            return f"its qos asks for {policy} {strong}, the publisher offers {found[0][policy]}"
+    return None
+
+
 def request_for(offer: Mapping[str, Any], depth: int) -> Policies:
     """Return what a subscription asks of publishers with that offer; nothing expires in it."""
     kept = max(offer["depth"], LEAST_DEPTH, depth)

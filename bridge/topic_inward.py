@@ -18,6 +18,7 @@ from rmw_manycore_py.bridge.policies import (
     request_for,
     satisfies,
     to_rclpy,
+    unmet,
 )
 from rmw_manycore_py.bridge.rcl import RawReader
 from rmw_manycore_py.bridge.sides import Sides
@@ -48,7 +49,12 @@ class InwardTopic(Topic):
             if publishers:
                 self._sides.fail(f"is {publishers[0].topic_type} outside, not {route.type}")
             return
-        offer = common_offer((from_rclpy(p.qos_profile) for p in fitting), route.qos)
+        offers = [from_rclpy(p.qos_profile) for p in fitting]
+        if reason := unmet(offers, route.qos):
+            self.close()
+            self._sides.fail(reason)
+            return
+        offer = common_offer(offers, route.qos)
         if self._offer is None or not satisfies(self._offer, offer):
             self.close()
             if not self._appear(offer):

@@ -16,6 +16,7 @@ from rmw_manycore_py.bridge.policies import (
     request_for,
     satisfies,
     to_rclpy,
+    unmet,
 )
 from rmw_manycore_py.bridge.rcl import RawWriter
 from rmw_manycore_py.bridge.sides import Sides
@@ -44,7 +45,12 @@ class OutwardTopic(Topic):
             if publishers:
                 self._sides.fail(f"is {publishers[0]['type']} inside, not {route.type}")
             return
-        offer = common_offer((p["qos"] for p in fitting), route.qos)
+        offers = [p["qos"] for p in fitting]
+        if reason := unmet(offers, route.qos):
+            self.close()
+            self._sides.fail(reason)
+            return
+        offer = common_offer(offers, route.qos)
         if self._offer is None or not satisfies(self._offer, offer):
             self.close()
             self._appear(offer)

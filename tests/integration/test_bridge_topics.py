@@ -178,7 +178,7 @@ def test_rate_and_size_limits_count_what_they_keep(bridge) -> None:
         bridge.route("outward", "/large", max_size=100),
     )
     bridge.inside(say, "/fast", {}, 0.01)
-    bridge.inside(say, "/large", {"durability": "transient_local"}, 0.05, "x" * 200)
+    bridge.inside(say, "/large", {"durability": "transient_local", "depth": 1000}, 0.05, "x" * 200)
     hearers = [bridge.outside(hear, name, {}) for name in ("/fast", "/large")]
     for hearer in hearers:
         hearer.wait_for("^heard again")
@@ -196,6 +196,16 @@ def test_a_type_that_is_not_installed_is_said(bridge) -> None:
     assert bridge.row("outward", "/odd")["state"] == "failed"
     bridge.inside(say, "/ok", {}, 0.05)
     bridge.outside(hear, "/ok", {}).wait_for("^heard again")
+
+
+@pytest.mark.parametrize("direction", ["inward", "outward"])
+def test_a_policy_that_cannot_match_is_said(bridge, direction) -> None:
+    processes = bridge.run(bridge.route(direction, "/odd", qos={"reliability": "reliable"}))
+    source = bridge.outside if direction == "inward" else bridge.inside
+    source(say, "/odd", {"reliability": "best_effort"}, 0.05)
+    processes[direction].wait_for(
+        "^/odd: its qos asks for reliability reliable, the publisher offers best_effort$"
+    )
 
 
 def test_a_type_that_does_not_fit_is_said(bridge) -> None:
