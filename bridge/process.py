@@ -16,6 +16,7 @@ from rmw_manycore_py.bridge.counters import CounterFile, status_path
 from rmw_manycore_py.bridge.inside import NODE_PREFIX, Inside
 from rmw_manycore_py.bridge.lane import Lanes
 from rmw_manycore_py.bridge.loop import Loop, Mover
+from rmw_manycore_py.bridge.network import has_interface
 from rmw_manycore_py.bridge.outside import Outside
 from rmw_manycore_py.bridge.plan import Plan
 from rmw_manycore_py.bridge.service_inward import InwardService
@@ -26,6 +27,9 @@ from rmw_manycore_py.bridge.topic_outward import OutwardTopic
 
 from rmw_manycore_py.routes import Direction
 
+_NO_NETWORK = "no network interface is up, so nothing crosses: 'ip link set lo up', and start again"
+    "no network interface is up: nothing crosses; try 'ip link set lo up', then start again"
+)
 _STOP_SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
 
@@ -78,6 +82,8 @@ class BridgeProcess:
         """Move messages until a signal comes; return the exit status."""
         for number in _STOP_SIGNALS:
             signal.signal(number, lambda *_: self._over.set())
+        if not has_interface():
+            print(_NO_NETWORK, file=sys.stderr, flush=True)
         for loop in self._loops:
             loop.on_failure(self._over.set)
             loop.start()

@@ -80,6 +80,15 @@ def show_participants() -> None:
                 announce(f"participant {prefix}")
 
 
+def test_no_network_at_all_is_said(start) -> None:
+    alone = ["unshare", "--net"]
+    if subprocess.run([*alone, "true"], capture_output=True).returncode != 0:
+        pytest.skip("a network namespace needs root")
+    run = start([*alone, *manycore_command("run", MAPFILES / "talker_listener.yaml")])
+    run.wait_for(r"^\(bridge \w+\) +\| no network interface is up")
+    run.wait_for(rf"^listener .*{HEARD}")  # the platform needs none
+
+
 def test_only_the_bridge_speaks_to_another_host(start, platform, hosts) -> None:
     here, there = hosts
     sniffer = start([*there, *peer_command(show_participants)])
