@@ -27,7 +27,7 @@ from rmw_manycore_py.bridge.topic_outward import OutwardTopic
 
 from rmw_manycore_py.routes import Direction
 
-_NO_NETWORK = "no network interface is up, so nothing crosses: 'ip link set lo up', and start again"
+_NO_NETWORK = (
     "no network interface is up: nothing crosses; try 'ip link set lo up', then start again"
 )
 _STOP_SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
