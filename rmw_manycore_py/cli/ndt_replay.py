@@ -156,6 +156,8 @@ def command(
 
         plot(tally, points, plot_path)
     summary = tally.summary()
+    if complaint := tally.complaint():
+        click.echo(f"of the first lost scan the matcher says: {complaint}", err=True)
     print_json({"guesses": made_of, **as_json(summary)}) if as_json_ else _print(
         summary, deadline_ms
     )

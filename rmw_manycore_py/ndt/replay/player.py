@@ -111,7 +111,10 @@ class Player(Node):
         self._source.result(row.index, time_s, row.result)
 
     def _on_diagnostics(self, message: Any) -> None:
+        row = self._waiting.get(nanoseconds(message.header.stamp))
         for status in message.status:
+            if row is not None and status.name.endswith("scan_matching_status"):
+                row.complaint = status.message
             values = {pair.key: pair.value for pair in status.values}
             if "cpu_time_s" in values and self._tally.rows:
                 self._tally.cpu_s.append((time.monotonic(), float(values["cpu_time_s"])))

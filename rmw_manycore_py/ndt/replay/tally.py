@@ -26,6 +26,7 @@ class Played:
     sent_s: float
     latency_ms: float | None = None
     result: Matrix | None = None
+    complaint: str = ""  # what the matcher's diagnostics say of it
 
     @property
     def guess_error(self) -> tuple[float, float] | None:
@@ -85,6 +86,10 @@ class Tally:
     def lost(self) -> int:
         """Count the scans without an answer."""
         return sum(row.result is None for row in self.rows)
+
+    def complaint(self) -> str:
+        """Return what the matcher says of the first lost scan, "" for nothing."""
+        return next((row.complaint for row in self.rows if row.result is None), "")
 
     def summary(self) -> Summary:
         """Return the figures."""
