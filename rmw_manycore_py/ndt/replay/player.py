@@ -44,6 +44,7 @@ class Player(Node):
         self._waiting: dict[int, Played] = {}  # by stamp, ns
         self._warm_stamps: set[int] = set()
         self._is_warm = False
+        self._times_s = drive.times_s()  # when each scan is played, after the first
         kept = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
         self._map = self.create_publisher(PointCloud2, "pointcloud_map", kept)
         self._source.advertise(self)
@@ -70,11 +71,10 @@ class Player(Node):
 
     def play(self, rate_hz: float | None, report: Callable[[Played], None]) -> None:
         """Play all scans, by their stamps or at a rate, and call `report` after each."""
-        times_s = self._drive.times_s()
         if rate_hz is not None:
-            times_s = np.arange(len(self._drive)) / rate_hz
+            self._times_s = np.arange(len(self._drive)) / rate_hz
         start = time.monotonic() + 0.05
-        for index, time_s in enumerate(times_s):
+        for index, time_s in enumerate(self._times_s):
             scan = self._scan(index)
             self._spin_until(start + float(time_s))
             stamp_ns = time.time_ns()
@@ -107,7 +107,7 @@ class Player(Node):
             return
         row.latency_ms = 1e3 * (time.monotonic() - row.sent_s)
         row.result = matrix_of(message.pose)
-        time_s = float(self._drive.times_s()[row.index])
+        time_s = float(self._times_s[row.index])
         self._source.result(row.index, time_s, row.result)
 
     def _on_diagnostics(self, message: Any) -> None:
