@@ -5,8 +5,8 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Callable
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
@@ -20,6 +20,9 @@ from rmw_manycore_py.ndt.recording import Recording
 from rmw_manycore_py.ndt.recordings.opening import open_recording
 from rmw_manycore_py.ndt.replay.tally import Summary, Tally, as_json
 from rmw_manycore_py.ndt.thinning import Points, voxel_centroids
+
+if TYPE_CHECKING:
+    from rmw_manycore_py.ndt.replay.guess_source import GuessSource
 
 MAP_VOXEL_M = 0.2
 MADE_OF = {
@@ -129,26 +132,19 @@ def command(
     if plot_path is not None:
         load_figure()
     _enter(rmw)
-    from rmw_manycore_py.ndt.replay import prediction
-    from rmw_manycore_py.ndt.replay.guess_source import Guesses, GuessSource, StackInputs
     from rmw_manycore_py.ndt.replay.session import run
 
     drive = open_recording(recording, poses_path, topic, pose_topic)
     if scans is not None:
         drive = drive.first(scans)
-    sources: dict[str, Callable[[], GuessSource]] = {
-        "odometry": lambda: Guesses(drive, prediction.Odometry(drive, drift, seed)),
-        "velocity": lambda: Guesses(drive, prediction.Velocity(drive)),
-        "perturbed": lambda: Guesses(drive, prediction.Perturbed(drive, offset_m, turn_deg, seed)),
-        "stack": lambda: StackInputs(drive, drift, seed),
-    }
+    guesses = _guesses(kind, drive, drift, offset_m, turn_deg, seed)
     points = None if no_map else _map_of(recording, drive, map_path)
     made_of = MADE_OF[kind].format(drift=drift, offset=offset_m, turn=turn_deg)
     click.echo(f"guesses: {made_of}", err=True)
     if drive.note:
         click.echo(f"recording: {drive.note}", err=True)
     tally = Tally(deadline_ms)
-    run(drive, sources[kind](), tally, points, voxel_m, rate_hz, timeout_s)
+    run(drive, guesses, tally, points, voxel_m, rate_hz, timeout_s)
     if csv_path is not None:
         tally.write_csv(csv_path)
     if plot_path is not None:
@@ -169,6 +165,21 @@ def _enter(rmw: str) -> None:
         enter_middleware()
     elif os.environ.get("RMW_IMPLEMENTATION", "rmw_fastrtps_cpp") != rmw:
         leave_middleware(rmw)
+
+
+def _guesses(
+    kind: str, drive: Recording, drift: float, offset_m: float, turn_deg: float, seed: int
+) -> GuessSource:
+    from rmw_manycore_py.ndt.replay import prediction
+    from rmw_manycore_py.ndt.replay.guess_source import Guesses, StackInputs
+
+    if kind == "stack":
+        return StackInputs(drive, drift, seed)
+    if kind == "perturbed":
+        return Guesses(drive, prediction.Perturbed(drive, offset_m, turn_deg, seed))
+    if kind == "velocity":
+        return Guesses(drive, prediction.Velocity(drive))
+    return Guesses(drive, prediction.Odometry(drive, drift, seed))
 
 
 def _map_of(recording: Path, drive: Recording, map_path: Path | None) -> Points:
