@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
 LEAST_DIFFERENCE = 0.02  # below it no move is worth its while
@@ -28,10 +28,15 @@ class Move:
     heir: int
 
 
-def best_move(loads: Sequence[Load], lanes: int) -> Move | None:
-    """Return the move that evens out the busiest and the idlest lane best, if one is worth it."""
-    totals = [sum(entry.load for entry in loads if entry.lane == lane) for lane in range(lanes)]
-    busiest, idlest = totals.index(max(totals)), totals.index(min(totals))
+def best_move(loads: Sequence[Load], lanes: Collection[int]) -> Move | None:
+    """Return the move that evens out the busiest and the idlest lane best, if one is worth it.
+
+    `lanes` are those that run: no other inherits.
+    """
+    totals = {lane: sum(e.load for e in loads if e.lane == lane) for lane in sorted(lanes)}
+    if not totals:
+        return None
+    busiest, idlest = max(totals, key=totals.__getitem__), min(totals, key=totals.__getitem__)
     difference = totals[busiest] - totals[idlest]
     left = {
         index: abs(difference - 2 * entry.load)
@@ -47,13 +52,12 @@ def best_move(loads: Sequence[Load], lanes: int) -> Move | None:
 class Balance:
     """Moves only when a move has been worth it for a while."""
 
-    def __init__(self, lanes: int) -> None:
-        self._lanes = lanes
+    def __init__(self) -> None:
         self._times = 0
 
-    def look(self, loads: Sequence[Load]) -> Move | None:
+    def look(self, loads: Sequence[Load], lanes: Collection[int]) -> Move | None:
         """Return a move to make now."""
-        move = best_move(loads, self._lanes)
+        move = best_move(loads, lanes)
         self._times = self._times + 1 if move is not None else 0
         if self._times < PATIENCE:
             return None

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import sys
 import time
+from collections.abc import Mapping, Sequence
 
 from rmw_manycore_py.bridge.balance import Balance, Load, Move
 from rmw_manycore_py.bridge.lanes import LaneTable
@@ -17,6 +18,7 @@ from rmw_manycore_py.routes import Direction
 PERIOD_S = 0.1  # between looks at the table
 BALANCE_S = 2.0  # between looks at the loads; each is that of the second before
 MOVE_S = 10.0  # after which a move that does not come to an end is given up
+REST_S = 60.0  # a topic whose move failed stays where it is for so long
 
 
 class Lanes:
@@ -29,7 +31,9 @@ class Lanes:
         self._table = LaneTable.of(plan.platform, direction) if lanes > 1 else None
         if self._table is not None:
             self._table.join(plan.topics(direction), lane)
-        self._balance = Balance(lanes)
+        self._balance = Balance()
+        self._move: Move | None = None
+        self._rests_until_s: dict[int, float] = {}
         self._next_s = time.monotonic() + BALANCE_S
         self._give_up_s = 0.0
 
@@ -54,18 +58,27 @@ class Lanes:
                 with table.change(moving[0]) as share:
                     share.heir = share.first = None
             return
-        move = self._balance.look(self._loads(table))
+        if self._move is not None:
+            if table.shares[self._move.index].owner != self._move.heir:
+                self._rests_until_s[self._move.index] = time.monotonic() + REST_S
+            self._move = None
+        found = topic_loads(self._plan.platform, self._direction)
+        move = self._balance.look(self._loads(table, found), found)
         if move is not None:
+            self._move = move
             self._give_up_s = time.monotonic() + MOVE_S
             self._begin(table, move)
 
-    def _loads(self, table: LaneTable) -> list[Load]:
-        found = topic_loads(self._plan.platform, self._direction)
-        lanes = [share.owner for share in table.shares]
-        return [
-            Load(lane, *found[lane][index] if lane in found else (0.0, False))
-            for index, lane in enumerate(lanes)
-        ]
+    def _loads(
+        self, table: LaneTable, found: Mapping[int, Sequence[tuple[float, bool]]]
+    ) -> list[Load]:
+        loads, now_s = [], time.monotonic()
+        for index, share in enumerate(table.shares):
+            of_owner = found.get(share.owner)
+            load, movable = (0.0, False) if of_owner is None else of_owner[index]
+            rests = now_s < self._rests_until_s.get(index, 0.0)
+            loads.append(Load(share.owner, load, movable and not rests))
+        return loads
 
     def _begin(self, table: LaneTable, move: Move) -> None:
         with table.change(move.index) as share:

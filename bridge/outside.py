@@ -58,7 +58,11 @@ class Outside(Loop):
 
     def _others(self, endpoints: list[Any]) -> list[Any]:
         own = self.node.get_name().rpartition("_")[0]
-        return [e for e in endpoints if e.node_name.rpartition("_")[0] != own]
+        return [
+            e
+            for e in endpoints
+            if e.node_name.rpartition("_")[0] != own and full_name_of(e) not in self._stand_ins
+        ]
 
     def enter_node(self, full_name: str | None) -> Node:
         """Return a node of that name for one more service of it; without a name the bridge's own.
@@ -126,6 +130,11 @@ class Outside(Loop):
         self.readers.clear()
         self.node.destroy_node()
         rclpy.shutdown(context=self.context)
+
+
+def full_name_of(endpoint: Any) -> str:
+    """Return /namespace/name of an endpoint's node."""
+    return f"{endpoint.node_namespace.rstrip('/')}/{endpoint.node_name}"
 
 
 _KINDS = ("subscription", "service", "client")

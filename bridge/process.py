@@ -87,11 +87,13 @@ class BridgeProcess:
         for loop in self._loops:
             loop.on_failure(self._over.set)
             loop.start()
-        while not self._over.wait(self._lanes.period_s):
-            if self._lanes.look():
-                self._graphs_changed()
-        for loop in self._loops:
-            loop.stop()
+        try:
+            while not self._over.wait(self._lanes.period_s):
+                if self._lanes.look():
+                    self._graphs_changed()
+        finally:  # a table that cannot be read or written ends the process, which is started again
+            for loop in self._loops:
+                loop.stop()
         for loop in self._loops:
             loop.close_movers()
         for loop in reversed(self._loops):

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import itertools
+import time
 from typing import Any
 
 from rclpy.serialization import deserialize_message, serialize_message
@@ -12,6 +13,10 @@ from rmw_manycore_py.bridge.sides import Sides
 from rmw_manycore_py.bridge.topic_inward import never_called
 
 from rmw_manycore_py import _transport
+
+LINGER_S = 1.0  # the service stays while the last answers are on their way, which end with it
+
+_NEVER_S = float("inf")
 
 
 class InwardService(Service):
@@ -23,6 +28,7 @@ class InwardService(Service):
         super().__init__(sides)
         self._numbers = itertools.count(1)
         self._servers: set[str] = set()
+        self._ends_s = _NEVER_S  # once the last server has gone
         self._requests: _transport.Publisher | None = None
         self._replies: _transport.Subscription | None = None
         self.entity: Any = None  # the service outside
@@ -34,17 +40,38 @@ class InwardService(Service):
         if self._servers and not self._servers & servers:
             self._abandon()  # whoever replaces them knows nothing of the requests
         self._servers = servers
-        if not servers:
-            self.close()
+        if servers:
+            self._ends_s = _NEVER_S
+            if self.entity is None:
+                self._appear()
+                self._sides.row.set_state("forwarding")
         elif self.entity is None:
-            self._appear()
-            self._sides.row.set_state("forwarding")
+            self._sides.row.set_state("waiting")
+        elif self._ends_s == _NEVER_S:
+            self._ends_s = time.monotonic() + LINGER_S
+
+    @property
+    def due_s(self) -> float:  # type: ignore[override]
+        """When a request is overdue, or the service outside has to go."""
+        return min(super().due_s, self._ends_s)
+
+    def expire(self, now_s: float) -> None:
+        """Answer the requests whose time is over; leave when the servers have."""
+        super().expire(now_s)
+        if now_s >= self._ends_s:
+            self.close()
 
     def _appear(self) -> None:
         self._replies = self._endpoint("subscription", "reply")
         self._requests = self._endpoint("publisher", "request")
         self._node = self._sides.outside.enter_node(self._sides.route.node)
-        self.entity = self._node.create_service(self._type, self._sides.route.outside, never_called)
+        try:
+            self.entity = self._node.create_service(
+                self._type, self._sides.route.outside, never_called
+            )
+        except Exception:
+            self._sides.outside.leave_node(self._sides.route.node)
+            raise
         self._sides.inside.readers.append(self)
         self._sides.outside.readers.append(self)
 
@@ -55,7 +82,10 @@ class InwardService(Service):
             return
         data, number = serialize_message(request), next(self._numbers)
         self._pending.note(header, number)
-        self._requests.publish(data, client=self._replies.gid, number=number)
+        if self._servers:
+            self._requests.publish(data, client=self._replies.gid, number=number)
+        else:
+            self._abandon()
 
     def pump_inside(self) -> None:
         """Return replies."""
@@ -82,4 +112,5 @@ class InwardService(Service):
             self._node.destroy_service(self.entity)
             self._sides.outside.leave_node(self._sides.route.node)
         self.entity = self._requests = self._replies = None
+        self._ends_s = _NEVER_S
         self._sides.row.set_state("waiting")

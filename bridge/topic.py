@@ -48,6 +48,11 @@ class Topic(Mover):
         if before == "nobody":
             self._rest()
             return
+        if before == "owner" and self._place.holds:
+            self._inherit(share)  # while the endpoints are those that the messages were kept for
+        if self._paused and before == "owner" and share.heir is None:
+            self._paused = False
+            self.resume()
         if not self._paused:
             self.match()
             latched = self._offer is not None and self._offer["durability"] == "transient_local"
@@ -55,19 +60,17 @@ class Topic(Mover):
         if before == "heir":
             self._prepare(share)
             return
-        if self._place.holds:
-            self._inherit(share)
         if share.heir is not None:
             self._give(share)
-        elif self._paused:
-            self._paused = False
-            self.resume()
 
     def _inherit(self, share: Share) -> None:
         held = self._place.inherit(share)
         self.begin_after(self._place.inherited)
         for message in held:
-            self._pass_on_held(message)
+            if self._offer is None:  # its publishers went, and the endpoints with them
+                self._sides.row.add("lost")
+            else:
+                self._pass_on_held(message)
 
     def expire(self, _: float) -> None:
         """Take the next step of a move."""
@@ -92,8 +95,9 @@ class Topic(Mover):
         now_s = time.monotonic()
         self.due_s = now_s + STEP_S
         if self._offer is None:
-            return
-        if self._offer["durability"] == "transient_local":
+            if self._place.holds:
+                self._place.decline()
+        elif self._offer["durability"] == "transient_local":
             self._place.decline()
         elif self._settled_s == _NEVER_S and not self._place.holds:
             self._settled_s, self._offer_held = now_s + SETTLE_S, self._offer
@@ -112,6 +116,8 @@ class Topic(Mover):
             self._place.decline()
         elif self._place.may_hand_over(share):
             if not self._paused:
+                if not self.is_acknowledged():
+                    return  # a subscriber that does not keep up would make the pause long
                 self._paused, self._paused_s = True, time.monotonic()
                 self.pause()
             if self.is_acknowledged() and self._place.hand_over():

@@ -137,7 +137,7 @@ def command(
     drive = open_recording(recording, poses_path, topic, pose_topic)
     if scans is not None:
         drive = drive.first(scans)
-    guesses = _guesses(kind, drive, drift, offset_m, turn_deg, seed)
+    guesses = _guesses(kind, drive, drift, offset_m, turn_deg, seed, rate_hz)
     points = None if no_map else _map_of(recording, drive, map_path)
     made_of = MADE_OF[kind].format(drift=drift, offset=offset_m, turn=turn_deg)
     click.echo(f"guesses: {made_of}", err=True)
@@ -168,13 +168,19 @@ def _enter(rmw: str) -> None:
 
 
 def _guesses(
-    kind: str, drive: Recording, drift: float, offset_m: float, turn_deg: float, seed: int
+    kind: str,
+    drive: Recording,
+    drift: float,
+    offset_m: float,
+    turn_deg: float,
+    seed: int,
+    rate_hz: float | None,
 ) -> GuessSource:
     from rmw_manycore_py.ndt.replay import prediction
     from rmw_manycore_py.ndt.replay.guess_source import Guesses, StackInputs
 
     if kind == "stack":
-        return StackInputs(drive, drift, seed)
+        return StackInputs(drive, drift, seed, rate_hz)
     if kind == "perturbed":
         return Guesses(drive, prediction.Perturbed(drive, offset_m, turn_deg, seed))
     if kind == "velocity":
@@ -184,8 +190,8 @@ def _guesses(
 
 def _map_of(recording: Path, drive: Recording, map_path: Path | None) -> Points:
     """Return the points of the map to publish."""
-    beside = recording.with_name("map.npz")
-    if map_path is None and beside.exists() and beside != recording:
+    beside = recording.resolve().with_name("map.npz")
+    if map_path is None and beside.exists() and beside != recording.resolve():
         map_path = beside
     if map_path is None:
         return voxel_centroids(drive.accumulated(range(0, len(drive), 2)), (MAP_VOXEL_M,) * 3)

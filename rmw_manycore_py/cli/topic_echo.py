@@ -83,7 +83,10 @@ def command(
         part = message if style == "raw" else part_of(message, field)
         if not fulfils(part):
             return
-        click.echo((_info_text(info, style) if with_info else "") + text(part))
+        if with_info and style == "json":
+            click.echo(json.dumps({"info": info, "message": to_plain(part)}))
+        else:
+            click.echo((_info_text(info, style) if with_info else "") + text(part))
         if once:
             listener.stop()
 

@@ -28,7 +28,7 @@ def bridge_programs(placement: Placement) -> list[NodeProgram]:
         bridge_program(plan, direction, lane, core, placement.host_cpus[core])
         for lane in range(len(bridge.cores))
         for direction in DIRECTIONS
-        if plan.of(direction, lane)
+        if lane < plan.lanes(direction)
         for core in [bridge.core(direction, lane)]
     ]
 

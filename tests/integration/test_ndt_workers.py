@@ -82,13 +82,6 @@ def test_each_worker_is_a_process_on_its_cpu() -> None:
     wait_until(lambda: all(has_ended(pid) for pid in pids), "the workers end with the matcher")
 
 
-def test_sixteen_workers_share_the_points_evenly() -> None:
-    # What each worker does is fixed: groups of 16 points, dealt to 96 bins, dealt to workers.
-    groups = [len(range(bin_, (len(SCAN) + 15) // 16, 96)) for bin_ in range(96)]
-    shares = [sum(groups[worker::16]) for worker in range(16)]
-    assert max(shares) / np.mean(shares) <= 1.05
-
-
 @pytest.mark.parametrize("end", [signal.SIGKILL, signal.SIGTERM])
 def test_a_worker_killed_between_alignments_is_replaced(end: signal.Signals) -> None:
     expected = numbers(alone().align(SCAN, GUESS))

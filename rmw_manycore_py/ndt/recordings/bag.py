@@ -7,6 +7,8 @@ taken to the LiDAR's frame with `/tf_static`, or a file of them.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -39,7 +41,7 @@ class BagScans:
     """Scans in a bag that is open, read when they are asked for."""
 
     reader: Any
-    connection: Any
+    connections: tuple[Any, ...]  # of one topic: one for each publisher that it had
     times_ns: tuple[int, ...]  # when they were recorded
 
     def __getitem__(self, index: int) -> Points:
@@ -47,10 +49,12 @@ class BagScans:
         from rmw_manycore_py.ndt.nodes.point_cloud import CloudError, decode
 
         at_ns = self.times_ns[index]
-        found = self.reader.messages([self.connection], start=at_ns, stop=at_ns + 1)
-        _, _, data = next(iter(found))
+        with _bad_bag(f"scan {index} of the bag"):
+            found = self.reader.messages(self.connections, start=at_ns, stop=at_ns + 1)
+            connection, _, data = next(iter(found))
+            message = self.reader.deserialize(data, connection.msgtype)
         try:
-            return decode(self.reader.deserialize(data, self.connection.msgtype))
+            return decode(message)
         except CloudError as error:
             raise ManycoreError(f"scan {index} of the bag: {error}", EXIT_BAD_INPUT) from error
 
@@ -58,45 +62,55 @@ class BagScans:
 def open_bag(path: Path, poses_path: Path | None, topic: str, pose_topic: str) -> Recording:
     """Return the recording in a bag; of topics that are not named there must be one."""
     reader = _opened(path)
-    connection = _connection(path, reader, {CLOUD}, topic, "--topic")
+    connections = _connections(path, reader, {CLOUD}, topic, "--topic")
     stamps, times, frames = [], [], []
-    for _, at_ns, data in reader.messages([connection]):
-        header = reader.deserialize(data, connection.msgtype).header
-        times.append(at_ns)
-        stamps.append(_seconds(header.stamp) or 1e-9 * at_ns)
-        frames.append(header.frame_id)
-    if poses_path is not None:
-        line = read_poses(poses_path)
-    else:
-        line = _poses(path, reader, pose_topic, frames[0] if frames else "")
-    scans = BagScans(reader, connection, tuple(times))
+    with _bad_bag(f"{path}: a broken bag"):
+        for connection, at_ns, data in reader.messages(connections):
+            header = reader.deserialize(data, connection.msgtype).header
+            times.append(at_ns)
+            stamps.append(_seconds(header.stamp) or 1e-9 * at_ns)
+            frames.append(header.frame_id)
+        if poses_path is not None:
+            line = read_poses(poses_path)
+        else:
+            line = _poses(path, reader, pose_topic, frames[0] if frames else "")
+    scans = BagScans(reader, connections, tuple(times))
     return recorded(path, scans, len(times), np.array(stamps), line)
+
+
+@contextmanager
+def _bad_bag(what: str) -> Iterator[None]:
+    """Turn whatever reading a broken bag ends in into a ManycoreError."""
+    try:
+        yield
+    except ManycoreError:
+        raise
+    except Exception as error:  # rosbags and its decoders do not promise a class of errors
+        raise ManycoreError(f"{what}: {error!r}", EXIT_BAD_INPUT) from error
 
 
 def _opened(path: Path) -> Any:
     try:
-        from rosbags.highlevel import AnyReader, AnyReaderError
-        from rosbags.rosbag1 import ReaderError as Reader1Error
-        from rosbags.rosbag2 import ReaderError as Reader2Error
+        from rosbags.highlevel import AnyReader
         from rosbags.typesys import Stores, get_typestore
     except ImportError as error:
         raise ManycoreError(
             f"bags are read with rosbags ({error}): pip install 'rmw-manycore[ndt]'"
         ) from error
-    try:
+    with _bad_bag(f"{path}: no bag"):
         reader = AnyReader([path], default_typestore=get_typestore(Stores.ROS2_JAZZY))
         reader.open()
-    except (AnyReaderError, Reader1Error, Reader2Error, OSError, ValueError) as error:
-        raise ManycoreError(f"{path}: no bag: {error}", EXIT_BAD_INPUT) from error
     return reader
 
 
-def _connection(path: Path, reader: Any, kinds: set[str], topic: str, option: str) -> Any:
-    """Return the connection of a topic, or of the only one of some types."""
+def _connections(
+    path: Path, reader: Any, kinds: set[str], topic: str, option: str
+) -> tuple[Any, ...]:
+    """Return the connections of a topic, or of the only one of some types."""
     fitting = [one for one in reader.connections if one.msgtype in kinds]
     chosen = [one for one in fitting if not topic or one.topic == topic]
-    if len(chosen) == 1:
-        return chosen[0]
+    if len({(one.topic, one.msgtype) for one in chosen}) == 1:
+        return tuple(chosen)
     names = ", ".join(f"{one.topic} ({one.msgtype})" for one in fitting) or "none"
     expected = f"the topic {topic}" if topic else "one topic"
     raise ManycoreError(
@@ -109,13 +123,13 @@ def _connection(path: Path, reader: Any, kinds: set[str], topic: str, option: st
 def _poses(path: Path, reader: Any, topic: str, cloud_frame: str) -> PoseLine:
     """Return the poses of a topic, of the LiDAR where the bag knows where that is mounted."""
     kinds = set(POSE_DEPTHS)
-    connection = _connection(path, reader, kinds, topic, "--pose-topic, or a file with --poses")
+    connections = _connections(path, reader, kinds, topic, "--pose-topic, or a file with --poses")
     from rmw_manycore_py.ndt.nodes.conversions import PoseError, matrix_of
 
     stamps: list[float] = []
     found: list[Matrix] = []
     child = ""
-    for _, _, data in reader.messages([connection]):
+    for connection, _, data in reader.messages(connections):
         message = reader.deserialize(data, connection.msgtype)
         child = getattr(message, "child_frame_id", "base_link")
         pose = message.pose if POSE_DEPTHS[connection.msgtype] == 1 else message.pose.pose

@@ -36,6 +36,8 @@ def recorded(path: Path, scans: Scans, count: int, stamps_s: Matrix, poses: Pose
     """
     if len(stamps_s) not in (0, count):
         raise ManycoreError(f"{path}: {count} scans, but {len(stamps_s)} times", EXIT_BAD_INPUT)
+    if np.any(np.diff(stamps_s) <= 0):
+        raise ManycoreError(f"{path}: the times of the scans do not increase", EXIT_BAD_INPUT)
     if len(poses.poses) == count:
         stamps = stamps_s if len(stamps_s) else poses.stamps
         if not len(stamps_s) or not len(poses.stamps):

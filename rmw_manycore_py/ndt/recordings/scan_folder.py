@@ -48,8 +48,10 @@ def read_scan(path: Path) -> Points:
             return np.fromfile(path, np.float32).reshape(-1, columns)[:, :3]
         if path.suffix == ".npy":
             array = np.load(path, allow_pickle=False)
+            if array.ndim < 2 or array.shape[-1] < 3:
+                raise ValueError(f"expected points (n, 3 or more), found the shape {array.shape}")
             return np.asarray(array.reshape(-1, array.shape[-1])[:, :3], np.float32)
-    except (OSError, ValueError) as error:
+    except (EOFError, OSError, ValueError) as error:
         raise ManycoreError(f"scan {path}: {error}", EXIT_BAD_INPUT) from error
     return read_cloud(path)
 

@@ -76,9 +76,11 @@ class Guesses:
 class StackInputs:
     """A first pose and the speed, for a stack on the platform that makes its guesses itself."""
 
-    def __init__(self, drive: Recording, drift: float, seed: int) -> None:
+    def __init__(self, drive: Recording, drift: float, seed: int, rate_hz: float | None) -> None:
         self._drive = drive
         self._drift = drift
+        times_s = drive.times_s() if rate_hz is None else np.arange(len(drive)) / rate_hz
+        self._periods_s = np.diff(times_s)
         self._generator = np.random.default_rng(seed)
         self._next_first_s = 0.0
 
@@ -100,10 +102,12 @@ class StackInputs:
 
     def send(self, index: int, time_s: float, stamp_ns: int) -> None:  # noqa: ARG002
         """Send speed and turn rate from this scan to the next, with an error of `drift`."""
-        times_s = self._drive.times_s()
-        nearest = min(index, len(self._drive) - 2)
+        if not len(self._periods_s):
+            self._publish_twist(stamp_ns, 0.0, 0.0)
+            return
+        nearest = min(index, len(self._periods_s) - 1)
         before, after = self._drive.poses[nearest : nearest + 2]
-        period_s = float(times_s[nearest + 1] - times_s[nearest])
+        period_s = float(self._periods_s[nearest])
         motion = poses.inverse(before) @ after
         errors = 1.0 + self._drift * self._generator.normal(size=2)
         speed_m_s = float(motion[0, 3] / period_s * errors[0])

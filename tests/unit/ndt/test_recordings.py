@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import sqlite3
 from pathlib import Path
 
 import numpy as np
@@ -14,6 +15,7 @@ from rmw_manycore_py.ndt.poses import from_xyz_rpy, inverse, to_quaternion
 from rmw_manycore_py.ndt.recording import load_recording
 from rmw_manycore_py.ndt.recordings.opening import open_recording
 from rmw_manycore_py.ndt.recordings.pose_file import read_poses
+from rmw_manycore_py.ndt.recordings.scan_folder import read_scan
 from rmw_manycore_py.ndt.recordings.stamps import in_seconds
 
 GENERATOR = np.random.default_rng(4)
@@ -100,6 +102,14 @@ def test_a_bag(tmp_path):
     np.testing.assert_allclose(drive.stamps, T0_S + 0.1 * np.arange(12), atol=1e-6)
     with pytest.raises(ManycoreError, match=r"expected the topic /x .*found /points .*--topic"):
         open_recording(tmp_path / "bag", topic="/x")
+
+
+def test_a_bag_with_a_broken_message(tmp_path):
+    write_bag(tmp_path / "bag", POSES, np.eye(4))
+    with sqlite3.connect(next((tmp_path / "bag").glob("*.db3"))) as database:
+        database.execute("UPDATE messages SET data = X'00010000' WHERE id = 5")
+    with pytest.raises(ManycoreError, match="a broken bag"):
+        open_recording(tmp_path / "bag")
 
 
 def write_bag(path: Path, poses: np.ndarray, T_base_lidar: np.ndarray) -> None:
@@ -193,6 +203,16 @@ def test_poses_that_are_none(tmp_path, text, words):
     (tmp_path / "poses.txt").write_text(text)
     with pytest.raises(ManycoreError, match=words):
         read_poses(tmp_path / "poses.txt")
+
+
+@pytest.mark.parametrize("array", [None, np.float32(1.0), np.zeros((4, 2), np.float32)])
+def test_arrays_that_are_no_scans(tmp_path, array):
+    scan = tmp_path / "0.npy"
+    scan.write_bytes(b"")
+    if array is not None:
+        np.save(scan, array)
+    with pytest.raises(ManycoreError, match=r"scan .*0\.npy"):
+        read_scan(scan)
 
 
 def test_folders_that_are_none(tmp_path):
