@@ -7,7 +7,12 @@ import os
 import sys
 from collections.abc import Mapping
 
-import rmw_manycore_hook
+from rmw_manycore_hook import (
+    LIBRARY_PATH,
+    library_path,
+    stand_in_directory,
+    substituted_environment,
+)
 
 IMPLEMENTATION = "rmw_manycore"
 OUTSIDE_IMPLEMENTATION = "rmw_fastrtps_cpp"
@@ -18,7 +23,7 @@ def program_environment(
 ) -> dict[str, str]:
     """Return `base` with `variables` in it, as a program needs it to load rmw_manycore at once."""
     environment = {**base, "RMW_IMPLEMENTATION": IMPLEMENTATION, **variables}
-    return rmw_manycore_hook.substituted_environment(environment, sys.prefix)
+    return substituted_environment(environment, sys.prefix)
 
 
 def leave_middleware(implementation: str) -> None:
@@ -30,9 +35,9 @@ def leave_middleware(implementation: str) -> None:
 def outside_environment(base: Mapping[str, str] = os.environ) -> dict[str, str]:
     """Return `base` as a program needs it to load Fast DDS, even in a shell of rmw_manycore."""
     environment = {**base, "RMW_IMPLEMENTATION": OUTSIDE_IMPLEMENTATION, "PYTHONUNBUFFERED": "1"}
-    stand_ins = rmw_manycore_hook.stand_in_directory(sys.prefix)
-    paths = [path for path in rmw_manycore_hook.library_path(base) if path != stand_ins]
-    return {**environment, rmw_manycore_hook.LIBRARY_PATH: os.pathsep.join(paths)}
+    stand_ins = stand_in_directory(sys.prefix)
+    paths = [path for path in library_path(base) if path != stand_ins]
+    return {**environment, LIBRARY_PATH: os.pathsep.join(paths)}
 
 
 def enter_middleware() -> None:

@@ -103,14 +103,7 @@ def talk_in_domain(domain: int) -> None:
     """Publish to a reader of the own domain, which shows that messages arrive at all."""
     os.environ.pop("MANYCORE_PLATFORM", None)
     os.environ["ROS_DOMAIN_ID"] = str(domain)
-    with peer_node() as node:
-        heard = []
-        publisher = node.create_publisher(String, "chatter", 10)
-        node.create_subscription(String, "chatter", heard.append, 10)
-        node.create_timer(0.02, lambda: publisher.publish(String()))
-        spin_until(node, lambda: len(heard) > 2)
-        announce("published")
-        rclpy.spin(node)
+    talk_to_itself()
 
 
 def talk_to_itself() -> None:
