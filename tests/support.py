@@ -18,6 +18,9 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
+from rmw_manycore_py.launch.ending import judge
+from rmw_manycore_py.launch.state import NodeState
+
 TESTS = Path(__file__).parent
 REPOSITORY = TESTS.parent
 MAPFILES = REPOSITORY / "mapfiles"
@@ -163,6 +166,14 @@ class Program:
         """Interrupt the program as Ctrl-C does; return its exit status."""
         self.signal(signal.SIGINT)
         return self.wait()
+
+    def stop_node(self) -> bool:
+        """Interrupt a plain rclpy node; tell whether it ended as such nodes do.
+
+        Not always with status 0: see `judge`.
+        """
+        last_line = next(reversed(self.lines), "") if (status := self.stop()) else ""
+        return not judge(status, NodeState.INTERRUPTED, last_line).failed
 
     def kill(self) -> None:
         """End the program at once, whatever state it is in, and close our ends of its pipes."""

@@ -3,11 +3,21 @@
 
 from __future__ import annotations
 
+import re
 import signal
 from dataclasses import dataclass
 
 from rmw_manycore_py.launch.state import INTERRUPT_GRACE_S, TERMINATE_GRACE_S, NodeState
 
+# How a traceback ends whose cause is the interruption. rclpy turns it into other errors: pybind11
+# where it strikes while an argument is made, rcl where its own handler of the signal has shut the
+# context down between two calls. Both happen with any RMW.
+_INTERRUPTED_PYTHON = re.compile(
+    r"KeyboardInterrupt"
+    r"|rclpy\.executors\.ExternalShutdownException"
+    r"|RuntimeError: Unable to convert call argument '\d+' to Python object\b.*"
+    r"|rclpy\._rclpy_pybind11\.RCLError: .*\bthe given context is not valid\b.*"
+)
 _STOP_SIGNALS = (signal.SIGINT, signal.SIGTERM)
 _ENDED_ON_REQUEST = {
     status for number in _STOP_SIGNALS for status in (-number.value, 128 + number.value)
@@ -27,10 +37,11 @@ class Ending:
 def judge(return_code: int, state: NodeState, last_line: str = "") -> Ending:
     """Judge the return code (minus a signal's number, as in subprocess) of a node in `state`.
 
-    Python that is interrupted while it starts ends with status 1; only its last line says why.
+    Python that an interruption ends otherwise than by the signal has status 1; only its last line
+    says why.
     """
     asked = state in (NodeState.INTERRUPTED, NodeState.TERMINATED)
-    if asked and return_code == 1 and last_line == "KeyboardInterrupt":
+    if asked and return_code == 1 and _INTERRUPTED_PYTHON.fullmatch(last_line):
         return Ending(False, "stopped", exit_status=return_code)
     if state is NodeState.KILLED:
         return Ending(True, _stubborn(), signal=_signal_name(signal.SIGKILL))

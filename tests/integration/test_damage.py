@@ -110,7 +110,7 @@ def test_segment_of_another_platform(start, directory):
     shutil.copy(PLATFORMS / other / "registry", directory / "copy")
     (directory / "copy").rename(directory / "registry")
     assert_refuses(start(example_command("listener")), directory)
-    assert talker.stop() == 0
+    assert talker.stop_node()
 
 
 @pytest.mark.parametrize("kind", ["a_file", "a_directory", "a_link"])

@@ -66,7 +66,7 @@ def assert_says_the_size(program: Program) -> None:
 def test_small_messages_fit(start_small):
     talker = start_small(16, example_command("talker"))
     talker.wait_for("Publishing")
-    assert talker.stop() == 0, talker
+    assert talker.stop_node(), talker
 
 
 def test_a_mapfile_that_needs_more(start_small):

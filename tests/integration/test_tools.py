@@ -131,7 +131,7 @@ def test_echo_waits_for_a_topic_whose_type_is_given(start, platform) -> None:
     talker = start([sys.executable, "-m", "rmw_manycore_py.examples.talker"])
     assert echo.wait() == 0
     assert "data: 'Hello World" in echo.output
-    assert talker.stop() == 0
+    assert talker.stop_node()
 
 
 def test_the_rate_is_printed_as_ros2_does(running, start) -> None:

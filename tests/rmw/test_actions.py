@@ -100,5 +100,5 @@ def test_server_goes_away(node, start, peer_cluster):
     server = start(example_command("fibonacci_server", *FAST), peer_cluster)
     client = ActionClient(node, Fibonacci, "fibonacci")
     assert client.wait_for_server(PATIENCE_S)
-    assert server.stop() == 0
+    assert server.stop_node()
     spin_until(node, lambda: not client.server_is_ready())

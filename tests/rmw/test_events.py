@@ -107,7 +107,7 @@ def test_matched(node, start_peer, peer_cluster):
     for event in (published[-1], subscribed[-1]):
         assert (event.total_count, event.current_count) == (1, 1)
         assert (event.total_count_change, event.current_count_change) == (1, 1)
-    assert peer.stop() == 0
+    assert peer.stop_node()
     spin_until(node, lambda: len(published) == 2 and len(subscribed) == 2)
     for event in (published[-1], subscribed[-1]):
         assert (event.total_count, event.current_count) == (1, 0)

@@ -224,7 +224,7 @@ def test_a_reader_takes_what_a_publisher_left(node, start_peer, peer_cluster):
     node.create_subscription(String, "numbers", lambda m: received.append(int(m.data)), 10)
     peer = start_peer(publish_burst, 5, 5, False, cluster=peer_cluster)
     peer.wait_for("published")
-    assert peer.stop() == 0
+    assert peer.stop_node()
     spin_until(node, lambda: len(received) == 5)
     assert received == [0, 1, 2, 3, 4]
 

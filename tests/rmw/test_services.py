@@ -89,7 +89,7 @@ def test_service_goes_away(node, start_peer, peer_cluster):
     peer = start_peer(serve, cluster=peer_cluster)
     client = node.create_client(BasicTypes, "double")
     assert client.wait_for_service(PATIENCE_S)
-    assert peer.stop() == 0
+    assert peer.stop_node()
     spin_until(node, lambda: not client.service_is_ready())
 
 
@@ -109,7 +109,7 @@ def test_a_new_server_takes_over(node, start_peer, peer_cluster):
         answer = client.call_async(BasicTypes.Request(int64_value=value))
         spin_until(node, answer.done)
         assert answer.result().int64_value == 2 * value
-        assert peer.stop() == 0
+        assert peer.stop_node()
         spin_until(node, lambda: not client.service_is_ready())
 
 

@@ -53,4 +53,4 @@ def test_a_platform_that_was_killed_whole_starts_again(start, platform):
     talker = start(example_command("talker"))
     listener.wait_for("I heard: 'Hello World")
     for node in (talker, listener):
-        assert node.stop() == 0, node
+        assert node.stop_node(), node

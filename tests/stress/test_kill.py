@@ -203,5 +203,5 @@ def test_the_only_process_is_killed_while_it_joins(start, platform):
         wait_until(lambda: not processes_of(platform), "the receive threads are gone")
     talker = start(example_command("talker"))
     talker.wait_for("Publishing")
-    assert talker.stop() == 0, talker
+    assert talker.stop_node(), talker
     wait_until(lambda: not leftovers(platform), "nothing is left in /dev/shm")

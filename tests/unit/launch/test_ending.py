@@ -32,10 +32,26 @@ def test_judgement(return_code: int, state: NodeState, failed: bool, reason: str
     assert (ending.failed, ending.reason) == (failed, reason)
 
 
-def test_python_that_was_interrupted_while_it_started_was_stopped() -> None:
-    ending = judge(1, NodeState.INTERRUPTED, "KeyboardInterrupt")
+@pytest.mark.parametrize(
+    "last_line",
+    [
+        "KeyboardInterrupt",
+        "rclpy.executors.ExternalShutdownException",
+        "RuntimeError: Unable to convert call argument '0' to Python object (#define "
+        "PYBIND11_DETAILED_ERROR_MESSAGES or compile in debug mode for details)",
+        "rclpy._rclpy_pybind11.RCLError: failed to initialize wait set: the given context is not "
+        "valid, either rcl_init() was not called or rcl_shutdown() was called., at wait.c:130",
+    ],
+)
+def test_python_that_an_interruption_ended_was_stopped(last_line: str) -> None:
+    ending = judge(1, NodeState.INTERRUPTED, last_line)
     assert (ending.failed, ending.reason) == (False, "stopped")
-    assert judge(1, NodeState.RUNNING, "KeyboardInterrupt").failed
+    assert judge(1, NodeState.RUNNING, last_line).failed
+    assert judge(2, NodeState.INTERRUPTED, last_line).failed
+
+
+def test_another_error_on_the_way_out_is_a_failure() -> None:
+    assert judge(1, NodeState.INTERRUPTED, "RuntimeError: Unable to reach the motor").failed
 
 
 def test_one_that_had_to_be_killed_failed() -> None:
