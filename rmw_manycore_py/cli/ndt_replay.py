@@ -6,7 +6,6 @@ from __future__ import annotations
 import os
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import click
 
@@ -21,17 +20,7 @@ from rmw_manycore_py.ndt.recordings.opening import open_recording
 from rmw_manycore_py.ndt.replay.tally import Summary, Tally, as_json
 from rmw_manycore_py.ndt.thinning import Points, voxel_centroids
 
-if TYPE_CHECKING:
-    from rmw_manycore_py.ndt.replay.guess_source import GuessSource
-
 MAP_VOXEL_M = 0.2
-MADE_OF = {
-    "odometry": "closed loop: last result and the REFERENCE's motion with {drift:.0%} error",
-    "velocity": "closed loop: EKF of the results alone; the reference tells the first pose only",
-    "perturbed": "open loop: the REFERENCE pose, {offset:g} m and {turn:g} degrees off",
-    "stack": "closed loop: EKF on the platform; a rough first pose, and the REFERENCE's speed with "
-    "{drift:.0%} error",
-}
 FILE = click.Path(dir_okay=False, path_type=Path)
 
 
@@ -62,6 +51,14 @@ FILE = click.Path(dir_okay=False, path_type=Path)
     default="odometry",
     show_default=True,
     help="Closed loop with odometry or constant velocity; the reference, perturbed; or no guesses.",
+)
+@click.option(
+    "--motion",
+    type=click.Choice(["scans", "reference"]),
+    default="scans",
+    show_default=True,
+    help="What the odometry, or the stack's speed, comes from: scans matched to each other before "
+    "they are played, or the reference poses.",
 )
 @click.option(
     "--drift",
@@ -111,6 +108,7 @@ def command(
     no_map: bool,
     rate_hz: float | None,
     kind: str,
+    motion: str,
     drift: float,
     offset_m: float,
     turn_deg: float,
@@ -132,19 +130,20 @@ def command(
     if plot_path is not None:
         load_figure()
     _enter(rmw)
+    from rmw_manycore_py.ndt.replay.guess_kinds import GuessKind
     from rmw_manycore_py.ndt.replay.session import run
 
     drive = open_recording(recording, poses_path, topic, pose_topic)
     if scans is not None:
         drive = drive.first(scans)
-    guesses = _guesses(kind, drive, drift, offset_m, turn_deg, seed, rate_hz)
-    points = None if no_map else _map_of(recording, drive, map_path)
-    made_of = MADE_OF[kind].format(drift=drift, offset=offset_m, turn=turn_deg)
-    click.echo(f"guesses: {made_of}", err=True)
+    guesses = GuessKind(kind, motion, drift, offset_m, turn_deg, seed)
+    click.echo(f"guesses: {guesses.made_of()}", err=True)
     if drive.note:
         click.echo(f"recording: {drive.note}", err=True)
+    source = guesses.source(drive, rate_hz)
+    points = None if no_map else _map_of(recording, drive, map_path)
     tally = Tally(deadline_ms)
-    run(drive, guesses, tally, points, voxel_m, rate_hz, timeout_s)
+    run(drive, source, tally, points, voxel_m, rate_hz, timeout_s)
     if csv_path is not None:
         tally.write_csv(csv_path)
     if plot_path is not None:
@@ -154,7 +153,7 @@ def command(
     summary = tally.summary()
     if complaint := tally.complaint():
         click.echo(f"of the first lost scan the matcher says: {complaint}", err=True)
-    print_json({"guesses": made_of, **as_json(summary)}) if as_json_ else _print(
+    print_json({"guesses": guesses.made_of(), **as_json(summary)}) if as_json_ else _print(
         summary, deadline_ms
     )
     sys.exit(0 if summary.is_good else 1)
@@ -165,27 +164,6 @@ def _enter(rmw: str) -> None:
         enter_middleware()
     elif os.environ.get("RMW_IMPLEMENTATION", "rmw_fastrtps_cpp") != rmw:
         leave_middleware(rmw)
-
-
-def _guesses(
-    kind: str,
-    drive: Recording,
-    drift: float,
-    offset_m: float,
-    turn_deg: float,
-    seed: int,
-    rate_hz: float | None,
-) -> GuessSource:
-    from rmw_manycore_py.ndt.replay import prediction
-    from rmw_manycore_py.ndt.replay.guess_source import Guesses, StackInputs
-
-    if kind == "stack":
-        return StackInputs(drive, drift, seed, rate_hz)
-    if kind == "perturbed":
-        return Guesses(drive, prediction.Perturbed(drive, offset_m, turn_deg, seed))
-    if kind == "velocity":
-        return Guesses(drive, prediction.Velocity(drive))
-    return Guesses(drive, prediction.Odometry(drive, drift, seed))
 
 
 def _map_of(recording: Path, drive: Recording, map_path: Path | None) -> Points:

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Sequence
 from typing import Protocol
 
 import numpy as np
@@ -14,7 +15,6 @@ from rclpy.node import Node
 from rmw_manycore_py.ndt import poses
 from rmw_manycore_py.ndt.nodes.conversions import pose_with_covariance
 from rmw_manycore_py.ndt.poses import Matrix
-from rmw_manycore_py.ndt.recording import Recording
 from rmw_manycore_py.ndt.replay.prediction import MEASURED, Prediction
 
 MAP_FRAME = "map"
@@ -42,8 +42,8 @@ class GuessSource(Protocol):
 class Guesses:
     """Guesses of a prediction, as the EKF of a laptop sends them."""
 
-    def __init__(self, drive: Recording, prediction: Prediction) -> None:
-        self._first = drive.poses[0]
+    def __init__(self, first_pose: Matrix, prediction: Prediction) -> None:
+        self._first_pose = first_pose
         self._prediction = prediction
 
     def advertise(self, node: Node) -> None:
@@ -53,8 +53,8 @@ class Guesses:
         )
 
     def send_first(self, stamp_ns: int) -> None:
-        """Send the first pose, exactly."""
-        self._publish(stamp_ns, self._first)
+        """Send the first pose."""
+        self._publish(stamp_ns, self._first_pose)
 
     def send(self, index: int, time_s: float, stamp_ns: int) -> Matrix:
         """Send the prediction."""
@@ -76,17 +76,15 @@ class Guesses:
 class StackInputs:
     """A first pose and the speed, for a stack on the platform that makes its guesses itself."""
 
-    def __init__(self, drive: Recording, drift: float, seed: int, rate_hz: float | None) -> None:
-        self._drive = drive
-        self._drift = drift
-        times_s = drive.times_s() if rate_hz is None else np.arange(len(drive)) / rate_hz
-        self._periods_s = np.diff(times_s)
-        self._generator = np.random.default_rng(seed)
+    def __init__(self, first_pose: Matrix, motions: Sequence[Matrix], periods_s: Matrix) -> None:
+        self._first_pose = first_pose
+        self._motions = motions
+        self._periods_s = periods_s
         self._next_first_s = 0.0
 
     def advertise(self, node: Node) -> None:
         """Create the publishers."""
-        self._first = node.create_publisher(PoseWithCovarianceStamped, "initialpose", 10)
+        self._initial = node.create_publisher(PoseWithCovarianceStamped, "initialpose", 10)
         self._twist = node.create_publisher(
             TwistWithCovarianceStamped, "in_twist_with_covariance", 10
         )
@@ -94,25 +92,20 @@ class StackInputs:
     def send_first(self, stamp_ns: int) -> None:
         """Send a rough first pose now and then, and that the vehicle stands."""
         self._publish_twist(stamp_ns, 0.0, 0.0)
-        if time.monotonic() >= self._next_first_s and self._first.get_subscription_count():
+        if time.monotonic() >= self._next_first_s and self._initial.get_subscription_count():
             self._next_first_s = time.monotonic() + FIRST_POSE_PERIOD_S
-            rough = poses.perturbed(self._drive.poses[0], 0.3, 0.05, self._generator)
-            message = pose_with_covariance(rough, ROUGH, stamp_of(stamp_ns), MAP_FRAME)
-            self._first.publish(message)
+            message = pose_with_covariance(self._first_pose, ROUGH, stamp_of(stamp_ns), MAP_FRAME)
+            self._initial.publish(message)
 
     def send(self, index: int, time_s: float, stamp_ns: int) -> None:  # noqa: ARG002
-        """Send speed and turn rate from this scan to the next, with an error of `drift`."""
-        if not len(self._periods_s):
+        """Send speed and turn rate from this scan to the next."""
+        if not self._motions:
             self._publish_twist(stamp_ns, 0.0, 0.0)
             return
-        nearest = min(index, len(self._periods_s) - 1)
-        before, after = self._drive.poses[nearest : nearest + 2]
-        period_s = float(self._periods_s[nearest])
-        motion = poses.inverse(before) @ after
-        errors = 1.0 + self._drift * self._generator.normal(size=2)
-        speed_m_s = float(motion[0, 3] / period_s * errors[0])
-        turn_rad_s = float(poses.to_rpy(motion)[2] / period_s * errors[1])
-        self._publish_twist(stamp_ns, speed_m_s, turn_rad_s)
+        nearest = min(index, len(self._motions) - 1)
+        motion, period_s = self._motions[nearest], float(self._periods_s[nearest])
+        turn_rad = float(poses.to_rpy(motion)[2])
+        self._publish_twist(stamp_ns, float(motion[0, 3]) / period_s, turn_rad / period_s)
 
     def result(self, index: int, time_s: float, T_map_sensor: Matrix) -> None:
         """Be indifferent: the stack knows."""

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Protocol
 
 import numpy as np
@@ -45,23 +46,16 @@ class Perturbed:
 class Odometry:
     """Closed loop: the last result, moved on as wheels and gyroscope say, which is not exact.
 
-    The motion between two scans is that of the reference poses with an error of `drift` of its
-    length and angle, in a random direction, and what was not answered is bridged with more of it.
+    What was not answered is bridged with more motion.
     """
 
-    def __init__(self, drive: Recording, drift: float, seed: int) -> None:
-        self._drive = drive
-        self._drift = drift
-        self._generator = np.random.default_rng(seed)
-        self._last = (0, drive.poses[0])
-        self._motions: list[Matrix] = []
+    def __init__(self, first_pose: Matrix, motions: Sequence[Matrix]) -> None:
+        self._last = (0, first_pose)
+        self._motions = motions
 
     def guess(self, index: int, stamp_s: float) -> Matrix:  # noqa: ARG002
         """Return the pose of the last result and all motion since."""
-        while len(self._motions) < index:
-            self._motions.append(self._motion(len(self._motions)))
-        since = self._last[0]
-        T: Matrix = self._last[1]
+        since, T = self._last
         for motion in self._motions[since:index]:
             T = T @ motion
         return T
@@ -71,26 +65,18 @@ class Odometry:
         if index >= self._last[0]:
             self._last = (index, T_map_sensor)
 
-    def _motion(self, index: int) -> Matrix:
-        before, after = self._drive.poses[index], self._drive.poses[index + 1]
-        motion = poses.inverse(before) @ after
-        length_m = float(np.linalg.norm(motion[:3, 3]))
-        angle_rad = float(np.linalg.norm(poses.rotation_vector(motion[:3, :3])))
-        drift = self._drift
-        return poses.perturbed(motion, drift * length_m, drift * angle_rad, self._generator)
-
 
 class Velocity:
     """Closed loop: the filter of `ekf_localizer`, which knows nothing but the results."""
 
-    def __init__(self, drive: Recording) -> None:
-        self._first = drive.poses[0]
+    def __init__(self, first_pose: Matrix) -> None:
+        self._first_pose = first_pose
         self._filter = PoseFilter()
 
     def guess(self, index: int, stamp_s: float) -> Matrix:  # noqa: ARG002
         """Return the filter's prediction."""
         if not self._filter.is_initialized:
-            self._filter.initialize(stamp_s, self._first, MEASURED)
+            self._filter.initialize(stamp_s, self._first_pose, MEASURED)
         return self._filter.predicted(stamp_s).pose()
 
     def result(self, index: int, stamp_s: float, T_map_sensor: Matrix) -> None:  # noqa: ARG002

@@ -1,0 +1,71 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""The kinds of guesses a replay can make, what each takes from the reference, and its source."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+from rich.console import Console
+from rich.progress import track
+
+from rmw_manycore_py.ndt import poses
+from rmw_manycore_py.ndt.poses import Matrix
+from rmw_manycore_py.ndt.recording import Recording
+from rmw_manycore_py.ndt.replay import motion, prediction
+from rmw_manycore_py.ndt.replay.guess_source import Guesses, GuessSource, StackInputs
+
+FIRST_OFF_M, FIRST_OFF_RAD = 0.3, 0.05  # how rough a first pose is, pointed at in RViz
+MADE_OF = {
+    "odometry": "closed loop: last result and {motion}; a rough first pose",
+    "velocity": "closed loop: EKF of the results alone; a rough first pose",
+    "perturbed": "open loop: the REFERENCE pose, {offset:g} m and {turn:g} degrees off",
+    "stack": "closed loop: EKF on the platform; a rough first pose, and speed by {motion}",
+}
+MOTION = {
+    "scans": "the motion matched from scan to scan",
+    "reference": "the REFERENCE's motion",
+}
+
+
+@dataclass(frozen=True)
+class GuessKind:
+    """What `--guess` and the options beside it say."""
+
+    kind: str
+    motion: str
+    drift: float
+    offset_m: float
+    turn_deg: float
+    seed: int
+
+    def made_of(self) -> str:
+        """Say what the guesses are made of."""
+        moved_by = f"{MOTION[self.motion]} with {self.drift:.0%} error"
+        text = MADE_OF[self.kind]
+        return text.format(motion=moved_by, offset=self.offset_m, turn=self.turn_deg)
+
+    def source(self, drive: Recording, rate_hz: float | None) -> GuessSource:
+        """Return the source of guesses for a recording that is played by its stamps or at a rate.
+
+        :raises ManycoreError: when the motion is to come from scans that do not tell it.
+        """
+        generator = np.random.default_rng(self.seed)
+        first_pose = poses.perturbed(drive.poses[0], FIRST_OFF_M, FIRST_OFF_RAD, generator)
+        if self.kind == "perturbed":
+            perturbed = prediction.Perturbed(drive, self.offset_m, self.turn_deg, self.seed)
+            return Guesses(first_pose, perturbed)
+        if self.kind == "velocity":
+            return Guesses(first_pose, prediction.Velocity(first_pose))
+        motions = [motion.drifted(one, self.drift, generator) for one in self._motions(drive)]
+        if self.kind == "odometry":
+            return Guesses(first_pose, prediction.Odometry(first_pose, motions))
+        times_s = drive.times_s() if rate_hz is None else np.arange(len(drive)) / rate_hz
+        return StackInputs(first_pose, motions, np.diff(times_s))
+
+    def _motions(self, drive: Recording) -> Iterable[Matrix]:
+        if self.motion == "reference":
+            return motion.of_reference(drive)
+        console = Console(stderr=True)
+        return track(motion.of_scans(drive), "motion", len(drive) - 1, console=console)

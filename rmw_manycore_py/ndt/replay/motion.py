@@ -1,0 +1,81 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""The motion between consecutive scans, which a vehicle's odometry would tell.
+
+A motion is T_before_after (4, 4): the sensor's pose at a scan, seen from where it was at the scan
+before.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from rmw_manycore_py.errors import ManycoreError
+from rmw_manycore_py.ndt import poses
+from rmw_manycore_py.ndt.alignment import Alignment
+from rmw_manycore_py.ndt.matcher import Matcher, SerialMatcher
+from rmw_manycore_py.ndt.options import MatcherOptions
+from rmw_manycore_py.ndt.poses import Matrix
+from rmw_manycore_py.ndt.recording import Recording
+from rmw_manycore_py.ndt.thinning import Points, voxel_centroids
+from rmw_manycore_py.ndt.voxel_map import VoxelMap
+
+VOXEL_M = 0.25  # scans are thinned to it, which leaves some ten thousand points
+# From a guess beside the truth an alignment finds back over ten degrees and two metres.
+TURNS_RAD = np.radians(np.arange(-60.0, 61.0, 15.0))
+# Of right motions 2.8 to 3.4, of wrong ones 1.6 to 2.7 and rarely more (docs/design/ndt_node.md).
+LEAST_LIKELIHOOD = 2.5
+
+
+def of_reference(drive: Recording) -> Iterator[Matrix]:
+    """Yield the motions of the reference poses."""
+    for before, after in zip(drive.poses[:-1], drive.poses[1:], strict=True):
+        yield poses.inverse(before) @ after
+
+
+def of_scans(drive: Recording) -> Iterator[Matrix]:
+    """Yield the motions by which each scan fits the one before it best; no pose is looked at.
+
+    :raises ManycoreError: when two scans do not fit.
+    """
+    matcher = SerialMatcher(MatcherOptions(max_iterations=100))  # turned guesses take long
+    motion: Matrix = np.eye(4)
+    before = _thinned(drive, 0)
+    for index in range(1, len(drive)):
+        after = _thinned(drive, index)
+        fit = _best_fit(matcher, before, after, motion)
+        if problem := _problem(fit):
+            raise ManycoreError(
+                f"the motion from scan {index - 1} to scan {index} cannot be told from them: "
+                f"{problem}; play with --motion reference, or fewer --scans"
+            )
+        motion, before = fit.T_map_sensor, after
+        yield motion
+
+
+def drifted(motion: Matrix, drift: float, generator: np.random.Generator) -> Matrix:
+    """Return a motion with an error of a share of its length and angle, in a random direction."""
+    length_m = float(np.linalg.norm(motion[:3, 3]))
+    angle_rad = float(np.linalg.norm(poses.rotation_vector(motion[:3, :3])))
+    return poses.perturbed(motion, drift * length_m, drift * angle_rad, generator)
+
+
+def _best_fit(matcher: Matcher, before: Points, after: Points, last: Matrix) -> Alignment:
+    """Return the likeliest alignment from the last motion and from turns of up to 60 degrees."""
+    matcher.set_map(VoxelMap.from_points(before, matcher.options))
+    guesses = [last, *(poses.from_xyz_rpy(last[:3, 3], (0.0, 0.0, turn)) for turn in TURNS_RAD)]
+    fits = [matcher.align(after, guess, only_pose=True) for guess in guesses]
+    return max(fits, key=lambda fit: fit.transform_probability)
+
+
+def _problem(fit: Alignment) -> str:
+    """Say why an alignment is not to be trusted, "" where it is."""
+    if not fit.converged:
+        return fit.why
+    found = fit.nearest_voxel_likelihood
+    return "" if found >= LEAST_LIKELIHOOD else f"likelihood {found:.2f} of {LEAST_LIKELIHOOD:g}"
+
+
+def _thinned(drive: Recording, index: int) -> Points:
+    return voxel_centroids(drive.scan(index), (VOXEL_M,) * 3)
