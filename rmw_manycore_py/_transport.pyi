@@ -18,6 +18,12 @@ def platform_directory(name: str) -> str:
 def clean(name: str) -> list[str]:
     """Remove what a dead platform left and return the paths; PlatformError while it lives."""
 
+def charge_smem(platform: str, bytes: int) -> None:
+    """Count so many bytes of this process, outside the segment, as SMEM of its cluster.
+
+    They replace what it had counted before, and end with it; PlatformError where there is no room.
+    """
+
 class Configurator:
     """Creates a platform before its first node, and keeps it while this object exists.
 
@@ -58,7 +64,11 @@ class Platform:
         """
 
     def clusters(self) -> list[_Row]:
-        """Return id, smem_size, used, receive_thread_pid, messages, notifications and alive."""
+        """Return the state of each.
+
+        Keys: id, smem_size, used, charged (of used), receive_thread_pid, messages, notifications,
+        alive.
+        """
 
     def topic_table(self) -> list[_Row]:
         """Return topic_name, topic_id, topic_dsm_size, receiver_clusters (bit mask) of each."""

@@ -110,6 +110,16 @@ class Stack:
         spin_until(self.node, found)
         return found()[0]
 
+    def next_report(self, name: str, level: bytes) -> Any:
+        """Wait for diagnostics of this kind and level from now on, and return them."""
+        self.reports.clear()
+
+        def found() -> list[Any]:
+            return [s for _, s in self.reports if s.name.endswith(name) and s.level == level]
+
+        spin_until(self.node, found)
+        return found()[0]
+
     def pose_of(self, scan: Any, guess: Any = TRUTH) -> np.ndarray:
         """Send a scan until there is a pose for it: the map may still be on its way."""
         deadline = time.monotonic() + PATIENCE_S

@@ -86,6 +86,17 @@ class Matcher:
                 )
         self._map = voxel_map
 
+    def shared_bytes(
+        self,
+        points: int = 0,  # noqa: ARG002 - on the calling thread nothing is shared
+        next_map: VoxelMap | None = None,  # noqa: ARG002
+    ) -> int:
+        """Return the memory shared with other processes, once a scan of so many points is aligned.
+
+        :param next_map: one that is about to follow the present one, beside which it lies then.
+        """
+        return 0
+
     def align(
         self,
         points: ArrayLike,

@@ -43,6 +43,11 @@ class WorkerMatcher(Matcher):
         super().set_map(voxel_map)
         self._require_group().prepare(voxel_map.native)
 
+    def shared_bytes(self, points: int = 0, next_map: VoxelMap | None = None) -> int:
+        """Return the size of session, scan and map."""
+        maps = sum(voxel_map.size_bytes for voxel_map in (self._map, next_map) if voxel_map)
+        return self._require_group().memory_bytes(points) + maps
+
     def close(self) -> None:
         """End the workers."""
         super().close()

@@ -11,6 +11,7 @@
 #include "patience.hpp"
 #include "platform/clock.hpp"
 #include "transport/lifecycle.hpp"
+#include "transport/smem_charge.hpp"
 #include "transport/topic_dsm_writer.hpp"
 
 using namespace manycore;
@@ -103,6 +104,19 @@ TEST_CASE("a publisher killed after it wrote a record, before it told anybody: t
   CHECK(f.inspection.live_endpoints() == 1);
   subscription.reset();
   CHECK(f.inspection.used_bytes() == used);
+}
+
+TEST_CASE("memory that a killed process had charged is given back") {
+  Fixture f;
+  const ClusterHeader & cluster = f.inspection.registry().clusters().at(1).header();
+  charge_smem(f.inspection.registry(), getpid(), 300);
+  {
+    Node node(f.platform, 1);
+    charge_smem(f.inspection.registry(), node.pid(), 4000);
+    CHECK(cluster.charged_bytes.load() == 4300);
+  }
+  f.wait_until_alone();
+  CHECK(cluster.charged_bytes.load() == 300);
 }
 
 TEST_CASE("what a killed publisher published is still taken") {

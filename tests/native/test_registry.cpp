@@ -12,6 +12,7 @@
 #include "patience.hpp"
 #include "platform_of_test.hpp"
 #include "transport/configurator.hpp"
+#include "transport/smem_charge.hpp"
 
 using namespace manycore;
 
@@ -150,6 +151,42 @@ TEST_CASE("killed while it holds the lock: the next owner repairs what was half 
   publish(*publisher, 1, 10'000);
   CHECK(take_all(*subscription) == numbers(1, 1));
   CHECK(take_all(*late) == numbers(1, 1));
+}
+
+TEST_CASE("memory outside the segment counts as SMEM, up to what there is") {
+  Fixture f;
+  Registry & registry = f.inspection.registry();
+  const Cluster & cluster = registry.clusters().at(1);
+  const uint64_t used = cluster.used_bytes();
+  charge_smem(registry, getpid(), 1000);
+  CHECK(cluster.used_bytes() == used + 1000);
+  const Refusal refusal =
+    refusal_of([&] { charge_smem(registry, getpid(), cluster.size() - used + 1); });
+  CHECK(refusal.code == ErrorCode::no_space);
+  CHECK(refusal.says("raise smem_size"));
+  CHECK(cluster.used_bytes() == used + 1000);
+  SUBCASE("what is charged cannot be allocated") {
+    charge_smem(registry, getpid(), cluster.size() - used - 100);
+    CHECK(f.process->graph().clusters().at(0).charged_bytes == cluster.size() - used - 100);
+    const Refusal full = refusal_of(
+      [&] { f.process->create_publisher(on_topic("/x", keep_last(10))); });
+    CHECK(full.code == ErrorCode::no_space);
+    charge_smem(registry, getpid(), 0);
+    CHECK_NOTHROW(f.process->create_publisher(on_topic("/x", keep_last(10))));
+  }
+  SUBCASE("a repair finds it again") {
+    Child holder("lock_holder", {f.platform.name()});
+    holder.expect("holding");
+    cluster.header().charged_bytes.store(5);  // as a change that was cut off may leave it
+    holder.kill();
+    CHECK(f.process->graph().endpoints_of("/x").empty());  // repairs
+    CHECK(cluster.used_bytes() == used + 1000);
+  }
+  SUBCASE("who leaves gives it back") {
+    f.process.reset();
+    CHECK(cluster.header().charged_bytes.load() == 0);
+    CHECK(refusal_of([&] { charge_smem(registry, getpid(), 1); }).says("is not on the platform"));
+  }
 }
 
 TEST_CASE("the lock of a stopped owner is waited for, then it is an error that says so") {

@@ -7,6 +7,7 @@ import os
 import signal
 from array import array
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -18,11 +19,12 @@ from rclpy.qos import DurabilityPolicy, QoSProfile
 from ros_support import spin_until
 from sensor_msgs.msg import PointCloud2
 from std_srvs.srv import SetBool
-from support import PATIENCE_S
+from support import IS_MANYCORE, PATIENCE_S
 from tf2_msgs.msg import TFMessage
 from tier4_localization_msgs.srv import PoseWithCovarianceStamped as AlignService
 from visualization_msgs.msg import MarkerArray
 
+from rmw_manycore_py import _transport
 from rmw_manycore_py.ndt.map_tiles import write_tiles
 from rmw_manycore_py.ndt.nodes.conversions import (
     matrix_of,
@@ -36,7 +38,7 @@ from rmw_manycore_py.ndt.poses import from_xyz_rpy, inverse, perturbed, transfor
 
 GENERATOR = np.random.default_rng(3)
 NEAR = perturbed(TRUTH, 0.3, 0.03, GENERATOR)
-WARN, ERROR = b"\x01", b"\x02"
+OK, WARN, ERROR = b"\x00", b"\x01", b"\x02"
 
 
 @pytest.fixture
@@ -213,6 +215,39 @@ def test_workers_that_are_killed_are_replaced(stack, start):
     os.kill(after[0], signal.SIGKILL)
     spin_until(stack.node, lambda: all(stamp in stack.poses for stamp in stamps_ns))
     assert all(error_m(T) < 0.1 for T in stack.poses.values())
+
+
+@pytest.mark.skipif(not IS_MANYCORE, reason="the SMEM of a cluster is rmw_manycore's")
+def test_a_map_that_the_cluster_has_no_room_for(stack, start):
+    """What a matcher shares with its workers is a part of its cluster's SMEM."""
+    cpus = sorted(os.sched_getaffinity(0))[:2]
+    if len(cpus) < 2:
+        pytest.skip("workers need two host CPUs")
+    start(matcher_command(worker_host_cpus=cpus), cluster=1)
+    stack.wait_for_matcher()
+    before = own_cluster()
+    assert before["used"] > before["charged"] > 1 << 20  # the place for scans
+    for _ in range(2):
+        stack.publish_map(street_map())
+        stack.pose_of(street_scan(), NEAR)
+    cluster = own_cluster()
+    assert cluster["charged"] > before["charged"]
+
+    platform = os.environ["MANYCORE_PLATFORM"]
+    _transport.charge_smem(platform, cluster["smem_size"] - cluster["used"] - 64 * 1024)
+    stack.publish_map(street_map())
+    report = stack.next_report("map_update_status", ERROR)
+    assert "cluster 1 has no room for" in report.message
+    assert "raise smem_size in the mapfile" in report.message
+    assert error_m(stack.pose_of(street_scan(), NEAR)) < 0.1
+
+    _transport.charge_smem(platform, 0)
+    stack.publish_map(street_map())
+    stack.next_report("map_update_status", OK)
+
+
+def own_cluster() -> dict[str, Any]:
+    return _transport.Platform(os.environ["MANYCORE_PLATFORM"]).clusters()[0]
 
 
 def workers_below(pid: int) -> list[int]:

@@ -28,6 +28,10 @@ void name_part(SharedPart & part, uint64_t id, const SharedMemory & memory) {
   std::strncpy(part.path, memory.shared_path().c_str(), sizeof part.path - 1);
 }
 
+size_t scan_bytes(size_t points) {
+  return scan_floats(std::max(points, first_scan_points)) * sizeof(float);
+}
+
 }  // namespace
 
 WorkerGroup::WorkerGroup(
@@ -58,8 +62,12 @@ WorkerGroup::WorkerGroup(
   put_scan(nullptr, 0);
 }
 
+uint64_t WorkerGroup::memory_bytes(size_t points) const noexcept {
+  return memory_.size() + std::max<uint64_t>(scan_.size(), scan_bytes(points));
+}
+
 void WorkerGroup::put_scan(const float * xyz_m, size_t count) {
-  const size_t bytes = scan_floats(std::max(count, first_scan_points)) * sizeof(float);
+  const size_t bytes = scan_bytes(count);
   if (scan_.size() < bytes) {
     scan_ = SharedMemory::anonymous("manycore-ndt-scan", bytes);
     name_part(session_.what.scan, session_.what.scan.id + 1, scan_);

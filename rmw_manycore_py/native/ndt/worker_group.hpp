@@ -31,6 +31,8 @@ public:
   /// Time each worker was busy in the last job.
   std::vector<double> busy_ns() const;
   uint64_t replaced() const noexcept { return replaced_; }
+  /// Memory shared with the workers, beside the map, once a scan of `points` points was aligned.
+  uint64_t memory_bytes(size_t points) const noexcept;
   /// Points that counted in the last call.
   size_t used_points() const noexcept { return session_.what.points; }
 

@@ -70,6 +70,7 @@ nb::dict to_dict(const ClusterInfo & cluster) {
   out["id"] = cluster.id;
   out["smem_size"] = cluster.smem_bytes;
   out["used"] = cluster.used_bytes;
+  out["charged"] = cluster.charged_bytes;
   out["receive_thread_pid"] = cluster.receive_thread_pid;
   out["messages"] = cluster.messages;
   out["notifications"] = cluster.notifications;

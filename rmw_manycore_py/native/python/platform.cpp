@@ -1,5 +1,7 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-// The read-only view of a platform: does not join, does not keep it alive.
+// The view of a platform: does not join, does not keep it alive.
+
+#include <unistd.h>
 
 #include <nanobind/nanobind.h>
 #include <nanobind/stl/string.h>
@@ -9,6 +11,7 @@
 #include "python/dictionaries.hpp"
 #include "transport/configurator.hpp"
 #include "transport/graph.hpp"
+#include "transport/smem_charge.hpp"
 
 namespace nb = nanobind;
 
@@ -103,6 +106,10 @@ void bind_platform(nb::module_ & module) {
   module.def("platform_directory", [](const std::string & name) {
     return PlatformPaths::of(name).directory;
   });
+  module.def("charge_smem", [](const std::string & name, uint64_t bytes) {
+    Registry registry(PlatformPaths::of(name));
+    charge_smem(registry, getpid(), bytes);
+  }, nb::arg("platform"), nb::arg("bytes"));
   nb::class_<Platform>(module, "Platform")
     .def(nb::init<const std::string &>(), nb::arg("name"))
     .def("info", &Platform::info)

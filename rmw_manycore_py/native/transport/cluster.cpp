@@ -17,6 +17,13 @@ uint32_t granule_size(uint64_t smem_bytes) { return smem_bytes <= (64u << 20) ? 
 
 uint64_t map_bytes(uint64_t granules) { return align_up(align_up(granules, 64) / 8, 8); }
 
+Error no_room(const Cluster & cluster, uint64_t length, const std::string & advice) {
+  return Error(
+    ErrorCode::no_space, "cluster " + std::to_string(cluster.id()) + " has no room for " +
+      std::to_string(length) + " bytes: " + std::to_string(cluster.used_bytes()) + " of its " +
+      std::to_string(cluster.size()) + " bytes of SMEM are used; " + advice);
+}
+
 }  // namespace
 
 PlatformPaths PlatformPaths::of(const std::string & platform) {
@@ -122,12 +129,8 @@ uint64_t Cluster::allocate(uint64_t length) {
   ClusterHeader & head = header();
   const uint64_t count = granules_of(length);
   const uint64_t first = find_run(count);
-  if (first == head.granule_count) {
-    throw Error(
-      ErrorCode::no_space, "cluster " + std::to_string(id_) + " has no room for " +
-        std::to_string(length) + " bytes: " + std::to_string(head.used_bytes.load()) + " of its " +
-        std::to_string(memory_.size()) +
-        " bytes of SMEM are used; lower topic_dsm_size or depth, or move nodes to another cluster");
+  if (first == head.granule_count || !has_room(count * head.granule_bytes)) {
+    throw no_room(*this, length, "lower topic_dsm_size or depth, or move nodes to another cluster");
   }
   const uint64_t offset = first * head.granule_bytes;
   memory_.reserve(offset, count * head.granule_bytes);
@@ -148,12 +151,30 @@ void Cluster::free(uint64_t offset, uint64_t length) noexcept {
   memory_.release(offset, count * head.granule_bytes);
 }
 
+bool Cluster::has_room(uint64_t length) const noexcept {
+  const uint64_t used = used_bytes();
+  return used <= size() && length <= size() - used;
+}
+
+void Cluster::charge(uint64_t before, uint64_t after) {
+  if (after > before && !has_room(after - before)) {
+    const char * const advice = "raise smem_size in the mapfile, or move nodes to another cluster";
+    throw no_room(*this, after - before, advice);
+  }
+  header().charged_bytes.fetch_add(after - before, std::memory_order_relaxed);
+}
+
+void Cluster::mark_charged(uint64_t length) noexcept {
+  header().charged_bytes.fetch_add(length, std::memory_order_relaxed);
+}
+
 void Cluster::forget_allocations() noexcept {
   ClusterHeader & head = header();
   const uint64_t own = granules_of(granule_map_offset + map_bytes(head.granule_count));
   std::fill_n(granule_map(), map_bytes(head.granule_count) / 8, 0);
   set_granules(0, own, true);
   head.used_bytes.store(own * head.granule_bytes, std::memory_order_relaxed);
+  head.charged_bytes.store(0, std::memory_order_relaxed);
 }
 
 void Cluster::mark_allocated(uint64_t offset, uint64_t length) noexcept {

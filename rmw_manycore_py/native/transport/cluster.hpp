@@ -64,9 +64,18 @@ public:
       id_, static_cast<uint64_t>(static_cast<const std::byte *>(object) - memory_.data()));
   }
   void free(uint64_t offset, uint64_t length) noexcept;
+  /// Counts memory that processes of the cluster have outside the segment, instead of `before` from now on
+  /// `after` bytes; the caller holds the registry lock. Throws Error{no_space}.
+  void charge(uint64_t before, uint64_t after);
+  /// Allocated and charged.
+  uint64_t used_bytes() const noexcept {
+    return header().used_bytes.load(std::memory_order_relaxed) +
+           header().charged_bytes.load(std::memory_order_relaxed);
+  }
   /// Rebuilding the map after an owner of the registry lock died: forget all, then mark what lives.
   void forget_allocations() noexcept;
   void mark_allocated(uint64_t offset, uint64_t length) noexcept;
+  void mark_charged(uint64_t length) noexcept;
 
   /// False when the pipe is full.
   bool send(const EmcosMessage & message) const noexcept {
@@ -81,6 +90,7 @@ private:
   /// Throws Error{corrupt}.
   void require_sound_map() const;
   uint64_t find_run(uint64_t count) const noexcept;
+  bool has_room(uint64_t length) const noexcept;
   uint64_t granules_of(uint64_t length) const noexcept;
 
   uint32_t id_;

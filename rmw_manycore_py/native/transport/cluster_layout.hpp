@@ -16,6 +16,7 @@ struct ClusterHeader {
   std::atomic<uint32_t> pipe_overflow;
   std::atomic<uint64_t> messages;  ///< eMCOS messages handled
   std::atomic<uint64_t> notifications;  ///< hints pushed on subscriber queues
+  std::atomic<uint64_t> charged_bytes;  ///< sum of its processes' (derived)
   /// Odd while the receive thread follows references (see docs/design/topic_dsm.md, Freeing).
   alignas(64) std::atomic<uint64_t> phase;
 };

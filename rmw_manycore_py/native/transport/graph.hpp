@@ -41,7 +41,8 @@ struct ProcessInfo {
 struct ClusterInfo {
   uint32_t id = 0;
   uint64_t smem_bytes = 0;
-  uint64_t used_bytes = 0;
+  uint64_t used_bytes = 0;     ///< of smem_bytes
+  uint64_t charged_bytes = 0;  ///< of used_bytes: memory of processes outside the segment
   int32_t receive_thread_pid = 0;
   uint64_t messages = 0;       ///< eMCOS messages handled
   uint64_t notifications = 0;  ///< hints pushed by the receive thread

@@ -16,6 +16,7 @@
 
 #include "platform/os_process.hpp"
 #include "transport/closing.hpp"
+#include "transport/smem_charge.hpp"
 
 namespace manycore {
 namespace {
@@ -96,6 +97,7 @@ void reap(Registry & registry, uint32_t process) {
       registry.nodes().give_back(slot);
     }
   }
+  discharge(registry, process);
   registry.processes().give_back(process);
 }
 

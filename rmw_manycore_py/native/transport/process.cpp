@@ -18,6 +18,7 @@
 #include "transport/matching.hpp"
 #include "transport/publisher_impl.hpp"
 #include "transport/receive_thread_watcher.hpp"
+#include "transport/smem_charge.hpp"
 #include "transport/subscription_impl.hpp"
 
 namespace manycore {
@@ -198,6 +199,7 @@ uint32_t Process::Impl::take_process_slot() {
   entry.cluster = placement.cluster;
   entry.core = placement.core ? static_cast<int32_t>(*placement.core) : -1;
   entry.host_cpu = only_cpu();
+  entry.charged_bytes = 0;
   std::memset(entry.label, 0, sizeof entry.label);
   std::strncpy(entry.label, placement.label.c_str(), sizeof entry.label - 1);
   entry.wake.sleepers.store(0);
@@ -225,6 +227,7 @@ void Process::Impl::leave() {
         registry->nodes().give_back(node);
       }
     }
+    discharge(*registry, slot);
     registry->processes().give_back(slot);
   }
   alive_locks(paths).unlock(slot);

@@ -209,6 +209,12 @@ void Registry::repair() noexcept {
       clusters_.find(id)->forget_allocations();
     }
   }
+  for (uint32_t slot = 0; slot < processes_.high_water(); ++slot) {
+    Cluster * const cluster = clusters_.find(processes_[slot].cluster);
+    if (processes_.is_live(slot) && cluster != nullptr) {
+      cluster->mark_charged(processes_[slot].charged_bytes);
+    }
+  }
   header().closing_count = 0;
   for (uint32_t slot = 0; slot < endpoints_.high_water(); ++slot) {
     EndpointEntry & entry = endpoints_[slot];

@@ -36,7 +36,8 @@ struct ProcessEntry {
   int32_t core;      ///< -1 = not placed on a core
   int32_t host_cpu;  ///< -1 = not pinned
   uint32_t reserved;
-  char label[96];
+  uint64_t charged_bytes;  ///< memory outside the segment that counts as SMEM (docs/design/platform.md)
+  char label[88];
   WakeWord wake;
 };
 static_assert(sizeof(ProcessEntry) == 192);

@@ -129,7 +129,7 @@ void TopicDsmWriter::require_data_bytes(uint64_t need_bytes) {
   throw Error(
     ErrorCode::too_large, "a message of " + size + " bytes on '" + std::string(endpoint_.topic) +
       "' does not fit into cluster " + std::to_string(cluster_.id()) + ": " +
-      std::to_string(cluster_.header().used_bytes.load()) + " of " +
+      std::to_string(cluster_.used_bytes()) + " of " +
       std::to_string(cluster_.size()) + " bytes of SMEM are used; it needs at least " + size +
       " free (is /dev/shm large enough?)");
 }

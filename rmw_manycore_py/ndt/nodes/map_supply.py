@@ -3,10 +3,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 from typing import Any
 
+from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.ndt.map_area import MapArea
 from rmw_manycore_py.ndt.map_builder import MapBuilder
 from rmw_manycore_py.ndt.map_tiles import open_map
@@ -21,9 +23,15 @@ class MapSupply:
     """Has maps built beside the matching, and says what is wrong with them."""
 
     def __init__(
-        self, options: MatcherOptions, parameters: MatcherParameters, own: OwnParameters
+        self,
+        options: MatcherOptions,
+        parameters: MatcherParameters,
+        own: OwnParameters,
+        admit: Callable[[VoxelMap], None],
     ) -> None:
+        """Prepare for maps; `admit` raises a ManycoreError for one that there is no room for."""
         self._p = parameters
+        self._admit = admit
         self._builder = MapBuilder(options)
         self._area: MapArea | None = None
         if own.map_path:
@@ -54,9 +62,15 @@ class MapSupply:
         if built is None:
             return None
         self._problem = built.problem
-        if built.voxel_map is not None:
-            self.is_set = True
-            self._duration_ms = built.duration_ms
+        if built.voxel_map is None:
+            return None
+        try:
+            self._admit(built.voxel_map)
+        except ManycoreError as error:
+            self._problem = str(error)
+            return None
+        self.is_set = True
+        self._duration_ms = built.duration_ms
         return built.voxel_map
 
     def is_leaving(self, x: float, y: float) -> bool:

@@ -14,9 +14,11 @@ from sensor_msgs.msg import PointCloud2
 from std_srvs.srv import SetBool
 from tier4_localization_msgs.srv import PoseWithCovarianceStamped as AlignService
 
+from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.ndt import poses
 from rmw_manycore_py.ndt.initial_pose import Particle, particles
 from rmw_manycore_py.ndt.nodes import judgement
+from rmw_manycore_py.ndt.nodes.cluster_memory import ClusterMemory
 from rmw_manycore_py.ndt.nodes.conversions import (
     PoseError,
     covariance_of,
@@ -39,6 +41,7 @@ from rmw_manycore_py.ndt.nodes.pose_buffer import Interpolated, PoseBuffer
 from rmw_manycore_py.ndt.nodes.running import run_node
 from rmw_manycore_py.ndt.poses import Matrix
 from rmw_manycore_py.ndt.thinning import Points
+from rmw_manycore_py.ndt.voxel_map import VoxelMap
 
 MAP_UPDATE_PERIOD_S = 1.0
 SCAN_DEPTH = 5  # a scan that waits is late, one that is overwritten is lost
@@ -59,7 +62,9 @@ class NdtScanMatcher(Node):
         self._own = declare(self, OwnParameters)
         options = matcher_options(self._p, self._own)
         self._matcher = make_matcher(options, self._own.worker_cpus)
-        self._map = MapSupply(options, self._p, self._own)
+        self._memory = ClusterMemory(self)
+        self._memory.hold(self._matcher.shared_bytes())
+        self._map = MapSupply(options, self._p, self._own, self._make_room)
         self._frames = FrameTree()
         self._guesses = PoseBuffer(self._p.initial_pose_timeout_s, self._p.initial_pose_distance_m)
         self._regularization = PoseBuffer(UNLIMITED, UNLIMITED)
@@ -171,6 +176,7 @@ class NdtScanMatcher(Node):
             raise Rejected(f"there is no map yet: {self._map.what_is_missing()}")
         if self._map.is_leaving(float(guess.T[0, 3]), float(guess.T[1, 3])):
             report.note("Lidar has gone out of the map range")
+        self._make_room_for(points)
         alignment = self._matcher.align(points, guess.T, self._regularization_at(stamp_s))
         if not np.isfinite(alignment.T_map_sensor).all():
             raise Rejected(f"the alignment has no finite result: {alignment.why}")
@@ -274,6 +280,16 @@ class NdtScanMatcher(Node):
         voxel_map = self._map.take(wait)
         if voxel_map is not None:
             self._matcher.set_map(voxel_map)
+            self._memory.hold(self._matcher.shared_bytes())
+
+    def _make_room(self, voxel_map: VoxelMap) -> None:
+        self._memory.hold(self._matcher.shared_bytes(next_map=voxel_map))
+
+    def _make_room_for(self, points: Points) -> None:
+        try:
+            self._memory.hold(self._matcher.shared_bytes(len(points)))
+        except ManycoreError as error:
+            raise Rejected(str(error)) from error
 
     def _on_timer(self) -> None:
         report = self._diagnostics["map_update_status"]
@@ -348,6 +364,7 @@ class NdtScanMatcher(Node):
     def _best_particle(self, T_map_base: Matrix, covariance: Matrix) -> Particle:
         scan = self._scan
         assert scan is not None
+        self._make_room_for(scan)
         found = particles(
             lambda T: self._matcher.align(scan, T, only_pose=True),
             T_map_base,

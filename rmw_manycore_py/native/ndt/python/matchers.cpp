@@ -132,6 +132,9 @@ void bind_matchers(nb::module_ & module) {
       const nb::gil_scoped_release released;
       group.matcher().prepare(map);
     }, nb::arg("map"))
+    .def("memory_bytes", [](Group & group, size_t points) {
+      return group.matcher().memory_bytes(points);
+    }, nb::arg("points"))
     .def("pids", [](Group & group) { return group.matcher().pids(); })
     .def("busy_ns", [](Group & group) { return group.matcher().busy_ns(); })
     .def("replaced", [](Group & group) { return group.matcher().replaced(); });
