@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from support import IS_MANYCORE, MAPFILES, PATIENCE_S, Program, manycore_command
+from support import IS_MANYCORE, MAPFILES, PATIENCE_S, Program, manycore_command, wait_until
 
 pytestmark = [
     pytest.mark.integration,
@@ -40,11 +40,19 @@ class Run:
         events = (json.loads(line) for line in self.program.lines if line.startswith("{"))
         return (event for event in events if event["event"] == kind)
 
+    def wait_until_said(self, node: str, *texts: str) -> None:
+        """Wait until a node has printed all of them, in whatever order."""
+
+        def said() -> bool:
+            lines = [e["line"] for e in self.events("output") if e["node"] == node]
+            return all(any(text in line for line in lines) for text in texts)
+
+        wait_until(said, f"{node} says {texts}: {self.program}", 2 * PATIENCE_S)
+
     def stop(self) -> None:
-        """Stop as Ctrl-C does; every node must have ended well."""
-        status = self.program.stop()
-        assert status == 0, self.program
+        """Stop as Ctrl-C does; every node must have worked and ended well."""
         assert "Traceback" not in self.program.output, self.program
+        assert self.program.stop() == 0, self.program
 
     def places(self) -> dict[str, tuple[int, int]]:
         """Return cluster and core of each node that was started."""
@@ -112,21 +120,24 @@ def test_services_and_parameters(run):
         running.wait_for("lamp_switch", rf"answer: the lamp is {state} \(changed\)")
     running.wait_for("tuner", r"gain 2\.5 was accepted")
     running.wait_for("tuner", r"gain 99\.0 was refused")
+    running.wait_until_said("controller", "gain is now 7.5")
     running.stop()
-    controller = [e["line"] for e in running.events("output") if e["node"] == "controller"]
-    assert any("gain is now 7.5" in line for line in controller)
-    assert not any("gain is now 99" in line for line in controller)
+    assert "gain is now 99" not in running.program.output
 
 
 def test_action(run):
     """Two clients, one in the server's cluster; the third goal of each is cancelled."""
     running = run("action.yaml")
-    running.wait_for("near_client", r"goal 1 succeeded: \[0, 1, 1, 2, 3, 5\]")
-    running.wait_for("near_client", "goal 3 cancelled")
+    running.wait_until_said(
+        "near_client", "goal 1 succeeded: [0, 1, 1, 2, 3, 5]", "goal 3 cancelled"
+    )
+    running.wait_until_said(
+        "far_client",
+        "goal 1 feedback: [0, 1, 1, 2, 3, 5, 8, 13]",
+        "goal 1 succeeded: [0, 1, 1, 2, 3, 5, 8, 13, 21]",
+        "goal 3 cancelled",
+    )
     running.stop()
-    far = [e["line"] for e in running.events("output") if e["node"] == "far_client"]
-    assert any("goal 1 succeeded: [0, 1, 1, 2, 3, 5, 8, 13, 21]" in line for line in far)
-    assert any("goal 1 feedback: [0, 1, 1, 2, 3, 5, 8, 13]" in line for line in far)
 
 
 def test_every_mapfile_is_run_here():

@@ -63,8 +63,8 @@ def test_every_scan_of_a_drive_is_answered(start, offload, street, tmp_path):
     assert figures["within_share"] == 1.0
     assert figures["node_cpu_percent"] >= 0.0
     assert len((tmp_path / "scans.csv").read_text().splitlines()) == 11
-    assert offload.stop() == 0, offload
     assert "Traceback" not in offload.output
+    assert offload.stop() == 0, offload
 
 
 @pytest.mark.parametrize("guess", ["velocity", "perturbed"])
@@ -87,8 +87,8 @@ def test_a_whole_stack_on_the_platform(start, platform, street):
     figures = replayed(start, street / "drive.npz", "--guess", "stack")
     assert (figures["answered"], figures["diverged"]) == (10, 0)
     assert figures["within_share"] == 1.0
-    assert stack.stop() == 0, stack
     assert "Traceback" not in stack.output
+    assert stack.stop() == 0, stack
 
 
 def test_motion_of_the_reference(start, offload, street):
