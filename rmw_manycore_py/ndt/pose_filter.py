@@ -3,8 +3,11 @@
 
 The state is that of Autoware's ekf_localizer without the yaw bias: x, y, yaw, v (m/s), w (rad/s)
 in the plane, with constant v and w between measurements; z, roll and pitch are filtered one by
-one. The state lives at the time of the newest measurement, and what is asked for is its prediction.
-A measurement older than that is put in its place, and those after it are applied again.
+one. Unlike there, the position may also drift sideways: else what slips, or is carried, is left
+behind however well its poses are measured.
+
+The state lives at the time of the newest measurement, and what is asked for is its prediction. A
+measurement older than that is put in its place, and those after it are applied again.
 """
 
 from __future__ import annotations
@@ -25,6 +28,7 @@ PLANAR = (0, 1, 5)  # x, y, yaw
 class FilterOptions:
     """Standard deviations of what changes within a second, and how far back time is kept."""
 
+    stddev_sideways_c: float = 0.5  # m
     stddev_yaw_c: float = 0.005  # rad
     stddev_v_c: float = 3.0  # m/s
     stddev_w_c: float = 1.0  # rad/s
@@ -144,6 +148,8 @@ def _predict(state: State, stamp_s: float, options: FilterOptions) -> State:
     F[X, V], F[Y, V] = dt * np.cos(middle), dt * np.sin(middle)
     F[X, W], F[Y, W], F[YAW, W] = 0.5 * dt * F[X, YAW], 0.5 * dt * F[Y, YAW], dt
     noise = np.zeros((5, 5))
+    sideways = options.stddev_sideways_c * np.array([-np.sin(middle), np.cos(middle)])
+    noise[:2, :2] = np.outer(sideways, sideways) * dt
     deviations = (options.stddev_yaw_c, options.stddev_v_c, options.stddev_w_c)
     noise[(YAW, V, W), (YAW, V, W)] = np.square(deviations) * dt
     return State(

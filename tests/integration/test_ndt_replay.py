@@ -110,6 +110,16 @@ def test_a_recorded_drive_in_closed_loop(start, offload):
     assert figures["error_m_median"] < 0.06
 
 
+@needs_data
+def test_a_recorded_drive_with_the_whole_stack(start, platform):
+    """The same recording; what is carried also moves sideways, which the speed does not tell."""
+    stack = start(manycore_command("run", MAPFILES / "ndt_stack.yaml"))
+    figures = replayed(start, BALM, "--rate", "10", "--guess", "stack", "--voxel", "0")
+    assert (figures["scans"], figures["answered"], figures["diverged"]) == (177, 177, 0)
+    assert figures["within_share"] >= 0.99
+    assert stack.stop() == 0, stack
+
+
 def test_nobody_there(start, street):
     """The error says what to start."""
     options = ("--timeout", "1")

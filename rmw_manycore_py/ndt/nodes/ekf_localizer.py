@@ -38,11 +38,12 @@ LEAST_VARIANCE = 1e-8  # of a measurement: one without noise cannot be weighed
 
 @dataclass(frozen=True)
 class EkfParameters:
-    """Autoware's names; frequencies in Hz."""
+    """Autoware's names, and the deviation sideways, which it does not have; frequencies in Hz."""
 
     frequency_hz: float = parameter("predict_frequency", 50.0, least=1.0, most=1000.0)
     pose_frame: str = parameter("pose_frame_id", "map")
     child_frame: str = parameter("child_frame_id", "base_link")
+    stddev_sideways: float = parameter("proc_stddev_sideways_c", 0.5, least=0.0)
     stddev_yaw: float = parameter("proc_stddev_yaw_c", 0.005, least=0.0)
     stddev_vx: float = parameter("proc_stddev_vx_c", 10.0, least=0.0)
     stddev_wz: float = parameter("proc_stddev_wz_c", 5.0, least=0.0)
@@ -59,6 +60,7 @@ class EkfLocalizer(Node):
         self._is_activated = self._p.activated
         self._filter = PoseFilter(
             FilterOptions(
+                stddev_sideways_c=self._p.stddev_sideways,
                 stddev_yaw_c=self._p.stddev_yaw,
                 stddev_v_c=self._p.stddev_vx,
                 stddev_w_c=self._p.stddev_wz,

@@ -69,6 +69,17 @@ def test_a_twist_is_enough_to_go_on():
     assert distance_m(pose_filter.predicted(2.0).pose(), circle(2.0)) < 0.5
 
 
+def test_what_moves_sideways_is_not_left_behind():
+    """A LiDAR that is carried, or not mounted straight ahead: 3 m/s to its left."""
+    pose_filter = PoseFilter()
+    pose_filter.initialize(0.0, np.eye(4), COVARIANCE)
+    for time_s in np.arange(0.1, 5.0, 0.1):
+        pose_filter.add_twist(time_s, 0.0, 0.0, np.diag([0.04, 0.01]))
+        sideways = from_xyz_rpy((0.0, 3.0 * time_s, 0.0))
+        assert distance_m(pose_filter.predicted(time_s).pose(), sideways) < 0.6
+        pose_filter.add_pose(time_s, sideways, COVARIANCE)
+
+
 def test_uncertainty_grows_with_time_and_shrinks_with_measurements():
     pose_filter = started()
 
