@@ -47,10 +47,7 @@ class GuessKind:
         return text.format(motion=moved_by, offset=self.offset_m, turn=self.turn_deg)
 
     def source(self, drive: Recording, rate_hz: float | None) -> GuessSource:
-        """Return the source of guesses for a recording that is played by its stamps or at a rate.
-
-        :raises ManycoreError: when the motion is to come from scans that do not tell it.
-        """
+        """Return the source of guesses for a recording played by its stamps or at a rate."""
         generator = np.random.default_rng(self.seed)
         first_pose = poses.perturbed(drive.poses[0], FIRST_OFF_M, FIRST_OFF_RAD, generator)
         if self.kind == "perturbed":
@@ -68,4 +65,13 @@ class GuessKind:
         if self.motion == "reference":
             return motion.of_reference(drive)
         console = Console(stderr=True)
-        return track(motion.of_scans(drive), "motion", len(drive) - 1, console=console)
+        doubts: list[str] = []
+        found = motion.of_scans(drive, doubts.append)
+        motions = list(track(found, "motion", len(drive) - 1, console=console))
+        if doubts:
+            console.print(
+                f"motion: {len(doubts)} of {len(motions)} may be wrong, the first {doubts[0]}; "
+                "compare with --motion reference",
+                soft_wrap=True,
+            )
+        return motions

@@ -7,7 +7,7 @@ before.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 import numpy as np
 
@@ -34,10 +34,12 @@ def of_reference(drive: Recording) -> Iterator[Matrix]:
         yield poses.inverse(before) @ after
 
 
-def of_scans(drive: Recording) -> Iterator[Matrix]:
+def of_scans(drive: Recording, doubt: Callable[[str], None]) -> Iterator[Matrix]:
     """Yield the motions by which each scan fits the one before it best; no pose is looked at.
 
-    :raises ManycoreError: when two scans do not fit.
+    Where two scans do not fit at all the motion is that of the scans before.
+
+    :param doubt: is told of each motion that may be wrong.
     """
     matcher = SerialMatcher(MatcherOptions(max_iterations=100))  # turned guesses take long
     motion: Matrix = np.eye(4)
@@ -46,11 +48,10 @@ def of_scans(drive: Recording) -> Iterator[Matrix]:
         after = _thinned(drive, index)
         fit = _best_fit(matcher, before, after, motion)
         if problem := _problem(fit):
-            raise ManycoreError(
-                f"the motion from scan {index - 1} to scan {index} cannot be told from them: "
-                f"{problem}; play with --motion reference, or fewer --scans"
-            )
-        motion, before = fit.T_map_sensor, after
+            doubt(f"from scan {index - 1} to scan {index}: {problem}")
+        if fit is not None and fit.converged:
+            motion = fit.T_map_sensor
+        before = after
         yield motion
 
 
@@ -61,16 +62,21 @@ def drifted(motion: Matrix, drift: float, generator: np.random.Generator) -> Mat
     return poses.perturbed(motion, drift * length_m, drift * angle_rad, generator)
 
 
-def _best_fit(matcher: Matcher, before: Points, after: Points, last: Matrix) -> Alignment:
+def _best_fit(matcher: Matcher, before: Points, after: Points, last: Matrix) -> Alignment | None:
     """Return the likeliest alignment from the last motion and from turns of up to 60 degrees."""
-    matcher.set_map(VoxelMap.from_points(before, matcher.options))
+    try:
+        matcher.set_map(VoxelMap.from_points(before, matcher.options))
+    except ManycoreError:
+        return None  # too few points
     guesses = [last, *(poses.from_xyz_rpy(last[:3, 3], (0.0, 0.0, turn)) for turn in TURNS_RAD)]
     fits = [matcher.align(after, guess, only_pose=True) for guess in guesses]
     return max(fits, key=lambda fit: fit.transform_probability)
 
 
-def _problem(fit: Alignment) -> str:
-    """Say why an alignment is not to be trusted, "" where it is."""
+def _problem(fit: Alignment | None) -> str:
+    """Say why a motion may be wrong, "" where it is trusted."""
+    if fit is None:
+        return "the former has too few points"
     if not fit.converged:
         return fit.why
     found = fit.nearest_voxel_likelihood
