@@ -15,6 +15,7 @@ from rmw_manycore_py.figures import load_figure
 from rmw_manycore_py.launch.environment import enter_middleware, leave_middleware
 from rmw_manycore_py.ndt.map_file import read_points
 from rmw_manycore_py.ndt.map_tiles import open_map
+from rmw_manycore_py.ndt.precision import why_coarse
 from rmw_manycore_py.ndt.recording import Recording
 from rmw_manycore_py.ndt.recordings.opening import open_recording
 from rmw_manycore_py.ndt.replay.tally import Summary, Tally, as_json
@@ -142,6 +143,8 @@ def command(
         click.echo(f"recording: {drive.note}", err=True)
     source = guesses.source(drive, rate_hz)
     points = None if no_map else _map_of(recording, drive, map_path)
+    if points is not None and (warning := why_coarse(points)):
+        click.echo(f"the map is coarse: {warning}", err=True)
     tally = Tally(deadline_ms)
     run(drive, source, tally, points, voxel_m, rate_hz, timeout_s)
     if csv_path is not None:

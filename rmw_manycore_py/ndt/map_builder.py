@@ -10,17 +10,22 @@ from dataclasses import dataclass
 
 from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.ndt.options import MatcherOptions
+from rmw_manycore_py.ndt.precision import why_coarse
 from rmw_manycore_py.ndt.thinning import Points
 from rmw_manycore_py.ndt.voxel_map import VoxelMap
 
 
 @dataclass(frozen=True)
 class BuiltMap:
-    """What came of it: a map, or why there is none; None and no problem: nothing has changed."""
+    """What came of it: a map, or why there is none; None and no problem: nothing has changed.
+
+    :param warning: what makes the map worse than it could be.
+    """
 
     voxel_map: VoxelMap | None
     points: Points | None
     problem: str
+    warning: str
     duration_ms: float
 
 
@@ -62,11 +67,13 @@ class MapBuilder:
 
     def _build(self, read: Callable[[], Points | None]) -> BuiltMap:
         start = time.perf_counter()
-        voxel_map, points, problem = None, None, ""
+        voxel_map, points, problem, warning = None, None, "", ""
         try:
             points = read()
             if points is not None:
                 voxel_map = VoxelMap.from_points(points, self._options)
+                warning = why_coarse(points)
         except (ManycoreError, ValueError, MemoryError) as error:
             problem = str(error) or type(error).__name__
-        return BuiltMap(voxel_map, points, problem, 1e3 * (time.perf_counter() - start))
+        duration_ms = 1e3 * (time.perf_counter() - start)
+        return BuiltMap(voxel_map, points, problem, warning, duration_ms)

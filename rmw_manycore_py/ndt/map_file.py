@@ -1,5 +1,8 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Point-cloud maps in files: PCD, PLY (through Open3D) and npz (the format of recordings)."""
+"""Point-cloud maps in files: PCD, PLY (through Open3D) and npz (the format of recordings).
+
+Points are read in the precision that the file has: double, or single (precision.py).
+"""
 
 from __future__ import annotations
 
@@ -9,13 +12,9 @@ from types import ModuleType
 import numpy as np
 
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
-from rmw_manycore_py.ndt.recording import (
-    DEFAULT_SCALE_M,
-    INT16_MAX,
-    Recording,
-    load_recording,
-    save_recording,
-)
+from rmw_manycore_py.ndt.pcd_file import read_pcd, write_pcd
+from rmw_manycore_py.ndt.precision import as_they_were, needs_doubles
+from rmw_manycore_py.ndt.recording import load_recording
 from rmw_manycore_py.ndt.thinning import Points
 
 SUFFIXES = (".pcd", ".ply", ".npz")
@@ -39,13 +38,25 @@ def read_points(path: Path, leaf_m: float = 0.0) -> Points:
 
 
 def write_points(path: Path, points: Points) -> None:
-    """Write a map of points (N, 3) in the map frame."""
+    """Write a map of points (N, 3) in the map frame, in single precision where that will do."""
+    kept = points if needs_doubles(points) else points.astype(np.float32)
     if path.suffix == ".npz":
-        scale_m = max(DEFAULT_SCALE_M, float(np.abs(points).max()) / INT16_MAX)
-        save_recording(path, Recording([points], np.eye(4)[None], np.zeros(0), "map"), scale_m)
-        return
-    if path.suffix not in SUFFIXES:
+        _write_npz(path, kept)
+    elif path.suffix == ".pcd":
+        write_pcd(path, kept)
+    elif path.suffix == ".ply":
+        _write_ply(path, kept)
+    else:
         raise _bad(path, f"expected a file that ends in {', '.join(SUFFIXES)}")
+
+
+def _write_npz(path: Path, points: Points) -> None:
+    """Write a recording of one scan whose sensor is the map's origin."""
+    offsets = np.array([0, len(points)])
+    np.savez_compressed(path, points=points, offsets=offsets, poses=np.eye(4)[None], note="map")
+
+
+def _write_ply(path: Path, points: Points) -> None:
     o3d = load_open3d()
     cloud = o3d.geometry.PointCloud(o3d.utility.Vector3dVector(points.astype(np.float64)))
     if not o3d.io.write_point_cloud(str(path), cloud):
@@ -58,7 +69,7 @@ def load_open3d() -> ModuleType:
         import open3d
     except ImportError as error:
         raise ManycoreError(
-            f"Open3D cannot be loaded ({error}). Maps as PCD and PLY, and thinning, need it: "
+            f"Open3D cannot be loaded ({error}). Maps as PLY, and thinning, need it: "
             "pip install 'rmw-manycore[ndt]'; its system libraries: "
             "apt install libusb-1.0-0 libgl1 libegl1 libgomp1 libx11-6"
         ) from error
@@ -74,18 +85,23 @@ def _read_npz(path: Path) -> Points:
 
 def read_cloud(path: Path) -> Points:
     """Return the points (N, 3) of a PCD or PLY file, finite or not."""
+    if path.suffix == ".pcd":
+        try:
+            return as_they_were(read_pcd(path))
+        except (OSError, ValueError) as error:
+            raise _bad(path, str(error)) from error
     o3d = load_open3d()
     try:
         cloud = o3d.io.read_point_cloud(str(path))
     except RuntimeError as error:
         raise _bad(path, f"Open3D cannot read it: {error}") from error
-    return np.asarray(cloud.points, dtype=np.float32)
+    return as_they_were(np.asarray(cloud.points))
 
 
 def _thinned(points: Points, leaf_m: float) -> Points:
     o3d = load_open3d()
     cloud = o3d.geometry.PointCloud(o3d.utility.Vector3dVector(points.astype(np.float64)))
-    return np.asarray(cloud.voxel_down_sample(leaf_m).points, dtype=np.float32)
+    return np.asarray(cloud.voxel_down_sample(leaf_m).points).astype(points.dtype)
 
 
 def _bad(path: Path, problem: str) -> ManycoreError:

@@ -24,12 +24,14 @@ import numpy.typing as npt
 
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
 from rmw_manycore_py.ndt.poses import Matrix, rigid, transform
+from rmw_manycore_py.ndt.precision import needs_doubles
 from rmw_manycore_py.ndt.recordings.stamps import in_seconds
 from rmw_manycore_py.ndt.thinning import Points
 
 DEFAULT_SCALE_M = 0.002
 DEFAULT_PERIOD_S = 0.1  # of recordings without stamps: the 10 Hz of most LiDARs
 INT16_MAX = 32767
+SINGLES = (np.int8, np.uint8, np.int16, np.uint16, np.float16, np.float32)  # fit into float32
 
 
 class Scans(Protocol):
@@ -51,7 +53,8 @@ class StoredScans:
     def __getitem__(self, index: int) -> Points:
         """Return the points of a scan."""
         part = self.points[self.offsets[index] : self.offsets[index + 1], :3]
-        metres: Points = part.astype(np.float32) * np.float32(self.scale_m)
+        number = np.float32 if part.dtype in SINGLES else np.float64
+        metres: Points = part.astype(number) * number(self.scale_m)
         return metres
 
 
@@ -82,8 +85,14 @@ class Recording:
 
     def accumulated(self, indices: Sequence[int]) -> Points:
         """Return all points of some scans, in the map frame."""
-        scans = [transform(self.poses[i], self.scan(i)) for i in indices]
+        scans = [self._in_map(i) for i in indices]
         return np.concatenate(scans) if scans else np.zeros((0, 3), np.float32)
+
+    def _in_map(self, index: int) -> Points:
+        """Return a scan in the map frame; a map far from its origin needs doubles."""
+        points = self.scan(index)
+        moved = transform(self.poses[index], points.astype(np.float64))
+        return moved if needs_doubles(moved) else moved.astype(points.dtype, copy=False)
 
     def first(self, count: int) -> Recording:
         """Return the first scans only."""

@@ -7,15 +7,17 @@ that (map_file.py).
 
 from __future__ import annotations
 
+from typing import Any, TypeAlias
+
 import numpy as np
 import numpy.typing as npt
 
 MAX_CELLS = 1 << 62
-Points = npt.NDArray[np.float32]
+Points: TypeAlias = npt.NDArray[np.floating[Any]]  # single precision, or double (precision.py)
 
 
 def voxel_centroids(points: Points, voxel_m: tuple[float, float, float]) -> Points:
-    """Return the mean of the points in each occupied voxel, as PCL's VoxelGrid does.
+    """Return the mean of the points in each occupied voxel, as PCL's VoxelGrid does; same type.
 
     `points` (N, 3) must be finite. Where voxels are too small for the cloud's extent to be
     numbered with 62 bits, a ValueError says so.
@@ -34,4 +36,4 @@ def voxel_centroids(points: Points, voxel_m: tuple[float, float, float]) -> Poin
     starts = np.flatnonzero(np.concatenate(([True], in_order[1:] != in_order[:-1])))
     counts = np.diff(np.append(starts, len(keys)))
     sums = np.add.reduceat(points[order].astype(np.float64), starts, axis=0)
-    return (sums / counts[:, None]).astype(np.float32)
+    return (sums / counts[:, None]).astype(points.dtype)

@@ -11,6 +11,7 @@ import os
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from support import IS_MANYCORE, MAPFILES, PATIENCE_S, REPOSITORY, Program, manycore_command
 
@@ -74,6 +75,24 @@ def test_guesses_of_all_kinds(start, offload, street, guess):
     if guess == "perturbed":
         assert figures["guess_error_m_max"] == pytest.approx(0.5)
         assert figures["guess_error_deg_max"] == pytest.approx(3.0)
+
+
+@pytest.mark.parametrize("suffix", [".pcd", ".npz"])
+def test_a_drive_in_utm_coordinates(start, offload, street, tmp_path, suffix):
+    """Five million metres from the origin the same poses are found as at it."""
+    from rmw_manycore_py.ndt.map_file import read_points, write_points
+    from rmw_manycore_py.ndt.recording import Recording, load_recording, save_recording
+
+    utm_m = np.array([500_000.0, 5_000_000.0, 100.0])
+    drive = load_recording(street / "drive.npz")
+    poses = drive.poses.copy()
+    poses[:, :3, 3] += utm_m
+    save_recording(tmp_path / "drive.npz", Recording(drive.scans, poses, drive.stamps))
+    write_points(tmp_path / f"map{suffix}", read_points(street / "map.npz") + utm_m)
+    files = ("--map", str(tmp_path / f"map{suffix}"))
+    figures = replayed(start, tmp_path / "drive.npz", *files)
+    assert (figures["answered"], figures["within_share"]) == (10, 1.0)
+    assert figures["error_m_median"] < 0.05
 
 
 def test_a_plot(start, offload, street, tmp_path):

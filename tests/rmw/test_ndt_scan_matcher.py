@@ -283,6 +283,41 @@ def test_a_map_of_another_place_and_back(matched):
     assert error_m(matched.pose_of(street_scan(), NEAR)) < 0.1
 
 
+UTM = from_xyz_rpy((500_000.0, 5_000_000.0, 100.0))
+
+
+def test_a_place_far_from_the_map_s_origin(matched):
+    """The pose there is as good as at the origin, and so is what is published of it."""
+    clouds = []
+    matched.node.create_subscription(PointCloud2, "points_aligned", clouds.append, 10)
+    matched.publish_map(transform(UTM, street_map().astype(np.float64)))
+    expected = inverse(UTM) @ matched.pose_of(street_scan(), UTM @ NEAR)
+    spin_until(matched.node, lambda: clouds)
+    seen = transform(inverse(UTM), decode(clouds[-1]))
+    np.testing.assert_allclose(seen, transform(expected, street_scan()), atol=1e-3)
+    matched.publish_map(street_map())
+    here = matched.pose_of(street_scan(), NEAR)
+    assert error_m(here) < 0.1
+    np.testing.assert_allclose(expected, here, atol=1e-3)
+
+
+def test_a_map_that_single_precision_has_spoiled(matched):
+    """It is used, and the diagnostics say every second what is wrong with it."""
+    matched.publish_map(transform(UTM, street_map().astype(np.float64)).astype(np.float32))
+    spin_until(
+        matched.node,
+        lambda: any("every 0.5 m there: give them as" in s.message for _, s in matched.reports),
+    )
+    matched.publish_map(street_map())
+    assert error_m(matched.pose_of(street_scan(), NEAR)) < 0.1
+    matched.reports.clear()
+    spin_until(
+        matched.node,
+        lambda: any(s.name.endswith("map_update_status") for _, s in matched.reports),
+    )
+    assert not any("coarse" in s.message for _, s in matched.reports)
+
+
 def test_maps_that_are_none(matched):
     """They are reported, and the map before them stays."""
     matched.pose_of(street_scan())

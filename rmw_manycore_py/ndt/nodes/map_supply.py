@@ -39,6 +39,7 @@ class MapSupply:
             self._area = MapArea(tiles, parameters.map_radius_m, parameters.update_distance_m)
         self._vehicle: tuple[float, float] | None = None
         self._problem = ""
+        self._warning = ""
         self._duration_ms = 0.0
         self.is_set = False
 
@@ -70,6 +71,7 @@ class MapSupply:
             self._problem = str(error)
             return None
         self.is_set = True
+        self._warning = built.warning
         self._duration_ms = built.duration_ms
         return built.voxel_map
 
@@ -94,6 +96,8 @@ class MapSupply:
         diagnostics.value("map_update_execution_time", round(self._duration_ms, 3))
         if self._problem:
             diagnostics.error(f"the map cannot be used: {self._problem}")
+        if self._warning:
+            diagnostics.warn(f"the map is coarse: {self._warning}")
         if self._area is not None and self._vehicle is not None:
             distance_m = self._area.distance_m(*self._vehicle)
             diagnostics.value("distance_last_update_position_to_current_position", distance_m)

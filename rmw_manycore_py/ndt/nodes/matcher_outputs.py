@@ -88,5 +88,5 @@ class MatcherOutputs:
     def cloud(self, name: str, stamp: Any, points_base: Points, T_map_base: Matrix) -> None:
         """Publish one of CLOUDS in the map frame, if anybody listens."""
         if self._clouds[name].get_subscription_count() > 0:
-            points = poses.transform(T_map_base, points_base)
+            points = poses.transform(T_map_base, points_base.astype(np.float64))
             self._clouds[name].publish(encode(points, stamp, self._map_frame))

@@ -263,7 +263,7 @@ class NdtScanMatcher(Node):
         self._outputs.cloud("points_aligned", stamp, points, T_map_base)
         if not self._p.no_ground:
             return
-        height_m = poses.transform(T_map_base, points)[:, 2] - T_map_base[2, 3]
+        height_m = points @ T_map_base[2, :3]
         above = points[height_m > self._p.ground_margin_m]
         self._outputs.cloud("points_aligned_no_ground", stamp, above, T_map_base)
         score = self._matcher.score(above, T_map_base)

@@ -7,13 +7,15 @@ from array import array
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from rmw_manycore_py.ndt.arrays import FARTHEST_M
+from rmw_manycore_py.ndt.precision import needs_doubles
 from rmw_manycore_py.ndt.thinning import Points
 
 # sensor_msgs/msg/PointField
 NUMBER_OF_DATATYPE = {1: "i1", 2: "u1", 3: "i2", 4: "u2", 5: "i4", 6: "u4", 7: "f4", 8: "f8"}
-FLOAT32 = 7
+FLOAT32, FLOAT64 = 7, 8
+SINGLES = ("i1", "u1", "i2", "u2", "f4")  # fit into single precision
 AXES = ("x", "y", "z")
 
 
@@ -22,10 +24,11 @@ class CloudError(ValueError):
 
 
 def decode(message: Any) -> Points:
-    """Return the finite positions (N, 3) of a PointCloud2, in its frame.
+    """Return the positions (N, 3) of a PointCloud2, in its frame.
 
     Organised or not, with padding, other fields in any order, either byte order, any number type;
-    NaN and infinite points are left out. Raises CloudError.
+    Points that are not finite, or beyond 1e9 m, are left out. They are doubles where the message
+    has such. Raises CloudError.
     """
     width, height = message.width, message.height
     data = np.frombuffer(message.data, np.uint8)
@@ -33,30 +36,37 @@ def decode(message: Any) -> Points:
         return np.zeros((0, 3), np.float32)
     fields = _fields(message)
     _check_extent(message, len(data), fields)
-    points = np.empty((height, width, 3), np.float32)
+    is_single = all(number.str[1:] in SINGLES for _, number in fields)
+    points = np.empty((height, width, 3), np.float32 if is_single else np.float64)
     for axis, (offset, number) in enumerate(fields):
         points[:, :, axis] = np.ndarray(
             (height, width), number, data, offset, (message.row_step, message.point_step)
         )
     flat = points.reshape(-1, 3)
-    finite = np.isfinite(flat).all(axis=1)
-    return flat if finite.all() else flat[finite]
+    with np.errstate(invalid="ignore"):
+        is_place = (np.abs(flat) <= FARTHEST_M).all(axis=1)
+    return flat if is_place.all() else flat[is_place]
 
 
-def encode(points: npt.NDArray[np.float32], stamp: Any, frame_id: str) -> Any:
-    """Return a PointCloud2 of points (N, 3): x, y, z as float32, unorganised."""
+def encode(points: Points, stamp: Any, frame_id: str) -> Any:
+    """Return a PointCloud2 of points (N, 3), unorganised.
+
+    x, y and z are float32, as all programs take them, unless that rounds by more than a millimetre.
+    """
     from sensor_msgs.msg import PointCloud2, PointField
 
-    message = PointCloud2(height=1, width=len(points), point_step=12, is_dense=True)
+    datatype, number = (FLOAT64, "<f8") if needs_doubles(points) else (FLOAT32, "<f4")
+    size = np.dtype(number).itemsize
+    message = PointCloud2(height=1, width=len(points), point_step=3 * size, is_dense=True)
     message.header.stamp = stamp
     message.header.frame_id = frame_id
-    message.row_step = 12 * len(points)
+    message.row_step = message.point_step * len(points)
     message.fields = [
-        PointField(name=name, offset=4 * axis, datatype=FLOAT32, count=1)
+        PointField(name=name, offset=size * axis, datatype=datatype, count=1)
         for axis, name in enumerate(AXES)
     ]
     data = array("B")
-    data.frombytes(np.ascontiguousarray(points, np.float32).tobytes())
+    data.frombytes(np.ascontiguousarray(points, number).tobytes())
     message.data = data
     return message
 

@@ -20,6 +20,7 @@ from rmw_manycore_py.ndt.nodes.conversions import PoseError, matrix_of
 from rmw_manycore_py.ndt.nodes.declared import declare, parameter
 from rmw_manycore_py.ndt.nodes.point_cloud import encode
 from rmw_manycore_py.ndt.nodes.running import run_node
+from rmw_manycore_py.ndt.precision import why_coarse
 from rmw_manycore_py.ndt.thinning import Points
 
 
@@ -68,6 +69,8 @@ class PointcloudMapLoader(Node):
             self._publish(points)
 
     def _publish(self, points: Points) -> None:
+        if warning := why_coarse(points):
+            self.get_logger().warning(f"the map is coarse: {warning}")
         self.get_logger().info(f"publishing a map of {len(points)} points")
         self._publisher.publish(encode(points, Time(), self._p.map_frame))
 

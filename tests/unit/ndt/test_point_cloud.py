@@ -85,6 +85,22 @@ def test_there_and_back():
     np.testing.assert_array_equal(decode(message), POINTS)
 
 
+def test_far_from_the_origin_there_and_back():
+    """Maps in UTM coordinates need doubles; near the origin all programs get what they know."""
+    far = POINTS.astype(np.float64) / 7.0 + (500_000.0, 5_000_000.0, 100.0)
+    message = encode(far, Time(), "map")
+    assert (message.point_step, message.fields[0].datatype) == (24, PointField.FLOAT64)
+    np.testing.assert_array_equal(decode(message), far)
+    message = encode(POINTS.astype(np.float64), Time(), "map")
+    assert (message.point_step, message.fields[0].datatype) == (12, PointField.FLOAT32)
+
+
+def test_points_that_are_nowhere_are_left_out():
+    records = records_of(np.dtype([(name, "<f8") for name in "xyz"]))
+    records["x"][2], records["z"][5] = 1e300, -2e9
+    np.testing.assert_array_equal(decode(cloud_of(records)), np.delete(POINTS, [2, 5], axis=0))
+
+
 def wrong(**changes: object) -> PointCloud2:
     message = cloud_of(records_of(VELODYNE), 3)
     for name, value in changes.items():
