@@ -137,11 +137,13 @@ def command(
     drive = open_recording(recording, poses_path, topic, pose_topic)
     if scans is not None:
         drive = drive.first(scans)
-    guesses = GuessKind(kind, motion, drift, offset_m, turn_deg, seed)
-    click.echo(f"guesses: {guesses.made_of()}", err=True)
     if drive.note:
         click.echo(f"recording: {drive.note}", err=True)
-    source = guesses.source(drive, rate_hz)
+    guesses = GuessKind(kind, motion, drift, offset_m, turn_deg, seed)
+    motions = guesses.motions(drive)
+    made_of = guesses.made_of(motions)
+    click.echo(f"guesses: {made_of}", err=True)
+    source = guesses.source(drive, motions, rate_hz)
     points = None if no_map else _map_of(recording, drive, map_path)
     if points is not None and (warning := why_coarse(points)):
         click.echo(f"the map is coarse: {warning}", err=True)
@@ -156,7 +158,7 @@ def command(
     summary = tally.summary()
     if complaint := tally.complaint():
         click.echo(f"of the first lost scan the matcher says: {complaint}", err=True)
-    print_json({"guesses": guesses.made_of(), **as_json(summary)}) if as_json_ else _print(
+    print_json({"guesses": made_of, **as_json(summary)}) if as_json_ else _print(
         summary, deadline_ms
     )
     sys.exit(0 if summary.is_good else 1)

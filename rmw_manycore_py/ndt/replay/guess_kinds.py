@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -30,6 +30,14 @@ MOTION = {
 
 
 @dataclass(frozen=True)
+class Motions:
+    """The motions between scans, without error, and why some of them are the reference's."""
+
+    between: Sequence[Matrix] = ()
+    untold: Sequence[str] = ()
+
+
+@dataclass(frozen=True)
 class GuessKind:
     """What `--guess` and the options beside it say."""
 
@@ -40,13 +48,39 @@ class GuessKind:
     turn_deg: float
     seed: int
 
-    def made_of(self) -> str:
+    def motions(self, drive: Recording) -> Motions:
+        """Return the motions that this kind of guess needs.
+
+        Where two scans do not tell their motion it is the reference's.
+        """
+        if self.kind in ("perturbed", "velocity"):
+            return Motions()
+        reference = list(motion.of_reference(drive))
+        if self.motion == "reference":
+            return Motions(reference)
+        untold: list[str] = []
+        found = motion.of_scans(drive, untold.append)
+        console = Console(stderr=True)
+        told = track(found, "motion", len(reference), console=console, transient=True)
+        between = [
+            theirs if own is None else own for own, theirs in zip(told, reference, strict=True)
+        ]
+        return Motions(between, untold)
+
+    def made_of(self, motions: Motions) -> str:
         """Say what the guesses are made of."""
         moved_by = f"{MOTION[self.motion]} with {self.drift:.0%} error"
-        text = MADE_OF[self.kind]
-        return text.format(motion=moved_by, offset=self.offset_m, turn=self.turn_deg)
+        made_of = MADE_OF[self.kind].format(
+            motion=moved_by, offset=self.offset_m, turn=self.turn_deg
+        )
+        if not motions.untold:
+            return made_of
+        count = f"{len(motions.untold)} of {len(motions.between)} motions"
+        return (
+            f"{made_of}; {count} the REFERENCE's, untold by scans (the first {motions.untold[0]})"
+        )
 
-    def source(self, drive: Recording, rate_hz: float | None) -> GuessSource:
+    def source(self, drive: Recording, motions: Motions, rate_hz: float | None) -> GuessSource:
         """Return the source of guesses for a recording played by its stamps or at a rate."""
         generator = np.random.default_rng(self.seed)
         first_pose = poses.perturbed(drive.poses[0], FIRST_OFF_M, FIRST_OFF_RAD, generator)
@@ -55,23 +89,8 @@ class GuessKind:
             return Guesses(first_pose, perturbed)
         if self.kind == "velocity":
             return Guesses(first_pose, prediction.Velocity(first_pose))
-        motions = [motion.drifted(one, self.drift, generator) for one in self._motions(drive)]
+        drifted = [motion.drifted(one, self.drift, generator) for one in motions.between]
         if self.kind == "odometry":
-            return Guesses(first_pose, prediction.Odometry(first_pose, motions))
+            return Guesses(first_pose, prediction.Odometry(first_pose, drifted))
         times_s = drive.times_s() if rate_hz is None else np.arange(len(drive)) / rate_hz
-        return StackInputs(first_pose, motions, np.diff(times_s))
-
-    def _motions(self, drive: Recording) -> Iterable[Matrix]:
-        if self.motion == "reference":
-            return motion.of_reference(drive)
-        console = Console(stderr=True)
-        doubts: list[str] = []
-        found = motion.of_scans(drive, doubts.append)
-        motions = list(track(found, "motion", len(drive) - 1, console=console))
-        if doubts:
-            console.print(
-                f"motion: {len(doubts)} of {len(motions)} may be wrong, the first {doubts[0]}; "
-                "compare with --motion reference",
-                soft_wrap=True,
-            )
-        return motions
+        return StackInputs(first_pose, drifted, np.diff(times_s))

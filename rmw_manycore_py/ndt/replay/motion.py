@@ -25,7 +25,7 @@ VOXEL_M = 0.25  # scans are thinned to it, which leaves some ten thousand points
 # From a guess beside the truth an alignment finds back over ten degrees and two metres.
 TURNS_RAD = np.radians(np.arange(-60.0, 61.0, 15.0))
 # Of right motions 2.8 to 3.4, of wrong ones 1.6 to 2.7 and rarely more (docs/design/ndt_node.md).
-LEAST_LIKELIHOOD = 2.5
+LEAST_LIKELIHOOD = 2.75
 
 
 def of_reference(drive: Recording) -> Iterator[Matrix]:
@@ -34,12 +34,10 @@ def of_reference(drive: Recording) -> Iterator[Matrix]:
         yield poses.inverse(before) @ after
 
 
-def of_scans(drive: Recording, doubt: Callable[[str], None]) -> Iterator[Matrix]:
+def of_scans(drive: Recording, doubt: Callable[[str], None]) -> Iterator[Matrix | None]:
     """Yield the motions by which each scan fits the one before it best; no pose is looked at.
 
-    Where two scans do not fit at all the motion is that of the scans before.
-
-    :param doubt: is told of each motion that may be wrong.
+    :param doubt: is told why, where the scans do not tell their motion (None).
     """
     matcher = SerialMatcher(MatcherOptions(max_iterations=100))  # turned guesses take long
     motion: Matrix = np.eye(4)
@@ -47,12 +45,14 @@ def of_scans(drive: Recording, doubt: Callable[[str], None]) -> Iterator[Matrix]
     for index in range(1, len(drive)):
         after = _thinned(drive, index)
         fit = _best_fit(matcher, before, after, motion)
-        if problem := _problem(fit):
-            doubt(f"from scan {index - 1} to scan {index}: {problem}")
-        if fit is not None and fit.converged:
-            motion = fit.T_map_sensor
+        problem = _problem(fit)
         before = after
-        yield motion
+        if fit is None or problem:
+            doubt(f"from scan {index - 1} to scan {index}: {problem}")
+            yield None
+        else:
+            motion = fit.T_map_sensor
+            yield motion
 
 
 def drifted(motion: Matrix, drift: float, generator: np.random.Generator) -> Matrix:
@@ -74,7 +74,7 @@ def _best_fit(matcher: Matcher, before: Points, after: Points, last: Matrix) -> 
 
 
 def _problem(fit: Alignment | None) -> str:
-    """Say why a motion may be wrong, "" where it is trusted."""
+    """Say why a fit may be wrong, "" where it is trusted."""
     if fit is None:
         return "the former has too few points"
     if not fit.converged:

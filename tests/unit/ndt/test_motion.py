@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The motion between scans is found from the scans alone, or said to be doubtful."""
+"""The motion between scans is found from the scans alone, or said not to be told by them."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from rmw_manycore_py.ndt.lidar import Lidar
 from rmw_manycore_py.ndt.poses import angle_rad, distance_m, from_xyz_rpy
 from rmw_manycore_py.ndt.recording import Recording
 from rmw_manycore_py.ndt.replay import motion
+from rmw_manycore_py.ndt.replay.guess_kinds import GuessKind
 from rmw_manycore_py.ndt.street import build_street
 
 pytestmark = pytest.mark.unit
@@ -52,27 +53,27 @@ def test_no_pose_is_looked_at():
     np.testing.assert_array_equal(*found)
 
 
-def test_scans_of_different_places_are_doubted():
+def test_scans_of_different_places_do_not_tell_it():
     drive = recorded(poses_along([0.0, 0.8, 30.0, 30.8]))
     doubts: list[str] = []
     found = list(motion.of_scans(drive, doubts.append))
     assert len(doubts) == 1
     assert doubts[0].startswith("from scan 1 to scan 2: ")
-    for index in (0, 2):
-        assert distance_m(found[index], from_xyz_rpy((0.8, 0.0, 0.0), (0.0, 0.0, 0.0))) < 0.1
+    assert found[1] is None
+    for told in (found[0], found[2]):
+        assert distance_m(told, from_xyz_rpy((0.8, 0.0, 0.0), (0.0, 0.0, 0.0))) < 0.1
 
 
-def test_beside_a_scan_without_points_the_motion_is_that_of_before():
+def test_what_scans_do_not_tell_is_taken_from_the_reference_and_said():
     drive = recorded(poses_along(np.arange(4) * 0.8))
     drive.scans[2] = np.zeros((0, 3), np.float32)
-    doubts: list[str] = []
-    found = list(motion.of_scans(drive, doubts.append))
-    assert [doubt.partition(":")[0] for doubt in doubts] == [
-        "from scan 1 to scan 2",
-        "from scan 2 to scan 3",
-    ]
-    np.testing.assert_array_equal(found[1], found[0])
-    np.testing.assert_array_equal(found[2], found[0])
+    guesses = GuessKind("odometry", "scans", 0.05, 0.5, 3.0, SEED)
+    motions = guesses.motions(drive)
+    reference = list(motion.of_reference(drive))
+    np.testing.assert_array_equal(motions.between[1:], reference[1:])
+    assert not np.array_equal(motions.between[0], reference[0])
+    assert "2 of 3 motions the REFERENCE's" in guesses.made_of(motions)
+    assert "from scan 1 to scan 2: " in guesses.made_of(motions)
 
 
 def test_drift_is_a_share_of_the_motion():
