@@ -28,11 +28,14 @@ class SomeScans:
         return self.scans[int(self.indices[index])]
 
 
-def recorded(path: Path, scans: Scans, count: int, stamps_s: Matrix, poses: PoseLine) -> Recording:
+def recorded(
+    path: Path, scans: Scans, count: int, stamps_s: Matrix, poses: PoseLine, note: str = ""
+) -> Recording:
     """Return a recording of `count` scans, with the poses at their stamps or one pose for each.
 
-    Scans before the first pose, after the last or in a gap between them are left out; `note` says
-    how many. Neither stamps on both sides nor equal numbers: an error.
+    Scans before the first pose, after the last or in a gap between them are left out; the
+    recording's note says how many, besides `note`. Neither stamps on both sides nor equal numbers:
+    an error.
     """
     if len(stamps_s) not in (0, count):
         raise ManycoreError(f"{path}: {count} scans, but {len(stamps_s)} times", EXIT_BAD_INPUT)
@@ -41,12 +44,13 @@ def recorded(path: Path, scans: Scans, count: int, stamps_s: Matrix, poses: Pose
     if len(poses.poses) == count:
         stamps = stamps_s if len(stamps_s) else poses.stamps
         if not len(stamps_s) or not len(poses.stamps):
-            return Recording(scans, poses.poses, stamps, str(path))
+            return Recording(scans, poses.poses, stamps, _note(path, note))
     if len(stamps_s) and len(poses.stamps):
         known, T = poses.at(stamps_s)
         if len(known):
-            note = f"{path}: {count - len(known)} of {count} scans have no pose"
-            return Recording(SomeScans(scans, known), T, stamps_s[known], note)
+            left_out = count - len(known)
+            lost = f"{left_out} of {count} scans have no pose" if left_out else ""
+            return Recording(SomeScans(scans, known), T, stamps_s[known], _note(path, note, lost))
         found = f"scans from {stamps_s[0]:.3f} to {stamps_s[-1]:.3f} s, poses from "
         found += f"{poses.stamps[0]:.3f} to {poses.stamps[-1]:.3f} s"
         raise ManycoreError(f"{path}: no scan has a pose near its time: {found}", EXIT_BAD_INPUT)
@@ -55,3 +59,9 @@ def recorded(path: Path, scans: Scans, count: int, stamps_s: Matrix, poses: Pose
         "both (scans: times.txt or names; poses: TUM)",
         EXIT_BAD_INPUT,
     )
+
+
+def _note(path: Path, *remarks: str) -> str:
+    """Return the path with what is to be said of it."""
+    said = "; ".join(remark for remark in remarks if remark)
+    return f"{path}: {said}" if said else str(path)

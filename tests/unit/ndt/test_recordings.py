@@ -1,9 +1,8 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Recordings of all kinds that users bring: bags, folders, poses, stamps in any unit."""
+"""Recordings of all kinds that users bring but bags: folders, poses, stamps in any unit."""
 
 from __future__ import annotations
 
-import sqlite3
 from pathlib import Path
 
 import numpy as np
@@ -91,83 +90,6 @@ def test_scans_of_other_kinds(tmp_path, suffix):
             write_points(tmp_path / f"scan_{i}{suffix}", holes)
     (tmp_path / "poses.txt").write_text(kitti(POSES))
     check(open_recording(tmp_path))
-
-
-def test_a_bag(tmp_path):
-    """A rosbag2 of Autoware's kind: the LiDAR is mounted on base_link, whose odometry is known."""
-    T_base_lidar = from_xyz_rpy((1.0, 0.0, 2.0), (0.0, 0.1, 0.3))
-    write_bag(tmp_path / "bag", POSES @ inverse(T_base_lidar), T_base_lidar)
-    drive = open_recording(tmp_path / "bag")
-    check(drive)
-    np.testing.assert_allclose(drive.stamps, T0_S + 0.1 * np.arange(12), atol=1e-6)
-    with pytest.raises(ManycoreError, match=r"expected the topic /x .*found /points .*--topic"):
-        open_recording(tmp_path / "bag", topic="/x")
-
-
-def test_a_bag_with_a_broken_message(tmp_path):
-    write_bag(tmp_path / "bag", POSES, np.eye(4))
-    with sqlite3.connect(next((tmp_path / "bag").glob("*.db3"))) as database:
-        database.execute("UPDATE messages SET data = X'00010000' WHERE id = 5")
-    with pytest.raises(ManycoreError, match="a broken bag"):
-        open_recording(tmp_path / "bag")
-
-
-def write_bag(path: Path, poses: np.ndarray, T_base_lidar: np.ndarray) -> None:
-    from rosbags.rosbag2 import Writer
-    from rosbags.typesys import Stores, get_typestore
-
-    store = get_typestore(Stores.ROS2_JAZZY)
-    T = store.types
-
-    def header(index: int, frame: str):
-        ns = 100_000_000 * index
-        stamp = T["builtin_interfaces/msg/Time"](int(T0_S) + ns // 10**9, ns % 10**9)
-        return T["std_msgs/msg/Header"](stamp, frame)
-
-    def quaternion(M: np.ndarray):
-        return T["geometry_msgs/msg/Quaternion"](*map(float, to_quaternion(M[:3, :3])))
-
-    def cloud(index: int):
-        points = SCANS[index]
-        kind = T["sensor_msgs/msg/PointField"]
-        fields = [kind(name, 4 * i, 7, 1) for i, name in enumerate("xyz")]
-        data, size = points.view(np.uint8).ravel(), len(points)
-        head = header(index, "lidar")
-        return T["sensor_msgs/msg/PointCloud2"](
-            head, 1, size, fields, False, 12, 12 * size, data, True
-        )
-
-    def odometry(index: int):
-        point = T["geometry_msgs/msg/Point"](*map(float, poses[index][:3, 3]))
-        pose = T["geometry_msgs/msg/Pose"](point, quaternion(poses[index]))
-        zero = T["geometry_msgs/msg/Vector3"](0.0, 0.0, 0.0)
-        twist = T["geometry_msgs/msg/Twist"](zero, zero)
-        return T["nav_msgs/msg/Odometry"](
-            header(index, "map"),
-            "base_link",
-            T["geometry_msgs/msg/PoseWithCovariance"](pose, np.zeros(36)),
-            T["geometry_msgs/msg/TwistWithCovariance"](twist, np.zeros(36)),
-        )
-
-    mounted = T["geometry_msgs/msg/TransformStamped"](
-        header(0, "base_link"),
-        "lidar",
-        T["geometry_msgs/msg/Transform"](
-            T["geometry_msgs/msg/Vector3"](*map(float, T_base_lidar[:3, 3])),
-            quaternion(T_base_lidar),
-        ),
-    )
-    messages = [("/tf_static", T["tf2_msgs/msg/TFMessage"]([mounted]), 0)]
-    for index in range(len(poses)):
-        messages += [("/odom", odometry(index), index), ("/points", cloud(index), index)]
-    with Writer(path, version=9) as writer:
-        topics = {}
-        for topic, message, index in messages:
-            kind = message.__msgtype__
-            if topic not in topics:
-                topics[topic] = writer.add_connection(topic, kind, typestore=store)
-            at_ns = round(1e9 * T0_S) + 100_000_000 * index
-            writer.write(topics[topic], at_ns, store.serialize_cdr(message, kind))
 
 
 @pytest.mark.parametrize("unit_s", [1.0, 1e-3, 1e-6, 1e-9])
