@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import weakref
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -40,9 +40,10 @@ class BagScans:
     reader: Any
     connections: tuple[Any, ...]  # of one topic: one for each publisher that it had
     times_ns: tuple[int, ...]  # when they were recorded
+    closing: ExitStack  # closes the bag once, however often it is asked to
 
     def __post_init__(self) -> None:
-        weakref.finalize(self, _close, self.reader)
+        weakref.finalize(self, self.closing.close)
 
     def __getitem__(self, index: int) -> Points:
         """Read a scan; a broken one is a ManycoreError."""
@@ -61,19 +62,21 @@ class BagScans:
 
 def open_bag(path: Path, poses_path: Path | None, topic: str, pose_topic: str) -> Recording:
     """Return the recording in a bag; of topics that are not named there must be one."""
-    reader = _opened(path)
+    closing = ExitStack()
     try:
-        return _recording_of(path, reader, poses_path, topic, pose_topic)
+        return _recording_of(path, closing, poses_path, topic, pose_topic)
     except ManycoreError:
-        _close(reader)
+        closing.close()
         raise
 
 
 def _recording_of(
-    path: Path, reader: Any, poses_path: Path | None, topic: str, pose_topic: str
+    path: Path, closing: ExitStack, poses_path: Path | None, topic: str, pose_topic: str
 ) -> Recording:
     from rmw_manycore_py.ndt.nodes.conversions import seconds
 
+    reader = _opened(path)
+    closing.callback(reader.close)
     connections = connections_of(path, reader, {CLOUD}, topic, "--topic")
     stamps, times, frames = [], [], []
     with _bad_bag(f"{path}: a broken bag"):
@@ -86,7 +89,7 @@ def _recording_of(
             line, note = read_poses(poses_path), ""
         else:
             line, note = poses_of(path, reader, pose_topic, frames[0] if frames else "")
-    scans = BagScans(reader, connections, tuple(times))
+    scans = BagScans(reader, connections, tuple(times), closing)
     return recorded(path, scans, len(times), np.array(stamps), line, note)
 
 
@@ -99,11 +102,6 @@ def _bad_bag(what: str) -> Iterator[None]:
         raise
     except Exception as error:  # rosbags and its decoders do not promise a class of errors
         raise ManycoreError(f"{what}: {error!r}", EXIT_BAD_INPUT) from error
-
-
-def _close(reader: Any) -> None:
-    if reader.isopen:
-        reader.close()
 
 
 def _opened(path: Path) -> Any:
