@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import yaml
 from support import IS_MANYCORE, MAPFILES, PATIENCE_S, REPOSITORY, Program, manycore_command
 
 pytestmark = [
@@ -114,6 +115,32 @@ def test_motion_of_the_reference(start, offload, street):
     figures = replayed(start, street / "drive.npz", "--motion", "reference")
     assert figures["within_share"] == 1.0
     assert "REFERENCE's motion with 5% error" in figures["guesses"]
+
+
+def test_no_scan_is_lost_while_maps_are_swapped(start, platform, tmp_path):
+    """The matcher reads tiles around the vehicle while it drives."""
+    drive, tiles = tmp_path / "drive.npz", tmp_path / "tiles"
+    for arguments in (
+        ("simulate", tmp_path, "--length", "30"),
+        ("map", drive, "-o", tiles, "--tile-size", "5", "--format", "npz"),
+    ):
+        made = start(manycore_command("ndt", *arguments))
+        assert made.wait(LONG_S) == 0, made
+    mapfile = yaml.safe_load((MAPFILES / "ndt_offload.yaml").read_text())
+    mapfile["nodes"]["ndt_scan_matcher"]["parameters"] = {
+        "activated": True,
+        "map_path": str(tiles),
+        "dynamic_map_loading.map_radius": 50.0,
+        "dynamic_map_loading.lidar_radius": 40.0,
+        "dynamic_map_loading.update_distance": 5.0,
+    }
+    (tmp_path / "tiles.yaml").write_text(yaml.safe_dump(mapfile))
+    matcher = start(manycore_command("run", tmp_path / "tiles.yaml"))
+    figures = replayed(start, drive, "--no-map")
+    assert figures["answered"] == figures["scans"] == 37
+    assert figures["within_share"] == 1.0
+    assert matcher.stop() == 0, matcher
+    assert matcher.output.count("matching to a map of") >= 4
 
 
 @needs_data

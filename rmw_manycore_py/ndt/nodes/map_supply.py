@@ -40,7 +40,7 @@ class MapSupply:
         self._vehicle: tuple[float, float] | None = None
         self._problem = ""
         self._warning = ""
-        self._duration_ms = 0.0
+        self.duration_ms = 0.0
         self.is_set = False
 
     def on_message(self, message: Any) -> None:
@@ -72,7 +72,7 @@ class MapSupply:
             return None
         self.is_set = True
         self._warning = built.warning
-        self._duration_ms = built.duration_ms
+        self.duration_ms = built.duration_ms
         return built.voxel_map
 
     def is_leaving(self, x: float, y: float) -> bool:
@@ -93,7 +93,7 @@ class MapSupply:
         """Add the state of the map to a report."""
         diagnostics.value("is_set_last_update_position", self._vehicle is not None)
         diagnostics.value("is_set_map_points", self.is_set)
-        diagnostics.value("map_update_execution_time", round(self._duration_ms, 3))
+        diagnostics.value("map_update_execution_time", round(self.duration_ms, 3))
         if self._problem:
             diagnostics.error(f"the map cannot be used: {self._problem}")
         if self._warning:

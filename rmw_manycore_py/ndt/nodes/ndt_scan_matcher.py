@@ -281,6 +281,8 @@ class NdtScanMatcher(Node):
         if voxel_map is not None:
             self._matcher.set_map(voxel_map)
             self._memory.hold(self._matcher.shared_bytes())
+            built = f"{voxel_map.voxels} voxels, built in {self._map.duration_ms:.0f} ms"
+            self.get_logger().info(f"matching to a map of {built}")
 
     def _make_room(self, voxel_map: VoxelMap) -> None:
         self._memory.hold(self._matcher.shared_bytes(next_map=voxel_map))
