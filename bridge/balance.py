@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
-LEAST_DIFFERENCE = 0.02  # below it no move is worth its while
+LEAST_DIFFERENCE = 0.005  # below it no move is worth its while
 LEAST_GAIN = 0.3  # of the difference between the lanes
 PATIENCE = 3  # looks in a row that want a move
 

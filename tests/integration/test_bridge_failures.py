@@ -6,7 +6,9 @@ from __future__ import annotations
 import json
 import os
 import signal
+import socket
 import subprocess
+from contextlib import ExitStack, suppress
 
 import pytest
 from bridging import OUTSIDE, Bridge, domain_of
@@ -107,6 +109,18 @@ def test_a_bridge_file_of_domain_bridge(start, tmp_path, platform) -> None:
     start(command).wait_for(r"\(bridge inward\) started")
     start(example_command("talker"), **OUTSIDE)
     start(example_command("listener", "--ros-args", "-r", "chatter:=news")).wait_for(HEARD)
+
+
+def test_ports_in_use_are_passed_over(start, platform) -> None:
+    """Those that the first participants of the domain would take (DDSI-RTPS 9.6.2.3)."""
+    first = 7400 + 250 * domain_of(platform) + 10
+    with ExitStack() as stack:
+        for port in range(first, first + 6):
+            taken = stack.enter_context(socket.socket(socket.AF_INET, socket.SOCK_DGRAM))
+            with suppress(OSError):  # it is in use already
+                taken.bind(("", port))
+        start(manycore_command("run", TALKER_LISTENER))
+        start(example_command("listener"), **OUTSIDE).wait_for(HEARD)
 
 
 def test_a_loop_is_refused(start, tmp_path, platform) -> None:

@@ -34,12 +34,12 @@ def count_up() -> None:
 
         def counter(topic: str) -> object:
             publisher = node.create_publisher(type(message()), topic, DEPTH)
-            numbers, size = iter(range(2**31)), 60_000 if topic in HEAVY else 10
+            numbers = iter(range(2**31))
+            counted = message(data=array.array("B", bytes(60_000 if topic in HEAVY else 10)))
 
             def publish() -> None:
-                fresh = message(data=array.array("B", bytes(size)))
-                fresh.layout.data_offset = next(numbers)
-                publisher.publish(fresh)
+                counted.layout.data_offset = next(numbers)
+                publisher.publish(counted)
 
             return publish
 
