@@ -141,8 +141,8 @@ def test_a_single_file_is_everywhere(tmp_path):
         ("map.las", b"", "ends in .pcd, .ply, .npz"),
         ("map.npz", b"PK\3\4 broken", "cannot be read as npz"),
         ("map.npz", b"", "cannot be read as npz"),
-        ("map.pcd", b"# .PCD v0.7\nrubbish", "it has no header"),
-        ("map.pcd", b"", "it has no header"),
+        ("map.pcd", b"# .PCD v0.7\nrubbish", "its header is broken: fields: Field required"),
+        ("map.pcd", b"", "its header is broken: fields: Field required"),
         pytest.param("map.ply", b"ply\nrubbish", "no points", marks=needs_open3d),
     ],
 )

@@ -3,11 +3,13 @@
 
 from __future__ import annotations
 
+from itertools import chain
+
 import numpy as np
 import pytest
 
-from rmw_manycore_py.ndt.lzf import decompress
-from rmw_manycore_py.ndt.map_file import read_cloud
+from rmw_manycore_py.errors import ManycoreError
+from rmw_manycore_py.ndt.map_file import read_cloud, read_points
 from rmw_manycore_py.ndt.pcd_file import read_pcd
 
 pytestmark = pytest.mark.unit
@@ -76,8 +78,8 @@ def body_of(records: np.ndarray, data: str) -> bytes:
         return records.tobytes()
     if data == "binary_compressed":
         return packed(b"".join(records[name].tobytes() for name in records.dtype.names))
-    rows = [np.concatenate([np.ravel(value) for value in record]) for record in records.tolist()]
-    return "".join(" ".join(map(repr, row.tolist())) + "\n" for row in rows).encode()
+    rows = ([np.ravel(value).tolist() for value in record] for record in records.tolist())
+    return "".join(" ".join(map(repr, chain(*row))) + "\n" for row in rows).encode()
 
 
 @pytest.mark.parametrize("data", ["ascii", "binary", "binary_compressed"])
@@ -94,60 +96,35 @@ def test_layouts(tmp_path, dtype, data):
 
 
 def test_as_windows_writes_it_with_holes(tmp_path):
-    """Lines end with CR LF, and there is no COUNT."""
-    text = header_of(PLAIN, "ascii", points=2).decode().replace("COUNT 1 1 1\n", "")
-    (tmp_path / "map.pcd").write_bytes(
-        (text + "1 2 3\nnan NaN nan\n").replace("\n", "\r\n").encode()
-    )
+    """Lines end with CR LF."""
+    text = header_of(PLAIN, "ascii", points=2).decode() + "1 2 3\nnan NaN nan\n"
+    (tmp_path / "map.pcd").write_bytes(text.replace("\n", "\r\n").encode())
     np.testing.assert_array_equal(read_pcd(tmp_path / "map.pcd"), [[1, 2, 3], [np.nan] * 3])
 
 
 @pytest.mark.parametrize(
-    ("content", "words"),
+    "content",
     [
-        (header_of(PLAIN, "binary") + bytes(100), "60 points need 1440 bytes, found 100"),
-        (header_of(PLAIN, "ascii") + b"1 2 3\n", "60 points need 60 lines, found 1"),
-        (header_of(PLAIN, "ascii", points=1) + b"1 2\n", "invalid column index"),
-        (header_of(PLAIN, "ascii", points=1) + b"1 2 three\n", "could not convert"),
-        (header_of(PLAIN, "zip"), "DATA is zip, expected"),
-        (header_of(PLAIN, "binary", names="a b c"), "no field x, y, z; its fields: a b c"),
-        (header_of(PLAIN, "binary", sizes="3 3 3"), "its header is broken"),
-        (header_of(PLAIN, "binary", sizes="8 8"), "its header is broken"),
-        (header_of(PLAIN, "binary", types="F F X"), "its header is broken"),
-        (header_of(PLAIN, "binary", points="many"), "its header is broken"),
-        (header_of(PLAIN, "binary", points=-1), "its header is broken"),
-        (header_of(PLAIN, "binary", counts="1 1 -1"), "its header is broken"),
-        (header_of(PLAIN, "binary_compressed") + bytes(3), "its data are cut off"),
-        (header_of(PLAIN, "binary_compressed") + packed(bytes(10)), "need 1440 bytes, found 10"),
+        header_of(PLAIN, "binary") + bytes(100),
+        header_of(PLAIN, "ascii") + b"1 2 3\n",
+        header_of(PLAIN, "ascii", points=1) + b"1 2\n",
+        header_of(PLAIN, "ascii", points=1) + b"1 2 three\n",
+        header_of(PLAIN, "zip"),
+        header_of(PLAIN, "binary", names="a b c") + records_of(PLAIN).tobytes(),
+        header_of(PLAIN, "binary", sizes="3 3 3"),
+        header_of(PLAIN, "binary", sizes="8 8"),
+        header_of(PLAIN, "binary", types="F F X"),
+        header_of(PLAIN, "binary", points="many"),
+        header_of(PLAIN, "binary", points=-1),
+        header_of(PLAIN, "binary", counts="1 1 -1"),
+        header_of(PLAIN, "binary_compressed") + bytes(3),
+        header_of(PLAIN, "binary_compressed") + packed(bytes(10)),
+        header_of(PLAIN, "binary_compressed") + packed(bytes(1440))[:700],
+        b"",
+        b"no header\n" * 100,
     ],
 )
-def test_broken_files(tmp_path, content, words):
+def test_broken_files(tmp_path, content):
     (tmp_path / "map.pcd").write_bytes(content)
-    with pytest.raises(ValueError, match=words):
-        read_pcd(tmp_path / "map.pcd")
-
-
-@pytest.mark.parametrize(
-    ("data", "expected"),
-    [
-        (b"", b""),
-        (b"\x02abc\x20\x02", b"abcabc"),
-        (b"\x00a\xe0\x05\x00", b"a" * 15),  # a long repetition, of what it makes itself
-        (b"\x01ab\x60\x01\x00c", b"ab" + b"ababa" + b"c"),
-    ],
-)
-def test_lzf(data, expected):
-    assert decompress(data, len(expected)) == expected
-
-
-@pytest.mark.parametrize(
-    ("data", "words"),
-    [
-        (b"\x20\x00", "before their beginning"),
-        (b"\x00a\xe0", "cut off"),
-        (b"\x05ab", "give 2 bytes, expected 6"),
-    ],
-)
-def test_broken_lzf(data, words):
-    with pytest.raises(ValueError, match=words):
-        decompress(data, 6)
+    with pytest.raises(ManycoreError, match=r"map\.pcd: .{10}"):
+        read_points(tmp_path / "map.pcd")
