@@ -73,7 +73,7 @@ class MapBuilder:
             if points is not None:
                 voxel_map = VoxelMap.from_points(points, self._options)
                 warning = why_coarse(points)
-        except (ManycoreError, ValueError, MemoryError) as error:
+        except (ManycoreError, OSError, ValueError, MemoryError) as error:
             problem = str(error) or type(error).__name__
         duration_ms = 1e3 * (time.perf_counter() - start)
         return BuiltMap(voxel_map, points, problem, warning, duration_ms)

@@ -61,7 +61,17 @@ class TiledMap:
 
 
 def open_map(path: Path, leaf_m: float = 0.0) -> TiledMap:
-    """Return a map that is one file (its only tile, without limits) or a folder of them."""
+    """Return a map that is one file (its only tile, without limits) or a folder of them.
+
+    What is none, or cannot be read, is a ManycoreError.
+    """
+    try:
+        return _opened(path, leaf_m)
+    except OSError as error:
+        raise ManycoreError(f"map {path}: {error.strerror}", EXIT_BAD_INPUT) from error
+
+
+def _opened(path: Path, leaf_m: float) -> TiledMap:
     if not path.is_dir():
         points = read_points(path, leaf_m)
         everywhere = Tile(path, (-np.inf, -np.inf), (np.inf, np.inf))

@@ -14,6 +14,7 @@
 from __future__ import annotations
 
 import zipfile
+import zlib
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -32,6 +33,15 @@ DEFAULT_SCALE_M = 0.002
 DEFAULT_PERIOD_S = 0.1  # of recordings without stamps: the 10 Hz of most LiDARs
 INT16_MAX = 32767
 SINGLES = (np.int8, np.uint8, np.int16, np.uint16, np.float16, np.float32)  # fit into float32
+# What numpy raises of damaged files; the last one of a compression that zip files may name.
+UNREADABLE = (
+    OSError,
+    ValueError,
+    EOFError,
+    zipfile.BadZipFile,
+    zlib.error,
+    NotImplementedError,
+)
 
 
 class Scans(Protocol):
@@ -127,7 +137,7 @@ def load_recording(path: Path) -> Recording:
     try:
         with path.open("rb") as raw, np.load(raw, allow_pickle=False) as file:
             arrays = {name: file[name] for name in file.files}
-    except (OSError, ValueError, zipfile.BadZipFile, EOFError) as error:
+    except UNREADABLE as error:
         raise _bad(path, f"cannot be read as npz: {error}") from error
     missing = {"points", "offsets", "poses"} - arrays.keys()
     if missing:

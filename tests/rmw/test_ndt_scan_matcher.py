@@ -159,6 +159,7 @@ BAD_SCANS = {
     "too near": (street_scan() * np.float32(0.01), "required_distance"),
     "cut off": (cut_off(), "bytes of data, found 10"),
     "unknown frame": (in_frame("lidar"), "Please publish TF lidar to base_link"),
+    "no frame": (in_frame(""), "Please set its frame_id"),
     "of nowhere": (GENERATOR.uniform(-40, 40, (3000, 3)).astype(np.float32), "score"),
 }
 BAD_GUESSES = {
@@ -331,6 +332,62 @@ def test_maps_that_are_none(matched):
     assert error_m(matched.pose_of(street_scan(), NEAR)) < 0.1
 
 
+def test_a_map_of_another_frame_is_refused(matched):
+    matched.pose_of(street_scan())
+    matched.maps.publish(encode(street_map() + np.float32(9.0), matched.stamp(), "odom"))
+    words = "pointcloud_map is in the frame 'odom', expected 'map'"
+    spin_until(matched.node, lambda: any(words in s.message for _, s in matched.reports))
+    assert error_m(matched.pose_of(street_scan(), NEAR)) < 0.1
+
+
+def test_regularization_poses_that_are_none(stack, start):
+    """One that is not finite is passed over, one of another place not used, one of here is."""
+    program = start(matcher_command(ndt__regularization__enable="true"), cluster=2)
+    stack.wait_for_matcher()
+    stack.publish_map(street_map())
+    stack.pose_of(street_scan())
+    topic = "regularization_pose_with_covariance"
+    publisher = stack.node.create_publisher(PoseWithCovarianceStamped, topic, 10)
+    spin_until(stack.node, publisher.get_subscription_count)
+
+    def send(x: float) -> DiagnosticStatus:
+        message = guess_with(x)
+        message.header.stamp = stack.stamp()
+        publisher.publish(message)
+        stamp_ns = nanoseconds(message.header.stamp)
+        return stack.report_of(stamp_ns, "regularization_pose_subscriber_status")
+
+    for value in (float("nan"), float("inf"), 1e300):
+        report = send(value)
+        assert (report.level, "passed over" in report.message) == (ERROR, True)
+    for _ in range(2):
+        assert send(1e4).level == b"\x00"
+    stamp_ns = stack.send(street_scan(), NEAR)
+    assert "m from the guess: not used" in stack.report_of(stamp_ns).message
+    spin_until(stack.node, lambda: stamp_ns in stack.poses)
+    assert error_m(stack.poses[stamp_ns]) < 0.1
+    for _ in range(2):
+        assert send(TRUTH[0, 3]).level == b"\x00"
+    assert error_m(stack.pose_of(street_scan(), NEAR)) < 0.1
+    assert "passed over" in program.output
+    assert "not used" in program.output
+
+
+def test_clocks_that_differ(matched):
+    """Scan and guess of a time ahead belong together: matched, with a warning."""
+    matched.pose_of(street_scan())
+    ahead = matched.stamp()
+    ahead.sec += 1000
+    for _ in range(2):
+        matched.guesses.publish(pose_with_covariance(NEAR, COVARIANCE, ahead, "map"))
+    report = matched.report_of(nanoseconds(ahead), "initial_pose_subscriber_status")
+    assert report.level == b"\x00"
+    matched.scans.publish(encode(street_scan(), ahead, "base_link"))
+    assert "s ahead: check the clocks" in matched.report_of(nanoseconds(ahead)).message
+    spin_until(matched.node, lambda: nanoseconds(ahead) in matched.poses)
+    assert error_m(matched.pose_of(street_scan(), NEAR)) < 0.1
+
+
 def test_the_sensor_is_mounted_somewhere(matched):
     T_base_lidar = from_xyz_rpy((1.2, 0.0, 0.4), (0.0, 0.1, 0.5))
     kept = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
@@ -408,7 +465,16 @@ def test_tiles_around_the_vehicle(stack, start, tmp_path):
             "as many numbers in either, found 1 and 6",
         ),
         ({"covariance__covariance_estimation__temperature": 0.0}, "temperature: expected more"),
+        (
+            {"score_estimation__no_ground_points__z_margin_for_ground_removal": ".nan"},
+            "removal: expected finite, found nan",
+        ),
+        ({"frame__map_frame": "''"}, "map_frame: expected text that is not empty, found ''"),
+        ({"worker_host_cpus": "[0.5]"}, "expected whole numbers, none negative, found (0.5,)"),
+        ({"worker_host_cpus": "[-1]"}, "expected whole numbers, none negative, found (-1,)"),
+        ({"worker_host_cpus": "[0, 4095]"}, "host CPU 4095 cannot be had"),
         ({"map_path": "/nonexistent.pcd"}, "no such file"),
+        ({"map_path": "a" * 300}, "File name too long"),
         ({"map_path": "/etc/passwd"}, "ends in .pcd, .ply, .npz"),
     ],
 )

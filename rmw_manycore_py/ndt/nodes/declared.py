@@ -29,7 +29,8 @@ class Range:
         if self.choices:
             return "one of " + ", ".join(str(choice) for choice in self.choices)
         limits = [("more than", self.above), ("at least", self.least), ("at most", self.most)]
-        return " and ".join(f"{word} {limit:g}" for word, limit in limits if limit is not None)
+        words = [f"{word} {limit:g}" for word, limit in limits if limit is not None]
+        return " and ".join(words) or "finite"
 
     def holds(self, value: Any) -> bool:
         """Tell whether a value is in the range; NaN never is."""
@@ -44,11 +45,15 @@ class Range:
 
 
 def parameter(name: str, default: Any, **limits: Any) -> Any:
-    """Return the field of a parameter; the limits are those of Range, or `length` of a list."""
-    length = limits.pop("length", None)
+    """Return the field of a parameter; the limits are those of Range, or `length` of a list.
+
+    Numbers are finite, texts empty only where the default is; `whole` makes a list one of CPUs and
+    the like.
+    """
+    length, whole = limits.pop("length", None), limits.pop("whole", False)
     allowed = Range(**limits) if limits else None
-    metadata = {"name": name, "default": default, "allowed": allowed, "length": length}
-    return field(default=default, metadata=metadata)
+    metadata = {"name": name, "default": default, "allowed": allowed}
+    return field(default=default, metadata={**metadata, "length": length, "whole": whole})
 
 
 def declare(node: Node, kind: type[T]) -> T:
@@ -62,7 +67,10 @@ def declare(node: Node, kind: type[T]) -> T:
     for one in fields(kind):  # type: ignore[arg-type]
         name, default = one.metadata["name"], one.metadata["default"]
         value = _declared(node, name, default)
-        expected = _expected(value, default, one.metadata["allowed"], one.metadata["length"])
+        if isinstance(default, tuple):
+            expected = _expected_list(value, one.metadata["length"], one.metadata["whole"])
+        else:
+            expected = _expected(value, default, one.metadata["allowed"])
         if expected is not None:
             problems.append(f"parameter {name}: expected {expected}, found {value!r}")
         values[one.name] = float(value) if isinstance(default, float) and not expected else value
@@ -83,29 +91,32 @@ def _declared(node: Node, name: str, default: Any) -> Any:
     return value
 
 
-def _expected(value: Any, default: Any, allowed: Range | None, length: int | None) -> str | None:
+def _expected(value: Any, default: Any, allowed: Range | None) -> str | None:
     """Return what was expected, or None for a value that is right."""
-    if isinstance(default, tuple):
-        return _expected_list(value, length)
     if isinstance(default, bool):
         return None if isinstance(value, bool) else "true or false"
     if isinstance(default, str):
-        right = isinstance(value, str)
-        kind = "text"
+        kind = "text" if allowed is None and not default else "text that is not empty"
+        right = isinstance(value, str) and (bool(value) or not default)
     elif isinstance(default, int):
-        right = isinstance(value, int) and not isinstance(value, bool)
-        kind = "a whole number"
+        kind, right = "a whole number", _is_number(value, whole=True)
     else:
-        right = isinstance(value, (int, float)) and not isinstance(value, bool)
-        kind = "a number"
+        kind, right = "a number", _is_number(value)
+        allowed = allowed or Range()
     if not right:
         return kind if allowed is None else f"{kind}, {allowed}"
     return None if allowed is None or allowed.holds(value) else str(allowed)
 
 
-def _expected_list(value: Any, length: int | None) -> str | None:
-    expected = "finite numbers" if length is None else f"{length} finite numbers"
+def _expected_list(value: Any, length: int | None, whole: bool) -> str | None:
+    kind = "whole numbers, none negative" if whole else "finite numbers"
+    expected = kind if length is None else f"{length} {kind}"
     if not isinstance(value, tuple) or (length is not None and len(value) != length):
         return expected
-    numbers = all(isinstance(one, (int, float)) and np.isfinite(one) for one in value)
-    return None if numbers else expected
+    right = all(_is_number(one, whole) and np.isfinite(one) for one in value)
+    return None if right and not (whole and any(one < 0 for one in value)) else expected
+
+
+def _is_number(value: Any, whole: bool = False) -> bool:
+    """Tell whether a value is a number, finite or not; true and false are none."""
+    return isinstance(value, int if whole else (int, float)) and not isinstance(value, bool)

@@ -3,12 +3,15 @@
 
 from __future__ import annotations
 
+import re
+import time
 from typing import Any
 
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from rclpy.node import Node
 
 REPEAT_S = 1.0  # how often the same trouble is logged
+NUMBER = re.compile(r"[-+]?\d+(\.\d+)?")  # troubles that differ in numbers alone are the same
 
 
 class Diagnostics:
@@ -18,6 +21,7 @@ class Diagnostics:
         self._node = node
         self._name = f"{node.get_name()}: {name}"
         self._publisher = node.create_publisher(DiagnosticArray, "/diagnostics", 10)
+        self._logged_s: dict[str, float] = {}  # when each trouble was logged last
         self.clear()
 
     def clear(self) -> None:
@@ -34,12 +38,14 @@ class Diagnostics:
     def warn(self, message: str) -> None:
         """Report something that a healthy system does not have."""
         self._add(DiagnosticStatus.WARN, message)
-        self._node.get_logger().warning(message, throttle_duration_sec=REPEAT_S)
+        if self._is_due(message):
+            self._node.get_logger().warning(message)
 
     def error(self, message: str) -> None:
         """Report something that somebody must repair."""
         self._add(DiagnosticStatus.ERROR, message)
-        self._node.get_logger().error(message, throttle_duration_sec=REPEAT_S)
+        if self._is_due(message):
+            self._node.get_logger().error(message)
 
     def note(self, message: str) -> None:
         """Report a warning that is not worth a line in the log."""
@@ -57,6 +63,15 @@ class Diagnostics:
         message = DiagnosticArray(status=[status])
         message.header.stamp = stamp
         self._publisher.publish(message)
+
+    def _is_due(self, message: str) -> bool:
+        """Tell whether a trouble may be logged again; others do not hide it, as rclpy's would."""
+        now_s = time.monotonic()
+        self._logged_s = {k: t for k, t in self._logged_s.items() if now_s - t < REPEAT_S}
+        trouble = NUMBER.sub("", message)
+        is_due = trouble not in self._logged_s
+        self._logged_s.setdefault(trouble, now_s)
+        return is_due
 
     def _add(self, level: bytes, message: str) -> None:
         self._level = max(self._level, level)

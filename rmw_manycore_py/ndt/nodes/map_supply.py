@@ -16,6 +16,7 @@ from rmw_manycore_py.ndt.nodes.diagnostics import Diagnostics
 from rmw_manycore_py.ndt.nodes.matcher_parameters import MatcherParameters, OwnParameters
 from rmw_manycore_py.ndt.nodes.point_cloud import decode
 from rmw_manycore_py.ndt.options import MatcherOptions
+from rmw_manycore_py.ndt.thinning import Points
 from rmw_manycore_py.ndt.voxel_map import VoxelMap
 
 
@@ -46,7 +47,16 @@ class MapSupply:
     def on_message(self, message: Any) -> None:
         """Take a map from the topic; the newest one holds."""
         if self._area is None:
-            self._builder.submit(partial(decode, message))
+            self._builder.submit(partial(self._points_of, message))
+
+    def _points_of(self, message: Any) -> Points:
+        """Return the points of a map; one of another frame would be of another place."""
+        frame = message.header.frame_id
+        if frame not in ("", self._p.map_frame):
+            raise ManycoreError(
+                f"pointcloud_map is in the frame '{frame}', expected '{self._p.map_frame}'"
+            )
+        return decode(message)
 
     def vehicle_is_at(self, x: float, y: float) -> None:
         """Load other tiles when the vehicle has moved far enough."""

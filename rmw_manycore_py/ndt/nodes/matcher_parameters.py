@@ -106,4 +106,4 @@ class OwnParameters:
     map_path: str = parameter("map_path", "")
     map_leaf_m: float = parameter("map_leaf_size", 0.0, least=0.0)
     activated: bool = parameter("activated", False)
-    worker_cpus: tuple[int, ...] = parameter("worker_host_cpus", ())
+    worker_cpus: tuple[int, ...] = parameter("worker_host_cpus", (), whole=True)

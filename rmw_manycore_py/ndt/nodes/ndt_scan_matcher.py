@@ -177,7 +177,8 @@ class NdtScanMatcher(Node):
         if self._map.is_leaving(float(guess.T[0, 3]), float(guess.T[1, 3])):
             report.note("Lidar has gone out of the map range")
         self._make_room_for(points)
-        alignment = self._matcher.align(points, guess.T, self._regularization_at(stamp_s))
+        regularization = self._regularization_at(stamp_s, guess.T, report)
+        alignment = self._matcher.align(points, guess.T, regularization)
         if not np.isfinite(alignment.T_map_sensor).all():
             raise Rejected(f"the alignment has no finite result: {alignment.why}")
         reliable = judgement.is_reliable(alignment, self._p, report)
@@ -213,6 +214,8 @@ class NdtScanMatcher(Node):
         report.value("sensor_points_delay_time_sec", round(delay_s, 4))
         if delay_s > self._p.timeout_s:
             report.warn(f"sensor points are {delay_s:.2f} s old (tolerance {self._p.timeout_s} s)")
+        elif delay_s < -self._p.timeout_s:
+            report.warn(f"sensor points are of a time {-delay_s:.2f} s ahead: check the clocks")
         if len(points) > self._own.scan_limit:
             step = -(-len(points) // self._own.scan_limit)
             report.warn(
@@ -238,7 +241,8 @@ class NdtScanMatcher(Node):
             T_base_sensor = self._frames.lookup(self._p.base_frame, frame)
         except FrameError as error:
             report.value("is_succeed_transform_sensor_points", False)
-            raise Rejected(f"{error}. Please publish TF {frame} to {self._p.base_frame}") from error
+            what = f"publish TF {frame} to {self._p.base_frame}" if frame else "set its frame_id"
+            raise Rejected(f"{error}. Please {what}") from error
         report.value("is_succeed_transform_sensor_points", True)
         return poses.transform(T_base_sensor, points)
 
@@ -253,11 +257,17 @@ class NdtScanMatcher(Node):
         self._guesses.forget_before(stamp_s)
         return guess
 
-    def _regularization_at(self, stamp_s: float) -> Matrix | None:
-        if not self._p.regularization:
+    def _regularization_at(
+        self, stamp_s: float, guess: Matrix, report: Diagnostics
+    ) -> Matrix | None:
+        pose = self._regularization.at(stamp_s) if self._p.regularization else None
+        if pose is None:
             return None
-        pose = self._regularization.at(stamp_s)
-        return None if pose is None else pose.T
+        distance_m = poses.distance_m(pose.T, guess)
+        if distance_m > UNLIMITED:  # it would outweigh the scan
+            report.warn(f"the regularization pose is {distance_m:.0f} m from the guess: not used")
+            return None
+        return pose.T
 
     def _publish_clouds(self, stamp: Any, points: Points, T_map_base: Matrix) -> None:
         self._outputs.cloud("points_aligned", stamp, points, T_map_base)

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import importlib.util
+from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
@@ -154,6 +155,27 @@ def test_broken_maps(tmp_path, name, content, words):
         read_points(path)
     assert caught.value.exit_status == EXIT_BAD_INPUT
     assert str(path) in str(caught.value)
+
+
+@pytest.mark.parametrize("place", range(0, 300, 7))
+def test_damaged_npz_files(tmp_path, place):
+    """Whatever is damaged, the error names the file; a few damages do not matter."""
+    path = tmp_path / "map.npz"
+    write_points(path, cloud(20))
+    damaged = bytearray(path.read_bytes())
+    damaged[place : place + 3] = np.random.default_rng(place).bytes(3)
+    path.write_bytes(damaged)
+    with suppress(ManycoreError):
+        read_points(path)
+    damaged[30:90] = bytes(range(60))
+    path.write_bytes(damaged)
+    with pytest.raises(ManycoreError, match=r"map\.npz"):
+        read_points(path)
+
+
+def test_maps_that_the_system_refuses(tmp_path):
+    with pytest.raises(ManycoreError, match="File name too long"):
+        open_map(tmp_path / ("a" * 300))
 
 
 def folder_with(tmp_path: Path, text: str | None) -> Path:
