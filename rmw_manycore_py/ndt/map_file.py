@@ -13,6 +13,7 @@ import numpy as np
 
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
 from rmw_manycore_py.ndt.pcd_file import read_pcd, write_pcd
+from rmw_manycore_py.ndt.ply_file import check_ply
 from rmw_manycore_py.ndt.precision import as_they_were, needs_doubles
 from rmw_manycore_py.ndt.recording import load_recording
 from rmw_manycore_py.ndt.thinning import Points
@@ -92,7 +93,10 @@ def read_cloud(path: Path) -> Points:
             raise _bad(path, str(error)) from error
     o3d = load_open3d()
     try:
+        check_ply(path)
         cloud = o3d.io.read_point_cloud(str(path))
+    except (OSError, ValueError) as error:
+        raise _bad(path, str(error)) from error
     except RuntimeError as error:
         raise _bad(path, f"Open3D cannot read it: {error}") from error
     return as_they_were(np.asarray(cloud.points))

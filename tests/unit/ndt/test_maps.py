@@ -145,6 +145,10 @@ def test_a_single_file_is_everywhere(tmp_path):
         ("map.pcd", b"# .PCD v0.7\nrubbish", "its header is broken: fields: Field required"),
         ("map.pcd", b"", "its header is broken: fields: Field required"),
         pytest.param("map.ply", b"ply\nrubbish", "no points", marks=needs_open3d),
+        pytest.param("map.ply", b"ply\nelement\nend_header\n", "no points", marks=needs_open3d),
+        pytest.param(
+            "map.ply", b"ply\nelement vertex x\nend_header\n", "invalid", marks=needs_open3d
+        ),
     ],
 )
 def test_broken_maps(tmp_path, name, content, words):
@@ -176,6 +180,36 @@ def test_damaged_npz_files(tmp_path, place):
 def test_maps_that_the_system_refuses(tmp_path):
     with pytest.raises(ManycoreError, match="File name too long"):
         open_map(tmp_path / ("a" * 300))
+
+
+HEADER = (
+    "ply\nformat {}\ncomment made by hand\nelement vertex 3\nproperty {} x\nproperty {} y\n"
+    "property {} z\nproperty uchar red\nelement face 0\nproperty list uchar int vertex_indices\n"
+    "end_header\n"
+)
+CORNERS = [[1.0, 2.0, 3.0], [-4.0, 5.0, 6.5], [7.0, 8.0, 5_000_000.25]]
+
+
+@needs_open3d
+@pytest.mark.parametrize("number", ["float", "double", "float64"])
+@pytest.mark.parametrize("encoding", ["ascii", "binary_little_endian", "binary_big_endian"])
+def test_ply_files_whole_and_cut_off(tmp_path, encoding, number):
+    """Open3D would take a file that is cut off for one with as many points, and make them up."""
+    path = tmp_path / "map.ply"
+    if encoding == "ascii":
+        data = "".join(f"{x} {y} {z} 9\n" for x, y, z in CORNERS).encode()
+    else:
+        kind = (">" if "big" in encoding else "<") + ("f4" if number == "float" else "f8")
+        records = np.zeros(3, [*((axis, kind) for axis in "xyz"), ("red", "u1")])
+        for axis, values in zip("xyz", np.transpose(CORNERS), strict=True):
+            records[axis] = values
+        data = records.tobytes()
+    header = HEADER.format(f"{encoding} 1.0", *[number] * 3).encode()
+    path.write_bytes(header + data)
+    np.testing.assert_allclose(read_points(path), CORNERS, atol=0.3 if number == "float" else 0.0)
+    path.write_bytes(header + data[: len(data) // 2])
+    with pytest.raises(ManycoreError, match=r"its 3 points need \d+ (lines|bytes), found"):
+        read_points(path)
 
 
 def folder_with(tmp_path: Path, text: str | None) -> Path:
