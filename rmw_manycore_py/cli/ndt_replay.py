@@ -134,9 +134,7 @@ def command(
     from rmw_manycore_py.ndt.replay.guess_kinds import GuessKind
     from rmw_manycore_py.ndt.replay.session import run
 
-    drive = open_recording(recording, poses_path, topic, pose_topic)
-    if scans is not None:
-        drive = drive.first(scans)
+    drive = open_recording(recording, poses_path, topic, pose_topic).first(scans)
     if drive.note:
         click.echo(f"recording: {drive.note}", err=True)
     guesses = GuessKind(kind, motion, drift, offset_m, turn_deg, seed)

@@ -104,8 +104,8 @@ class Recording:
         moved = transform(self.poses[index], points.astype(np.float64))
         return moved if needs_doubles(moved) else moved.astype(points.dtype, copy=False)
 
-    def first(self, count: int) -> Recording:
-        """Return the first scans only."""
+    def first(self, count: int | None) -> Recording:
+        """Return the first scans only, None for all."""
         return Recording(self.scans, self.poses[:count], self.stamps[:count], self.note)
 
 

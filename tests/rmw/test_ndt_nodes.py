@@ -4,11 +4,20 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Callable
 
 import numpy as np
 import pytest
 from geometry_msgs.msg import PoseWithCovarianceStamped
-from ndt_support import COVARIANCE, street_map, street_scan
+from ndt_support import (
+    COVARIANCE,
+    TRUTH,
+    Stack,
+    error_m,
+    matcher_command,
+    street_map,
+    street_scan,
+)
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from ros_support import spin_until
 from sensor_msgs.msg import PointCloud2
@@ -88,3 +97,73 @@ def test_the_ekf_follows_and_passes_over_what_is_none(node, start):
         T = matrix_of(message.pose.pose)
         assert distance_m(T, truth) < 0.1
         assert np.isfinite(message.pose.covariance).all()
+
+
+@pytest.fixture
+def unmatched(node, start) -> Stack:
+    """Return a stack whose matcher has map and scan, and waits to be activated."""
+    start(matcher_command(activated="false"), cluster=2)
+    stack = Stack(node)
+    stack.wait_for_matcher()
+    stack.publish_map(street_map())
+    return stack
+
+
+def initializer(*parameters: str) -> list[str]:
+    """Return the command of an initializer of the matcher alone."""
+    names = ("ndt_align:=ndt_align_srv", "ndt_trigger_node:=trigger_node_srv")
+    remappings = [word for name in names for word in ("-r", name)]
+    return [*command("pose_initializer", "ekf_enabled:=false", *parameters), *remappings]
+
+
+def first_pose(stack: Stack, also: Callable[[], object] = lambda: None) -> np.ndarray:
+    """Send scans until the initializer has found a pose, and return it."""
+    found = []
+    stack.node.create_subscription(PoseWithCovarianceStamped, "initialpose3d", found.append, KEPT)
+    spin_until(stack.node, lambda: (stack.send(street_scan(), None) and also()) or found)
+    return matrix_of(found[0].pose.pose)
+
+
+def rough(stack: Stack, T: np.ndarray, age_s: int = 0) -> PoseWithCovarianceStamped:
+    """Return a pose half a metre off, without the covariance, which the initializer knows."""
+    T = from_xyz_rpy((0.4, -0.3, 0.0)) @ T
+    stamp = stack.node.get_clock().now().to_msg()
+    stamp.sec -= age_s
+    return pose_with_covariance(T, np.zeros((6, 6)), stamp, "map")
+
+
+def test_a_first_pose_by_hand(unmatched, start):
+    """As RViz and `topic pub` send it."""
+    start(initializer())
+    publisher = unmatched.node.create_publisher(PoseWithCovarianceStamped, "initialpose", 1)
+    spin_until(unmatched.node, publisher.get_subscription_count)
+    publisher.publish(rough(unmatched, TRUTH))
+    assert error_m(first_pose(unmatched)) < 0.1
+
+
+def test_a_first_pose_of_the_parameters(unmatched, start):
+    x, y, z = TRUTH[:3, 3]
+    pose = f"user_defined_initial_pose.pose:=[{x + 0.4}, {y - 0.3}, {z}, 0.0, 0.0, 0.0, 1.0]"
+    start(initializer("user_defined_initial_pose.enable:=true", pose))
+    assert error_m(first_pose(unmatched)) < 0.1
+
+
+def test_a_first_pose_of_gnss(unmatched, start):
+    """It tells no direction; what is old is passed over, and what comes later changes nothing."""
+    program = start(initializer("gnss_enabled:=true"))
+    publisher = unmatched.node.create_publisher(PoseWithCovarianceStamped, "gnss_pose_cov", 1)
+    position = from_xyz_rpy(TRUTH[:3, 3])
+
+    def publish(age_s: int) -> None:
+        publisher.publish(rough(unmatched, position, age_s))
+
+    spin_until(unmatched.node, lambda: publish(100) or "100.0 s old" in program.output)
+    assert "]: INITIALIZING" not in program.output
+    assert error_m(first_pose(unmatched, lambda: publish(0))) < 0.1
+    program.wait_for("]: INITIALIZED")
+    publish(0)
+    by_hand = unmatched.node.create_publisher(PoseWithCovarianceStamped, "initialpose", 1)
+    spin_until(unmatched.node, by_hand.get_subscription_count)
+    by_hand.publish(rough(unmatched, TRUTH))
+    program.wait_for("]: INITIALIZED")
+    assert program.output.count("]: INITIALIZING") == 2

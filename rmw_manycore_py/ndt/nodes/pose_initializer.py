@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -16,16 +17,26 @@ from std_srvs.srv import SetBool
 from tier4_localization_msgs.srv import PoseWithCovarianceStamped as AlignService
 
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
-from rmw_manycore_py.ndt.nodes.conversions import PoseError, matrix_of, pose_with_covariance
+from rmw_manycore_py.ndt.nodes.conversions import (
+    PoseError,
+    matrix_of,
+    pose_with_covariance,
+    seconds,
+)
 from rmw_manycore_py.ndt.nodes.declared import declare, parameter
 from rmw_manycore_py.ndt.nodes.running import run_node
 from rmw_manycore_py.ndt.poses import from_quaternion
 
 VARIANCES = (1.0, 1.0, 0.01, 0.01, 0.01, 0.2)  # m^2, rad^2
 AT_ORIGIN = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0)  # x, y, z, quaternion
-DIAGONAL = tuple(VARIANCES[i] if i == j else 0.0 for i in range(6) for j in range(6))
+GNSS_VARIANCES = (*VARIANCES[:5], 10.0)  # which way the vehicle looks GNSS does not tell
 RETRY_S = 1.0
 UNINITIALIZED, INITIALIZING, INITIALIZED = "UNINITIALIZED", "INITIALIZING", "INITIALIZED"
+
+
+def _diagonal(variances: Sequence[float]) -> tuple[float, ...]:
+    """Return a covariance (36) of x, y, z, roll, pitch, yaw, row by row."""
+    return tuple(np.diag(variances).ravel().tolist())
 
 
 @dataclass(frozen=True)
@@ -36,15 +47,23 @@ class InitializerParameters:
     pose: tuple[float, ...] = parameter("user_defined_initial_pose.pose", AT_ORIGIN, length=7)
     ekf_enabled: bool = parameter("ekf_enabled", True)
     ndt_enabled: bool = parameter("ndt_enabled", True)
-    covariance: tuple[float, ...] = parameter("output_pose_covariance", DIAGONAL, length=36)
+    gnss_enabled: bool = parameter("gnss_enabled", False)
+    gnss_timeout_s: float = parameter("gnss_pose_timeout", 3.0, above=0.0)
+    gnss_covariance: tuple[float, ...] = parameter(
+        "gnss_particle_covariance", _diagonal(GNSS_VARIANCES), length=36
+    )
+    covariance: tuple[float, ...] = parameter(
+        "output_pose_covariance", _diagonal(VARIANCES), length=36
+    )
     map_frame: str = parameter("map_frame", "map")
 
 
 class PoseInitializer(Node):
-    """Waits for `initialpose` (as RViz sends it) or starts at the pose of its parameters.
+    """Waits for `initialpose` (as RViz sends it), or starts at the pose of its parameters or GNSS.
 
     Stops matcher and filter, has the pose matched by `ndt_align`, publishes it on `initialpose3d`,
-    starts both again. What fails is tried again with the same pose, once a second.
+    starts both again. What fails is tried again once a second, with the newest pose. GNSS is
+    heeded until another pose comes or one was matched.
     """
 
     def __init__(self) -> None:
@@ -63,10 +82,15 @@ class PoseInitializer(Node):
             if enabled
         ]
         self._wanted: Any = None
-        self._is_busy = False
+        self._tried: Any = None  # the wanted pose that is being matched
+        self._heeds_gnss = self._p.gnss_enabled and not self._p.user_defined
         self.create_subscription(
             PoseWithCovarianceStamped, "initialpose", self._on_initial_pose, 10
         )
+        if self._heeds_gnss:
+            self.create_subscription(
+                PoseWithCovarianceStamped, "gnss_pose_cov", self._on_gnss_pose, 1
+            )
         self.create_timer(RETRY_S, self._try)
         self._publish_state(UNINITIALIZED)
         if self._p.user_defined:
@@ -88,27 +112,49 @@ class PoseInitializer(Node):
         )
 
     def _on_initial_pose(self, message: Any) -> None:
+        if not any(message.pose.covariance):
+            message.pose.covariance = np.asarray(self._p.covariance, np.float64)
+        if self._want("initialpose", message):
+            self._heeds_gnss = False
+            self._publish_state(INITIALIZING)
+            self._try()
+
+    def _on_gnss_pose(self, message: Any) -> None:
+        """Want the newest pose until one was matched; the next try is the timer's."""
+        if not self._heeds_gnss or self._tried is not None:
+            return
+        age_s = seconds(self.get_clock().now().to_msg()) - seconds(message.header.stamp)
+        if age_s > self._p.gnss_timeout_s:
+            self.get_logger().warning(
+                f"gnss_pose_cov: the pose is {age_s:.1f} s old: it is passed over",
+                throttle_duration_sec=RETRY_S,
+            )
+            return
+        message.pose.covariance = np.asarray(self._p.gnss_covariance, np.float64)
+        is_first = self._wanted is None
+        if self._want("gnss_pose_cov", message) and is_first:
+            self._publish_state(INITIALIZING)
+
+    def _want(self, topic: str, message: Any) -> bool:
+        """Take a pose for the next try, if it is one."""
         try:
             matrix_of(message.pose.pose)
         except PoseError as error:
-            self.get_logger().error(f"initialpose: {error}")
-            return
-        if not any(message.pose.covariance):
-            message.pose.covariance = np.asarray(self._p.covariance, np.float64)
+            self.get_logger().error(f"{topic}: {error}", throttle_duration_sec=RETRY_S)
+            return False
         self._wanted = message
-        self._publish_state(INITIALIZING)
-        self._try()
+        return True
 
     def _try(self) -> None:
         """Start over with the wanted pose, if there is one and all services are there."""
-        if self._wanted is None or self._is_busy:
+        if self._wanted is None or self._tried is not None:
             return
         needed = [*self._triggers, *([self._align] if self._p.ndt_enabled else [])]
         missing = [client.srv_name for client in needed if not client.service_is_ready()]
         if missing:
             self.get_logger().info(f"waiting for {', '.join(missing)}", throttle_duration_sec=5.0)
             return
-        self._is_busy = True
+        self._tried = self._wanted
         for client in self._triggers:
             client.call_async(SetBool.Request(data=False))
         if not self._p.ndt_enabled:
@@ -120,7 +166,7 @@ class PoseInitializer(Node):
     def _on_aligned(self, future: Future) -> None:
         response = future.result()
         if response is None or not response.success:
-            self._is_busy = False
+            self._tried = None
             self.get_logger().warning("the pose could not be matched: see /diagnostics; next try")
             return
         if not response.reliable:
@@ -134,9 +180,12 @@ class PoseInitializer(Node):
         self._output.publish(pose)
         for client in self._triggers:
             client.call_async(SetBool.Request(data=True))
-        self._wanted = None
-        self._is_busy = False
-        self._publish_state(INITIALIZED)
+        self._heeds_gnss = False
+        is_newest = self._wanted is self._tried
+        self._tried = None
+        if is_newest:
+            self._wanted = None
+            self._publish_state(INITIALIZED)
 
     def _publish_state(self, state: str) -> None:
         self._state.publish(String(data=state))
