@@ -34,6 +34,8 @@ class Alignment:
     :param covariance: (6, 6) of x, y, z [m], roll, pitch, yaw [rad].
     :param iterations: steps taken.
     :param converged: False when the pose must not be used; ``why`` then says so.
+    :param guesses_around: (4, 4) poses around the result that its covariance was made of, if any.
+    :param results_around: (4, 4) what alignments from them reached, if there were such.
     """
 
     T_map_sensor: Pose
@@ -44,3 +46,5 @@ class Alignment:
     nearest_voxel_likelihood: float
     converged: bool
     why: str
+    guesses_around: tuple[Pose, ...] = ()
+    results_around: tuple[Pose, ...] = ()

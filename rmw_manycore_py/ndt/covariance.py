@@ -7,7 +7,7 @@ end at as many places, and the score is as good there as at the result: x along 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,36 +29,33 @@ def poses_around(T_map_sensor: Pose, offsets_m: Offsets) -> list[Pose]:
     return found
 
 
-def from_alignments(
-    result: Alignment, align: Callable[[Pose], Alignment], offsets_m: Offsets
-) -> Matrix6:
-    """Return the result's covariance (6, 6), of x and y as alignments from around it scatter.
+def from_results(result: Alignment, results: Sequence[Pose]) -> Matrix6:
+    """Return the result's covariance (6, 6), of x and y as results from around it scatter.
 
     The mean square deviation is multiplied by (n - 1) / n, n being the number of alignments with
     the first, as in Autoware.
     """
-    poses = [align(T).T_map_sensor for T in poses_around(result.T_map_sensor, offsets_m)]
-    places = np.array([result.T_map_sensor[:2, 3], *(T[:2, 3] for T in poses)])
+    places = _places(result, results)
     count = len(places)
     scatter = _scatter(places, np.full(count, 1 / count))
     return _with_xy(result.covariance, scatter * (count - 1) / count)
 
 
-def from_scores(
-    result: Alignment,
-    likelihood: Callable[[Pose], float],
-    offsets_m: Offsets,
-    temperature: float,
+def from_likelihoods(
+    result: Alignment, poses: Sequence[Pose], likelihoods: Sequence[float], temperature: float
 ) -> Matrix6:
     """Return the result's covariance (6, 6), of x and y from the likelihoods of poses around it.
 
     Each place weighs exp(likelihood / temperature), the likelihood being that of the nearest
     voxels (:class:`Score`).
     """
-    poses = poses_around(result.T_map_sensor, offsets_m)
-    likelihoods = [result.nearest_voxel_likelihood, *map(likelihood, poses)]
-    places = np.array([result.T_map_sensor[:2, 3], *(T[:2, 3] for T in poses)])
-    return _with_xy(result.covariance, _scatter(places, _weights(likelihoods, temperature)))
+    weights = _weights([result.nearest_voxel_likelihood, *likelihoods], temperature)
+    return _with_xy(result.covariance, _scatter(_places(result, poses), weights))
+
+
+def _places(result: Alignment, poses: Sequence[Pose]) -> Array:
+    """Return x and y (n, 2) of the result and of poses around it."""
+    return np.array([T[:2, 3] for T in (result.T_map_sensor, *poses)])
 
 
 def _weights(likelihoods: Sequence[float], temperature: float) -> Array:

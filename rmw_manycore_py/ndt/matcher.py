@@ -149,21 +149,25 @@ class Matcher:
         position: Position | None,
     ) -> Alignment:
         """Return the alignment with what takes more than itself to know its covariance."""
-        offsets_m = self.options.offsets_m
-        if self.options.pose_covariance == "multi_ndt":
-            found = covariance.from_alignments(
-                alignment, lambda T: self._aligned(voxel_map, scan, T, position), offsets_m
-            )
-        elif self.options.pose_covariance == "multi_ndt_score":
-            found = covariance.from_scores(
-                alignment,
-                lambda T: self.score(scan, T).nearest_voxel_likelihood,
-                offsets_m,
-                self.options.temperature,
-            )
-        else:
+        kind = self.options.pose_covariance
+        if kind not in ("multi_ndt", "multi_ndt_score"):
             return alignment
-        return replace(alignment, covariance=found)
+        around = covariance.poses_around(alignment.T_map_sensor, self.options.offsets_m)
+        results: list[Pose] = []
+        if kind == "multi_ndt":
+            results = [self._aligned(voxel_map, scan, T, position).T_map_sensor for T in around]
+            found = covariance.from_results(alignment, results)
+        else:
+            likelihoods = [self.score(scan, T).nearest_voxel_likelihood for T in around]
+            found = covariance.from_likelihoods(
+                alignment, around, likelihoods, self.options.temperature
+            )
+        return replace(
+            alignment,
+            covariance=found,
+            guesses_around=tuple(around),
+            results_around=tuple(results),
+        )
 
     def score(self, points: ArrayLike, T_map_sensor: ArrayLike) -> Score:
         """Return how well points (N, 3) fit at a pose (4, 4); 0 for what is no scan or no pose."""

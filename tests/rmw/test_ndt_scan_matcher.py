@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from autoware_internal_debug_msgs.msg import Float32Stamped, Int32Stamped
 from diagnostic_msgs.msg import DiagnosticStatus
-from geometry_msgs.msg import PoseWithCovarianceStamped, TransformStamped
+from geometry_msgs.msg import PoseArray, PoseWithCovarianceStamped, TransformStamped
 from ndt_support import COVARIANCE, TRUTH, Stack, error_m, matcher_command, street_map, street_scan
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from ros_support import spin_until
@@ -25,7 +25,7 @@ from tier4_localization_msgs.srv import PoseWithCovarianceStamped as AlignServic
 from visualization_msgs.msg import MarkerArray
 
 from rmw_manycore_py import _transport
-from rmw_manycore_py.ndt.map_tiles import write_tiles
+from rmw_manycore_py.ndt.map_tiles import open_map, write_tiles
 from rmw_manycore_py.ndt.nodes.conversions import (
     matrix_of,
     matrix_of_transform,
@@ -99,6 +99,9 @@ def test_a_pose_and_all_that_belongs_to_it(matched):
     np.testing.assert_allclose(matrix_of(result.pose), T, atol=1e-9)
 
 
+MADE_OF = {1: (), 2: ("multi_initial_pose", "multi_ndt_pose"), 3: ("multi_initial_pose",)}
+
+
 @pytest.mark.parametrize("kind", [1, 2, 3], ids=["laplace", "multi_ndt", "multi_ndt_score"])
 def test_the_covariance_may_be_estimated(stack, start, kind):
     fixed = ", ".join("1.0e-9" if i % 7 == 0 else "0.0" for i in range(36))
@@ -111,10 +114,17 @@ def test_the_covariance_may_be_estimated(stack, start, kind):
     stack.node.create_subscription(
         PoseWithCovarianceStamped, "ndt_pose_with_covariance", heard.append, 10
     )
+    several = {"multi_initial_pose": [], "multi_ndt_pose": []}
+    for topic, arrays in several.items():
+        stack.node.create_subscription(PoseArray, topic, arrays.append, 10)
     stack.wait_for_matcher()
     stack.publish_map(street_map())
-    while not heard:
+    while not heard or not all(several[topic] for topic in MADE_OF[kind]):
         stack.pose_of(street_scan(), NEAR)
+    for topic, arrays in several.items():
+        assert bool(arrays) == (topic in MADE_OF[kind])
+        assert all(error_m(matrix_of(pose)) < 1.2 for message in arrays for pose in message.poses)
+        assert {len(message.poses) for message in arrays} <= {6}
     covariance = np.reshape(heard[-1].pose.covariance, (6, 6))
     assert (np.linalg.eigvalsh(covariance[:2, :2]) > 0).all()
     assert 1e-8 < np.trace(covariance[:2, :2]) < 0.25
@@ -442,10 +452,20 @@ def test_activation_and_initial_pose(stack, start):
 def test_tiles_around_the_vehicle(stack, start, tmp_path):
     """The map comes from files; far away there is none, and back at the place there is again."""
     write_tiles(tmp_path / "tiles", street_map(), 20.0, ".npz")
-    more = {"dynamic_map_loading__map_radius": 30.0, "dynamic_map_loading__lidar_radius": 5.0}
+    more = {
+        "dynamic_map_loading__map_radius": 30.0,
+        "dynamic_map_loading__lidar_radius": 5.0,
+        "dynamic_map_loading__publish_loaded_map": "true",
+    }
+    maps = []
+    kept = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+    stack.node.create_subscription(PointCloud2, "debug/loaded_pointcloud_map", maps.append, kept)
     start(matcher_command(map_path=tmp_path / "tiles", **more), cluster=2)
     stack.wait_for_matcher()
     assert error_m(stack.pose_of(street_scan(), NEAR)) < 0.1
+    spin_until(stack.node, lambda: maps)
+    expected = open_map(tmp_path / "tiles").around(*TRUTH[:2, 3], 30.0)[1]
+    np.testing.assert_array_equal(decode(maps[0]), expected)
     away = from_xyz_rpy((500.0, 0.0, 0.0))
     spin_until(stack.node, lambda: "no" in stack.report_of(stack.send(street_scan(), away)).message)
     assert error_m(stack.pose_of(street_scan(), NEAR)) < 0.1

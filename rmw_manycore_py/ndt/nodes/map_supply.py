@@ -67,13 +67,13 @@ class MapSupply:
         if area.distance_m(x, y) > self._p.update_distance_m:
             self._builder.submit(partial(area.update, x, y))
 
-    def take(self, wait: bool = False) -> VoxelMap | None:
-        """Return a map that was built since the last call."""
+    def take(self, wait: bool = False) -> tuple[VoxelMap, Points] | None:
+        """Return a map that was built since the last call, and its points."""
         built = self._builder.take(wait)
         if built is None:
             return None
         self._problem = built.problem
-        if built.voxel_map is None:
+        if built.voxel_map is None or built.points is None:
             return None
         try:
             self._admit(built.voxel_map)
@@ -83,7 +83,7 @@ class MapSupply:
         self.is_set = True
         self._warning = built.warning
         self.duration_ms = built.duration_ms
-        return built.voxel_map
+        return built.voxel_map, built.points
 
     def is_leaving(self, x: float, y: float) -> bool:
         """Tell whether the LiDAR sees beyond what is loaded."""

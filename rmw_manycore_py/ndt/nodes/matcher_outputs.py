@@ -3,18 +3,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 from autoware_internal_debug_msgs.msg import Float32Stamped, Int32Stamped
-from geometry_msgs.msg import PoseStamped, PoseWithCovarianceStamped
+from geometry_msgs.msg import PoseArray, PoseStamped, PoseWithCovarianceStamped
 from rclpy.node import Node
+from rclpy.qos import DurabilityPolicy, QoSProfile
 from sensor_msgs.msg import PointCloud2
 from tf2_msgs.msg import TFMessage
 
 from rmw_manycore_py.ndt import poses
 from rmw_manycore_py.ndt.alignment import Alignment
 from rmw_manycore_py.ndt.nodes.conversions import (
+    pose_of,
     pose_stamped,
     pose_with_covariance,
     transform_stamped,
@@ -34,6 +37,7 @@ FLOATS = (
     "initial_to_result_distance_old",
     "initial_to_result_distance_new",
 )
+POSE_ARRAYS = ("multi_ndt_pose", "multi_initial_pose")
 CLOUDS = ("points_aligned", "points_aligned_no_ground")
 
 
@@ -54,7 +58,10 @@ class MatcherOutputs:
         self._tf = node.create_publisher(TFMessage, "/tf", 100)
         self._iterations = node.create_publisher(Int32Stamped, "iteration_num", 10)
         self._floats = {name: node.create_publisher(Float32Stamped, name, 10) for name in FLOATS}
+        self._pose_arrays = {n: node.create_publisher(PoseArray, n, 10) for n in POSE_ARRAYS}
         self._clouds = {name: node.create_publisher(PointCloud2, name, 10) for name in CLOUDS}
+        kept = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+        self._map = node.create_publisher(PointCloud2, "debug/loaded_pointcloud_map", kept)
 
     def accepted_pose(self, stamp: Any, T_map_base: Matrix, covariance: Matrix) -> None:
         """Publish the pose that others may rely on."""
@@ -81,6 +88,13 @@ class MatcherOutputs:
         self.number("initial_to_result_distance_old", stamp, poses.distance_m(guess.old.T, T))
         self.number("initial_to_result_distance_new", stamp, poses.distance_m(guess.new.T, T))
 
+        self._several("multi_initial_pose", stamp, alignment.guesses_around)
+        self._several("multi_ndt_pose", stamp, alignment.results_around)
+
+    def loaded_map(self, stamp: Any, points: Points) -> None:
+        """Publish the map that is matched to, for those that come later too."""
+        self._map.publish(encode(points, stamp, self._map_frame))
+
     def number(self, name: str, stamp: Any, value: float) -> None:
         """Publish one of FLOATS."""
         self._floats[name].publish(Float32Stamped(stamp=stamp, data=float(value)))
@@ -90,3 +104,10 @@ class MatcherOutputs:
         if self._clouds[name].get_subscription_count() > 0:
             points = poses.transform(T_map_base, points_base.astype(np.float64))
             self._clouds[name].publish(encode(points, stamp, self._map_frame))
+
+    def _several(self, name: str, stamp: Any, several: Sequence[Matrix]) -> None:
+        """Publish one of POSE_ARRAYS, if there are poses and anybody listens."""
+        if several and self._pose_arrays[name].get_subscription_count() > 0:
+            message = PoseArray(poses=[pose_of(T) for T in several])
+            message.header.stamp, message.header.frame_id = stamp, self._map_frame
+            self._pose_arrays[name].publish(message)

@@ -88,6 +88,7 @@ class MatcherParameters:
     update_distance_m: float = parameter("dynamic_map_loading.update_distance", 20.0, above=0.0)
     map_radius_m: float = parameter("dynamic_map_loading.map_radius", 150.0, above=0.0)
     lidar_radius_m: float = parameter("dynamic_map_loading.lidar_radius", 100.0, above=0.0)
+    publish_loaded_map: bool = parameter("dynamic_map_loading.publish_loaded_map", False)
 
 
 @dataclass(frozen=True)

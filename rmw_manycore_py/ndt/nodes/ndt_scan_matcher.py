@@ -287,12 +287,15 @@ class NdtScanMatcher(Node):
 
     def _take_new_map(self, wait: bool = False) -> None:
         """Swap in the map that was built meanwhile, if there is one."""
-        voxel_map = self._map.take(wait)
-        if voxel_map is not None:
+        taken = self._map.take(wait)
+        if taken is not None:
+            voxel_map, points = taken
             self._matcher.set_map(voxel_map)
             self._memory.hold(self._matcher.shared_bytes())
             built = f"{voxel_map.voxels} voxels, built in {self._map.duration_ms:.0f} ms"
             self.get_logger().info(f"matching to a map of {built}")
+            if self._p.publish_loaded_map:
+                self._outputs.loaded_map(self.get_clock().now().to_msg(), points)
 
     def _make_room(self, voxel_map: VoxelMap) -> None:
         self._memory.hold(self._matcher.shared_bytes(next_map=voxel_map))

@@ -61,6 +61,8 @@ def test_alignments_from_around_scatter_as_defined() -> None:
     expected = np.cov(np.array(places).T, bias=True) * 6 / 7
     assert found.covariance[:2, :2] == pytest.approx(expected, rel=1e-3, abs=1e-7)
     assert np.diag(found.covariance)[2:].tolist() == list(OPTIONS.fixed_pose_variances)[2:]
+    reached = np.array([T[:2, 3] for T in found.results_around])
+    assert reached == pytest.approx(np.array(places[1:]), abs=1e-4)
 
 
 def test_likelihoods_around_weigh_as_defined() -> None:
@@ -79,6 +81,8 @@ def test_likelihoods_around_weigh_as_defined() -> None:
         weights = np.exp([matcher.score(scan, T).nearest_voxel_likelihood for T in poses])
     expected = np.cov(np.array([T[:2, 3] for T in poses]).T, bias=True, aweights=weights)
     assert found.covariance[:2, :2] == pytest.approx(expected, rel=1e-6)
+    assert np.array(found.guesses_around) == pytest.approx(np.array(poses[1:]))
+    assert found.results_around == ()
 
 
 def test_what_did_not_converge_has_the_fixed_covariance() -> None:
