@@ -25,7 +25,7 @@ import numpy.typing as npt
 
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
 from rmw_manycore_py.ndt.poses import Matrix, rigid, transform
-from rmw_manycore_py.ndt.precision import needs_doubles
+from rmw_manycore_py.ndt.precision import needs_doubles, why_coarse
 from rmw_manycore_py.ndt.recordings.stamps import in_seconds
 from rmw_manycore_py.ndt.thinning import Points
 
@@ -99,10 +99,14 @@ class Recording:
         return np.concatenate(scans) if scans else np.zeros((0, 3), np.float32)
 
     def _in_map(self, index: int) -> Points:
-        """Return a scan in the map frame; a map far from its origin needs doubles."""
+        """Return a scan in the map frame; a map far from its origin needs doubles.
+
+        What single precision has spoiled before stays in it, so that it can be told.
+        """
         points = self.scan(index)
         moved = transform(self.poses[index], points.astype(np.float64))
-        return moved if needs_doubles(moved) else moved.astype(points.dtype, copy=False)
+        is_double = needs_doubles(moved) and not why_coarse(points)
+        return moved if is_double else moved.astype(points.dtype, copy=False)
 
     def first(self, count: int | None) -> Recording:
         """Return the first scans only, None for all."""

@@ -22,6 +22,7 @@ from rclpy.qos import DurabilityPolicy, QoSProfile
 from ros_support import spin_until
 from sensor_msgs.msg import PointCloud2
 
+from rmw_manycore_py.ndt.map_file import write_points
 from rmw_manycore_py.ndt.map_tiles import write_tiles
 from rmw_manycore_py.ndt.nodes.conversions import matrix_of, pose_with_covariance
 from rmw_manycore_py.ndt.nodes.point_cloud import decode, encode
@@ -66,6 +67,20 @@ def test_the_loader_publishes_what_is_near_the_vehicle(node, start, tmp_path):
         points = decode(heard[0])
         assert len(points) < len(street_map())
         assert np.abs(points[:, 0] - x).max() < 40.0
+
+
+@pytest.mark.parametrize("kind", [np.float64, np.float32])
+def test_the_loader_far_from_the_map_s_origin(node, start, tmp_path, kind):
+    """Doubles are published as such; of single precision the log says what it has spoiled."""
+    points = (street_map() + np.array([500_000.0, 5_000_000.0, 100.0])).astype(kind)
+    write_points(tmp_path / "map.npz", points)
+    loader = start(command("pointcloud_map_loader", f"pcd_paths_or_directory:={tmp_path}/map.npz"))
+    heard = []
+    node.create_subscription(PointCloud2, "pointcloud_map", heard.append, KEPT)
+    spin_until(node, lambda: heard)
+    np.testing.assert_array_equal(decode(heard[0]), points)
+    loader.wait_for("publishing a map of")
+    assert ("the map is coarse: " in loader.output) == (kind is np.float32)
 
 
 @pytest.mark.parametrize("path", ["''", "/nonexistent"])

@@ -80,6 +80,8 @@ def test_maps_that_single_precision_has_spoiled(tmp_path):
     near, far = cloud(), (cloud() + UTM_M).astype(np.float32)
     assert why_coarse(near) == ""
     assert why_coarse(far.astype(np.float64)) == ""
+    write_points(tmp_path / "far.npz", far)
+    assert why_coarse(read_points(tmp_path / "far.npz"))
     write_points(tmp_path / "far.pcd", far)
     assert b"SIZE 4 4 4" in (tmp_path / "far.pcd").read_bytes()[:300]
     assert "knows only every 0.5 m there: give them as doubles" in why_coarse(
