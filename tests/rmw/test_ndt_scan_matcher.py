@@ -471,6 +471,36 @@ def test_tiles_around_the_vehicle(stack, start, tmp_path):
     assert error_m(stack.pose_of(street_scan(), NEAR)) < 0.1
 
 
+@pytest.mark.parametrize("damage", ["missing", "cut off", "rubbish"])
+def test_a_tile_that_is_damaged_while_driving(stack, start, tmp_path, damage):
+    """It is reported, the map before it stays, and the node finds its place in that again."""
+    folder = tmp_path / "tiles"
+    beside = street_map() + np.float32([200.0, 0.0, 0.0])
+    write_tiles(folder, np.concatenate([street_map(), beside]), 20.0, ".npz")
+    more = {"dynamic_map_loading__map_radius": 60.0, "dynamic_map_loading__lidar_radius": 5.0}
+    start(matcher_command(map_path=folder, **more), cluster=2)
+    stack.wait_for_matcher()
+    assert error_m(stack.pose_of(street_scan(), NEAR)) < 0.1
+    for path in folder.glob("10_*.npz"):
+        whole = bytearray(path.read_bytes())
+        if damage == "missing":
+            path.unlink()
+        elif damage == "cut off":
+            path.write_bytes(whole[: len(whole) // 2])
+        else:
+            whole[200:240] = bytes(range(40))
+            path.write_bytes(whole)
+    away = from_xyz_rpy((205.0, 0.0, 0.0))
+    spin_until(
+        stack.node,
+        lambda: (
+            stack.report_of(stack.send(street_scan(), away))
+            and any("map cannot be used" in status.message for _, status in stack.reports)
+        ),
+    )
+    assert error_m(stack.pose_of(street_scan(), NEAR)) < 0.1
+
+
 @pytest.mark.parametrize(
     ("parameters", "words"),
     [
