@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 LEAST_DIFFERENCE = 0.005  # below it no move is worth its while
 LEAST_GAIN = 0.3  # of the difference between the lanes
-PATIENCE = 3  # looks in a row that want a move
+PATIENCE = 3  # looks in a row that want a move between the same lanes
 
 
 @dataclass(frozen=True)
@@ -54,12 +54,15 @@ class Balance:
 
     def __init__(self) -> None:
         self._times = 0
+        self._lanes: tuple[int, int] | None = None
 
     def look(self, loads: Sequence[Load], lanes: Collection[int]) -> Move | None:
         """Return a move to make now."""
         move = best_move(loads, lanes)
-        self._times = self._times + 1 if move is not None else 0
-        if self._times < PATIENCE:
+        between = None if move is None else (loads[move.index].lane, move.heir)
+        self._times = self._times + 1 if between == self._lanes else 1
+        self._lanes = between
+        if move is None or self._times < PATIENCE:
             return None
-        self._times = 0
+        self._lanes = None
         return move

@@ -6,11 +6,11 @@ from __future__ import annotations
 import hashlib
 import os
 import re
-import signal
+import select
 import socket
 import sys
-import threading
 from collections.abc import Iterable
+from functools import partial
 
 from rmw_manycore_py.bridge.counters import CounterFile, status_path
 from rmw_manycore_py.bridge.inside import NODE_PREFIX, Inside
@@ -25,12 +25,12 @@ from rmw_manycore_py.bridge.sides import OwnPublishers, Sides
 from rmw_manycore_py.bridge.topic_inward import InwardTopic
 from rmw_manycore_py.bridge.topic_outward import OutwardTopic
 
+from rmw_manycore_py.launch.signals import signal_inbox
 from rmw_manycore_py.routes import Direction
 
 _NO_NETWORK = (
     "no network interface is up: nothing crosses; try 'ip link set lo up', then start again"
 )
-_STOP_SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
 
 class BridgeProcess:
@@ -40,7 +40,7 @@ class BridgeProcess:
         services = [route for route in plan.of(direction, lane) if route.kind == "service"]
         routes = [*plan.topics(direction), *services]
         name = f"{node_stem(plan.platform)}_{direction}{lane or ''}"
-        self._over = threading.Event()
+        self._failed = os.eventfd(0)  # readable once a thread has failed
         self._inside = Inside(
             plan, core, f"{NODE_PREFIX}{direction}{lane or ''}", self._graphs_changed
         )
@@ -80,25 +80,25 @@ class BridgeProcess:
 
     def run(self) -> int:
         """Move messages until a signal comes; return the exit status."""
-        for number in _STOP_SIGNALS:
-            signal.signal(number, lambda *_: self._over.set())
-        if not has_interface():
-            print(_NO_NETWORK, file=sys.stderr, flush=True)
-        for loop in self._loops:
-            loop.on_failure(self._over.set)
-            loop.start()
-        try:
-            while not self._over.wait(self._lanes.period_s):
-                if self._lanes.look():
-                    self._graphs_changed()
-        finally:  # a table that cannot be read or written ends the process, which is started again
+        with signal_inbox() as inbox:
+            if not has_interface():
+                print(_NO_NETWORK, file=sys.stderr, flush=True)
             for loop in self._loops:
-                loop.stop()
-        for loop in self._loops:
-            loop.close_movers()
-        for loop in reversed(self._loops):
-            loop.close()
-        return _report(self._loops)
+                loop.on_failure(partial(os.eventfd_write, self._failed, 1))
+                loop.start()
+            try:
+                while not select.select([inbox, self._failed], [], [], self._lanes.period_s)[0]:
+                    if self._lanes.look():
+                        self._graphs_changed()
+            finally:  # a table that cannot be read or written ends the process: it starts again
+                for loop in self._loops:
+                    loop.stop()
+            for loop in self._loops:
+                loop.close_movers()
+            for loop in reversed(self._loops):
+                loop.close()
+            os.close(self._failed)
+            return _report(self._loops)
 
 
 def _report(loops: Iterable[Loop]) -> int:

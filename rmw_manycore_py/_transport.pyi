@@ -18,7 +18,7 @@ def platform_directory(name: str) -> str:
 def clean(name: str) -> list[str]:
     """Remove what a dead platform left and return the paths; PlatformError while it lives."""
 
-def charge_smem(platform: str, bytes: int) -> None:
+def charge_smem(platform: str, size_bytes: int) -> None:
     """Count so many bytes of this process, outside the segment, as SMEM of its cluster.
 
     They replace what it had counted before, and end with it; PlatformError where there is no room.

@@ -26,6 +26,7 @@ from rmw_manycore_py.ndt.street import build_street
 LIDAR = Lidar(rings=16, azimuths=360)
 COVARIANCE = np.diag([0.04, 0.04, 0.04, 0.01, 0.01, 0.01])
 TRUTH = poses_along([5.0])[0]
+NEAR = poses.perturbed(TRUTH, 0.3, 0.03, np.random.default_rng(3))
 
 
 def matcher_command(**parameters: object) -> list[str]:
@@ -49,6 +50,14 @@ def street_scan(T: np.ndarray = TRUTH) -> np.ndarray:
     """Return what the LiDAR sees in the street of the map."""
     street = build_street(10.0, np.random.default_rng(1))
     return LIDAR.scan(street, T, np.random.default_rng(2))
+
+
+def few(count: int) -> np.ndarray:
+    return np.float32([[15.0, n, 0.0] for n in range(count)])
+
+
+def nan_points() -> np.ndarray:
+    return np.full((100, 3), np.nan, np.float32)
 
 
 class Stack:

@@ -117,8 +117,7 @@ class NodeProcess:
         """End the rest of the group and judge the exit status; return the last lines."""
         self._signal_group(signal.SIGKILL)
         lines = self.output.close()
-        last_line = next(reversed(self.last_lines), "")
-        self._end(judge(self.process.wait(), self.state, last_line))
+        self._end(judge(self.process.wait(), self.state, self.last_lines))
         return lines
 
     def destroy(self) -> None:

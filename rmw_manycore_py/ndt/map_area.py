@@ -19,7 +19,7 @@ class MapArea:
         self._radius_m = radius_m
         self._update_distance_m = update_distance_m
         self._centre: tuple[float, float] | None = None
-        self._names: frozenset[Path] = frozenset()
+        self._names: frozenset[Path] | None = None  # None: none are loaded, or they are of no use
 
     def distance_m(self, x: float, y: float) -> float:
         """Return how far a place is from where the map was loaded last; infinity before that."""
@@ -32,9 +32,12 @@ class MapArea:
         if self.distance_m(x, y) <= self._update_distance_m:
             return None
         names = self._tiles.names_around(x, y, self._radius_m)
-        was_loaded = self._centre is not None
         self._centre = (x, y)
-        if was_loaded and names == self._names:
+        if names == self._names:
             return None
         self._names, points = self._tiles.around(x, y, self._radius_m)
         return points
+
+    def forget_tiles(self) -> None:
+        """Load tiles anew at the next update, even the same: what was loaded cannot be used."""
+        self._names = None

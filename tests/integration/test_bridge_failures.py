@@ -63,6 +63,16 @@ def test_a_killed_bridge_is_started_again(start, platform) -> None:
     assert leftovers(platform) == []
 
 
+def test_it_ends_when_it_is_told_twice(start, platform) -> None:
+    bridge = Bridge(start, platform)
+    for _ in range(4):
+        (process,) = bridge.run(bridge.route("outward", "/chatter")).values()
+        wait_until(lambda: bridge.row("outward", "/chatter").get("alive"), "it counts")
+        process.signal(signal.SIGINT)
+        process.signal(signal.SIGTERM)
+        assert process.wait() in (0, -signal.SIGINT, -signal.SIGTERM), process
+
+
 def test_the_bridge_ends_with_the_nodes(start, tmp_path, platform) -> None:
     mapfile = tmp_path / "map.yaml"
     mapfile.write_text(
@@ -84,6 +94,7 @@ def test_status_shows_the_routes(start, platform) -> None:
             command, env=environment(platform), text=True, capture_output=True, check=True
         ).stdout
 
+    wait_until(lambda: len(json.loads(status("--json"))) == 2, "both directions count")
     wait_until(lambda: json.loads(status("--json"))[1]["messages"], "a message has passed")
     inward, outward = json.loads(status("--json"))
     assert (inward["direction"], outward["direction"]) == ("inward", "outward")

@@ -44,7 +44,7 @@ def count_up() -> None:
             return publish
 
         for topic in TOPICS:
-            node.create_timer(0.004 if topic in HEAVY else 0.5, counter(topic))
+            node.create_timer(0.006 if topic in HEAVY else 0.5, counter(topic))
         announce("counting")
         spin_until(node, lambda: False, 1e6)
 
@@ -88,7 +88,6 @@ def test_heavy_topics_end_up_in_different_lanes(bridge, way) -> None:
     source(count_up)
     for name in HEAVY:
         checker.wait_for(f"^{name} ")
-    assert lanes_of(bridge, way) == [0, 0]
     lanes[0].wait_for(r"^/heavy_\d: moves to lane 1$")
     wait_until(lambda: sorted(lanes_of(bridge, way)) == [0, 1], "the heavy ones are apart")
     checker.skip_output()

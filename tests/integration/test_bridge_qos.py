@@ -117,7 +117,8 @@ def test_a_missed_deadline_is_noticed_on_the_other_side(bridge, way) -> None:
     bridge.run(bridge.route(way, "/topic"))
     source, target = sides(bridge, way)
     hearer = target(hear, {"deadline": 1000})
-    source(say, {"deadline": 1000}, 0.05, 100)  # then it is silent
+    hearer.wait_for("^listening$")
+    source(say, {"deadline": 1000}, 0.05, 150)  # then it is silent
     hearer.wait_for("^heard")
     hearer.wait_for("^deadline missed$")
 
@@ -128,7 +129,8 @@ def test_a_lost_publisher_is_noticed_on_the_other_side(bridge, way, by_hand) -> 
     source, target = sides(bridge, way)
     words = {"liveliness_lease_duration": 2000, "by_hand": by_hand}
     hearer = target(hear, words)
-    speaker = source(say, words, 0.05, 100)
+    hearer.wait_for("^listening$")
+    speaker = source(say, words, 0.05, 150)
     hearer.wait_for("^alive 1$")
     hearer.wait_for("^heard")
     if not by_hand:  # else it is enough that it is silent

@@ -163,7 +163,7 @@ def count(forever: bool) -> None:
 
         def execute(goal: Any) -> Any:
             announce("executing")
-            for _ in range(10):
+            for _ in range(100):
                 goal.publish_feedback(kind.Feedback(sequence=[0, 1]))
                 time.sleep(0.02)  # as an action that takes its time
             if forever:

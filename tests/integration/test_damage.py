@@ -151,4 +151,4 @@ def test_leftovers_of_a_dead_platform(start, platform, damage):
         damage_file(PLATFORMS / platform / name, DAMAGES[damage])
     again = start(example_command("talker"))
     again.wait_for("Publishing")
-    assert again.stop() == 0, again
+    assert again.stop_node(), again

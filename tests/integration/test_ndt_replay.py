@@ -136,7 +136,7 @@ def test_no_scan_is_lost_while_maps_are_swapped(start, platform, tmp_path):
     }
     (tmp_path / "tiles.yaml").write_text(yaml.safe_dump(mapfile))
     matcher = start(manycore_command("run", tmp_path / "tiles.yaml"))
-    figures = replayed(start, drive, "--no-map")
+    figures = replayed(start, drive, "--no-map", "--rate", "2")
     assert figures["answered"] == figures["scans"] == 37
     assert figures["within_share"] == 1.0
     assert matcher.stop() == 0, matcher
@@ -149,7 +149,7 @@ def test_a_recorded_drive_in_closed_loop(start, offload):
 
     The motion between scans comes from the scans, the first pose is 0.3 m and 2.9 degrees off.
     """
-    figures = replayed(start, BALM, "--rate", "10")
+    figures = replayed(start, BALM, "--rate", "5")
     assert "matched from scan to scan" in figures["guesses"]
     assert (figures["scans"], figures["answered"], figures["diverged"]) == (177, 177, 0)
     assert figures["within_share"] >= 0.99
@@ -160,7 +160,7 @@ def test_a_recorded_drive_in_closed_loop(start, offload):
 def test_a_recorded_drive_with_the_whole_stack(start, platform):
     """The same recording; what is carried also moves sideways, which the speed does not tell."""
     stack = start(manycore_command("run", MAPFILES / "ndt_stack.yaml"))
-    figures = replayed(start, BALM, "--rate", "10", "--guess", "stack", "--voxel", "0")
+    figures = replayed(start, BALM, "--rate", "5", "--guess", "stack", "--voxel", "0")
     assert (figures["scans"], figures["answered"], figures["diverged"]) == (177, 177, 0)
     assert figures["within_share"] >= 0.99
     assert stack.stop() == 0, stack

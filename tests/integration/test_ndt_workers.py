@@ -115,7 +115,7 @@ def test_a_stopped_worker_is_replaced() -> None:
     with workers(2) as matcher:
         os.kill(matcher.worker_pids[1], signal.SIGSTOP)
         assert numbers(matcher.align(SCAN, GUESS)) == expected
-        assert matcher.replaced_workers == 1
+        assert matcher.replaced_workers >= 1  # more where one got no CPU for as long
 
 
 def test_workers_sleep_between_alignments() -> None:

@@ -122,7 +122,7 @@ def test_lists_take_what_those_of_ros2_take(running, manycore) -> None:
     assert manycore(*count) == "2"
     hidden = ["/_manycore_bridge_inward", "/_manycore_bridge_outward"]
     nodes = [*hidden, "/listener", "/talker"]
-    assert manycore("node", "list", "--all").splitlines() == nodes
+    wait_until(lambda: manycore("node", "list", "--all").splitlines() == nodes, "all are there")
 
 
 def test_echo_waits_for_a_topic_whose_type_is_given(start, platform) -> None:

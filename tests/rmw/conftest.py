@@ -9,6 +9,7 @@ from typing import Any
 
 import pytest
 import rclpy
+from ndt_support import Stack, matcher_command, street_map
 from rclpy.node import Node
 from support import Program, peer_command
 
@@ -45,3 +46,18 @@ def start_peer(start: Callable[..., Program]) -> Callable[..., Program]:
 def peer_cluster(request: pytest.FixtureRequest) -> int:
     """Return the cluster of the peer: the test's own, or another one."""
     return int(request.param)
+
+
+@pytest.fixture
+def stack(node: Node) -> Stack:
+    """Return the rest of a stack, around a scan matcher."""
+    return Stack(node)
+
+
+@pytest.fixture
+def matched(stack: Stack, start: Callable[..., Program]) -> Stack:
+    """Return a stack whose matcher runs in cluster 2 and has the map."""
+    start(matcher_command(), cluster=2)
+    stack.wait_for_matcher()
+    stack.publish_map(street_map())
+    return stack

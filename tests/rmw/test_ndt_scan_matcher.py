@@ -14,18 +14,26 @@ import pytest
 from autoware_internal_debug_msgs.msg import Float32Stamped, Int32Stamped
 from diagnostic_msgs.msg import DiagnosticStatus
 from geometry_msgs.msg import PoseArray, PoseWithCovarianceStamped, TransformStamped
-from ndt_support import COVARIANCE, TRUTH, Stack, error_m, matcher_command, street_map, street_scan
+from ndt_support import (
+    COVARIANCE,
+    NEAR,
+    TRUTH,
+    error_m,
+    few,
+    matcher_command,
+    nan_points,
+    street_map,
+    street_scan,
+)
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from ros_support import spin_until
 from sensor_msgs.msg import PointCloud2
 from std_srvs.srv import SetBool
-from support import IS_MANYCORE, PATIENCE_S
+from support import PATIENCE_S
 from tf2_msgs.msg import TFMessage
 from tier4_localization_msgs.srv import PoseWithCovarianceStamped as AlignService
 from visualization_msgs.msg import MarkerArray
 
-from rmw_manycore_py import _transport
-from rmw_manycore_py.ndt.map_tiles import open_map, write_tiles
 from rmw_manycore_py.ndt.nodes.conversions import (
     matrix_of,
     matrix_of_transform,
@@ -34,25 +42,10 @@ from rmw_manycore_py.ndt.nodes.conversions import (
     transform_stamped,
 )
 from rmw_manycore_py.ndt.nodes.point_cloud import decode, encode
-from rmw_manycore_py.ndt.poses import from_xyz_rpy, inverse, perturbed, transform
+from rmw_manycore_py.ndt.poses import from_xyz_rpy, inverse, transform
 
 GENERATOR = np.random.default_rng(3)
-NEAR = perturbed(TRUTH, 0.3, 0.03, GENERATOR)
 OK, WARN, ERROR = b"\x00", b"\x01", b"\x02"
-
-
-@pytest.fixture
-def stack(node):
-    return Stack(node)
-
-
-@pytest.fixture
-def matched(stack, start):
-    """Yield a stack whose matcher runs in cluster 2 and has the map."""
-    start(matcher_command(), cluster=2)
-    stack.wait_for_matcher()
-    stack.publish_map(street_map())
-    return stack
 
 
 def test_a_pose_and_all_that_belongs_to_it(matched):
@@ -79,9 +72,15 @@ def test_a_pose_and_all_that_belongs_to_it(matched):
         matched.pose_of(street_scan(), NEAR)
     heard.clear()
     matched.pose_of(street_scan(), NEAR)
-    spin_until(matched.node, lambda: len(heard) == len(floats) + 5)
-
     stamp_ns, T = max(matched.poses.items())
+    spin_until(
+        matched.node,
+        lambda: (
+            len(heard) == len(floats) + 5
+            and {stamp_of(message) for message in heard.values()} == {stamp_ns}
+        ),
+    )
+
     assert error_m(T) < 0.1
     with_covariance = heard["ndt_pose_with_covariance"]
     np.testing.assert_array_equal(matrix_of(with_covariance.pose.pose), T)
@@ -91,7 +90,6 @@ def test_a_pose_and_all_that_belongs_to_it(matched):
     np.testing.assert_allclose(matrix_of_transform(transformed.transform), T, atol=1e-9)
     expected = transform(T, street_scan())
     np.testing.assert_allclose(decode(heard["points_aligned"]), expected, atol=1e-3)
-    assert {nanoseconds(heard[topic].stamp) for topic in [*floats, "iteration_num"]} == {stamp_ns}
     assert heard["initial_to_result_distance"].data == pytest.approx(0.3, abs=0.1)
     assert heard["iteration_num"].data > 0
     guess, result = heard["ndt_marker"].markers
@@ -100,6 +98,13 @@ def test_a_pose_and_all_that_belongs_to_it(matched):
 
 
 MADE_OF = {1: (), 2: ("multi_initial_pose", "multi_ndt_pose"), 3: ("multi_initial_pose",)}
+
+
+def stamp_of(message: Any) -> int:
+    """Return the stamp in ns that a message has, or the first of those in it."""
+    for name in ("transforms", "markers"):
+        message = getattr(message, name, [message])[0]
+    return nanoseconds(message.header.stamp if hasattr(message, "header") else message.stamp)
 
 
 @pytest.mark.parametrize("kind", [1, 2, 3], ids=["laplace", "multi_ndt", "multi_ndt_score"])
@@ -129,14 +134,6 @@ def test_the_covariance_may_be_estimated(stack, start, kind):
     assert (np.linalg.eigvalsh(covariance[:2, :2]) > 0).all()
     assert 1e-8 < np.trace(covariance[:2, :2]) < 0.25
     assert covariance[2, 2] == pytest.approx(1e-9)
-
-
-def few(count: int) -> np.ndarray:
-    return np.float32([[15.0, n, 0.0] for n in range(count)])
-
-
-def nan_points() -> np.ndarray:
-    return np.full((100, 3), np.nan, np.float32)
 
 
 def cut_off() -> PointCloud2:
@@ -228,39 +225,6 @@ def test_workers_that_are_killed_are_replaced(stack, start):
     assert all(error_m(T) < 0.1 for T in stack.poses.values())
 
 
-@pytest.mark.skipif(not IS_MANYCORE, reason="the SMEM of a cluster is rmw_manycore's")
-def test_a_map_that_the_cluster_has_no_room_for(stack, start):
-    """What a matcher shares with its workers is a part of its cluster's SMEM."""
-    cpus = sorted(os.sched_getaffinity(0))[:2]
-    if len(cpus) < 2:
-        pytest.skip("workers need two host CPUs")
-    start(matcher_command(worker_host_cpus=cpus), cluster=1)
-    stack.wait_for_matcher()
-    before = own_cluster()
-    assert before["used"] > before["charged"] > 1 << 20  # the place for scans
-    for _ in range(2):
-        stack.publish_map(street_map())
-        stack.pose_of(street_scan(), NEAR)
-    cluster = own_cluster()
-    assert cluster["charged"] > before["charged"]
-
-    platform = os.environ["MANYCORE_PLATFORM"]
-    _transport.charge_smem(platform, cluster["smem_size"] - cluster["used"] - 64 * 1024)
-    stack.publish_map(street_map())
-    report = stack.next_report("map_update_status", ERROR)
-    assert "cluster 1 has no room for" in report.message
-    assert "raise smem_size in the mapfile" in report.message
-    assert error_m(stack.pose_of(street_scan(), NEAR)) < 0.1
-
-    _transport.charge_smem(platform, 0)
-    stack.publish_map(street_map())
-    stack.next_report("map_update_status", OK)
-
-
-def own_cluster() -> dict[str, Any]:
-    return _transport.Platform(os.environ["MANYCORE_PLATFORM"]).clusters()[0]
-
-
 def workers_below(pid: int) -> list[int]:
     """Return the worker processes that a process has, at any depth."""
     found: list[int] = []
@@ -277,77 +241,8 @@ def test_a_scan_of_two_million_points(matched):
     stamp_ns = matched.send(scan)
     report = matched.report_of(stamp_ns)
     assert "more than sensor_points.limit" in report.message
+    spin_until(matched.node, lambda: stamp_ns in matched.poses)
     assert error_m(matched.poses[stamp_ns]) < 0.1
-
-
-def again(stack: Stack) -> DiagnosticStatus:
-    """Send the scan, and return what the matcher reports of it."""
-    return stack.report_of(stack.send(street_scan()))
-
-
-def test_a_map_of_another_place_and_back(matched):
-    """Maps are swapped while scans come; the one without the place gives no pose."""
-    matched.pose_of(street_scan())
-    matched.publish_map(street_map() + np.float32([5000.0, 0.0, 0.0]))
-    spin_until(matched.node, lambda: "no convergence" in again(matched).message)
-    matched.publish_map(street_map())
-    assert error_m(matched.pose_of(street_scan(), NEAR)) < 0.1
-
-
-UTM = from_xyz_rpy((500_000.0, 5_000_000.0, 100.0))
-
-
-def test_a_place_far_from_the_map_s_origin(matched):
-    """The pose there is as good as at the origin, and so is what is published of it."""
-    clouds = []
-    matched.node.create_subscription(PointCloud2, "points_aligned", clouds.append, 10)
-    matched.publish_map(transform(UTM, street_map().astype(np.float64)))
-    expected = inverse(UTM) @ matched.pose_of(street_scan(), UTM @ NEAR)
-    spin_until(matched.node, lambda: clouds)
-    seen = transform(inverse(UTM), decode(clouds[-1]))
-    np.testing.assert_allclose(seen, transform(expected, street_scan()), atol=1e-3)
-    matched.publish_map(street_map())
-    here = matched.pose_of(street_scan(), NEAR)
-    assert error_m(here) < 0.1
-    np.testing.assert_allclose(expected, here, atol=1e-3)
-
-
-def test_a_map_that_single_precision_has_spoiled(matched):
-    """It is used, and the diagnostics say every second what is wrong with it."""
-    matched.publish_map(transform(UTM, street_map().astype(np.float64)).astype(np.float32))
-    spin_until(
-        matched.node,
-        lambda: any("every 0.5 m there: give them as" in s.message for _, s in matched.reports),
-    )
-    matched.publish_map(street_map())
-    assert error_m(matched.pose_of(street_scan(), NEAR)) < 0.1
-    matched.reports.clear()
-    spin_until(
-        matched.node,
-        lambda: any(s.name.endswith("map_update_status") for _, s in matched.reports),
-    )
-    assert not any("coarse" in s.message for _, s in matched.reports)
-
-
-def test_maps_that_are_none(matched):
-    """They are reported, and the map before them stays."""
-    matched.pose_of(street_scan())
-    for points in (few(0), few(2), nan_points()):
-        matched.reports.clear()
-        matched.publish_map(points)
-        spin_until(
-            matched.node,
-            lambda: any("map cannot be used" in status.message for _, status in matched.reports),
-        )
-    assert error_m(matched.pose_of(street_scan(), NEAR)) < 0.1
-
-
-def test_a_map_of_another_frame_is_refused(matched):
-    matched.pose_of(street_scan())
-    matched.maps.publish(encode(street_map() + np.float32(9.0), matched.stamp(), "odom"))
-    words = "pointcloud_map is in the frame 'odom', expected 'map'"
-    spin_until(matched.node, lambda: any(words in s.message for _, s in matched.reports))
-    assert error_m(matched.pose_of(street_scan(), NEAR)) < 0.1
 
 
 def test_regularization_poses_that_are_none(stack, start):
@@ -447,58 +342,6 @@ def test_activation_and_initial_pose(stack, start):
     answer = align.call_async(request)
     spin_until(stack.node, answer.done)
     assert not answer.result().success
-
-
-def test_tiles_around_the_vehicle(stack, start, tmp_path):
-    """The map comes from files; far away there is none, and back at the place there is again."""
-    write_tiles(tmp_path / "tiles", street_map(), 20.0, ".npz")
-    more = {
-        "dynamic_map_loading__map_radius": 30.0,
-        "dynamic_map_loading__lidar_radius": 5.0,
-        "dynamic_map_loading__publish_loaded_map": "true",
-    }
-    maps = []
-    kept = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-    stack.node.create_subscription(PointCloud2, "debug/loaded_pointcloud_map", maps.append, kept)
-    start(matcher_command(map_path=tmp_path / "tiles", **more), cluster=2)
-    stack.wait_for_matcher()
-    assert error_m(stack.pose_of(street_scan(), NEAR)) < 0.1
-    spin_until(stack.node, lambda: maps)
-    expected = open_map(tmp_path / "tiles").around(*TRUTH[:2, 3], 30.0)[1]
-    np.testing.assert_array_equal(decode(maps[0]), expected)
-    away = from_xyz_rpy((500.0, 0.0, 0.0))
-    spin_until(stack.node, lambda: "no" in stack.report_of(stack.send(street_scan(), away)).message)
-    assert error_m(stack.pose_of(street_scan(), NEAR)) < 0.1
-
-
-@pytest.mark.parametrize("damage", ["missing", "cut off", "rubbish"])
-def test_a_tile_that_is_damaged_while_driving(stack, start, tmp_path, damage):
-    """It is reported, the map before it stays, and the node finds its place in that again."""
-    folder = tmp_path / "tiles"
-    beside = street_map() + np.float32([200.0, 0.0, 0.0])
-    write_tiles(folder, np.concatenate([street_map(), beside]), 20.0, ".npz")
-    more = {"dynamic_map_loading__map_radius": 60.0, "dynamic_map_loading__lidar_radius": 5.0}
-    start(matcher_command(map_path=folder, **more), cluster=2)
-    stack.wait_for_matcher()
-    assert error_m(stack.pose_of(street_scan(), NEAR)) < 0.1
-    for path in folder.glob("10_*.npz"):
-        whole = bytearray(path.read_bytes())
-        if damage == "missing":
-            path.unlink()
-        elif damage == "cut off":
-            path.write_bytes(whole[: len(whole) // 2])
-        else:
-            whole[200:240] = bytes(range(40))
-            path.write_bytes(whole)
-    away = from_xyz_rpy((205.0, 0.0, 0.0))
-    spin_until(
-        stack.node,
-        lambda: (
-            stack.report_of(stack.send(street_scan(), away))
-            and any("map cannot be used" in status.message for _, status in stack.reports)
-        ),
-    )
-    assert error_m(stack.pose_of(street_scan(), NEAR)) < 0.1
 
 
 @pytest.mark.parametrize(

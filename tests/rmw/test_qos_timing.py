@@ -20,6 +20,7 @@ from std_msgs.msg import String
 from support import IS_MANYCORE, PATIENCE_S, wait_until
 
 SHORT_S, LONG_S = 0.1, 3600.0
+LEASE_S = 1.0  # long enough for events to be told apart
 MANUAL = LivelinessPolicy.MANUAL_BY_TOPIC
 
 
@@ -181,8 +182,8 @@ def assert_when_told(seconds: float) -> None:
 
 def test_manual_liveliness_is_lost_on_both_sides(node, start_peer, peer_cluster):
     changes = []
-    subscribe(node, lease(SHORT_S), liveliness=changes.append)
-    peer = start_peer(assert_when_told, SHORT_S, cluster=peer_cluster)
+    subscribe(node, lease(LEASE_S), liveliness=changes.append)
+    peer = start_peer(assert_when_told, LEASE_S, cluster=peer_cluster)
     peer.wait_for("ready")
     for round_ in (1, 2):
         peer.say("assert")

@@ -45,7 +45,8 @@ def test_several_clients(node, start_peer):
     """Six clients with overlapping request numbers, in three clusters, one server."""
     node.create_service(BasicTypes, "double", double)
     clients = [start_peer(ask, f"client_{n}", 10, cluster=1 + n % 3) for n in range(6)]
-    spin_until(node, lambda: not any(client.is_running() for client in clients))
+    ended = lambda: not any(client.is_running() for client in clients)  # noqa: E731
+    spin_until(node, ended, 2 * PATIENCE_S)  # six interpreters start
     for client in clients:
         client.wait_for("all answers are right")
         assert client.wait() == 0

@@ -64,8 +64,8 @@ public:
       id_, static_cast<uint64_t>(static_cast<const std::byte *>(object) - memory_.data()));
   }
   void free(uint64_t offset, uint64_t length) noexcept;
-  /// Counts memory that processes of the cluster have outside the segment, instead of `before` from now on
-  /// `after` bytes; the caller holds the registry lock. Throws Error{no_space}.
+  /// Counts `after` instead of `before` bytes that a process holds outside the segment; the caller
+  /// holds the registry lock. Throws Error{no_space}.
   void charge(uint64_t before, uint64_t after);
   /// Allocated and charged.
   uint64_t used_bytes() const noexcept {

@@ -66,8 +66,8 @@ std::vector<ClusterInfo> Graph::clusters() const {
     const Cluster & cluster = registry_.clusters().at(id);
     const ClusterHeader & header = cluster.header();
     all.push_back(
-      {id, cluster.size(), cluster.used_bytes(), header.charged_bytes.load(), header.receive_thread_pid.load(),
-       header.messages.load(), header.notifications.load()});
+      {id, cluster.size(), cluster.used_bytes(), header.charged_bytes.load(),
+       header.receive_thread_pid.load(), header.messages.load(), header.notifications.load()});
   }
   return all;
 }

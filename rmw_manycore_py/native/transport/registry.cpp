@@ -210,8 +210,11 @@ void Registry::repair() noexcept {
     }
   }
   for (uint32_t slot = 0; slot < processes_.high_water(); ++slot) {
+    if (!processes_.is_live(slot)) {
+      continue;
+    }
     Cluster * const cluster = clusters_.find(processes_[slot].cluster);
-    if (processes_.is_live(slot) && cluster != nullptr) {
+    if (cluster != nullptr) {
       cluster->mark_charged(processes_[slot].charged_bytes);
     }
   }

@@ -36,7 +36,7 @@ struct ProcessEntry {
   int32_t core;      ///< -1 = not placed on a core
   int32_t host_cpu;  ///< -1 = not pinned
   uint32_t reserved;
-  uint64_t charged_bytes;  ///< memory outside the segment that counts as SMEM (docs/design/platform.md)
+  uint64_t charged_bytes;  ///< outside the segment, but counted as SMEM
   char label[88];
   WakeWord wake;
 };

@@ -21,16 +21,17 @@ ProcessEntry & entry_of(Registry & registry, pid_t pid) {
 }  // namespace
 
 // A death between the two counts leaves the lock to the next owner, who adds up the entries' anew.
-void charge_smem(Registry & registry, pid_t pid, uint64_t bytes) {
+void charge_smem(Registry & registry, pid_t pid, uint64_t size_bytes) {
   const Registry::Lock lock(registry);
   ProcessEntry & entry = entry_of(registry, pid);
-  registry.clusters().at(entry.cluster).charge(entry.charged_bytes, bytes);
-  entry.charged_bytes = bytes;
+  registry.clusters().at(entry.cluster).charge(entry.charged_bytes, size_bytes);
+  entry.charged_bytes = size_bytes;
 }
 
 void discharge(Registry & registry, uint32_t process) noexcept {
   ProcessEntry & entry = registry.processes()[process];
-  Cluster * const cluster = registry.clusters().find(entry.cluster);
+  Cluster * const cluster =
+    entry.charged_bytes == 0 ? nullptr : registry.clusters().find(entry.cluster);
   if (cluster != nullptr) {
     cluster->charge(std::exchange(entry.charged_bytes, 0), 0);
   }

@@ -10,27 +10,44 @@ from rclpy.utilities import get_rmw_implementation_identifier
 
 from rmw_manycore_py import _transport
 from rmw_manycore_py.errors import ManycoreError
+from rmw_manycore_py.ndt.matcher import Matcher
+from rmw_manycore_py.ndt.voxel_map import VoxelMap
 
 
 class ClusterMemory:
-    """Keeps the platform's account of a node's shared memory; with another RMW there is none."""
+    """Keeps the platform's account of a matcher's shared memory; with another RMW there is none.
 
-    def __init__(self, node: Node) -> None:
+    Where the cluster has no room for more a ManycoreError says so, and nothing has changed.
+    """
+
+    def __init__(self, node: Node, matcher: Matcher) -> None:
+        self._matcher = matcher
         self._platform = ""
         if get_rmw_implementation_identifier() == "rmw_manycore":
             domain = f"domain-{node.context.get_domain_id()}"
             self._platform = os.environ.get("MANYCORE_PLATFORM") or domain
         self._held_bytes = 0
+        self._hold(matcher.shared_bytes())
 
-    def hold(self, size_bytes: int) -> None:
-        """Take up so much from now on, instead of what was held before.
+    def make_room_for_map(self, next_map: VoxelMap) -> None:
+        """Take up the place of a map beside the present one."""
+        self._hold(self._matcher.shared_bytes(next_map=next_map))
 
-        :raises ManycoreError: when the cluster has no room for more; then nothing has changed.
-        """
+    def make_room_for_scan(self, points: int) -> None:
+        """Take up the place of a scan."""
+        self._hold(self._matcher.shared_bytes(points))
+
+    def give_back(self) -> None:
+        """Keep the place of what the matcher has now."""
+        self._hold(self._matcher.shared_bytes())
+
+    def _hold(self, size_bytes: int) -> None:
         if not self._platform or size_bytes == self._held_bytes:
             return
         try:
             _transport.charge_smem(self._platform, size_bytes)
         except _transport.PlatformError as error:
-            raise ManycoreError(f"map and scan need more shared memory: {error}") from error
+            if size_bytes < self._held_bytes:
+                return  # too much is held, until the next call
+            raise ManycoreError(f"shared memory for map and scan: {error}") from error
         self._held_bytes = size_bytes

@@ -72,18 +72,27 @@ class MapSupply:
         built = self._builder.take(wait)
         if built is None:
             return None
-        self._problem = built.problem
         if built.voxel_map is None or built.points is None:
+            self._refuse(built.problem)
             return None
         try:
             self._admit(built.voxel_map)
         except ManycoreError as error:
-            self._problem = str(error)
+            self._refuse(str(error))
             return None
+        self._problem = ""
         self.is_set = True
         self._warning = built.warning
         self.duration_ms = built.duration_ms
         return built.voxel_map, built.points
+
+    def _refuse(self, problem: str) -> None:
+        """Keep the map there is; without a problem the same tiles were needed again."""
+        if not problem:
+            return
+        self._problem = problem
+        if self._area is not None:
+            self._area.forget_tiles()
 
     def is_leaving(self, x: float, y: float) -> bool:
         """Tell whether the LiDAR sees beyond what is loaded."""

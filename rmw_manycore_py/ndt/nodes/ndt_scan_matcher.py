@@ -41,7 +41,6 @@ from rmw_manycore_py.ndt.nodes.pose_buffer import Interpolated, PoseBuffer
 from rmw_manycore_py.ndt.nodes.running import run_node
 from rmw_manycore_py.ndt.poses import Matrix
 from rmw_manycore_py.ndt.thinning import Points
-from rmw_manycore_py.ndt.voxel_map import VoxelMap
 
 MAP_UPDATE_PERIOD_S = 1.0
 SCAN_DEPTH = 5  # a scan that waits is late, one that is overwritten is lost
@@ -62,9 +61,8 @@ class NdtScanMatcher(Node):
         self._own = declare(self, OwnParameters)
         options = matcher_options(self._p, self._own)
         self._matcher = make_matcher(options, self._own.worker_cpus)
-        self._memory = ClusterMemory(self)
-        self._memory.hold(self._matcher.shared_bytes())
-        self._map = MapSupply(options, self._p, self._own, self._make_room)
+        self._memory = ClusterMemory(self, self._matcher)
+        self._map = MapSupply(options, self._p, self._own, self._memory.make_room_for_map)
         self._frames = FrameTree()
         self._guesses = PoseBuffer(self._p.initial_pose_timeout_s, self._p.initial_pose_distance_m)
         self._regularization = PoseBuffer(UNLIMITED, UNLIMITED)
@@ -176,7 +174,7 @@ class NdtScanMatcher(Node):
             raise Rejected(f"there is no map yet: {self._map.what_is_missing()}")
         if self._map.is_leaving(float(guess.T[0, 3]), float(guess.T[1, 3])):
             report.note("Lidar has gone out of the map range")
-        self._make_room_for(points)
+        self._make_room(points)
         regularization = self._regularization_at(stamp_s, guess.T, report)
         alignment = self._matcher.align(points, guess.T, regularization)
         if not np.isfinite(alignment.T_map_sensor).all():
@@ -291,18 +289,15 @@ class NdtScanMatcher(Node):
         if taken is not None:
             voxel_map, points = taken
             self._matcher.set_map(voxel_map)
-            self._memory.hold(self._matcher.shared_bytes())
+            self._memory.give_back()
             built = f"{voxel_map.voxels} voxels, built in {self._map.duration_ms:.0f} ms"
             self.get_logger().info(f"matching to a map of {built}")
             if self._p.publish_loaded_map:
                 self._outputs.loaded_map(self.get_clock().now().to_msg(), points)
 
-    def _make_room(self, voxel_map: VoxelMap) -> None:
-        self._memory.hold(self._matcher.shared_bytes(next_map=voxel_map))
-
-    def _make_room_for(self, points: Points) -> None:
+    def _make_room(self, points: Points) -> None:
         try:
-            self._memory.hold(self._matcher.shared_bytes(len(points)))
+            self._memory.make_room_for_scan(len(points))
         except ManycoreError as error:
             raise Rejected(str(error)) from error
 
@@ -379,7 +374,7 @@ class NdtScanMatcher(Node):
     def _best_particle(self, T_map_base: Matrix, covariance: Matrix) -> Particle:
         scan = self._scan
         assert scan is not None
-        self._make_room_for(scan)
+        self._make_room(scan)
         found = particles(
             lambda T: self._matcher.align(scan, T, only_pose=True),
             T_map_base,

@@ -29,7 +29,7 @@ WARM_UP_PERIOD_S = 0.25
 # Topics may overtake each other on their way; a filter's prediction is there before the scan, which
 # a LiDAR takes a tenth of a second for.
 GUESS_LEAD_S = 0.005
-FOLLOW_UP_S = 1.0  # how long answers are waited for after the last scan
+FOLLOW_UP_S = 1.0  # so long at least answers are waited for after the last scan
 
 
 class Player(Node):
@@ -85,7 +85,7 @@ class Player(Node):
             self._waiting[stamp_ns] = row
             self._send(stamp_ns, scan)
             report(row)
-        end = time.monotonic() + FOLLOW_UP_S
+        end = time.monotonic() + max(FOLLOW_UP_S, self._tally.deadline_ms / 1e3)
         self._spin_until(end, lambda: not self._waiting)
 
     def _scan(self, index: int) -> Any:

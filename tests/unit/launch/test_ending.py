@@ -32,26 +32,44 @@ def test_judgement(return_code: int, state: NodeState, failed: bool, reason: str
     assert (ending.failed, ending.reason) == (failed, reason)
 
 
+FRAME = '  File "/x/site-packages/rclpy/executors.py", line 396, in _take_subscription'
+PYBIND11 = (
+    "RuntimeError: Unable to convert call argument '0' to Python object (#define "
+    "PYBIND11_DETAILED_ERROR_MESSAGES or compile in debug mode for details)"
+)
+RCL = "rclpy._rclpy_pybind11.RCLError: failed to "
+
+
 @pytest.mark.parametrize(
-    "last_line",
+    "last_lines",
     [
-        "KeyboardInterrupt",
-        "rclpy.executors.ExternalShutdownException",
-        "RuntimeError: Unable to convert call argument '0' to Python object (#define "
-        "PYBIND11_DETAILED_ERROR_MESSAGES or compile in debug mode for details)",
-        "rclpy._rclpy_pybind11.RCLError: failed to initialize wait set: the given context is not "
-        "valid, either rcl_init() was not called or rcl_shutdown() was called., at wait.c:130",
+        ["KeyboardInterrupt"],
+        ["rclpy.executors.ExternalShutdownException"],
+        [FRAME, PYBIND11],
+        [
+            f"{RCL}initialize wait set: the given context is not valid, either rcl_init() was not "
+            "called or rcl_shutdown() was called., at wait.c:130"
+        ],
+        [f"{RCL}shutdown: rcl_shutdown already called on the given context, at init.c:333"],
     ],
 )
-def test_python_that_an_interruption_ended_was_stopped(last_line: str) -> None:
-    ending = judge(1, NodeState.INTERRUPTED, last_line)
+def test_python_that_an_interruption_ended_was_stopped(last_lines: list[str]) -> None:
+    ending = judge(1, NodeState.INTERRUPTED, last_lines)
     assert (ending.failed, ending.reason) == (False, "stopped")
-    assert judge(1, NodeState.RUNNING, last_line).failed
-    assert judge(2, NodeState.INTERRUPTED, last_line).failed
+    assert judge(1, NodeState.RUNNING, last_lines).failed
+    assert judge(2, NodeState.INTERRUPTED, last_lines).failed
 
 
-def test_another_error_on_the_way_out_is_a_failure() -> None:
-    assert judge(1, NodeState.INTERRUPTED, "RuntimeError: Unable to reach the motor").failed
+@pytest.mark.parametrize(
+    "last_lines",
+    [
+        [FRAME, "RuntimeError: Unable to reach the motor"],
+        ['  File "/x/motor/driver.py", line 3, in stop', PYBIND11],
+        [f"{RCL}publish: the arm is not there"],
+    ],
+)
+def test_another_error_on_the_way_out_is_a_failure(last_lines: list[str]) -> None:
+    assert judge(1, NodeState.INTERRUPTED, last_lines).failed
 
 
 def test_one_that_had_to_be_killed_failed() -> None:

@@ -99,6 +99,9 @@ def test_an_area_is_loaded_again_only_where_other_tiles_are_needed(tmp_path):
     assert area.update(54.0, 10.0) is None
     assert area.update(56.0, 10.0) is None
     assert area.distance_m(56.0, 10.0) == 0.0
+    area.forget_tiles()
+    assert area.update(54.0, 10.0) is None  # not at once
+    np.testing.assert_array_equal(area.update(50.0, 10.0), first)
     moved = area.update(90.0, 10.0)
     assert moved[:, 0].min() > 59.9
 

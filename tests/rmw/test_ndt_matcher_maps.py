@@ -1,0 +1,190 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""The maps of `ndt_scan_matcher`: of all kinds and places, swapped under way, and refused."""
+
+from __future__ import annotations
+
+import os
+from typing import Any
+
+import numpy as np
+import pytest
+from diagnostic_msgs.msg import DiagnosticStatus
+from ndt_support import (
+    NEAR,
+    TRUTH,
+    Stack,
+    error_m,
+    few,
+    matcher_command,
+    nan_points,
+    street_map,
+    street_scan,
+)
+from rclpy.qos import DurabilityPolicy, QoSProfile
+from ros_support import spin_until
+from sensor_msgs.msg import PointCloud2
+from support import IS_MANYCORE
+
+from rmw_manycore_py import _transport
+from rmw_manycore_py.ndt.map_tiles import open_map, write_tiles
+from rmw_manycore_py.ndt.nodes.conversions import nanoseconds
+from rmw_manycore_py.ndt.nodes.point_cloud import decode, encode
+from rmw_manycore_py.ndt.poses import from_xyz_rpy, inverse, transform
+
+OK, ERROR = b"\x00", b"\x02"
+UTM = from_xyz_rpy((500_000.0, 5_000_000.0, 100.0))
+
+
+def again(stack: Stack) -> DiagnosticStatus:
+    """Send the scan, and return what the matcher reports of it."""
+    return stack.report_of(stack.send(street_scan()))
+
+
+def test_a_map_of_another_place_and_back(matched):
+    """Maps are swapped while scans come; the one without the place gives no pose."""
+    matched.pose_of(street_scan())
+    matched.publish_map(street_map() + np.float32([5000.0, 0.0, 0.0]))
+    spin_until(matched.node, lambda: "no convergence" in again(matched).message)
+    matched.publish_map(street_map())
+    assert error_m(matched.pose_of(street_scan(), NEAR)) < 0.1
+
+
+def test_a_place_far_from_the_map_s_origin(matched):
+    """The pose there is as good as at the origin, and so is what is published of it."""
+    clouds = {}
+    keep = lambda cloud: clouds.__setitem__(nanoseconds(cloud.header.stamp), cloud)  # noqa: E731
+    matched.node.create_subscription(PointCloud2, "points_aligned", keep, 10)
+    matched.publish_map(transform(UTM, street_map().astype(np.float64)))
+    expected = inverse(UTM) @ matched.pose_of(street_scan(), UTM @ NEAR)
+    stamp_ns = max(matched.poses)
+    spin_until(matched.node, lambda: stamp_ns in clouds)
+    seen = transform(inverse(UTM), decode(clouds[stamp_ns]))
+    np.testing.assert_allclose(seen, transform(expected, street_scan()), atol=1e-3)
+    matched.publish_map(street_map())
+    here = matched.pose_of(street_scan(), NEAR)
+    assert error_m(here) < 0.1
+    np.testing.assert_allclose(expected, here, atol=1e-3)
+
+
+def test_a_map_that_single_precision_has_spoiled(matched):
+    """It is used, and the diagnostics say every second what is wrong with it."""
+    matched.publish_map(transform(UTM, street_map().astype(np.float64)).astype(np.float32))
+    spin_until(
+        matched.node,
+        lambda: any("every 0.5 m there: give them as" in s.message for _, s in matched.reports),
+    )
+    matched.publish_map(street_map())
+    assert error_m(matched.pose_of(street_scan(), NEAR)) < 0.1
+    matched.reports.clear()
+    spin_until(
+        matched.node,
+        lambda: any(s.name.endswith("map_update_status") for _, s in matched.reports),
+    )
+    assert not any("coarse" in s.message for _, s in matched.reports)
+
+
+def test_maps_that_are_none(matched):
+    """They are reported, and the map before them stays."""
+    matched.pose_of(street_scan())
+    for points in (few(0), few(2), nan_points()):
+        matched.reports.clear()
+        matched.publish_map(points)
+        spin_until(
+            matched.node,
+            lambda: any("map cannot be used" in status.message for _, status in matched.reports),
+        )
+    assert error_m(matched.pose_of(street_scan(), NEAR)) < 0.1
+
+
+def test_a_map_of_another_frame_is_refused(matched):
+    matched.pose_of(street_scan())
+    matched.maps.publish(encode(street_map() + np.float32(9.0), matched.stamp(), "odom"))
+    words = "pointcloud_map is in the frame 'odom', expected 'map'"
+    spin_until(matched.node, lambda: any(words in s.message for _, s in matched.reports))
+    assert error_m(matched.pose_of(street_scan(), NEAR)) < 0.1
+
+
+def own_cluster() -> dict[str, Any]:
+    return _transport.Platform(os.environ["MANYCORE_PLATFORM"]).clusters()[0]
+
+
+@pytest.mark.skipif(not IS_MANYCORE, reason="the SMEM of a cluster is rmw_manycore's")
+def test_a_map_that_the_cluster_has_no_room_for(stack, start):
+    """What a matcher shares with its workers is a part of its cluster's SMEM."""
+    cpus = sorted(os.sched_getaffinity(0))[:2]
+    if len(cpus) < 2:
+        pytest.skip("workers need two host CPUs")
+    program = start(matcher_command(worker_host_cpus=cpus), cluster=1)
+    stack.wait_for_matcher()
+    before = own_cluster()
+    assert before["used"] > before["charged"] > 1 << 20  # the place for scans
+    for _ in range(2):
+        stack.publish_map(street_map())
+        stack.pose_of(street_scan(), NEAR)
+        program.wait_for("matching to a map of")
+    cluster = own_cluster()
+    assert cluster["charged"] > before["charged"]
+
+    platform = os.environ["MANYCORE_PLATFORM"]
+    _transport.charge_smem(platform, cluster["smem_size"] - cluster["used"] - 64 * 1024)
+    stack.publish_map(street_map())
+    report = stack.next_report("map_update_status", ERROR)
+    assert "cluster 1 has no room for" in report.message
+    assert "raise smem_size in the mapfile" in report.message
+    assert error_m(stack.pose_of(street_scan(), NEAR)) < 0.1
+
+    _transport.charge_smem(platform, 0)
+    stack.publish_map(street_map())
+    stack.next_report("map_update_status", OK)
+
+
+def test_tiles_around_the_vehicle(stack, start, tmp_path):
+    """The map comes from files; far away there is none, and back at the place there is again."""
+    write_tiles(tmp_path / "tiles", street_map(), 20.0, ".npz")
+    more = {
+        "dynamic_map_loading__map_radius": 30.0,
+        "dynamic_map_loading__lidar_radius": 5.0,
+        "dynamic_map_loading__publish_loaded_map": "true",
+    }
+    maps = []
+    kept = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+    stack.node.create_subscription(PointCloud2, "debug/loaded_pointcloud_map", maps.append, kept)
+    start(matcher_command(map_path=tmp_path / "tiles", **more), cluster=2)
+    stack.wait_for_matcher()
+    assert error_m(stack.pose_of(street_scan(), NEAR)) < 0.1
+    spin_until(stack.node, lambda: maps)
+    expected = open_map(tmp_path / "tiles").around(*TRUTH[:2, 3], 30.0)[1]
+    np.testing.assert_array_equal(decode(maps[0]), expected)
+    away = from_xyz_rpy((500.0, 0.0, 0.0))
+    spin_until(stack.node, lambda: "no" in stack.report_of(stack.send(street_scan(), away)).message)
+    assert error_m(stack.pose_of(street_scan(), NEAR)) < 0.1
+
+
+@pytest.mark.parametrize("damage", ["missing", "cut off", "rubbish"])
+def test_a_tile_that_is_damaged_while_driving(stack, start, tmp_path, damage):
+    """It is reported, the map before it stays, and the node finds its place in that again."""
+    folder = tmp_path / "tiles"
+    beside = street_map() + np.float32([200.0, 0.0, 0.0])
+    write_tiles(folder, np.concatenate([street_map(), beside]), 20.0, ".npz")
+    more = {"dynamic_map_loading__map_radius": 60.0, "dynamic_map_loading__lidar_radius": 5.0}
+    start(matcher_command(map_path=folder, **more), cluster=2)
+    stack.wait_for_matcher()
+    assert error_m(stack.pose_of(street_scan(), NEAR)) < 0.1
+    for path in folder.glob("10_*.npz"):
+        whole = bytearray(path.read_bytes())
+        if damage == "missing":
+            path.unlink()
+        elif damage == "cut off":
+            path.write_bytes(whole[: len(whole) // 2])
+        else:
+            whole[200:240] = bytes(range(40))
+            path.write_bytes(whole)
+    away = from_xyz_rpy((205.0, 0.0, 0.0))
+    spin_until(
+        stack.node,
+        lambda: (
+            stack.report_of(stack.send(street_scan(), away))
+            and any("map cannot be used" in status.message for _, status in stack.reports)
+        ),
+    )
+    assert error_m(stack.pose_of(street_scan(), NEAR)) < 0.1
