@@ -86,8 +86,9 @@ class BridgeProcess:
             for loop in self._loops:
                 loop.on_failure(partial(os.eventfd_write, self._failed, 1))
                 loop.start()
+            endings = [inbox.fileno(), self._failed]
             try:
-                while not select.select([inbox, self._failed], [], [], self._lanes.period_s)[0]:
+                while not select.select(endings, [], [], self._lanes.period_s)[0]:
                     if self._lanes.look():
                         self._graphs_changed()
             finally:  # a table that cannot be read or written ends the process: it starts again
