@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import struct
 from pathlib import Path
-from typing import TYPE_CHECKING
+from types import ModuleType
 
 import numpy as np
 from pydantic import ValidationError
@@ -17,16 +17,13 @@ from pydantic import ValidationError
 from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.ndt.thinning import Points
 
-if TYPE_CHECKING:
-    from pypcd4.pypcd4 import PointCloud
-
 AXES = ("x", "y", "z")
 
 
 def read_pcd(path: Path) -> Points:
     """Return the positions (N, 3) of a file, finite or not; raises OSError and ValueError."""
     try:
-        cloud = _point_cloud().from_path(path)
+        cloud = _load_pypcd4().PointCloud.from_path(path)
     except ValidationError as error:
         wrong = ", ".join(f"{entry['loc'][0]}: {entry['msg']}" for entry in error.errors())
         raise ValueError(f"its header is broken: {wrong}") from error
@@ -41,15 +38,16 @@ def read_pcd(path: Path) -> Points:
 
 def write_pcd(path: Path, points: Points) -> None:
     """Write positions (N, 3), in the precision that they have, as a binary file."""
-    _point_cloud().from_points(points, AXES, (points.dtype.type,) * 3).save(path)
+    _load_pypcd4().PointCloud.from_points(points, AXES, (points.dtype.type,) * 3).save(path)
 
 
-def _point_cloud() -> type[PointCloud]:
+def _load_pypcd4() -> ModuleType:
     try:
-        from pypcd4.pypcd4 import PointCloud
+        import pypcd4
     except ImportError as error:
         raise ManycoreError(
             f"pypcd4 cannot be loaded ({error}). Maps as PCD need it: "
             "pip install 'rmw-manycore[ndt]'"
         ) from error
-    return PointCloud
+    assert isinstance(pypcd4, ModuleType)
+    return pypcd4
