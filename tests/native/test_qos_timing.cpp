@@ -186,6 +186,29 @@ TEST_CASE("an assertion wakes only who watches, and only when it changes somethi
   waiter.unwatch_endpoint_events();
 }
 
+TEST_CASE("what starts a publisher's clock wakes who slept in its process as nothing was due") {
+  Fixture f;
+  Waiter & waiter = f.process->waiter();
+  waiter.watch_endpoint_events();
+  const auto changes_epoch = [&](auto && act) {
+    const uint32_t epoch = waiter.epoch();
+    act();
+    return waiter.epoch() != epoch;
+  };
+  SUBCASE("its first message, of its deadline") {
+    const auto publisher = f.publisher(with_deadline(long_ns));
+    CHECK(changes_epoch([&] { publish(*publisher, 1); }));
+    CHECK_FALSE(changes_epoch([&] { publish(*publisher, 2); }));
+  }
+  SUBCASE("an assertion, and one after the lease ran out, of its lease") {
+    const auto publisher = f.publisher(with_lease(short_ns, Liveliness::manual_by_topic));
+    CHECK(changes_epoch([&] { publisher->assert_liveliness(); }));
+    wait_until("the lease runs out", [&] { return publisher->liveliness_lost().total == 1; });
+    CHECK(changes_epoch([&] { publish(*publisher, 1); }));
+  }
+  waiter.unwatch_endpoint_events();
+}
+
 TEST_CASE("a publisher that was killed is not alive until another one takes its place") {
   Fixture f;
   const auto subscription = f.subscription(with_lease(long_ns, Liveliness::automatic));

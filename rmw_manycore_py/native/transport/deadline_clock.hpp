@@ -28,18 +28,21 @@ public:
 
   void reset() noexcept { origin_ns_.store(not_started, std::memory_order_relaxed); }
 
-  /// A message is there. The clock is read after the origin: an origin in the future would lose a miss.
-  void touch(int64_t period_ns) noexcept {
+  /// A message is there; true when it is the first, before which nothing was due. The clock is read after the origin:
+  /// an origin in the future would lose a miss. seq_cst, before a look at who waits for events: he counts himself
+  /// before he reads the origin.
+  bool touch(int64_t period_ns) noexcept {
     uint64_t origin_ns = origin_ns_.load(std::memory_order_acquire);
     while (period_ns > 0 &&
            !origin_ns_.compare_exchange_weak(
              origin_ns, moved(origin_ns, now(), static_cast<uint64_t>(period_ns)),
-             std::memory_order_acq_rel)) {
+             std::memory_order_seq_cst)) {
     }
+    return origin_ns == not_started;
   }
 
   TimedCount missed(int64_t period_ns) const noexcept {
-    const uint64_t origin_ns = origin_ns_.load(std::memory_order_acquire);
+    const uint64_t origin_ns = origin_ns_.load(std::memory_order_seq_cst);
     if (origin_ns == not_started || period_ns <= 0) {
       return {};
     }

@@ -54,11 +54,11 @@ uint64_t Publisher::publish(
   const std::unique_lock<std::mutex> lock(impl.mutex, std::adopt_lock);
   draft.publisher_ = nullptr;
   const uint64_t sequence_number = ++impl.published;
-  if (impl.has_deadline()) {
-    impl.deadline.touch(impl.entry.qos.deadline_ns);
-  }
-  if (impl.is_manual()) {
-    impl.liveliness.assert_now();  // before the message, which tells readers to look
+  // Before the message, which tells readers to look.
+  const bool started = impl.has_deadline() && impl.deadline.touch(impl.entry.qos.deadline_ns);
+  const bool revived = impl.is_manual() && impl.liveliness.assert_now();
+  if (started || revived) {  // who slept as nothing was due has to look, too
+    notify_event_watchers(impl.registry, impl.entry.process);
   }
   const uint64_t number =
     impl.writer.commit(size_bytes, source_timestamp_ns, sequence_number, correlation);
@@ -95,6 +95,7 @@ TimedCount Publisher::liveliness_lost() const noexcept {
 void Publisher::assert_liveliness() {
   if (impl_->is_manual() && impl_->liveliness.assert_now()) {
     impl_->tell_event_watchers();
+    notify_event_watchers(impl_->registry, impl_->entry.process);
   }
 }
 
