@@ -82,6 +82,8 @@ def test_scan_matching_is_measured_alone_and_split() -> None:
     report = run_bench("ndt", "--only", "rmw_manycore")
     units = {result["unit"] for result in report["results"]}
     assert units == {"ns/point", "ms", "x", "%"}
+    contenders = {result["contender"] for result in report["results"]}
+    assert {"rmw_manycore 1 worker", "rmw_manycore alone on 1 CPU"} <= contenders
     assert all(result["median"] > 0 for result in report["results"])
 
 

@@ -63,8 +63,7 @@ def test_a_killed_bridge_is_started_again(start, platform) -> None:
     assert leftovers(platform) == []
 
 
-def test_it_ends_when_it_is_told_twice(start, platform) -> None:
-    bridge = Bridge(start, platform)
+def test_it_ends_when_it_is_told_twice(bridge) -> None:
     for _ in range(4):
         (process,) = bridge.run(bridge.route("outward", "/chatter")).values()
         wait_until(lambda: bridge.row("outward", "/chatter").get("alive"), "it counts")
@@ -144,22 +143,21 @@ def test_a_loop_is_refused(start, tmp_path, platform) -> None:
     assert "expected two different domains, found 2 on both sides" in bridge.output
 
 
-def test_two_platforms_meet_outside_only(start, platform) -> None:
+def test_two_platforms_meet_outside_only(start, platform, bridge) -> None:
     other = unique_platform()
     domain = str(domain_of(platform))
-    one = Bridge(start, platform)
-    one.run(one.route("outward", "/chatter"))
-    two = Bridge(
+    bridge.run(bridge.route("outward", "/chatter"))
+    second = Bridge(
         lambda command, **env: start(
             command, **{"MANYCORE_PLATFORM": other, "ROS_DOMAIN_ID": domain, **env}
         ),
         other,
     )
-    two.domain = one.domain
-    two.run(two.route("inward", "/chatter"))
+    second.domain = bridge.domain
+    second.run(second.route("inward", "/chatter"))
     start(example_command("talker"))
     start(example_command("listener"), MANYCORE_PLATFORM=other, ROS_DOMAIN_ID=domain).wait_for(
         HEARD
     )
-    wait_until(lambda: two.row("inward", "/chatter")["messages"], "it came through two bridges")
-    assert one.row("outward", "/chatter")["own"] == 0
+    wait_until(lambda: second.row("inward", "/chatter")["messages"], "it came through two bridges")
+    assert bridge.row("outward", "/chatter")["own"] == 0

@@ -22,11 +22,6 @@ TOPICS = [name for pair in zip(HEAVY, LIGHT, strict=True) for name in pair]  # b
 DEPTH = 2000
 
 
-@pytest.fixture
-def bridge(start, platform) -> Bridge:
-    return Bridge(start, platform)
-
-
 def count_up() -> None:
     """Publish numbers for ever, many and large ones on the heavy topics."""
     with peer_node("counter") as node:

@@ -12,7 +12,7 @@ from collections.abc import Iterator
 from typing import Any
 
 import pytest
-from bridging import OUTSIDE, Bridge
+from bridging import OUTSIDE
 from ros_support import announce, peer_node, spin_until, type_of
 from support import (
     IS_MANYCORE,
@@ -147,8 +147,8 @@ def count_large(topic: str, type_name: str, count: int) -> None:
         ("outward", "sensor_msgs/msg/Image", 6_000_000, 30),
     ],
 )
-def test_large_messages_arrive_all(start, platform, direction, type_name, size, rate_hz) -> None:
-    bridge, count = Bridge(start, platform), 3 * rate_hz
+def test_large_messages_arrive_all(bridge, direction, type_name, size, rate_hz) -> None:
+    count = 3 * rate_hz
     bridge.run(bridge.route(direction, "/large", type_name, qos={"depth": 30}))
     source, target = bridge.outside, bridge.inside
     if direction == "outward":

@@ -20,11 +20,6 @@ MS = 1_000_000
 TIMES = ("deadline", "lifespan", "liveliness_lease_duration")
 
 
-@pytest.fixture
-def bridge(start, platform) -> Bridge:
-    return Bridge(start, platform)
-
-
 @pytest.fixture(params=["inward", "outward"])
 def way(request) -> str:
     return str(request.param)

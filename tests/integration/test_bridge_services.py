@@ -23,11 +23,6 @@ SET_BOOL = "std_srvs/srv/SetBool"
 FIBONACCI = "test_msgs/action/Fibonacci"
 
 
-@pytest.fixture
-def bridge(start, platform) -> Bridge:
-    return Bridge(start, platform)
-
-
 @pytest.fixture(params=["inward", "outward"])
 def direction(request) -> str:
     return str(request.param)

@@ -7,7 +7,7 @@ import time
 from typing import Any
 
 import pytest
-from bridging import OUTSIDE, Bridge
+from bridging import OUTSIDE
 from ros_support import announce, peer_node, spin_until, type_of
 from support import IS_MANYCORE, MAPFILES, example_command, leftovers, manycore_command, wait_until
 
@@ -18,11 +18,6 @@ pytestmark = [
 
 TALKER_LISTENER = MAPFILES / "talker_listener.yaml"
 HEARD = "I heard: 'Hello World"
-
-
-@pytest.fixture
-def bridge(start, platform) -> Bridge:
-    return Bridge(start, platform)
 
 
 def qos(words: dict[str, Any]) -> Any:
