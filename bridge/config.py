@@ -18,10 +18,11 @@ from rmw_manycore_py.mapfile.crossings import overrides
 from rmw_manycore_py.mapfile.document import Document, read_yaml
 from rmw_manycore_py.mapfile.model import (
     Domain,
-    PositiveNumber,
     QosSection,
+    Rate,
     Section,
     Text,
+    Timeout,
     TopicName,
 )
 from rmw_manycore_py.mapfile.names import expand
@@ -53,7 +54,7 @@ class TopicCrossing(Crossing):
     qos: QosSection = QosSection()
     bidirectional: StrictBool = False
     reversed: StrictBool = False
-    max_hz: PositiveNumber | None = None
+    max_hz: Rate | None = None
     max_size: Size | None = None
 
 
@@ -61,14 +62,14 @@ class ServiceCrossing(Crossing):
     """A service."""
 
     type: ServiceType
-    timeout: PositiveNumber = REQUEST_TIMEOUT_S
+    timeout: Timeout = REQUEST_TIMEOUT_S
 
 
 class ActionCrossing(Crossing):
     """An action."""
 
     type: ActionType
-    timeout: PositiveNumber = REQUEST_TIMEOUT_S
+    timeout: Timeout = REQUEST_TIMEOUT_S
 
 
 class BridgeFile(Section):

@@ -21,8 +21,10 @@ StartProgram = Callable[..., Program]
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    # A shell's background jobs ignore Ctrl-C, and so would whatever the tests start.
+    # Background jobs of a shell ignore Ctrl-C, those of nohup the end of the terminal, and so
+    # would whatever the tests start.
     signal.signal(signal.SIGINT, signal.default_int_handler)
+    signal.signal(signal.SIGHUP, signal.SIG_DFL)
     # The wheels of rosidl bring an old parser along, which uses modules that Python gave up.
     config.addinivalue_line("filterwarnings", "ignore:module 'sre_:DeprecationWarning")
     if report_path := os.environ.get(isolation.REPORT_VARIABLE):

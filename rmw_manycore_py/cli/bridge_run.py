@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import os
 import sys
 from pathlib import Path
 
@@ -13,6 +12,7 @@ from rmw_manycore_py.bridge.config import load_bridge_file
 from rmw_manycore_py.bridge.plan import Plan
 from rmw_manycore_py.cli.options import examples, platform_option
 from rmw_manycore_py.cli.run_printer import RunPrinter
+from rmw_manycore_py.domain import MAX_DOMAIN, ros_domain
 from rmw_manycore_py.launch.bridge import run_bridge
 
 
@@ -20,8 +20,8 @@ from rmw_manycore_py.launch.bridge import run_bridge
 @click.argument("config", type=click.Path(dir_okay=False, exists=True, path_type=Path))
 @click.option(
     "--inside",
-    type=click.IntRange(0, 232),
-    default=lambda: int(os.environ.get("ROS_DOMAIN_ID") or 0),
+    type=click.IntRange(0, MAX_DOMAIN),
+    default=ros_domain,
     show_default="$ROS_DOMAIN_ID, or 0",
     help="The domain of CONFIG that stands for the platform.",
 )
@@ -32,7 +32,7 @@ def command(config: Path, inside: int, platform: str) -> None:
     One side of each entry is the platform's domain; the other one is a real DDS domain.
     """
     plan = Plan(platform, load_bridge_file(config, inside, _warn))
-    sys.exit(run_bridge(plan, RunPrinter([]).report))
+    sys.exit(run_bridge(plan, RunPrinter().report))
 
 
 def _warn(text: str) -> None:

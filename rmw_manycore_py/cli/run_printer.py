@@ -38,22 +38,23 @@ RUNNER = "manycore"
 
 
 class RunPrinter:
-    """Prints events as they come."""
+    """Prints events as they come.
 
-    def __init__(self, nodes: Sequence[str]) -> None:
+    :param nodes: who has a colour and room for its name from the start; others may follow.
+    """
+
+    def __init__(self, nodes: Sequence[str] = ()) -> None:
         # What serves the nodes prints little: its longer names may stick out.
         named = [name for name in nodes if not name.startswith("(")]
         self._width = max(len(name) for name in (*named, RUNNER))
-        self._prefixes = {
-            name: click.style(f"{name:<{self._width}} | ", fg=colour)
-            for name, colour in zip(nodes, cycle(COLOURS), strict=False)
-        }
+        self._colours = cycle(COLOURS)
+        self._prefixes = {name: self._new_prefix(name) for name in nodes}
         self._failures: list[Ended] = []
 
     def report(self, event: Event) -> None:
         """Print an event."""
         if isinstance(event, Output):
-            click.echo(self._prefixes[event.node] + event.line)
+            click.echo(self._prefix(event.node) + event.line)
         elif isinstance(event, Platform):
             _print_platform(event)
         elif isinstance(event, Notice):
@@ -73,6 +74,14 @@ class RunPrinter:
             self._ended(event)
         elif isinstance(event, Finished):
             self._finished()
+
+    def _prefix(self, name: str) -> str:
+        if name not in self._prefixes:
+            self._prefixes[name] = self._new_prefix(name)
+        return self._prefixes[name]
+
+    def _new_prefix(self, name: str) -> str:
+        return click.style(f"{name:<{self._width}} | ", fg=next(self._colours))
 
     def _say(self, text: str, fg: str | None = None) -> None:
         click.secho(f"{RUNNER:<{self._width}} | {text}", fg=fg, bold=fg is None)

@@ -31,12 +31,19 @@ class SignalInbox:
 
 @contextmanager
 def signal_inbox(signals: Iterable[signal.Signals] = STOP_SIGNALS) -> Iterator[SignalInbox]:
-    """Collect these signals instead of ending on them; for the main thread."""
+    """Collect these signals instead of ending on them; for the main thread.
+
+    SIGHUP stays ignored where it was, as by nohup: who asked for that wants to log out.
+    """
     reader, writer = socket.socketpair()
     with reader, writer:
         reader.setblocking(False)
         writer.setblocking(False)
-        before = {number: signal.signal(number, _ignore) for number in signals}
+        before = {
+            number: signal.signal(number, _ignore)
+            for number in signals
+            if number != signal.SIGHUP or signal.getsignal(number) != signal.SIG_IGN
+        }
         descriptor_before = signal.set_wakeup_fd(writer.fileno(), warn_on_full_buffer=False)
         try:
             yield SignalInbox(reader)

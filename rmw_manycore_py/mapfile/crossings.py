@@ -3,10 +3,10 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Collection, Iterator
 from typing import TYPE_CHECKING, Any
 
+from rmw_manycore_py.domain import ros_domain
 from rmw_manycore_py.errors import MapfileError
 from rmw_manycore_py.mapfile.model import BridgeSection, NodeSection, QosSection, RouteSection
 from rmw_manycore_py.mapfile.names import expand, resolve_topic
@@ -34,6 +34,9 @@ CROSSINGS: dict[str, Direction] = {
     "action_in": "inward",
     "action_to": "outward",
 }
+
+# Keys of a route that say nothing of the other kind; an action is both.
+ONLY_OF = {"max_hz": "topic", "max_size": "topic", "qos": "topic", "timeout": "service"}
 
 
 def bridge_placement(
@@ -75,7 +78,7 @@ def _route(bridge: BridgeSection, inside: str, type_name: str, direction: Direct
         inside=inside,
         outside=expand(outside, "/"),
         type=type_name,
-        domain=int(os.environ.get("ROS_DOMAIN_ID") or 0) if domain is None else domain,
+        domain=ros_domain() if domain is None else domain,
         qos=overrides(section.qos),
         max_hz=section.max_hz,
         max_size=section.max_size,
@@ -90,19 +93,31 @@ def _section_of(bridge: BridgeSection, inside: str) -> RouteSection:
 
 def _check_routes(mapfile: Mapfile, routes: list[Route]) -> None:
     """Refuse options for what does not cross."""
-    crossing = {route.inside for route in routes}
-    crossing |= {inside.rpartition("/_action/")[0] for inside in crossing if "/_action/" in inside}
-    problems = [
-        mapfile.document.problem(
-            ("bridge", "routes", name),
-            f"the name of something that crosses ({', '.join(sorted(crossing)) or 'nothing does'})",
-            f"'{name}'",
-        )
-        for name in mapfile.sections.bridge.routes
-        if expand(name, "/") not in crossing
-    ]
+    crossing: dict[str, set[str]] = {}
+    for route in routes:
+        crossing.setdefault(_written_as(route), set()).add(route.kind)
+    problems = []
+    for name, section in mapfile.sections.bridge.routes.items():
+        path, kinds = ("bridge", "routes", name), crossing.get(expand(name, "/"))
+        if kinds is None:
+            known = ", ".join(sorted(crossing)) or "nothing does"
+            expected = f"the name of something that crosses ({known})"
+            problems.append(mapfile.document.problem(path, expected, f"'{name}'"))
+            continue
+        for key in sorted(section.model_fields_set):
+            if (kind := ONLY_OF.get(key, next(iter(kinds)))) not in kinds:
+                expected = f"a key of a {next(iter(kinds))}"
+                found = f"'{key}', which is for a {kind}"
+                problems.append(mapfile.document.problem((*path, key), expected, found))
     if problems:
         raise MapfileError(*problems)
+
+
+def _written_as(route: Route) -> str:
+    """Return the full name inside by which the mapfile knows it: of an action or node, its own."""
+    if "/_action/" in route.inside:
+        return route.inside.rpartition("/_action/")[0]
+    return route.inside.rpartition("/")[0] if route.node is not None else route.inside
 
 
 def overrides(qos: QosSection) -> dict[str, Any]:

@@ -7,6 +7,7 @@ from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, StrictBool, StrictInt, StringConstraints
 
+from rmw_manycore_py.domain import MAX_DOMAIN
 from rmw_manycore_py.mapfile.values import (
     ActionType,
     Arguments,
@@ -29,17 +30,22 @@ MIN_SMEM_BYTES = 64 << 10
 MAX_SMEM_BYTES = 1 << 40
 # The topic table has 32 bits for it.
 MAX_TOPIC_DSM_BYTES = (1 << 32) - 1
-# The last domain whose ports lie below the ephemeral ones of Linux's largest choice.
-MAX_DOMAIN = 232
+# rmw's limits, as Fast DDS has them too.
+MAX_TOPIC_NAME = 247
+MAX_NODE_NAME = 255
 Positive = Annotated[StrictInt, Field(ge=1)]
 WorkerCount = Annotated[StrictInt, Field(ge=0, le=64)]
 CoreNumber = Annotated[StrictInt, Field(ge=0)]
 Text = Annotated[str, StringConstraints(min_length=1)]
-TopicName = Annotated[str, StringConstraints(pattern=r"^~?/?[A-Za-z_]\w*(/[A-Za-z_]\w*)*$")]
-NodeName = Annotated[str, StringConstraints(pattern=r"^(/?[A-Za-z_]\w*)(/[A-Za-z_]\w*)*$")]
+# Letters of ASCII alone, as rcl has it.
+_PART = "[A-Za-z_][A-Za-z0-9_]*"
+_PARTS = f"{_PART}(/{_PART})*"
+TopicName = Annotated[str, StringConstraints(pattern=f"^~?/?{_PARTS}$", max_length=MAX_TOPIC_NAME)]
+OutsideName = Annotated[str, StringConstraints(pattern=f"^/?{_PARTS}$", max_length=MAX_TOPIC_NAME)]
+NodeName = Annotated[str, StringConstraints(pattern=f"^/?{_PARTS}$", max_length=MAX_NODE_NAME)]
 # Whatever rcl may know in a rule, but no spaces or dashes: node:~/topic, rosservice:///ns/{node}.
-RemapRule = Annotated[str, StringConstraints(pattern=r"^[\w/~:{}]+$")]
-Namespace = Annotated[str, StringConstraints(pattern=r"^/?([A-Za-z_]\w*(/[A-Za-z_]\w*)*)?$")]
+RemapRule = Annotated[str, StringConstraints(pattern=r"^[A-Za-z0-9_/~:{}]+$")]
+Namespace = Annotated[str, StringConstraints(pattern=f"^/?({_PARTS})?$")]
 PlatformName = Annotated[str, StringConstraints(pattern=r"^[A-Za-z0-9_][A-Za-z0-9_.-]{0,63}$")]
 WaitMode = Literal["block", "adaptive", "spin"]
 
@@ -80,7 +86,9 @@ class TopicSection(Section):
 
 
 Domain = Annotated[StrictInt, Field(ge=0, le=MAX_DOMAIN)]
-PositiveNumber = Annotated[float, Field(gt=0, allow_inf_nan=False)]
+# A message in eleven days, and as long a wait: what lies beyond no clock of the bridge can tell.
+Rate = Annotated[float, Field(ge=1e-6, allow_inf_nan=False)]
+Timeout = Annotated[float, Field(gt=0, le=1e6, allow_inf_nan=False)]
 
 
 class QosSection(Section):
@@ -113,12 +121,12 @@ class QosSection(Section):
 class RouteSection(Section):
     """How one topic, service or action crosses."""
 
-    name: TopicName | None = Field(default=None, description="Full name outside")
+    name: OutsideName | None = Field(default=None, description="Full name outside")
     domain: Domain | None = Field(default=None, description="ROS domain outside")
     qos: QosSection = Field(default=QosSection(), description="QoS of the bridge's endpoints")
-    max_hz: PositiveNumber | None = Field(default=None, description="Most messages per second")
+    max_hz: Rate | None = Field(default=None, description="Most messages per second")
     max_size: Size | None = Field(default=None, description="Largest message, in bytes")
-    timeout: PositiveNumber | None = Field(
+    timeout: Timeout | None = Field(
         default=None, description="Seconds that a request may stay unanswered"
     )
 

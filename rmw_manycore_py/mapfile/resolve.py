@@ -18,6 +18,7 @@ from rmw_manycore_py.mapfile.placement import PlacedNode, Placement
 from rmw_manycore_py.mapfile.source import SourceNode, scan
 from rmw_manycore_py.mapfile.start import NodeStart, node_start, ros_arguments
 from rmw_manycore_py.mapfile.topics import (
+    check_crossing_types,
     check_memory,
     check_types,
     memory_of_clusters,
@@ -54,6 +55,7 @@ def resolve(mapfile: Mapfile) -> Placement:
     memory = memory_of_clusters(mapfile, topics)
     problems = [
         *check_types(mapfile, topics),
+        *check_crossing_types(mapfile, starts, topics),
         *check_imports(mapfile, starts),
         *check_memory(mapfile, memory),
     ]
@@ -146,7 +148,10 @@ def _host_cpus(mapfile: Mapfile, used: Sequence[Core], cpus: Sequence[int]) -> d
             expected = f"a CPU this process may use ({', '.join(map(str, cpus))})"
             path = ("nodes", name, "host_cpu")
             problems.append(mapfile.document.problem(path, expected, str(node.host_cpu)))
-        fixed[core] = node.host_cpu
+        if node.host_cpu != fixed.setdefault(core, node.host_cpu):
+            expected = f"{fixed[core]}, as another node on core {core.core} has it"
+            path = ("nodes", name, "host_cpu")
+            problems.append(mapfile.document.problem(path, expected, str(node.host_cpu)))
     if problems:
         raise MapfileError(*problems)
     receivers = [Core(cluster, RECEIVE_THREAD_CORE) for cluster in sorted({c for c, _ in used})]

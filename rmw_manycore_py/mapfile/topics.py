@@ -3,17 +3,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from rmw_manycore_py.errors import Problem
 from rmw_manycore_py.mapfile import ament
 from rmw_manycore_py.mapfile.crossings import CROSSINGS
-from rmw_manycore_py.mapfile.names import expand
+from rmw_manycore_py.mapfile.names import expand, resolve_topic
 from rmw_manycore_py.mapfile.placement import ClusterMemory, PlacedNode, TopicEntry
 
 if TYPE_CHECKING:
     from rmw_manycore_py.mapfile.loader import Mapfile
+    from rmw_manycore_py.mapfile.start import NodeStart
 
 
 def topic_table(mapfile: Mapfile, nodes: Sequence[PlacedNode]) -> tuple[TopicEntry, ...]:
@@ -51,11 +52,28 @@ def check_types(mapfile: Mapfile, topics: Iterable[TopicEntry]) -> Iterator[Prob
             for name, type_name in getattr(section, key).items():
                 yield from _check_installed(mapfile, ("nodes", node, key, name), type_name)
     for entry in topics:
-        for node_placed in (*entry.publishers, *entry.subscribers):
-            used = node_placed.publish.get(entry.name) or node_placed.subscribe[entry.name]
-            if used != entry.type:
+        used = [(node, node.publish[entry.name]) for node in entry.publishers]
+        used += [(node, node.subscribe[entry.name]) for node in entry.subscribers]
+        for node_placed, type_name in used:
+            if type_name != entry.type:
                 expected = f"{entry.type} for the topic {entry.name}"
-                yield mapfile.document.problem(("nodes", node_placed.name), expected, used)
+                yield mapfile.document.problem(("nodes", node_placed.name), expected, type_name)
+
+
+def check_crossing_types(
+    mapfile: Mapfile, starts: Mapping[str, NodeStart], topics: Iterable[TopicEntry]
+) -> Iterator[Problem]:
+    """Yield what crosses as another type than the topic table or an earlier line says."""
+    known = {("msg", entry.name): entry.type for entry in topics if entry.type is not None}
+    for node, section in mapfile.sections.nodes.items():
+        for key in CROSSINGS:
+            for name, type_name in getattr(section, key).items():
+                full = resolve_topic(name, starts[node].full_name, starts[node].remappings)
+                kind = type_name.split("/")[1]
+                expected = known.setdefault((kind, full), type_name)
+                if type_name != expected:
+                    path = ("nodes", node, key, name)
+                    yield mapfile.document.problem(path, f"{expected} for {full}", type_name)
 
 
 def _check_installed(mapfile: Mapfile, path: tuple[str, ...], type_name: str) -> Iterator[Problem]:

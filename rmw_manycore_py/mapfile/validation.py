@@ -28,6 +28,7 @@ _EXPECTED = {
     "dict_type": "a mapping",
     "model_type": "a mapping",
     "string_too_short": "a non-empty string",
+    "string_too_long": "at most {max_length} characters",
     "too_short": "at least one entry",
     "greater_than": "more than {gt}",
     "float_type": "a number",
@@ -67,6 +68,8 @@ def _problem(details: ErrorDetails, document: Document) -> Problem:
         expected = f"{named} of letters, digits and '_'"
         if path[-3] == "remappings":
             expected = _PATTERN_OF["remappings"]
+        if details["type"] == "string_too_long":
+            expected = _expected(details, path)
         return document.problem(path[:-1], expected, f"'{path[-2]}'")
     if details["type"] == "missing":
         return document.problem(path, f"the key '{path[-1]}'", "no such key")
@@ -80,6 +83,8 @@ def _problem(details: ErrorDetails, document: Document) -> Problem:
 
 def _expected(details: ErrorDetails, path: KeyPath) -> str:
     if details["type"] == "string_pattern_mismatch":
+        if path[0] == "bridge" and path[-1] == "name":
+            return "a full name such as /robot1/chatter"
         named = [_PATTERN_OF[key] for key in reversed(path) if key in _PATTERN_OF]
         return named[0] if named else details["msg"]
     template = _EXPECTED.get(details["type"])

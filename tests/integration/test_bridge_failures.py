@@ -114,9 +114,12 @@ def test_a_bridge_file_of_domain_bridge(start, tmp_path, platform) -> None:
         f"from_domain: {domain + 100}\nto_domain: {domain}\n"
         "topics:\n"
         "  chatter: {type: std_msgs/msg/String, reversed: true, remap: news}\n"
+        "  unknown: {type: no_such_msgs/msg/String, reversed: true}\n"
     )
     command = manycore_command("bridge", config, "--inside", str(domain + 100))
-    start(command).wait_for(r"\(bridge inward\) started")
+    bridge = start(command)
+    bridge.wait_for(r"\(bridge inward\) started")
+    bridge.wait_for(r"\(bridge inward\) \| .*no_such_msgs")
     start(example_command("talker"), **OUTSIDE)
     start(example_command("listener", "--ros-args", "-r", "chatter:=news")).wait_for(HEARD)
 

@@ -177,6 +177,19 @@ def test_a_signal_stops_the_nodes_cleanly(start_run: StartRun, number: signal.Si
         assert run.event("ended", name)["reason"] == "stopped"
 
 
+def test_who_ignores_hanging_up_may_log_out(start_run: StartRun) -> None:
+    before = signal.signal(signal.SIGHUP, signal.SIG_IGN)  # as nohup does, for what is started now
+    try:
+        run = start_run(node=python(POLITE))
+    finally:
+        signal.signal(signal.SIGHUP, before)
+    run.wait_for_lines("ready", "node")
+    run.program.signal(signal.SIGHUP)
+    run.program.signal(signal.SIGINT)
+    assert run.program.wait() == 0
+    assert run.event("stopping")["reason"] == "SIGINT"
+
+
 def test_a_node_without_handler_that_dies_of_the_interrupt_did_not_fail(
     start_run: StartRun,
 ) -> None:

@@ -157,6 +157,17 @@ def test_the_bridge_takes_cores_that_no_node_uses(resolved: Check) -> None:
     assert bridge.cores == ((Core(1, 1), Core(1, 3)),)
 
 
+def test_parameters_have_a_route_by_the_name_of_their_node(resolved: Check) -> None:
+    bridge = resolved(
+        "bridge: {routes: {/a/talker: {name: /robot/talker, timeout: 2}}}\n"
+        "nodes:\n"
+        "  talker: {cluster: 1, script: talker.py, namespace: a, parameters_in: true}\n"
+    ).bridge
+    assert bridge is not None
+    assert {route.outside.rpartition("/")[0] for route in bridge.routes} == {"/robot/talker"}
+    assert {(route.kind, route.timeout_s) for route in bridge.routes} == {("service", 2.0)}
+
+
 def test_the_mapfile_overrules_the_launch_file(resolved: Check, tmp_path: Path) -> None:
     (tmp_path / "p.yaml").write_text("talker: {ros__parameters: {a: 2, b: 2}}")
     (tmp_path / "demo.launch.xml").write_text(
