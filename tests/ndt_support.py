@@ -29,12 +29,17 @@ TRUTH = poses_along([5.0])[0]
 NEAR = poses.perturbed(TRUTH, 0.3, 0.03, np.random.default_rng(3))
 
 
+def command(module: str, *parameters: str) -> list[str]:
+    """Return the command of a node, with parameters as NAME:=VALUE."""
+    words = [sys.executable, "-m", f"rmw_manycore_py.ndt.nodes.{module}", "--ros-args"]
+    return words + [word for one in parameters for word in ("-p", one)]
+
+
 def matcher_command(**parameters: object) -> list[str]:
     """Return the command of an activated matcher."""
-    words = [sys.executable, "-m", "rmw_manycore_py.ndt.nodes.ndt_scan_matcher", "--ros-args"]
-    for name, value in {"activated": "true", **parameters}.items():
-        words += ["-p", f"{name.replace('__', '.')}:={value}"]
-    return words
+    values = {"activated": "true", **parameters}
+    words = (f"{name.replace('__', '.')}:={value}" for name, value in values.items())
+    return command("ndt_scan_matcher", *words)
 
 
 def street_map() -> np.ndarray:

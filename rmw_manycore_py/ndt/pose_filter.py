@@ -13,7 +13,7 @@ measurement older than that is put in its place, and those after it are applied 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -26,14 +26,15 @@ PLANAR = (0, 1, 5)  # x, y, yaw
 
 @dataclass(frozen=True)
 class FilterOptions:
-    """Standard deviations of what changes within a second, and how far back time is kept."""
+    """Standard deviations of what changes within a second, and the times that are dealt with."""
 
     stddev_sideways_c: float = 0.5  # m
     stddev_yaw_c: float = 0.005  # rad
     stddev_v_c: float = 3.0  # m/s
     stddev_w_c: float = 1.0  # rad/s
     stddev_upright_c: tuple[float, float, float] = (0.5, 0.05, 0.05)  # m, rad, rad
-    history_s: float = 1.0
+    history_s: float = 1.0  # how far back
+    ahead_s: float = 0.5  # of the clock: less than the history, which must reach back to now
 
 
 @dataclass(frozen=True)
@@ -94,6 +95,21 @@ class PoseFilter:
         """Return the state at a time, at the earliest that of the newest measurement."""
         assert self._state is not None
         return _predict(self._state, max(stamp_s, self._state.stamp_s), self.options)
+
+    def is_ahead(self, stamp_s: float, now_s: float) -> bool:
+        """Tell whether a time is too far ahead to be applied: all later ones would be too old."""
+        return stamp_s > now_s + self.options.ahead_s
+
+    def follow_clock(self, now_s: float) -> bool:
+        """Go on from now where the clock has jumped back, True then: the vehicle has not moved.
+
+        Without it everything measured from now on would be older than the state.
+        """
+        if self._state is None or not self.is_ahead(self._state.stamp_s, now_s):
+            return False
+        self._applied = []
+        self._state = replace(self._state, stamp_s=now_s)
+        return True
 
     def add_pose(self, stamp_s: float, T_map_base: Matrix, covariance: Matrix) -> bool:
         """Apply a measured pose; False where it is older than what is kept."""

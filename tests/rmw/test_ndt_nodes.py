@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Callable
 
 import numpy as np
@@ -13,6 +12,7 @@ from ndt_support import (
     COVARIANCE,
     TRUTH,
     Stack,
+    command,
     error_m,
     matcher_command,
     street_map,
@@ -26,15 +26,10 @@ from rmw_manycore_py.ndt.map_file import write_points
 from rmw_manycore_py.ndt.map_tiles import write_tiles
 from rmw_manycore_py.ndt.nodes.conversions import matrix_of, pose_with_covariance
 from rmw_manycore_py.ndt.nodes.point_cloud import decode, encode
-from rmw_manycore_py.ndt.poses import distance_m, from_xyz_rpy
+from rmw_manycore_py.ndt.poses import from_xyz_rpy
 from rmw_manycore_py.ndt.thinning import voxel_centroids
 
 KEPT = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-
-
-def command(module: str, *parameters: str) -> list[str]:
-    words = [sys.executable, "-m", f"rmw_manycore_py.ndt.nodes.{module}", "--ros-args"]
-    return words + [word for one in parameters for word in ("-p", one)]
 
 
 def test_the_filter_thins_a_scan(node, start):
@@ -88,30 +83,6 @@ def test_the_loader_needs_a_map(start, path):
     program = start(command("pointcloud_map_loader", f"pcd_paths_or_directory:={path}"))
     assert program.wait() == 2
     assert "Traceback" not in program.output
-
-
-def test_the_ekf_follows_and_passes_over_what_is_none(node, start):
-    start(command("ekf_localizer", "predict_frequency:=100.0"))
-    heard = []
-    pose = PoseWithCovarianceStamped
-    node.create_subscription(pose, "ekf_pose_with_covariance", heard.append, 10)
-    measured = node.create_publisher(pose, "in_pose_with_covariance", 10)
-    spin_until(node, measured.get_subscription_count)
-    truth = from_xyz_rpy((3.0, -2.0, 1.0), (0.0, 0.0, 0.5))
-
-    def publish(**position: float) -> bool:
-        stamp = node.get_clock().now().to_msg()
-        message = pose_with_covariance(truth, COVARIANCE, stamp, "map")
-        for axis, value in position.items():
-            setattr(message.pose.pose.position, axis, value)
-        measured.publish(message)
-        return False
-
-    spin_until(node, lambda: publish() or publish(x=float("nan")) or len(heard) > 50)
-    for message in heard:
-        T = matrix_of(message.pose.pose)
-        assert distance_m(T, truth) < 0.1
-        assert np.isfinite(message.pose.covariance).all()
 
 
 @pytest.fixture

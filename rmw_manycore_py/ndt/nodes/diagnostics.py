@@ -3,15 +3,12 @@
 
 from __future__ import annotations
 
-import re
-import time
 from typing import Any
 
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from rclpy.node import Node
 
-REPEAT_S = 1.0  # how often the same trouble is logged
-NUMBER = re.compile(r"[-+]?\d+(\.\d+)?")  # troubles that differ in numbers alone are the same
+from rmw_manycore_py.ndt.nodes.log_throttle import LogThrottle
 
 
 class Diagnostics:
@@ -21,7 +18,7 @@ class Diagnostics:
         self._node = node
         self._name = f"{node.get_name()}: {name}"
         self._publisher = node.create_publisher(DiagnosticArray, "/diagnostics", 10)
-        self._logged_s: dict[str, float] = {}  # when each trouble was logged last
+        self._throttle = LogThrottle()
         self.clear()
 
     def clear(self) -> None:
@@ -38,13 +35,13 @@ class Diagnostics:
     def warn(self, message: str) -> None:
         """Report something that a healthy system does not have."""
         self._add(DiagnosticStatus.WARN, message)
-        if self._is_due(message):
+        if self._throttle.is_due(message):
             self._node.get_logger().warning(message)
 
     def error(self, message: str) -> None:
         """Report something that somebody must repair."""
         self._add(DiagnosticStatus.ERROR, message)
-        if self._is_due(message):
+        if self._throttle.is_due(message):
             self._node.get_logger().error(message)
 
     def note(self, message: str) -> None:
@@ -63,15 +60,6 @@ class Diagnostics:
         message = DiagnosticArray(status=[status])
         message.header.stamp = stamp
         self._publisher.publish(message)
-
-    def _is_due(self, message: str) -> bool:
-        """Tell whether a trouble may be logged again; others do not hide it, as rclpy's would."""
-        now_s = time.monotonic()
-        self._logged_s = {k: t for k, t in self._logged_s.items() if now_s - t < REPEAT_S}
-        trouble = NUMBER.sub("", message)
-        is_due = trouble not in self._logged_s
-        self._logged_s.setdefault(trouble, now_s)
-        return is_due
 
     def _add(self, level: bytes, message: str) -> None:
         self._level = max(self._level, level)

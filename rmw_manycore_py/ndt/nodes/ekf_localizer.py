@@ -28,11 +28,11 @@ from rmw_manycore_py.ndt.nodes.conversions import (
     transform_stamped,
 )
 from rmw_manycore_py.ndt.nodes.declared import declare, parameter
+from rmw_manycore_py.ndt.nodes.log_throttle import LogThrottle
 from rmw_manycore_py.ndt.nodes.running import run_node
 from rmw_manycore_py.ndt.pose_filter import FilterOptions, PoseFilter, State
 from rmw_manycore_py.ndt.poses import Matrix
 
-REPEAT_S = 1.0
 LEAST_VARIANCE = 1e-8  # of a measurement: one without noise cannot be weighed
 
 
@@ -58,6 +58,7 @@ class EkfLocalizer(Node):
         super().__init__("ekf_localizer")
         self._p = declare(self, EkfParameters)
         self._is_activated = self._p.activated
+        self._throttle = LogThrottle()
         self._filter = PoseFilter(
             FilterOptions(
                 stddev_sideways_c=self._p.stddev_sideways,
@@ -90,6 +91,8 @@ class EkfLocalizer(Node):
         if measured is None or not self._is_activated:
             return
         stamp_s = seconds(message.header.stamp)
+        if self._is_ahead("pose", stamp_s):
+            return
         if not self._filter.is_initialized:
             self._filter.initialize(stamp_s, *measured)
         elif not self._filter.add_pose(stamp_s, *measured):
@@ -103,7 +106,32 @@ class EkfLocalizer(Node):
         if not np.isfinite([v, w, *noise.ravel()]).all():
             self._warn("a twist is not finite: it is passed over")
         elif self._is_activated and self._filter.is_initialized:
-            self._filter.add_twist(seconds(message.header.stamp), v, w, noise)
+            self._add_twist(seconds(message.header.stamp), v, w, noise)
+
+    def _add_twist(self, stamp_s: float, v_m_s: float, w_rad_s: float, noise: Matrix) -> None:
+        if self._is_ahead("twist", stamp_s):
+            return
+        if not self._filter.add_twist(stamp_s, v_m_s, w_rad_s, noise):
+            self._warn("a twist is older than what is kept: it is passed over")
+
+    def _is_ahead(self, what: str, stamp_s: float) -> bool:
+        """Tell whether a measurement cannot be used as it is of the future, and warn then."""
+        now_s = self._now_s()
+        self._follow_clock(now_s)
+        is_ahead = self._filter.is_ahead(stamp_s, now_s)
+        if is_ahead:
+            self._warn(
+                f"a {what} is of a time {stamp_s - now_s:.2f} s ahead: it is passed over, check "
+                "the clocks"
+            )
+        return is_ahead
+
+    def _follow_clock(self, now_s: float) -> None:
+        if self._filter.follow_clock(now_s):
+            self._warn(
+                "the clock has jumped back: going on from the last pose; if the vehicle is "
+                "elsewhere now, send a new initialpose"
+            )
 
     def _measured(self, message: Any) -> tuple[Matrix, Matrix] | None:
         """Return pose and covariance of a message, None for one that cannot be used."""
@@ -132,6 +160,7 @@ class EkfLocalizer(Node):
         if not (self._is_activated and self._filter.is_initialized):
             return
         stamp = self.get_clock().now().to_msg()
+        self._follow_clock(seconds(stamp))
         state = self._filter.predicted(seconds(stamp))
         T, covariance = state.pose(), state.pose_covariance()
         frame, child = self._p.pose_frame, self._p.child_frame
@@ -157,7 +186,8 @@ class EkfLocalizer(Node):
         return seconds(self.get_clock().now().to_msg())
 
     def _warn(self, text: str) -> None:
-        self.get_logger().warning(text, throttle_duration_sec=REPEAT_S)
+        if self._throttle.is_due(text):
+            self.get_logger().warning(text)
 
 
 def main() -> None:

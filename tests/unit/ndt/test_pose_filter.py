@@ -62,6 +62,24 @@ def test_what_is_older_than_the_history_is_refused():
     np.testing.assert_array_equal(pose_filter.predicted(5.0).mean, before)
 
 
+def test_a_clock_that_jumps_back():
+    """Between measurements they may be ahead of it a little; the place is kept, and corrected."""
+    pose_filter = started()
+    for time_s in np.arange(0.1, 5.0, 0.1):
+        pose_filter.add_pose(time_s, circle(time_s), COVARIANCE)
+    assert not pose_filter.follow_clock(4.6)
+    assert pose_filter.is_ahead(5.2, 4.6)
+    assert not pose_filter.is_ahead(5.0, 4.6)
+    place = pose_filter.predicted(0.0).pose()
+    assert pose_filter.follow_clock(1.0)
+    np.testing.assert_array_equal(pose_filter.predicted(1.0).pose(), place)
+    assert pose_filter.predicted(1.0).stamp_s == 1.0
+    assert not pose_filter.follow_clock(1.0)
+    for time_s in np.arange(1.1, 3.0, 0.1):
+        assert pose_filter.add_pose(time_s, circle(time_s), COVARIANCE)
+    assert distance_m(pose_filter.predicted(3.0).pose(), circle(3.0)) < 0.2
+
+
 def test_a_twist_is_enough_to_go_on():
     pose_filter = started()
     for time_s in np.arange(0.02, 2.0, 0.02):

@@ -1,0 +1,125 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""`ekf_localizer` follows what it can use: not NaN, nor what other times and clocks make of it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from builtin_interfaces.msg import Time
+from geometry_msgs.msg import PoseWithCovarianceStamped, TwistWithCovarianceStamped
+from ndt_support import COVARIANCE, command
+from rclpy.node import Node
+from ros_support import spin_until
+from rosgraph_msgs.msg import Clock
+from support import Program
+
+from rmw_manycore_py.ndt.nodes.conversions import matrix_of, pose_with_covariance
+from rmw_manycore_py.ndt.poses import distance_m, from_xyz_rpy
+
+HERE = from_xyz_rpy((3.0, -2.0, 1.0), (0.0, 0.0, 0.5))
+THERE = from_xyz_rpy((5.0, -2.0, 1.0), (0.0, 0.0, 0.5))
+
+
+class Vehicle:
+    """What measures around a filter whose clock is the test's."""
+
+    def __init__(self, node: Node) -> None:
+        self.node = node
+        self.now_s = 1000
+        self.heard: list[Any] = []
+        pose = PoseWithCovarianceStamped
+        self.clock = node.create_publisher(Clock, "/clock", 10)
+        self.poses = node.create_publisher(pose, "in_pose_with_covariance", 10)
+        self.twists = node.create_publisher(
+            TwistWithCovarianceStamped, "in_twist_with_covariance", 10
+        )
+        node.create_subscription(pose, "ekf_pose_with_covariance", self.heard.append, 10)
+        ends = (self.clock, self.poses, self.twists)
+        spin_until(node, lambda: all(end.get_subscription_count() for end in ends))
+
+    def tick(self) -> None:
+        """Let a hundredth of a second pass."""
+        self.now_s = round(self.now_s + 0.01, 2)
+        self.clock.publish(Clock(clock=self._stamp()))
+
+    def send(self, T: np.ndarray, ahead_s: int = 0) -> None:
+        """Measure a pose at a time."""
+        self.poses.publish(pose_with_covariance(T, COVARIANCE, self._stamp(ahead_s), "map"))
+
+    def send_twist(self, ahead_s: int) -> None:
+        """Measure that the vehicle stands still at a time."""
+        message = TwistWithCovarianceStamped()
+        message.header.stamp = self._stamp(ahead_s)
+        self.twists.publish(message)
+
+    def drive_to(self, T: np.ndarray) -> None:
+        """Measure a pose until the filter has it, at the present time."""
+        self.heard.clear()
+        spin_until(self.node, lambda: self.tick() or self.send(T) or self._is_at(T))
+
+    def _is_at(self, T: np.ndarray) -> bool:
+        near = (distance_m(matrix_of(m.pose.pose), T) < 0.1 for m in self.heard[-1:])
+        stamps = (abs(m.header.stamp.sec - self.now_s) < 5.0 for m in self.heard[-1:])
+        return any(near) and any(stamps)
+
+    def _stamp(self, ahead_s: int = 0) -> Time:
+        return Time(sec=int(self.now_s) + ahead_s, nanosec=round(self.now_s % 1 * 1e9))
+
+
+@pytest.fixture
+def ekf(start) -> Program:
+    return start(command("ekf_localizer", "predict_frequency:=100.0", "use_sim_time:=true"))
+
+
+@pytest.fixture
+def vehicle(node, ekf) -> Vehicle:
+    """Return a vehicle whose filter has found it."""
+    vehicle = Vehicle(node)
+    vehicle.drive_to(HERE)
+    return vehicle
+
+
+def test_what_is_not_finite_is_passed_over(vehicle, ekf):
+    vehicle.send(from_xyz_rpy((float("nan"), 0.0, 0.0)))
+    ekf.wait_for("not finite.*: it is passed over")
+    vehicle.heard.clear()
+    spin_until(vehicle.node, lambda: vehicle.tick() or len(vehicle.heard) > 50)
+    for message in vehicle.heard:
+        assert distance_m(matrix_of(message.pose.pose), HERE) < 0.1
+        assert np.isfinite(message.pose.covariance).all()
+
+
+def test_measurements_of_the_future_are_passed_over(vehicle, ekf):
+    """One alone would make all that follow too old."""
+    vehicle.send(HERE, ahead_s=3600)
+    ekf.wait_for(r"a pose is of a time 3\d{3}\.\d\d s ahead")
+    vehicle.send_twist(ahead_s=3600)
+    ekf.wait_for(r"a twist is of a time 3\d{3}\.\d\d s ahead")
+    vehicle.drive_to(THERE)
+
+
+def test_old_measurements_are_passed_over_with_a_warning_of_each_kind(vehicle, ekf):
+    vehicle.send(THERE, ahead_s=-100)
+    ekf.wait_for("a pose is older than what is kept")
+    vehicle.send_twist(ahead_s=-100)
+    ekf.wait_for("a twist is older than what is kept")
+    vehicle.drive_to(HERE)
+
+
+def test_a_clock_that_jumps_back(vehicle, ekf):
+    """As when a recording begins anew: the filter goes on from where it is, and follows."""
+    vehicle.now_s = 500
+    vehicle.drive_to(THERE)
+    ekf.wait_for("the clock has jumped back: going on from the last pose")
+    vehicle.drive_to(HERE)
+
+
+def test_a_first_pose_of_the_future_is_none(node, ekf):
+    vehicle = Vehicle(node)
+    spin_until(
+        node, lambda: vehicle.tick() or vehicle.send(THERE, ahead_s=3600) or "ahead" in ekf.output
+    )
+    assert not vehicle.heard
+    vehicle.drive_to(HERE)
