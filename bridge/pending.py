@@ -46,14 +46,9 @@ class Pending:
         self._lock = threading.Lock()
 
     def ask(self, caller: Any, send: Callable[[], int]) -> None:
-        """Send a request that gets its number thereby; replies are looked up after that."""
+        """Note a request that has been sent, by its number; replies are looked up after that."""
         with self._lock:
             self._asked[send()] = self._now(caller)
-
-    def note(self, caller: Any, number: int) -> None:
-        """Note a request before it is sent."""
-        with self._lock:
-            self._asked[number] = self._now(caller)
 
     def _now(self, caller: Any) -> Asked:
         due_s = float("inf") if self._timeout_s is None else time.monotonic() + self._timeout_s

@@ -5,6 +5,8 @@ from __future__ import annotations
 
 import time
 from abc import abstractmethod
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import Any
 
 from rclpy.qos import qos_profile_services_default
@@ -44,18 +46,41 @@ class Service(Mover):
         self._reply(asked.caller, response)
         self._sides.row.passed(size, time.time_ns() - asked.since_ns)
 
+    @contextmanager
+    def _one_request(self, caller: Any = None) -> Iterator[None]:
+        """Let what goes wrong with a request end that one only, and tell its caller if it is known.
+
+        Either side may refuse it: it does not fit, it cannot be read, who asked is gone.
+        """
+        try:
+            yield
+        except Exception as error:
+            if self._sides.row.add("refused") == 1:
+                self._sides.say(str(error))
+            if caller is not None:
+                self._answer_empty(caller, str(error))
+
     def expire(self, now_s: float) -> None:
         """Answer the requests whose time is over."""
         timeout_s = self._sides.route.timeout_s
         for asked in self._pending.overdue(now_s):
-            self._give_up(asked, "timed_out", f"no reply within {timeout_s:g} s")
+            self._give_up(asked.caller, "timed_out", f"no reply within {timeout_s:g} s")
 
     def _abandon(self) -> None:
         """Answer all requests: their server is gone."""
         for asked in self._pending.all():
-            self._give_up(asked, "unanswered", "the server is gone")
+            self._give_up_without_server(asked.caller)
 
-    def _give_up(self, asked: Asked, counter: str, reason: str) -> None:
+    def _give_up_without_server(self, caller: Any) -> None:
+        self._give_up(caller, "unanswered", "the server is gone")
+
+    def _give_up(self, caller: Any, counter: str, reason: str) -> None:
         self._sides.row.add(counter)
         self._sides.say(reason)
-        self._reply(asked.caller, empty_answer(self._type.Response, f"bridge: {reason}"))
+        self._answer_empty(caller, reason)
+
+    def _answer_empty(self, caller: Any, reason: str) -> None:
+        try:
+            self._reply(caller, empty_answer(self._type.Response, f"bridge: {reason}"))
+        except Exception as error:  # the caller may be gone; the request is counted already
+            self._sides.say(f"a caller gets no answer: {error}")

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import itertools
 import time
+from functools import partial
 from typing import Any
 
 from rclpy.serialization import deserialize_message, serialize_message
@@ -77,15 +78,24 @@ class InwardService(Service):
 
     def pump_outside(self) -> None:
         """Pass a request on."""
-        request, header = self.entity.handle.service_take_request(self._type.Request)
-        if request is None or self._requests is None or self._replies is None:
+        with self._one_request():
+            request, header = self.entity.handle.service_take_request(self._type.Request)
+            if request is not None:
+                self._pass_on(request, header)
+
+    def _pass_on(self, request: Any, header: Any) -> None:
+        if not self._servers:
+            self._give_up_without_server(header)
             return
-        data, number = serialize_message(request), next(self._numbers)
-        self._pending.note(header, number)
-        if self._servers:
-            self._requests.publish(data, client=self._replies.gid, number=number)
-        else:
-            self._abandon()
+        with self._one_request(header):
+            data, number = serialize_message(request), next(self._numbers)
+            self._pending.ask(header, partial(self._send, data, number))
+
+    def _send(self, data: bytes, number: int) -> int:
+        assert self._requests is not None
+        assert self._replies is not None
+        self._requests.publish(data, client=self._replies.gid, number=number)
+        return number
 
     def pump_inside(self) -> None:
         """Return replies."""
@@ -96,7 +106,9 @@ class InwardService(Service):
             finally:
                 claim.release()
             if asked is not None:
-                self._answer(asked, deserialize_message(data, self._type.Response), len(data))
+                with self._one_request(asked.caller):
+                    response = deserialize_message(data, self._type.Response)
+                    self._answer(asked, response, len(data))
 
     def _reply(self, caller: Any, response: Any) -> None:
         entity = self.entity

@@ -64,18 +64,23 @@ class OutwardService(Service):
                 caller, data = (claim.client, claim.number), claim.data
             finally:
                 claim.release()
-            request = deserialize_message(data, self._type.Request)
-            self._pending.ask(caller, partial(self.entity.handle.send_request, request))
+            with self._one_request(caller):
+                request = deserialize_message(data, self._type.Request)
+                self._pending.ask(caller, partial(self.entity.handle.send_request, request))
             self._sides.outside.wake()  # it sleeps until something is due
 
     def pump_outside(self) -> None:
         """Return a reply."""
-        header, response = self.entity.handle.take_response(self._type.Response)
-        if response is None:
-            return
-        asked = self._pending.answered(header.request_id.sequence_number)
+        with self._one_request():
+            header, response = self.entity.handle.take_response(self._type.Response)
+            if response is not None:
+                self._return(header.request_id.sequence_number, response)
+
+    def _return(self, number: int, response: Any) -> None:
+        asked = self._pending.answered(number)
         if asked is not None:
-            self._answer(asked, response, len(serialize_message(response)))
+            with self._one_request(asked.caller):
+                self._answer(asked, response, len(serialize_message(response)))
 
     def _reply(self, caller: Caller, response: Any) -> None:
         replies = self._replies
