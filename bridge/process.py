@@ -61,8 +61,10 @@ class BridgeProcess:
             mover, loop = self._mover(sides, index)
         except ImportError as error:
             sides.fail(str(error))
-            return
-        loop.movers.append(mover)
+        except Exception as error:  # whatever is wrong with one route: the others work
+            sides.fail(f"{type(error).__name__}: {error}")
+        else:
+            loop.movers.append(mover)
 
     def _mover(self, sides: Sides, index: int) -> tuple[Mover, Loop]:
         inward = sides.route.direction == "inward"

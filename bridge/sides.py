@@ -46,10 +46,15 @@ class Sides:
 
     def fail(self, reason: str) -> None:
         """Say once that the route cannot work, and why."""
+        line = " ".join(reason.split())  # some errors draw pictures
+        before = self._standing()
+        self.row.set_state("failed", line)
+        if self._standing() != before:  # a row has room for the beginning only
+            self.say(line)
+
+    def _standing(self) -> tuple[str, str]:
         values = self.row.as_dict()
-        if (values["state"], values["reason"]) != ("failed", reason):
-            self.row.set_state("failed", reason)
-            self.say(reason)
+        return values["state"], values["reason"]
 
     def say(self, text: str) -> None:
         """Print a line about the route."""

@@ -193,6 +193,22 @@ def test_a_type_that_is_not_installed_is_said(bridge) -> None:
     bridge.outside(hear, "/ok", {}).wait_for("^heard again")
 
 
+def test_a_route_that_cannot_be_made_is_said(bridge) -> None:
+    routes = bridge.run(
+        bridge.route("outward", "/odd", "std_srvs/srv/SetBool", outside="/no name"),
+        bridge.route("outward", "/slow", max_hz=1e-320),
+        bridge.route("outward", "/count", "test_msgs/action/Nothing_FeedbackMessage"),
+        bridge.route("outward", "/ok"),
+    )
+    routes["outward"].wait_for("^/slow: OverflowError")
+    routes["outward"].wait_for("^/odd: .*Invalid service name.* '/no name'")
+    routes["outward"].wait_for("^/count: .*Nothing")
+    for name in ("/odd", "/slow", "/count"):
+        assert bridge.row("outward", name)["state"] == "failed"
+    bridge.inside(say, "/ok", {}, 0.05)
+    bridge.outside(hear, "/ok", {}).wait_for("^heard again")
+
+
 @pytest.mark.parametrize("direction", ["inward", "outward"])
 def test_a_policy_that_cannot_match_is_said(bridge, direction) -> None:
     processes = bridge.run(bridge.route(direction, "/odd", qos={"reliability": "reliable"}))
