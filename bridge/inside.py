@@ -61,6 +61,10 @@ class Inside(Loop):
     def turn(self, timeout_s: float | None) -> None:
         """Move what has arrived, then sleep until something changes."""
         seen = self.process.epoch()
+        # Who sets a flag wakes us after that. So either the wake word changes after we read it, and
+        # the sleep ends; or it had changed before, and then we see the flag.
+        if self._stale or self._stopping:
+            return
         for reader in list(self.readers):
             reader.pump_inside()
         generation = self.process.graph_generation()
