@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import signal
+import sys
 from collections.abc import Callable
 
 import numpy as np
@@ -21,6 +23,7 @@ from ndt_support import (
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from ros_support import spin_until
 from sensor_msgs.msg import PointCloud2
+from support import Program
 
 from rmw_manycore_py.ndt.map_file import write_points
 from rmw_manycore_py.ndt.map_tiles import write_tiles
@@ -125,6 +128,45 @@ def test_a_first_pose_by_hand(unmatched, start):
     spin_until(unmatched.node, publisher.get_subscription_count)
     publisher.publish(rough(unmatched, TRUTH))
     assert error_m(first_pose(unmatched)) < 0.1
+
+
+def want_a_pose_of(program: Program, stack: Stack) -> None:
+    """Send a rough pose until the initializer has asked the matcher for a better one."""
+    publisher = stack.node.create_publisher(PoseWithCovarianceStamped, "initialpose", 1)
+    spin_until(stack.node, publisher.get_subscription_count)
+    for _ in range(2):  # when it has heard of the second one, it is done with the first
+        publisher.publish(rough(stack, TRUTH))
+        program.wait_for("]: INITIALIZING")
+
+
+def test_a_first_pose_though_the_matcher_was_killed_over_it(stack, start):
+    matcher = start(matcher_command(), cluster=2)
+    stack.wait_for_matcher()
+    program = start(initializer())
+    program.wait_for("]: UNINITIALIZED")
+    matcher.signal(signal.SIGSTOP)
+    want_a_pose_of(program, stack)
+    matcher.signal(signal.SIGKILL)
+    program.wait_for("ndt_align does not answer")
+    start(matcher_command(), cluster=2)
+    stack.publish_map(street_map())
+    assert error_m(first_pose(stack)) < 0.1
+
+
+def test_a_first_pose_though_the_matcher_was_stopped_over_it(stack, start):
+    """It is asked again, and what it answers to the first call counts no more."""
+    matcher = start(matcher_command(), cluster=2)
+    stack.wait_for_matcher()
+    stack.publish_map(street_map())
+    name = "rmw_manycore_py.ndt.nodes.pose_initializer"
+    hasty = f"import {name} as node; node.ANSWER_TIMEOUT_S = 5.0; node.main()"
+    program = start([sys.executable, "-c", hasty, *initializer()[3:]])
+    program.wait_for("]: UNINITIALIZED")
+    matcher.signal(signal.SIGSTOP)
+    want_a_pose_of(program, stack)
+    program.wait_for("ndt_align does not answer")
+    matcher.signal(signal.SIGCONT)
+    assert error_m(first_pose(stack)) < 0.1
 
 
 def test_a_first_pose_of_the_parameters(unmatched, start):

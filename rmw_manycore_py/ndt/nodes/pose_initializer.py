@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -31,6 +32,7 @@ VARIANCES = (1.0, 1.0, 0.01, 0.01, 0.01, 0.2)  # m^2, rad^2
 AT_ORIGIN = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0)  # x, y, z, quaternion
 GNSS_VARIANCES = (*VARIANCES[:5], 10.0)  # which way the vehicle looks GNSS does not tell
 RETRY_S = 1.0
+ANSWER_TIMEOUT_S = 60.0  # 200 alignments, of 300 ms each: a slow host with large scans
 UNINITIALIZED, INITIALIZING, INITIALIZED = "UNINITIALIZED", "INITIALIZING", "INITIALIZED"
 
 
@@ -83,6 +85,8 @@ class PoseInitializer(Node):
         ]
         self._wanted: Any = None
         self._tried: Any = None  # the wanted pose that is being matched
+        self._call: Future | None = None  # of ndt_align, while it is not answered
+        self._called_s = 0.0
         self._heeds_gnss = self._p.gnss_enabled and not self._p.user_defined
         self.create_subscription(
             PoseWithCovarianceStamped, "initialpose", self._on_initial_pose, 10
@@ -147,6 +151,7 @@ class PoseInitializer(Node):
 
     def _try(self) -> None:
         """Start over with the wanted pose, if there is one and all services are there."""
+        self._forget_unanswered_call()
         if self._wanted is None or self._tried is not None:
             return
         needed = [*self._triggers, *([self._align] if self._p.ndt_enabled else [])]
@@ -161,9 +166,21 @@ class PoseInitializer(Node):
             self._finish(self._wanted)
             return
         request = AlignService.Request(pose_with_covariance=self._wanted)
-        self._align.call_async(request).add_done_callback(self._on_aligned)
+        self._called_s = time.monotonic()
+        self._call = self._align.call_async(request)
+        self._call.add_done_callback(self._on_aligned)
+
+    def _forget_unanswered_call(self) -> None:
+        """Let the pose be tried again: a matcher that was killed or restarted does not answer."""
+        is_late = time.monotonic() - self._called_s > ANSWER_TIMEOUT_S
+        if self._call is None or (self._align.service_is_ready() and not is_late):
+            return
+        self._align.remove_pending_request(self._call)
+        self._call = self._tried = None
+        self.get_logger().warning("ndt_align does not answer: is the matcher running? next try")
 
     def _on_aligned(self, future: Future) -> None:
+        self._call = None
         response = future.result()
         if response is None or not response.success:
             self._tried = None
