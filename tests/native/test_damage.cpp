@@ -21,6 +21,8 @@
 #include "patience.hpp"
 #include "transport/configurator.hpp"
 #include "transport/registry_layout.hpp"
+#include "transport/subscription_layout.hpp"
+#include "transport/topic_dsm_layout.hpp"
 
 using namespace manycore;
 
@@ -46,15 +48,52 @@ const Role visitor("visitor", [](Lines & test, const Arguments & arguments) {
   test.say("got along");
 });
 
+/// Damages the chain of blocks of an endpoint of its own, as asked, and closes it.
+const Role chain_breaker("chain_breaker", [](Lines & test, const Arguments & arguments) {
+  Placement placement;
+  placement.platform = arguments.at(0);
+  const auto process = Process::join(placement);
+  auto publisher = process->create_publisher(on_topic("/chain", keep_last(1)));
+  std::vector<std::unique_ptr<Subscription>> subscriptions;
+  for (uint32_t i = 0; i <= readers_in_header; ++i) {
+    subscriptions.push_back(process->create_subscription(on_topic("/chain", keep_last(1))));
+  }
+  Registry registry(PlatformPaths::of(placement.platform));
+  const bool of_publisher = arguments.at(1) == "publisher";
+  const EndpointKind kind = of_publisher ? EndpointKind::publisher : EndpointKind::subscription;
+  EndpointEntry * entry = &registry.endpoints()[0];
+  while (entry->kind != kind || std::strcmp(entry->topic, "/chain") != 0) {
+    ++entry;
+  }
+  Cluster & cluster = registry.clusters().at(1);
+  const uint64_t offset = entry->block.offset();
+  std::atomic<uint64_t> & first =
+    of_publisher ? cluster.find<TopicDsmHeader>(offset)->next_reader_block
+                 : cluster.find<SubscriptionHeader>(offset)->first_source_block;
+  if (arguments.at(2) == "leads out") {
+    first = uint64_t{1} << 40;
+  } else {
+    *cluster.find<std::atomic<uint64_t>>(first) = first.load();  // a block starts with the offset of the next
+  }
+  if (of_publisher) {
+    publisher.reset();
+  }
+  subscriptions.clear();
+  test.say("got along");
+});
+
 /// What became of a visit: "got along", or "error: ..". Throws when the visitor crashed or hangs.
-std::string visit(const TestPlatform & platform) {
-  Child child("visitor", {platform.name()});
+std::string outcome_of(Child child) {
   const std::string outcome = child.hear();
   const int status = child.wait();
   if (status < 0) {
     throw std::runtime_error("killed by signal " + std::to_string(-status));
   }
   return outcome;
+}
+
+std::string visit(const TestPlatform & platform) {
+  return outcome_of(Child("visitor", {platform.name()}));
 }
 
 Bytes read_file(const std::string & path) {
@@ -223,5 +262,16 @@ TEST_CASE("random words in a cluster segment in use: visitors get along or get a
     }
     file.close();
     CHECK_NOTHROW(visit(f.platform));
+  }
+}
+
+TEST_CASE("a chain of blocks that leads out of its cluster, or in a circle, is freed as far as it goes") {
+  for (const std::string end : {"publisher", "subscription"}) {
+    for (const std::string damage : {"leads out", "leads in a circle"}) {
+      CAPTURE(end);
+      CAPTURE(damage);
+      Fixture f;
+      CHECK(outcome_of(Child("chain_breaker", {f.platform.name(), end, damage})) == "got along");
+    }
   }
 }

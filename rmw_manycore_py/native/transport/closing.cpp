@@ -117,11 +117,12 @@ bool revoke(Registry & registry, const Cluster & cluster, TopicDsmHeader & dsm, 
   auto * const source = registry.clusters().find<SourceEntry>(SegmentRef{reader.source.load()});
   auto * const header =
     registry.clusters().find<SubscriptionHeader>(SegmentRef{reader.subscription.load()});
-  if (source == nullptr || header == nullptr) {
+  const uint32_t slot = reader.endpoint.load();
+  if (source == nullptr || header == nullptr || slot >= registry.endpoints().high_water()) {
     return true;
   }
   if (source->state.load() == SourceState::active) {
-    if (undelivered(cluster, dsm, *source, registry.endpoints()[reader.endpoint.load()].gid)) {
+    if (undelivered(cluster, dsm, *source, registry.endpoints()[slot].gid)) {
       return false;
     }
     // Dekker with the claim: the reader stores `reading` before it looks at the state.
@@ -136,18 +137,28 @@ bool revoke(Registry & registry, const Cluster & cluster, TopicDsmHeader & dsm, 
   return true;
 }
 
+/// Frees the blocks of a chain. A damaged chain is not followed out of the cluster, nor round and round.
+template<typename Block>
+void free_chain(Cluster & cluster, const std::atomic<uint64_t> & first) {
+  uint64_t next = first.load();
+  for (uint32_t i = 0; next != 0 && i < endpoint_capacity; ++i) {
+    const uint64_t offset = next;
+    const auto * const block = cluster.find<Block>(offset);
+    if (block == nullptr) {
+      return;
+    }
+    next = block->next.load();
+    cluster.free(offset, sizeof(Block));
+  }
+}
+
 void free_topic_dsm(Cluster & cluster, TopicDsmHeader & dsm) {
   for (GenerationEntry & generation : dsm.generations) {
     if (generation.first.load() != 0) {
       cluster.free(generation.offset.load(), generation.extent_bytes());
     }
   }
-  uint64_t next = dsm.next_reader_block.load();
-  while (next != 0) {
-    const uint64_t block = next;
-    next = cluster.find<ReaderBlock>(block)->next.load();
-    cluster.free(block, sizeof(ReaderBlock));
-  }
+  free_chain<ReaderBlock>(cluster, dsm.next_reader_block);
   cluster.free(cluster.ref_of(&dsm).offset(), sizeof dsm);
 }
 
@@ -196,12 +207,7 @@ bool sweep_subscription(Registry & registry, EndpointEntry & entry) {
     return false;
   }
   header->magic.store(0);
-  uint64_t next = header->first_source_block.load();
-  while (next != 0) {
-    const uint64_t block = next;
-    next = cluster->find<SourceBlock>(block)->next.load();
-    cluster->free(block, sizeof(SourceBlock));
-  }
+  free_chain<SourceBlock>(*cluster, header->first_source_block);
   cluster->free(
     entry.block.offset(),
     sizeof(SubscriptionHeader) + (uint64_t{8} << (header->slot_count_log2 & 31)));
