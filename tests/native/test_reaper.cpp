@@ -106,6 +106,28 @@ TEST_CASE("a publisher killed after it wrote a record, before it told anybody: t
   CHECK(f.inspection.used_bytes() == used);
 }
 
+TEST_CASE("a subscriber killed while its publisher follows references: its memory is free once that has ended") {
+  Fixture f;
+  const auto publisher = f.process->create_publisher(on_topic("/x", keep_last(10)));
+  const uint64_t used = f.inspection.used_bytes();
+  Registry & registry = f.inspection.registry();
+  EndpointEntry & entry = registry.endpoints()[f.inspection.slot_of(publisher->gid())];
+  TopicDsmWriter writer(registry, registry.clusters().at(1), entry);
+  {
+    Node subscriber(f.platform, 1);
+    subscriber.tell("subscription /x 100");
+    writer.enter();
+  }
+  f.wait_until_alone();
+  {
+    const Registry::Lock lock(registry);  // the reaper has done what it could
+  }
+  CHECK(f.inspection.live_endpoints() == 2);
+  writer.leave();
+  wait_until("the memory is free", [&] { return f.inspection.used_bytes() == used; });
+  CHECK(f.inspection.live_endpoints() == 1);
+}
+
 TEST_CASE("memory that a killed process had charged is given back") {
   Fixture f;
   const ClusterHeader & cluster = f.inspection.registry().clusters().at(1).header();

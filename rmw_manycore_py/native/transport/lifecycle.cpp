@@ -222,9 +222,7 @@ uint32_t reap_dead(Registry & registry) {
       ++dead;
     }
   }
-  if (dead != 0) {
-    closing::sweep(registry);
-  }
+  closing::sweep(registry);
   return dead;
 }
 

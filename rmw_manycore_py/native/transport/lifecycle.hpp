@@ -50,7 +50,8 @@ bool is_alive(const PlatformPaths & paths);
 /// Sends the receive threads home and removes all files. The caller holds the JoinLock. Returns the paths.
 std::vector<std::string> remove_platform(const PlatformPaths & paths);
 
-/// Under the registry lock: closes what dead processes left behind. Returns the number of the dead.
+/// Under the registry lock: closes what dead processes left behind, and frees what could not be freed before.
+/// Returns the number of the dead.
 uint32_t reap_dead(Registry & registry);
 
 /// Has the reapers of all clusters but `own` look whom to watch.

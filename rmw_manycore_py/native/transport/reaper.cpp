@@ -116,6 +116,7 @@ bool Reaper::bury() {
   {
     const Registry::Lock lock(registry_);
     dead = reap_dead(registry_);
+    is_closing_ = registry_.header().closing_count != 0;
   }
   if (dead != 0) {
     registry_.graph_changed();
@@ -147,7 +148,7 @@ void Reaper::run() noexcept {
       if (somebody_ended) {
         exit_if_unused(registry_);
       }
-      somebody_ended = wait_for_end(for_ever_ms);
+      somebody_ended = wait_for_end(is_closing_ ? retry_ms : for_ever_ms);
     } catch (const std::exception &) {
       // A lock that stayed taken or a damaged entry.
       somebody_ended = wait_for_end(retry_ms) || somebody_ended;

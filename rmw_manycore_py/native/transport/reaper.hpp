@@ -39,6 +39,7 @@ private:
   FileDescriptor poll_;   ///< epoll
   FileDescriptor event_;  ///< eventfd: look again
   std::map<pid_t, FileDescriptor> watched_;
+  bool is_closing_ = false;  ///< something could not be freed yet, and nobody tells when it can be
   std::atomic<bool> running_{true};
   std::thread thread_;
 };
