@@ -20,7 +20,7 @@ from rmw_manycore_py.bridge.sides import Sides
 from rmw_manycore_py import _transport
 
 BATCH = 16  # messages of one route before the others have their turn
-LINGER_S = 1.0  # who handed a topic over keeps its publisher while subscribers take what it said
+LINGER_S = 1.0  # who leaves a topic keeps its publisher while subscribers take what it said
 
 PAUSE_S = 0.2  # who cannot get rid of what it said by then keeps the topic
 
@@ -36,6 +36,7 @@ class Topic(Mover):
         self._type: Any = types.load(sides.route.type)
         self._limits = Limits(sides.route)
         self._offer: Policies | None = None
+        self._depth = 0  # of the subscription: no more than that can be unread
         self._paused = False
         self._paused_s = 0.0
         self._settled_s = _NEVER_S
@@ -159,6 +160,11 @@ class Topic(Mover):
             return
         row.passed(size, time.time_ns() - sent_ns)
 
+    def finish(self) -> None:
+        """Pass on what is unread, then leave both sides: it would go with the subscription."""
+        self.take(self._depth)
+        self.close()
+
     @abstractmethod
     def match(self) -> None:
         """Make or end endpoints as the graphs want it."""
@@ -166,6 +172,10 @@ class Topic(Mover):
     @abstractmethod
     def send(self, address: int, size: int, sent_ns: int) -> None:
         """Publish on the other side."""
+
+    @abstractmethod
+    def take(self, limit: int) -> None:
+        """Take so many messages that have arrived."""
 
     @abstractmethod
     def pause(self) -> None:

@@ -45,18 +45,18 @@ class InwardTopic(Topic):
         publishers = outside.publishers(route.outside)
         fitting = [p for p in publishers if p.topic_type == route.type]
         if not fitting:
-            self.close()
+            self.finish()
             if publishers:
                 self._sides.fail(f"is {publishers[0].topic_type} outside, not {route.type}")
             return
         offers = [from_rclpy(p.qos_profile) for p in fitting]
         if reason := unmet(offers, route.qos):
-            self.close()
+            self.finish()
             self._sides.fail(reason)
             return
         offer = common_offer(offers, route.qos)
         if self._offer is None or not satisfies(self._offer, offer):
-            self.close()
+            self.finish()
             if not self._appear(offer):
                 return
         listeners = self._sides.inside.subscriptions(route.inside)
@@ -83,16 +83,17 @@ class InwardTopic(Topic):
         if self.entity is not None:
             return
         assert self._offer is not None
+        request = request_for(self._offer, depth)
         self.entity = self._sides.outside.node.create_subscription(
             self._type,
             self._sides.route.outside,
             never_called,
-            to_rclpy(request_for(self._offer, depth)),
+            to_rclpy(request),
             raw=True,
             event_callbacks=SubscriptionEventCallbacks(use_default_callbacks=False),
         )
         self._reader = RawReader(self.entity)
-        self._gaps = Gaps(self._sides.row)
+        self._depth, self._gaps = request["depth"], Gaps(self._sides.row)
         self._sides.outside.readers.append(self)
 
     def stop_listening(self) -> None:
@@ -108,12 +109,13 @@ class InwardTopic(Topic):
     def pump_outside(self) -> None:
         """Pass on what has arrived."""
         began_ns = time.thread_time_ns()
-        self._take()
+        self.take(BATCH)
         self._sides.row.worked(time.thread_time_ns() - began_ns)
 
-    def _take(self) -> None:
+    def take(self, limit: int) -> None:
+        """Take so many messages that have arrived."""
         reader = self._reader
-        for _ in range(BATCH):
+        for _ in range(limit):
             if reader is None or not reader.take():
                 return
             info = reader.info

@@ -9,7 +9,7 @@ from typing import Any
 from rclpy.duration import Duration
 from rclpy.event_handler import PublisherEventCallbacks
 from rmw_manycore_py.bridge import types
-from rmw_manycore_py.bridge.place import Place
+from rmw_manycore_py.bridge.place import STEP_S, Place
 from rmw_manycore_py.bridge.policies import (
     Policies,
     common_offer,
@@ -20,9 +20,11 @@ from rmw_manycore_py.bridge.policies import (
 )
 from rmw_manycore_py.bridge.rcl import RawWriter
 from rmw_manycore_py.bridge.sides import Sides
-from rmw_manycore_py.bridge.topic import BATCH, Topic
+from rmw_manycore_py.bridge.topic import BATCH, LINGER_S, Topic
 
 from rmw_manycore_py import _transport
+
+_NEVER_S = float("inf")
 
 
 class OutwardTopic(Topic):
@@ -34,6 +36,7 @@ class OutwardTopic(Topic):
         self._writer: RawWriter | None = None
         self._subscription: _transport.Subscription | None = None
         self._lost = 0
+        self._leaves_s = _NEVER_S  # at the latest, once nobody publishes inside
 
     def match(self) -> None:
         """Publish outside while somebody does inside; listen inside while somebody does outside."""
@@ -41,28 +44,40 @@ class OutwardTopic(Topic):
         publishers = inside.publishers(route.inside)
         fitting = [p for p in publishers if p["type"] == route.type]
         if not fitting:
-            self.close()
+            self._leave()
             if publishers:
                 self._sides.fail(f"is {publishers[0]['type']} inside, not {route.type}")
             return
         offers = [p["qos"] for p in fitting]
         if reason := unmet(offers, route.qos):
-            self.close()
+            self._leave()
             self._sides.fail(reason)
             return
         offer = common_offer(offers, route.qos)
         if self._offer is None or not satisfies(self._offer, offer):
-            self.close()
+            self.finish()
             self._appear(offer)
         if self._is_wanted(offer):
             self._listen()
         else:
             self.stop_listening()
+        self._leaves_s = _NEVER_S
         self._sides.row.set_state("ready" if self._subscription is None else "forwarding")
 
     def _is_wanted(self, offer: Policies) -> bool:
         route, kept = self._sides.route, offer["durability"] == "transient_local"
         return kept or route.eager or bool(self._sides.outside.subscriptions(route.outside))
+
+    def _leave(self) -> None:
+        """Pass on what is unread; with its publisher would go what subscribers do not have yet."""
+        self.take(self._depth)
+        self.stop_listening()
+        now_s = time.monotonic()
+        self._leaves_s = min(self._leaves_s, now_s + LINGER_S)
+        if self._publisher is None or now_s >= self._leaves_s or self.is_acknowledged():
+            self.close()
+        else:
+            self.due_s = now_s + STEP_S
 
     def _appear(self, offer: Policies) -> None:
         self._publisher = self._sides.outside.node.create_publisher(
@@ -78,14 +93,11 @@ class OutwardTopic(Topic):
     def _listen(self) -> None:
         if self._subscription is not None or self._offer is None:
             return
-        route = self._sides.route
+        route, request = self._sides.route, request_for(self._offer, 1)
         self._subscription = self._sides.inside.process.subscription(
-            route.inside,
-            route.type,
-            request_for(self._offer, 1),
-            type_hash=types.hash_of(route.type),
+            route.inside, route.type, request, type_hash=types.hash_of(route.type)
         )
-        self._lost = 0
+        self._depth, self._lost = request["depth"], 0
         self._sides.inside.readers.append(self)
 
     def stop_listening(self) -> None:
@@ -98,11 +110,15 @@ class OutwardTopic(Topic):
         if self._subscription is None or not self._subscription.has_data():
             return
         began_ns = time.thread_time_ns()
-        self._take(self._subscription)
+        self.take(BATCH)
         self._sides.row.worked(time.thread_time_ns() - began_ns)
 
-    def _take(self, subscription: _transport.Subscription) -> None:
-        for _ in range(BATCH):
+    def take(self, limit: int) -> None:
+        """Take so many messages that have arrived."""
+        subscription = self._subscription
+        for _ in range(limit):
+            if subscription is None:
+                return
             claim = subscription.claim()
             if claim is None:
                 self._count_lost(subscription)
@@ -147,4 +163,5 @@ class OutwardTopic(Topic):
         if self._publisher is not None:
             self._sides.outside.node.destroy_publisher(self._publisher)
         self._publisher = self._writer = self._offer = None
+        self._leaves_s = _NEVER_S
         self._sides.row.set_state("waiting")

@@ -3,13 +3,23 @@
 
 from __future__ import annotations
 
+import re
+import signal
 import time
 from typing import Any
 
 import pytest
 from bridging import OUTSIDE
 from ros_support import announce, peer_node, spin_until, type_of
-from support import IS_MANYCORE, MAPFILES, example_command, leftovers, manycore_command, wait_until
+from support import (
+    IS_MANYCORE,
+    MAPFILES,
+    PATIENCE_S,
+    example_command,
+    leftovers,
+    manycore_command,
+    wait_until,
+)
 
 pytestmark = [
     pytest.mark.integration,
@@ -17,6 +27,7 @@ pytestmark = [
 ]
 
 TALKER_LISTENER = MAPFILES / "talker_listener.yaml"
+MANY = 500  # messages at once: more than the bridge moves before it looks at the graph
 HEARD = "I heard: 'Hello World"
 
 
@@ -43,6 +54,24 @@ def say(topic: str, words: dict[str, Any], period_s: float | None, *texts: str) 
             node.create_timer(period_s, lambda: publisher.publish(message(data="again")))
         announce("said")
         spin_until(node, lambda: False, 1e6)
+
+
+def say_much_and_leave(topic: str, count: int) -> None:
+    """Publish all the time; when told so, publish so many numbers at once and end."""
+    from rclpy.duration import Duration
+
+    told: list[int] = []
+    signal.signal(signal.SIGUSR1, lambda number, _: told.append(number))
+    with peer_node("speaker") as node:
+        message = type_of("std_msgs/msg/String")
+        publisher = node.create_publisher(message, topic, qos({"depth": count}))
+        node.create_timer(0.05, lambda: publisher.publish(message(data="again")))
+        announce("saying")
+        spin_until(node, lambda: told)
+        for number in range(count):
+            publisher.publish(message(data=str(number)))
+        publisher.wait_for_all_acked(Duration(seconds=PATIENCE_S))  # the bridge has them
+    announce("left")
 
 
 def hear(topic: str, words: dict[str, Any]) -> None:
@@ -131,6 +160,24 @@ def test_the_outside_publisher_offers_what_the_inside_one_does(bridge) -> None:
     watcher.wait_for("^publishers: none$")
     bridge.inside(say, "/scan", {"durability": "transient_local"}, 0.1)
     watcher.wait_for("^publishers: RELIABLE TRANSIENT_LOCAL")
+
+
+@pytest.mark.parametrize("direction", ["inward", "outward"])
+def test_what_was_said_last_is_heard(bridge, direction) -> None:
+    """A node that ends takes nothing back that the bridge has not read yet."""
+    bridge.run(bridge.route(direction, "/news"))
+    source, target = bridge.outside, bridge.inside
+    if direction == "outward":
+        source, target = target, source
+    hearer = target(hear, "/news", {"depth": MANY})
+    speaker = source(say_much_and_leave, "/news", MANY)
+    hearer.wait_for("^heard again")
+    speaker.signal(signal.SIGUSR1)
+    speaker.wait_for("^left$")
+    wait_until(lambda: bridge.row(direction, "/news")["state"] == "waiting", "the route is left")
+    hearer.wait_for(f"^heard {MANY - 1} ")
+    numbers = re.findall(r"^heard (\d+) ", hearer.output, re.MULTILINE)
+    assert [int(number) for number in numbers] == list(range(MANY))
 
 
 def test_a_killed_publisher_takes_the_bridges_with_it(bridge) -> None:
