@@ -4,6 +4,8 @@
 // rate does not change is measured by tests/stress; here: that it publishes at all, and what each side then has.
 #include <doctest/doctest.h>
 
+#include <csignal>
+
 #include "messages.hpp"
 #include "node_role.hpp"
 #include "patience.hpp"
@@ -12,6 +14,14 @@
 using namespace manycore;
 
 namespace {
+
+/// Stands still while it holds the registry lock, as one may that is stopped while it joins or leaves.
+const Role lock_holder("lock_holder", [](Lines & test, const Arguments & arguments) {
+  Registry registry(PlatformPaths::of(arguments.at(0)));
+  const Registry::Lock lock(registry);
+  test.say("locked");
+  raise(SIGSTOP);
+});
 
 struct Fixture {
   /// Until the receive thread of the only subscription in `cluster` has pushed so many hints.
@@ -121,4 +131,25 @@ TEST_CASE("a stopped publisher holds up no subscriber, and no other publisher") 
   publish_numbers(*publisher, 101, 101);
   CHECK(take_next(*f.process, *late).number == 101);
   stopped.kill();
+}
+
+TEST_CASE("stopped while it holds the registry lock: publishers whose topic DSM would grow go on") {
+  Fixture f;
+  const auto publisher = f.process->create_publisher(on_topic("/growing", keep_last(1000)));
+  const auto near = f.process->create_subscription(on_topic("/growing", keep_last(1000)));
+  Node node(f.platform, 1);
+  node.tell("publisher /growing 1000");
+  Child holder("lock_holder", {f.platform.name()});
+  holder.expect("locked");
+  // Each finds a wanted record in its way. To wait for the lock each time would take longer than Node::tell() does.
+  node.tell("publish 1 2000 100");
+  const Refusal refusal = refusal_of([&] { publish(*publisher, 1, 100'000); });
+  CHECK(refusal.code == ErrorCode::timeout);
+  CHECK_MESSAGE(refusal.says("registry stayed locked"), refusal.text);
+  CHECK(f.inspection.generations_of(*publisher) == 1);
+  holder.kill();
+  publish(*publisher, 2, 100'000);
+  CHECK(f.inspection.generations_of(*publisher) == 2);
+  node.tell("publish 2001 2100 100");
+  take_all(*near);
 }

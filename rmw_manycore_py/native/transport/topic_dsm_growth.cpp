@@ -51,7 +51,27 @@ uint64_t TopicDsmWriter::data_limit() const noexcept {
   return endpoint_.topic_dsm_size != 0 ? current_.data_bytes : cluster_.size() / 2;
 }
 
+/// The lock is waited for once: whoever stands still holding it must not hold up each record, nor each publish. From
+/// then on growing only tries, until the lock is to be had.
+void TopicDsmWriter::allocate_generation(
+  GenerationEntry & entry, uint64_t data_bytes, uint64_t descriptor_count) {
+  const long wait_ns =
+    registry_answers_ ? Registry::Lock::short_wait_ns : Registry::Lock::no_wait_ns;
+  registry_answers_ = false;
+  const Registry::Lock lock(registry_, wait_ns);
+  registry_answers_ = true;
+  Generation::allocate(cluster_, entry, data_bytes, descriptor_count, next_number_);
+}
+
 bool TopicDsmWriter::grow(uint64_t data_bytes, uint64_t descriptor_count) {
+  try {
+    return add_generation(data_bytes, descriptor_count);
+  } catch (const Error &) {
+    return false;
+  }
+}
+
+bool TopicDsmWriter::add_generation(uint64_t data_bytes, uint64_t descriptor_count) {
   const bool larger =
     data_bytes > current_.data_bytes || descriptor_count > current_.count;
   if (
@@ -68,12 +88,7 @@ bool TopicDsmWriter::grow(uint64_t data_bytes, uint64_t descriptor_count) {
   if (next_number_ == current_.first) {
     ++next_number_;  // a reader tells generations apart by their first numbers
   }
-  try {
-    const Registry::Lock lock(registry_, Registry::Lock::short_wait_ns);
-    Generation::allocate(cluster_, *free_entry, data_bytes, descriptor_count, next_number_);
-  } catch (const Error &) {
-    return false;
-  }
+  allocate_generation(*free_entry, data_bytes, descriptor_count);
   old_.push_back(current_);
   current_ = Generation::view(cluster_, *free_entry);
   blocks_.clear();
@@ -115,11 +130,21 @@ void TopicDsmWriter::require_data_bytes(uint64_t need_bytes) {
   if (need_bytes <= current_.data_bytes) {
     return;
   }
-  if (grow(std::min(need_bytes * 2, std::max(need_bytes, data_limit())), current_.count)) {
-    return;
+  const std::string size = std::to_string(need_bytes);
+  try {
+    const uint64_t wish = std::min(need_bytes * 2, std::max(need_bytes, data_limit()));
+    if (add_generation(wish, current_.count)) {
+      return;
+    }
+  } catch (const Error & error) {
+    if (error.code() == ErrorCode::timeout) {
+      endpoint_.counters.refused.fetch_add(1, std::memory_order_relaxed);
+      throw Error(
+        ErrorCode::timeout, "a message of " + size + " bytes on '" + endpoint_.topic +
+          "' needs a larger topic DSM, but " + error.what());
+    }
   }
   endpoint_.counters.refused.fetch_add(1, std::memory_order_relaxed);
-  const std::string size = std::to_string(need_bytes);
   if (endpoint_.topic_dsm_size != 0) {
     throw Error(
       ErrorCode::too_large, "a message of " + size + " bytes does not fit the topic DSM of '" +

@@ -59,6 +59,10 @@ private:
   uint64_t deepest_history() const noexcept;
   bool grow_to_hold_more(uint64_t need_bytes);
   bool grow(uint64_t data_bytes, uint64_t descriptor_count);
+  /// As grow(), but throws what keeps it from growing as far as it may: Error{no_space|corrupt|timeout}.
+  bool add_generation(uint64_t data_bytes, uint64_t descriptor_count);
+  void allocate_generation(
+    GenerationEntry & entry, uint64_t data_bytes, uint64_t descriptor_count);
   void require_data_bytes(uint64_t need_bytes);
   void wait_for_progress(uint64_t number);
   uint64_t data_limit() const noexcept;
@@ -76,6 +80,7 @@ private:
   uint64_t next_number_ = 1;
   uint64_t last_sequence_number_ = 0;
   int64_t blocked_until_ns_ = 0;
+  bool registry_answers_ = true;  ///< its lock was to be had when the topic DSM grew last
 };
 
 }  // namespace manycore
