@@ -5,6 +5,8 @@ from __future__ import annotations
 
 import sys
 import time
+import zipfile
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -63,6 +65,13 @@ def few(count: int) -> np.ndarray:
 
 def nan_points() -> np.ndarray:
     return np.full((100, 3), np.nan, np.float32)
+
+
+def write_boastful_npz(path: Path) -> None:
+    """Write a file whose header announces a petabyte, as a few wrong bits may do."""
+    with zipfile.ZipFile(path, "w") as file, file.open("points.npy", "w") as points:
+        header = {"descr": "<f4", "fortran_order": False, "shape": (1 << 48, 3)}
+        np.lib.format.write_array_header_1_0(points, header)
 
 
 class Stack:

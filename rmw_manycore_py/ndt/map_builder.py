@@ -8,10 +8,10 @@ from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass
 
-from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.ndt.options import MatcherOptions
 from rmw_manycore_py.ndt.precision import why_coarse
 from rmw_manycore_py.ndt.thinning import Points
+from rmw_manycore_py.ndt.unreadable import what_is_wrong
 from rmw_manycore_py.ndt.voxel_map import VoxelMap
 
 
@@ -73,7 +73,7 @@ class MapBuilder:
             if points is not None:
                 voxel_map = VoxelMap.from_points(points, self._options)
                 warning = why_coarse(points)
-        except (ManycoreError, OSError, ValueError, MemoryError) as error:
-            problem = str(error) or type(error).__name__
+        except Exception as error:  # whatever is wrong with a map, the one before it stays
+            problem = what_is_wrong(error)
         duration_ms = 1e3 * (time.perf_counter() - start)
         return BuiltMap(voxel_map, points, problem, warning, duration_ms)

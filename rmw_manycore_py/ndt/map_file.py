@@ -17,6 +17,7 @@ from rmw_manycore_py.ndt.ply_file import check_ply
 from rmw_manycore_py.ndt.precision import as_they_were, needs_doubles
 from rmw_manycore_py.ndt.recording import load_recording
 from rmw_manycore_py.ndt.thinning import Points
+from rmw_manycore_py.ndt.unreadable import UNREADABLE, what_is_wrong
 
 SUFFIXES = (".pcd", ".ply", ".npz")
 
@@ -35,7 +36,10 @@ def read_points(path: Path, leaf_m: float = 0.0) -> Points:
     points = points[np.isfinite(points).all(axis=1)]
     if len(points) == 0:
         raise _bad(path, "it has no points: it is empty, broken, or not what its name says")
-    return _thinned(points, leaf_m) if leaf_m > 0.0 else points
+    try:
+        return _thinned(points, leaf_m) if leaf_m > 0.0 else points
+    except RuntimeError as error:
+        raise _bad(path, f"it cannot be thinned to {leaf_m:g} m: {error}") from error
 
 
 def write_points(path: Path, points: Points) -> None:
@@ -81,25 +85,28 @@ def load_open3d() -> ModuleType:
 
 def _read_npz(path: Path) -> Points:
     recording = load_recording(path)
-    return recording.accumulated(range(len(recording)))
+    try:
+        return recording.accumulated(range(len(recording)))
+    except UNREADABLE as error:
+        raise _bad(path, what_is_wrong(error)) from error
 
 
 def read_cloud(path: Path) -> Points:
     """Return the points (N, 3) of a PCD or PLY file, finite or not."""
-    if path.suffix == ".pcd":
-        try:
-            return as_they_were(read_pcd(path))
-        except (OSError, ValueError) as error:
-            raise _bad(path, str(error)) from error
-    o3d = load_open3d()
+    read = read_pcd if path.suffix == ".pcd" else _read_ply
     try:
-        check_ply(path)
-        cloud = o3d.io.read_point_cloud(str(path))
-    except (OSError, ValueError) as error:
-        raise _bad(path, str(error)) from error
+        return as_they_were(read(path))
+    except UNREADABLE as error:
+        raise _bad(path, what_is_wrong(error)) from error
+
+
+def _read_ply(path: Path) -> Points:
+    o3d = load_open3d()
+    check_ply(path)
+    try:
+        return np.asarray(o3d.io.read_point_cloud(str(path)).points)
     except RuntimeError as error:
-        raise _bad(path, f"Open3D cannot read it: {error}") from error
-    return as_they_were(np.asarray(cloud.points))
+        raise ValueError(f"Open3D cannot read it: {error}") from error
 
 
 def _thinned(points: Points, leaf_m: float) -> Points:

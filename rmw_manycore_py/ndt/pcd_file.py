@@ -7,7 +7,7 @@ other is led astray by the padding fields that PCL writes.
 
 from __future__ import annotations
 
-import struct
+import re
 from pathlib import Path
 from types import ModuleType
 
@@ -16,24 +16,42 @@ from pydantic import ValidationError
 
 from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.ndt.thinning import Points
+from rmw_manycore_py.ndt.unreadable import UNREADABLE
 
 AXES = ("x", "y", "z")
+MOST_NUMBERS = 10_000  # of a point: pypcd4 names each of them before it looks for any
 
 
 def read_pcd(path: Path) -> Points:
     """Return the positions (N, 3) of a file, finite or not; raises OSError and ValueError."""
+    _check_counts(path)
     try:
         cloud = _load_pypcd4().PointCloud.from_path(path)
     except ValidationError as error:
         wrong = ", ".join(f"{entry['loc'][0]}: {entry['msg']}" for entry in error.errors())
         raise ValueError(f"its header is broken: {wrong}") from error
-    except (LookupError, RuntimeError, TypeError, struct.error) as error:
+    except (OSError, ValueError):
+        raise
+    except UNREADABLE as error:
         raise ValueError(f"it is broken: {error!r}") from error  # pypcd4 does not check before
     missing = [axis for axis in AXES if axis not in cloud.fields]
     if missing:
         raise ValueError(f"it has no field {', '.join(missing)}")
     points: Points = np.stack([cloud.pc_data[axis] for axis in AXES], axis=1)
     return points if points.dtype == np.float32 else points.astype(np.float64)
+
+
+def _check_counts(path: Path) -> None:
+    """Raise a ValueError for a header whose points would take all memory by their fields alone."""
+    with path.open("rb") as file:
+        for line in file:
+            if line.startswith(b"DATA"):
+                return
+            numbers = sum(map(int, re.findall(rb"\d+", line))) if line.startswith(b"COUNT") else 0
+            if numbers > MOST_NUMBERS:
+                raise ValueError(
+                    f"each of its points has {numbers} numbers, expected at most {MOST_NUMBERS}"
+                )
 
 
 def write_pcd(path: Path, points: Points) -> None:

@@ -13,8 +13,6 @@
 
 from __future__ import annotations
 
-import zipfile
-import zlib
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -28,20 +26,12 @@ from rmw_manycore_py.ndt.poses import Matrix, rigid, transform
 from rmw_manycore_py.ndt.precision import needs_doubles, why_coarse
 from rmw_manycore_py.ndt.recordings.stamps import in_seconds
 from rmw_manycore_py.ndt.thinning import Points
+from rmw_manycore_py.ndt.unreadable import UNREADABLE, what_is_wrong
 
 DEFAULT_SCALE_M = 0.002
 DEFAULT_PERIOD_S = 0.1  # of recordings without stamps: the 10 Hz of most LiDARs
 INT16_MAX = 32767
 SINGLES = (np.int8, np.uint8, np.int16, np.uint16, np.float16, np.float32)  # fit into float32
-# What numpy raises of damaged files; the last one of a compression that zip files may name.
-UNREADABLE = (
-    OSError,
-    ValueError,
-    EOFError,
-    zipfile.BadZipFile,
-    zlib.error,
-    NotImplementedError,
-)
 
 
 class Scans(Protocol):
@@ -140,9 +130,10 @@ def load_recording(path: Path) -> Recording:
     """Read a recording; a file that is none is an error that says what is wrong with it."""
     try:
         with path.open("rb") as raw, np.load(raw, allow_pickle=False) as file:
-            arrays = {name: file[name] for name in file.files}
+            # What is no array comes as bytes.
+            arrays = {name: np.asarray(file[name]) for name in file.files}
     except UNREADABLE as error:
-        raise _bad(path, f"cannot be read as npz: {error}") from error
+        raise _bad(path, f"cannot be read as npz: {what_is_wrong(error)}") from error
     missing = {"points", "offsets", "poses"} - arrays.keys()
     if missing:
         raise _bad(path, f"has no array {', '.join(sorted(missing))}")
@@ -156,8 +147,8 @@ def load_recording(path: Path) -> Recording:
             in_seconds(arrays.get("stamps", np.zeros(0))),
             str(arrays.get("note", "")),
         )
-    except ValueError as error:
-        raise _bad(path, str(error)) from error
+    except UNREADABLE as error:
+        raise _bad(path, what_is_wrong(error)) from error
 
 
 def _problem(arrays: dict[str, npt.NDArray[Any]]) -> str | None:

@@ -19,6 +19,7 @@ from ndt_support import (
     nan_points,
     street_map,
     street_scan,
+    write_boastful_npz,
 )
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from ros_support import spin_until
@@ -160,7 +161,7 @@ def test_tiles_around_the_vehicle(stack, start, tmp_path):
     assert error_m(stack.pose_of(street_scan(), NEAR)) < 0.1
 
 
-@pytest.mark.parametrize("damage", ["missing", "cut off", "rubbish"])
+@pytest.mark.parametrize("damage", ["missing", "cut off", "rubbish", "boastful"])
 def test_a_tile_that_is_damaged_while_driving(stack, start, tmp_path, damage):
     """It is reported, the map before it stays, and the node finds its place in that again."""
     folder = tmp_path / "tiles"
@@ -176,6 +177,8 @@ def test_a_tile_that_is_damaged_while_driving(stack, start, tmp_path, damage):
             path.unlink()
         elif damage == "cut off":
             path.write_bytes(whole[: len(whole) // 2])
+        elif damage == "boastful":
+            write_boastful_npz(path)
         else:
             whole[200:240] = bytes(range(40))
             path.write_bytes(whole)

@@ -19,6 +19,7 @@ from ndt_support import (
     matcher_command,
     street_map,
     street_scan,
+    write_boastful_npz,
 )
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from ros_support import spin_until
@@ -79,6 +80,28 @@ def test_the_loader_far_from_the_map_s_origin(node, start, tmp_path, kind):
     np.testing.assert_array_equal(decode(heard[0]), points)
     loader.wait_for("publishing a map of")
     assert ("the map is coarse: " in loader.output) == (kind is np.float32)
+
+
+def test_the_loader_goes_on_with_a_tile_that_is_damaged(node, start, tmp_path):
+    write_tiles(tmp_path / "tiles", street_map(), 20.0, ".npz")
+    write_boastful_npz(tmp_path / "tiles" / "0_0.npz")
+    folder = f"pcd_paths_or_directory:={tmp_path / 'tiles'}"
+    loader = start(
+        command("pointcloud_map_loader", folder, "enable_whole_load:=false", "map_radius:=1")
+    )
+    heard = []
+    node.create_subscription(PointCloud2, "pointcloud_map", heard.append, KEPT)
+    poses = node.create_publisher(PoseWithCovarianceStamped, "ekf_pose_with_covariance", 1)
+    spin_until(node, poses.get_subscription_count)
+    for x in (5.0, -30.0):
+        place = pose_with_covariance(
+            from_xyz_rpy((x, 5.0, 0.0)), COVARIANCE, node.get_clock().now().to_msg(), "map"
+        )
+        poses.publish(place)
+        if x > 0.0:
+            loader.wait_for(r"0_0\.npz: .*cannot be read as npz: Unable to allocate")
+    spin_until(node, lambda: heard)
+    assert decode(heard[0])[:, 0].max() < -20.0
 
 
 @pytest.mark.parametrize("path", ["''", "/nonexistent"])

@@ -22,6 +22,7 @@ from rmw_manycore_py.ndt.recordings.matching import recorded
 from rmw_manycore_py.ndt.recordings.pose_file import FORMATS, read_poses
 from rmw_manycore_py.ndt.recordings.stamps import of_names, read_stamps
 from rmw_manycore_py.ndt.thinning import Points
+from rmw_manycore_py.ndt.unreadable import UNREADABLE, what_is_wrong
 
 SUFFIXES = (".bin", ".npy", ".pcd", ".ply")
 STAMP_FILES = ("times.txt", "timestamps.txt")
@@ -51,8 +52,8 @@ def read_scan(path: Path) -> Points:
             if array.ndim < 2 or array.shape[-1] < 3:
                 raise ValueError(f"expected points (n, 3 or more), found the shape {array.shape}")
             return np.asarray(array.reshape(-1, array.shape[-1])[:, :3], np.float32)
-    except (EOFError, OSError, ValueError) as error:
-        raise ManycoreError(f"scan {path}: {error}", EXIT_BAD_INPUT) from error
+    except UNREADABLE as error:
+        raise ManycoreError(f"scan {path}: {what_is_wrong(error)}", EXIT_BAD_INPUT) from error
     return read_cloud(path)
 
 

@@ -4,11 +4,13 @@
 from __future__ import annotations
 
 import importlib.util
+import zipfile
 from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
 import pytest
+from ndt_support import write_boastful_npz
 
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
 from rmw_manycore_py.ndt.map_file import read_points, write_points
@@ -16,6 +18,7 @@ from rmw_manycore_py.ndt.map_tiles import METADATA, open_map, write_tiles
 from rmw_manycore_py.ndt.poses import from_xyz_rpy
 from rmw_manycore_py.ndt.precision import needs_doubles, why_coarse
 from rmw_manycore_py.ndt.recording import Recording, load_recording, save_recording
+from rmw_manycore_py.ndt.recordings.scan_folder import read_scan
 from rmw_manycore_py.ndt.thinning import voxel_centroids
 
 pytestmark = pytest.mark.unit
@@ -177,6 +180,41 @@ def test_damaged_npz_files(tmp_path, place):
     path.write_bytes(damaged)
     with pytest.raises(ManycoreError, match=r"map\.npz"):
         read_points(path)
+
+
+@pytest.mark.parametrize(
+    ("member", "words"),
+    [
+        (b"rubbish", "points are not"),
+        (b"\x93NUMPY\1\0\x0e\0{'shape': (1,,\n", "cannot be read as npz"),
+        (b"\x93NUMPY\1\0\x0e\0{'shape': ((((\n", "cannot be read as npz"),
+    ],
+)
+def test_npz_files_of_damaged_arrays(tmp_path, member, words):
+    path = tmp_path / "map.npz"
+    np.savez(path, offsets=[0, 1], poses=np.eye(4)[None])
+    with zipfile.ZipFile(path, "a") as file:
+        file.writestr("points.npy", member)
+    with pytest.raises(ManycoreError, match=rf"map\.npz: .*{words}"):
+        read_points(path)
+
+
+def test_a_map_that_announces_more_than_there_is(tmp_path):
+    write_boastful_npz(tmp_path / "map.npz")
+    with pytest.raises(ManycoreError, match=r"map\.npz: .*Unable to allocate 3\.00 PiB"):
+        read_points(tmp_path / "map.npz")
+    with (tmp_path / "scan.npy").open("wb") as file:
+        header = {"descr": "<f4", "fortran_order": False, "shape": (1 << 48, 3)}
+        np.lib.format.write_array_header_1_0(file, header)
+    with pytest.raises(ManycoreError, match=r"scan\.npy: .{10}"):
+        read_scan(tmp_path / "scan.npy")
+
+
+@needs_open3d
+def test_a_map_that_cannot_be_thinned_so_finely(tmp_path):
+    write_points(tmp_path / "map.npz", cloud())
+    with pytest.raises(ManycoreError, match=r"map\.npz: it cannot be thinned to 1e-09 m"):
+        read_points(tmp_path / "map.npz", 1e-9)
 
 
 def test_maps_that_the_system_refuses(tmp_path):

@@ -122,6 +122,10 @@ def test_maps_are_built_one_after_the_other_and_problems_are_told():
     assert take(builder).problem
     builder.submit(lambda: None)
     assert (take(builder).voxel_map, take(builder)) == (None, None)
+    builder.submit(lambda: points[10**25 :])
+    assert take(builder).voxel_map is None
+    builder.submit(lambda: 1 // 0)
+    assert take(builder).problem == "integer division or modulo by zero"
     builder.close()
 
 
