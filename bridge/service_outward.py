@@ -3,7 +3,9 @@
 
 from __future__ import annotations
 
+import threading
 import time
+from collections.abc import Iterator
 from functools import partial
 from typing import Any
 
@@ -26,6 +28,8 @@ class OutwardService(Service):
     def __init__(self, sides: Sides) -> None:
         super().__init__(sides)
         self._look_s = float("inf")  # on the monotonic clock: when to look again for the server
+        # Held while requests are claimed. Both threads do that, and none may be after the last.
+        self._claiming = threading.Lock()
         self._requests: _transport.Subscription | None = None
         self._replies: _transport.Publisher | None = None
         self.entity = sides.outside.node.create_client(self._type, sides.route.outside)
@@ -54,20 +58,25 @@ class OutwardService(Service):
         """Answer the requests whose time is over; look for the server."""
         super().expire(now_s)
         if self._look_s <= now_s:
-            self.reconcile()
+            self.try_to_reconcile()
 
     def pump_inside(self) -> None:
         """Pass requests on."""
+        with self._claiming:
+            for caller, data in self._claimed_requests():
+                with self._one_request(caller):
+                    request = deserialize_message(data, self._type.Request)
+                    self._pending.ask(caller, partial(self.entity.handle.send_request, request))
+                self._sides.outside.wake()  # it sleeps until something is due
+
+    def _claimed_requests(self) -> Iterator[tuple[Caller, bytes]]:
         requests = self._requests
         while requests is not None and (claim := requests.claim()) is not None:
             try:
                 caller, data = (claim.client, claim.number), claim.data
             finally:
                 claim.release()
-            with self._one_request(caller):
-                request = deserialize_message(data, self._type.Request)
-                self._pending.ask(caller, partial(self.entity.handle.send_request, request))
-            self._sides.outside.wake()  # it sleeps until something is due
+            yield caller, data
 
     def pump_outside(self) -> None:
         """Return a reply."""
@@ -89,10 +98,15 @@ class OutwardService(Service):
             replies.publish(serialize_message(response), client=client, number=number)
 
     def _leave_platform(self) -> None:
+        """Answer all who have asked, then leave: nobody asks between the two."""
+        with self._claiming:
+            for caller, _ in self._claimed_requests():
+                self._give_up_without_server(caller)
+            if self._requests is not None:
+                self._sides.inside.readers.remove(self)
+            self._requests = None
         self._abandon()
-        if self._requests is not None:
-            self._sides.inside.readers.remove(self)
-        self._requests = self._replies = None
+        self._replies = None
         self._sides.row.set_state("waiting")
 
     def close(self) -> None:

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import signal
 import threading
 import time
 from typing import Any
@@ -21,6 +22,7 @@ pytestmark = [
 
 SET_BOOL = "std_srvs/srv/SetBool"
 FIBONACCI = "test_msgs/action/Fibonacci"
+MANY = 1000  # requests: a good deal more than the bridge reads before it learns something
 
 
 @pytest.fixture(params=["inward", "outward"])
@@ -96,6 +98,37 @@ def test_a_server_that_dies(bridge) -> None:
     caller.wait_for("^answer False bridge: the server is gone$")
     caller.wait_for("^no service$")
     assert bridge.row("inward", "/lamp")["unanswered"] == 1
+
+
+def call_at_once(times: int) -> None:
+    """When told so, call SetBool so often without waiting for answers; print how many came."""
+    told: list[int] = []
+    signal.signal(signal.SIGUSR1, lambda number, _: told.append(number))
+    with peer_node("caller") as node:
+        kind = type_of(SET_BOOL)
+        client = node.create_client(kind, "/lamp")
+        assert client.wait_for_service(PATIENCE_S)
+        announce("ready")
+        spin_until(node, lambda: told)
+        futures = [client.call_async(kind.Request(data=True)) for _ in range(times)]
+        announce("called")
+        spin_until(node, lambda: all(future.done() for future in futures))
+        reasons = {future.result().message for future in futures}
+        announce(f"answered {reasons}")
+
+
+def test_requests_that_were_not_read_when_the_server_went(bridge) -> None:
+    process = bridge.run(bridge.route("outward", "/lamp", SET_BOOL))["outward"]
+    server = bridge.outside(serve, True)
+    caller = bridge.inside(call_at_once, MANY)
+    caller.wait_for("^ready$")
+    process.signal(signal.SIGSTOP)  # so that it learns of all at once
+    caller.signal(signal.SIGUSR1)
+    caller.wait_for("^called$")
+    server.stop()
+    process.signal(signal.SIGCONT)
+    caller.wait_for("^answered {'bridge: the server is gone'}$")
+    assert bridge.row("outward", "/lamp")["unanswered"] == MANY
 
 
 def has_parameters() -> None:
