@@ -74,6 +74,19 @@ TEST_CASE("transient local: history survives that others took it, and growth") {
   CHECK(take_all(*f.subscription(transient_local(1000))) == numbers(501, 1500));
 }
 
+TEST_CASE("transient local + KEEP_ALL: a late joiner gets all, whatever the depth says") {
+  Fixture f;
+  Qos qos = keep_all();
+  qos.durability = Durability::transient_local;
+  qos.depth = 1;
+  const auto publisher = f.publisher(qos);
+  for (uint64_t number = 1; number <= 500; ++number) {
+    publish(*publisher, number);
+  }
+  CHECK(take_all(*f.subscription(qos)) == numbers(1, 500));
+  CHECK(take_all(*f.subscription(transient_local(10))) == numbers(491, 500));
+}
+
 TEST_CASE("transient local: histories of several publishers are merged by time") {
   Fixture f;
   const auto first = f.publisher(transient_local(10));
@@ -152,6 +165,25 @@ TEST_CASE("an expired message is deleted: its room is free, although nobody took
   }
   publish(*publisher, 1, 100);
   CHECK(take(*subscription)->number == 1);
+}
+
+TEST_CASE("arrivals never fall: hints of expired messages do not make up for later messages") {
+  Fixture f;
+  Qos qos = keep_last(10);
+  qos.lifespan_ns = 3600 * ns_per_s;
+  const auto subscription = f.subscription(keep_last(100));
+  const auto publisher = f.publisher(qos);
+  for (int i = 0; i < 5; ++i) {
+    publisher->publish(publisher->draft(100), 100, realtime_ns() - 2 * qos.lifespan_ns);
+  }
+  publish(*publisher, 1);
+  const auto other = f.publisher(keep_last(10));
+  publish(*other, 2);
+  const uint64_t before = subscription->arrivals();
+  CHECK(take_all(*subscription).size() == 2);  // finds the new source, and looks into all of them
+  CHECK(subscription->arrivals() == before);
+  publish(*other, 3);
+  CHECK(subscription->arrivals() == before + 1);
 }
 
 TEST_CASE("KEEP_ALL holds more messages than the queue holds hints") {

@@ -141,9 +141,14 @@ TEST_CASE("killed while it holds the lock: the next owner repairs what was half 
   Child holder("lock_holder", {f.platform.name()});
   holder.expect("holding");
   CHECK(f.inspection.used_bytes() > used);
+  EndpointEntry * const endpoints = &f.registry.endpoints()[0];
+  endpoints[0].matched_current.store(0);  // as when it died after one of both ends
+  endpoints[1].matched_current.store(2);
   holder.kill();
   CHECK(f.process->graph().endpoints_of("/repair").size() == 2);  // repairs
   CHECK(f.inspection.used_bytes() == used);
+  CHECK(publisher->matched().current == 1);
+  CHECK(subscription->matched().current == 1);
   const auto late = f.process->create_subscription(on_topic("/repair", keep_last(10)));
   CHECK(late->matched().current == 1);
   CHECK(f.process->add_node("node", "/", "/") == 0);

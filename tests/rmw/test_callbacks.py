@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import ctypes
 import sys
+import threading
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -12,14 +13,16 @@ from typing import Any
 
 import pytest
 import rclpy
+from rclpy.duration import Duration
 from rclpy.event_handler import SubscriptionEventCallbacks
 from rclpy.experimental import EventsExecutor
+from rclpy.qos import QoSProfile
 from ros_support import announce, peer_node
 from std_msgs.msg import String
 from std_srvs.srv import Trigger
 from support import PATIENCE_S, RMW
 
-PUBLISHER_MATCHED = 4  # of rcl_publisher_event_type_t
+DEADLINE_MISSED, PUBLISHER_MATCHED = 0, 4  # of rcl_publisher_event_type_t
 
 
 @pytest.fixture
@@ -137,6 +140,33 @@ def library(name: str, *functions: str) -> ctypes.CDLL:
     return found
 
 
+EventCallback = ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_size_t)
+
+
+def test_a_deadline_ends_a_sleep_that_began_before_its_callback_was_set(node):
+    """In C as well: an executor sets all callbacks at once."""
+    rcl = library("librcl.so")
+    other = node.create_publisher(String, "other", 10)
+    publisher = node.create_publisher(
+        String, "chatter", QoSProfile(depth=10, deadline=Duration(seconds=0.3))
+    )
+    publisher.publish(String())  # its clock runs
+    matched, missed = threading.Event(), threading.Event()
+    callbacks = [EventCallback(lambda *_, seen=seen: seen.set()) for seen in (matched, missed)]
+    events = [ctypes.c_void_p(), ctypes.c_void_p()]
+    kinds = (other, PUBLISHER_MATCHED), (publisher, DEADLINE_MISSED)
+    for event, (entity, kind) in zip(events, kinds, strict=True):
+        handle = ctypes.c_void_p(entity.handle.pointer)
+        assert rcl.rcl_publisher_event_init(ctypes.byref(event), handle, kind) == 0
+    assert rcl.rcl_event_set_callback(ctypes.byref(events[0]), callbacks[0], None) == 0
+    node.create_subscription(String, "other", print, 10)
+    assert matched.wait(PATIENCE_S)  # from here on the thread sleeps without an end
+    assert rcl.rcl_event_set_callback(ctypes.byref(events[1]), callbacks[1], None) == 0
+    assert missed.wait(PATIENCE_S)
+    for event in events:
+        assert rcl.rcl_event_fini(ctypes.byref(event)) == 0
+
+
 def test_the_callback_of_an_event_is_called_before_a_wait_ends(node):
     """rclpy offers either callbacks or waits, so this is in C, on the handles of rclpy."""
     rcl = library("librcl.so", "rcl_publisher_get_context", "rcl_context_get_rmw_context")
@@ -149,9 +179,7 @@ def test_the_callback_of_an_event_is_called_before_a_wait_ends(node):
     wait_set = ctypes.c_void_p(rmw.rmw_create_wait_set(rmw_context, ctypes.c_size_t(1)))
 
     calls = []
-    callback = ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_size_t)(
-        lambda _, count: calls.append(count)
-    )
+    callback = EventCallback(lambda _, count: calls.append(count))
     event = ctypes.c_void_p()  # rcl_event_t holds one pointer
     assert rcl.rcl_publisher_event_init(ctypes.byref(event), handle, PUBLISHER_MATCHED) == 0
     assert rcl.rcl_event_set_callback(ctypes.byref(event), callback, None) == 0

@@ -16,6 +16,7 @@ if not IS_MANYCORE:
     pytest.skip("Fast DDS has some of it", allow_module_level=True)
 
 OK, UNSUPPORTED = 0, 3
+STRICTLY = 1  # RMW_UNIQUE_NETWORK_FLOW_ENDPOINTS_STRICTLY_REQUIRED
 PUBLICATION_NUMBER, RECEPTION_NUMBER, TYPE_DISCOVERY, DYNAMIC_MESSAGES = range(4)
 
 # Function, and of whom the handle is that it gets first.
@@ -87,22 +88,34 @@ class SubscriptionHandle(ctypes.Structure):
     )
 
 
+def create_subscription(node: Any, publisher: Any, options: SubscriptionOptions) -> Any:
+    """Return a subscription of a publisher's topic and QoS, or a null pointer."""
+    rcl.rcl_publisher_get_actual_qos.restype = ctypes.c_void_p
+    qos = rcl.rcl_publisher_get_actual_qos(rcl_handle(publisher))
+    rmw.rmw_create_subscription.restype = ctypes.POINTER(SubscriptionHandle)
+    return rmw.rmw_create_subscription(
+        rmw_handle("node", node),
+        type_support(Point),
+        b"/points",
+        ctypes.c_void_p(qos),
+        ctypes.byref(options),
+    )
+
+
+def test_network_flows_of_its_own_are_no_subscriptions_to_insist_on(node):
+    publisher = node.create_publisher(Point, "points", 10)
+    assert not create_subscription(node, publisher, SubscriptionOptions(unique_flow=STRICTLY))
+    assert b"uses no network" in rcutils.rcutils_get_error_string().text
+    rcutils.rcutils_reset_error()
+
+
 def test_a_content_filter_is_not_enabled_and_everything_arrives(node):
     """The user of rcl is told so, and filters in the callback."""
     publisher = node.create_publisher(Point, "points", 10)
     wanted = SubscriptionOptions(
         filter=ctypes.pointer(ContentFilter(expression=b"x > 100", parameters=Strings()))
     )
-    rcl.rcl_publisher_get_actual_qos.restype = ctypes.c_void_p
-    qos = rcl.rcl_publisher_get_actual_qos(rcl_handle(publisher))
-    rmw.rmw_create_subscription.restype = ctypes.POINTER(SubscriptionHandle)
-    subscription = rmw.rmw_create_subscription(
-        rmw_handle("node", node),
-        type_support(Point),
-        b"/points",
-        ctypes.c_void_p(qos),
-        ctypes.byref(wanted),
-    )
+    subscription = create_subscription(node, publisher, wanted)
     assert subscription.contents.is_cft_enabled is False
     spin_until(node, lambda: publisher.get_subscription_count() == 1)
     publisher.publish(Point(x=1.0))

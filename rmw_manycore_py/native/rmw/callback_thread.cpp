@@ -38,6 +38,7 @@ void CallbackThread::add(Callback & callback) {
     thread_ = std::thread([this] { run(); });
   }
   wake_.notify_all();
+  waiter_.notify();  // a sleep that has begun does not know when this one is due
 }
 
 void CallbackThread::remove(Callback & callback) noexcept {

@@ -1,4 +1,7 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#include "rmw/network_flow.hpp"
+
+#include "platform/error.hpp"
 #include "rmw/checks.hpp"
 #include "rmw/get_network_flow_endpoints.h"
 
@@ -16,6 +19,15 @@ rmw_ret_t refuse(
 }
 
 }  // namespace
+
+void rmw_manycore::check_network_flow(
+  rmw_unique_network_flow_endpoints_requirement_t requirement) {
+  if (requirement == RMW_UNIQUE_NETWORK_FLOW_ENDPOINTS_STRICTLY_REQUIRED) {
+    throw manycore::Error(
+      manycore::ErrorCode::unsupported,
+      "unique network flow endpoints are not supported: rmw_manycore uses no network");
+  }
+}
 
 rmw_ret_t rmw_publisher_get_network_flow_endpoints(
   const rmw_publisher_t * publisher, rcutils_allocator_t * allocator,

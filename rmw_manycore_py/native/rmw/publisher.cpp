@@ -1,11 +1,11 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #include "rmw/publisher.hpp"
 
-#include "platform/error.hpp"
 #include "rmw/checks.hpp"
 #include "rmw/endpoint_spec.hpp"
 #include "rmw/error.hpp"
 #include "rmw/names.hpp"
+#include "rmw/network_flow.hpp"
 #include "rmw/qos.hpp"
 #include "rmw/rmw.h"
 
@@ -47,19 +47,6 @@ EventCounts Publisher::counts(rmw_event_type_t type) const {
   }
 }
 
-namespace {
-
-void check_options(const rmw_publisher_options_t & options) {
-  if (
-    options.require_unique_network_flow_endpoints ==
-    RMW_UNIQUE_NETWORK_FLOW_ENDPOINTS_STRICTLY_REQUIRED) {
-    throw manycore::Error(
-      manycore::ErrorCode::unsupported,
-      "unique network flow endpoints are not supported: rmw_manycore uses no network");
-  }
-}
-
-}  // namespace
 }  // namespace rmw_manycore
 
 using rmw_manycore::Publisher;
@@ -78,7 +65,7 @@ rmw_publisher_t * rmw_create_publisher(
   // Implementation
   return rmw_manycore::guarded_handle([&] {
     rmw_manycore::check_endpoint_name(topic_name, *qos_profile);
-    rmw_manycore::check_options(*publisher_options);
+    rmw_manycore::check_network_flow(publisher_options->require_unique_network_flow_endpoints);
     const auto & owner = rmw_manycore::Node::of(node);
     const rmw_qos_profile_t profile =
       rmw_manycore::best_available_for_publisher(owner, topic_name, *qos_profile);

@@ -5,6 +5,7 @@
 #include "rmw/endpoint_spec.hpp"
 #include "rmw/error.hpp"
 #include "rmw/names.hpp"
+#include "rmw/network_flow.hpp"
 #include "rmw/qos.hpp"
 #include "rmw/rmw.h"
 
@@ -79,6 +80,7 @@ rmw_subscription_t * rmw_create_subscription(
   // Implementation
   return rmw_manycore::guarded_handle([&] {
     rmw_manycore::check_endpoint_name(topic_name, *qos_policies);
+    rmw_manycore::check_network_flow(subscription_options->require_unique_network_flow_endpoints);
     const auto & owner = rmw_manycore::Node::of(node);
     const rmw_qos_profile_t profile =
       rmw_manycore::best_available_for_subscription(owner, topic_name, *qos_policies);

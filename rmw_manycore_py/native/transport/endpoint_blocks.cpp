@@ -6,7 +6,8 @@
 namespace manycore {
 
 MatchedCount matched_of(const EndpointEntry & entry) {
-  return {entry.matched_total.load(), entry.matched_current.load()};
+  const uint64_t total = entry.matched_total.load();
+  return {total, std::min(entry.matched_current.load(), total)};
 }
 
 IncompatibleCount incompatible_of(const EndpointEntry & entry) {

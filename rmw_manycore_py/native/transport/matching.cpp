@@ -1,6 +1,8 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #include "transport/matching.hpp"
 
+#include <vector>
+
 #include "platform/error.hpp"
 #include "transport/endpoint_blocks.hpp"
 #include "transport/last_published.hpp"
@@ -129,8 +131,9 @@ void join(Registry & registry, const Pair & pair) {
   }
   note_successor(pair.subscription);
   for (EndpointEntry * end : {&pair.publisher, &pair.subscription}) {
-    end->matched_total.fetch_add(1);
+    // In this order: matched_of() reads the total first, and never sees more changes than there were.
     end->matched_current.fetch_add(1);
+    end->matched_total.fetch_add(1);
     notify_event_watchers(registry, end->process);
   }
 }
@@ -183,6 +186,25 @@ void undo_half_matches_of(Registry & registry, EndpointEntry & entry) {
   });
 }
 
+/// Those that are closing count as well until they have left: it is then that they count down.
+void count_matches_of(Registry & registry, uint32_t slot, std::vector<uint64_t> & counts) {
+  const EndpointEntry & entry = registry.endpoints()[slot];
+  Cluster * const cluster = registry.clusters().find(entry.block.cluster());
+  auto * const header = registry.clusters().find<SubscriptionHeader>(entry.block);
+  if (cluster == nullptr || header == nullptr) {
+    return;
+  }
+  visit_source_table(*cluster, *header, [&](SourceEntry & source, uint32_t) {
+    TopicDsmHeader * const dsm = topic_dsm_of(registry, source);
+    if (
+      source.state.load() == SourceState::active && dsm != nullptr && dsm->orphan.load() == 0) {
+      ++counts[slot];
+      ++counts[source.topic_dsm_endpoint.load()];
+    }
+    return false;
+  });
+}
+
 }  // namespace
 
 void connect(Registry & registry, uint32_t endpoint) {
@@ -205,6 +227,21 @@ void undo_half_matches(Registry & registry) {
     if (registry.endpoints().is_live(slot) && entry.kind == EndpointKind::subscription) {
       undo_half_matches_of(registry, entry);
     }
+  }
+}
+
+void recount(Registry & registry) {
+  std::vector<uint64_t> counts(registry.endpoints().high_water());
+  for (uint32_t slot = 0; slot < counts.size(); ++slot) {
+    const EndpointEntry & entry = registry.endpoints()[slot];
+    if (
+      entry.slot.state.load(std::memory_order_acquire) != SlotState::free &&
+      entry.kind == EndpointKind::subscription) {
+      count_matches_of(registry, slot, counts);
+    }
+  }
+  for (uint32_t slot = 0; slot < counts.size(); ++slot) {
+    registry.endpoints()[slot].matched_current.store(counts[slot]);
   }
 }
 

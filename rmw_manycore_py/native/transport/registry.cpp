@@ -233,6 +233,7 @@ void Registry::repair() noexcept {
     }
   }
   matching::undo_half_matches(*this);
+  matching::recount(*this);
 }
 
 }  // namespace manycore

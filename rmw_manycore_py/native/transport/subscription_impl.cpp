@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "transport/closing.hpp"
+#include "transport/endpoint_blocks.hpp"
 #include "transport/source_table.hpp"
 
 namespace manycore {
@@ -95,11 +96,15 @@ TopicDsmReader * Subscription::Impl::find_reader(uint32_t source, uint32_t incar
 }
 
 /// Hints may be missing: forget those that are there and look into every topic DSM instead.
-void Subscription::Impl::resync(uint64_t forgotten) {
-  while (subscriber_queue::pop(header)) {
-    ++forgotten;
-  }
+void Subscription::Impl::resync(std::optional<Hint> popped) {
   renew_readers();
+  announced.clear();
+  for (; popped || (popped = subscriber_queue::pop(header)); popped.reset()) {
+    if (const TopicDsmReader * const reader = find_reader(popped->source, popped->source_incarnation)) {
+      announced.emplace_back(reader->index(), reader->full_number(popped->number));
+    }
+  }
+  std::sort(announced.begin(), announced.end());
   scratch.clear();
   for (TopicDsmReader & reader : readers) {
     reader.list_waiting(scratch);
@@ -108,9 +113,14 @@ void Subscription::Impl::resync(uint64_t forgotten) {
     return a.source_timestamp_ns < b.source_timestamp_ns;
   });
   backlog.insert(backlog.end(), scratch.begin(), scratch.end());
-  arrivals_by_resync.fetch_add(scratch.size() - forgotten, std::memory_order_relaxed);
+  // Stale hints do not make up for others: who was told of them finds fewer messages, never more.
+  const auto unannounced = std::count_if(scratch.begin(), scratch.end(), [&](const auto & waiting) {
+    return !std::binary_search(
+      announced.begin(), announced.end(), std::pair(waiting.source, waiting.number));
+  });
   unsettled = true;
-  if (scratch.size() > forgotten) {
+  if (unannounced > 0) {
+    arrivals_by_resync.fetch_add(static_cast<uint64_t>(unannounced), std::memory_order_relaxed);
     header.note_arrival();
   }
   while (displaces(entry) && backlog.size() > header.depth) {
@@ -120,7 +130,11 @@ void Subscription::Impl::resync(uint64_t forgotten) {
       reader->skip(oldest.number);
     }
   }
-  backlog_size.store(backlog.size(), std::memory_order_relaxed);
+  backlog_size.store(backlog.size(), std::memory_order_release);
+  if (!backlog.empty()) {
+    // Who looked while the hints were gone and the backlog was not there yet may be about to sleep.
+    notify_process(registry, entry.process);
+  }
 }
 
 void Subscription::Impl::resync_if_asked() {
@@ -174,7 +188,7 @@ std::optional<Subscription::Impl::Candidate> Subscription::Impl::next() {
     if (renew_readers()) {
       // A hint of a new source may overtake the matcher's resync, and with it the source's history. Looking
       // into all sources finds what the hint announced as well.
-      resync(1);
+      resync(hint);
     } else if (const std::optional<Candidate> candidate = candidate_of(*hint)) {
       return candidate;
     }
@@ -200,10 +214,10 @@ void Subscription::Impl::settle() noexcept {
 
 void Subscription::Impl::sweep() noexcept {
   try {
-    const Registry::Lock lock(registry);
+    const Registry::Lock lock(registry, Registry::Lock::no_wait_ns);
     closing::sweep(registry);
   } catch (const std::exception &) {
-    // The registry stayed locked: the next change of the graph sweeps.
+    // Somebody holds the registry, and a take does not wait for him: the next change of the graph sweeps.
   }
 }
 

@@ -31,8 +31,8 @@ struct Subscription::Impl {
   void resync_if_asked();
   /// Follows the source table; true when it has a source that was not known yet.
   bool renew_readers();
-  /// `forgotten`: hints that its caller has popped and not used.
-  void resync(uint64_t forgotten = 0);
+  /// `popped`: a hint that its caller has not used.
+  void resync(std::optional<Hint> popped = std::nullopt);
   /// With nothing left to take: accounts for what was lost after the last message taken of each source.
   void settle() noexcept;
   void count_taken(uint64_t bytes) noexcept;
@@ -50,8 +50,9 @@ struct Subscription::Impl {
   uint64_t seen_source_generation = 0;
   std::deque<TopicDsmReader::Waiting> backlog;  ///< found by a resync, served before the queue
   std::atomic<size_t> backlog_size{0};          ///< for has_data() without the mutex
-  std::atomic<uint64_t> arrivals_by_resync{0};  ///< beyond the pushes on the queue; wraps
+  std::atomic<uint64_t> arrivals_by_resync{0};  ///< those that no hint announced
   std::vector<TopicDsmReader::Waiting> scratch;
+  std::vector<std::pair<uint32_t, uint64_t>> announced;  ///< of a resync: source and number of each hint
   uint64_t received = 0;
   bool unsettled = false;     ///< messages may be missing that no later one has shown to be
   uint64_t settled_dropped = 0;  ///< of the header's `dropped`, when everything was accounted for

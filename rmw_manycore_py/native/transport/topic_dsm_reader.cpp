@@ -41,16 +41,9 @@ TopicDsmReader::TopicDsmReader(
 
 uint64_t TopicDsmReader::full_number(uint64_t low_bits) const noexcept {
   constexpr uint64_t period = uint64_t{1} << 28;
-  const uint64_t base = noted_ & ~(period - 1);
-  const uint64_t candidate = base | low_bits;
-  // The nearest number with these low bits: hints are less than half a period away from what was noted.
-  if (candidate + period / 2 < noted_) {
-    return candidate + period;
-  }
-  if (candidate > noted_ + period / 2 && candidate >= period) {
-    return candidate - period;
-  }
-  return candidate;
+  // The latest published with these low bits: what a queue holds is younger than a period, however long nothing
+  // was taken. Where nothing was published with them it wraps to more than `last`.
+  return last() - ((last() - low_bits) & (period - 1));
 }
 
 const GenerationEntry * TopicDsmReader::generation_of(uint64_t number) const noexcept {
@@ -121,9 +114,10 @@ TopicDsmReader::ClaimResult TopicDsmReader::look_at(uint64_t number, View & view
   if (record.number.load(std::memory_order_seq_cst) != number) {
     return ClaimResult::gone;
   }
-  // The generation may have been given back before the claim was seen; its entry then has changed.
+  // The generation may have been given back before the claim was seen; its entry then has changed, or it is empty
+  // since before the first look.
   if (
-    generation->first.load(std::memory_order_acquire) != first || first > number ||
+    first == 0 || generation->first.load(std::memory_order_acquire) != first || first > number ||
     !cluster_->contains(record.offset, record.size_bytes)) {
     return ClaimResult::gone;
   }

@@ -33,8 +33,8 @@ TopicDsmHeader & TopicDsmWriter::create(Registry & registry, uint32_t endpoint_s
   dsm.endpoint.store(endpoint_slot);
   dsm.incarnation.store(endpoint.slot.incarnation);
   dsm.lifespan_ns = endpoint.qos.lifespan_ns;
-  dsm.depth = endpoint.qos.depth;
   dsm.keep_all = endpoint.qos.history == History::keep_all ? 1 : 0;
+  dsm.depth = dsm.keep_all != 0 ? keep_all_capacity : endpoint.qos.depth;
   dsm.transient_local = endpoint.qos.durability == Durability::transient_local ? 1 : 0;
   dsm.role = static_cast<uint8_t>(endpoint.role);
   dsm.process = endpoint.process;

@@ -1,0 +1,11 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "rmw/types.h"
+
+namespace rmw_manycore {
+
+/// Throws manycore::Error{unsupported} where an endpoint insists on network flows of its own.
+void check_network_flow(rmw_unique_network_flow_endpoints_requirement_t requirement);
+
+}  // namespace rmw_manycore
