@@ -3,9 +3,14 @@
 
 from __future__ import annotations
 
+import os
+import signal
 import sys
+import threading
 import time
 import zipfile
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
@@ -72,6 +77,36 @@ def write_boastful_npz(path: Path) -> None:
     with zipfile.ZipFile(path, "w") as file, file.open("points.npy", "w") as points:
         header = {"descr": "<f4", "fortran_order": False, "shape": (1 << 48, 3)}
         np.lib.format.write_array_header_1_0(points, header)
+
+
+def workers_below(pid: int) -> list[int]:
+    """Return the worker processes that a process has, at any depth."""
+    found: list[int] = []
+    for children in Path(f"/proc/{pid}/task").glob("*/children"):
+        for child in map(int, children.read_text().split()):
+            is_worker = "ndt_worker" in Path(f"/proc/{child}/cmdline").read_text()
+            found += [child] if is_worker else workers_below(child)
+    return sorted(found)
+
+
+@contextmanager
+def killed_as_they_come(pid: int) -> Iterator[None]:
+    """Kill the workers of a process again and again, before they have done anything."""
+    enough = threading.Event()
+
+    def kill() -> None:
+        while not enough.is_set():
+            with suppress(FileNotFoundError, ProcessLookupError):  # it has ended meanwhile
+                for worker in workers_below(pid):
+                    os.kill(worker, signal.SIGKILL)
+
+    thread = threading.Thread(target=kill)
+    thread.start()
+    try:
+        yield
+    finally:
+        enough.set()
+        thread.join()
 
 
 class Stack:

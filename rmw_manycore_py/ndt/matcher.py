@@ -15,6 +15,7 @@ from rmw_manycore_py.ndt import covariance
 from rmw_manycore_py.ndt.alignment import Alignment, Score
 from rmw_manycore_py.ndt.answers import alignment_from, refused, score_from
 from rmw_manycore_py.ndt.arrays import Pose, ScanPoints, pose_matrix, scan_points, why_no_pose
+from rmw_manycore_py.ndt.kernel_errors import reported
 from rmw_manycore_py.ndt.level import levelled
 from rmw_manycore_py.ndt.options import MatcherOptions
 from rmw_manycore_py.ndt.voxel_map import VoxelMap
@@ -51,7 +52,9 @@ class Matcher:
     """Matches scans to a map. Not for several threads at once; the map may be swapped in between.
 
     Bad input is answered, not raised: see :class:`Alignment`. Raised are only mistakes of the
-    calling program: arrays of a wrong shape, no map, a map built for other options.
+    calling program (arrays of a wrong shape, no map, a map built for other options), and what
+    keeps the matcher from working: no memory, workers that die again and again. Each is a
+    ManycoreError, and the matcher may be used on.
     """
 
     def __init__(self, options: MatcherOptions, native: NativeMatcher) -> None:
@@ -132,7 +135,8 @@ class Matcher:
         self, voxel_map: VoxelMap, scan: ScanPoints, guess: Pose, position: Position | None
     ) -> Alignment:
         level = levelled(scan, guess)
-        numbers = self._native.align(voxel_map.native, level.points, level.guess, position)
+        with reported():
+            numbers = self._native.align(voxel_map.native, level.points, level.guess, position)
         if numbers["used_points"] == 0:
             return refused(guess, "the scan has no finite point", self.options)
         if numbers["used_points"] < FEWEST_POINTS:
@@ -176,7 +180,8 @@ class Matcher:
         pose = pose_matrix(T_map_sensor)
         if why_no_pose(pose):
             return Score(0.0, 0.0, 0.0, 0)
-        return score_from(self._native.evaluate(voxel_map.native, scan, pose))
+        with reported():
+            return score_from(self._native.evaluate(voxel_map.native, scan, pose))
 
     def _require_map(self) -> VoxelMap:
         if self._map is None:

@@ -9,6 +9,7 @@ from pathlib import Path
 
 from rmw_manycore_py import _ndt
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
+from rmw_manycore_py.ndt.kernel_errors import reported
 from rmw_manycore_py.ndt.matcher import Matcher, native_options
 from rmw_manycore_py.ndt.options import MatcherOptions
 from rmw_manycore_py.ndt.voxel_map import VoxelMap
@@ -39,9 +40,10 @@ class WorkerMatcher(Matcher):
         self._group: _ndt.WorkerGroup | None = group
 
     def set_map(self, voxel_map: VoxelMap) -> None:
-        """Match to this map from now on; returns when all workers have it at hand."""
+        """Match to this map once all workers have it at hand; if they fail the old one stays."""
+        with reported():
+            self._require_group().prepare(voxel_map.native)
         super().set_map(voxel_map)
-        self._require_group().prepare(voxel_map.native)
 
     def shared_bytes(self, points: int = 0, next_map: VoxelMap | None = None) -> int:
         """Return the size of session, scan and map."""

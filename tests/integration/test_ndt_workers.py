@@ -9,11 +9,13 @@ import subprocess
 import sys
 import threading
 from collections.abc import Callable
+from itertools import cycle
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from ndt_support import killed_as_they_come
 from ndt_world import pose, scan_at, street
 from support import wait_until
 
@@ -116,6 +118,34 @@ def test_a_stopped_worker_is_replaced() -> None:
         os.kill(matcher.worker_pids[1], signal.SIGSTOP)
         assert numbers(matcher.align(SCAN, GUESS)) == expected
         assert matcher.replaced_workers >= 1  # more where one got no CPU for as long
+
+
+def test_workers_that_die_again_and_again() -> None:
+    """It is an error that says so; the map before stays, and the matcher works on."""
+    moved = VoxelMap.from_points(WORLD + np.array([0, 50, 0]), OPTIONS)
+    maps = cycle((moved, MAP))
+    serial = alone()
+    with workers(2) as matcher:
+
+        def swap() -> None:
+            following = next(maps)
+            matcher.set_map(following)
+            serial.set_map(following)
+
+        for attempt in (
+            lambda: matcher.align(SCAN, GUESS),
+            lambda: matcher.score(SCAN, GUESS),
+            swap,
+        ):
+            with killed_as_they_come(os.getpid()), pytest.raises(ManycoreError, match="5 times"):
+                until_it_fails(attempt)
+            assert numbers(matcher.align(SCAN, GUESS)) == numbers(serial.align(SCAN, GUESS))
+
+
+def until_it_fails(attempt: Callable[[], object]) -> None:
+    """Try again, as now and then the one who kills comes too late."""
+    while True:
+        attempt()
 
 
 def test_workers_sleep_between_alignments() -> None:

@@ -6,7 +6,6 @@ from __future__ import annotations
 import os
 import signal
 from array import array
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -20,10 +19,12 @@ from ndt_support import (
     TRUTH,
     error_m,
     few,
+    killed_as_they_come,
     matcher_command,
     nan_points,
     street_map,
     street_scan,
+    workers_below,
 )
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from ros_support import spin_until
@@ -225,14 +226,35 @@ def test_workers_that_are_killed_are_replaced(stack, start):
     assert all(error_m(T) < 0.1 for T in stack.poses.values())
 
 
-def workers_below(pid: int) -> list[int]:
-    """Return the worker processes that a process has, at any depth."""
-    found: list[int] = []
-    for children in Path(f"/proc/{pid}/task").glob("*/children"):
-        for child in map(int, children.read_text().split()):
-            is_worker = "ndt_worker" in Path(f"/proc/{child}/cmdline").read_text()
-            found += [child] if is_worker else workers_below(child)
-    return sorted(found)
+def test_workers_that_die_again_and_again(stack, start):
+    """Scans, maps and first poses are refused meanwhile, and the node goes on afterwards."""
+    cpus = sorted(os.sched_getaffinity(0))[:2]
+    if len(cpus) < 2:
+        pytest.skip("workers need two host CPUs")
+    program = start(matcher_command(worker_host_cpus=cpus), cluster=2)
+    stack.wait_for_matcher()
+    stack.publish_map(street_map())
+    stack.pose_of(street_scan())
+    words = "the workers ended 5 times in one alignment"
+    align = stack.node.create_client(AlignService, "ndt_align_srv")
+    rough = pose_with_covariance(NEAR, COVARIANCE, stack.stamp(), "map")
+    request = AlignService.Request(pose_with_covariance=rough)
+
+    def again() -> str:
+        return stack.report_of(stack.send(street_scan())).message
+
+    def refuses(name: str) -> bool:
+        return any(words in s.message for _, s in stack.reports if s.name.endswith(name))
+
+    with killed_as_they_come(program.pid):
+        spin_until(stack.node, lambda: words in again())
+        answer = align.call_async(request)
+        spin_until(stack.node, answer.done)
+        assert not answer.result().success
+        stack.publish_map(street_map())
+        spin_until(stack.node, lambda: again() and refuses("map_update_status"))
+    assert error_m(stack.pose_of(street_scan(), NEAR)) < 0.1
+    assert "Traceback" not in program.output
 
 
 def test_a_scan_of_two_million_points(matched):

@@ -30,7 +30,7 @@ class MapSupply:
         own: OwnParameters,
         admit: Callable[[VoxelMap], None],
     ) -> None:
-        """Prepare for maps; `admit` raises a ManycoreError for one that there is no room for."""
+        """Prepare for maps; `admit` takes one over, or raises a ManycoreError that says why not."""
         self._p = parameters
         self._admit = admit
         self._builder = MapBuilder(options)

@@ -41,6 +41,7 @@ from rmw_manycore_py.ndt.nodes.pose_buffer import Interpolated, PoseBuffer
 from rmw_manycore_py.ndt.nodes.running import run_node
 from rmw_manycore_py.ndt.poses import Matrix
 from rmw_manycore_py.ndt.thinning import Points
+from rmw_manycore_py.ndt.voxel_map import VoxelMap
 
 MAP_UPDATE_PERIOD_S = 1.0
 SCAN_DEPTH = 5  # a scan that waits is late, one that is overwritten is lost
@@ -62,7 +63,7 @@ class NdtScanMatcher(Node):
         options = matcher_options(self._p, self._own)
         self._matcher = make_matcher(options, self._own.worker_cpus)
         self._memory = ClusterMemory(self, self._matcher)
-        self._map = MapSupply(options, self._p, self._own, self._memory.make_room_for_map)
+        self._map = MapSupply(options, self._p, self._own, self._match_to)
         self._frames = FrameTree()
         self._guesses = PoseBuffer(self._p.initial_pose_timeout_s, self._p.initial_pose_distance_m)
         self._regularization = PoseBuffer(UNLIMITED, UNLIMITED)
@@ -147,7 +148,7 @@ class NdtScanMatcher(Node):
         report.clear()
         try:
             reliable = self._match(message, report)
-        except Rejected as why:
+        except (Rejected, ManycoreError) as why:
             report.warn(str(why))
             reliable = False
         failed = self._is_activated and not reliable
@@ -174,7 +175,7 @@ class NdtScanMatcher(Node):
             raise Rejected(f"there is no map yet: {self._map.what_is_missing()}")
         if self._map.is_leaving(float(guess.T[0, 3]), float(guess.T[1, 3])):
             report.note("Lidar has gone out of the map range")
-        self._make_room(points)
+        self._memory.make_room_for_scan(len(points))
         regularization = self._regularization_at(stamp_s, guess.T, report)
         alignment = self._matcher.align(points, guess.T, regularization)
         if not np.isfinite(alignment.T_map_sensor).all():
@@ -283,23 +284,23 @@ class NdtScanMatcher(Node):
             score.nearest_voxel_likelihood,
         )
 
+    def _match_to(self, voxel_map: VoxelMap) -> None:
+        """Swap a map in, beside which the old one lies until then."""
+        self._memory.make_room_for_map(voxel_map)
+        try:
+            self._matcher.set_map(voxel_map)
+        finally:
+            self._memory.give_back()
+
     def _take_new_map(self, wait: bool = False) -> None:
         """Swap in the map that was built meanwhile, if there is one."""
         taken = self._map.take(wait)
         if taken is not None:
             voxel_map, points = taken
-            self._matcher.set_map(voxel_map)
-            self._memory.give_back()
             built = f"{voxel_map.voxels} voxels, built in {self._map.duration_ms:.0f} ms"
             self.get_logger().info(f"matching to a map of {built}")
             if self._p.publish_loaded_map:
                 self._outputs.loaded_map(self.get_clock().now().to_msg(), points)
-
-    def _make_room(self, points: Points) -> None:
-        try:
-            self._memory.make_room_for_scan(len(points))
-        except ManycoreError as error:
-            raise Rejected(str(error)) from error
 
     def _on_timer(self) -> None:
         report = self._diagnostics["map_update_status"]
@@ -334,7 +335,7 @@ class NdtScanMatcher(Node):
         report.value("service_call_time_stamp", seconds(now))
         try:
             self._align(request.pose_with_covariance, response, report)
-        except (Rejected, PoseError, FrameError) as why:
+        except (Rejected, ManycoreError, PoseError, FrameError) as why:
             report.warn(f"ndt_align_srv failed: {why}")
             response.success = False
         report.value("is_succeed_service", bool(response.success))
@@ -374,7 +375,7 @@ class NdtScanMatcher(Node):
     def _best_particle(self, T_map_base: Matrix, covariance: Matrix) -> Particle:
         scan = self._scan
         assert scan is not None
-        self._make_room(scan)
+        self._memory.make_room_for_scan(len(scan))
         found = particles(
             lambda T: self._matcher.align(scan, T, only_pose=True),
             T_map_base,
