@@ -88,6 +88,7 @@ class Topic(Mover):
         if self._settled_s == _NEVER_S or time.monotonic() >= self._settled_s:
             self._settled_s = _NEVER_S
             self.close()
+            self._sides.row.set_state("waiting")
         else:
             self.due_s = self._settled_s
 

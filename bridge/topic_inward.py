@@ -48,6 +48,8 @@ class InwardTopic(Topic):
             self.finish()
             if publishers:
                 self._sides.fail(f"is {publishers[0].topic_type} outside, not {route.type}")
+            else:
+                self._sides.row.set_state("waiting")
             return
         offers = [from_rclpy(p.qos_profile) for p in fitting]
         if reason := unmet(offers, route.qos):
@@ -153,7 +155,6 @@ class InwardTopic(Topic):
         """Leave both sides."""
         self.stop_listening()
         self._publisher = self._offer = None
-        self._sides.row.set_state("waiting")
 
 
 def never_called(*_: Any) -> None:

@@ -47,6 +47,8 @@ class OutwardTopic(Topic):
             self._leave()
             if publishers:
                 self._sides.fail(f"is {publishers[0]['type']} inside, not {route.type}")
+            else:
+                self._sides.row.set_state("waiting")
             return
         offers = [p["qos"] for p in fitting]
         if reason := unmet(offers, route.qos):
@@ -164,4 +166,3 @@ class OutwardTopic(Topic):
             self._sides.outside.node.destroy_publisher(self._publisher)
         self._publisher = self._writer = self._offer = None
         self._leaves_s = _NEVER_S
-        self._sides.row.set_state("waiting")

@@ -266,7 +266,19 @@ def test_a_policy_that_cannot_match_is_said(bridge, direction) -> None:
     )
 
 
-def test_a_type_that_does_not_fit_is_said(bridge) -> None:
-    processes = bridge.run(bridge.route("outward", "/odd", "std_msgs/msg/Int32"))
-    bridge.inside(say, "/odd", {}, 0.05)
-    processes["outward"].wait_for("^/odd: is std_msgs/msg/String inside, not std_msgs/msg/Int32$")
+@pytest.mark.parametrize("direction", ["inward", "outward"])
+def test_a_type_that_does_not_fit_is_said_once(bridge, direction) -> None:
+    process = bridge.run(bridge.route(direction, "/odd", "std_msgs/msg/Int32"))[direction]
+    source = bridge.outside if direction == "inward" else bridge.inside
+    speaker = source(say, "/odd", {}, 0.05)
+    where = "outside" if direction == "inward" else "inside"
+    said = f"^/odd: is std_msgs/msg/String {where}, not std_msgs/msg/Int32$"
+    process.wait_for(said)
+    for _ in range(3):  # the graphs change, the reason does not
+        with_it = source(say, f"/{direction}", {}, 0.05)
+        with_it.wait_for("^said$")
+        with_it.stop()
+    assert bridge.row(direction, "/odd")["state"] == "failed"
+    speaker.stop()
+    wait_until(lambda: bridge.row(direction, "/odd")["state"] == "waiting", "nobody is there")
+    assert len(re.findall(said, process.output, re.MULTILINE)) == 1
