@@ -56,6 +56,16 @@ class Outside(Loop):
         """Return the subscriptions of a topic that are not this bridge's."""
         return self._others(self.node.get_subscriptions_info_by_topic(topic))
 
+    def server_types(self, service: str) -> list[str]:
+        """Return the types of a service's servers that are not this bridge's.
+
+        rmw tells types of services by name only, and those of clients with them; so this asks for
+        the subscriptions to requests, as ROS calls topic and type in DDS.
+        """
+        name = f"rq{service}Request"
+        endpoints = self.node.get_subscriptions_info_by_topic(name, no_mangle=True)
+        return [service_type_of(e.topic_type) for e in self._others(endpoints)]
+
     def _others(self, endpoints: list[Any]) -> list[Any]:
         own = self.node.get_name().rpartition("_")[0]
         return [
@@ -135,6 +145,15 @@ class Outside(Loop):
 def full_name_of(endpoint: Any) -> str:
     """Return /namespace/name of an endpoint's node."""
     return f"{endpoint.node_namespace.rstrip('/')}/{endpoint.node_name}"
+
+
+def service_type_of(request_type: str) -> str:
+    """Return a service's type, given that of its requests in DDS.
+
+    >>> service_type_of("std_srvs::srv::dds_::SetBool_Request_")
+    'std_srvs/srv/SetBool'
+    """
+    return request_type.replace("dds_::", "").removesuffix("_Request_").replace("::", "/")
 
 
 _KINDS = ("subscription", "service", "client")

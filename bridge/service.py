@@ -33,6 +33,13 @@ class Service(Mover):
         """When a request is overdue."""
         return self._pending.due_s
 
+    def _wait_or_fail(self, types_found: list[str], where: str) -> None:
+        """Note that no server fits, and which one is there instead."""
+        if types_found:
+            self._sides.fail(f"is {types_found[0]} {where}, not {self._sides.route.type}")
+        else:
+            self._sides.row.set_state("waiting")
+
     def _endpoint(self, kind: str, role: str) -> Any:
         route = self._sides.route
         make = getattr(self._sides.inside.process, kind)

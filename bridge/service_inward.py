@@ -37,7 +37,8 @@ class InwardService(Service):
 
     def reconcile(self) -> None:
         """Offer the service outside while a server is there inside."""
-        servers = {row["gid"] for row in self._sides.inside.servers(self._sides.route.inside)}
+        found = self._sides.inside.servers(self._sides.route.inside)
+        servers = {row["gid"] for row in found if row["type"] == self._sides.route.type}
         if self._servers and not self._servers & servers:
             self._abandon()  # whoever replaces them knows nothing of the requests
         self._servers = servers
@@ -47,7 +48,7 @@ class InwardService(Service):
                 self._appear()
                 self._sides.row.set_state("forwarding")
         elif self.entity is None:
-            self._sides.row.set_state("waiting")
+            self._wait_or_fail([row["type"] for row in found], "inside")
         elif self._ends_s == _NEVER_S:
             self._ends_s = time.monotonic() + LINGER_S
 
@@ -61,6 +62,7 @@ class InwardService(Service):
         super().expire(now_s)
         if now_s >= self._ends_s:
             self.close()
+            self.try_to_reconcile()
 
     def _appear(self) -> None:
         self._replies = self._endpoint("subscription", "reply")
@@ -125,4 +127,3 @@ class InwardService(Service):
             self._sides.outside.leave_node(self._sides.route.node)
         self.entity = self._requests = self._replies = None
         self._ends_s = _NEVER_S
-        self._sides.row.set_state("waiting")

@@ -15,8 +15,12 @@ from rmw_manycore_py.bridge.sides import Sides
 
 from rmw_manycore_py import _transport
 
-# A server is in the graph a moment before it is matched, which nobody announces.
+# A server is in the graph a moment before it is matched, which nobody announces. Who looks again
+# after as long as it has waited finds it in time, and hardly ever looks for one that never matches.
 _MATCHING_S = 0.02
+_MATCHED_BY_S = 5.0  # who takes longer than DDS repeats what it may have missed, 3 s, does not fit
+
+_NEVER_S = float("inf")
 Caller = tuple[bytes, int]  # the client's gid, and its number of the request
 
 
@@ -27,7 +31,8 @@ class OutwardService(Service):
 
     def __init__(self, sides: Sides) -> None:
         super().__init__(sides)
-        self._look_s = float("inf")  # on the monotonic clock: when to look again for the server
+        # On the monotonic clock: since when a server is seen but not matched, when to look again.
+        self._seen_s = self._look_s = _NEVER_S
         # Held while requests are claimed. Both threads do that, and none may be after the last.
         self._claiming = threading.Lock()
         self._requests: _transport.Subscription | None = None
@@ -37,17 +42,34 @@ class OutwardService(Service):
 
     def reconcile(self) -> None:
         """Offer the service inside while a server is there outside."""
-        self._look_s = float("inf")
+        self._look_s = _NEVER_S
         if not self.entity.service_is_ready():
             self._leave_platform()
-            if self._sides.outside.node.count_services(self._sides.route.outside):
-                self._look_s = time.monotonic() + _MATCHING_S
-        elif self._requests is None:
+            self._look_for_server()
+            return
+        self._seen_s = _NEVER_S
+        if self._requests is None:
             self._replies = self._endpoint("publisher", "reply")
             self._requests = self._endpoint("subscription", "request")
             self._sides.inside.readers.append(self)
             self._sides.inside.wake()
             self._sides.row.set_state("forwarding")
+
+    def _look_for_server(self) -> None:
+        """Wait for one that is seen already, or say why it cannot be called."""
+        route, now_s = self._sides.route, time.monotonic()
+        found = self._sides.outside.server_types(route.outside)
+        if route.type not in found:
+            self._seen_s = _NEVER_S
+            self._wait_or_fail(found, "outside")
+            return
+        self._seen_s = min(self._seen_s, now_s)
+        waited_s = now_s - self._seen_s
+        self._look_s = now_s + max(waited_s, _MATCHING_S)
+        if waited_s > _MATCHED_BY_S:
+            self._sides.fail("has a server outside that DDS does not match: its QoS may not fit")
+        else:
+            self._sides.row.set_state("waiting")
 
     @property
     def due_s(self) -> float:  # type: ignore[override]
@@ -107,7 +129,6 @@ class OutwardService(Service):
             self._requests = None
         self._abandon()
         self._replies = None
-        self._sides.row.set_state("waiting")
 
     def close(self) -> None:
         """Leave both sides; who still waits gets an answer first."""

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import re
 import signal
 import threading
 import time
@@ -129,6 +130,42 @@ def test_requests_that_were_not_read_when_the_server_went(bridge) -> None:
     process.signal(signal.SIGCONT)
     caller.wait_for("^answered {'bridge: the server is gone'}$")
     assert bridge.row("outward", "/lamp")["unanswered"] == MANY
+
+
+def serve_as(type_name: str, reliability: str) -> None:
+    """Serve /lamp as another type, or with another QoS, than its callers want."""
+    from rclpy.qos import QoSProfile, ReliabilityPolicy
+
+    with peer_node("server") as node:
+        profile = QoSProfile(depth=10, reliability=ReliabilityPolicy[reliability])
+        kind = type_of(type_name)
+        node.create_service(kind, "/lamp", lambda _, response: response, qos_profile=profile)
+        announce("serving")
+        spin_until(node, lambda: False, 1e6)
+
+
+def test_a_server_of_another_type_is_said(bridge, direction) -> None:
+    process = bridge.run(bridge.route(direction, "/lamp", SET_BOOL))[direction]
+    server, client = sides(bridge, direction)
+    where = "inside" if direction == "inward" else "outside"
+    said = f"^/lamp: is std_srvs/srv/Trigger {where}, not {SET_BOOL}$"
+    odd = server(serve_as, "std_srvs/srv/Trigger", "RELIABLE")
+    process.wait_for(said)
+    assert bridge.row(direction, "/lamp")["state"] == "failed"
+    server(serve, True).wait_for("^serving$")
+    client(call, 1).wait_for("^answer True served$")  # the other one does no harm
+    odd.stop()
+    assert len(re.findall(said, process.output, re.MULTILINE)) == 1
+
+
+def test_a_server_that_does_not_match_is_said(bridge) -> None:
+    process = bridge.run(bridge.route("outward", "/lamp", SET_BOOL))["outward"]
+    odd = bridge.outside(serve_as, SET_BOOL, "BEST_EFFORT")
+    process.wait_for("^/lamp: has a server outside that DDS does not match: its QoS may not fit$")
+    assert bridge.row("outward", "/lamp")["state"] == "failed"
+    odd.stop()
+    bridge.outside(serve, True).wait_for("^serving$")
+    bridge.inside(call, 1).wait_for("^answer True served$")
 
 
 def has_parameters() -> None:
