@@ -3,18 +3,22 @@
 // How a platform comes into being, and that nothing of it stays.
 #include <doctest/doctest.h>
 
+#include <pthread.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <csignal>
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
+#include <system_error>
 
 #include "messages.hpp"
 #include "node_role.hpp"
 #include "patience.hpp"
 #include "private_shm.hpp"
 #include "transport/configurator.hpp"
+#include "transport/lifecycle.hpp"
 
 using namespace manycore;
 
@@ -23,6 +27,11 @@ namespace {
 mode_t permissions_of(const std::string & path) {
   struct stat status {};
   return stat(path.c_str(), &status) == 0 ? status.st_mode & 0777 : 0;
+}
+
+size_t open_descriptors() {
+  const std::filesystem::directory_iterator all("/proc/self/fd");
+  return static_cast<size_t>(std::distance(begin(all), end(all)));
 }
 
 void write_file(const std::string & path, const std::string & content) {
@@ -192,6 +201,47 @@ TEST_CASE("a join that fails leaves nothing behind") {
   placement.core = 1000;
   CHECK(refusal_of([&] { Process::join(placement); }).says("no core 1000"));
   CHECK_FALSE(platform.exists());
+}
+
+TEST_CASE("a join that fails once it has its slot gives it back") {
+  TestPlatform platform;
+  pthread_attr_t usual;
+  REQUIRE(pthread_getattr_default_np(&usual) == 0);
+  pthread_attr_t huge;
+  pthread_attr_init(&huge);
+  REQUIRE(pthread_attr_setstacksize(&huge, size_t{1} << 47) == 0);  // more than there are addresses
+  sigset_t before;
+  pthread_sigmask(SIG_SETMASK, nullptr, &before);
+  const auto join_without_threads = [&] {
+    REQUIRE(pthread_setattr_default_np(&huge) == 0);
+    CHECK_THROWS_AS(platform.join(1), std::system_error);
+    REQUIRE(pthread_setattr_default_np(&usual) == 0);
+  };
+
+  join_without_threads();
+  CHECK_FALSE(platform.exists());
+  const Node other(platform, 1);
+  platform.receive_thread(1);  // it clears away what the killed node leaves
+  join_without_threads();
+  Inspection inspection(platform);
+  CHECK(inspection.live_processes() == 1);
+  CHECK_FALSE(alive_locks(platform.paths()).holds_any());
+  sigset_t after;
+  pthread_sigmask(SIG_SETMASK, nullptr, &after);
+  CHECK(sigismember(&after, SIGINT) == sigismember(&before, SIGINT));
+  pthread_attr_destroy(&huge);
+  pthread_attr_destroy(&usual);
+}
+
+TEST_CASE("joining and leaving again and again leaves no descriptor open") {
+  TestPlatform platform;
+  platform.join();
+  const size_t before = open_descriptors();
+  for (int i = 0; i < 100; ++i) {
+    platform.join();
+    CHECK_FALSE(platform.exists());
+  }
+  CHECK(open_descriptors() == before);
 }
 
 TEST_CASE("names that are no platform names never become paths") {

@@ -41,37 +41,39 @@ void ByteLocks::create(const std::string & path) {
 }
 
 ByteLocks ByteLocks::open(const std::string & path) {
-  FileDescriptor fd(::open(path.c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW));
-  if (!fd) {
+  auto opened = std::make_shared<Opened>();
+  opened->fd = FileDescriptor(::open(path.c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW));
+  if (!opened->fd) {
     throw_errno("cannot open " + path);
   }
-  return ByteLocks(std::move(fd), path);
+  opened->path = path;
+  return ByteLocks(std::move(opened));
 }
 
 bool ByteLocks::try_lock(uint32_t byte) const {
   struct flock lock = range(F_WRLCK, byte, 1);
-  if (fcntl(fd_.get(), F_SETLK, &lock) == 0) {
-    const std::lock_guard<std::mutex> guard(own_->mutex);
-    own_->bytes.insert(byte);
+  if (fcntl(opened_->fd.get(), F_SETLK, &lock) == 0) {
+    const std::lock_guard<std::mutex> guard(opened_->mutex);
+    opened_->bytes.insert(byte);
     return true;
   }
   if (errno != EAGAIN && errno != EACCES) {
-    throw_errno("cannot lock " + path_);
+    throw_errno("cannot lock " + opened_->path);
   }
   return false;
 }
 
 void ByteLocks::unlock(uint32_t byte) const noexcept {
   struct flock lock = range(F_UNLCK, byte, 1);
-  fcntl(fd_.get(), F_SETLK, &lock);
-  const std::lock_guard<std::mutex> guard(own_->mutex);
-  own_->bytes.erase(byte);
+  fcntl(opened_->fd.get(), F_SETLK, &lock);
+  const std::lock_guard<std::mutex> guard(opened_->mutex);
+  opened_->bytes.erase(byte);
 }
 
 bool ByteLocks::is_held(uint32_t byte) const {
   {
-    const std::lock_guard<std::mutex> guard(own_->mutex);
-    if (own_->bytes.count(byte) != 0) {
+    const std::lock_guard<std::mutex> guard(opened_->mutex);
+    if (opened_->bytes.count(byte) != 0) {
       return true;
     }
   }
@@ -79,19 +81,20 @@ bool ByteLocks::is_held(uint32_t byte) const {
 }
 
 bool ByteLocks::is_any_held() const {
-  {
-    const std::lock_guard<std::mutex> guard(own_->mutex);
-    if (!own_->bytes.empty()) {
-      return true;
-    }
-  }
-  return is_held_elsewhere(0, 0);
+  return holds_any() || is_held_elsewhere(0, 0);
 }
+
+bool ByteLocks::holds_any() const {
+  const std::lock_guard<std::mutex> guard(opened_->mutex);
+  return !opened_->bytes.empty();
+}
+
+bool ByteLocks::is_current() const noexcept { return same_file(opened_->fd.get(), opened_->path); }
 
 bool ByteLocks::is_held_elsewhere(uint32_t first, uint32_t count) const {
   struct flock lock = range(F_WRLCK, first, count);
-  if (fcntl(fd_.get(), F_GETLK, &lock) != 0) {
-    throw_errno("cannot examine the locks of " + path_);
+  if (fcntl(opened_->fd.get(), F_GETLK, &lock) != 0) {
+    throw_errno("cannot examine the locks of " + opened_->path);
   }
   return lock.l_type != F_UNLCK;
 }

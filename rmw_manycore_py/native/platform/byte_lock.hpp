@@ -14,7 +14,8 @@ namespace manycore {
 
 /// One file of byte locks (fcntl): the kernel drops a process's locks when it dies, whatever killed
 /// it, so a held byte proves life and a free one proves death, with no doubt about reused pids.
-/// A process must open the file once only: closing any descriptor of it drops its locks.
+/// A process must open the file once only: closing any descriptor of it drops its locks. Copies share one
+/// descriptor, which is closed with the last of them.
 class ByteLocks {
 public:
   static void create(const std::string & path);
@@ -26,21 +27,24 @@ public:
   /// True when any process holds the byte.
   bool is_held(uint32_t byte) const;
   bool is_any_held() const;
+  /// True when this process holds a byte.
+  bool holds_any() const;
+  /// False once the file was removed, or replaced by another one.
+  bool is_current() const noexcept;
 
 private:
-  ByteLocks(FileDescriptor fd, std::string path) : fd_(std::move(fd)), path_(std::move(path)) {}
+  struct Opened {
+    FileDescriptor fd;
+    std::string path;
+    std::mutex mutex;
+    std::set<uint32_t> bytes;  ///< held by this process: the kernel does not report them to it
+  };
+
+  explicit ByteLocks(std::shared_ptr<Opened> opened) : opened_(std::move(opened)) {}
   /// True when another process holds a byte in [first, first + count); count 0 = to the end.
   bool is_held_elsewhere(uint32_t first, uint32_t count) const;
 
-  /// Bytes this process holds: the kernel does not report a process's own locks to it.
-  struct Own {
-    std::mutex mutex;
-    std::set<uint32_t> bytes;
-  };
-
-  FileDescriptor fd_;
-  std::string path_;
-  std::unique_ptr<Own> own_ = std::make_unique<Own>();
+  std::shared_ptr<Opened> opened_;
 };
 
 /// Exclusive lock of a whole file (flock), held while alive. The file may be unlinked by its holder;

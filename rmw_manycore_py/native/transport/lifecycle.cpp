@@ -10,8 +10,8 @@
 #include <cerrno>
 #include <climits>
 #include <cstdlib>
+#include <iterator>
 #include <map>
-#include <memory>
 #include <mutex>
 
 #include "platform/os_process.hpp"
@@ -117,27 +117,22 @@ JoinLock::~JoinLock() {
   }
 }
 
-ByteLocks & alive_locks(const PlatformPaths & paths) {
-  struct Opened {
-    ino_t inode;
-    std::unique_ptr<ByteLocks> locks;
-  };
+ByteLocks alive_locks(const PlatformPaths & paths) {
   static std::mutex mutex;
-  // Never closed: closing any descriptor of the file would drop this process's locks.
-  static auto & opened = *new std::multimap<std::string, Opened>();
+  // Kept, since closing any descriptor of the file would drop this process's locks.
+  static auto & opened = *new std::multimap<std::string, ByteLocks>();
   const std::lock_guard<std::mutex> guard(mutex);
-  struct stat status {};
-  if (stat(paths.alive().c_str(), &status) == 0) {
-    const auto range = opened.equal_range(paths.alive());
-    for (auto i = range.first; i != range.second; ++i) {
-      if (i->second.inode == status.st_ino) {
-        return *i->second.locks;
-      }
+  const auto range = opened.equal_range(paths.alive());
+  for (auto i = range.first; i != range.second; ++i) {
+    if (i->second.is_current()) {
+      return i->second;
     }
   }
-  auto locks = std::make_unique<ByteLocks>(ByteLocks::open(paths.alive()));
-  stat(paths.alive().c_str(), &status);
-  return *opened.emplace(paths.alive(), Opened{status.st_ino, std::move(locks)})->second.locks;
+  // Files of platforms that are gone go, unless this process has locks to lose there.
+  for (auto i = opened.begin(); i != opened.end();) {
+    i = i->second.is_current() || i->second.holds_any() ? std::next(i) : opened.erase(i);
+  }
+  return opened.emplace(paths.alive(), ByteLocks::open(paths.alive()))->second;
 }
 
 Profile host_profile() {

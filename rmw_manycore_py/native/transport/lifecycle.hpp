@@ -29,8 +29,8 @@ private:
   std::optional<FileLock> lock_;
 };
 
-/// The byte locks of a platform. One object per process and file: see ByteLocks.
-ByteLocks & alive_locks(const PlatformPaths & paths);
+/// The byte locks of a platform. One descriptor per process and file: see ByteLocks.
+ByteLocks alive_locks(const PlatformPaths & paths);
 
 /// Sizes for a platform that nobody configured: Coolidge's shape, SMEM from this machine's /dev/shm.
 Profile host_profile();

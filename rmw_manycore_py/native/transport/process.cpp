@@ -135,6 +135,10 @@ struct Process::Impl {
   explicit Impl(const Placement & placement_);
   ~Impl();
 
+  struct Joined {};
+  /// Joins, no more: the first half of what the other constructor does.
+  Impl(const Placement & placement_, Joined);
+
   uint32_t take_process_slot();
   uint32_t fill_endpoint(const EndpointSpec & spec, EndpointKind kind);
   uint32_t add_endpoint(const EndpointSpec & spec, EndpointKind kind);
@@ -150,7 +154,7 @@ struct Process::Impl {
   std::unique_ptr<ReceiveThreadWatcher> watcher;
 };
 
-Process::Impl::Impl(const Placement & placement_)
+Process::Impl::Impl(const Placement & placement_, Joined)
 : placement(placement_), paths(PlatformPaths::of(placement_.platform)) {
   {
     const JoinLock join_lock(paths);
@@ -168,6 +172,10 @@ Process::Impl::Impl(const Placement & placement_)
       throw;
     }
   }
+}
+
+/// Delegates, so that ~Impl() leaves again when the rest fails.
+Process::Impl::Impl(const Placement & placement_) : Impl(placement_, Joined{}) {
   waiter = std::make_unique<Waiter>(registry->processes()[slot].wake, placement.wait_mode);
   graph = std::make_unique<Graph>(*registry);
   attach();
