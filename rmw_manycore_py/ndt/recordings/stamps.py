@@ -30,6 +30,8 @@ def in_seconds(stamps: npt.NDArray[Any]) -> Matrix:
         stamps = stamps.astype("datetime64[ns]").astype(np.int64)
     if stamps.dtype.kind not in "iuf" or not np.isfinite(stamps).all():
         raise ValueError("a stamp is not a finite number")
+    if stamps.dtype.kind in "iu":
+        stamps = stamps.astype(np.int64)  # differences of unsigned numbers are never negative
     steps = np.diff(stamps)
     if (steps <= 0).any():
         first = int(np.flatnonzero(steps <= 0)[0])

@@ -92,6 +92,14 @@ def test_scans_of_other_kinds(tmp_path, suffix):
     check(open_recording(tmp_path))
 
 
+@pytest.mark.parametrize("kind", [np.uint64, np.uint32, np.int16, np.float64])
+def test_stamps_of_any_type_must_increase(kind):
+    """Differences of unsigned numbers are never negative."""
+    np.testing.assert_allclose(in_seconds(np.array([1, 2, 4], kind)), [1.0, 2.0, 4.0])
+    with pytest.raises(ValueError, match="stamps do not increase: 4"):
+        in_seconds(np.array([1, 4, 2], kind))
+
+
 @pytest.mark.parametrize("unit_s", [1.0, 1e-3, 1e-6, 1e-9])
 @pytest.mark.parametrize("start_s", [0.0, T0_S])
 def test_stamps_in_any_unit(unit_s, start_s):
