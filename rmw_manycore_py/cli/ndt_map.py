@@ -9,6 +9,7 @@ import click
 
 from rmw_manycore_py.cli.ndt_recording import recording_options
 from rmw_manycore_py.cli.options import examples
+from rmw_manycore_py.cli.output_file import writing
 from rmw_manycore_py.ndt.map_file import SUFFIXES, write_points
 from rmw_manycore_py.ndt.map_tiles import write_tiles
 from rmw_manycore_py.ndt.recordings.opening import open_recording
@@ -77,10 +78,11 @@ def command(
     points = drive.accumulated(range(0, len(drive), every))
     if leaf_m > 0.0:
         points = voxel_centroids(points, (leaf_m,) * 3)
-    if tile_m is None:
-        output.parent.mkdir(parents=True, exist_ok=True)
-        write_points(output, points)
-        click.echo(f"{output}: {len(points)} points")
-    else:
-        count = write_tiles(output, points, tile_m, f".{suffix}")
-        click.echo(f"{output}: {len(points)} points in {count} tiles")
+    with writing(output):
+        if tile_m is None:
+            output.parent.mkdir(parents=True, exist_ok=True)
+            write_points(output, points)
+            click.echo(f"{output}: {len(points)} points")
+        else:
+            count = write_tiles(output, points, tile_m, f".{suffix}")
+            click.echo(f"{output}: {len(points)} points in {count} tiles")

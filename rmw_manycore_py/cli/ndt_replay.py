@@ -11,6 +11,7 @@ import click
 
 from rmw_manycore_py.cli.ndt_recording import recording_options
 from rmw_manycore_py.cli.options import examples, new_table, print_json, print_table
+from rmw_manycore_py.cli.output_file import OutputFile, writing
 from rmw_manycore_py.figures import load_figure
 from rmw_manycore_py.launch.environment import enter_middleware, leave_middleware
 from rmw_manycore_py.ndt.map_file import read_points
@@ -22,7 +23,7 @@ from rmw_manycore_py.ndt.replay.tally import Summary, Tally, as_json
 from rmw_manycore_py.ndt.thinning import Points, voxel_centroids
 
 MAP_VOXEL_M = 0.2
-FILE = click.Path(dir_okay=False, path_type=Path)
+PICTURES = (".png", ".svg", ".pdf")
 
 
 @click.command(
@@ -98,8 +99,13 @@ FILE = click.Path(dir_okay=False, path_type=Path)
     help="rmw_manycore plays from inside the platform.",
 )
 @click.option("--json", "as_json_", is_flag=True, help="Print the figures as JSON.")
-@click.option("--csv", "csv_path", type=FILE, help="Write one line per scan.")
-@click.option("--plot", "plot_path", type=FILE, help="Draw map, path and error: .png, .svg, .pdf.")
+@click.option("--csv", "csv_path", type=OutputFile(), help="Write one line per scan.")
+@click.option(
+    "--plot",
+    "plot_path",
+    type=OutputFile(*PICTURES),
+    help=f"Draw map, path and error: {', '.join(PICTURES)}.",
+)
 def command(
     recording: Path,
     poses_path: Path | None,
@@ -147,19 +153,28 @@ def command(
         click.echo(f"the map is coarse: {warning}", err=True)
     tally = Tally(deadline_ms)
     run(drive, source, tally, points, voxel_m, rate_hz, timeout_s)
-    if csv_path is not None:
-        tally.write_csv(csv_path)
-    if plot_path is not None:
-        from rmw_manycore_py.ndt.replay.plot import plot
-
-        plot(tally, points, plot_path)
     summary = tally.summary()
     if complaint := tally.complaint():
         click.echo(f"of the first lost scan the matcher says: {complaint}", err=True)
     print_json({"guesses": made_of, **as_json(summary)}) if as_json_ else _print(
         summary, deadline_ms
     )
+    _write(tally, points, csv_path, plot_path)
     sys.exit(0 if summary.is_good else 1)
+
+
+def _write(
+    tally: Tally, points: Points | None, csv_path: Path | None, plot_path: Path | None
+) -> None:
+    """Write the files that are wanted; after the figures, which no full disk shall take away."""
+    if csv_path is not None:
+        with writing(csv_path):
+            tally.write_csv(csv_path)
+    if plot_path is not None:
+        from rmw_manycore_py.ndt.replay.plot import plot
+
+        with writing(plot_path):
+            plot(tally, points, plot_path)
 
 
 def _enter(rmw: str) -> None:

@@ -10,6 +10,7 @@ import numpy as np
 from rich.progress import track
 
 from rmw_manycore_py.cli.options import examples
+from rmw_manycore_py.cli.output_file import writing
 from rmw_manycore_py.ndt.drive import (
     drive_poses,
     mapping_poses,
@@ -56,7 +57,8 @@ def command(directory: Path, length_m: float, speed_m_s: float, seed: int) -> No
 
     The map comes from a drive of its own, with other positions and other noise.
     """
-    directory.mkdir(parents=True, exist_ok=True)
+    with writing(directory):
+        directory.mkdir(parents=True, exist_ok=True)
     generator = np.random.default_rng(seed)
     street, lidar = build_street(length_m, generator), Lidar()
 
@@ -70,11 +72,13 @@ def command(directory: Path, length_m: float, speed_m_s: float, seed: int) -> No
         )
     ]
     points = voxel_centroids(np.concatenate(clouds), (MAP_VOXEL_M,) * 3)
-    write_points(directory / "map.npz", points)
+    with writing(directory / "map.npz"):
+        write_points(directory / "map.npz", points)
 
     poses, stamps = drive_poses(length_m, speed_m_s)
     driven = scans_along(street, poses, lidar, generator)
     scans = list(track(driven, "drive", len(poses)))
-    save_recording(directory / "drive.npz", record(scans, poses, stamps, seed))
+    with writing(directory / "drive.npz"):
+        save_recording(directory / "drive.npz", record(scans, poses, stamps, seed))
     click.echo(f"{directory / 'map.npz'}: {len(points)} points")
     click.echo(f"{directory / 'drive.npz'}: {len(scans)} scans of about {len(scans[0])} points")

@@ -12,6 +12,8 @@ from typing import Any, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
+from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
+
 MAX_CELLS = 1 << 62
 Points: TypeAlias = npt.NDArray[np.floating[Any]]  # single precision, or double (precision.py)
 
@@ -20,14 +22,16 @@ def voxel_centroids(points: Points, voxel_m: tuple[float, float, float]) -> Poin
     """Return the mean of the points in each occupied voxel, as PCL's VoxelGrid does; same type.
 
     `points` (N, 3) must be finite. Where voxels are too small for the cloud's extent to be
-    numbered with 62 bits, a ValueError says so.
+    numbered with 62 bits, a ManycoreError says so.
     """
     if len(points) == 0:
         return points
     steps = np.floor(points / np.asarray(voxel_m, np.float64))
     steps -= steps.min(axis=0)
     if np.prod(steps.max(axis=0) + 1.0) > MAX_CELLS:
-        raise ValueError(f"voxels of {voxel_m} m are too small for a cloud of this extent")
+        raise ManycoreError(
+            f"voxels of {voxel_m} m are too small for a cloud of this extent", EXIT_BAD_INPUT
+        )
     cells = steps.astype(np.int64)
     sizes = cells.max(axis=0) + 1
     keys = (cells[:, 0] * sizes[1] + cells[:, 1]) * sizes[2] + cells[:, 2]

@@ -69,6 +69,14 @@ def test_every_scan_of_a_drive_is_answered(start, offload, street, tmp_path):
     assert offload.stop() == 0, offload
 
 
+def test_figures_are_there_though_a_file_cannot_be_written(start, offload, street):
+    files = ("--csv", "/dev/full", "--motion", "reference")
+    replay = start(manycore_command("ndt", "replay", street / "drive.npz", *files))
+    assert replay.wait(LONG_S) == 1, replay
+    assert "10 scans: 10 answered" in replay.output
+    assert replay.lines[-1] == "manycore: /dev/full: cannot be written: No space left on device"
+
+
 @pytest.mark.parametrize("guess", ["velocity", "perturbed"])
 def test_guesses_of_all_kinds(start, offload, street, guess):
     figures = replayed(start, street / "drive.npz", "--guess", guess)

@@ -10,6 +10,7 @@ from rclpy.node import Node
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 from sensor_msgs.msg import PointCloud2
 
+from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.ndt.nodes.declared import declare, parameter
 from rmw_manycore_py.ndt.nodes.point_cloud import CloudError, decode, encode
 from rmw_manycore_py.ndt.nodes.running import run_node
@@ -41,7 +42,7 @@ class VoxelGridFilter(Node):
     def _on_scan(self, message: Any) -> None:
         try:
             points = voxel_centroids(decode(message), self._voxel_m)
-        except (CloudError, ValueError) as error:
+        except (CloudError, ManycoreError) as error:
             self.get_logger().warning(f"scan dropped: {error}", throttle_duration_sec=REPEAT_S)
             return
         self._output.publish(encode(points, message.header.stamp, message.header.frame_id))

@@ -112,7 +112,7 @@ def test_one_centroid_per_voxel():
     thinned = voxel_centroids(points, (0.5, 0.5, 0.5))
     np.testing.assert_allclose(np.sort(thinned[:, 0]), [-0.1, 0.2, 0.9], atol=1e-6)
     assert voxel_centroids(points[:0], (0.5, 0.5, 0.5)).shape == (0, 3)
-    with pytest.raises(ValueError, match="too small"):
+    with pytest.raises(ManycoreError, match="too small"):
         voxel_centroids(cloud() * np.float32(1e12), (1e-6, 1e-6, 1e-6))
 
 

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from click.testing import CliRunner
@@ -13,7 +15,7 @@ from rmw_manycore_py.ndt.lidar import Lidar
 from rmw_manycore_py.ndt.map_file import read_points
 from rmw_manycore_py.ndt.map_tiles import open_map
 from rmw_manycore_py.ndt.poses import from_xyz_rpy, transform
-from rmw_manycore_py.ndt.recording import load_recording
+from rmw_manycore_py.ndt.recording import Recording, load_recording, save_recording
 from rmw_manycore_py.ndt.street import Street, build_street
 from rmw_manycore_py.ndt.thinning import voxel_centroids
 
@@ -88,6 +90,36 @@ def test_the_command(tmp_path):
     assert result.exit_code == 0, result.output
     _, loaded = open_map(tiles).around(0.0, 0.0, 1e4)
     assert len(loaded) == len(voxel_centroids(drive.accumulated(range(7)), (0.3, 0.3, 0.3)))
+
+
+def drive_in(directory: Path) -> Path:
+    scan = np.random.default_rng(1).uniform(-5, 5, (100, 3))
+    poses = np.stack([np.eye(4), np.eye(4)])
+    save_recording(directory / "drive.npz", Recording([scan, scan], poses, np.zeros(0)))
+    return directory / "drive.npz"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "status", "words"),
+    [
+        (["map", "drive.npz", "-o", "map.npz", "--leaf", "1e-9"], 2, "are too small for a cloud"),
+        (["map", "drive.npz", "-o", "drive.npz/map.npz"], 1, "cannot be written: "),
+        (["map", "drive.npz", "-o", "a" * 300 + ".npz"], 1, "File name too long"),
+        (["map", "drive.npz", "-o", "drive.npz/tiles", "--tile-size", "20"], 1, "cannot be"),
+        (["simulate", "drive.npz/street"], 1, "cannot be written: "),
+        (["replay", "drive.npz", "--csv", "none/x.csv"], 2, "there is no directory 'none'"),
+        (["replay", "drive.npz", "--plot", "none/x.png"], 2, "there is no directory 'none'"),
+        (["replay", "drive.npz", "--plot", "x.foo"], 2, "a file that ends in .png, .svg, .pdf"),
+        (["replay", "drive.npz", "--csv", "."], 2, "is a directory"),
+    ],
+)
+def test_files_that_cannot_be_written(tmp_path, monkeypatch, arguments, status, words):
+    drive_in(tmp_path)
+    monkeypatch.chdir(tmp_path)
+    result = CliRunner().invoke(cli, ["ndt", *arguments])
+    assert result.exit_code == status
+    assert words in result.output
+    assert "Traceback" not in result.output
 
 
 def test_the_command_says_what_is_wrong(tmp_path):
