@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 from bridging import Bridge
 from ros_support import announce, peer_node, spin_until, type_of
-from support import IS_MANYCORE, PATIENCE_S
+from support import IS_MANYCORE, PATIENCE_S, wait_until
 
 from rmw_manycore_py import _transport
 
@@ -69,6 +69,7 @@ def set_camera(*sizes: tuple[int, int]) -> None:
 
 def still_works(bridge: Bridge, direction: Any, pid: int) -> None:
     """Check that one request was refused, one passed, and the bridge is the one it was."""
+    wait_until(lambda: bridge.row(direction, "/camera")["messages"], "what was answered is counted")
     row = bridge.row(direction, "/camera")
     assert (row["pid"], row["alive"]) == (pid, True)
     assert (row["refused"], row["messages"], row["timed_out"]) == (1, 1, 0)
