@@ -3,7 +3,10 @@
 // Who is matched with whom, what each side is told, and what is left when they part.
 #include <doctest/doctest.h>
 
+#include <cstdio>
+
 #include "messages.hpp"
+#include "node_role.hpp"
 #include "platform_of_test.hpp"
 
 using namespace manycore;
@@ -194,6 +197,28 @@ TEST_CASE("a publisher has more subscriptions than its header and one block of r
   publisher.reset();
   subscriptions.clear();
   CHECK(f.inspection.used_bytes() == used);
+}
+
+TEST_CASE("a publisher that cannot map a subscription's cluster says so, and publishes once it can") {
+  Fixture f;
+  const auto publisher = f.publisher(keep_last(10));
+  const auto near = f.subscription(keep_last(10));
+  Node far(f.platform, 2);
+  far.tell("subscription /match 10");
+  f.platform.receive_thread(2);
+  const std::string path = f.platform.paths().cluster(2);
+  REQUIRE(std::rename(path.c_str(), (path + ".away").c_str()) == 0);
+  for (int i = 0; i < 2; ++i) {
+    const Refusal refusal = refusal_of([&] { publish(*publisher, 1); });
+    CHECK(refusal.code == ErrorCode::system);
+    CHECK_MESSAGE(refusal.says("publish on '/match'"), refusal.text);
+    CHECK_MESSAGE(refusal.says(path), refusal.text);
+  }
+  CHECK_FALSE(take(*near));
+  REQUIRE(std::rename((path + ".away").c_str(), path.c_str()) == 0);
+  publish(*publisher, 1);
+  far.tell("take 1 1 1");
+  CHECK(take_all(*near) == numbers(1, 1));
 }
 
 TEST_CASE("a match wakes the process only while somebody watches events of endpoints") {

@@ -1,8 +1,11 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
+#include <string>
 #include <vector>
 
+#include "platform/error.hpp"
 #include "transport/registry.hpp"
 #include "transport/subscription_layout.hpp"
 #include "transport/topic_dsm_layout.hpp"
@@ -43,8 +46,19 @@ public:
 
   const std::vector<Reader> & readers() const noexcept { return readers_; }
 
-  /// True while some reader holds a claim on record `number`.
+  /// Throws Error{system|permission|corrupt} naming the topic when a reader cannot be resolved.
+  void require_all(const char * topic) const {
+    if (unresolved_) {
+      throw_unresolved(topic);
+    }
+  }
+
+  /// True while some reader holds a claim on record `number`, or may: the claims of one that cannot be resolved are not
+  /// to be seen.
   bool is_pinned(uint64_t number) const noexcept {
+    if (unresolved_) {
+      return true;
+    }
     for (const Reader & reader : readers_) {
       if (reader.source->reading.load(std::memory_order_seq_cst) == number) {
         return true;
@@ -53,8 +67,11 @@ public:
     return false;
   }
 
-  /// True while some reader holds a claim on a record in [first, last], or scans.
+  /// True while some reader holds a claim on a record in [first, last], or scans, or may.
   bool is_any_pinned(uint64_t first, uint64_t last) const noexcept {
+    if (unresolved_) {
+      return true;
+    }
     for (const Reader & reader : readers_) {
       const uint64_t reading = reader.source->reading.load(std::memory_order_seq_cst);
       if ((reading >= first && reading <= last) || reading == every_record) {
@@ -65,14 +82,17 @@ public:
   }
 
 private:
+  [[noreturn]] void throw_unresolved(const std::string & topic) const;
   void rebuild();
-  bool resolve(ReaderEntry & entry, Reader & reader);
+  /// Throws Error: its cluster cannot be mapped, or its entry leads nowhere.
+  Reader resolve(ReaderEntry & entry);
 
   Registry & registry_;
   Cluster & cluster_;
   TopicDsmHeader & dsm_;
-  uint64_t seen_ = 0;
+  uint64_t seen_ = 0;  ///< `match_generation` of the copy
   std::vector<Reader> readers_;
+  std::optional<Error> unresolved_;  ///< why a reader is missing from the copy
 };
 
 }  // namespace manycore

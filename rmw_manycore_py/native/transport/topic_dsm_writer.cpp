@@ -254,6 +254,7 @@ bool TopicDsmWriter::try_place(uint64_t need_bytes) {
 TopicDsmWriter::Room TopicDsmWriter::find_room(uint64_t size_bytes) {
   const uint64_t need = align_up(std::max<uint64_t>(size_bytes, 1), record_alignment);
   blocked_until_ns_ = 0;
+  readers_.require_all(endpoint_.topic);
   if (!old_.empty()) {
     free_old_generations();
   }
