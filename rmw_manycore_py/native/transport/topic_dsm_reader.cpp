@@ -43,7 +43,8 @@ uint64_t TopicDsmReader::full_number(uint64_t low_bits) const noexcept {
   constexpr uint64_t period = uint64_t{1} << 28;
   // The latest published with these low bits: what a queue holds is younger than a period, however long nothing
   // was taken. Where nothing was published with them it wraps to more than `last`.
-  return last() - ((last() - low_bits) & (period - 1));
+  const uint64_t latest = last();  // once: it rises meanwhile
+  return latest - ((latest - low_bits) & (period - 1));
 }
 
 const GenerationEntry * TopicDsmReader::generation_of(uint64_t number) const noexcept {
