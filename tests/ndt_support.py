@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pytest
 from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import PoseStamped, PoseWithCovarianceStamped
 from rclpy.node import Node
@@ -77,6 +78,14 @@ def write_boastful_npz(path: Path) -> None:
     with zipfile.ZipFile(path, "w") as file, file.open("points.npy", "w") as points:
         header = {"descr": "<f4", "fortran_order": False, "shape": (1 << 48, 3)}
         np.lib.format.write_array_header_1_0(points, header)
+
+
+def two_host_cpus() -> list[int]:
+    """Return CPUs for two workers; a test that needs them is skipped where there is one only."""
+    cpus = sorted(os.sched_getaffinity(0))[:2]
+    if len(cpus) < 2:
+        pytest.skip("workers need two host CPUs")
+    return cpus
 
 
 def workers_below(pid: int) -> list[int]:

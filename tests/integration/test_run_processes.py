@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import shlex
 import signal
 import sys
@@ -45,6 +46,12 @@ while True:
 
 def python(source: str) -> list[str]:
     return [sys.executable, "-c", source]
+
+
+def ignored_signals(pid: int) -> set[int]:
+    status = Path(f"/proc/{pid}/status").read_text()
+    mask = int(re.search(r"^SigIgn:\s+(\w+)$", status, re.MULTILINE)[1], 16)
+    return {number for number in range(1, 65) if mask >> (number - 1) & 1}
 
 
 def run_programs(
@@ -184,6 +191,8 @@ def test_who_ignores_hanging_up_may_log_out(start_run: StartRun) -> None:
     finally:
         signal.signal(signal.SIGHUP, before)
     run.wait_for_lines("ready", "node")
+    assert signal.SIGHUP in ignored_signals(run.program.pid)
+    assert signal.SIGINT not in ignored_signals(run.program.pid)
     run.program.signal(signal.SIGHUP)
     run.program.signal(signal.SIGINT)
     assert run.program.wait() == 0

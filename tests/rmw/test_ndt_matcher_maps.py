@@ -19,6 +19,7 @@ from ndt_support import (
     nan_points,
     street_map,
     street_scan,
+    two_host_cpus,
     write_boastful_npz,
 )
 from rclpy.qos import DurabilityPolicy, QoSProfile
@@ -112,10 +113,7 @@ def own_cluster() -> dict[str, Any]:
 @pytest.mark.skipif(not IS_MANYCORE, reason="the SMEM of a cluster is rmw_manycore's")
 def test_a_map_that_the_cluster_has_no_room_for(stack, start):
     """What a matcher shares with its workers is a part of its cluster's SMEM."""
-    cpus = sorted(os.sched_getaffinity(0))[:2]
-    if len(cpus) < 2:
-        pytest.skip("workers need two host CPUs")
-    program = start(matcher_command(worker_host_cpus=cpus), cluster=1)
+    program = start(matcher_command(worker_host_cpus=two_host_cpus()), cluster=1)
     stack.wait_for_matcher()
     before = own_cluster()
     assert before["used"] > before["charged"] > 1 << 20  # the place for scans

@@ -24,6 +24,7 @@ from ndt_support import (
     nan_points,
     street_map,
     street_scan,
+    two_host_cpus,
     workers_below,
 )
 from rclpy.qos import DurabilityPolicy, QoSProfile
@@ -205,10 +206,7 @@ def test_bad_scans_and_guesses_give_a_diagnostic_and_no_pose(matched):
 
 def test_workers_that_are_killed_are_replaced(stack, start):
     """Killed between scans and during one: poses go on, and the workers are others."""
-    cpus = sorted(os.sched_getaffinity(0))[:2]
-    if len(cpus) < 2:
-        pytest.skip("workers need two host CPUs")
-    program = start(matcher_command(worker_host_cpus=cpus), cluster=2)
+    program = start(matcher_command(worker_host_cpus=two_host_cpus()), cluster=2)
     stack.wait_for_matcher()
     stack.publish_map(street_map())
     stack.pose_of(street_scan())
@@ -228,10 +226,7 @@ def test_workers_that_are_killed_are_replaced(stack, start):
 
 def test_workers_that_die_again_and_again(stack, start):
     """Scans, maps and first poses are refused meanwhile, and the node goes on afterwards."""
-    cpus = sorted(os.sched_getaffinity(0))[:2]
-    if len(cpus) < 2:
-        pytest.skip("workers need two host CPUs")
-    program = start(matcher_command(worker_host_cpus=cpus), cluster=2)
+    program = start(matcher_command(worker_host_cpus=two_host_cpus()), cluster=2)
     stack.wait_for_matcher()
     stack.publish_map(street_map())
     stack.pose_of(street_scan())

@@ -1,31 +1,11 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #include "rmw/callback_thread.hpp"
 
-#include <pthread.h>
-
 #include <algorithm>
-#include <csignal>
+
+#include "platform/blocked_signals.hpp"
 
 namespace rmw_manycore {
-namespace {
-
-/// Signals are the program's business: a thread born under this guard receives none.
-class BlockedSignals {
-public:
-  BlockedSignals() noexcept {
-    sigset_t all;
-    sigfillset(&all);
-    pthread_sigmask(SIG_SETMASK, &all, &before_);
-  }
-  ~BlockedSignals() { pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
-  BlockedSignals(const BlockedSignals &) = delete;
-  BlockedSignals & operator=(const BlockedSignals &) = delete;
-
-private:
-  sigset_t before_;
-};
-
-}  // namespace
 
 void CallbackThread::add(Callback & callback) {
   if (std::find(active_.begin(), active_.end(), &callback) != active_.end()) {
@@ -34,7 +14,7 @@ void CallbackThread::add(Callback & callback) {
   active_.push_back(&callback);
   changed_ = true;
   if (!thread_.joinable() && !stopping_) {
-    const BlockedSignals blocked;
+    const manycore::BlockedSignals blocked;
     thread_ = std::thread([this] { run(); });
   }
   wake_.notify_all();

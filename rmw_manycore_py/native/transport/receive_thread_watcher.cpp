@@ -2,12 +2,11 @@
 #include "transport/receive_thread_watcher.hpp"
 
 #include <poll.h>
-#include <pthread.h>
 #include <sys/eventfd.h>
 
-#include <csignal>
 #include <cstdio>
 
+#include "platform/blocked_signals.hpp"
 #include "platform/os_process.hpp"
 #include "transport/lifecycle.hpp"
 
@@ -18,22 +17,6 @@ constexpr int retry_ms = 1000;   ///< after a start that failed
 constexpr int settle_ms = 1;     ///< while another process is starting it
 constexpr int for_ever_ms = -1;
 
-/// Threads started while it lives take no signals: these belong to the application's threads.
-class SignalsBlocked {
-public:
-  SignalsBlocked() noexcept {
-    sigset_t all;
-    sigfillset(&all);
-    pthread_sigmask(SIG_BLOCK, &all, &before_);
-  }
-  ~SignalsBlocked() { pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
-  SignalsBlocked(const SignalsBlocked &) = delete;
-  SignalsBlocked & operator=(const SignalsBlocked &) = delete;
-
-private:
-  sigset_t before_;
-};
-
 }  // namespace
 
 ReceiveThreadWatcher::ReceiveThreadWatcher(Registry & registry, uint32_t cluster)
@@ -41,7 +24,7 @@ ReceiveThreadWatcher::ReceiveThreadWatcher(Registry & registry, uint32_t cluster
   if (!stop_) {
     throw_errno("cannot create an eventfd");
   }
-  const SignalsBlocked guard;
+  const BlockedSignals blocked;
   thread_ = std::thread([this] { run(); });
   pthread_setname_np(thread_.native_handle(), "manycore_watch");
 }
