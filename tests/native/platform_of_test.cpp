@@ -191,3 +191,5 @@ uint32_t Inspection::generations_of(const Publisher & publisher) {
   }
   return count;
 }
+
+void Inspection::wait_for_reaper() { const Registry::Lock lock(registry_); }

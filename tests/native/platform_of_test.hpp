@@ -45,6 +45,8 @@ public:
   uint32_t slot_of(const manycore::Gid & gid);
   /// Allocations of a publisher's topic DSM that are in use.
   uint32_t generations_of(const manycore::Publisher & publisher);
+  /// A reaper that was seen at work has done all it could when this returns.
+  void wait_for_reaper();
 
 private:
   manycore::Registry registry_;

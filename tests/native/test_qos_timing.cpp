@@ -33,6 +33,7 @@ Qos with_lease(int64_t lease_ns, Liveliness liveliness) {
 struct Fixture {
   TestPlatform platform;
   std::shared_ptr<Process> process = platform.join();
+  Inspection inspection{platform};
 
   std::unique_ptr<Publisher> publisher(const Qos & qos) {
     return process->create_publisher(on_topic("/x", qos));
@@ -220,6 +221,7 @@ TEST_CASE("a publisher that was killed is not alive until another one takes its 
       CHECK(subscription->liveliness().not_alive == 0);
     }
     wait_until("the death to be known", [&] { return subscription->liveliness().not_alive == 1; });
+    f.inspection.wait_for_reaper();
     CHECK(subscription->liveliness().alive == 0);
     CHECK(subscription->matched().current == 0);
   }

@@ -53,6 +53,7 @@ struct Fixture {
     wait_until("the dead are gone from the registry", [&] {
       return inspection.live_processes() == 1 && process->graph().nodes().empty();
     });
+    inspection.wait_for_reaper();
   }
 };
 
@@ -119,12 +120,10 @@ TEST_CASE("a subscriber killed while its publisher follows references: its memor
     writer.enter();
   }
   f.wait_until_alone();
-  {
-    const Registry::Lock lock(registry);  // the reaper has done what it could
-  }
   CHECK(f.inspection.live_endpoints() == 2);
   writer.leave();
   wait_until("the memory is free", [&] { return f.inspection.used_bytes() == used; });
+  f.inspection.wait_for_reaper();
   CHECK(f.inspection.live_endpoints() == 1);
 }
 
