@@ -4,14 +4,16 @@
 from __future__ import annotations
 
 import importlib
+import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from typing import Any
 
 import rclpy
-from rclpy.executors import ExternalShutdownException
+from rclpy.executors import Executor, ExternalShutdownException
 from rclpy.node import Node
+from rclpy.task import Future
 from support import PATIENCE_S
 
 
@@ -22,6 +24,24 @@ def spin_until(node: Node, condition: Callable[[], Any], timeout_s: float = PATI
         if time.monotonic() > deadline:
             raise AssertionError(f"not within {timeout_s:g} s of spinning")
         rclpy.spin_once(node, timeout_sec=0.05)
+
+
+@contextmanager
+def spinning_thread(executor: Executor) -> Iterator[None]:
+    """Spin an executor in a thread of its own.
+
+    It is asked to end by a future: `Executor.shutdown` takes away what a thread that is about to
+    wait still uses.
+    """
+    enough = Future()
+    thread = threading.Thread(
+        target=executor.spin_until_future_complete, args=(enough,), daemon=True
+    )
+    thread.start()
+    yield
+    enough.set_result(None)
+    thread.join(PATIENCE_S)
+    assert not thread.is_alive()
 
 
 @contextmanager

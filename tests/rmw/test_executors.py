@@ -6,17 +6,18 @@ from __future__ import annotations
 import threading
 import time
 from collections.abc import Callable, Iterator
-from contextlib import suppress
 from typing import Any
 
 import pytest
 import rclpy
+from rclpy._rclpy_pybind11 import RCLError
 from rclpy.action import ActionClient, ActionServer
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
+from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
 from rclpy.executors import ExternalShutdownException, MultiThreadedExecutor, SingleThreadedExecutor
 from rclpy.experimental import EventsExecutor
 from rclpy.node import Node
-from ros_support import announce, peer_node
+from ros_support import announce, peer_node, spinning_thread
 from std_msgs.msg import String
 from std_srvs.srv import Trigger
 from support import PATIENCE_S
@@ -44,20 +45,11 @@ def executor(request: pytest.FixtureRequest, node: Node) -> Iterator[Any]:
     executor.shutdown()
 
 
-def spin(executor: Any) -> None:
-    with suppress(ExternalShutdownException):
-        executor.spin()
-
-
 @pytest.fixture
 def spinning(executor: Any) -> Iterator[None]:
     """Spin the executor in a thread of its own."""
-    thread = threading.Thread(target=spin, args=(executor,))
-    thread.start()
-    yield
-    executor.shutdown()
-    thread.join(PATIENCE_S)
-    assert not thread.is_alive()
+    with spinning_thread(executor):
+        yield
 
 
 def run_until(executor: Any, condition: Callable[[], Any]) -> None:
@@ -164,22 +156,44 @@ def test_a_guard_condition_wakes_a_spinning_thread(node: Node, executor: Any, sp
 
 @waiting_executors
 def test_entities_are_made_and_destroyed_while_it_spins(node: Node, spinning) -> None:
+    """Without events: rclpy adds one to its wait set though it was destroyed a moment ago."""
+    without = {
+        "subscription": SubscriptionEventCallbacks(use_default_callbacks=False),
+        "publisher": PublisherEventCallbacks(use_default_callbacks=False),
+    }
     for number in range(5):
         heard = threading.Event()
         topic = f"topic_{number}"
-        subscription = node.create_subscription(String, topic, lambda _, e=heard: e.set(), 10)
-        publisher = node.create_publisher(String, topic, 10)
+        subscription = node.create_subscription(
+            String,
+            topic,
+            lambda _, e=heard: e.set(),
+            10,
+            event_callbacks=without["subscription"],
+        )
+        publisher = node.create_publisher(String, topic, 10, event_callbacks=without["publisher"])
         publisher.publish(String())
         assert heard.wait(PATIENCE_S)
         node.destroy_subscription(subscription)
         node.destroy_publisher(publisher)
 
 
+def spin_until_the_context_ends(executor: Any) -> None:
+    """Spin; rclpy has an exception for the end of a context, unless it is just about to wait."""
+    try:
+        executor.spin()
+    except ExternalShutdownException:
+        pass
+    except RCLError as error:
+        if "context is not valid" not in str(error):
+            raise
+
+
 @waiting_executors
 def test_the_end_of_the_context_ends_spinning(node: Node, executor: Any) -> None:
     is_spinning = threading.Event()
     node.create_timer(0.01, is_spinning.set)
-    thread = threading.Thread(target=spin, args=(executor,))
+    thread = threading.Thread(target=spin_until_the_context_ends, args=(executor,))
     thread.start()
     assert is_spinning.wait(PATIENCE_S)
     rclpy.shutdown()
