@@ -4,9 +4,11 @@
 from __future__ import annotations
 
 import pytest
+import rclpy
 from action_msgs.msg import GoalStatus
-from rclpy.action import ActionClient, ActionServer, GoalResponse
+from rclpy.action import ActionClient, ActionServer, CancelResponse, GoalResponse
 from rclpy.node import Node
+from rclpy.task import Future
 from ros_support import peer_node, spin_until
 from support import PATIENCE_S, example_command
 from test_msgs.action import Fibonacci
@@ -45,12 +47,32 @@ def test_goal_feedback_and_result(node, client):
     assert steps[-1] == [0, 1, 1, 2, 3, 5]
 
 
-def test_cancel(node, client):
+def test_cancel(node, start_peer, peer_cluster):
+    start_peer(compute_until_cancelled, cluster=peer_cluster)
+    client = ActionClient(node, Fibonacci, "fibonacci")
+    assert client.wait_for_server(PATIENCE_S)
     goal = send(node, client, 40)
     cancelled = goal.cancel_goal_async()
     spin_until(node, cancelled.done)
     assert len(cancelled.result().goals_canceling) == 1
     assert result_of(node, goal).status == GoalStatus.STATUS_CANCELED
+
+
+def compute_until_cancelled() -> None:
+    with peer_node() as node:
+        cancelled = Future()
+
+        def cancel(_) -> CancelResponse:
+            cancelled.set_result(None)
+            return CancelResponse.ACCEPT
+
+        async def compute(goal) -> Fibonacci.Result:
+            await cancelled
+            goal.canceled()
+            return Fibonacci.Result()
+
+        ActionServer(node, Fibonacci, "fibonacci", compute, cancel_callback=cancel)
+        rclpy.spin(node)
 
 
 def test_result_of_a_goal_that_ended_long_ago(node, client):
