@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
@@ -11,7 +12,7 @@ import pytest
 import rclpy
 from ndt_support import Stack, matcher_command, street_map
 from rclpy.node import Node
-from support import Program, peer_command
+from support import IS_MANYCORE, Program, leftovers, peer_command, wait_until
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
@@ -40,6 +41,19 @@ def start_peer(start: Callable[..., Program]) -> Callable[..., Program]:
         return start(peer_command(function, *arguments), cluster, **env)
 
     return start_peer
+
+
+@pytest.fixture
+def domains() -> Iterator[tuple[int, int]]:
+    """Yield two ROS domains of this process alone; afterwards nothing of their platforms is left.
+
+    Ask for it before programs are started in them: those have to end first.
+    """
+    first = 101 + os.getpid() % 66 * 2  # to 232, the last one that DDS has
+    yield first, first + 1
+    if IS_MANYCORE:
+        for domain in (f"domain-{first}", f"domain-{first + 1}"):
+            wait_until(lambda name=domain: not leftovers(name), f"{domain} leaves nothing")
 
 
 @pytest.fixture(params=[1, 2], ids=["same_cluster", "other_cluster"])

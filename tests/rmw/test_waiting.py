@@ -224,12 +224,12 @@ def test_shutdown_with_everything_still_there():
     node.destroy_node()
 
 
-def test_a_node_of_another_domain_wakes_an_executor(start_peer, monkeypatch):
+def test_a_node_of_another_domain_wakes_an_executor(domains, start_peer, monkeypatch):
     """One executor serves nodes of two domains, as a bridge between them does."""
     monkeypatch.delenv("MANYCORE_PLATFORM", raising=False)
-    rclpy.init(domain_id=101)
+    rclpy.init(domain_id=domains[0])
     foreign = rclpy.Context()
-    rclpy.init(context=foreign, domain_id=102)
+    rclpy.init(context=foreign, domain_id=domains[1])
     own_node = rclpy.create_node("own")
     foreign_node = rclpy.create_node("foreign", context=foreign)
     messages, requests, matches = (threading.Semaphore(0) for _ in range(3))
@@ -246,9 +246,11 @@ def test_a_node_of_another_domain_wakes_an_executor(start_peer, monkeypatch):
     executor = SingleThreadedExecutor()
     executor.add_node(foreign_node)
     with spinning(own_node, executor):
-        start_peer(talk_and_ask, 102)
+        start_peer(talk_and_ask, domains[1])
         for happened in (matches, *[messages] * 3, *[requests] * 3):
             assert happened.acquire(timeout=PATIENCE_S)
+    own_node.destroy_node()
+    foreign_node.destroy_node()
     rclpy.shutdown(context=foreign)
     rclpy.shutdown()
 
