@@ -177,8 +177,15 @@ def test_a_first_pose_though_the_matcher_was_killed_over_it(stack, start):
 
 
 def test_a_first_pose_though_the_matcher_was_stopped_over_it(stack, start):
-    """It is asked again, and what it answers to the first call counts no more."""
-    matcher = start(matcher_command(), cluster=2)
+    """It is asked again, and what it answers to the first call counts no more.
+
+    It has to answer later calls in time, so it tries few poses.
+    """
+    few_poses = {
+        "initial_pose_estimation__particles_num": 10,
+        "initial_pose_estimation__n_startup_trials": 10,
+    }
+    matcher = start(matcher_command(**few_poses), cluster=2)
     stack.wait_for_matcher()
     stack.publish_map(street_map())
     name = "rmw_manycore_py.ndt.nodes.pose_initializer"

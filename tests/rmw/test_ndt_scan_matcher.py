@@ -291,8 +291,8 @@ def test_regularization_poses_that_are_none(stack, start):
     for _ in range(2):
         assert send(TRUTH[0, 3]).level == b"\x00"
     assert error_m(stack.pose_of(street_scan(), NEAR)) < 0.1
-    assert "passed over" in program.output
-    assert "not used" in program.output
+    program.wait_for("passed over")
+    program.wait_for("not used")
 
 
 def test_clocks_that_differ(matched):
