@@ -20,7 +20,7 @@ from std_msgs.msg import String
 from support import IS_MANYCORE, PATIENCE_S, wait_until
 
 SHORT_S, LONG_S = 0.1, 3600.0
-LEASE_S = 1.0  # long enough for events to be told apart
+LEASE_S = 1.0
 MANUAL = LivelinessPolicy.MANUAL_BY_TOPIC
 
 
@@ -65,7 +65,7 @@ def test_missed_deadlines_are_counted_on_both_sides(node, start_peer, peer_clust
     peer = start_peer(publish_once, SHORT_S, cluster=peer_cluster)
     spin_until(node, lambda: missed and missed[-1].total_count >= 3)
     assert sum(event.total_count_change for event in missed) == missed[-1].total_count
-    peer.wait_for(r"missed [3-9]")
+    peer.wait_for(r"missed ([3-9]|\d\d)")
 
 
 def test_a_deadline_that_is_met_is_not_missed(node, start_peer, peer_cluster):
@@ -168,31 +168,34 @@ def test_events_executor_hears_of_missed_deadlines(node):
 
 
 def assert_when_told(seconds: float) -> None:
-    """Assert manual liveliness for each line of input; tell of leases that ran out."""
+    """Assert manual liveliness as often as told; tell of leases that ran out."""
     with peer_node() as node:
         events = PublisherEventCallbacks(
             liveliness=lambda event: announce(f"lost {event.total_count}")
         )
         publisher = node.create_publisher(String, "chatter", lease(seconds), event_callbacks=events)
         spin_until(node, publisher.get_subscription_count)
-        announce("ready")
-        while input() != "spin":
-            publisher.assert_liveliness()
+        while (word := input()) != "spin":
+            if word == "assert":
+                publisher.assert_liveliness()
+            else:
+                announce("asserted")
         rclpy.spin(node)
 
 
 def test_manual_liveliness_is_lost_on_both_sides(node, start_peer, peer_cluster):
+    """A lease may run out before anybody looks: it is asserted again until somebody has looked."""
     changes = []
     subscribe(node, lease(LEASE_S), liveliness=changes.append)
     peer = start_peer(assert_when_told, LEASE_S, cluster=peer_cluster)
-    peer.wait_for("ready")
-    for round_ in (1, 2):
-        peer.say("assert")
-        spin_until(node, lambda n=round_: sum(e.alive_count == 1 for e in changes) == n)
+    for _ in range(2):
+        spin_until(node, lambda: peer.say("assert") or (changes and changes[-1].alive_count == 1))
+        peer.say("that is all")
+        peer.wait_for("asserted")
         spin_until(node, lambda: changes[-1].not_alive_count == 1)
         assert (changes[-1].alive_count, changes[-1].alive_count_change) == (0, -1)
     peer.say("spin")
-    peer.wait_for("lost 2")
+    peer.wait_for(r"lost ([2-9]|\d\d)")
     assert sum(event.not_alive_count_change for event in changes) == 1
 
 
@@ -228,8 +231,8 @@ def test_a_killed_publisher_is_noticed_long_before_its_lease_is_over(
     peer = start_peer(publish_alive, kind, LONG_S, cluster=peer_cluster)
     spin_until(node, lambda: changes and changes[-1].alive_count == 1)
     peer.kill()
-    spin_until(node, lambda: changes[-1].alive_count == 0)
-    assert changes[-1].not_alive_count == 1
+    spin_until(node, lambda: changes[-1].not_alive_count == 1)
+    assert changes[-1].alive_count == 0
 
 
 def test_events_executor_hears_of_lost_liveliness(node, start_peer, peer_cluster):
@@ -268,13 +271,11 @@ def test_default_liveliness_follows_who_comes_and_goes(node):
 @pytest.mark.parametrize("period_s", [None, 0.02], ids=["no_policy", "deadline"])
 def test_without_a_policy_nobody_wakes_up(start_peer, peer_cluster, period_s):
     """A node that waits costs nothing without a policy of time; with one, wake-ups are seen."""
+    silent = period_s is None
     one, other = (start_peer(wait_for_events, period_s, cluster=c) for c in (1, peer_cluster))
     for peer in (one, other):
         peer.wait_for("matched")
-    if period_s is None:
-        wait_until(lambda: are_silent(one, other), "nothing wakes them")
-    else:
-        assert not are_silent(one, other)
+    wait_until(lambda: are_silent(one, other) == silent, "nothing or something wakes them")
 
 
 def are_silent(*peers) -> bool:
