@@ -14,7 +14,6 @@ import rclpy
 from rclpy.executors import Executor, ExternalShutdownException
 from rclpy.node import Node
 from rclpy.task import Future
-from std_msgs.msg import String
 from support import PATIENCE_S
 
 
@@ -25,19 +24,6 @@ def spin_until(node: Node, condition: Callable[[], Any], timeout_s: float = PATI
         if time.monotonic() > deadline:
             raise AssertionError(f"not within {timeout_s:g} s of spinning")
         rclpy.spin_once(node, timeout_sec=0.05)
-
-
-def wait_for_end(topic: str = "end") -> None:
-    """Wait for the message with which a peer ends a burst, on a node of its own.
-
-    What the peer published before it is then in the queues of this process, and nobody has looked
-    into them: messages from another cluster come one by one, whatever the peer says meanwhile.
-    """
-    node = rclpy.create_node("witness")
-    ended: list[Any] = []
-    node.create_subscription(String, topic, ended.append, 1)
-    spin_until(node, lambda: ended)
-    node.destroy_node()
 
 
 @contextmanager

@@ -20,7 +20,7 @@ from rclpy.qos import (
     QoSProfile,
     ReliabilityPolicy,
 )
-from ros_support import announce, peer_node, spin_until, wait_for_end
+from ros_support import announce, peer_node, spin_until
 from std_msgs.msg import Int32, String
 from support import IS_MANYCORE
 
@@ -103,26 +103,15 @@ def test_matched(node, start_peer, peer_cluster):
         event_callbacks=SubscriptionEventCallbacks(matched=subscribed.append),
     )
     peer = start_peer(match, cluster=peer_cluster)
-    for events in (published, subscribed):
-        spin_until(node, lambda told=events: counts(told) == (1, 1))
-        assert changes(events) == (1, 1)
+    spin_until(node, lambda: published and subscribed)
+    for event in (published[-1], subscribed[-1]):
+        assert (event.total_count, event.current_count) == (1, 1)
+        assert (event.total_count_change, event.current_count_change) == (1, 1)
     assert peer.stop_node()
-    for events in (published, subscribed):
-        spin_until(node, lambda told=events: counts(told) == (1, 0))
-        assert changes(events) == (1, 0)
-
-
-def counts(events) -> tuple[int, int] | None:
-    """Return total and current count of the last event, if there is one."""
-    return (events[-1].total_count, events[-1].current_count) if events else None
-
-
-def changes(events) -> tuple[int, int]:
-    """Return what the changes add up to: total and current count may change one by one."""
-    return (
-        sum(event.total_count_change for event in events),
-        sum(event.current_count_change for event in events),
-    )
+    spin_until(node, lambda: len(published) == 2 and len(subscribed) == 2)
+    for event in (published[-1], subscribed[-1]):
+        assert (event.total_count, event.current_count) == (1, 0)
+        assert (event.total_count_change, event.current_count_change) == (0, -1)
 
 
 def match() -> None:
@@ -138,8 +127,8 @@ def test_messages_that_were_overwritten_are_reported_as_lost(node, start_peer, p
     received, lost = [], []
     callbacks = SubscriptionEventCallbacks(message_lost=lost.append)
     node.create_subscription(String, "chatter", received.append, 3, event_callbacks=callbacks)
-    start_peer(publish_ten, cluster=peer_cluster)
-    wait_for_end()
+    peer = start_peer(publish_ten, cluster=peer_cluster)
+    peer.wait_for("published")
     spin_until(node, lambda: lost and lost[-1].total_count == 7)
     spin_until(node, lambda: len(received) == 3)
     assert sum(event.total_count_change for event in lost) == 7
@@ -148,12 +137,10 @@ def test_messages_that_were_overwritten_are_reported_as_lost(node, start_peer, p
 def publish_ten() -> None:
     with peer_node() as node:
         publisher = node.create_publisher(String, "chatter", 10)
-        end_publisher = node.create_publisher(String, "end", 1)
-        for needed in (publisher, end_publisher):
-            spin_until(node, needed.get_subscription_count)
+        spin_until(node, publisher.get_subscription_count)
         for _ in range(10):
             publisher.publish(String())
-        end_publisher.publish(String())
+        announce("published")
         rclpy.spin(node)
 
 

@@ -18,7 +18,7 @@ from rclpy.qos import (
     QoSProfile,
     ReliabilityPolicy,
 )
-from ros_support import announce, peer_node, spin_until, wait_for_end
+from ros_support import announce, peer_node, spin_until
 from std_msgs.msg import String, UInt8MultiArray
 from support import IS_MANYCORE
 
@@ -43,10 +43,12 @@ def publish_burst(count: int, depth: int, end: bool) -> None:
 
 def receive_after_burst(node, start_peer, cluster, qos, count):
     """Return what a subscription holds that nobody looked at during a burst."""
-    received = []
+    received, ended = [], []
     node.create_subscription(String, "numbers", lambda m: received.append(int(m.data)), qos)
-    start_peer(publish_burst, count, count, True, cluster=cluster)
-    wait_for_end()
+    node.create_subscription(String, "end", ended.append, 1)
+    peer = start_peer(publish_burst, count, count, True, cluster=cluster)
+    peer.wait_for("published")
+    spin_until(node, lambda: ended)
     spin_until(node, lambda: count - 1 in received)
     return received
 
@@ -113,10 +115,12 @@ def small_topic():
 
 def test_depth_is_reached_with_large_messages(node, start_peer, peer_cluster):
     """Ten messages of 1 MiB fit a depth of ten: a topic DSM without a fixed size grows."""
-    received = []
+    received, ended = [], []
     node.create_subscription(UInt8MultiArray, "large", received.append, 10)
-    start_peer(publish_large, cluster=peer_cluster)
-    wait_for_end()
+    node.create_subscription(String, "end", ended.append, 1)
+    peer = start_peer(publish_large, cluster=peer_cluster)
+    peer.wait_for("published")
+    spin_until(node, lambda: ended)
     spin_until(node, lambda: len(received) == 10)
     assert [(m.data[0], m.data[-1], len(m.data)) for m in received] == [
         (number, number, 1 << 20) for number in range(10)
@@ -130,6 +134,7 @@ def publish_large() -> None:
         spin_until(node, publisher.get_subscription_count)
         for number in range(10):
             publisher.publish(UInt8MultiArray(data=bytes([number]) * (1 << 20)))
+        announce("published")
         spin_until(node, end_publisher.get_subscription_count)
         end_publisher.publish(String())
         rclpy.spin(node)
