@@ -8,7 +8,7 @@ import signal
 from contextlib import suppress
 from pathlib import Path
 
-from support import PLATFORMS
+from support import PLATFORMS, wait_until
 
 TICKS_PER_S = os.sysconf("SC_CLK_TCK")
 
@@ -34,6 +34,26 @@ def kill(pid: int) -> None:
         os.kill(pid, signal.SIGKILL)
 
 
+def kill_all(platform: str) -> None:
+    """Kill all processes of a platform as if at once: none lives to see another one die.
+
+    Else a receive thread might clean up after the others, or be started again, before its turn.
+    """
+    wait_until(lambda: _stop_all(platform), f"all processes of {platform} are stopped")
+    for pid in processes_of(platform):
+        kill(pid)
+    wait_until(lambda: not processes_of(platform), f"all processes of {platform} are gone")
+
+
+def _stop_all(platform: str) -> bool:
+    """Stop what still runs; tell whether all was stopped already."""
+    running = [pid for pid in processes_of(platform) if not is_stopped(pid)]
+    for pid in running:
+        with suppress(ProcessLookupError):
+            os.kill(pid, signal.SIGSTOP)
+    return not running
+
+
 def cpu_time_s(pid: int) -> float:
     """Return the CPU time that a process has used."""
     fields = Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()
@@ -41,8 +61,10 @@ def cpu_time_s(pid: int) -> float:
 
 
 def is_stopped(pid: int) -> bool:
-    """Tell whether a process has been stopped by a signal."""
-    return Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()[0] == "T"
+    """Tell whether a process has been stopped by a signal; one that is gone has not."""
+    with suppress(FileNotFoundError, ProcessLookupError):
+        return Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()[0] == "T"
+    return False
 
 
 def _program(process: Path) -> str:

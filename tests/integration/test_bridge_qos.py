@@ -3,7 +3,9 @@
 
 from __future__ import annotations
 
+import signal
 import time
+from itertools import count
 from typing import Any
 
 import pytest
@@ -46,17 +48,18 @@ def qos(words: dict[str, Any]) -> Any:
     )
 
 
-def say(words: dict[str, Any], period_s: float, limit: int) -> None:
-    """Publish numbers, one each period and at once, until the limit is reached; then only live."""
+def say(words: dict[str, Any], period_s: float) -> None:
+    """Publish numbers, one each period and at once; when told so, only live."""
+    told: list[int] = []
+    signal.signal(signal.SIGUSR1, lambda number, _: told.append(number))
     with peer_node("speaker") as node:
         message = type_of(STRING)
         publisher = node.create_publisher(message, "/topic", qos(words))
-        numbers = iter(range(limit))
+        numbers = count()
 
         def publish() -> None:
-            for number in numbers:
-                publisher.publish(message(data=str(number)))
-                return
+            if not told:
+                publisher.publish(message(data=str(next(numbers))))
 
         publish()
         node.create_timer(period_s, publish)
@@ -101,7 +104,7 @@ def test_times_liveliness_and_type_hash_are_the_same_on_both_sides(bridge, way) 
         "liveliness_lease_duration": 900,
         "by_hand": True,
     }
-    source(say, words, 0.1, 10**6)
+    source(say, words, 0.1)
     watchers = [side(show_publisher) for side in (source, target)]
     shown = [watcher.wait_for("^publisher (.*)$").group(1) for watcher in watchers]
     assert shown[0] == shown[1]
@@ -113,8 +116,9 @@ def test_a_missed_deadline_is_noticed_on_the_other_side(bridge, way) -> None:
     source, target = sides(bridge, way)
     hearer = target(hear, {"deadline": 1000})
     hearer.wait_for("^listening$")
-    source(say, {"deadline": 1000}, 0.05, 150)  # then it is silent
+    speaker = source(say, {"deadline": 1000}, 0.05)
     hearer.wait_for("^heard")
+    speaker.signal(signal.SIGUSR1)
     hearer.wait_for("^deadline missed$")
 
 
@@ -125,10 +129,12 @@ def test_a_lost_publisher_is_noticed_on_the_other_side(bridge, way, by_hand) -> 
     words = {"liveliness_lease_duration": 2000, "by_hand": by_hand}
     hearer = target(hear, words)
     hearer.wait_for("^listening$")
-    speaker = source(say, words, 0.05, 150)
+    speaker = source(say, words, 0.05)
     hearer.wait_for("^alive 1$")
     hearer.wait_for("^heard")
-    if not by_hand:  # else it is enough that it is silent
+    if by_hand:
+        speaker.signal(signal.SIGUSR1)  # it is enough that it is silent
+    else:
         speaker.stop()
     hearer.wait_for("^alive 0$")
 
@@ -136,7 +142,7 @@ def test_a_lost_publisher_is_noticed_on_the_other_side(bridge, way, by_hand) -> 
 def test_what_has_expired_is_not_heard(bridge, way) -> None:
     bridge.run(bridge.route(way, "/topic"))
     source, target = sides(bridge, way)
-    source(say, {"latched": True, "lifespan": 500}, 5.0, 10**6).wait_for("^said$")
+    source(say, {"latched": True, "lifespan": 500}, 5.0).wait_for("^said$")
     wait_until(lambda: bridge.row(way, "/topic").get("messages"), "the first has passed")
     expired_s = time.monotonic() + 1
     wait_until(lambda: time.monotonic() > expired_s, "it has expired")

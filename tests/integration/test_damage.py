@@ -10,8 +10,8 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
-from processes import kill, processes_of
-from support import IS_MANYCORE, PLATFORMS, Program, example_command, wait_until
+from processes import kill_all
+from support import IS_MANYCORE, PLATFORMS, Program, example_command
 
 pytestmark = [
     pytest.mark.integration,
@@ -43,9 +43,7 @@ def directory(start, platform) -> Iterator[Path]:
     """Yield the directory of a platform on which a talker runs in cluster 1."""
     start(example_command("talker")).wait_for("Publishing")
     yield PLATFORMS / platform
-    for pid in processes_of(platform):
-        kill(pid)
-    wait_until(lambda: not processes_of(platform), "the processes of the platform are gone")
+    kill_all(platform)
     shutil.rmtree(PLATFORMS / platform, ignore_errors=True)
 
 
@@ -144,9 +142,7 @@ def test_leftovers_of_a_dead_platform(start, platform, damage):
     """Whatever a dead platform left is in nobody's way: the next start clears it up."""
     talker = start(example_command("talker"))
     talker.wait_for("Publishing")
-    for pid in processes_of(platform):
-        kill(pid)
-    talker.wait()
+    kill_all(platform)
     for name in ("registry", "cluster-1"):
         damage_file(PLATFORMS / platform / name, DAMAGES[damage])
     again = start(example_command("talker"))

@@ -4,12 +4,12 @@
 from __future__ import annotations
 
 import json
-import os
 import signal
 from pathlib import Path
 from typing import Any
 
 import pytest
+from processes import kill_all
 from support import IS_MANYCORE, MAPFILES, Program, leftovers, manycore_command, wait_until
 
 from rmw_manycore_py.errors import EXIT_BAD_INPUT
@@ -115,11 +115,8 @@ def test_after_the_runner_was_killed_the_platform_starts_again(start, platform) 
 def test_everything_killed_at_once_is_cleaned_by_the_next_start(start, platform) -> None:
     killed = start(manycore_command("run", TALKER_LISTENER, "--json"))
     killed.wait_for(HEARD)
-    status = start(manycore_command("status", "--platform", platform, "--json"))
-    status.wait()
-    clusters = json.loads(status.output)[0]["clusters"]
-    for pid in [killed.pid, *(row["receive_thread_pid"] for row in clusters)]:
-        os.kill(pid, signal.SIGKILL)
+    kill_all(platform)
+    assert leftovers(platform)
     again = start(manycore_command("run", TALKER_LISTENER, "--json"))
     again.wait_for(HEARD)
     assert again.stop() == 0

@@ -9,11 +9,13 @@ import subprocess
 import sys
 
 import pytest
+from processes import kill_all
 from support import (
     IS_MANYCORE,
     MAPFILES,
     PLATFORMS,
     environment,
+    example_command,
     leftovers,
     manycore_command,
     wait_until,
@@ -156,10 +158,10 @@ def test_a_living_platform_is_not_cleaned(running, manycore, platform) -> None:
     assert f"no platform '{platform}x'" in manycore("clean", f"{platform}x", status=1)
 
 
-def test_a_dead_platform_is_seen_and_cleaned(manycore, platform) -> None:
+def test_a_dead_platform_is_seen_and_cleaned(start, manycore, platform) -> None:
     directory = PLATFORMS / platform
-    PLATFORMS.mkdir(mode=0o700, exist_ok=True)  # parents=True would make it public
-    directory.mkdir(mode=0o700)
+    start(example_command("talker")).wait_for("Publishing")
+    kill_all(platform)
     (directory / "registry").write_bytes(bytes(4096))
     assert f"platform {platform}: " in manycore("status")
     assert platform in manycore("doctor")
