@@ -56,7 +56,6 @@ class Listener:
         """Listen until stopped or interrupted, or until the time is over."""
         from rclpy.event_handler import SubscriptionEventCallbacks
 
-        end_s = float("inf") if timeout_s is None else time.monotonic() + timeout_s
         # No more than every publisher offers, so that all are heard.
         reliable, kept = offered_policies(self._endpoints)
         with tool_node(self._platform) as node:
@@ -71,6 +70,7 @@ class Listener:
             )
             for period_s, call in self._timers:
                 node.create_timer(period_s, call)
+            end_s = float("inf") if timeout_s is None else time.monotonic() + timeout_s
             while not self._over and time.monotonic() < end_s:
                 spin_once(node, max(end_s - time.monotonic(), 0))
 

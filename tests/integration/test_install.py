@@ -146,7 +146,7 @@ def test_fast_dds_is_not_loaded() -> None:
     ],
 )
 def test_a_fresh_environment_runs_a_mapfile(
-    python: Path | None, request: pytest.FixtureRequest, tmp_path: Path
+    python: Path | None, request: pytest.FixtureRequest, tmp_path: Path, start
 ) -> None:
     if python is None:
         wheel = request.getfixturevalue("wheel")
@@ -157,6 +157,6 @@ def test_a_fresh_environment_runs_a_mapfile(
     run(tmp_path / "venv/bin/pip", "install", wheel)
     mapfile = MAPFILES / "talker_listener.yaml"
     manycore = tmp_path / "venv/bin/manycore"
-    nodes = environment(unique_platform())
-    printed = run(manycore, "run", mapfile, "--duration", "3", cwd=tmp_path, env=nodes)
-    assert "I heard" in printed
+    nodes = start([manycore, "run", mapfile])
+    nodes.wait_for("I heard")
+    assert nodes.stop() == 0, nodes
