@@ -30,10 +30,13 @@ FileDescriptor open_end(const std::string & path, int flags) {
 
 }  // namespace
 
-Pipe Pipe::open(const std::string & path) {
+void Pipe::create(const std::string & path) {
   if (mkfifo(path.c_str(), 0600) != 0 && errno != EEXIST) {
     throw_errno("cannot create pipe " + path);
   }
+}
+
+Pipe Pipe::open(const std::string & path) {
   FileDescriptor sender = open_end(path, O_NONBLOCK);
   FileDescriptor receiver = open_end(path, 0);
   fcntl(sender.get(), F_SETPIPE_SZ, pipe_capacity_bytes);  // best effort: user quota may forbid it

@@ -13,7 +13,9 @@ namespace manycore {
 /// it survives the death of its reader.
 class Pipe {
 public:
-  /// Creates the FIFO where it is missing (mode 0600) and opens it.
+  /// Creates the FIFO (mode 0600) where it is missing.
+  static void create(const std::string & path);
+  /// Creates nothing: its directory may be on its way out.
   static Pipe open(const std::string & path);
 
   /// False when the pipe is full; the sender never waits.

@@ -54,6 +54,7 @@ void Cluster::create(
   header.granule_bytes = granule;
   header.granule_count = static_cast<uint32_t>(granules);
   header.segment.magic.store(cluster_magic, std::memory_order_release);
+  Pipe::create(paths.pipe(id));
   Cluster cluster(paths, id, platform_nonce);
   cluster.forget_allocations();
 }
