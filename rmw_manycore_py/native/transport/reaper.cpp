@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include <cstdlib>
+#include <mutex>
 
 #include "platform/os_process.hpp"
 #include "transport/lifecycle.hpp"
@@ -53,6 +54,9 @@ bool end_if_unused(Registry & registry) {
 }  // namespace
 
 void exit_if_unused(Registry & registry) {
+  // One thread at a time: the end of one would cut off the other, and leave the directory that its JoinLock brought up.
+  static std::mutex mutex;
+  const std::lock_guard<std::mutex> guard(mutex);
   if (end_if_unused(registry)) {
     _exit(0);
   }
@@ -90,22 +94,28 @@ void Reaper::watch(pid_t pid) {
   }
 }
 
-/// A cluster that has no receive thread, not yet or not any more, is everybody's.
+/// A cluster that has no receive thread, not yet or not any more, is everybody's. So is one whose receive thread is not
+/// watched: nobody would tell of its end. That it lives is looked at once it is watched.
 bool Reaper::is_ours(uint32_t cluster) const {
-  return cluster == cluster_ || !alive_locks(registry_.paths()).is_held(receive_thread_byte + cluster);
+  if (cluster == cluster_) {
+    return true;
+  }
+  const Cluster * const other = registry_.clusters().find(cluster);
+  return other == nullptr || watched_.count(other->header().receive_thread_pid.load()) == 0 ||
+         !alive_locks(registry_.paths()).is_held(receive_thread_byte + cluster);
 }
 
 bool Reaper::watch_new() {
-  for (uint32_t slot = 0; slot < registry_.processes().high_water(); ++slot) {
-    const ProcessEntry & process = registry_.processes()[slot];
-    if (registry_.processes().is_live(slot) && is_ours(process.cluster)) {
-      watch(process.pid);
-    }
-  }
   const uint64_t present = registry_.header().clusters_present.load();
   for (uint32_t id = 1; id <= max_clusters; ++id) {
     if ((present >> (id - 1) & 1) != 0 && id != cluster_ && registry_.clusters().find(id)) {
       watch(registry_.clusters().at(id).header().receive_thread_pid.load());
+    }
+  }
+  for (uint32_t slot = 0; slot < registry_.processes().high_water(); ++slot) {
+    const ProcessEntry & process = registry_.processes()[slot];
+    if (registry_.processes().is_live(slot) && is_ours(process.cluster)) {
+      watch(process.pid);
     }
   }
   return bury();  // who died before it was watched
