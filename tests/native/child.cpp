@@ -143,8 +143,16 @@ Child::~Child() { kill(); }
 
 void Child::stop() {
   ::kill(pid_, SIGSTOP);
+  wait_until_stopped();
+}
+
+void Child::wait_until_stopped() {
   int status = 0;
   waitpid(pid_, &status, WUNTRACED);
+  if (!WIFSTOPPED(status)) {
+    pid_ = -1;  // the number may be another process's from now on
+    throw std::runtime_error("it has ended instead of standing still");
+  }
 }
 
 void Child::resume() { ::kill(pid_, SIGCONT); }

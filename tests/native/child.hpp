@@ -55,6 +55,8 @@ public:
   void expect(const std::string & line) { lines_.expect(line); }
 
   void stop();    ///< SIGSTOP; returns once it stands still
+  /// For one that stops itself: a SIGCONT that came before would be lost.
+  void wait_until_stopped();
   void resume();  ///< SIGCONT
   void kill();    ///< SIGKILL; returns once it is gone
   /// Waits for its end: the exit status, or minus the signal that ended it. Throws when it goes on for `patience_s`.

@@ -146,12 +146,18 @@ pid_t TestPlatform::stop_receive_thread(uint32_t cluster) const {
     stop_process(pid);
     try {
       const Registry::Lock lock(registry, Registry::Lock::no_wait_ns);
+      const auto join_lock = FileLock::acquire(paths().join_lock(), 0);
       return pid;
     } catch (const Error &) {
       kill(pid, SIGCONT);
     }
   }
 }
+
+Standstill::Standstill(const TestPlatform & platform, uint32_t cluster)
+: pid_(platform.stop_receive_thread(cluster)) {}
+
+Standstill::~Standstill() { kill(pid_, SIGCONT); }
 
 uint64_t Inspection::used_bytes(uint32_t cluster) {
   return registry_.clusters().at(cluster).header().used_bytes.load();

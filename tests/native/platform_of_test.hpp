@@ -24,12 +24,25 @@ public:
   std::vector<pid_t> receive_threads() const;
   /// Waits until the receive thread of `cluster` serves; its pid. `not_this`: a predecessor.
   pid_t receive_thread(uint32_t cluster, pid_t not_this = 0) const;
-  /// Stops it at a moment when it does not hold the registry lock; its pid.
+  /// Stops it at a moment when it holds neither the registry lock nor the JoinLock; its pid.
   pid_t stop_receive_thread(uint32_t cluster) const;
   bool exists() const;
 
 private:
   std::string name_;
+};
+
+/// A receive thread that stands still while this lives, and holds no lock. Where no other process is about, the
+/// registry lock is then free for those who wait for it briefly or not at all, and else put off what a test looks for.
+class Standstill {
+public:
+  Standstill(const TestPlatform & platform, uint32_t cluster);
+  ~Standstill();
+  Standstill(const Standstill &) = delete;
+  Standstill & operator=(const Standstill &) = delete;
+
+private:
+  pid_t pid_;
 };
 
 /// The registry as seen from outside, for looking at what the interface does not show.

@@ -18,6 +18,7 @@ struct Fixture {
   TestPlatform platform;
   Configurator configurator{platform.name(), host_profile(), {{"/fixed", 1, 1024, 0}}};
   std::shared_ptr<Process> process = platform.join();
+  Standstill receive_thread{platform, 1};
 
   std::unique_ptr<Publisher> publisher(const Qos & qos, const std::string & topic = "/history") {
     return process->create_publisher(on_topic(topic, qos));

@@ -17,6 +17,7 @@ struct Fixture {
   TestPlatform platform;
   std::shared_ptr<Process> process = platform.join();
   Inspection inspection{platform};
+  Standstill receive_thread{platform, 1};
 
   std::unique_ptr<Publisher> publisher(const Qos & qos) {
     return process->create_publisher(on_topic("/match", qos));

@@ -102,7 +102,8 @@ TEST_CASE("a publisher killed after it wrote a record, before it told anybody: t
   }
   f.wait_until_alone();
   CHECK_FALSE(take(*subscription));
-  CHECK(f.inspection.live_endpoints() == 1);
+  // Where the reaper still held the registry when the last record was taken, it looks again later.
+  wait_until("its place is free", [&] { return f.inspection.live_endpoints() == 1; });
   subscription.reset();
   CHECK(f.inspection.used_bytes() == used);
 }
@@ -145,7 +146,12 @@ TEST_CASE("what a killed publisher published is still taken") {
   const auto subscription = f.process->create_subscription(on_topic("/x", keep_last(100)));
   Node publisher(f.platform, 2);
   publisher.tell("publisher /x 1");
-  publisher.tell("publish 1 50 5000");
+  {
+    // A topic DSM that cannot grow, as its publisher does not get the registry lock in time, overwrites.
+    const Standstill here(f.platform, 1);
+    const Standstill there(f.platform, 2);
+    publisher.tell("publish 1 50 5000");
+  }
   publisher.kill();
   for (uint64_t number = 1; number <= 50; ++number) {
     REQUIRE(take_next(*f.process, *subscription).number == number);

@@ -198,6 +198,7 @@ TEST_CASE("the lock of a stopped owner is waited for, then it is an error that s
   Fixture f;
   Child holder("lock_holder", {f.platform.name()});
   holder.expect("holding");
+  holder.wait_until_stopped();
   const Refusal refusal = refusal_of(
     [&] { const Registry::Lock lock(f.registry, Registry::Lock::short_wait_ns); });
   CHECK(refusal.code == ErrorCode::timeout);

@@ -139,6 +139,7 @@ TEST_CASE("stopped while it holds the registry lock: publishers whose topic DSM 
   const auto near = f.process->create_subscription(on_topic("/growing", keep_last(1000)));
   Node node(f.platform, 1);
   node.tell("publisher /growing 1000");
+  const Standstill receive_thread(f.platform, 1);  // its reaper would wait for the lock as well, and have it first
   Child holder("lock_holder", {f.platform.name()});
   holder.expect("locked");
   // Each finds a wanted record in its way. To wait for the lock each time would take longer than Node::tell() does.

@@ -22,7 +22,8 @@ struct Fixture {
   explicit Fixture(uint32_t fixed_bytes = 4096)
   : configurator(platform.name(), host_profile(), {{"/fixed", 1, fixed_bytes, 0}}),
     process(platform.join()),
-    inspection(platform) {}
+    inspection(platform),
+    receive_thread(platform, 1) {}
 
   std::unique_ptr<Publisher> publisher(const std::string & topic, const Qos & qos) {
     return process->create_publisher(on_topic(topic, qos));
@@ -38,6 +39,7 @@ struct Fixture {
   Configurator configurator;
   std::shared_ptr<Process> process;
   Inspection inspection;
+  Standstill receive_thread;
 };
 
 void publish_bytes(Publisher & publisher, const std::vector<uint8_t> & bytes) {

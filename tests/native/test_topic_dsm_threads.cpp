@@ -23,6 +23,7 @@ struct Fixture {
   TestPlatform platform;
   Configurator configurator{platform.name(), host_profile(), {{"/fixed", 1, 4000, 0}}};
   std::shared_ptr<Process> process = platform.join();
+  Standstill receive_thread{platform, 1};
 };
 
 constexpr uint64_t messages_each = 5000;
