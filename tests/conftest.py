@@ -15,6 +15,7 @@ import pytest
 sys.path.insert(0, str(Path(__file__).parent))
 
 import isolation
+from processes import has_receive_threads
 from support import IS_MANYCORE, Program, environment, leftovers, unique_platform, wait_until
 
 StartProgram = Callable[..., Program]
@@ -61,5 +62,7 @@ def start(platform: str) -> Iterator[StartProgram]:
         return programs[-1]
 
     yield start_program
+    if IS_MANYCORE and any(program.is_running() for program in programs):
+        wait_until(lambda: has_receive_threads(platform), "there is who clears up after the killed")
     for program in programs:
         program.kill()

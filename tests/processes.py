@@ -28,6 +28,12 @@ def receive_threads_of(platform: str) -> list[int]:
     return [pid for pid, program in processes_of(platform).items() if "receive_thread" in program]
 
 
+def has_receive_threads(platform: str) -> bool:
+    """Tell whether every cluster that somebody joined has its receive thread."""
+    clusters = list((PLATFORMS / platform).glob("cluster-*.pipe"))
+    return len(receive_threads_of(platform)) >= len(clusters)
+
+
 def kill(pid: int) -> None:
     """Kill a process that may be gone already."""
     with suppress(ProcessLookupError):
