@@ -46,6 +46,7 @@ PICTURES = (".png", ".svg", ".pdf")
 @click.option(
     "--rate", "rate_hz", type=click.FloatRange(0.1, 1000.0), help="Scans per second, not by stamps."
 )
+@click.option("--wait", "waits", is_flag=True, help="Play no scan before the last one is answered.")
 @click.option(
     "--guess",
     "kind",
@@ -114,6 +115,7 @@ def command(
     map_path: Path | None,
     no_map: bool,
     rate_hz: float | None,
+    waits: bool,
     kind: str,
     motion: str,
     drift: float,
@@ -152,7 +154,7 @@ def command(
     if points is not None and (warning := why_coarse(points)):
         click.echo(f"the map is coarse: {warning}", err=True)
     tally = Tally(deadline_ms)
-    run(drive, source, tally, points, voxel_m, rate_hz, timeout_s)
+    run(drive, source, tally, points, voxel_m, rate_hz, waits, timeout_s)
     summary = tally.summary()
     if complaint := tally.complaint():
         click.echo(f"of the first lost scan the matcher says: {complaint}", err=True)

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from typing import Any
 
 import numpy as np
@@ -69,8 +69,11 @@ class Player(Node):
             self._send(stamp_ns, scan)
             self._spin_until(time.monotonic() + WARM_UP_PERIOD_S, lambda: self._is_warm)
 
-    def play(self, rate_hz: float | None, report: Callable[[Played], None]) -> None:
-        """Play all scans, by their stamps or at a rate, and call `report` after each."""
+    def play(self, rate_hz: float | None, waits: bool, report: Callable[[Played], None]) -> None:
+        """Play all scans, by their stamps or at a rate, and call `report` after each.
+
+        Who `waits` plays none before the last one has its answer.
+        """
         if rate_hz is not None:
             self._times_s = np.arange(len(self._drive)) / rate_hz
         start = time.monotonic() + 0.05
@@ -85,8 +88,14 @@ class Player(Node):
             self._waiting[stamp_ns] = row
             self._send(stamp_ns, scan)
             report(row)
+            if waits:
+                self._wait_for([stamp_ns])
+        self._wait_for(list(self._waiting))
+
+    def _wait_for(self, stamps_ns: Collection[int]) -> None:
+        """Handle what arrives until these scans are answered, or late."""
         end = time.monotonic() + max(FOLLOW_UP_S, self._tally.deadline_ms / 1e3)
-        self._spin_until(end, lambda: not self._waiting)
+        self._spin_until(end, lambda: self._waiting.keys().isdisjoint(stamps_ns))
 
     def _scan(self, index: int) -> Any:
         points = self._drive.scan(index)

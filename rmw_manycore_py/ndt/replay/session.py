@@ -22,6 +22,7 @@ def run(
     map_points: Points | None,
     voxel_m: float,
     rate_hz: float | None,
+    waits: bool,
     timeout_s: float,
 ) -> None:
     """Publish the map if there is one, wait for the matcher, play; all goes into the tally."""
@@ -33,7 +34,7 @@ def run(
         player.warm_up(timeout_s)
         gc.freeze()  # what was loaded so far is not looked through while scans are timed
         with ReplayProgress(tally, len(drive)) as progress:
-            player.play(rate_hz, progress.played)
+            player.play(rate_hz, waits, progress.played)
     finally:
         player.destroy_node()
         rclpy.try_shutdown()
