@@ -3,6 +3,7 @@
 
 #include <fcntl.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <cerrno>
 #include <utility>
@@ -49,6 +50,14 @@ bool Pipe::try_send(const void * message, size_t size_bytes) const noexcept {
     written = ::write(sender_.get(), message, size_bytes);
   } while (written < 0 && errno == EINTR);
   return written == static_cast<ssize_t>(size_bytes);
+}
+
+void Pipe::send_last(const void * message, size_t size_bytes) const noexcept {
+  char unread[4096];  // a page: less may make no room
+  while (!try_send(message, size_bytes)) {
+    const ssize_t taken = ::read(sender_.get(), unread, sizeof unread);
+    static_cast<void>(taken);  // none when the receiver was faster
+  }
 }
 
 size_t Pipe::receive(void * buffer, size_t capacity_bytes) const {

@@ -21,6 +21,9 @@ public:
   /// False when the pipe is full; the sender never waits.
   bool try_send(const void * message, size_t size_bytes) const noexcept;
 
+  /// For a message that makes those before it void: where the pipe is full, some of them are taken away.
+  void send_last(const void * message, size_t size_bytes) const noexcept;
+
   /// Blocks until at least one message is there; returns the bytes read, 0 when interrupted.
   size_t receive(void * buffer, size_t capacity_bytes) const;
 

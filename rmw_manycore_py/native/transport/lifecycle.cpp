@@ -191,7 +191,7 @@ std::vector<std::string> remove_platform(const PlatformPaths & paths) {
       EmcosMessage message{};
       message.kind = EmcosMessageKind::detach;
       try {
-        Pipe::open(paths.pipe(id)).try_send(&message, sizeof message);
+        Pipe::open(paths.pipe(id)).send_last(&message, sizeof message);
       } catch (const Error &) {
         // Not a pipe any more: there is nobody behind it to tell.
       }
