@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from processes import has_receive_threads
 from support import (
     IS_MANYCORE,
     PATIENCE_S,
@@ -41,6 +42,12 @@ class ReportWriter:
         data = self._config.hook.pytest_report_to_serializable(config=self._config, report=report)
         with self._path.open("a") as file:
             file.write(json.dumps(data) + "\n")
+
+    def pytest_sessionfinish(self) -> None:
+        """Let nobody who has not left end before there is a receive thread to clear up after it."""
+        platform = os.environ["MANYCORE_PLATFORM"]
+        if IS_MANYCORE:
+            wait_until(lambda: has_receive_threads(platform), f"the receive threads of {platform}")
 
 
 def run(item: pytest.Item) -> None:
