@@ -40,9 +40,8 @@ def status(platform: str) -> list[dict[str, Any]]:
 
 def topic_loads(platform: str, direction: Direction) -> dict[int, list[tuple[float, bool]]]:
     """Return by lane, for each topic, its share of a CPU and whether it may move."""
-    files = Path(_transport.platform_directory(platform)).glob(f"bridge-{direction}-*")
     found = {}
-    for path in files:
+    for path in _files(platform, f"bridge-{direction}-*"):
         counters = CounterFile.open(path)
         if counters is not None and is_locked(path):
             lane = int(path.name.rpartition("-")[2])
@@ -51,7 +50,7 @@ def topic_loads(platform: str, direction: Direction) -> dict[int, list[tuple[flo
 
 
 def _rows(platform: str) -> Iterator[dict[str, Any]]:
-    for path in sorted(Path(_transport.platform_directory(platform)).glob("bridge-*")):
+    for path in _files(platform, "bridge-*"):
         counters = CounterFile.open(path)
         if counters is None:
             continue
@@ -62,6 +61,13 @@ def _rows(platform: str) -> Iterator[dict[str, Any]]:
         }
         for route, row in zip(counters.routes, counters.rows, strict=True):
             yield {**route, **process, **row.as_dict(), "load": row.load}
+
+
+def _files(platform: str, pattern: str) -> list[Path]:
+    try:
+        return sorted(Path(_transport.platform_directory(platform)).glob(pattern))
+    except FileNotFoundError:  # the last process removes the directory at this moment
+        return []
 
 
 def _sum(one: dict[str, Any], other: dict[str, Any], other_is_owner: bool) -> dict[str, Any]:

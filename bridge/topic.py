@@ -20,8 +20,7 @@ from rmw_manycore_py.bridge.sides import Sides
 from rmw_manycore_py import _transport
 
 BATCH = 16  # messages of one route before the others have their turn
-LINGER_S = 1.0  # who leaves a topic keeps its publisher while subscribers take what it said
-
+LINGER_S = 1.0  # who gave a topic away keeps its publisher while subscribers take what it said
 PAUSE_S = 0.2  # who cannot get rid of what it said by then keeps the topic
 
 _NEVER_S = float("inf")

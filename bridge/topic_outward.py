@@ -20,11 +20,9 @@ from rmw_manycore_py.bridge.policies import (
 )
 from rmw_manycore_py.bridge.rcl import RawWriter
 from rmw_manycore_py.bridge.sides import Sides
-from rmw_manycore_py.bridge.topic import BATCH, LINGER_S, Topic
+from rmw_manycore_py.bridge.topic import BATCH, Topic
 
 from rmw_manycore_py import _transport
-
-_NEVER_S = float("inf")
 
 
 class OutwardTopic(Topic):
@@ -36,7 +34,6 @@ class OutwardTopic(Topic):
         self._writer: RawWriter | None = None
         self._subscription: _transport.Subscription | None = None
         self._lost = 0
-        self._leaves_s = _NEVER_S  # at the latest, once nobody publishes inside
 
     def match(self) -> None:
         """Publish outside while somebody does inside; listen inside while somebody does outside."""
@@ -63,7 +60,6 @@ class OutwardTopic(Topic):
             self._listen()
         else:
             self.stop_listening()
-        self._leaves_s = _NEVER_S
         self._sides.row.set_state("ready" if self._subscription is None else "forwarding")
 
     def _is_wanted(self, offer: Policies) -> bool:
@@ -71,15 +67,16 @@ class OutwardTopic(Topic):
         return kept or route.eager or bool(self._sides.outside.subscriptions(route.outside))
 
     def _leave(self) -> None:
-        """Pass on what is unread; with its publisher would go what subscribers do not have yet."""
+        """Pass on what is unread; with its publisher would go what subscribers do not have yet.
+
+        However slow they are: those that are gone or stand still DDS gives up itself.
+        """
         self.take(self._depth)
         self.stop_listening()
-        now_s = time.monotonic()
-        self._leaves_s = min(self._leaves_s, now_s + LINGER_S)
-        if self._publisher is None or now_s >= self._leaves_s or self.is_acknowledged():
+        if self._publisher is None or self.is_acknowledged():
             self.close()
         else:
-            self.due_s = now_s + STEP_S
+            self.due_s = time.monotonic() + STEP_S
 
     def _appear(self, offer: Policies) -> None:
         self._publisher = self._sides.outside.node.create_publisher(
@@ -165,4 +162,3 @@ class OutwardTopic(Topic):
         if self._publisher is not None:
             self._sides.outside.node.destroy_publisher(self._publisher)
         self._publisher = self._writer = self._offer = None
-        self._leaves_s = _NEVER_S

@@ -186,6 +186,21 @@ def test_what_was_said_last_is_heard(bridge, direction) -> None:
     assert [int(number) for number in numbers] == list(range(MANY))
 
 
+def test_who_stands_still_hears_what_was_said_last(bridge) -> None:
+    bridge.run(bridge.route("outward", "/news"))
+    hearer = bridge.outside(hear, "/news", {"depth": MANY})
+    speaker = bridge.inside(say_much_and_leave, "/news", MANY)
+    hearer.wait_for("^heard again")
+    hearer.signal(signal.SIGSTOP)
+    speaker.signal(signal.SIGUSR1)
+    speaker.wait_for("^left$")
+    wait_until(lambda: bridge.row("outward", "/news")["state"] == "waiting", "the route is left")
+    later_s = time.monotonic() + 2
+    wait_until(lambda: time.monotonic() > later_s, "the bridge had time to lose patience")
+    hearer.signal(signal.SIGCONT)
+    hearer.wait_for(f"^heard {MANY - 1} ")
+
+
 def test_a_killed_publisher_takes_the_bridges_with_it(bridge) -> None:
     bridge.run(bridge.route("inward", "/scan"))
     watcher = bridge.inside(show_publishers, "/scan")
