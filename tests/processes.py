@@ -8,7 +8,7 @@ import signal
 from contextlib import suppress
 from pathlib import Path
 
-from support import PLATFORMS, wait_until
+from support import PLATFORMS, entries, wait_until
 
 TICKS_PER_S = os.sysconf("SC_CLK_TCK")
 
@@ -30,7 +30,7 @@ def receive_threads_of(platform: str) -> list[int]:
 
 def has_receive_threads(platform: str) -> bool:
     """Tell whether every cluster that somebody joined has its receive thread."""
-    clusters = list((PLATFORMS / platform).glob("cluster-*.pipe"))
+    clusters = entries(PLATFORMS / platform, "cluster-*.pipe")
     return len(receive_threads_of(platform)) >= len(clusters)
 
 
@@ -45,6 +45,7 @@ def kill_all(platform: str) -> None:
 
     Else a receive thread might clean up after the others, or be started again, before its turn.
     """
+    wait_until(lambda: has_receive_threads(platform), "no receive thread is on its way")
     wait_until(lambda: _stop_all(platform), f"all processes of {platform} are stopped")
     for pid in processes_of(platform):
         kill(pid)

@@ -70,6 +70,13 @@ def leftovers(platform: str) -> list[Path]:
     return []
 
 
+def entries(directory: Path, pattern: str) -> list[Path]:
+    """Return what matches in a directory that the last process may remove at this moment."""
+    with suppress(FileNotFoundError):
+        return list(directory.glob(pattern))
+    return []
+
+
 def wait_until(condition: Callable[[], Any], what: str, timeout_s: float = PATIENCE_S) -> None:
     """Look at a condition that nobody announces until it holds."""
     deadline = time.monotonic() + timeout_s

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from support import PATIENCE_S, PLATFORMS, manycore_command, wait_until
+from support import PATIENCE_S, PLATFORMS, entries, manycore_command, wait_until
 
 pytestmark = pytest.mark.integration
 
@@ -37,7 +37,7 @@ def run_bench(*arguments: str) -> dict[str, Any]:
 @pytest.fixture(autouse=True)
 def _leave_nothing() -> Any:
     yield
-    wait_until(lambda: not list(PLATFORMS.glob("bench-*")), "no platform of a bench is left")
+    wait_until(lambda: not entries(PLATFORMS, "bench-*"), "no platform of a bench is left")
 
 
 @pytest.mark.parametrize(

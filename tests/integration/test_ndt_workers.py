@@ -62,9 +62,13 @@ def has_ended(pid: int) -> bool:
         return True
 
 
-def cpu_ticks(pid: int) -> int:
-    fields = Path(f"/proc/{pid}/stat").read_text().rsplit(")")[-1].split()
-    return int(fields[11]) + int(fields[12])
+def sleeps(pid: int) -> bool:
+    return Path(f"/proc/{pid}/stat").read_text().rsplit(")")[-1].split()[0] == "S"
+
+
+def cpu_ns(pid: int) -> int:
+    tasks = Path(f"/proc/{pid}/task").glob("*/schedstat")
+    return sum(int(task.read_text().split()[0]) for task in tasks)
 
 
 @pytest.mark.parametrize("count", [1, 2, 3, 7, 16])
@@ -151,9 +155,11 @@ def until_it_fails(attempt: Callable[[], object]) -> None:
 def test_workers_sleep_between_alignments() -> None:
     with workers(2) as matcher:
         matcher.align(SCAN, GUESS)
-        before = [cpu_ticks(pid) for pid in matcher.worker_pids]
+        pids = matcher.worker_pids
+        wait_until(lambda: all(sleeps(pid) for pid in pids), "the workers have gone to sleep")
+        before = [cpu_ns(pid) for pid in pids]
         assert not threading.Event().wait(1.0)  # a second in which nothing is due
-        assert [cpu_ticks(pid) for pid in matcher.worker_pids] == before
+        assert [cpu_ns(pid) for pid in pids] == before
 
 
 def test_workers_end_when_their_coordinator_is_killed() -> None:

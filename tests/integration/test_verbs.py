@@ -253,7 +253,7 @@ def test_bandwidth_delay_and_load_of_a_topic(start, manycore) -> None:
     watchers[0].wait_for(r"^\d+\.\d\d KB/s from \d+ messages$")
     watchers[0].wait_for(r"^\tMessage size mean: 0\.08 KB min: 0\.08 KB max: 0\.08 KB$")
     watchers[1].wait_for(r"^average delay: \d+\.\d{3}$")
-    watchers[1].wait_for(r"^\tmin: \d\.\d{3}s max: \d\.\d{3}s std dev: \d\.\d{5}s window: \d+$")
+    watchers[1].wait_for(r"^\tmin: \d+\.\d{3}s max: \d+\.\d{3}s std dev: \d+\.\d{5}s window: \d+$")
     assert [watcher.stop() for watcher in watchers] == [0, 0]
     assert manycore("topic", "type", "/pose") == "geometry_msgs/msg/PoseStamped"
     assert manycore("topic", "find", "geometry_msgs/msg/PoseStamped") == "/pose"
