@@ -38,13 +38,14 @@ def result_of(node, goal):
 
 
 def test_goal_feedback_and_result(node, client):
+    """All feedback first: rclpy passes on no more of it once it has the result."""
     steps = []
     goal = send(node, client, 5, lambda message: steps.append(list(message.feedback.sequence)))
+    spin_until(node, lambda: len(steps) == 4)
+    assert steps[-1] == [0, 1, 1, 2, 3, 5]
     result = result_of(node, goal)
     assert result.status == GoalStatus.STATUS_SUCCEEDED
     assert list(result.result.sequence) == [0, 1, 1, 2, 3, 5]
-    spin_until(node, lambda: len(steps) == 4)
-    assert steps[-1] == [0, 1, 1, 2, 3, 5]
 
 
 def test_cancel(node, start_peer, peer_cluster):

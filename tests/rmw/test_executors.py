@@ -111,9 +111,9 @@ def test_topics_services_and_actions(node: Node, executor: Any, peer: None) -> N
     actions = ActionClient(node, Fibonacci, "fibonacci")
     run_until(executor, actions.server_is_ready)
     goal = result_of(executor, actions.send_goal_async(Fibonacci.Goal(order=2), feedback.append))
+    run_until(executor, lambda: feedback)  # before rclpy has the result, which ends feedback
     result = result_of(executor, goal.get_result_async()).result
     assert list(result.sequence) == [0, 1, 1]
-    run_until(executor, lambda: feedback)
 
 
 def test_a_node_serves_itself(node: Node, executor: Any) -> None:
