@@ -68,10 +68,21 @@ def cpu_time_s(pid: int) -> float:
 
 
 def is_stopped(pid: int) -> bool:
-    """Tell whether a process has been stopped by a signal; one that is gone has not."""
+    """Tell whether a signal has stopped all threads of a process; one that is gone has not."""
+    return _states_of(pid) == {"T"}
+
+
+def is_asleep(pid: int) -> bool:
+    """Tell whether no thread of a process has anything to do; one that is gone is not asleep."""
+    return _states_of(pid) == {"S"}
+
+
+def _states_of(pid: int) -> set[str]:
+    """Return the state letters of a process's threads, see proc(5); none when it is gone."""
     with suppress(FileNotFoundError, ProcessLookupError):
-        return Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()[0] == "T"
-    return False
+        threads = Path(f"/proc/{pid}/task").iterdir()
+        return {(thread / "stat").read_text().rsplit(")", 1)[1].split()[0] for thread in threads}
+    return set()
 
 
 def _program(process: Path) -> str:

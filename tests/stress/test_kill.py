@@ -110,6 +110,18 @@ class Graves:
         return [pid for pid in dead if pid in self._killed_ns]
 
 
+def some_receive_threads_of(platform: str) -> list[int]:
+    """Wait until there are any; return their pids."""
+    found: list[int] = []
+
+    def look() -> bool:
+        found.extend(receive_threads_of(platform))
+        return bool(found)
+
+    wait_until(look, "there is a receive thread")
+    return found
+
+
 @pytest.fixture
 def load(start, running_time) -> Load:
     print(f"MANYCORE_TEST_SEED={SEED}")
@@ -145,9 +157,9 @@ def test_killed_nodes(start, load, graves):
 def test_killed_receive_threads(platform, load):
     """A receive thread that dies is replaced, and what it had in hand arrives."""
     for _ in range(KILLS // 10):
-        wait_until(lambda: receive_threads_of(platform), "there is a receive thread")
+        victim = random.choice(some_receive_threads_of(platform))
         time.sleep(random.uniform(0, LONGEST_LIFE_S))  # the random moment
-        kill(random.choice(receive_threads_of(platform)))
+        kill(victim)
         load.wait_until_it_goes_on()
     load.assert_unharmed()
 
@@ -185,9 +197,11 @@ def test_the_last_process_is_killed(start, platform, running_time):
     for _ in range(KILLS // 10):
         nursery.say(f"publisher {random.randint(1, CLUSTERS)}")
         victim = int(nursery.wait_for(r"victim (\d+) works").group(1))
+        some_receive_threads_of(platform)  # the machine may put the victim off before it starts one
         time.sleep(random.uniform(0, LONGEST_LIFE_S / 4))  # the random moment
         kill(victim)
         running_time.wait_within(RECOVERY_S, lambda: not leftovers(platform), "all is removed")
+        wait_until(lambda: not processes_of(platform), "the receive thread is gone")
 
 
 @pytest.mark.skipif(not IS_MANYCORE, reason="about what rmw_manycore leaves in /dev/shm")
