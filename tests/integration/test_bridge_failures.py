@@ -12,6 +12,7 @@ from contextlib import ExitStack, suppress
 
 import pytest
 from bridging import OUTSIDE, Bridge, domain_of
+from processes import has_receive_threads
 from support import (
     IS_MANYCORE,
     MAPFILES,
@@ -67,6 +68,7 @@ def test_it_ends_when_it_is_told_twice(bridge) -> None:
     for _ in range(4):
         (process,) = bridge.run(bridge.route("outward", "/chatter")).values()
         wait_until(lambda: bridge.row("outward", "/chatter").get("alive"), "it counts")
+        wait_until(lambda: has_receive_threads(bridge.platform), "there is who clears up after it")
         process.signal(signal.SIGINT)
         process.signal(signal.SIGTERM)
         assert process.wait() in (0, -signal.SIGINT, -signal.SIGTERM), process
