@@ -1,8 +1,8 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 // How old is a message when each of many subscribers has it, at a steady rate?
 //
-//   fan_out role=sink
-//   fan_out role=source bytes=N subscribers=N rate_hz=N iterations=N
+//   fan_out role=sink depth=N
+//   fan_out role=source depth=N bytes=N subscribers=N rate_hz=N warm_up=N iterations=N
 //
 // A sink prints the age of each message in the order of arrival; messages are as many as
 // `iterations` unless some got lost.
@@ -17,19 +17,17 @@ namespace {
 using namespace manycore::bench;
 using manycore::monotonic_ns;
 
-constexpr size_t depth = 10;
-// Messages before the measured ones, so that every sink has matched and every page is warm.
-constexpr size_t warm_up = 100;
 constexpr uint64_t warm_up_stamp = 0;
 
 void source(const Arguments & arguments) {
   Node node("source");
-  Publisher publisher(node, "/data", reliable_qos(depth));
+  Publisher publisher(node, "/data", reliable_qos(arguments.number("depth")));
   wait_until_matched(publisher, arguments.number("subscribers"));
   Message message;
   message.data.resize(arguments.number("bytes"));
   const std::chrono::nanoseconds period(manycore::ns_per_s / arguments.number("rate_hz"));
   auto next = std::chrono::steady_clock::now();
+  const size_t warm_up = arguments.number("warm_up");
   const size_t messages = warm_up + arguments.number("iterations");
   for (size_t i = 0; i < messages; ++i) {
     std::this_thread::sleep_until(next += period);
@@ -40,9 +38,9 @@ void source(const Arguments & arguments) {
   stop_subscribers(publisher);
 }
 
-void sink() {
+void sink(const Arguments & arguments) {
   Node node("sink");
-  Subscription subscription(node, "/data", reliable_qos(depth));
+  Subscription subscription(node, "/data", reliable_qos(arguments.number("depth")));
   WaitSet wait_set(node);
   Message message;
   std::vector<int64_t> samples_ns;
@@ -61,6 +59,6 @@ void sink() {
 
 int main(int argc, char ** argv) {
   return run_program(argc, argv, [](const Arguments & arguments) {
-    arguments.text("role") == "source" ? source(arguments) : sink();
+    arguments.text("role") == "source" ? source(arguments) : sink(arguments);
   });
 }
