@@ -161,16 +161,16 @@ def test_services_and_parameters(run):
 
 
 def test_action(run):
-    """Two clients, one in the server's cluster; the third goal of each is cancelled."""
+    """Two clients, one in the server's cluster; both cancel every third goal, if it still runs."""
     running = run("action.yaml")
     running.wait_until_said(
-        "near_client", "goal 1 succeeded: [0, 1, 1, 2, 3, 5]", "goal 3 cancelled"
+        "near_client", "goal 1 succeeded: [0, 1, 1, 2, 3, 5]", "cancelled: [0, 1"
     )
     running.wait_until_said(
         "far_client",
         "feedback: [0, 1, 1, 2, 3, 5, 8, 13]",  # of any goal: rclpy drops it after the result
         "goal 1 succeeded: [0, 1, 1, 2, 3, 5, 8, 13, 21]",
-        "goal 3 cancelled",
+        "cancelled: [0, 1",
     )
     running.stop()
 

@@ -213,11 +213,21 @@ TEST_CASE("strangers in the pipe: whatever they write, nothing crashes and nothi
 
 TEST_CASE("messages of an earlier publisher in the same place reach nobody") {
   Fixture f;
+  const auto place = [&](const Publisher & publisher) {
+    return f.inspection.registry().endpoints()[f.inspection.slot_of(publisher.gid())].block.offset();
+  };
+  const uint64_t earlier = place(*f.publisher);
   const pid_t pid = f.platform.stop_receive_thread(2);
   f.publish_numbers(1, 10);  // in the pipe
   f.publisher.reset();
+  f.expect(1, 10);  // without the receive thread, as their publisher has gone
   const auto later = f.process->create_publisher(on_topic("/x", keep_last(10)));
+  REQUIRE(place(*later) == earlier);
   publish(*later, 1, 100, 2);
+  const uint64_t notifications = f.far_cluster().notifications;
   kill(pid, SIGCONT);
   f.subscriber.tell("take 1 1 2");
+  publish(*later, 2, 100, 2);
+  wait_until("a later hint", [&] { return f.far_cluster().notifications - notifications >= 2; });
+  CHECK(f.far_cluster().notifications - notifications == 2);
 }
