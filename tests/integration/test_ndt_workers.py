@@ -17,6 +17,7 @@ import numpy as np
 import pytest
 from ndt_support import killed_as_they_come
 from ndt_world import pose, scan_at, street
+from processes import is_asleep
 from support import wait_until
 
 from rmw_manycore_py.errors import ManycoreError
@@ -60,10 +61,6 @@ def has_ended(pid: int) -> bool:
         return Path(f"/proc/{pid}/stat").read_text().rsplit(")")[-1].split()[0] in "ZX"
     except (FileNotFoundError, ProcessLookupError):
         return True
-
-
-def sleeps(pid: int) -> bool:
-    return Path(f"/proc/{pid}/stat").read_text().rsplit(")")[-1].split()[0] == "S"
 
 
 def cpu_ns(pid: int) -> int:
@@ -156,7 +153,7 @@ def test_workers_sleep_between_alignments() -> None:
     with workers(2) as matcher:
         matcher.align(SCAN, GUESS)
         pids = matcher.worker_pids
-        wait_until(lambda: all(sleeps(pid) for pid in pids), "the workers have gone to sleep")
+        wait_until(lambda: all(map(is_asleep, pids)), "the workers have gone to sleep")
         before = [cpu_ns(pid) for pid in pids]
         assert not threading.Event().wait(1.0)  # a second in which nothing is due
         assert [cpu_ns(pid) for pid in pids] == before
