@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The command `manycore`: one file per verb."""
+"""The command `manycore`: one package per group of verbs, one file per verb."""
 
 from rmw_manycore_py.cli.main import main
 

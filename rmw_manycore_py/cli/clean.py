@@ -6,8 +6,9 @@ from __future__ import annotations
 import click
 
 from rmw_manycore_py import _transport
-from rmw_manycore_py.cli.options import examples, json_option, print_json
-from rmw_manycore_py.cli.view import platform_names
+from rmw_manycore_py.cli.common.options import examples, json_option
+from rmw_manycore_py.cli.common.printing import print_json
+from rmw_manycore_py.cli.common.view import platform_names
 from rmw_manycore_py.errors import ManycoreError
 
 

@@ -7,13 +7,8 @@ from pathlib import Path
 
 import click
 
-from rmw_manycore_py.cli.options import (
-    examples,
-    json_option,
-    mapfile_argument,
-    print_json,
-    print_notices,
-)
+from rmw_manycore_py.cli.common.options import examples, json_option, mapfile_argument
+from rmw_manycore_py.cli.common.printing import print_json, print_notices
 from rmw_manycore_py.create import create
 
 

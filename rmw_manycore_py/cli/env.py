@@ -8,7 +8,8 @@ import shlex
 import click
 
 from rmw_manycore_hook import LIBRARY_PATH, WHEELS_BOOTSTRAPPED
-from rmw_manycore_py.cli.options import examples, json_option, print_json
+from rmw_manycore_py.cli.common.options import examples, json_option
+from rmw_manycore_py.cli.common.printing import print_json
 from rmw_manycore_py.launch.environment import program_environment
 
 VARIABLES = ("RMW_IMPLEMENTATION", LIBRARY_PATH, WHEELS_BOOTSTRAPPED)

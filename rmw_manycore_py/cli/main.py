@@ -6,8 +6,8 @@ from __future__ import annotations
 import click
 
 from rmw_manycore_py import __version__
-from rmw_manycore_py.cli.group import LazyGroup
-from rmw_manycore_py.cli.options import examples
+from rmw_manycore_py.cli.common.group import LazyGroup
+from rmw_manycore_py.cli.common.options import examples
 
 VERBS = {
     "run": "rmw_manycore_py.cli.run:command",
@@ -27,7 +27,7 @@ VERBS = {
     "env": "rmw_manycore_py.cli.env:command",
     "ndt": "rmw_manycore_py.cli.ndt:command",
     "bridge": "rmw_manycore_py.cli.bridge:command",
-    "bench": "rmw_manycore_py.bench.cli:bench",
+    "bench": "rmw_manycore_py.cli.bench:command",
 }
 
 

@@ -9,8 +9,8 @@ from pathlib import Path
 
 import click
 
-from rmw_manycore_py.cli.options import examples, mapfile_argument
-from rmw_manycore_py.cli.run_printer import RunPrinter
+from rmw_manycore_py.cli.common.options import examples, mapfile_argument
+from rmw_manycore_py.cli.common.run_printer import RunPrinter
 from rmw_manycore_py.launch.events import Event
 from rmw_manycore_py.launch.run import program_names, run_placement
 from rmw_manycore_py.mapfile import load_mapfile, resolve

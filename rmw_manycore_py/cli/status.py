@@ -6,16 +6,10 @@ from __future__ import annotations
 import click
 
 from rmw_manycore_py import _transport
-from rmw_manycore_py.cli import view
-from rmw_manycore_py.cli.options import (
-    examples,
-    json_option,
-    new_table,
-    print_json,
-    print_table,
-    size_text,
-)
-from rmw_manycore_py.cli.view import Row
+from rmw_manycore_py.cli.common import view
+from rmw_manycore_py.cli.common.options import examples, json_option
+from rmw_manycore_py.cli.common.printing import new_table, print_json, print_table, size_text
+from rmw_manycore_py.cli.common.view import Row
 from rmw_manycore_py.errors import ManycoreError
 
 

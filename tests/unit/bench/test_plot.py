@@ -12,8 +12,8 @@ import pytest
 from support import manycore_command
 
 from rmw_manycore_py.bench.plot import plot
-from rmw_manycore_py.bench.report import Report
 from rmw_manycore_py.bench.summary import Curve, Result
+from rmw_manycore_py.cli.bench.report import Report
 from rmw_manycore_py.figures import load_figure
 
 pytestmark = pytest.mark.unit

@@ -1,0 +1,36 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""`manycore action info`, printed as `ros2 action info` prints."""
+
+from __future__ import annotations
+
+import click
+
+from rmw_manycore_py.cli.common import view
+from rmw_manycore_py.cli.common.names import row_of
+from rmw_manycore_py.cli.common.options import (
+    count_option,
+    examples,
+    json_option,
+    platform_option,
+    types_option,
+)
+from rmw_manycore_py.cli.common.printing import print_json
+
+
+@click.command("info", epilog=examples("manycore action info -t /fibonacci"))
+@click.argument("action")
+@types_option
+@count_option
+@json_option
+@platform_option
+def command(action: str, platform: str, as_json: bool, show_types: bool, count: bool) -> None:
+    """Show the nodes that serve ACTION and those that use it."""
+    row = row_of(view.actions(view.open_platform(platform).endpoints()), action, "action")
+    if as_json:
+        print_json(row)
+        return
+    click.echo(f"Action: {action}")
+    for role in ("clients", "servers"):
+        click.echo(f"Action {role}: {len(row[role])}")
+        for end in [] if count else row[role]:
+            click.echo(f"    {end['node']}" + (f" [{end['type']}]" if show_types else ""))

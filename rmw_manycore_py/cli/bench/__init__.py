@@ -1,0 +1,18 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""`manycore bench`: the figures of rmw_manycore, measured here and now."""
+
+from __future__ import annotations
+
+import click
+
+from rmw_manycore_py.cli.common.group import LazyGroup
+
+VERBS = {
+    verb: f"rmw_manycore_py.cli.bench.{verb}:command"
+    for verb in ("all", "bridge", "idle", "memory", "ndt", "rclpy", "rmw", "startup")
+}
+
+
+@click.group("bench", cls=LazyGroup, commands_at=VERBS)
+def command() -> None:
+    """Measure rmw_manycore beside Fast DDS and beside the machine itself."""

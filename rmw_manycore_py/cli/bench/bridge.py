@@ -1,0 +1,19 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""`manycore bench bridge`."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import click
+
+from rmw_manycore_py.bench import bridge
+from rmw_manycore_py.cli.bench.answer import answer
+from rmw_manycore_py.cli.bench.options import bench_options
+
+
+@click.command("bridge")
+@bench_options
+def command(**options: Any) -> None:
+    """Round trips of a node outside with one inside, and what an idle bridge costs."""
+    answer([bridge.QUESTION], **options)

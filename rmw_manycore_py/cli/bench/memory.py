@@ -1,0 +1,19 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""`manycore bench memory`."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import click
+
+from rmw_manycore_py.bench import memory
+from rmw_manycore_py.cli.bench.answer import answer
+from rmw_manycore_py.cli.bench.options import bench_options
+
+
+@click.command("memory")
+@bench_options
+def command(**options: Any) -> None:
+    """Memory of the platform, of a cluster and of a node."""
+    answer([memory.QUESTION], **options)

@@ -1,0 +1,51 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""`manycore bridge status`."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import click
+
+from rmw_manycore_py.bridge.counters import DROPS
+from rmw_manycore_py.bridge.status import status
+from rmw_manycore_py.cli.common.options import examples, json_option, platform_option
+from rmw_manycore_py.cli.common.printing import new_table, print_json, print_table, size_text
+from rmw_manycore_py.cli.common.view import open_platform
+
+_ARROWS = {"inward": "<-", "outward": "->"}
+
+
+@click.command("status", epilog=examples("manycore bridge status --json | jq '.[].messages'"))
+@platform_option
+@json_option
+def command(platform: str, as_json: bool) -> None:
+    """Show what crosses, how much has crossed, and what was kept back and why."""
+    open_platform(platform)
+    rows = status(platform)
+    if as_json:
+        print_json(rows)
+    elif not rows:
+        click.echo(f"platform {platform} has no bridge")
+    else:
+        _show(rows)
+
+
+def _show(rows: list[dict[str, Any]]) -> None:
+    columns = ("inside", "", "outside", "#domain", "#lane", "#load", "state", "#messages")
+    table = new_table(*columns, "#size", "#mean", "#max", "kept back")
+    for row in rows:
+        state = row["state"] if row["alive"] else "process is gone"
+        drops = ", ".join(f"{row[name]} {name}" for name in DROPS if row[name])
+        table.add_row(
+            *(row["inside"], _ARROWS[row["direction"]], row["outside"], str(row["domain"])),
+            *(str(row["lane"]), f"{row['load']:.1%}", state),
+            *(str(row["messages"]), size_text(row["bytes"])),
+            *(_time_text(row["latency_mean_ns"]), _time_text(row["latency_max_ns"])),
+            drops or row["reason"],
+        )
+    print_table(table)
+
+
+def _time_text(ns: int | None) -> str:
+    return f"{ns / 1e6:.3f} ms" if ns else "-"

@@ -1,0 +1,39 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Printing named things that have types: topics, services, actions."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import click
+
+from rmw_manycore_py.cli.common.printing import print_json
+from rmw_manycore_py.cli.common.view import Row
+from rmw_manycore_py.errors import ManycoreError
+
+
+def show_names(
+    rows: Sequence[Row], *, as_json: bool, types: bool = False, count: bool = False
+) -> None:
+    """Print the names, one a line; with their types, or only how many there are."""
+    if as_json:
+        print_json(rows)
+    elif count:
+        click.echo(len(rows))
+    else:
+        for row in rows:
+            click.echo(f"{row['name']} [{', '.join(row['types'])}]" if types else row["name"])
+
+
+def row_of(rows: Sequence[Row], name: str, kind: str) -> Row:
+    """Return the row of that name."""
+    for row in rows:
+        if row["name"] == name:
+            return row
+    raise ManycoreError(f"unknown {kind} '{name}' (manycore {kind} list shows all)")
+
+
+def show_types(rows: Sequence[Row], name: str, kind: str) -> None:
+    """Print the types of the thing of that name, one a line."""
+    for type_name in row_of(rows, name, kind)["types"]:
+        click.echo(type_name)

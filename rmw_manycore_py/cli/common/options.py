@@ -1,0 +1,53 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Options and arguments that several commands have."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import click
+
+
+def default_platform() -> str:
+    """Return the platform of programs that are not told another one."""
+    domain = os.environ.get("ROS_DOMAIN_ID") or "0"
+    return os.environ.get("MANYCORE_PLATFORM") or f"domain-{domain}"
+
+
+json_option = click.option("--json", "as_json", is_flag=True, help="Print JSON.")
+platform_option = click.option(
+    "--platform",
+    default=default_platform,
+    show_default="$MANYCORE_PLATFORM, or domain-$ROS_DOMAIN_ID",
+    help="Name of the platform.",
+)
+values_argument = click.argument("values", default="{}")
+types_option = click.option("-t", "--show-types", is_flag=True, help="Show the types too.")
+count_option = click.option(
+    "-c",
+    "--count",
+    "--count-topics",
+    "--count-services",
+    "--count-nodes",
+    "--count-actions",
+    "count",
+    is_flag=True,
+    help="Show their number only.",
+)
+hidden_option = click.option(
+    "--include-hidden",
+    "--include-hidden-topics",
+    "--include-hidden-services",
+    "hidden",
+    is_flag=True,
+    help="Show names with a part that starts with _ too.",
+)
+mapfile_argument = click.argument(
+    "mapfile", type=click.Path(dir_okay=False, exists=True, path_type=Path)
+)
+
+
+def examples(*lines: str) -> str:
+    """Return the end of a help text, with a mark that keeps click from joining the lines."""
+    return "\b\nExamples:\n" + "\n".join(f"  {line}" for line in lines)

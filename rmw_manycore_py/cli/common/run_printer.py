@@ -1,0 +1,111 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""What `manycore run` prints for people: each node's lines behind its coloured name."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import cycle
+
+import click
+
+from rmw_manycore_py.cli.common.printing import new_table, print_table, size_text
+from rmw_manycore_py.launch.events import (
+    Ended,
+    Event,
+    Finished,
+    Insisting,
+    Notice,
+    Output,
+    Platform,
+    Restarting,
+    Started,
+    Stopping,
+)
+
+COLOURS = (
+    "cyan",
+    "yellow",
+    "green",
+    "magenta",
+    "blue",
+    "bright_cyan",
+    "bright_yellow",
+    "bright_green",
+    "bright_magenta",
+    "bright_blue",
+)  # red is for failures
+RUNNER = "manycore"
+
+
+class RunPrinter:
+    """Prints events as they come.
+
+    :param nodes: who has a colour and room for its name from the start; others may follow.
+    """
+
+    def __init__(self, nodes: Sequence[str] = ()) -> None:
+        # What serves the nodes prints little: its longer names may stick out.
+        named = [name for name in nodes if not name.startswith("(")]
+        self._width = max(len(name) for name in (*named, RUNNER))
+        self._colours = cycle(COLOURS)
+        self._prefixes = {name: self._new_prefix(name) for name in nodes}
+        self._failures: list[Ended] = []
+
+    def report(self, event: Event) -> None:
+        """Print an event."""
+        if isinstance(event, Output):
+            click.echo(self._prefix(event.node) + event.line)
+        elif isinstance(event, Platform):
+            _print_platform(event)
+        elif isinstance(event, Notice):
+            self._say(event.text, fg="yellow")
+        elif isinstance(event, Started):
+            self._say(
+                f"{event.node} started: cluster {event.cluster} core {event.core} -> "
+                f"host CPU {event.host_cpu}, pid {event.pid}"
+            )
+        elif isinstance(event, Stopping):
+            self._say(f"stopping: {event.reason}")
+        elif isinstance(event, Insisting):
+            self._say(f"{event.node} does not end: {event.signal}", fg="yellow")
+        elif isinstance(event, Restarting):
+            self._say(f"{event.node} is started again: {event.reason}", fg="yellow")
+        elif isinstance(event, Ended):
+            self._ended(event)
+        elif isinstance(event, Finished):
+            self._finished()
+
+    def _prefix(self, name: str) -> str:
+        if name not in self._prefixes:
+            self._prefixes[name] = self._new_prefix(name)
+        return self._prefixes[name]
+
+    def _new_prefix(self, name: str) -> str:
+        return click.style(f"{name:<{self._width}} | ", fg=next(self._colours))
+
+    def _say(self, text: str, fg: str | None = None) -> None:
+        click.secho(f"{RUNNER:<{self._width}} | {text}", fg=fg, bold=fg is None)
+
+    def _ended(self, event: Ended) -> None:
+        failed = event.state == "failed"
+        if failed:
+            self._failures.append(event)
+        self._say(f"{event.node} {event.state}: {event.reason}", fg="red" if failed else None)
+
+    def _finished(self) -> None:
+        """Say again who failed and why: the reason may have scrolled away."""
+        for failure in self._failures:
+            click.secho(f"\n{failure.node} failed: {failure.reason}", fg="red", err=True)
+            for line in failure.last_lines:
+                click.echo(f"    {line}", err=True)
+
+
+def _print_platform(event: Platform) -> None:
+    click.echo(
+        f"platform {event.name} ({event.profile}): {event.clusters} clusters x "
+        f"{event.cores_per_cluster} cores, SMEM {size_text(event.smem_size)} each"
+    )
+    table = new_table("node", "#cluster", "#core", "#host CPU")
+    for row in event.cores:
+        table.add_row(row.node, str(row.cluster), str(row.core), str(row.host_cpu))
+    print_table(table)

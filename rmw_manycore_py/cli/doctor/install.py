@@ -1,0 +1,131 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Checks of the doctor: python, ROS 2, our library, its hook, and whether they work together."""
+
+from __future__ import annotations
+
+import importlib.metadata
+import importlib.util
+import os
+import subprocess
+import sys
+import sysconfig
+from collections.abc import Iterator
+from pathlib import Path
+
+import rmw_manycore_hook
+from rmw_manycore_py.cli.doctor.finding import Finding, Verdict, advised, judged
+from rmw_manycore_py.mapfile.ament import prefixes
+
+LEAST_PYTHON = (3, 10)
+ROS_PACKAGE = "ros-rclpy"
+ROS_VERSION = "7.1."  # rclpy of Jazzy
+REINSTALL = "pip install --force-reinstall --no-deps rmw-manycore"
+START_TIMEOUT_S = 60
+FILES = {
+    "library": "lib/librmw_manycore.so",
+    "receive thread": "lib/rmw_manycore/manycore_receive_thread",
+    "scan matching worker": "lib/rmw_manycore/manycore_ndt_worker",
+    "stand-ins": "lib/rmw_manycore/standin/librmw_fastrtps_cpp.so",
+    "ament index": "share/ament_index/resource_index/rmw_typesupport/rmw_manycore",
+}
+
+# Run by a python that uses rmw_manycore: prints what rclpy got, and what else was loaded.
+_PROBE = """
+import rclpy
+maps = [line for line in open("/proc/self/maps") if "/standin/" not in line]
+print(rclpy.get_rmw_implementation_identifier())
+print(*(any(name in line for line in maps) for name in ("librmw_manycore.so", "libfastrtps.so")))
+"""
+
+
+def check_install() -> Iterator[Finding]:
+    """Yield what is installed; the last check starts rclpy."""
+    yield _python()
+    yield _ros()
+    yield from _files()
+    yield _hook()
+    yield _substitution()
+    yield _selected()
+
+
+def _python() -> Finding:
+    version = ".".join(map(str, sys.version_info[:3]))
+    expected = ".".join(map(str, LEAST_PYTHON))
+    advice = f"use python {expected} or later"
+    return judged("python", sys.version_info >= LEAST_PYTHON, f"{version}, {sys.prefix}", advice)
+
+
+def _ros() -> Finding:
+    try:
+        version = importlib.metadata.version(ROS_PACKAGE)
+    except importlib.metadata.PackageNotFoundError:
+        distribution = os.environ.get("ROS_DISTRO", "none")
+        found = f"no wheels; sourced installation: {distribution}"
+        advice = 'pip install "ros-rclpy[fastrtps]==7.1.6" ros-jazzy-common-interfaces'
+        return judged("ROS 2", distribution == "jazzy", found, advice)
+    advice = 'pip install "ros-rclpy[fastrtps]==7.1.6"'
+    is_jazzy = version.startswith(ROS_VERSION)
+    return judged("ROS 2", is_jazzy, f"wheels, {ROS_PACKAGE} {version}", advice)
+
+
+def _files() -> Iterator[Finding]:
+    for subject, name in FILES.items():
+        places = [prefix / name for prefix in prefixes()]
+        file = next((place for place in places if place.is_file()), None)
+        found = str(file) if file else f"no {' and no '.join(map(str, places))}"
+        yield judged(subject, file is not None, found, REINSTALL)
+    binding = importlib.util.find_spec("rmw_manycore_py._transport")
+    found = str(binding.origin) if binding else "no rmw_manycore_py._transport"
+    yield judged("python binding", binding is not None, found, REINSTALL)
+
+
+def _hook() -> Finding:
+    subject = "start-up hook"
+    if not rmw_manycore_hook.needs_stand_ins(sys.prefix):
+        return Finding(subject, Verdict.OK, "not needed: this ROS 2 selects its middleware itself")
+    file = Path(sysconfig.get_path("purelib"), "rmw_manycore.pth")
+    is_there = file.is_file()
+    return judged(subject, is_there, str(file) if is_there else f"no {file}", REINSTALL)
+
+
+def _substitution() -> Finding:
+    """Start rclpy as a user would, with the variable alone."""
+    environment = {**os.environ, "RMW_IMPLEMENTATION": "rmw_manycore"}
+    try:
+        result = subprocess.run(
+            [sys.executable, "-c", _PROBE],
+            env=environment,
+            text=True,
+            timeout=START_TIMEOUT_S,
+            capture_output=True,
+            check=False,
+        )
+    except subprocess.TimeoutExpired:
+        return Finding("substitution", Verdict.FAILURE, f"no answer in {START_TIMEOUT_S} s")
+    return judge_probe(result.returncode, result.stdout.split(), result.stderr)
+
+
+def judge_probe(status: int, words: list[str], errors: str) -> Finding:
+    """Judge what the probe printed: the middleware, and which libraries were loaded."""
+    subject = "substitution"
+    if status != 0 or len(words) != 3:
+        lines = errors.strip().splitlines() or [f"exit status {status}"]
+        return Finding(subject, Verdict.FAILURE, f"rclpy does not start: {lines[-1]}", REINSTALL)
+    identifier, has_ours, has_theirs = words
+    if identifier != "rmw_manycore" or has_ours != "True":
+        advice = "see docs/design/substitution.md, 'When things go wrong'"
+        return Finding(subject, Verdict.FAILURE, f"rclpy uses {identifier}", advice)
+    return advised(
+        subject,
+        has_theirs == "False",
+        "rclpy uses rmw_manycore" + (", Fast DDS is loaded too" if has_theirs == "True" else ""),
+        "this costs memory only; another version of Fast DDS than expected is installed",
+    )
+
+
+def _selected() -> Finding:
+    selected = os.environ.get("RMW_IMPLEMENTATION")
+    is_ours = selected == "rmw_manycore"
+    found = f"RMW_IMPLEMENTATION is {selected or 'not set'}"
+    advice = 'for nodes started by hand from this shell: eval "$(manycore env)"'
+    return Finding("this shell", Verdict.OK, found, "" if is_ours else advice)

@@ -1,0 +1,132 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Checks of the doctor: shared memory, CPUs, kernel, platforms that are left over."""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import platform
+import stat
+from collections.abc import Iterator
+from pathlib import Path
+
+import posix_ipc
+
+from rmw_manycore_py.cli.common.printing import size_text
+from rmw_manycore_py.cli.doctor.finding import Finding, Verdict, advised, judged
+
+SHARED_MEMORY = Path("/dev/shm")
+# Two clusters of Coolidge with the registry; the smallest that the examples run in.
+USEFUL_SHARED_MEMORY_BYTES = 64 << 20
+USEFUL_CPUS = 2
+_FUTEX_WAKE = 1  # <linux/futex.h>
+_SYS_FUTEX = {"x86_64": 202, "aarch64": 98}
+
+
+def check_machine() -> Iterator[Finding]:
+    """Yield what the transport needs of the system."""
+    yield _shared_memory_size()
+    yield _posix_shared_memory()
+    yield _user_directory()
+    yield _cpus()
+    yield _pidfd()
+    yield _futex()
+    yield _stale_platforms()
+
+
+def _shared_memory_size() -> Finding:
+    status = os.statvfs(SHARED_MEMORY)
+    size, free = status.f_blocks * status.f_frsize, status.f_bavail * status.f_frsize
+    advice = (
+        "mount -o remount,size=1G /dev/shm (a container: --shm-size=1g), or remove what fills it"
+    )
+    found = f"{size_text(free)} free of {size_text(size)}"
+    return advised("/dev/shm", free >= USEFUL_SHARED_MEMORY_BYTES, found, advice)
+
+
+def _posix_shared_memory() -> Finding:
+    """Make a segment as any program would, and remove it."""
+    subject, name = "POSIX shared memory", f"/manycore-doctor-{os.getpid()}"
+    try:
+        segment = posix_ipc.SharedMemory(name, posix_ipc.O_CREX, mode=0o600, size=4096)
+    except (OSError, posix_ipc.Error) as error:
+        advice = "give this user the right to write to /dev/shm (mode 1777)"
+        return Finding(subject, Verdict.FAILURE, f"no segment can be made: {error}", advice)
+    segment.close_fd()
+    segment.unlink()
+    return Finding(subject, Verdict.OK, "works")
+
+
+def _user_directory() -> Finding:
+    path = SHARED_MEMORY / f"manycore-{os.getuid()}"
+    try:
+        status = path.lstat()
+    except FileNotFoundError:
+        return Finding("platform directory", Verdict.OK, f"{path}: made at the first start")
+    mode = stat.S_IMODE(status.st_mode)
+    is_private = stat.S_ISDIR(status.st_mode) and status.st_uid == os.getuid() and mode == 0o700
+    found = f"{path}, owner {status.st_uid}, mode {mode:o}"
+    advice = f"remove it, or: chmod 700 {path} and chown {os.getuid()} {path}"
+    return judged("platform directory", is_private, found, advice)
+
+
+def _cpus() -> Finding:
+    cpus = sorted(os.sched_getaffinity(0))
+    found = f"{len(cpus)} usable: {', '.join(map(str, cpus))}"
+    advice = "nodes share a CPU: correct, but with no timing worth looking at"
+    return advised("host CPUs", len(cpus) >= USEFUL_CPUS, found, advice)
+
+
+def _pidfd() -> Finding:
+    subject, found = "pidfd", f"Linux {platform.release()}"
+    try:
+        os.close(os.pidfd_open(os.getpid()))
+    except OSError as error:
+        return Finding(
+            subject,
+            Verdict.FAILURE,
+            f"{found}: {error.strerror}",
+            "use Linux 5.3 or later, and a container that allows pidfd_open",
+        )
+    return Finding(subject, Verdict.OK, found)
+
+
+def _futex() -> Finding:
+    """Wake nobody on a word of our own: an error means that the call is not to be had."""
+    number = _SYS_FUTEX.get(platform.machine())
+    if number is None:
+        found = f"not checked on {platform.machine()}"
+        return Finding("futex", Verdict.OK, found)
+    word = ctypes.c_int(0)
+    result = ctypes.CDLL(None, use_errno=True).syscall(
+        number, ctypes.byref(word), _FUTEX_WAKE, 1, None, None, 0
+    )
+    found = "works" if result == 0 else os.strerror(ctypes.get_errno())
+    return judged("futex", result == 0, found, "use a kernel or container that allows futex")
+
+
+def _stale_platforms() -> Finding:
+    subject = "platforms"
+    try:
+        from rmw_manycore_py import _transport
+    except ImportError as error:
+        return Finding(subject, Verdict.FAILURE, f"not checked: {error}")
+    try:
+        names = _transport.platforms()
+    except _transport.PlatformError as error:
+        return Finding(subject, Verdict.FAILURE, str(error))
+    dead = [name for name in names if not is_alive(name)]
+    alive = len(names) - len(dead)
+    found = f"{alive} alive" + (f", dead or unreadable: {', '.join(dead)}" if dead else "")
+    advice = "manycore clean; one that stays is used by nodes of another version: stop them first"
+    return advised(subject, not dead, found, advice)
+
+
+def is_alive(name: str) -> bool:
+    """Tell whether somebody is on a platform; one that cannot be read counts as dead."""
+    from rmw_manycore_py import _transport
+
+    try:
+        return bool(_transport.Platform(name).info()["alive"])
+    except _transport.PlatformError:
+        return False

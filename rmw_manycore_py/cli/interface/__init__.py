@@ -1,0 +1,18 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""`manycore interface`."""
+
+from __future__ import annotations
+
+import click
+
+from rmw_manycore_py.cli.common.group import LazyGroup
+
+VERBS = {
+    verb: f"rmw_manycore_py.cli.interface.{verb}:command"
+    for verb in ("list", "package", "packages", "proto", "show")
+}
+
+
+@click.group("interface", cls=LazyGroup, commands_at=VERBS)
+def command() -> None:
+    """List the types of messages, services and actions, and show them."""

@@ -1,0 +1,31 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""`manycore interface list`, printed as `ros2 interface list` prints."""
+
+from __future__ import annotations
+
+import click
+
+from rmw_manycore_py.cli.common.options import examples, json_option
+from rmw_manycore_py.cli.common.printing import print_json
+from rmw_manycore_py.cli.interface.kinds import TITLES, kind_of, kind_options
+from rmw_manycore_py.mapfile.ament import interfaces, packages_with_interfaces
+
+
+@click.command("list", epilog=examples("manycore interface list", "manycore interface list -s"))
+@kind_options
+@json_option
+def command(kinds: tuple[str, ...], as_json: bool) -> None:
+    """List the types that are installed, by default of all three kinds."""
+    names = sorted(name for package in packages_with_interfaces() for name in interfaces(package))
+    found = {
+        kind: [name for name in names if kind_of(name) == kind]
+        for kind in TITLES
+        if not kinds or kind in kinds
+    }
+    if as_json:
+        print_json(found)
+        return
+    for kind, of_kind in found.items():
+        click.echo(f"{TITLES[kind]}:")
+        for name in of_kind:
+            click.echo(f"    {name}")

@@ -1,0 +1,28 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""`manycore interface package`, printed as `ros2 interface package` prints."""
+
+from __future__ import annotations
+
+import click
+
+from rmw_manycore_py.cli.common.options import examples, json_option
+from rmw_manycore_py.cli.common.printing import print_json
+from rmw_manycore_py.cli.interface.kinds import kind_options, of_kinds
+from rmw_manycore_py.errors import ManycoreError
+from rmw_manycore_py.mapfile.ament import interfaces
+
+
+@click.command("package", epilog=examples("manycore interface package std_srvs"))
+@click.argument("package")
+@kind_options
+@json_option
+def command(package: str, kinds: tuple[str, ...], as_json: bool) -> None:
+    """List the types of PACKAGE."""
+    names = sorted(of_kinds(interfaces(package), kinds))
+    if not interfaces(package):
+        raise ManycoreError(f"package '{package}' is not installed, or has no types")
+    if as_json:
+        print_json(names)
+        return
+    for name in names:
+        click.echo(name)

@@ -1,0 +1,33 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""`manycore interface proto`, printed as `ros2 interface proto` prints."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import click
+
+from rmw_manycore_py.cli.common.interface_types import load_type
+from rmw_manycore_py.cli.common.message_text import ALL, to_yaml
+from rmw_manycore_py.cli.common.options import examples
+from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
+
+# What a user writes of a type: a message itself, the request of a service, the goal of an action.
+_PARTS = {"msg": None, "srv": "Request", "action": "Goal"}
+
+
+@click.command("proto", epilog=examples("manycore interface proto std_srvs/srv/SetBool"))
+@click.argument("type_name", metavar="TYPE")
+@click.option("--no-quotes", is_flag=True, help="Print no quotes around it.")
+def command(type_name: str, no_quotes: bool) -> None:
+    """Show values of TYPE to copy and change: of a service its request, of an action its goal."""
+    text = to_yaml(_prototype(type_name), ALL)
+    click.echo(text if no_quotes else f'"{text}"')
+
+
+def _prototype(type_name: str) -> Any:
+    parts = type_name.split("/")
+    if len(parts) != 3 or parts[1] not in _PARTS:
+        raise ManycoreError(f"'{type_name}' is no type: expected package/msg/Name", EXIT_BAD_INPUT)
+    loaded, part = load_type(type_name, parts[1]), _PARTS[parts[1]]
+    return getattr(loaded, part)() if part else loaded()

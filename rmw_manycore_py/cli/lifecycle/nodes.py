@@ -1,0 +1,35 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""`manycore lifecycle nodes`, printed as `ros2 lifecycle nodes` prints."""
+
+from __future__ import annotations
+
+import click
+
+from rmw_manycore_py.cli.common import view
+from rmw_manycore_py.cli.common.options import (
+    count_option,
+    examples,
+    hidden_option,
+    json_option,
+    platform_option,
+)
+from rmw_manycore_py.cli.common.printing import print_json
+from rmw_manycore_py.cli.lifecycle.services import lifecycle_nodes
+
+
+@click.command("nodes", epilog=examples("manycore lifecycle nodes"))
+@count_option
+@hidden_option
+@json_option
+@platform_option
+def command(platform: str, count: bool, hidden: bool, as_json: bool) -> None:
+    """List the nodes that have a lifecycle."""
+    found = lifecycle_nodes(view.open_platform(platform))
+    names = [name for name in found if hidden or not view.is_hidden(name)]
+    if as_json:
+        print_json(names)
+    elif count:
+        click.echo(len(names))
+    else:
+        for name in names:
+            click.echo(name)

@@ -1,0 +1,53 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""The lifecycle of a node, seen and changed through its services."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from rmw_manycore_py import _transport
+from rmw_manycore_py.cli.common.node_names import absolute_name, nodes_with_service
+from rmw_manycore_py.cli.common.tool_node import answer_of
+from rmw_manycore_py.errors import ManycoreError
+
+
+def lifecycle_nodes(platform: _transport.Platform) -> list[str]:
+    """Return the full names of the nodes that have a lifecycle."""
+    return nodes_with_service(platform, "get_state", "lifecycle_msgs/srv/GetState")
+
+
+def existing_lifecycle_node(platform: _transport.Platform, name: str) -> str:
+    """Return the full name of a node that is there and has a lifecycle."""
+    full_name = absolute_name(name)
+    if full_name not in lifecycle_nodes(platform):
+        raise ManycoreError(
+            f"no node '{full_name}' with a lifecycle (manycore lifecycle nodes shows all)"
+        )
+    return full_name
+
+
+class Lifecycle:
+    """The lifecycle of one node, as another node sees it."""
+
+    def __init__(self, node: Any, name: str) -> None:
+        self._node, self._name = node, name
+
+    def state(self) -> Any:
+        """Return the present lifecycle_msgs State."""
+        return self._call("GetState", "get_state").current_state
+
+    def transitions(self, *, every: bool = False) -> list[Any]:
+        """Return the lifecycle_msgs TransitionDescriptions from here, or those from every state."""
+        service = "get_transition_graph" if every else "get_available_transitions"
+        return list(self._call("GetAvailableTransitions", service).available_transitions)
+
+    def change(self, transition: Any) -> bool:
+        """Take a lifecycle_msgs Transition; return whether the node did."""
+        return bool(self._call("ChangeState", "change_state", transition=transition).success)
+
+    def _call(self, type_name: str, service: str, **fields: Any) -> Any:
+        import lifecycle_msgs.srv
+
+        service_type = getattr(lifecycle_msgs.srv, type_name)
+        client = self._node.create_client(service_type, f"{self._name}/{service}")
+        return answer_of(self._node, client, service_type.Request(**fields))

@@ -1,0 +1,35 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""`manycore map check`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from rmw_manycore_py.cli.common.options import examples, json_option, mapfile_argument
+from rmw_manycore_py.cli.common.printing import counted, print_json, print_notices
+from rmw_manycore_py.errors import MapfileError
+from rmw_manycore_py.mapfile import load_mapfile, resolve
+
+
+@click.command("check", epilog=examples("manycore map check mapfiles/talker_listener.yaml"))
+@mapfile_argument
+@json_option
+def command(mapfile: Path, as_json: bool) -> None:
+    """Check MAPFILE and everything it refers to; start nothing."""
+    try:
+        placement = resolve(load_mapfile(mapfile))
+    except MapfileError as error:
+        if as_json:
+            print_json({"valid": False, "problems": [vars(p) for p in error.problems]})
+        raise
+    if as_json:
+        print_json({"valid": True, "notices": placement.notices})
+        return
+    print_notices(placement.notices)
+    nodes = counted(len(placement.nodes), "node")
+    clusters = counted(len({node.cluster for node in placement.nodes}), "cluster")
+    click.echo(
+        f"{mapfile}: {nodes} in {clusters}, {counted(len(placement.topics), 'topic')}: valid"
+    )

@@ -1,0 +1,44 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""`manycore map init`: the template of a mapfile, from an application (ROS-lite, Fig. 5 a)."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from rmw_manycore_py.cli.common.options import examples
+from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
+from rmw_manycore_py.mapfile.template import init
+from rmw_manycore_py.topology import PROFILES
+
+
+@click.command(
+    "init",
+    epilog=examples(
+        "manycore map init talker.py listener.py",
+        "manycore map init src/ launch/demo.launch.xml --profile coolidge -o map.yaml",
+    ),
+)
+@click.argument("sources", nargs=-1, required=True, type=click.Path(exists=True, path_type=Path))
+@click.option("--profile", type=click.Choice(PROFILES), default="host", show_default=True)
+@click.option(
+    "-o",
+    "--output",
+    type=click.Path(dir_okay=False, path_type=Path),
+    help="File to write; it must not exist yet.  [default: standard output]",
+)
+def command(sources: tuple[Path, ...], profile: str, output: Path | None) -> None:
+    """Write a mapfile for the nodes in SOURCES: only the clusters are left to choose.
+
+    SOURCES are Python files, directories of them, and at most one launch file.
+    """
+    text = init(sources, output.parent if output else None, profile)
+    if output is None:
+        click.echo(text, nl=False)
+        return
+    try:
+        with output.open("x", encoding="utf-8") as file:
+            file.write(text)
+    except OSError as error:
+        raise ManycoreError(f"{output}: {error.strerror}", EXIT_BAD_INPUT) from error

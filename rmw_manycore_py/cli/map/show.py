@@ -1,0 +1,66 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""`manycore map show`."""
+
+from __future__ import annotations
+
+import shlex
+from pathlib import Path
+
+import click
+
+from rmw_manycore_py.cli.common.options import examples, json_option, mapfile_argument
+from rmw_manycore_py.cli.common.printing import (
+    new_table,
+    print_json,
+    print_notices,
+    print_table,
+    size_text,
+)
+from rmw_manycore_py.mapfile import Placement, load_mapfile, resolve
+from rmw_manycore_py.mapfile.show import as_data
+
+
+@click.command("show", epilog=examples("manycore map show mapfiles/three_nodes.yaml"))
+@mapfile_argument
+@json_option
+def command(mapfile: Path, as_json: bool) -> None:
+    """Show what MAPFILE places where: nodes, topic table, memory of the clusters."""
+    placement = resolve(load_mapfile(mapfile))
+    if as_json:
+        print_json(as_data(placement))
+        return
+    print_notices(placement.notices)
+    _show_nodes(placement)
+    _show_topics(placement)
+    _show_memory(placement)
+
+
+def _show_nodes(placement: Placement) -> None:
+    click.echo(f"platform {placement.name} ({placement.topology.profile})")
+    table = new_table("node", "#cluster", "#core", "#host CPU", "command")
+    for node in placement.nodes:
+        place = (str(node.cluster), str(node.core), str(node.host_cpu))
+        table.add_row(node.full_name, *place, shlex.join(node.program))
+        for core, cpu in node.workers:
+            table.add_row("  worker", str(core.cluster), str(core.core), str(cpu), "")
+    print_table(table)
+
+
+def _show_topics(placement: Placement) -> None:
+    click.echo("\ntopic table")
+    columns = ("#id", "topic", "type", "#topic DSM bytes", "publishers in", "receivers in")
+    table = new_table(*columns)
+    for topic in placement.topics:
+        size = str(topic.topic_dsm_size or "grows")
+        clusters = (topic.publisher_clusters, topic.receiver_clusters)
+        places = (", ".join(map(str, numbers)) or "-" for numbers in clusters)
+        table.add_row(str(topic.id), topic.name, topic.type or "?", size, *places)
+    print_table(table)
+
+
+def _show_memory(placement: Placement) -> None:
+    click.echo("\nmemory")
+    table = new_table("#cluster", "#SMEM", "#fixed topic DSMs")
+    for memory in placement.memory:
+        table.add_row(str(memory.cluster), size_text(memory.smem_size), size_text(memory.used))
+    print_table(table)

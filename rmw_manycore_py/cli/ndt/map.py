@@ -1,0 +1,88 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""`manycore ndt map`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from rmw_manycore_py.cli.common.options import examples
+from rmw_manycore_py.cli.ndt.output_file import writing
+from rmw_manycore_py.cli.ndt.recording_options import recording_options
+from rmw_manycore_py.ndt.map_file import SUFFIXES, write_points
+from rmw_manycore_py.ndt.map_tiles import write_tiles
+from rmw_manycore_py.ndt.recordings.opening import open_recording
+from rmw_manycore_py.ndt.thinning import voxel_centroids
+
+
+@click.command(
+    "map",
+    epilog=examples(
+        "manycore ndt map drive.npz -o map.pcd",
+        "manycore ndt map drive.npz -o map.npz --every 2",
+        "manycore ndt map drive.npz -o tiles --tile-size 20",
+    ),
+)
+@click.argument("recording", type=click.Path(exists=True, path_type=Path))
+@recording_options
+@click.option(
+    "-o",
+    "--output",
+    required=True,
+    type=click.Path(path_type=Path),
+    help="A .pcd, .ply or .npz file; with --tile-size a directory.",
+)
+@click.option(
+    "--every",
+    type=click.IntRange(1),
+    default=1,
+    show_default=True,
+    help="Take every Nth scan only, so that the others are new to the map.",
+)
+@click.option(
+    "--leaf",
+    "leaf_m",
+    type=click.FloatRange(0.0),
+    default=0.1,
+    show_default=True,
+    help="Metres: one point per voxel of this size; 0 keeps all.",
+)
+@click.option(
+    "--tile-size",
+    "tile_m",
+    type=click.FloatRange(1.0),
+    help="Metres: write square tiles and Autoware's pointcloud_map_metadata.yaml.",
+)
+@click.option(
+    "--format",
+    "suffix",
+    type=click.Choice([suffix.lstrip(".") for suffix in SUFFIXES]),
+    default="pcd",
+    show_default=True,
+    help="Of the tiles.",
+)
+def command(
+    recording: Path,
+    poses_path: Path | None,
+    topic: str,
+    pose_topic: str,
+    output: Path,
+    every: int,
+    leaf_m: float,
+    tile_m: float | None,
+    suffix: str,
+) -> None:
+    """Make a map of the scans of RECORDING and their poses."""
+    drive = open_recording(recording, poses_path, topic, pose_topic)
+    points = drive.accumulated(range(0, len(drive), every))
+    if leaf_m > 0.0:
+        points = voxel_centroids(points, (leaf_m,) * 3)
+    with writing(output):
+        if tile_m is None:
+            output.parent.mkdir(parents=True, exist_ok=True)
+            write_points(output, points)
+            click.echo(f"{output}: {len(points)} points")
+        else:
+            count = write_tiles(output, points, tile_m, f".{suffix}")
+            click.echo(f"{output}: {len(points)} points in {count} tiles")

@@ -1,0 +1,221 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""`manycore ndt replay`."""
+
+from __future__ import annotations
+
+import os
+import sys
+from pathlib import Path
+
+import click
+
+from rmw_manycore_py.cli.common.options import examples
+from rmw_manycore_py.cli.common.printing import new_table, print_json, print_table
+from rmw_manycore_py.cli.ndt.output_file import OutputFile, writing
+from rmw_manycore_py.cli.ndt.recording_options import recording_options
+from rmw_manycore_py.figures import load_figure
+from rmw_manycore_py.launch.environment import enter_middleware, leave_middleware
+from rmw_manycore_py.ndt.map_file import read_points
+from rmw_manycore_py.ndt.map_tiles import open_map
+from rmw_manycore_py.ndt.precision import why_coarse
+from rmw_manycore_py.ndt.recording import Recording
+from rmw_manycore_py.ndt.recordings.opening import open_recording
+from rmw_manycore_py.ndt.replay.tally import Summary, Tally, as_json
+from rmw_manycore_py.ndt.thinning import Points, voxel_centroids
+
+MAP_VOXEL_M = 0.2
+PICTURES = (".png", ".svg", ".pdf")
+
+
+@click.command(
+    "replay",
+    epilog=examples(
+        "manycore ndt replay build/street/drive.npz --plot replay.png",
+        "manycore ndt replay drive.npz --rate 10 --voxel 0.5",
+        "manycore ndt replay drive.npz --guess perturbed --offset 0.5 --turn 3",
+    ),
+)
+@click.argument("recording", type=click.Path(exists=True, path_type=Path))
+@recording_options
+@click.option(
+    "--map",
+    "map_path",
+    type=click.Path(exists=True, path_type=Path),
+    help="Map to publish; default: map.npz beside the recording, else every second scan of it.",
+)
+@click.option("--no-map", is_flag=True, help="Publish no map: the matcher has one of its own.")
+@click.option(
+    "--rate", "rate_hz", type=click.FloatRange(0.1, 1000.0), help="Scans per second, not by stamps."
+)
+@click.option("--wait", "waits", is_flag=True, help="Play no scan before the last one is answered.")
+@click.option(
+    "--guess",
+    "kind",
+    type=click.Choice(["odometry", "velocity", "perturbed", "stack"]),
+    default="odometry",
+    show_default=True,
+    help="Closed loop with odometry or constant velocity; the reference, perturbed; or no guesses.",
+)
+@click.option(
+    "--motion",
+    type=click.Choice(["scans", "reference"]),
+    default="scans",
+    show_default=True,
+    help="What the odometry, or the stack's speed, comes from: scans matched to each other before "
+    "they are played, or the reference poses.",
+)
+@click.option(
+    "--drift",
+    type=click.FloatRange(0.0, 1.0),
+    default=0.05,
+    show_default=True,
+    help="Error of the odometry, as a share of each motion.",
+)
+@click.option("--offset", "offset_m", default=0.5, show_default=True, help="Perturbation, metres.")
+@click.option("--turn", "turn_deg", default=3.0, show_default=True, help="Perturbation, degrees.")
+@click.option("--seed", default=1, show_default=True, help="Of drift and perturbation.")
+@click.option(
+    "--voxel",
+    "voxel_m",
+    type=click.FloatRange(0.0),
+    default=0.5,
+    show_default=True,
+    help="Metres: thin the scans to voxels of this size; 0 sends them as they are.",
+)
+@click.option("--scans", type=click.IntRange(1), help="Play only the first scans.")
+@click.option(
+    "--deadline", "deadline_ms", default=100.0, show_default=True, help="Later is late, ms."
+)
+@click.option(
+    "--timeout",
+    "timeout_s",
+    type=click.FloatRange(1.0),
+    default=30.0,
+    show_default=True,
+    help="Seconds to wait for the matcher's first answer.",
+)
+@click.option(
+    "--rmw",
+    default="rmw_fastrtps_cpp",
+    show_default=True,
+    help="rmw_manycore plays from inside the platform.",
+)
+@click.option("--json", "as_json_", is_flag=True, help="Print the figures as JSON.")
+@click.option("--csv", "csv_path", type=OutputFile(), help="Write one line per scan.")
+@click.option(
+    "--plot",
+    "plot_path",
+    type=OutputFile(*PICTURES),
+    help=f"Draw map, path and error: {', '.join(PICTURES)}.",
+)
+def command(
+    recording: Path,
+    poses_path: Path | None,
+    topic: str,
+    pose_topic: str,
+    map_path: Path | None,
+    no_map: bool,
+    rate_hz: float | None,
+    waits: bool,
+    kind: str,
+    motion: str,
+    drift: float,
+    offset_m: float,
+    turn_deg: float,
+    seed: int,
+    voxel_m: float,
+    scans: int | None,
+    deadline_ms: float,
+    timeout_s: float,
+    rmw: str,
+    as_json_: bool,
+    csv_path: Path | None,
+    plot_path: Path | None,
+) -> None:
+    """Play RECORDING to a scan matcher, as a laptop's stack outside of the platform would.
+
+    Publishes pointcloud_map, ekf_pose_with_covariance and points_raw, takes ndt_pose, and reports
+    error, latency and what was lost. The exit status is 1 if a scan was lost, late or diverged.
+    """
+    if plot_path is not None:
+        load_figure()
+    _enter(rmw)
+    from rmw_manycore_py.ndt.replay.guess_kinds import GuessKind
+    from rmw_manycore_py.ndt.replay.session import run
+
+    drive = open_recording(recording, poses_path, topic, pose_topic).first(scans)
+    if drive.note:
+        click.echo(f"recording: {drive.note}", err=True)
+    guesses = GuessKind(kind, motion, drift, offset_m, turn_deg, seed)
+    motions = guesses.motions(drive)
+    made_of = guesses.made_of(motions)
+    click.echo(f"guesses: {made_of}", err=True)
+    source = guesses.source(drive, motions, rate_hz)
+    points = None if no_map else _map_of(recording, drive, map_path)
+    if points is not None and (warning := why_coarse(points)):
+        click.echo(f"the map is coarse: {warning}", err=True)
+    tally = Tally(deadline_ms)
+    run(drive, source, tally, points, voxel_m, rate_hz, waits, timeout_s)
+    summary = tally.summary()
+    if complaint := tally.complaint():
+        click.echo(f"of the first lost scan the matcher says: {complaint}", err=True)
+    print_json({"guesses": made_of, **as_json(summary)}) if as_json_ else _print(
+        summary, deadline_ms
+    )
+    _write(tally, points, csv_path, plot_path)
+    sys.exit(0 if summary.is_good else 1)
+
+
+def _write(
+    tally: Tally, points: Points | None, csv_path: Path | None, plot_path: Path | None
+) -> None:
+    """Write the files that are wanted; after the figures, which no full disk shall take away."""
+    if csv_path is not None:
+        with writing(csv_path):
+            tally.write_csv(csv_path)
+    if plot_path is not None:
+        from rmw_manycore_py.ndt.replay.plot import plot
+
+        with writing(plot_path):
+            plot(tally, points, plot_path)
+
+
+def _enter(rmw: str) -> None:
+    if rmw == "rmw_manycore":
+        enter_middleware()
+    elif os.environ.get("RMW_IMPLEMENTATION", "rmw_fastrtps_cpp") != rmw:
+        leave_middleware(rmw)
+
+
+def _map_of(recording: Path, drive: Recording, map_path: Path | None) -> Points:
+    """Return the points of the map to publish."""
+    beside = recording.resolve().with_name("map.npz")
+    if map_path is None and beside.exists() and beside != recording.resolve():
+        map_path = beside
+    if map_path is None:
+        return voxel_centroids(drive.accumulated(range(0, len(drive), 2)), (MAP_VOXEL_M,) * 3)
+    if map_path.is_dir():
+        return open_map(map_path).around(0.0, 0.0, float("inf"))[1]
+    return read_points(map_path)
+
+
+def _print(summary: Summary, deadline_ms: float) -> None:
+    s = summary
+    table = new_table("", "#median", "#p99", "#max")
+    rows = [
+        ("error, m", s.error_m_median, s.error_m_p99, s.error_m_max),
+        ("error, degrees", s.error_deg_median, None, s.error_deg_max),
+        ("latency, ms", s.latency_ms_median, s.latency_ms_p99, s.latency_ms_max),
+        ("guess error, m", None, None, s.guess_error_m_max),
+        ("guess error, degrees", None, None, s.guess_error_deg_max),
+    ]
+    for name, *values in rows:
+        if all(value is None or value != value for value in values):
+            continue  # nothing was answered, or no guess made here
+        table.add_row(name, *("" if value is None else f"{value:.3f}" for value in values))
+    print_table(table)
+    cpu = "" if s.node_cpu_percent is None else f"; matcher's CPU: {s.node_cpu_percent:.1f} %"
+    click.echo(
+        f"{s.scans} scans: {s.answered} answered, {s.lost} lost, {s.late} after {deadline_ms:g} "
+        f"ms, {s.diverged} diverged; {100 * s.within_share:.1f} % within 0.2 m and 1 degree{cpu}"
+    )

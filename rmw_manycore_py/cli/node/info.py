@@ -1,0 +1,33 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""`manycore node info`, printed as `ros2 node info` prints."""
+
+from __future__ import annotations
+
+import click
+
+from rmw_manycore_py.cli.common import view
+from rmw_manycore_py.cli.common.node_names import existing_node
+from rmw_manycore_py.cli.common.options import examples, hidden_option, json_option, platform_option
+from rmw_manycore_py.cli.common.printing import print_json
+
+
+@click.command("info", epilog=examples("manycore node info /talker"))
+@click.argument("node")
+@hidden_option
+@json_option
+@platform_option
+def command(node: str, platform: str, as_json: bool, hidden: bool) -> None:
+    """Show the topics, services and actions of NODE."""
+    opened = view.open_platform(platform)
+    node = existing_node(opened, node)
+    interfaces = view.node_interfaces(opened.endpoints(), node, hidden=hidden)
+    if as_json:
+        print_json({"node": node, **interfaces})
+        return
+    click.echo(node)
+    for kind, entries in interfaces.items():
+        click.echo(f"  {kind.replace('_', ' ').title()}:")
+        for name, type_name in entries.items():
+            click.echo(f"    {name}: {type_name}")
+        if not entries:
+            click.echo()

@@ -1,0 +1,33 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""`manycore node list`, printed as `ros2 node list` prints."""
+
+from __future__ import annotations
+
+import click
+
+from rmw_manycore_py.cli.common import view
+from rmw_manycore_py.cli.common.options import (
+    count_option,
+    examples,
+    hidden_option,
+    json_option,
+    platform_option,
+)
+from rmw_manycore_py.cli.common.printing import print_json
+
+
+@click.command("list", epilog=examples("manycore node list", "manycore node list --json"))
+@click.option("-a", "--all", "everything", is_flag=True, help="The same as --include-hidden.")
+@count_option
+@hidden_option
+@json_option
+@platform_option
+def command(platform: str, as_json: bool, hidden: bool, everything: bool, count: bool) -> None:
+    """List the nodes of a platform."""
+    opened = view.open_platform(platform)
+    names = view.node_names(opened.nodes(), hidden=hidden or everything)
+    if as_json:
+        print_json(view.placed_nodes(opened.nodes(), opened.processes(), set(names)))
+        return
+    for name in [len(names)] if count else names:
+        click.echo(name)

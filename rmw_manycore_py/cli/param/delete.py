@@ -1,0 +1,28 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""`manycore param delete`, printed as `ros2 param delete` prints."""
+
+from __future__ import annotations
+
+import click
+
+from rmw_manycore_py.cli.common import view
+from rmw_manycore_py.cli.common.node_names import existing_node
+from rmw_manycore_py.cli.common.options import examples, platform_option
+from rmw_manycore_py.cli.common.tool_node import tool_node
+from rmw_manycore_py.cli.param.parameters import Parameters, parameter_of
+from rmw_manycore_py.errors import ManycoreError
+
+
+@click.command("delete", epilog=examples("manycore param delete /controller gain"))
+@click.argument("node")
+@click.argument("parameter")
+@platform_option
+def command(node: str, parameter: str, platform: str) -> None:
+    """Delete a PARAMETER of NODE; only nodes that allow undeclared parameters do that."""
+    name = existing_node(view.open_platform(platform), node)
+    with tool_node(platform) as tool:
+        ((_, result),) = Parameters(tool, name).set([parameter_of(parameter, None)])
+    reason = f": {result.reason}" if result.reason else ""
+    if not result.successful:
+        raise ManycoreError(f"Deleting parameter failed{reason}")
+    click.echo(f"Deleted parameter successfully{reason}")

@@ -1,0 +1,32 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""`manycore param get`, printed as `ros2 param get` prints."""
+
+from __future__ import annotations
+
+import click
+
+from rmw_manycore_py.cli.common import view
+from rmw_manycore_py.cli.common.node_names import existing_node
+from rmw_manycore_py.cli.common.options import examples, json_option, platform_option
+from rmw_manycore_py.cli.common.printing import print_json
+from rmw_manycore_py.cli.common.tool_node import tool_node
+from rmw_manycore_py.cli.param.parameters import TYPES, Parameters
+
+
+@click.command("get", epilog=examples("manycore param get /controller gain"))
+@click.argument("node")
+@click.argument("parameter")
+@click.option("--hide-type", is_flag=True, help="Print the value alone.")
+@json_option
+@platform_option
+def command(node: str, parameter: str, hide_type: bool, platform: str, as_json: bool) -> None:
+    """Print the value of a PARAMETER of NODE."""
+    name = existing_node(view.open_platform(platform), node)
+    with tool_node(platform) as tool:
+        ((kind, value),) = Parameters(tool, name).values([parameter])
+    if as_json:
+        print_json({"name": parameter, "type": TYPES[kind][0], "value": value})
+    elif hide_type:
+        click.echo(value)
+    else:
+        click.echo(TYPES[kind][1] if value is None else f"{TYPES[kind][1]} {value}")

@@ -1,0 +1,75 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""`manycore param list`, printed as `ros2 param list` prints."""
+
+from __future__ import annotations
+
+import re
+
+import click
+
+from rmw_manycore_py.cli.common import view
+from rmw_manycore_py.cli.common.node_names import existing_node, nodes_with_service
+from rmw_manycore_py.cli.common.options import examples, hidden_option, json_option, platform_option
+from rmw_manycore_py.cli.common.printing import print_json
+from rmw_manycore_py.cli.common.tool_node import tool_node
+from rmw_manycore_py.cli.param.parameters import TYPES, Parameters
+from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
+
+
+@click.command("list", epilog=examples("manycore param list", "manycore param list /controller"))
+@click.argument("node", required=False)
+@click.option(
+    "--param-prefixes",
+    "prefixes",
+    multiple=True,
+    metavar="PREFIX",
+    help="Only parameters below PREFIX; may be given several times.",
+)
+@click.option("--filter", "expression", metavar="REGEX", help="Only names that begin like that.")
+@click.option("--param-type", "shows_types", is_flag=True, help="Show the type of each.")
+@hidden_option
+@json_option
+@platform_option
+def command(
+    node: str | None,
+    prefixes: tuple[str, ...],
+    expression: str | None,
+    shows_types: bool,
+    platform: str,
+    as_json: bool,
+    hidden: bool,
+) -> None:
+    """List the parameters of NODE, or of all nodes that have some."""
+    wanted = _pattern(expression or "")
+    opened = view.open_platform(platform)
+    if node:
+        names = [existing_node(opened, node)]
+    else:
+        owners = nodes_with_service(opened, "list_parameters", "rcl_interfaces/srv/ListParameters")
+        names = [name for name in owners if hidden or not view.is_hidden(name)]
+    with tool_node(platform) as tool:
+        found = {name: _types(Parameters(tool, name), prefixes) for name in names}
+    found = {
+        name: {parameter: kind for parameter, kind in types.items() if wanted.match(parameter)}
+        for name, types in found.items()
+    }
+    if as_json:
+        print_json(found)
+        return
+    for name, types in found.items():
+        if types and not node:
+            click.echo(f"{name}:")
+        for parameter, type_name in types.items():
+            click.echo(f"  {parameter}" + (f" (type: {type_name})" if shows_types else ""))
+
+
+def _pattern(expression: str) -> re.Pattern[str]:
+    try:
+        return re.compile(expression)
+    except re.error as error:
+        raise ManycoreError(f"--filter: {error}", EXIT_BAD_INPUT) from error
+
+
+def _types(parameters: Parameters, prefixes: tuple[str, ...]) -> dict[str, str]:
+    names = parameters.names(prefixes)
+    return {d.name: TYPES[d.type][0] for d in parameters.descriptors(names)} if names else {}

@@ -1,0 +1,108 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""The parameters of a node, read and changed through its parameter services."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from typing import Any
+
+import yaml
+
+from rmw_manycore_py.cli.common.tool_node import ANSWER_TIMEOUT_S, result_of
+from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
+
+# By their number in rcl_interfaces/msg/ParameterType: the name, and how a value is introduced.
+TYPES = (
+    ("not set", "Parameter not set."),
+    ("boolean", "Boolean value is:"),
+    ("integer", "Integer value is:"),
+    ("double", "Double value is:"),
+    ("string", "String value is:"),
+    ("byte array", "Byte values are:"),
+    ("boolean array", "Boolean values are:"),
+    ("integer array", "Integer values are:"),
+    ("double array", "Double values are:"),
+    ("string array", "String values are:"),
+)
+
+
+class Parameters:
+    """The parameters of one node, as another node sees them."""
+
+    def __init__(self, node: Any, name: str) -> None:
+        from rclpy.parameter_client import AsyncParameterClient
+
+        self._node, self.node_name = node, name
+        self._client = AsyncParameterClient(node, name)
+        if not self._client.wait_for_services(timeout_sec=ANSWER_TIMEOUT_S):
+            raise ManycoreError(f"node '{name}' has no parameter services")
+
+    def names(self, prefixes: Sequence[str] = ()) -> list[str]:
+        """Return the names of all parameters, or of those below the prefixes."""
+        answer = self._answer(self._client.list_parameters(list(prefixes) or None))
+        return sorted(answer.result.names)
+
+    def values(self, names: Sequence[str]) -> list[tuple[int, Any]]:
+        """Return type and value of each; ManycoreError where one is not declared."""
+        from rclpy.parameter import parameter_value_to_python
+
+        answer = self._answer(self._client.get_parameters(list(names)))
+        if len(answer.values) != len(names):
+            raise ManycoreError(f"{self.node_name} has not all of these parameters: {_list(names)}")
+        return [(value.type, parameter_value_to_python(value)) for value in answer.values]
+
+    def descriptors(self, names: Sequence[str]) -> list[Any]:
+        """Return an rcl_interfaces ParameterDescriptor for each."""
+        answer = self._answer(self._client.describe_parameters(list(names)))
+        if len(answer.descriptors) != len(names):
+            raise ManycoreError(f"{self.node_name} has not all of these parameters: {_list(names)}")
+        return list(answer.descriptors)
+
+    def set(self, parameters: Sequence[Any]) -> Iterator[tuple[str, Any]]:
+        """Set rcl_interfaces Parameters; yield name and SetParametersResult of each."""
+        answer = self._answer(self._client.set_parameters(list(parameters)))
+        for parameter, result in zip(parameters, answer.results, strict=True):
+            yield parameter.name, result
+
+    def _answer(self, future: Any) -> Any:
+        return result_of(self._node, future, f"parameters of {self.node_name}")
+
+
+def parameter_of(name: str, text: str | None) -> Any:
+    """Return an rcl_interfaces Parameter with a value written in YAML; None unsets it."""
+    from rcl_interfaces.msg import Parameter, ParameterValue
+    from rclpy.parameter import get_parameter_value
+
+    value = ParameterValue() if text is None else get_parameter_value(text)
+    return Parameter(name=name, value=value)
+
+
+def parameters_of_file(path: str, node: str) -> list[Any]:
+    """Return the rcl_interfaces Parameters that a parameter file has for a node, or for all."""
+    from rclpy.parameter import parameter_dict_from_yaml_file
+
+    try:
+        with open(path) as file:
+            owners = yaml.safe_load(file).keys()
+        sections = [name for name in ("/**", node, node.removeprefix("/")) if name in owners]
+        if not sections:
+            raise ValueError(f"there are some for {_list(owners)}")
+        return list(parameter_dict_from_yaml_file(path, target_nodes=sections).values())
+    except (AttributeError, RuntimeError, TypeError, ValueError, yaml.YAMLError) as error:
+        raise ManycoreError(f"{path}: no parameters for {node}: {error}", EXIT_BAD_INPUT) from error
+
+
+def nested(values: Iterable[tuple[str, Any]]) -> dict[str, Any]:
+    """Return parameters as they stand in a parameter file: a.b below a."""
+    root: dict[str, Any] = {}
+    for name, value in values:
+        *groups, last = name.split(".")
+        place = root
+        for group in groups:
+            place = place.setdefault(group, {})
+        place[last] = value
+    return root
+
+
+def _list(names: Iterable[str]) -> str:
+    return ", ".join(names)

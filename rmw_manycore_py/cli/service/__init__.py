@@ -1,0 +1,18 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""`manycore service`."""
+
+from __future__ import annotations
+
+import click
+
+from rmw_manycore_py.cli.common.group import LazyGroup
+
+VERBS = {
+    verb: f"rmw_manycore_py.cli.service.{verb}:command"
+    for verb in ("list", "info", "type", "find", "call")
+}
+
+
+@click.group("service", cls=LazyGroup, commands_at=VERBS)
+def command() -> None:
+    """List services and call them."""

@@ -1,0 +1,57 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""`manycore service call`, printed as `ros2 service call` prints."""
+
+from __future__ import annotations
+
+import json
+import time
+
+import click
+
+from rmw_manycore_py.cli.common.interface_types import load_type
+from rmw_manycore_py.cli.common.message_text import to_plain
+from rmw_manycore_py.cli.common.message_values import message_of, parse_values
+from rmw_manycore_py.cli.common.options import examples, platform_option, values_argument
+from rmw_manycore_py.cli.common.tool_node import result_of, spin_once, tool_node
+
+
+@click.command(
+    "call",
+    epilog=examples(
+        "manycore service call /switch_lamp std_srvs/srv/SetBool '{data: true}'",
+        "manycore service call -r 2 /switch_lamp std_srvs/srv/SetBool",
+    ),
+)
+@click.argument("service")
+@click.argument("type_name", metavar="TYPE")
+@values_argument
+@click.option(
+    "-r",
+    "--rate",
+    "rate_hz",
+    type=click.FloatRange(min=0, min_open=True),
+    help="Call again and again, that often per second.",
+)
+@click.option("--json", "as_json", is_flag=True, help="Print each response as a line of JSON.")
+@platform_option
+def command(
+    service: str, type_name: str, values: str, rate_hz: float | None, platform: str, as_json: bool
+) -> None:
+    """Call SERVICE with VALUES in YAML; waits for a server if there is none."""
+    service_type = load_type(type_name, "srv")
+    request = message_of(service_type.Request, parse_values(values))
+    with tool_node(platform) as node:
+        client = node.create_client(service_type, service)
+        if not client.service_is_ready() and not as_json:
+            click.echo("waiting for service to become available...")
+        while not client.service_is_ready():
+            spin_once(node)
+        while True:
+            if not as_json:
+                click.echo(f"requester: making request: {request!r}\n")
+            start_s = time.monotonic()
+            response = result_of(node, client.call_async(request), service)
+            click.echo(json.dumps(to_plain(response)) if as_json else f"response:\n{response!r}\n")
+            if rate_hz is None:
+                return
+            time.sleep(max(0.0, start_s + 1 / rate_hz - time.monotonic()))

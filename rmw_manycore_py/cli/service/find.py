@@ -1,0 +1,29 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""`manycore service find`, printed as `ros2 service find` prints."""
+
+from __future__ import annotations
+
+import click
+
+from rmw_manycore_py.cli.common import view
+from rmw_manycore_py.cli.common.names import show_names
+from rmw_manycore_py.cli.common.options import (
+    count_option,
+    examples,
+    hidden_option,
+    json_option,
+    platform_option,
+)
+
+
+@click.command("find", epilog=examples("manycore service find std_srvs/srv/SetBool"))
+@click.argument("type_name", metavar="TYPE")
+@count_option
+@hidden_option
+@json_option
+@platform_option
+def command(type_name: str, platform: str, as_json: bool, hidden: bool, count: bool) -> None:
+    """List the services of TYPE."""
+    rows = view.services(view.open_platform(platform).endpoints(), hidden=hidden)
+    rows = [row for row in rows if type_name in row["types"]]
+    show_names(rows, as_json=as_json, count=count)

@@ -1,0 +1,28 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""`manycore service info`, printed as `ros2 service info` prints."""
+
+from __future__ import annotations
+
+import click
+
+from rmw_manycore_py.cli.common import view
+from rmw_manycore_py.cli.common.names import row_of
+from rmw_manycore_py.cli.common.options import examples, json_option, platform_option
+from rmw_manycore_py.cli.common.printing import print_json
+
+
+@click.command("info", epilog=examples("manycore service info /switch_lamp"))
+@click.argument("service")
+@json_option
+@platform_option
+def command(service: str, platform: str, as_json: bool) -> None:
+    """Show how many nodes serve SERVICE and how many use it."""
+    rows = view.services(view.open_platform(platform).endpoints(), hidden=True)
+    row = row_of(rows, service, "service")
+    if as_json:
+        print_json(row)
+        return
+    types = row["types"]
+    click.echo(f"Type: {types[0] if len(types) == 1 else types}")
+    click.echo(f"Clients count: {row['clients']}")
+    click.echo(f"Services count: {row['servers']}")

@@ -1,0 +1,29 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""`manycore service list`, printed as `ros2 service list` prints."""
+
+from __future__ import annotations
+
+import click
+
+from rmw_manycore_py.cli.common import view
+from rmw_manycore_py.cli.common.names import show_names
+from rmw_manycore_py.cli.common.options import (
+    count_option,
+    examples,
+    hidden_option,
+    json_option,
+    platform_option,
+    types_option,
+)
+
+
+@click.command("list", epilog=examples("manycore service list -t", "manycore service list --json"))
+@types_option
+@count_option
+@hidden_option
+@json_option
+@platform_option
+def command(platform: str, as_json: bool, show_types: bool, count: bool, hidden: bool) -> None:
+    """List the services of a platform, served or only asked for."""
+    rows = view.services(view.open_platform(platform).endpoints(), hidden=hidden)
+    show_names(rows, as_json=as_json, types=show_types, count=count)

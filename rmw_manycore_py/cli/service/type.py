@@ -1,0 +1,19 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""`manycore service type`, printed as `ros2 service type` prints."""
+
+from __future__ import annotations
+
+import click
+
+from rmw_manycore_py.cli.common import view
+from rmw_manycore_py.cli.common.names import show_types
+from rmw_manycore_py.cli.common.options import examples, platform_option
+
+
+@click.command("type", epilog=examples("manycore service type /switch_lamp"))
+@click.argument("service")
+@platform_option
+def command(service: str, platform: str) -> None:
+    """Print the type of SERVICE."""
+    rows = view.services(view.open_platform(platform).endpoints(), hidden=True)
+    show_types(rows, service, "service")

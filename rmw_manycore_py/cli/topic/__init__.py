@@ -1,0 +1,18 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""`manycore topic`."""
+
+from __future__ import annotations
+
+import click
+
+from rmw_manycore_py.cli.common.group import LazyGroup
+
+VERBS = {
+    verb: f"rmw_manycore_py.cli.topic.{verb}:command"
+    for verb in ("list", "info", "type", "find", "echo", "pub", "hz", "bw", "delay")
+}
+
+
+@click.group("topic", cls=LazyGroup, commands_at=VERBS)
+def command() -> None:
+    """List topics, look at what they carry, and publish."""

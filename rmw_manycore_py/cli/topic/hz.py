@@ -1,0 +1,53 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""`manycore topic hz`, printed as `ros2 topic hz` prints."""
+
+from __future__ import annotations
+
+import time
+from typing import Any
+
+import click
+
+from rmw_manycore_py.cli.common.options import examples
+from rmw_manycore_py.cli.topic.listening import Listener
+from rmw_manycore_py.cli.topic.measuring import PERIOD_S, measuring_options, print_result
+from rmw_manycore_py.cli.topic.message_part import message_filter
+from rmw_manycore_py.cli.topic.meters.rate import Rate, RateMeter
+
+
+@click.command("hz", epilog=examples("manycore topic hz /chatter"))
+@measuring_options(1, 10000, "intervals")
+@click.option("--filter", "expression", metavar="EXPR", help="Count what it holds for, as m.")
+@click.option("--wall-time", is_flag=True, help="Accepted as of ros2: no other time is used.")
+def command(
+    topic: str,
+    type_name: str | None,
+    platform: str,
+    window: int,
+    expression: str | None,
+    wall_time: bool,  # noqa: ARG001
+    as_json: bool,
+) -> None:
+    """Print the rate of TOPIC once per second while messages come.
+
+    They are not deserialized, unless there is a filter.
+
+    TYPE is needed only while nobody uses the topic.
+    """
+    meter, fulfils = RateMeter(window), message_filter(expression)
+    printed: Rate | None = None
+
+    def show() -> None:
+        nonlocal printed
+        rate = meter.rate()
+        if rate is not None and rate != printed:
+            print_result(rate, as_json)
+            printed = rate
+
+    def heard(message: Any) -> None:
+        if fulfils(message):
+            meter.arrived(time.monotonic())
+
+    listener = Listener(platform, topic, type_name, heard, raw=expression is None)
+    listener.every(PERIOD_S, show)
+    listener.run()

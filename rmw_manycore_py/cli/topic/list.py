@@ -1,0 +1,50 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""`manycore topic list`, printed as `ros2 topic list` prints."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import click
+
+from rmw_manycore_py.cli.common import view
+from rmw_manycore_py.cli.common.names import show_names
+from rmw_manycore_py.cli.common.options import (
+    count_option,
+    examples,
+    hidden_option,
+    json_option,
+    platform_option,
+    types_option,
+)
+from rmw_manycore_py.cli.common.printing import counted
+from rmw_manycore_py.cli.common.view import Row
+
+
+@click.command("list", epilog=examples("manycore topic list -t", "manycore topic list --json"))
+@types_option
+@click.option("-v", "--verbose", is_flag=True, help="Show who publishes and who subscribes.")
+@count_option
+@hidden_option
+@json_option
+@platform_option
+def command(
+    platform: str, as_json: bool, show_types: bool, verbose: bool, count: bool, hidden: bool
+) -> None:
+    """List the topics of a platform."""
+    rows = view.topics(view.open_platform(platform).endpoints(), hidden=hidden)
+    if verbose and not as_json:
+        _show_users(rows, "Published topics", "publisher")
+        _show_users(rows, "Subscribed topics", "subscription")
+        return
+    show_names(rows, as_json=as_json, types=show_types, count=count)
+
+
+def _show_users(rows: Iterable[Row], title: str, kind: str) -> None:
+    click.echo(f"{title}:")
+    for row in rows:
+        number, noun = row[f"{kind}s"], "subscriber" if kind == "subscription" else kind
+        if number:
+            types = ", ".join(row["types"])
+            click.echo(f" * {row['name']} [{types}] {counted(number, noun)}")
+    click.echo()

@@ -1,0 +1,51 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""What `topic hz`, `bw` and `delay` have in common: arguments, and a line per second."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from dataclasses import asdict
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import click
+
+from rmw_manycore_py.cli.common.options import platform_option
+
+if TYPE_CHECKING:
+    from _typeshed import DataclassInstance
+
+PERIOD_S = 1.0
+
+Command = TypeVar("Command", bound=Callable[..., Any])
+
+
+def measuring_options(least: int, default: int, of: str) -> Callable[[Command], Command]:
+    """Add TOPIC, TYPE, how much to look back on, and the form of the results."""
+
+    def decorate(command: Command) -> Command:
+        for decorator in (
+            platform_option,
+            click.option(
+                "--json", "as_json", is_flag=True, help="Print each result as a line of JSON."
+            ),
+            click.option(
+                "-w",
+                "--window",
+                type=click.IntRange(least),
+                default=default,
+                show_default=True,
+                help=f"Number of {of} to look back on.",
+            ),
+            click.argument("type_name", metavar="[TYPE]", required=False),
+            click.argument("topic"),
+        ):
+            command = decorator(command)
+        return command
+
+    return decorate
+
+
+def print_result(result: DataclassInstance, as_json: bool) -> None:
+    """Print one result: its text, or its fields."""
+    click.echo(json.dumps(asdict(result)) if as_json else result)

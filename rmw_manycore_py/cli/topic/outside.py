@@ -1,0 +1,89 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""A listener in a DDS domain, for `topic echo --outside`: what others hear of a platform."""
+
+from __future__ import annotations
+
+import os
+import sys
+import time
+from collections.abc import Callable, Sequence
+from contextlib import suppress
+from typing import Any
+
+from rmw_manycore_py.cli.common.interface_types import load_type
+from rmw_manycore_py.cli.topic.qos_options import QosOptions
+from rmw_manycore_py.errors import ManycoreError
+from rmw_manycore_py.launch.environment import OUTSIDE_IMPLEMENTATION, outside_environment
+from rmw_manycore_py.mapfile.names import expand
+
+# Who publishes is looked up as often until somebody does.
+_LOOK_S = 0.1
+
+
+class OutsideListener:
+    """Subscribes as soon as somebody publishes the topic in $ROS_DOMAIN_ID."""
+
+    def __init__(
+        self,
+        topic: str,
+        type_name: str | None,
+        heard: Callable[..., None],
+        *,
+        raw: bool,
+        qos: QosOptions,
+    ) -> None:
+        _leave_middleware()
+        self._topic, self._type_name = expand(topic, "/"), type_name
+        self._heard, self._raw, self._qos = heard, raw, qos
+        self._over = False
+
+    def stop(self) -> None:
+        """End `run` after the present message."""
+        self._over = True
+
+    def run(self, timeout_s: float | None = None) -> None:
+        """Listen until stopped or interrupted, or until the time is over."""
+        import rclpy
+        from rclpy.executors import ExternalShutdownException
+
+        end_s = float("inf") if timeout_s is None else time.monotonic() + timeout_s
+        rclpy.init(args=[])
+        node = rclpy.create_node(
+            f"_manycore_{os.getpid()}", enable_rosout=False, start_parameter_services=False
+        )
+        with suppress(KeyboardInterrupt, ExternalShutdownException):
+            listens = False
+            while not self._over and time.monotonic() < end_s:
+                listens = listens or self._subscribe(node)
+                rclpy.spin_once(node, timeout_sec=_LOOK_S)
+        node.destroy_node()
+        rclpy.try_shutdown()
+
+    def _subscribe(self, node: Any) -> bool:
+        publishers = node.get_publishers_info_by_topic(self._topic)
+        if publishers:
+            message_type = load_type(self._type_name or _type_of(self._topic, publishers))
+            qos = self._profile([publisher.qos_profile for publisher in publishers])
+            node.create_subscription(message_type, self._topic, self._heard, qos, raw=self._raw)
+        return bool(publishers)
+
+    def _profile(self, offers: Sequence[Any]) -> Any:
+        from rclpy.qos import DurabilityPolicy, ReliabilityPolicy
+
+        return self._qos.profile(
+            reliable=all(o.reliability == ReliabilityPolicy.RELIABLE for o in offers),
+            kept=all(o.durability == DurabilityPolicy.TRANSIENT_LOCAL for o in offers),
+        )
+
+
+def _leave_middleware() -> None:
+    """Restart this program with Fast DDS loaded, unless it has been told to use that."""
+    if os.environ.get("RMW_IMPLEMENTATION") != OUTSIDE_IMPLEMENTATION:
+        os.execve(sys.executable, [sys.executable, *sys.orig_argv[1:]], outside_environment())
+
+
+def _type_of(topic: str, publishers: Sequence[Any]) -> str:
+    types: list[str] = sorted({publisher.topic_type for publisher in publishers})
+    if len(types) > 1:
+        raise ManycoreError(f"'{topic}' has several types, give one: {', '.join(types)}")
+    return types[0]

@@ -1,0 +1,18 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""`manycore topic type`, printed as `ros2 topic type` prints."""
+
+from __future__ import annotations
+
+import click
+
+from rmw_manycore_py.cli.common import view
+from rmw_manycore_py.cli.common.names import show_types
+from rmw_manycore_py.cli.common.options import examples, platform_option
+
+
+@click.command("type", epilog=examples("manycore topic type /chatter"))
+@click.argument("topic")
+@platform_option
+def command(topic: str, platform: str) -> None:
+    """Print the type of TOPIC."""
+    show_types(view.topics(view.open_platform(platform).endpoints(), hidden=True), topic, "topic")

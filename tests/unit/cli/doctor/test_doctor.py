@@ -1,0 +1,34 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""How the doctor judges; what it looks at is tested on the real installation."""
+
+import pytest
+
+from rmw_manycore_py.cli.doctor.finding import Verdict, advised, judged
+from rmw_manycore_py.cli.doctor.install import judge_probe
+
+pytestmark = pytest.mark.unit
+
+
+def test_advice_is_given_only_where_it_is_needed() -> None:
+    assert judged("x", True, "found", "do this").advice == ""
+    assert judged("x", False, "found", "do this").verdict is Verdict.FAILURE
+    assert advised("x", False, "found", "do this").verdict is Verdict.WARNING
+    assert advised("x", False, "found", "do this").advice == "do this"
+
+
+@pytest.mark.parametrize(
+    ("status", "words", "errors", "verdict", "found"),
+    [
+        (0, ["rmw_manycore", "True", "False"], "", Verdict.OK, "rclpy uses rmw_manycore"),
+        (0, ["rmw_manycore", "True", "True"], "", Verdict.WARNING, "Fast DDS is loaded too"),
+        (0, ["rmw_fastrtps_cpp", "False", "True"], "", Verdict.FAILURE, "rmw_fastrtps_cpp"),
+        (1, [], "Traceback\nImportError: no rclpy", Verdict.FAILURE, "ImportError: no rclpy"),
+        (-11, [], "", Verdict.FAILURE, "exit status -11"),
+    ],
+)
+def test_the_probe(
+    status: int, words: list[str], errors: str, verdict: Verdict, found: str
+) -> None:
+    finding = judge_probe(status, words, errors)
+    assert finding.verdict is verdict
+    assert found in finding.found
