@@ -5,7 +5,7 @@
 VENV := .venv/bin
 NATIVE := build/native
 JOBS ?= $(shell nproc)
-NATIVE_SOURCES := $(shell find CMakeLists.txt cmake startup rmw_manycore_py/native \
+NATIVE_SOURCES := $(shell find CMakeLists.txt cmake startup rmw_manycore \
 	-type f -not -name '*.md')
 
 .PHONY: help setup demo test test-native stress sanitize bench lint docs clean
@@ -43,9 +43,7 @@ bench: setup  ## every bench, briefly; tables, and CSV in build/bench
 lint: setup  ## style and types
 	$(VENV)/ruff check
 	$(VENV)/ruff format --check
-	mkdir -p build/types/rmw_manycore_py
-	ln -sfn $(CURDIR)/rmw_manycore_py/* $(CURDIR)/bridge build/types/rmw_manycore_py
-	cd build/types && ../../$(VENV)/mypy --config-file ../../pyproject.toml
+	$(VENV)/mypy
 
 docs: setup  ## the documentation as HTML in build/docs, links checked
 	$(VENV)/mkdocs build --quiet --strict --site-dir build/docs

@@ -15,10 +15,8 @@ else()
   set(MANYCORE_PREFIX ${CMAKE_INSTALL_PREFIX})
   set(MANYCORE_SITE_PACKAGES
     ${CMAKE_INSTALL_PREFIX}/lib/python${Python_VERSION_MAJOR}.${Python_VERSION_MINOR}/site-packages)
-  install(DIRECTORY rmw_manycore_py DESTINATION ${MANYCORE_SITE_PACKAGES}
-    FILES_MATCHING REGEX "\\.(py|pyi|json)$" PATTERN native EXCLUDE)
-  install(DIRECTORY bridge/ DESTINATION ${MANYCORE_SITE_PACKAGES}/rmw_manycore_py/bridge
-    OPTIONAL FILES_MATCHING PATTERN "*.py")
+  install(DIRECTORY rmw_manycore_py bridge/rmw_manycore_bridge DESTINATION ${MANYCORE_SITE_PACKAGES}
+    FILES_MATCHING REGEX "\\.(py|pyi|json)$")
 endif()
 
 # The build tree has the layout of the installed prefix, so that everything runs from both.
@@ -30,7 +28,7 @@ set(CMAKE_BUILD_WITH_INSTALL_RPATH ON)
 add_library(manycore_options INTERFACE)
 target_compile_features(manycore_options INTERFACE cxx_std_17)
 target_include_directories(manycore_options INTERFACE
-  ${CMAKE_CURRENT_SOURCE_DIR}/rmw_manycore_py/native)
+  ${CMAKE_CURRENT_SOURCE_DIR}/rmw_manycore)
 target_compile_options(manycore_options INTERFACE
   -Wall -Wextra -fvisibility=hidden $<$<COMPILE_LANGUAGE:CXX>:-fvisibility-inlines-hidden>
   $<$<BOOL:${MANYCORE_WERROR}>:-Werror>)
@@ -40,10 +38,10 @@ if(MANYCORE_SANITIZE)
   target_link_options(manycore_options INTERFACE -fsanitize=${MANYCORE_SANITIZE})
 endif()
 
-# manycore_library(NAME STATIC|SHARED DIRECTORY [EXCLUDE FILE...]): all *.cpp of one directory.
+# manycore_library(NAME STATIC|SHARED DIRECTORY [EXCLUDE FILE...]): all *.cpp below DIRECTORY.
 function(manycore_library name kind directory)
   cmake_parse_arguments(PARSE_ARGV 3 arg "" "" "EXCLUDE")
-  file(GLOB sources CONFIGURE_DEPENDS ${directory}/*.cpp)
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${directory}/*.cpp)
   foreach(excluded IN LISTS arg_EXCLUDE)
     list(REMOVE_ITEM sources ${directory}/${excluded})
   endforeach()

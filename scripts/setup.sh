@@ -64,9 +64,6 @@ install_checkout() {
   requirements >.venv/requirements.txt
   .venv/bin/pip install --quiet --requirement .venv/requirements.txt
   .venv/bin/pip install --quiet --no-deps --no-build-isolation --editable .
-  # For type checkers the editable install also puts the checkout on sys.path, which would make
-  # `bridge` and `tests` top-level modules of every program; its first line does the real work.
-  sed -i 1q .venv/lib/python3*/site-packages/_editable_skbc_rmw_manycore.pth
   touch .venv/installed
 }
 

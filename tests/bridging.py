@@ -7,10 +7,10 @@ import sys
 from collections.abc import Callable
 from typing import Any
 
-from rmw_manycore_py.bridge.plan import Plan
-from rmw_manycore_py.bridge.status import status
 from support import Program, environment, peer_command
 
+from rmw_manycore_bridge.status import status
+from rmw_manycore_py.bridge_plan import Plan
 from rmw_manycore_py.routes import DIRECTIONS, Direction, Route, arranged
 
 OUTSIDE = {"RMW_IMPLEMENTATION": "rmw_fastrtps_cpp"}
@@ -49,7 +49,7 @@ class Bridge:
     def run_one(self, plan: Plan, way: Direction, lane: int = 0) -> Program:
         """Start one process."""
         words = [plan.to_json(), way, str(lane), "1", str(2 + DIRECTIONS.index(way))]
-        command = [sys.executable, "-m", "rmw_manycore_py.bridge", *words]
+        command = [sys.executable, "-m", "rmw_manycore_bridge", *words]
         return self._start(command, **OUTSIDE)
 
     def inside(self, function: Callable[..., None], *arguments: Any, **env: str) -> Program:

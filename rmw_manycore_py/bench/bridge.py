@@ -17,7 +17,7 @@ from rmw_manycore_py.bench.rclpy_round_trip import WARM_UP, iterations
 from rmw_manycore_py.bench.round_trip import in_us
 from rmw_manycore_py.bench.session import Process, Session
 from rmw_manycore_py.bench.summary import Goal, Result
-from rmw_manycore_py.bridge.plan import Plan
+from rmw_manycore_py.bridge_plan import Plan
 from rmw_manycore_py.routes import DIRECTIONS, Direction, Route, arranged
 
 SIZES = ("64 B", "1 MiB")
@@ -140,7 +140,7 @@ def _start_bridge(
     routes = [Route("topic", way, name, name, _TYPE, outside.domain) for name, way in ways]
     plan = Plan(inside.platform, arranged(routes, 1)).to_json()
     return [
-        outside.module("rmw_manycore_py.bridge", party, plan, way, 0, 1, core)
+        outside.module("rmw_manycore_bridge", party, plan, way, 0, 1, core)
         for core, (party, way) in enumerate(zip(parties, DIRECTIONS, strict=True), 2)
     ]
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import sys
 
-from rmw_manycore_py.bridge.plan import Plan
+from rmw_manycore_py.bridge_plan import Plan
 from rmw_manycore_py.launch.environment import outside_environment
 from rmw_manycore_py.launch.events import Finished
 from rmw_manycore_py.launch.program import NodeProgram
@@ -54,7 +54,7 @@ def bridge_program(
     words = (plan.to_json(), direction, *map(str, (lane, *core)))
     return NodeProgram(
         name=f"(bridge {direction}{f' {lane}' if lane else ''})",
-        command=(sys.executable, "-m", "rmw_manycore_py.bridge", *words),
+        command=(sys.executable, "-m", "rmw_manycore_bridge", *words),
         environment=outside_environment(),
         core=core,
         host_cpu=host_cpu,

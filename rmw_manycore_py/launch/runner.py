@@ -21,8 +21,8 @@ from rmw_manycore_py.launch.events import (
 )
 from rmw_manycore_py.launch.node_process import NodeProcess
 from rmw_manycore_py.launch.program import NodeProgram
-from rmw_manycore_py.launch.signals import SignalInbox, signal_inbox
 from rmw_manycore_py.launch.state import NodeState
+from rmw_manycore_py.signals import SignalInbox, signal_inbox
 
 Report = Callable[[Event], None]
 Handler = Callable[[], None]

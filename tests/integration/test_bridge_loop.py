@@ -18,9 +18,9 @@ pytestmark = [
 
 def change_while_looking(platform: str) -> None:
     """Tell a loop of a change while it looks at the graphs; say whether it looks again."""
-    from rmw_manycore_py.bridge.inside import Inside
-    from rmw_manycore_py.bridge.loop import Mover
-    from rmw_manycore_py.bridge.plan import Plan
+    from rmw_manycore_bridge.inside import Inside
+    from rmw_manycore_bridge.loop import Mover
+    from rmw_manycore_py.bridge_plan import Plan
 
     class Looker(Mover):
         def __init__(self, during_the_first: Callable[[], None]) -> None:

@@ -96,7 +96,8 @@ def test_a_reply_that_does_not_fit(bridge) -> None:
 def ask_nonsense(platform: str) -> None:
     """Ask with one byte, which is no request of any type, and print the size of the answer."""
     from rclpy.qos import qos_profile_services_default
-    from rmw_manycore_py.bridge.policies import from_rclpy
+
+    from rmw_manycore_bridge.policies import from_rclpy
 
     process = _transport.Process(platform)
     endpoint = ("/camera", SET_CAMERA, from_rclpy(qos_profile_services_default))

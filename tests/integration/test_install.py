@@ -125,7 +125,7 @@ def test_an_ordinary_ros_finds_the_middleware(prefix: Path, kind: str) -> None:
 
 def test_top_level_names(unpacked: Path) -> None:
     names = {path.name for path in unpacked.iterdir() if not path.name.startswith("rmw_manycore-")}
-    own = {"rmw_manycore.pth", "rmw_manycore_hook.py", "rmw_manycore_py"}
+    own = {"rmw_manycore.pth", "rmw_manycore_hook.py", "rmw_manycore_bridge", "rmw_manycore_py"}
     assert names == own | BUILT_MESSAGES
 
 

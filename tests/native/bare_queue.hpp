@@ -6,7 +6,7 @@
 #include <new>
 #include <optional>
 
-#include "transport/subscriber_queue.hpp"
+#include "transport/queue/subscriber_queue.hpp"
 
 /// A subscriber queue alone, in memory that later forks and nobody else share.
 class BareQueue {

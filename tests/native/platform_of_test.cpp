@@ -12,8 +12,8 @@
 #include <sstream>
 
 #include "patience.hpp"
-#include "transport/lifecycle.hpp"
-#include "transport/topic_dsm_layout.hpp"
+#include "transport/lifecycle/lifecycle.hpp"
+#include "transport/layout/topic_dsm_layout.hpp"
 
 using namespace manycore;
 

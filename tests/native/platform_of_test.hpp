@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "transport/process.hpp"
-#include "transport/registry.hpp"
+#include "transport/registry/registry.hpp"
 
 /// A platform of its own for one test. At its end nothing may be left: no file, no receive thread.
 class TestPlatform {

@@ -19,10 +19,10 @@
 #include "messages.hpp"
 #include "node_role.hpp"
 #include "patience.hpp"
-#include "transport/configurator.hpp"
-#include "transport/registry_layout.hpp"
-#include "transport/subscription_layout.hpp"
-#include "transport/topic_dsm_layout.hpp"
+#include "transport/lifecycle/configurator.hpp"
+#include "transport/layout/registry_layout.hpp"
+#include "transport/layout/subscription_layout.hpp"
+#include "transport/layout/topic_dsm_layout.hpp"
 
 using namespace manycore;
 

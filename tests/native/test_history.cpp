@@ -8,7 +8,7 @@
 #include "messages.hpp"
 #include "patience.hpp"
 #include "platform_of_test.hpp"
-#include "transport/configurator.hpp"
+#include "transport/lifecycle/configurator.hpp"
 
 using namespace manycore;
 

@@ -17,8 +17,8 @@
 #include "node_role.hpp"
 #include "patience.hpp"
 #include "private_shm.hpp"
-#include "transport/configurator.hpp"
-#include "transport/lifecycle.hpp"
+#include "transport/lifecycle/configurator.hpp"
+#include "transport/lifecycle/lifecycle.hpp"
 
 using namespace manycore;
 

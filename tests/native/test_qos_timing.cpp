@@ -8,7 +8,7 @@
 #include "node_role.hpp"
 #include "patience.hpp"
 #include "platform/clock.hpp"
-#include "transport/deadline_clock.hpp"
+#include "transport/layout/deadline_clock.hpp"
 
 using namespace manycore;
 

@@ -10,9 +10,9 @@
 #include "node_role.hpp"
 #include "patience.hpp"
 #include "platform/clock.hpp"
-#include "transport/lifecycle.hpp"
-#include "transport/smem_charge.hpp"
-#include "transport/topic_dsm_writer.hpp"
+#include "transport/lifecycle/lifecycle.hpp"
+#include "transport/registry/smem_charge.hpp"
+#include "transport/topic_dsm/topic_dsm_writer.hpp"
 
 using namespace manycore;
 

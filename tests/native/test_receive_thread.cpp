@@ -14,8 +14,8 @@
 #include "messages.hpp"
 #include "node_role.hpp"
 #include "patience.hpp"
-#include "transport/configurator.hpp"
-#include "transport/lifecycle.hpp"
+#include "transport/lifecycle/configurator.hpp"
+#include "transport/lifecycle/lifecycle.hpp"
 
 using namespace manycore;
 

@@ -11,8 +11,8 @@
 #include "messages.hpp"
 #include "patience.hpp"
 #include "platform_of_test.hpp"
-#include "transport/configurator.hpp"
-#include "transport/smem_charge.hpp"
+#include "transport/lifecycle/configurator.hpp"
+#include "transport/registry/smem_charge.hpp"
 
 using namespace manycore;
 

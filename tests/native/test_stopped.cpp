@@ -9,7 +9,7 @@
 #include "messages.hpp"
 #include "node_role.hpp"
 #include "patience.hpp"
-#include "transport/configurator.hpp"
+#include "transport/lifecycle/configurator.hpp"
 
 using namespace manycore;
 

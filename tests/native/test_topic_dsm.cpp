@@ -9,7 +9,7 @@
 #include "messages.hpp"
 #include "platform/clock.hpp"
 #include "platform_of_test.hpp"
-#include "transport/configurator.hpp"
+#include "transport/lifecycle/configurator.hpp"
 
 using namespace manycore;
 

@@ -11,9 +11,9 @@
 #include "patience.hpp"
 #include "platform/clock.hpp"
 #include "platform/futex_any.hpp"
-#include "transport/joint_wait.hpp"
-#include "transport/wake_word.hpp"
-#include "transport/waiter.hpp"
+#include "transport/waiting/joint_wait.hpp"
+#include "transport/layout/wake_word.hpp"
+#include "transport/waiting/waiter.hpp"
 
 using namespace manycore;
 

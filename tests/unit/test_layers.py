@@ -12,18 +12,23 @@ import pytest
 pytestmark = pytest.mark.unit
 
 PACKAGE = Path(__file__).parents[2] / "rmw_manycore_py"
-BRIDGE = PACKAGE.with_name("bridge")  # installed as rmw_manycore_py.bridge
-NATIVE = PACKAGE / "native"
+BRIDGE = PACKAGE.with_name("bridge") / "rmw_manycore_bridge"
+NATIVE = PACKAGE.with_name("rmw_manycore")
 
 # What each native directory may include of the others, besides itself.
 NATIVE_BELOW = {
     "platform": set(),
     "transport": {"platform"},
     "rmw": {"platform", "transport"},
-    "python": {"platform", "transport"},
     "ndt": {"platform"},
-    "bench": {"platform", "transport"},
+    "python": {"platform", "transport", "ndt", "bench"},
+    "bench": {"platform", "transport", "ndt"},
 }
+# Lowest first. Files directly in transport/ are its face, above all of these.
+TRANSPORT_LAYERS = [
+    *("layout", "registry", "queue", "topic_dsm", "qos", "matching", "notification"),
+    *("lifecycle", "waiting"),
+]
 SEES_ROS = {"rmw", "bench"}
 ROS_HEADER = re.compile(r"(rmw|rcl|rcutils|rcpputils|rosidl_\w+|fastcdr|\w+_msgs)/")
 # Mapping, pinning and futexes are wrapped once.
@@ -44,15 +49,29 @@ def directory_of(path: Path) -> str:
     return path.relative_to(NATIVE).parts[0]
 
 
+def transport_layer(parts: tuple[str, ...]) -> int:
+    """Return the layer of a file below transport/, given its path from there."""
+    return TRANSPORT_LAYERS.index(parts[0]) if len(parts) > 1 else len(TRANSPORT_LAYERS)
+
+
 def allowed(path: Path, header: str) -> bool:
     """Tell whether the native file `path` may include `header`."""
     directory = directory_of(path)
-    first = header.split("/")[0]
+    first, *rest = header.split("/")
     if (NATIVE / header).exists():
+        if first == directory == "transport":
+            own = transport_layer(path.relative_to(NATIVE).parts[1:])
+            return transport_layer(tuple(rest)) <= own
         return first == directory or first in NATIVE_BELOW[directory]
     if ROS_HEADER.match(header):
         return directory in SEES_ROS
     return header not in PLATFORM_ONLY or directory in CALLS_THE_SYSTEM
+
+
+def test_every_native_directory_has_its_layer() -> None:
+    assert {path.name for path in NATIVE.iterdir() if path.is_dir()} == set(NATIVE_BELOW)
+    folders = {path.name for path in (NATIVE / "transport").iterdir() if path.is_dir()}
+    assert folders == set(TRANSPORT_LAYERS)
 
 
 def test_native_code_includes_downwards_only() -> None:
@@ -71,7 +90,9 @@ def test_native_code_includes_downwards_only() -> None:
     [
         ("platform/futex.hpp", "transport/process.hpp"),
         ("transport/process.hpp", "rmw/init.h"),
-        ("python/module.cpp", "rmw/names.hpp"),
+        ("transport/registry/registry.cpp", "transport/matching/matching.hpp"),
+        ("transport/layout/endpoint.hpp", "transport/process.hpp"),
+        ("python/transport/module.cpp", "rmw/names.hpp"),
         ("transport/process.cpp", "sys/mman.h"),
     ],
 )
@@ -100,7 +121,7 @@ def imported_modules(path: Path) -> list[str]:
 
 def test_python_imports_downwards_only() -> None:
     wrong = []
-    bridge = {path: f"rmw_manycore_py.bridge.{path.stem}" for path in BRIDGE.glob("*.py")}
+    bridge = {path: f"rmw_manycore_bridge.{path.stem}" for path in BRIDGE.glob("*.py")}
     for path in [*PACKAGE.rglob("*.py"), *bridge]:
         module = ".".join(path.relative_to(PACKAGE.parent).with_suffix("").parts)
         module = bridge.get(path, module)

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import click
 
-from rmw_manycore_py.bridge.config import load_bridge_file
-from rmw_manycore_py.bridge.plan import Plan
+from rmw_manycore_bridge.config import load_bridge_file
+from rmw_manycore_py.bridge_plan import Plan
 from rmw_manycore_py.cli.common.options import examples, platform_option
 from rmw_manycore_py.cli.common.run_printer import RunPrinter
 from rmw_manycore_py.domain import MAX_DOMAIN, ros_domain

@@ -7,8 +7,8 @@ from typing import Any
 
 import click
 
-from rmw_manycore_py.bridge.counters import DROPS
-from rmw_manycore_py.bridge.status import status
+from rmw_manycore_bridge.counters import DROPS
+from rmw_manycore_bridge.status import status
 from rmw_manycore_py.cli.common.options import examples, json_option, platform_option
 from rmw_manycore_py.cli.common.printing import new_table, print_json, print_table, size_text
 from rmw_manycore_py.cli.common.view import open_platform

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from rmw_manycore_py.bridge.balance import PATIENCE, Balance, Load, Move, best_move
+from rmw_manycore_bridge.balance import PATIENCE, Balance, Load, Move, best_move
 
 
 def test_two_heavy_topics_part() -> None:

@@ -6,8 +6,8 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from rmw_manycore_py.bridge.config import load_bridge_file
 
+from rmw_manycore_bridge.config import load_bridge_file
 from rmw_manycore_py.errors import MapfileError
 from rmw_manycore_py.routes import Route
 

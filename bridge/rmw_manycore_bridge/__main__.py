@@ -1,0 +1,26 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""A process of the bridge: python -m rmw_manycore_bridge PLAN DIRECTION LANE CLUSTER CORE."""
+
+from __future__ import annotations
+
+import signal
+import sys
+
+from rmw_manycore_py.bridge_plan import Plan
+from rmw_manycore_py.routes import DIRECTIONS
+
+
+def main(arguments: list[str]) -> int:
+    """Run one process; `manycore run` and `manycore bridge` start it."""
+    # Until the process can end in order it ends quietly, and not in the middle of loading rclpy.
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+    from rmw_manycore_bridge.process import BridgeProcess
+
+    plan, direction, lane, cluster, core = arguments
+    way = DIRECTIONS[DIRECTIONS.index(direction)]
+    place = (int(cluster), int(core))
+    return BridgeProcess(Plan.from_json(plan), way, int(lane), place).run()
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,77 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""The platform's side: a member process of the platform, through the binding of the transport."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, Protocol
+
+from rmw_manycore_bridge.loop import Loop
+from rmw_manycore_py import _transport
+from rmw_manycore_py.bridge_plan import Plan
+
+Row = dict[str, Any]
+NODE_PREFIX = "_manycore_bridge_"  # hidden: on the platform the bridge is not one of the nodes
+
+
+class InsideReader(Protocol):
+    """Something that messages of the platform arrive at."""
+
+    def pump_inside(self) -> None:
+        """Move what has arrived."""
+
+
+class Inside(Loop):
+    """Sleeps on the process's wake word."""
+
+    def __init__(self, plan: Plan, core: tuple[int, int], name: str, changed: Callable[[], None]):
+        super().__init__("inside")
+        cluster, core_number = core
+        self.process = _transport.Process(plan.platform, cluster, core_number, name)
+        self.process.watch_graph()
+        self.readers: list[InsideReader] = []
+        self._changed = changed
+        self._generation = self.process.graph_generation()
+
+    def publishers(self, topic: str) -> list[Row]:
+        """Return the publishers of a topic that are not the bridge's."""
+        return self._endpoints(topic, "topic", "publisher")
+
+    def subscriptions(self, topic: str) -> list[Row]:
+        """Return the subscriptions of a topic that are not the bridge's."""
+        return self._endpoints(topic, "topic", "subscription")
+
+    def servers(self, service: str) -> list[Row]:
+        """Return the servers of a service that are not the bridge's."""
+        return self._endpoints(service, "request", "subscription")
+
+    def _endpoints(self, name: str, role: str, kind: str) -> list[Row]:
+        return [
+            endpoint
+            for endpoint in self.process.endpoints_of(name)
+            if (endpoint["role"], endpoint["kind"]) == (role, kind)
+            and not endpoint["node"].startswith(NODE_PREFIX)
+        ]
+
+    def wake(self) -> None:
+        """End the sleep."""
+        self.process.notify()
+
+    def turn(self, timeout_s: float | None) -> None:
+        """Move what has arrived, then sleep until something changes."""
+        seen = self.process.epoch()
+        # Who sets a flag wakes us after that. So either the wake word changes after we read it, and
+        # the sleep ends; or it had changed before, and then we see the flag.
+        if self._stale or self._stopping:
+            return
+        for reader in list(self.readers):
+            reader.pump_inside()
+        generation = self.process.graph_generation()
+        if generation != self._generation:
+            self._generation = generation
+            self._changed()
+        self.process.wait(seen, timeout_s)
+
+    def close(self) -> None:
+        """Nothing but the readers has to end here; the process leaves when this program does."""
+        self.readers.clear()

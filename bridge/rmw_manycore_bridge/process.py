@@ -1,0 +1,120 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""One process of the bridge: both sides, and its routes between them."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import re
+import select
+import socket
+import sys
+from collections.abc import Iterable
+from functools import partial
+
+from rmw_manycore_bridge.counters import CounterFile, status_path
+from rmw_manycore_bridge.inside import NODE_PREFIX, Inside
+from rmw_manycore_bridge.lane import Lanes
+from rmw_manycore_bridge.loop import Loop, Mover
+from rmw_manycore_bridge.network import has_interface
+from rmw_manycore_bridge.outside import Outside
+from rmw_manycore_bridge.service_inward import InwardService
+from rmw_manycore_bridge.service_outward import OutwardService
+from rmw_manycore_bridge.sides import OwnPublishers, Sides
+from rmw_manycore_bridge.topic_inward import InwardTopic
+from rmw_manycore_bridge.topic_outward import OutwardTopic
+from rmw_manycore_py.bridge_plan import Plan
+from rmw_manycore_py.routes import Direction
+from rmw_manycore_py.signals import signal_inbox
+
+_NO_NETWORK = (
+    "no network interface is up: nothing crosses; try 'ip link set lo up', then start again"
+)
+
+
+class BridgeProcess:
+    """Runs until it is told to end, or until one of its threads fails."""
+
+    def __init__(self, plan: Plan, direction: Direction, lane: int, core: tuple[int, int]) -> None:
+        services = [route for route in plan.of(direction, lane) if route.kind == "service"]
+        routes = [*plan.topics(direction), *services]
+        name = f"{node_stem(plan.platform)}_{direction}{lane or ''}"
+        self._failed = os.eventfd(0)  # readable once a thread has failed
+        self._inside = Inside(
+            plan, core, f"{NODE_PREFIX}{direction}{lane or ''}", self._graphs_changed
+        )
+        counters = CounterFile.create(status_path(plan.platform, direction, lane), routes)
+        self._outsides = {
+            domain: Outside(domain, name, self._graphs_changed)
+            for domain in sorted({route.domain for route in routes})
+        }
+        self._loops: list[Loop] = [self._inside, *self._outsides.values()]
+        self._lanes = Lanes(plan, direction, lane)
+        own = OwnPublishers(plan.platform)
+        for index, (route, row) in enumerate(zip(routes, counters.rows, strict=True)):
+            outside = self._outsides[route.domain]
+            self._add(Sides(route, row, self._inside, outside, own), index)
+
+    def _add(self, sides: Sides, index: int) -> None:
+        try:
+            mover, loop = self._mover(sides, index)
+        except ImportError as error:
+            sides.fail(str(error))
+        except Exception as error:  # whatever is wrong with one route: the others work
+            sides.fail(f"{type(error).__name__}: {error}")
+        else:
+            loop.movers.append(mover)
+
+    def _mover(self, sides: Sides, index: int) -> tuple[Mover, Loop]:
+        inward = sides.route.direction == "inward"
+        if sides.route.kind == "service":
+            service = InwardService(sides) if inward else OutwardService(sides)
+            return service, sides.outside
+        place = self._lanes.place(index)
+        if inward:
+            return InwardTopic(sides, place), sides.outside
+        return OutwardTopic(sides, place), self._inside
+
+    def _graphs_changed(self) -> None:
+        for loop in self._loops:
+            loop.graphs_changed()
+
+    def run(self) -> int:
+        """Move messages until a signal comes; return the exit status."""
+        with signal_inbox() as inbox:
+            if not has_interface():
+                print(_NO_NETWORK, file=sys.stderr, flush=True)
+            for loop in self._loops:
+                loop.on_failure(partial(os.eventfd_write, self._failed, 1))
+                loop.start()
+            endings = [inbox.fileno(), self._failed]
+            try:
+                while not select.select(endings, [], [], self._lanes.period_s)[0]:
+                    if self._lanes.look():
+                        self._graphs_changed()
+            finally:  # a table that cannot be read or written ends the process: it starts again
+                for loop in self._loops:
+                    loop.stop()
+            for loop in self._loops:
+                loop.close_movers()
+            for loop in reversed(self._loops):
+                loop.close()
+            os.close(self._failed)
+            return _report(self._loops)
+
+
+def _report(loops: Iterable[Loop]) -> int:
+    failures = [(loop.name, loop.failure) for loop in loops if loop.failure is not None]
+    for name, failure in failures:
+        print(f"{name}: {type(failure).__name__}: {failure}", file=sys.stderr)
+    return 1 if failures else 0
+
+
+def node_stem(platform: str) -> str:
+    """Return the name of a bridge's nodes up to their direction, the same at each start.
+
+    Two platforms of one name on two hosts are two bridges to everybody who sees both.
+    """
+    text = f"{socket.gethostname()}/{os.getuid()}/{platform}"
+    readable = re.sub(r"\W", "_", platform, flags=re.ASCII).strip("_")
+    return f"manycore_bridge_{readable}_{hashlib.blake2s(text.encode(), digest_size=4).hexdigest()}"

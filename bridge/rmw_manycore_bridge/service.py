@@ -1,0 +1,94 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""What services have in common in both directions: requests one way, replies or an answer back."""
+
+from __future__ import annotations
+
+import time
+from abc import abstractmethod
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+from rclpy.qos import qos_profile_services_default
+
+from rmw_manycore_bridge import types
+from rmw_manycore_bridge.loop import Mover
+from rmw_manycore_bridge.pending import Asked, Pending, empty_answer
+from rmw_manycore_bridge.policies import from_rclpy
+from rmw_manycore_bridge.sides import Sides
+
+
+class Service(Mover):
+    """Works in the thread of its domain; replies of the platform come in that of the platform."""
+
+    def __init__(self, sides: Sides) -> None:
+        super().__init__(sides.fail)
+        self._sides = sides
+        self._type = types.load(sides.route.type)
+        self._hash = types.hash_of(sides.route.type)
+        self._policies = from_rclpy(qos_profile_services_default)
+        self._pending = Pending(sides.route.timeout_s)
+
+    @property
+    def due_s(self) -> float:  # type: ignore[override]
+        """When a request is overdue."""
+        return self._pending.due_s
+
+    def _wait_or_fail(self, types_found: list[str], where: str) -> None:
+        """Note that no server fits, and which one is there instead."""
+        if types_found:
+            self._sides.fail(f"is {types_found[0]} {where}, not {self._sides.route.type}")
+        else:
+            self._sides.row.set_state("waiting")
+
+    def _endpoint(self, kind: str, role: str) -> Any:
+        route = self._sides.route
+        make = getattr(self._sides.inside.process, kind)
+        return make(route.inside, route.type, self._policies, role=role, type_hash=self._hash)
+
+    @abstractmethod
+    def _reply(self, caller: Any, response: Any) -> None:
+        """Send a response to whoever asked."""
+
+    def _answer(self, asked: Asked, response: Any, size: int) -> None:
+        self._reply(asked.caller, response)
+        self._sides.row.passed(size, time.time_ns() - asked.since_ns)
+
+    @contextmanager
+    def _one_request(self, caller: Any = None) -> Iterator[None]:
+        """Let what goes wrong with a request end that one only, and tell its caller if it is known.
+
+        Either side may refuse it: it does not fit, it cannot be read, who asked is gone.
+        """
+        try:
+            yield
+        except Exception as error:
+            if self._sides.row.add("refused") == 1:
+                self._sides.say(str(error))
+            if caller is not None:
+                self._answer_empty(caller, str(error))
+
+    def expire(self, now_s: float) -> None:
+        """Answer the requests whose time is over."""
+        timeout_s = self._sides.route.timeout_s
+        for asked in self._pending.overdue(now_s):
+            self._give_up(asked.caller, "timed_out", f"no reply within {timeout_s:g} s")
+
+    def _abandon(self) -> None:
+        """Answer all requests: their server is gone."""
+        for asked in self._pending.all():
+            self._give_up_without_server(asked.caller)
+
+    def _give_up_without_server(self, caller: Any) -> None:
+        self._give_up(caller, "unanswered", "the server is gone")
+
+    def _give_up(self, caller: Any, counter: str, reason: str) -> None:
+        self._sides.row.add(counter)
+        self._sides.say(reason)
+        self._answer_empty(caller, reason)
+
+    def _answer_empty(self, caller: Any, reason: str) -> None:
+        try:
+            self._reply(caller, empty_answer(self._type.Response, f"bridge: {reason}"))
+        except Exception as error:  # the caller may be gone; the request is counted already
+            self._sides.say(f"a caller gets no answer: {error}")

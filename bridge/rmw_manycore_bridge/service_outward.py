@@ -1,0 +1,137 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""A service whose server is outside, called by nodes of the platform."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Iterator
+from functools import partial
+from typing import Any
+
+from rclpy.serialization import deserialize_message, serialize_message
+
+from rmw_manycore_bridge.service import Service
+from rmw_manycore_bridge.sides import Sides
+from rmw_manycore_py import _transport
+
+# A server is in the graph a moment before it is matched, which nobody announces. Who looks again
+# after as long as it has waited finds it in time, and hardly ever looks for one that never matches.
+_MATCHING_S = 0.02
+_MATCHED_BY_S = 5.0  # who takes longer than DDS repeats what it may have missed, 3 s, does not fit
+
+_NEVER_S = float("inf")
+Caller = tuple[bytes, int]  # the client's gid, and its number of the request
+
+
+class OutwardService(Service):
+    """Server on the platform -> DDS client."""
+
+    kind = "client"
+
+    def __init__(self, sides: Sides) -> None:
+        super().__init__(sides)
+        # On the monotonic clock: since when a server is seen but not matched, when to look again.
+        self._seen_s = self._look_s = _NEVER_S
+        # Held while requests are claimed. Both threads do that, and none may be after the last.
+        self._claiming = threading.Lock()
+        self._requests: _transport.Subscription | None = None
+        self._replies: _transport.Publisher | None = None
+        self.entity = sides.outside.node.create_client(self._type, sides.route.outside)
+        sides.outside.readers.append(self)
+
+    def reconcile(self) -> None:
+        """Offer the service inside while a server is there outside."""
+        self._look_s = _NEVER_S
+        if not self.entity.service_is_ready():
+            self._leave_platform()
+            self._look_for_server()
+            return
+        self._seen_s = _NEVER_S
+        if self._requests is None:
+            self._replies = self._endpoint("publisher", "reply")
+            self._requests = self._endpoint("subscription", "request")
+            self._sides.inside.readers.append(self)
+            self._sides.inside.wake()
+            self._sides.row.set_state("forwarding")
+
+    def _look_for_server(self) -> None:
+        """Wait for one that is seen already, or say why it cannot be called."""
+        route, now_s = self._sides.route, time.monotonic()
+        found = self._sides.outside.server_types(route.outside)
+        if route.type not in found:
+            self._seen_s = _NEVER_S
+            self._wait_or_fail(found, "outside")
+            return
+        self._seen_s = min(self._seen_s, now_s)
+        waited_s = now_s - self._seen_s
+        self._look_s = now_s + max(waited_s, _MATCHING_S)
+        if waited_s > _MATCHED_BY_S:
+            self._sides.fail("has a server outside that DDS does not match: its QoS may not fit")
+        else:
+            self._sides.row.set_state("waiting")
+
+    @property
+    def due_s(self) -> float:  # type: ignore[override]
+        """When a request is overdue, or a server that was seen may be matched."""
+        return min(self._pending.due_s, self._look_s)
+
+    def expire(self, now_s: float) -> None:
+        """Answer the requests whose time is over; look for the server."""
+        super().expire(now_s)
+        if self._look_s <= now_s:
+            self.try_to_reconcile()
+
+    def pump_inside(self) -> None:
+        """Pass requests on."""
+        with self._claiming:
+            for caller, data in self._claimed_requests():
+                with self._one_request(caller):
+                    request = deserialize_message(data, self._type.Request)
+                    self._pending.ask(caller, partial(self.entity.handle.send_request, request))
+                self._sides.outside.wake()  # it sleeps until something is due
+
+    def _claimed_requests(self) -> Iterator[tuple[Caller, bytes]]:
+        requests = self._requests
+        while requests is not None and (claim := requests.claim()) is not None:
+            try:
+                caller, data = (claim.client, claim.number), claim.data
+            finally:
+                claim.release()
+            yield caller, data
+
+    def pump_outside(self) -> None:
+        """Return a reply."""
+        with self._one_request():
+            header, response = self.entity.handle.take_response(self._type.Response)
+            if response is not None:
+                self._return(header.request_id.sequence_number, response)
+
+    def _return(self, number: int, response: Any) -> None:
+        asked = self._pending.answered(number)
+        if asked is not None:
+            with self._one_request(asked.caller):
+                self._answer(asked, response, len(serialize_message(response)))
+
+    def _reply(self, caller: Caller, response: Any) -> None:
+        replies = self._replies
+        if replies is not None:
+            client, number = caller
+            replies.publish(serialize_message(response), client=client, number=number)
+
+    def _leave_platform(self) -> None:
+        """Answer all who have asked, then leave: nobody asks between the two."""
+        with self._claiming:
+            for caller, _ in self._claimed_requests():
+                self._give_up_without_server(caller)
+            if self._requests is not None:
+                self._sides.inside.readers.remove(self)
+            self._requests = None
+        self._abandon()
+        self._replies = None
+
+    def close(self) -> None:
+        """Leave both sides; who still waits gets an answer first."""
+        self._leave_platform()
+        self._sides.outside.readers.remove(self)
+        self._sides.outside.node.destroy_client(self.entity)

@@ -1,0 +1,60 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""What every route at work needs: both sides, its counters, and who else is of this bridge."""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+from rmw_manycore_bridge.counters import CounterFile, Row
+from rmw_manycore_bridge.inside import Inside
+from rmw_manycore_bridge.outside import Outside
+from rmw_manycore_py import _transport
+from rmw_manycore_py.routes import Route
+
+
+class OwnPublishers:
+    """Knows the publishers of all processes of this bridge by gid: those stand in their files."""
+
+    def __init__(self, platform: str) -> None:
+        self._directory = Path(_transport.platform_directory(platform))
+        self._known: dict[bytes, bool] = {}
+
+    def has(self, gid: bytes) -> bool:
+        """Tell whether a message with that gid came out of this bridge."""
+        known = self._known.get(gid)
+        if known is None:
+            known = self._known[gid] = self._look_up(gid)
+        return known
+
+    def _look_up(self, gid: bytes) -> bool:
+        files = (CounterFile.open(path) for path in self._directory.glob("bridge-*"))
+        return any(row.has_gid(gid) for file in files if file for row in file.rows)
+
+
+@dataclass(frozen=True)
+class Sides:
+    """The surroundings of one route."""
+
+    route: Route
+    row: Row
+    inside: Inside
+    outside: Outside
+    own: OwnPublishers
+
+    def fail(self, reason: str) -> None:
+        """Say once that the route cannot work, and why."""
+        line = " ".join(reason.split())  # some errors draw pictures
+        before = self._standing()
+        self.row.set_state("failed", line)
+        if self._standing() != before:  # a row has room for the beginning only
+            self.say(line)
+
+    def _standing(self) -> tuple[str, str]:
+        values = self.row.as_dict()
+        return values["state"], values["reason"]
+
+    def say(self, text: str) -> None:
+        """Print a line about the route."""
+        print(f"{self.route.inside}: {text}", file=sys.stderr, flush=True)

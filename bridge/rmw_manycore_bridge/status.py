@@ -1,0 +1,79 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""What the bridge of a platform has done, from the files of its processes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+from rmw_manycore_bridge.counters import FIELDS, CounterFile, is_locked
+from rmw_manycore_bridge.lanes import LaneTable, name_of
+from rmw_manycore_py import _transport
+from rmw_manycore_py.routes import DIRECTIONS, Direction
+
+_OF_OWNER = ("state", "latched", "latency_max_ns")
+_INTERNAL = ("latency_ns", "load_ppm", "window_ns", "window_busy_ns")
+_Key = tuple[str, str, str, str, int]
+
+
+def status(platform: str) -> list[dict[str, Any]]:
+    """Return a row for each route of a platform's bridge, summed over the lanes it has been in."""
+    owners = {way: LaneTable.of(platform, way).owners() for way in DIRECTIONS}
+    merged: dict[_Key, dict[str, Any]] = {}
+    for row in _rows(platform):
+        key = (row["kind"], row["direction"], row["inside"], row["outside"], row["domain"])
+        lane = row["lane"]
+        if row["kind"] == "topic":
+            lane = owners[row["direction"]].get(name_of(row), lane)
+        is_owner = row.pop("process_lane") == lane
+        row["lane"] = lane
+        merged[key] = _sum(merged[key], row, is_owner) if key in merged else row
+    for row in merged.values():
+        latency_ns, messages = row["latency_ns"], row["messages"]
+        row["latency_mean_ns"] = latency_ns // messages if messages else None
+        for name in _INTERNAL:
+            del row[name]
+    return list(merged.values())
+
+
+def topic_loads(platform: str, direction: Direction) -> dict[int, list[tuple[float, bool]]]:
+    """Return by lane, for each topic, its share of a CPU and whether it may move."""
+    found = {}
+    for path in _files(platform, f"bridge-{direction}-*"):
+        counters = CounterFile.open(path)
+        if counters is not None and is_locked(path):
+            lane = int(path.name.rpartition("-")[2])
+            found[lane] = [(row.load, not row.is_latched) for row in counters.rows]
+    return found
+
+
+def _rows(platform: str) -> Iterator[dict[str, Any]]:
+    for path in _files(platform, "bridge-*"):
+        counters = CounterFile.open(path)
+        if counters is None:
+            continue
+        process = {
+            "process_lane": int(path.name.rpartition("-")[2]),
+            "pid": counters.pid,
+            "alive": is_locked(path),
+        }
+        for route, row in zip(counters.routes, counters.rows, strict=True):
+            yield {**route, **process, **row.as_dict(), "load": row.load}
+
+
+def _files(platform: str, pattern: str) -> list[Path]:
+    try:
+        return sorted(Path(_transport.platform_directory(platform)).glob(pattern))
+    except FileNotFoundError:  # the last process removes the directory at this moment
+        return []
+
+
+def _sum(one: dict[str, Any], other: dict[str, Any], other_is_owner: bool) -> dict[str, Any]:
+    """Return the row of the owner, with what both have counted."""
+    total = dict(other if other_is_owner else one)
+    for name in FIELDS:
+        if name not in _OF_OWNER:
+            total[name] = one[name] + other[name]
+    total["latency_max_ns"] = max(one["latency_max_ns"], other["latency_max_ns"])
+    return total

@@ -1,0 +1,199 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""What topics have in common in both directions: limits, counters, and moves between lanes."""
+
+from __future__ import annotations
+
+import ctypes
+import time
+from abc import abstractmethod
+from collections.abc import Mapping
+from typing import Any
+
+from rmw_manycore_bridge import types
+from rmw_manycore_bridge.lanes import Share
+from rmw_manycore_bridge.limits import Limits
+from rmw_manycore_bridge.loop import Mover
+from rmw_manycore_bridge.place import SETTLE_S, STEP_S, Held, Place
+from rmw_manycore_bridge.policies import Policies
+from rmw_manycore_bridge.sides import Sides
+from rmw_manycore_py import _transport
+
+BATCH = 16  # messages of one route before the others have their turn
+LINGER_S = 1.0  # who gave a topic away keeps its publisher while subscribers take what it said
+PAUSE_S = 0.2  # who cannot get rid of what it said by then keeps the topic
+
+_NEVER_S = float("inf")
+
+
+class Topic(Mover):
+    """One topic in one process; all but `place` is done by the thread its messages come to."""
+
+    def __init__(self, sides: Sides, place: Place) -> None:
+        super().__init__(sides.fail)
+        self._sides, self._place = sides, place
+        self._type: Any = types.load(sides.route.type)
+        self._limits = Limits(sides.route)
+        self._offer: Policies | None = None
+        self._depth = 0  # of the subscription: no more than that can be unread
+        self._paused = False
+        self._paused_s = 0.0
+        self._settled_s = _NEVER_S
+        self._offer_held: Policies | None = None  # what the heir's endpoints were made for
+
+    def reconcile(self) -> None:
+        """Bring the endpoints in line with both graphs, and a move one step further."""
+        share, before = self._place.look(), self._place.role
+        self.due_s = _NEVER_S
+        if before == "nobody":
+            self._rest()
+            return
+        if before == "owner" and self._place.holds:
+            self._inherit(share)  # while the endpoints are those that the messages were kept for
+        if self._paused and before == "owner" and share.heir is None:
+            self._paused = False
+            self.resume()
+        if not self._paused:
+            self.match()
+            latched = self._offer is not None and self._offer["durability"] == "transient_local"
+            self._sides.row.set_latched(latched)
+        if before == "heir":
+            self._prepare(share)
+            return
+        if share.heir is not None:
+            self._give(share)
+
+    def _inherit(self, share: Share) -> None:
+        held = self._place.inherit(share)
+        self.begin_after(self._place.inherited)
+        for message in held:
+            if self._offer is None:  # its publishers went, and the endpoints with them
+                self._sides.row.add("lost")
+            else:
+                self._pass_on_held(message)
+
+    def expire(self, _: float) -> None:
+        """Take the next step of a move."""
+        self.try_to_reconcile()
+
+    def _rest(self) -> None:
+        """Leave at once, or, after a move, when everybody has taken what was said."""
+        if self._paused:
+            self._paused = False
+            self.stop_listening()
+            self._settled_s = time.monotonic() + LINGER_S
+        if self._offer is None:
+            return
+        if self._settled_s == _NEVER_S or time.monotonic() >= self._settled_s:
+            self._settled_s = _NEVER_S
+            self.close()
+            self._sides.row.set_state("waiting")
+        else:
+            self.due_s = self._settled_s
+
+    def _prepare(self, share: Share) -> None:
+        """As heir: stand by with own endpoints, then keep what comes, and tell the owner."""
+        now_s = time.monotonic()
+        self.due_s = now_s + STEP_S
+        if self._offer is None:
+            if self._place.holds:
+                self._place.decline()
+        elif self._offer["durability"] == "transient_local":
+            self._place.decline()
+        elif self._settled_s == _NEVER_S and not self._place.holds:
+            self._settled_s, self._offer_held = now_s + SETTLE_S, self._offer
+        elif self._offer is not self._offer_held:
+            self._place.decline()  # the endpoints are new ones
+        elif self._place.holds:
+            self._place.report(share)
+        elif now_s >= self._settled_s:
+            self._settled_s = _NEVER_S
+            self._place.begin_to_hold()
+
+    def _give(self, share: Share) -> None:
+        """As owner: stop where the heir can go on, and say so when all have what was said."""
+        self.due_s = time.monotonic() + STEP_S
+        if self._offer is None or self._offer["durability"] == "transient_local":
+            self._place.decline()
+        elif self._place.may_hand_over(share):
+            if not self._paused:
+                if not self.is_acknowledged():
+                    return  # a subscriber that does not keep up would make the pause long
+                self._paused, self._paused_s = True, time.monotonic()
+                self.pause()
+            if self.is_acknowledged() and self._place.hand_over():
+                self.due_s = time.monotonic()
+            elif time.monotonic() > self._paused_s + PAUSE_S:
+                self._place.decline()
+
+    def arrived(self, publisher: bytes, number: int, address: int, size: int, sent_ns: int) -> None:
+        """Take charge of a message, which may be one that another lane passes on."""
+        place, row = self._place, self._sides.row
+        if self._sides.route.mirrored and self._sides.own.has(publisher):
+            row.add("own")
+        elif place.role == "heir":
+            data = ctypes.string_at(address, size)
+            place.hold(Held(publisher, number, data, sent_ns))
+        elif not place.repeats(publisher, number):
+            self._note(publisher, number)
+            self._pass_on(address, size, sent_ns)
+
+    def _pass_on_held(self, held: Held) -> None:
+        address = ctypes.cast(ctypes.c_char_p(held.data), ctypes.c_void_p).value or 0
+        self._note(held.publisher, held.number)
+        self._pass_on(address, len(held.data), held.source_timestamp_ns)
+
+    def _note(self, publisher: bytes, number: int) -> None:
+        self.count_gap(publisher, number)
+        self._place.passed(publisher, number)
+
+    def _pass_on(self, address: int, size: int, sent_ns: int) -> None:
+        row = self._sides.row
+        if refusal := self._limits.refusal(size):
+            row.add(refusal)
+            return
+        try:
+            self.send(address, size, sent_ns)
+        except (_transport.PlatformError, RuntimeError) as error:
+            if row.add("refused") == 1:
+                self._sides.say(str(error))
+            return
+        row.passed(size, time.time_ns() - sent_ns)
+
+    def finish(self) -> None:
+        """Pass on what is unread, then leave both sides: it would go with the subscription."""
+        self.take(self._depth)
+        self.close()
+
+    @abstractmethod
+    def match(self) -> None:
+        """Make or end endpoints as the graphs want it."""
+
+    @abstractmethod
+    def send(self, address: int, size: int, sent_ns: int) -> None:
+        """Publish on the other side."""
+
+    @abstractmethod
+    def take(self, limit: int) -> None:
+        """Take so many messages that have arrived."""
+
+    @abstractmethod
+    def pause(self) -> None:
+        """Leave messages where they are."""
+
+    @abstractmethod
+    def resume(self) -> None:
+        """Go on after a pause."""
+
+    @abstractmethod
+    def stop_listening(self) -> None:
+        """End the subscription."""
+
+    @abstractmethod
+    def is_acknowledged(self) -> bool:
+        """Tell whether all subscribers on the other side have what was sent."""
+
+    def begin_after(self, last: Mapping[bytes, int]) -> None:
+        """Take the numbers of the lane before as those passed on last."""
+
+    def count_gap(self, publisher: bytes, number: int) -> None:
+        """Count what is missing before a message."""

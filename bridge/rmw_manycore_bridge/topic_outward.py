@@ -1,0 +1,164 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""A topic on its way out: subscription on the platform -> DDS publisher."""
+
+from __future__ import annotations
+
+import time
+from typing import Any
+
+from rclpy.duration import Duration
+from rclpy.event_handler import PublisherEventCallbacks
+
+from rmw_manycore_bridge import types
+from rmw_manycore_bridge.place import STEP_S, Place
+from rmw_manycore_bridge.policies import (
+    Policies,
+    common_offer,
+    request_for,
+    satisfies,
+    to_rclpy,
+    unmet,
+)
+from rmw_manycore_bridge.rcl import RawWriter
+from rmw_manycore_bridge.sides import Sides
+from rmw_manycore_bridge.topic import BATCH, Topic
+from rmw_manycore_py import _transport
+
+
+class OutwardTopic(Topic):
+    """Works in the thread of the platform's side."""
+
+    def __init__(self, sides: Sides, place: Place) -> None:
+        super().__init__(sides, place)
+        self._publisher: Any = None
+        self._writer: RawWriter | None = None
+        self._subscription: _transport.Subscription | None = None
+        self._lost = 0
+
+    def match(self) -> None:
+        """Publish outside while somebody does inside; listen inside while somebody does outside."""
+        route, inside = self._sides.route, self._sides.inside
+        publishers = inside.publishers(route.inside)
+        fitting = [p for p in publishers if p["type"] == route.type]
+        if not fitting:
+            self._leave()
+            if publishers:
+                self._sides.fail(f"is {publishers[0]['type']} inside, not {route.type}")
+            else:
+                self._sides.row.set_state("waiting")
+            return
+        offers = [p["qos"] for p in fitting]
+        if reason := unmet(offers, route.qos):
+            self._leave()
+            self._sides.fail(reason)
+            return
+        offer = common_offer(offers, route.qos)
+        if self._offer is None or not satisfies(self._offer, offer):
+            self.finish()
+            self._appear(offer)
+        if self._is_wanted(offer):
+            self._listen()
+        else:
+            self.stop_listening()
+        self._sides.row.set_state("ready" if self._subscription is None else "forwarding")
+
+    def _is_wanted(self, offer: Policies) -> bool:
+        route, kept = self._sides.route, offer["durability"] == "transient_local"
+        return kept or route.eager or bool(self._sides.outside.subscriptions(route.outside))
+
+    def _leave(self) -> None:
+        """Pass on what is unread; with its publisher would go what subscribers do not have yet.
+
+        However slow they are: those that are gone or stand still DDS gives up itself.
+        """
+        self.take(self._depth)
+        self.stop_listening()
+        if self._publisher is None or self.is_acknowledged():
+            self.close()
+        else:
+            self.due_s = time.monotonic() + STEP_S
+
+    def _appear(self, offer: Policies) -> None:
+        self._publisher = self._sides.outside.node.create_publisher(
+            self._type,
+            self._sides.route.outside,
+            to_rclpy(offer),
+            event_callbacks=PublisherEventCallbacks(use_default_callbacks=False),
+        )
+        self._writer = RawWriter(self._publisher)
+        self._sides.row.add_gid(self._writer.gid)
+        self._offer = offer
+
+    def _listen(self) -> None:
+        if self._subscription is not None or self._offer is None:
+            return
+        route, request = self._sides.route, request_for(self._offer, 1)
+        self._subscription = self._sides.inside.process.subscription(
+            route.inside, route.type, request, type_hash=types.hash_of(route.type)
+        )
+        self._depth, self._lost = request["depth"], 0
+        self._sides.inside.readers.append(self)
+
+    def stop_listening(self) -> None:
+        """End the subscription."""
+        self.pause()
+        self._subscription = None
+
+    def pump_inside(self) -> None:
+        """Pass on what has arrived."""
+        if self._subscription is None or not self._subscription.has_data():
+            return
+        began_ns = time.thread_time_ns()
+        self.take(BATCH)
+        self._sides.row.worked(time.thread_time_ns() - began_ns)
+
+    def take(self, limit: int) -> None:
+        """Take so many messages that have arrived."""
+        subscription = self._subscription
+        for _ in range(limit):
+            if subscription is None:
+                return
+            claim = subscription.claim()
+            if claim is None:
+                self._count_lost(subscription)
+                return
+            try:
+                self.arrived(
+                    *(claim.publisher, claim.sequence),
+                    *(claim.address, claim.size, claim.source_timestamp_ns),
+                )
+            finally:
+                claim.release()
+        self._sides.inside.wake()  # the others have their turn first
+
+    def send(self, address: int, size: int, _: int) -> None:
+        """Publish outside; rmw cannot publish with another time than now."""
+        assert self._writer is not None
+        self._writer.publish(address, size)
+
+    def _count_lost(self, subscription: _transport.Subscription) -> None:
+        lost = subscription.lost()
+        if lost != self._lost:
+            self._sides.row.add("lost", lost - self._lost)
+            self._lost = lost
+
+    def pause(self) -> None:
+        """Leave messages where they are."""
+        if self in self._sides.inside.readers:
+            self._sides.inside.readers.remove(self)
+
+    def resume(self) -> None:
+        """Go on after a pause."""
+        if self._subscription is not None:
+            self._sides.inside.readers.append(self)
+
+    def is_acknowledged(self) -> bool:
+        """Tell whether every reliable subscriber has all that was sent."""
+        return bool(self._publisher.wait_for_all_acked(Duration(seconds=0)))
+
+    def close(self) -> None:
+        """Leave both sides."""
+        self.stop_listening()
+        if self._publisher is not None:
+            self._sides.outside.node.destroy_publisher(self._publisher)
+        self._publisher = self._writer = self._offer = None

@@ -1,0 +1,16 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#include <nanobind/nanobind.h>
+
+#include "ndt/pass.hpp"
+#include "python/ndt/bindings.hpp"
+#include "platform/error.hpp"
+
+namespace nb = nanobind;
+
+NB_MODULE(_ndt, module) {
+  module.doc() = "The scan matcher of rmw_manycore; used through rmw_manycore_py.ndt.";
+  nb::exception<manycore::Error>(module, "NdtError", PyExc_RuntimeError);
+  manycore::ndt::python::bind_voxel_map(module);
+  manycore::ndt::python::bind_matchers(module);
+  module.def("simd", [] { return manycore::ndt::name_of(manycore::ndt::choose_simd()); });
+}

@@ -1,0 +1,27 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "rmw/types.h"
+#include "transport/layout/endpoint.hpp"
+
+namespace rmw_manycore {
+
+class Node;
+
+/// Resolves system defaults as rmw_fastrtps_cpp does (publishers: reliable and transient local;
+/// subscriptions: best effort and volatile; depth 1). Throws manycore::Error{invalid_argument} for
+/// a policy that has no meaning, the MANUAL_BY_NODE that ROS 2 gave up included.
+manycore::Qos to_transport(const rmw_qos_profile_t & profile, manycore::EndpointKind kind);
+
+rmw_qos_profile_t to_rmw(const manycore::Qos & qos);
+
+/// Replace "best available" policies by the highest level of service that matches the endpoints
+/// that `topic` has now on the other side. Policies of other values are left as they are.
+rmw_qos_profile_t best_available_for_subscription(
+  const Node & node, const char * topic, const rmw_qos_profile_t & profile);
+rmw_qos_profile_t best_available_for_publisher(
+  const Node & node, const char * topic, const rmw_qos_profile_t & profile);
+/// Services do not look at who is there.
+rmw_qos_profile_t best_available_for_service(rmw_qos_profile_t profile);
+
+}  // namespace rmw_manycore

@@ -1,0 +1,146 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <sys/types.h>
+
+#include "platform/robust_mutex.hpp"
+#include "transport/layout/endpoint.hpp"
+#include "transport/layout/segment_layout.hpp"
+#include "transport/layout/wake_word.hpp"
+
+namespace manycore {
+
+constexpr uint32_t process_capacity = 1024;
+constexpr uint32_t node_capacity = 4096;
+constexpr uint32_t endpoint_capacity = 32768;
+constexpr uint32_t topic_capacity = 4096;
+constexpr uint32_t topic_bucket_count = 4096;
+constexpr uint32_t nothing = UINT32_MAX;  ///< no slot
+
+constexpr size_t name_bytes = 256;  ///< ROS names are at most 255 characters
+
+/// free -> live -> closing -> free; closing only for endpoints (see docs/design/topic_dsm.md, Freeing).
+enum class SlotState : uint32_t { free, live, closing };
+
+/// First member of every table entry.
+struct Slot {
+  std::atomic<SlotState> state;
+  uint32_t next_free;    ///< while free
+  uint32_t incarnation;  ///< raised at each use
+};
+
+struct ProcessEntry {
+  Slot slot;
+  pid_t pid;
+  uint32_t cluster;
+  int32_t core;      ///< -1 = not placed on a core
+  int32_t host_cpu;  ///< -1 = not pinned
+  uint32_t reserved;
+  uint64_t charged_bytes;  ///< outside the segment, but counted as SMEM
+  char label[88];
+  WakeWord wake;
+};
+static_assert(sizeof(ProcessEntry) == 192);
+
+struct NodeEntry {
+  Slot slot;
+  uint32_t process;
+  char name[name_bytes];
+  char ns[name_bytes];
+  char enclave[name_bytes];
+};
+static_assert(sizeof(NodeEntry) == 784);
+
+/// Written by the endpoint's owner only, read by the tools.
+struct EndpointCounters {
+  std::atomic<uint64_t> messages;     ///< published or taken
+  std::atomic<uint64_t> bytes;        ///< of serialized data
+  std::atomic<uint64_t> lost;         ///< subscription: overwritten before taken
+  std::atomic<uint64_t> expired;      ///< subscription: older than its lifespan when its turn came
+  std::atomic<uint64_t> refused;      ///< publisher: did not fit
+  std::atomic<uint64_t> overwritten;  ///< publisher: recycled while a reader still wanted it
+};
+
+struct EndpointEntry {
+  Slot slot;
+  EndpointKind kind;
+  EndpointRole role;
+  uint8_t ignore_local;
+  uint8_t type_hash_version;
+  uint32_t process;
+  uint32_t node;
+  uint32_t cluster;
+  uint32_t next_of_topic;  ///< chain of its topic's bucket
+  uint64_t topic_hash;
+  SegmentRef block;  ///< publisher: topic DSM header; subscription: subscription header
+  Gid gid;
+  Qos qos;
+  uint8_t type_hash[32];
+  std::atomic<uint64_t> matched_total;
+  std::atomic<uint64_t> matched_current;
+  std::atomic<uint64_t> incompatible_total;
+  std::atomic<uint32_t> incompatible_policy;
+  uint32_t topic_dsm_size;  ///< publisher: fixed size from the topic table; 0 = grows
+  std::atomic<uint64_t> incompatible_types;
+  std::atomic<int64_t> asserted_ns;  ///< publisher: last assertion of manual liveliness; 0 = never
+  std::atomic<uint32_t> dead_publishers;  ///< subscription: died and not yet replaced
+  uint32_t reserved;
+  EndpointCounters counters;
+  char topic[name_bytes];
+  char type[name_bytes];
+};
+static_assert(sizeof(EndpointEntry) == 744);
+
+/// One line of the topic table (ROS-lite2 Fig. 7).
+struct TopicEntry {
+  uint64_t topic_hash;
+  uint32_t topic_id;
+  uint32_t topic_dsm_size;
+  uint64_t receiver_clusters;  ///< bit c - 1 = cluster c
+  char name[name_bytes];
+};
+static_assert(sizeof(TopicEntry) == 280);
+
+/// Used part of a table. The free list is derived state: rebuilt from the slots' states.
+struct TableHead {
+  std::atomic<uint32_t> high_water;
+  uint32_t first_free;
+};
+
+/// The platform's shape, fixed at creation.
+struct Profile {
+  uint32_t clusters;
+  uint32_t cores_per_cluster;
+  uint64_t smem_bytes;  ///< of each cluster
+  int32_t host_cpu_of_receive_thread[max_clusters];  ///< index cluster - 1; -1 = not pinned
+};
+
+struct RegistryHeader {
+  SegmentHeader segment;
+  Profile profile;
+  RobustMutex mutex;
+  std::atomic<uint64_t> graph_generation;
+  TableHead processes;
+  TableHead nodes;
+  TableHead endpoints;
+  uint32_t topic_count;
+  uint32_t closing_count;  ///< endpoints in SlotState::closing (derived)
+  std::atomic<uint64_t> clusters_present;  ///< bit c - 1: cluster c has a segment
+  uint32_t topic_buckets[topic_bucket_count];
+};
+
+constexpr uint64_t align_up(uint64_t x, uint64_t alignment) {
+  return (x + alignment - 1) / alignment * alignment;
+}
+
+constexpr uint64_t process_table_offset = align_up(sizeof(RegistryHeader), 4096);
+constexpr uint64_t node_table_offset =
+  align_up(process_table_offset + uint64_t{process_capacity} * sizeof(ProcessEntry), 4096);
+constexpr uint64_t endpoint_table_offset =
+  align_up(node_table_offset + uint64_t{node_capacity} * sizeof(NodeEntry), 4096);
+constexpr uint64_t topic_table_offset =
+  align_up(endpoint_table_offset + uint64_t{endpoint_capacity} * sizeof(EndpointEntry), 4096);
+constexpr uint64_t registry_bytes =
+  align_up(topic_table_offset + uint64_t{topic_capacity} * sizeof(TopicEntry), 4096);
+
+}  // namespace manycore

@@ -1,0 +1,71 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#include "transport/lifecycle/configurator.hpp"
+
+#include <dirent.h>
+
+#include <algorithm>
+#include <cerrno>
+
+#include "platform/error.hpp"
+
+namespace manycore {
+
+Configurator::Configurator(
+  const std::string & platform, const Profile & profile,
+  const std::vector<TopicConfiguration> & topics)
+: paths_(PlatformPaths::of(platform)) {
+  const JoinLock lock(paths_);
+  if (is_alive(paths_)) {
+    throw Error(
+      ErrorCode::invalid_argument, "platform '" + platform +
+        "' is running already; stop it, or give this one another name (platform: name in the mapfile)");
+  }
+  ensure_platform(paths_, profile, topics);
+  alive_locks(paths_).try_lock(configurator_byte);
+}
+
+Configurator::~Configurator() {
+  try {
+    const JoinLock lock(paths_);
+    alive_locks(paths_).unlock(configurator_byte);
+    Registry registry(paths_);
+    if (!is_in_use(registry)) {
+      remove_platform(paths_);
+    }
+  } catch (const std::exception &) {
+    // Nodes that are still alive keep the platform; the last one to leave removes it.
+  }
+}
+
+std::vector<std::string> platform_names() {
+  const std::string directory = PlatformPaths::of("any").user_directory;
+  std::vector<std::string> names;
+  DIR * const handle = opendir(directory.c_str());
+  if (!handle) {
+    if (errno != ENOENT) {
+      throw_errno("cannot list " + directory);
+    }
+    return names;
+  }
+  while (const dirent * const entry = readdir(handle)) {
+    if (entry->d_type == DT_DIR && entry->d_name[0] != '.') {
+      names.emplace_back(entry->d_name);
+    }
+  }
+  closedir(handle);
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+std::vector<std::string> clean_platform(const std::string & platform) {
+  const PlatformPaths paths = PlatformPaths::of(platform);
+  const JoinLock lock(paths);
+  if (is_alive(paths)) {
+    throw Error(
+      ErrorCode::invalid_argument,
+      "platform '" + platform + "' is alive; stop its nodes first ('manycore status' lists them)");
+  }
+  return remove_platform(paths);
+}
+
+}  // namespace manycore

@@ -1,0 +1,253 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#include "transport/lifecycle/lifecycle.hpp"
+
+#include <dirent.h>
+#include <dlfcn.h>
+#include <sys/stat.h>
+#include <sys/statvfs.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <climits>
+#include <cstdlib>
+#include <iterator>
+#include <map>
+#include <mutex>
+
+#include "platform/os_process.hpp"
+#include "transport/matching/closing.hpp"
+#include "transport/registry/smem_charge.hpp"
+
+namespace manycore {
+namespace {
+
+constexpr int join_timeout_ms = 10'000;
+
+void make_private_directory(const std::string & path) {
+  if (mkdir(path.c_str(), 0700) != 0 && errno != EEXIST) {
+    throw_errno("cannot create " + path);
+  }
+  struct stat status {};
+  if (lstat(path.c_str(), &status) != 0) {
+    if (errno == ENOENT) {
+      return;  // removed by its last user just now; the caller tries again
+    }
+    throw_errno("cannot examine " + path);
+  }
+  if (!S_ISDIR(status.st_mode) || status.st_uid != geteuid() || (status.st_mode & 077) != 0) {
+    throw Error(
+      ErrorCode::permission, path +
+        " is not a private directory of this user; remove it (or ask its owner to), then try again");
+  }
+}
+
+std::vector<std::string> entries_of(const std::string & directory) {
+  std::vector<std::string> names;
+  DIR * const handle = opendir(directory.c_str());
+  if (handle == nullptr) {
+    return names;
+  }
+  while (const dirent * const entry = readdir(handle)) {
+    const std::string name = entry->d_name;
+    if (name != "." && name != "..") {
+      names.push_back(name);
+    }
+  }
+  closedir(handle);
+  return names;
+}
+
+bool exists(const std::string & path) { return access(path.c_str(), F_OK) == 0; }
+
+/// This library's own directory, links resolved.
+std::string own_directory() {
+  Dl_info info{};
+  char resolved[PATH_MAX];
+  const auto here = reinterpret_cast<const void *>(&ensure_receive_thread);
+  if (dladdr(here, &info) == 0 || realpath(info.dli_fname, resolved) == nullptr) {
+    return ".";
+  }
+  const std::string path = resolved;
+  return path.substr(0, path.rfind('/'));
+}
+
+/// Beside the library in a prefix, in a build tree, or from site-packages up to the prefix.
+std::string receive_thread_program() {
+  const std::string directory = own_directory();
+  for (const char * const place : {"/rmw_manycore/", "/", "/../", "/../../../rmw_manycore/"}) {
+    const std::string candidate = directory + place + "manycore_receive_thread";
+    if (access(candidate.c_str(), X_OK) == 0) {
+      return candidate;
+    }
+  }
+  throw Error(
+    ErrorCode::system,
+    "manycore_receive_thread was not found near " + directory + "; reinstall rmw-manycore");
+}
+
+void reap(Registry & registry, uint32_t process) {
+  for (uint32_t slot = 0; slot < registry.endpoints().high_water(); ++slot) {
+    EndpointEntry & endpoint = registry.endpoints()[slot];
+    if (endpoint.process == process && endpoint.slot.state.load() != SlotState::free) {
+      closing::close(registry, slot, true);
+    }
+  }
+  for (uint32_t slot = 0; slot < registry.nodes().high_water(); ++slot) {
+    if (registry.nodes().is_live(slot) && registry.nodes()[slot].process == process) {
+      registry.nodes().give_back(slot);
+    }
+  }
+  discharge(registry, process);
+  registry.processes().give_back(process);
+}
+
+}  // namespace
+
+JoinLock::JoinLock(const PlatformPaths & paths) : paths_(paths) {
+  while (!lock_) {
+    make_private_directory(paths.user_directory);
+    lock_ = FileLock::acquire(paths.join_lock(), join_timeout_ms);
+  }
+}
+
+JoinLock::~JoinLock() {
+  if (entries_of(paths_.user_directory) == std::vector<std::string>{"lock"}) {
+    unlink(paths_.join_lock().c_str());
+    rmdir(paths_.user_directory.c_str());
+  }
+}
+
+ByteLocks alive_locks(const PlatformPaths & paths) {
+  static std::mutex mutex;
+  // Kept, since closing any descriptor of the file would drop this process's locks.
+  static auto & opened = *new std::multimap<std::string, ByteLocks>();
+  const std::lock_guard<std::mutex> guard(mutex);
+  const auto range = opened.equal_range(paths.alive());
+  for (auto i = range.first; i != range.second; ++i) {
+    if (i->second.is_current()) {
+      return i->second;
+    }
+  }
+  // Files of platforms that are gone go, unless this process has locks to lose there.
+  for (auto i = opened.begin(); i != opened.end();) {
+    i = i->second.is_current() || i->second.holds_any() ? std::next(i) : opened.erase(i);
+  }
+  return opened.emplace(paths.alive(), ByteLocks::open(paths.alive()))->second;
+}
+
+Profile host_profile() {
+  constexpr uint64_t mebibyte = 1u << 20;
+  Profile profile{};
+  profile.clusters = 5;
+  profile.cores_per_cluster = 16;
+  struct statvfs fs {};
+  statvfs("/dev/shm", &fs);
+  const uint64_t share = uint64_t{fs.f_blocks} * fs.f_frsize / 2 / profile.clusters;
+  profile.smem_bytes = share < mebibyte ? mebibyte : share / mebibyte * mebibyte;
+  for (int32_t & cpu : profile.host_cpu_of_receive_thread) {
+    cpu = -1;
+  }
+  return profile;
+}
+
+bool is_alive(const PlatformPaths & paths) {
+  return exists(paths.alive()) && alive_locks(paths).is_any_held();
+}
+
+void ensure_platform(
+  const PlatformPaths & paths, const Profile & profile,
+  const std::vector<TopicConfiguration> & topics) {
+  if (exists(paths.directory) && !is_alive(paths)) {
+    remove_platform(paths);
+  }
+  if (!exists(paths.directory)) {
+    make_private_directory(paths.directory);
+    try {
+      ByteLocks::create(paths.alive());
+      Registry::create(paths, profile, topics);
+    } catch (...) {
+      remove_platform(paths);
+      throw;
+    }
+  }
+}
+
+bool is_in_use(Registry & registry) {
+  const ByteLocks & alive = alive_locks(registry.paths());
+  if (alive.is_held(configurator_byte)) {
+    return true;
+  }
+  for (uint32_t slot = 0; slot < registry.processes().high_water(); ++slot) {
+    if (registry.processes().is_live(slot) && alive.is_held(slot)) {
+      return true;
+    }
+  }
+  return false;
+}
+
+std::vector<std::string> remove_platform(const PlatformPaths & paths) {
+  for (uint32_t id = 1; id <= max_clusters; ++id) {
+    if (exists(paths.pipe(id))) {
+      EmcosMessage message{};
+      message.kind = EmcosMessageKind::detach;
+      try {
+        Pipe::open(paths.pipe(id)).send_last(&message, sizeof message);
+      } catch (const Error &) {
+        // Not a pipe any more: there is nobody behind it to tell.
+      }
+    }
+  }
+  std::vector<std::string> removed;
+  for (const std::string & name : entries_of(paths.directory)) {
+    const std::string path = paths.directory + "/" + name;
+    if (unlink(path.c_str()) == 0) {
+      removed.push_back(path);
+    }
+  }
+  rmdir(paths.directory.c_str());
+  return removed;
+}
+
+uint32_t reap_dead(Registry & registry) {
+  const ByteLocks & alive = alive_locks(registry.paths());
+  uint32_t dead = 0;
+  for (uint32_t slot = 0; slot < registry.processes().high_water(); ++slot) {
+    if (registry.processes().is_live(slot) && !alive.is_held(slot)) {
+      reap(registry, slot);
+      ++dead;
+    }
+  }
+  closing::sweep(registry);
+  return dead;
+}
+
+void tell_other_reapers(Registry & registry, uint32_t own) {
+  EmcosMessage message{};
+  message.kind = EmcosMessageKind::attach;
+  const uint64_t present = registry.header().clusters_present.load();
+  for (uint32_t id = 1; id <= max_clusters; ++id) {
+    Cluster * const cluster =
+      (present >> (id - 1) & 1) != 0 && id != own ? registry.clusters().find(id) : nullptr;
+    if (cluster != nullptr) {
+      cluster->send(message);
+    }
+  }
+}
+
+void ensure_receive_thread(const PlatformPaths & paths, uint32_t cluster) {
+  const JoinLock lock(paths);  // one starter at a time
+  if (!exists(paths.alive()) ||
+      alive_locks(paths).is_held(receive_thread_byte + cluster)) {
+    return;
+  }
+  const std::string program = receive_thread_program();
+  const int status = spawn_daemon(
+    {program, paths.directory.substr(paths.user_directory.size() + 1), std::to_string(cluster)});
+  if (status != 0) {
+    throw Error(
+      ErrorCode::system, "cannot start the receive thread of cluster " + std::to_string(cluster) +
+        " (" + program + ", status " + std::to_string(status) + ")");
+  }
+}
+
+}  // namespace manycore

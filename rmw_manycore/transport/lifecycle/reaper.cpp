@@ -1,0 +1,169 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#include "transport/lifecycle/reaper.hpp"
+
+#include <pthread.h>
+#include <sys/epoll.h>
+#include <sys/eventfd.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <mutex>
+
+#include "platform/os_process.hpp"
+#include "transport/lifecycle/lifecycle.hpp"
+
+namespace manycore {
+namespace {
+
+constexpr int for_ever_ms = -1;
+constexpr int retry_ms = 1000;
+constexpr uint64_t look_again_key = 0;  ///< no process has pid 0
+
+/// True while the platform's directory still holds this registry, and not a later one of the same name.
+bool is_current(Registry & registry) {
+  try {
+    return Registry(registry.paths()).nonce() == registry.nonce();
+  } catch (const Error &) {
+    return false;
+  }
+}
+
+void add_to_poll(int poll, int fd, uint64_t key) {
+  epoll_event event{};
+  event.events = EPOLLIN;
+  event.data.u64 = key;
+  if (epoll_ctl(poll, EPOLL_CTL_ADD, fd, &event) != 0) {
+    throw_errno("cannot watch a descriptor");
+  }
+}
+
+/// Removes the platform if nobody uses it; true when this receive thread has nothing left to serve.
+bool end_if_unused(Registry & registry) {
+  const JoinLock lock(registry.paths());
+  if (!is_current(registry)) {
+    return true;
+  }
+  if (is_in_use(registry)) {
+    return false;
+  }
+  remove_platform(registry.paths());
+  return true;
+}
+
+}  // namespace
+
+void exit_if_unused(Registry & registry) {
+  // One thread at a time: the end of one would cut off the other, and leave the directory that its JoinLock brought up.
+  static std::mutex mutex;
+  const std::lock_guard<std::mutex> guard(mutex);
+  if (end_if_unused(registry)) {
+    _exit(0);
+  }
+}
+
+Reaper::Reaper(Registry & registry, uint32_t cluster)
+: registry_(registry),
+  cluster_(cluster),
+  poll_(epoll_create1(EPOLL_CLOEXEC)),
+  event_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
+  if (!poll_ || !event_) {
+    throw_errno("cannot create the reaper's descriptors");
+  }
+  add_to_poll(poll_.get(), event_.get(), look_again_key);
+  thread_ = std::thread([this] { run(); });
+  pthread_setname_np(thread_.native_handle(), "manycore_reaper");
+}
+
+Reaper::~Reaper() {
+  running_ = false;
+  look_again();
+  thread_.join();
+}
+
+void Reaper::look_again() noexcept { eventfd_write(event_.get(), 1); }
+
+void Reaper::watch(pid_t pid) {
+  if (pid <= 0 || pid == getpid() || watched_.count(pid) != 0) {
+    return;
+  }
+  FileDescriptor pidfd = open_pidfd(pid);
+  if (pidfd) {
+    add_to_poll(poll_.get(), pidfd.get(), static_cast<uint64_t>(pid));
+    watched_.emplace(pid, std::move(pidfd));
+  }
+}
+
+/// A cluster that has no receive thread, not yet or not any more, is everybody's. So is one whose receive thread is not
+/// watched: nobody would tell of its end. That it lives is looked at once it is watched.
+bool Reaper::is_ours(uint32_t cluster) const {
+  if (cluster == cluster_) {
+    return true;
+  }
+  const Cluster * const other = registry_.clusters().find(cluster);
+  return other == nullptr || watched_.count(other->header().receive_thread_pid.load()) == 0 ||
+         !alive_locks(registry_.paths()).is_held(receive_thread_byte + cluster);
+}
+
+bool Reaper::watch_new() {
+  const uint64_t present = registry_.header().clusters_present.load();
+  for (uint32_t id = 1; id <= max_clusters; ++id) {
+    if ((present >> (id - 1) & 1) != 0 && id != cluster_ && registry_.clusters().find(id)) {
+      watch(registry_.clusters().at(id).header().receive_thread_pid.load());
+    }
+  }
+  for (uint32_t slot = 0; slot < registry_.processes().high_water(); ++slot) {
+    const ProcessEntry & process = registry_.processes()[slot];
+    if (registry_.processes().is_live(slot) && is_ours(process.cluster)) {
+      watch(process.pid);
+    }
+  }
+  return bury();  // who died before it was watched
+}
+
+bool Reaper::bury() {
+  uint32_t dead = 0;
+  {
+    const Registry::Lock lock(registry_);
+    dead = reap_dead(registry_);
+    is_closing_ = registry_.header().closing_count != 0;
+  }
+  if (dead != 0) {
+    registry_.graph_changed();
+  }
+  return dead != 0;
+}
+
+bool Reaper::wait_for_end(int timeout_ms) {
+  epoll_event events[16];
+  const int count = epoll_wait(poll_.get(), events, 16, timeout_ms);
+  bool somebody_ended = false;
+  for (int i = 0; i < count; ++i) {
+    if (events[i].data.u64 == look_again_key) {
+      eventfd_t ignored = 0;
+      eventfd_read(event_.get(), &ignored);
+    } else {
+      watched_.erase(static_cast<pid_t>(events[i].data.u64));
+      somebody_ended = true;
+    }
+  }
+  return somebody_ended;
+}
+
+void Reaper::run() noexcept {
+  bool somebody_ended = true;  // perhaps all who were there when this receive thread was started
+  while (running_) {
+    try {
+      somebody_ended = watch_new() || somebody_ended;
+      if (somebody_ended) {
+        exit_if_unused(registry_);
+      }
+      somebody_ended = wait_for_end(is_closing_ ? retry_ms : for_ever_ms);
+    } catch (const std::exception &) {
+      // A lock that stayed taken or a damaged entry.
+      somebody_ended = wait_for_end(retry_ms) || somebody_ended;
+    }
+  }
+}
+
+}  // namespace manycore

@@ -1,0 +1,50 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <sys/types.h>
+
+#include <atomic>
+#include <map>
+#include <thread>
+
+#include "platform/file_descriptor.hpp"
+#include "transport/registry/registry.hpp"
+
+namespace manycore {
+
+/// The second thread of a receive-thread process: sleeps on the pidfds of its cluster's processes and of the other
+/// clusters' receive threads; closes what the dead left behind.
+class Reaper {
+public:
+  Reaper(Registry & registry, uint32_t cluster);
+  ~Reaper();
+  Reaper(const Reaper &) = delete;
+  Reaper & operator=(const Reaper &) = delete;
+
+  /// Somebody joined: look whom to watch. Any thread.
+  void look_again() noexcept;
+
+private:
+  void run() noexcept;
+  /// These two: true when somebody was dead.
+  bool watch_new();
+  bool bury();
+  bool is_ours(uint32_t cluster) const;
+  void watch(pid_t pid);
+  /// True when one of those watched has ended; false when there is another reason to look, or none.
+  bool wait_for_end(int timeout_ms);
+
+  Registry & registry_;
+  uint32_t cluster_;
+  FileDescriptor poll_;   ///< epoll
+  FileDescriptor event_;  ///< eventfd: look again
+  std::map<pid_t, FileDescriptor> watched_;
+  bool is_closing_ = false;  ///< something could not be freed yet, and nobody tells when it can be
+  std::atomic<bool> running_{true};
+  std::thread thread_;
+};
+
+/// Ends this receive-thread process, and the platform with it, if no process uses the platform any more.
+void exit_if_unused(Registry & registry);
+
+}  // namespace manycore

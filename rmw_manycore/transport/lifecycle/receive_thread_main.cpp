@@ -1,0 +1,65 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+// manycore_receive_thread PLATFORM CLUSTER: the receive thread of one cluster, started by the first process of it
+// and by whoever notices that it died. Not meant to be started by hand.
+
+#include <sys/prctl.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+
+#include "platform/os_process.hpp"
+#include "transport/lifecycle/lifecycle.hpp"
+#include "transport/lifecycle/reaper.hpp"
+#include "transport/notification/receive_thread.hpp"
+
+namespace manycore {
+namespace {
+
+void serve(const std::string & platform, uint32_t id, Daemon & daemon) {
+  const PlatformPaths paths = PlatformPaths::of(platform);
+  Registry registry(paths);
+  Cluster & cluster = registry.clusters().at(id);
+  if (!alive_locks(paths).try_lock(receive_thread_byte + id)) {
+    daemon.ready();  // another one was faster
+    return;
+  }
+  const bool replaces = cluster.header().receive_thread_pid.exchange(getpid()) != 0;
+  prctl(PR_SET_NAME, ("manycore_rt_" + std::to_string(id)).c_str());
+  const int host_cpu = registry.header().profile.host_cpu_of_receive_thread[id - 1];
+  if (host_cpu >= 0) {
+    pin_to_cpu(host_cpu);
+  }
+  ReceiveThread receive_thread(registry, id);
+  if (replaces) {
+    receive_thread.recover();
+  }
+  Reaper reaper(registry, id);
+  tell_other_reapers(registry, id);  // they watch this process from now on
+  daemon.ready();
+  receive_thread.run([&](EmcosMessageKind kind) {
+    if (kind == EmcosMessageKind::detach) {
+      exit_if_unused(registry);
+    }
+    reaper.look_again();
+  });
+}
+
+}  // namespace
+}  // namespace manycore
+
+int main(int argc, char ** argv) {
+  if (argc != 3) {
+    std::fprintf(stderr, "usage: manycore_receive_thread PLATFORM CLUSTER\n");
+    return 2;
+  }
+  try {
+    manycore::Daemon daemon = manycore::Daemon::detach();
+    manycore::serve(argv[1], static_cast<uint32_t>(std::atoi(argv[2])), daemon);
+    return 0;
+  } catch (const std::exception & error) {
+    std::fprintf(stderr, "[manycore_receive_thread] %s\n", error.what());
+    return 1;
+  }
+}

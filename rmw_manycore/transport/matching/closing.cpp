@@ -1,0 +1,261 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#include "transport/matching/closing.hpp"
+
+#include "transport/registry/endpoint_blocks.hpp"
+#include "transport/qos/liveliness.hpp"
+#include "transport/topic_dsm/reader_table.hpp"
+#include "transport/queue/source_table.hpp"
+
+namespace manycore::closing {
+namespace {
+
+void count_unmatched(Registry & registry, EndpointEntry & entry) {
+  if (entry.matched_current.load() != 0) {
+    entry.matched_current.fetch_sub(1);
+  }
+  notify_event_watchers(registry, entry.process);
+}
+
+void close_subscription(Registry & registry, EndpointEntry & entry) {
+  Cluster * const cluster = registry.clusters().find(entry.block.cluster());
+  auto * const header = registry.clusters().find<SubscriptionHeader>(entry.block);
+  if (cluster == nullptr || header == nullptr) {
+    return;
+  }
+  visit_source_table(*cluster, *header, [&](SourceEntry & source, uint32_t) {
+    const SourceState state = source.state.load();
+    if (state != SourceState::active && state != SourceState::joining) {
+      return false;
+    }
+    const uint32_t publisher = source.topic_dsm_endpoint.load();
+    if (state == SourceState::active && topic_dsm_of(registry, source) != nullptr &&
+        registry.endpoints().is_live(publisher)) {
+      count_unmatched(registry, registry.endpoints()[publisher]);
+    }
+    source.state.store(SourceState::revoked, std::memory_order_seq_cst);
+    detach_reader(registry, source);
+    return false;
+  });
+}
+
+/// A record that `reader` may still want, in any generation.
+bool undelivered(
+  const Cluster & cluster, TopicDsmHeader & dsm, const SourceEntry & source, const Gid & reader) {
+  const uint64_t taken = source.taken.load(std::memory_order_acquire);
+  if (taken >= dsm.last.load(std::memory_order_acquire)) {
+    return false;
+  }
+  const auto role = static_cast<EndpointRole>(dsm.role);
+  for (GenerationEntry & generation : dsm.generations) {
+    const uint32_t count = generation.descriptor_count.load();
+    auto * const descriptors = cluster.find<RecordDescriptor>(
+      generation.offset.load(), uint64_t{count} * sizeof(RecordDescriptor));
+    if (generation.first.load() == 0 || descriptors == nullptr) {
+      continue;
+    }
+    for (uint32_t i = 0; i < count; ++i) {
+      const bool live = descriptors[i].number.load(std::memory_order_acquire) > taken;
+      if (live && (role != EndpointRole::reply || descriptors[i].correlation.client == reader)) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+/// Hints of its last records may never have been pushed (`died`), or may have been displaced: readers that miss
+/// something are told to look, so that the topic DSM does not wait for them for ever.
+void close_publisher(Registry & registry, EndpointEntry & entry, bool died) {
+  Cluster * const cluster = registry.clusters().find(entry.block.cluster());
+  auto * const dsm = registry.clusters().find<TopicDsmHeader>(entry.block);
+  if (cluster == nullptr || dsm == nullptr) {
+    return;
+  }
+  if (died) {
+    dsm->phase.store(0, std::memory_order_seq_cst);  // the dead follow no references
+  }
+  if (dsm->orphan.load() != 0) {
+    return;
+  }
+  for_each_reader(*cluster, *dsm, [&](ReaderEntry & reader) {
+    const uint32_t slot = reader.endpoint.load();
+    auto * const source = registry.clusters().find<SourceEntry>(SegmentRef{reader.source.load()});
+    auto * const header =
+      registry.clusters().find<SubscriptionHeader>(SegmentRef{reader.subscription.load()});
+    if (!registry.endpoints().is_live(slot) || source == nullptr || header == nullptr) {
+      return;
+    }
+    if (died) {
+      note_death(entry, registry.endpoints()[slot]);
+    }
+    count_unmatched(registry, registry.endpoints()[slot]);
+    if (undelivered(*cluster, *dsm, *source, registry.endpoints()[slot].gid)) {
+      header->resync.store(1, std::memory_order_seq_cst);
+      notify_process(registry, registry.endpoints()[slot].process);
+    }
+  });
+  dsm->orphan.store(1, std::memory_order_seq_cst);
+}
+
+/// True when the cluster's receive thread follows no references that it loaded before now.
+bool receive_threads_are_out(Registry & registry) {
+  const uint64_t present = registry.header().clusters_present.load();
+  for (uint32_t id = 1; id <= max_clusters; ++id) {
+    if ((present >> (id - 1) & 1) == 0) {
+      continue;
+    }
+    Cluster * const cluster = registry.clusters().find(id);
+    if (cluster != nullptr && cluster->header().phase.load(std::memory_order_seq_cst) % 2 != 0) {
+      return false;
+    }
+  }
+  return true;
+}
+
+/// Takes the topic DSM away from a reader that is done with it; false while it is not.
+bool revoke(Registry & registry, const Cluster & cluster, TopicDsmHeader & dsm, ReaderEntry & reader) {
+  auto * const source = registry.clusters().find<SourceEntry>(SegmentRef{reader.source.load()});
+  auto * const header =
+    registry.clusters().find<SubscriptionHeader>(SegmentRef{reader.subscription.load()});
+  const uint32_t slot = reader.endpoint.load();
+  if (source == nullptr || header == nullptr || slot >= registry.endpoints().high_water()) {
+    return true;
+  }
+  if (source->state.load() == SourceState::active) {
+    if (undelivered(cluster, dsm, *source, registry.endpoints()[slot].gid)) {
+      return false;
+    }
+    // Dekker with the claim: the reader stores `reading` before it looks at the state.
+    source->state.store(SourceState::revoked, std::memory_order_seq_cst);
+  }
+  if (source->reading.load(std::memory_order_seq_cst) != no_record) {
+    return false;
+  }
+  source->state.store(SourceState::free, std::memory_order_release);
+  header->source_generation.fetch_add(1, std::memory_order_release);
+  reader.active.store(0, std::memory_order_release);
+  return true;
+}
+
+/// Frees the blocks of a chain. A damaged chain is not followed out of the cluster, nor round and round.
+template<typename Block>
+void free_chain(Cluster & cluster, const std::atomic<uint64_t> & first) {
+  uint64_t next = first.load();
+  for (uint32_t i = 0; next != 0 && i < endpoint_capacity; ++i) {
+    const uint64_t offset = next;
+    const auto * const block = cluster.find<Block>(offset);
+    if (block == nullptr) {
+      return;
+    }
+    next = block->next.load();
+    cluster.free(offset, sizeof(Block));
+  }
+}
+
+void free_topic_dsm(Cluster & cluster, TopicDsmHeader & dsm) {
+  for (GenerationEntry & generation : dsm.generations) {
+    if (generation.first.load() != 0) {
+      cluster.free(generation.offset.load(), generation.extent_bytes());
+    }
+  }
+  free_chain<ReaderBlock>(cluster, dsm.next_reader_block);
+  cluster.free(cluster.ref_of(&dsm).offset(), sizeof dsm);
+}
+
+bool sweep_publisher(Registry & registry, EndpointEntry & entry) {
+  Cluster * const cluster = registry.clusters().find(entry.block.cluster());
+  auto * const dsm = registry.clusters().find<TopicDsmHeader>(entry.block);
+  if (cluster == nullptr || dsm == nullptr) {
+    return true;
+  }
+  bool all_revoked = true;
+  for_each_reader(*cluster, *dsm, [&](ReaderEntry & reader) {
+    all_revoked = revoke(registry, *cluster, *dsm, reader) && all_revoked;
+  });
+  if (!all_revoked) {
+    return false;
+  }
+  dsm->magic.store(0, std::memory_order_seq_cst);  // receive threads turn away from here on
+  if (!receive_threads_are_out(registry)) {
+    return false;
+  }
+  free_topic_dsm(*cluster, *dsm);
+  return true;
+}
+
+/// True when the publisher behind `source` holds no references into the subscription.
+bool publisher_is_out(Registry & registry, SourceEntry & source) {
+  auto * const dsm = registry.clusters().find<TopicDsmHeader>(SegmentRef{source.topic_dsm.load()});
+  return dsm == nullptr || dsm->magic.load() != topic_dsm_magic ||
+         dsm->endpoint.load() != source.topic_dsm_endpoint.load() ||
+         dsm->incarnation.load() != source.topic_dsm_incarnation.load() ||
+         dsm->phase.load(std::memory_order_seq_cst) % 2 == 0;
+}
+
+bool sweep_subscription(Registry & registry, EndpointEntry & entry) {
+  Cluster * const cluster = registry.clusters().find(entry.block.cluster());
+  auto * const header = registry.clusters().find<SubscriptionHeader>(entry.block);
+  if (cluster == nullptr || header == nullptr) {
+    return true;
+  }
+  bool out = receive_threads_are_out(registry);
+  visit_source_table(*cluster, *header, [&](SourceEntry & source, uint32_t) {
+    out = out && (source.state.load() == SourceState::free || publisher_is_out(registry, source));
+    return !out;
+  });
+  if (!out) {
+    return false;
+  }
+  header->magic.store(0);
+  free_chain<SourceBlock>(*cluster, header->first_source_block);
+  cluster->free(
+    entry.block.offset(),
+    sizeof(SubscriptionHeader) + (uint64_t{8} << (header->slot_count_log2 & 31)));
+  return true;
+}
+
+}  // namespace
+
+void close(Registry & registry, uint32_t endpoint, bool died) {
+  EndpointEntry & entry = registry.endpoints()[endpoint];
+  if (entry.slot.state.exchange(SlotState::closing) == SlotState::live) {
+    registry.unlink_endpoint(endpoint);
+    ++registry.header().closing_count;
+  }
+  if (entry.kind == EndpointKind::publisher) {
+    close_publisher(registry, entry, died);
+  } else {
+    close_subscription(registry, entry);
+  }
+}
+
+void sweep(Registry & registry) {
+  RegistryHeader & header = registry.header();
+  for (uint32_t slot = 0; header.closing_count != 0 && slot < registry.endpoints().high_water();
+       ++slot) {
+    EndpointEntry & entry = registry.endpoints()[slot];
+    if (entry.slot.state.load() != SlotState::closing) {
+      continue;
+    }
+    const bool swept = entry.kind == EndpointKind::publisher ? sweep_publisher(registry, entry)
+                                                             : sweep_subscription(registry, entry);
+    if (swept) {
+      entry.block = SegmentRef{};
+      registry.endpoints().give_back(slot);
+      --header.closing_count;
+    }
+  }
+}
+
+void leave(Registry & registry, uint32_t endpoint) noexcept {
+  try {
+    const Registry::Lock lock(registry);
+    close(registry, endpoint, false);
+    sweep(registry);
+  } catch (const std::exception &) {
+    // The registry stayed locked: the reaper closes this endpoint when the process ends.
+  }
+  registry.graph_changed();
+}
+
+}  // namespace manycore::closing

@@ -1,0 +1,249 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#include "transport/matching/matching.hpp"
+
+#include <vector>
+
+#include "platform/error.hpp"
+#include "transport/registry/endpoint_blocks.hpp"
+#include "transport/topic_dsm/last_published.hpp"
+#include "transport/qos/liveliness.hpp"
+#include "transport/qos/qos_compatibility.hpp"
+#include "transport/topic_dsm/reader_table.hpp"
+#include "transport/queue/source_table.hpp"
+
+namespace manycore::matching {
+namespace {
+
+/// Both ends of a possible match.
+struct Pair {
+  uint32_t publisher_slot;
+  uint32_t subscription_slot;
+  EndpointEntry & publisher;
+  EndpointEntry & subscription;
+};
+
+/// Where the next block of a chain is to be linked; a damaged chain is not followed.
+template<typename Block>
+std::atomic<uint64_t> * end_of_chain(const Cluster & cluster, std::atomic<uint64_t> * end) {
+  for (uint32_t i = 0; end->load() != 0; ++i) {
+    auto * const block = cluster.find<Block>(end->load());
+    if (block == nullptr || i == endpoint_capacity) {
+      throw Error(
+        ErrorCode::corrupt, "cluster " + std::to_string(cluster.id()) +
+          " is damaged; stop the platform's nodes and run 'manycore clean'");
+    }
+    end = &block->next;
+  }
+  return end;
+}
+
+SourceEntry & free_source(
+  Cluster & cluster, SubscriptionHeader & subscription, uint32_t & index_out) {
+  SourceEntry * found = nullptr;
+  std::atomic<uint64_t> * end = &subscription.first_source_block;
+  uint32_t count = 0;
+  visit_source_table(cluster, subscription, [&](SourceEntry & entry, uint32_t index) {
+    count = index + 1;
+    if (entry.state.load() != SourceState::free) {
+      return false;
+    }
+    found = &entry;
+    index_out = index;
+    return true;
+  });
+  if (found != nullptr) {
+    return *found;
+  }
+  if (count + sources_per_block > (1u << 14)) {
+    throw Error(ErrorCode::no_space, "a subscription has more than 16,000 publishers");
+  }
+  end = end_of_chain<SourceBlock>(cluster, end);
+  SourceBlock & block = cluster.allocate_cleared<SourceBlock>();
+  end->store(cluster.ref_of(&block).offset(), std::memory_order_release);
+  index_out = count;
+  return block.entries[0];
+}
+
+ReaderEntry & free_reader(Cluster & cluster, TopicDsmHeader & dsm) {
+  ReaderEntry * found = nullptr;
+  visit_reader_table(cluster, dsm, [&](ReaderEntry & entry) {
+    found = entry.active.load() == 0 ? &entry : nullptr;
+    return found != nullptr;
+  });
+  if (found != nullptr) {
+    return *found;
+  }
+  std::atomic<uint64_t> * end = &dsm.next_reader_block;
+  end = end_of_chain<ReaderBlock>(cluster, end);
+  ReaderBlock & block = cluster.allocate_cleared<ReaderBlock>();
+  end->store(cluster.ref_of(&block).offset(), std::memory_order_release);
+  return block.entries[0];
+}
+
+/// What a new match lets the subscription see: nothing published so far, or the history that is left.
+bool wants_history(const EndpointEntry & publisher, const EndpointEntry & subscription) {
+  return publisher.qos.durability == Durability::transient_local &&
+         subscription.qos.durability == Durability::transient_local;
+}
+
+void join(Registry & registry, const Pair & pair) {
+  Cluster & publisher_cluster = registry.clusters().at(pair.publisher.cluster);
+  Cluster & subscription_cluster = registry.clusters().at(pair.subscription.cluster);
+  auto * const dsm = publisher_cluster.find<TopicDsmHeader>(pair.publisher.block.offset());
+  auto * const header =
+    subscription_cluster.find<SubscriptionHeader>(pair.subscription.block.offset());
+  if (dsm == nullptr || header == nullptr) {
+    throw Error(ErrorCode::corrupt, "the registry is damaged; stop the nodes, run 'manycore clean'");
+  }
+  uint32_t index = 0;
+  SourceEntry & source = free_source(subscription_cluster, *header, index);
+  ReaderEntry & reader = free_reader(publisher_cluster, *dsm);
+  const bool history = wants_history(pair.publisher, pair.subscription);
+
+  source.incarnation.fetch_add(1, std::memory_order_relaxed);
+  source.topic_dsm.store(pair.publisher.block.word, std::memory_order_relaxed);
+  source.topic_dsm_endpoint.store(pair.publisher_slot, std::memory_order_relaxed);
+  source.topic_dsm_incarnation.store(pair.publisher.slot.incarnation, std::memory_order_relaxed);
+  const LastPublished published = last_published(*dsm);
+  const uint64_t taken = history ? 0 : published.number;
+  source.taken.store(taken, std::memory_order_relaxed);
+  source.joined_after.store(published.sequence, std::memory_order_relaxed);
+  source.displaced.store(0, std::memory_order_relaxed);
+  source.reader.store(publisher_cluster.ref_of(&reader).word, std::memory_order_relaxed);
+  source.state.store(SourceState::joining, std::memory_order_release);
+
+  // Release, for receive threads that still look at a reader that was here before.
+  reader.endpoint.store(pair.subscription_slot, std::memory_order_release);
+  reader.subscription.store(pair.subscription.block.word, std::memory_order_release);
+  reader.source.store(subscription_cluster.ref_of(&source).word, std::memory_order_release);
+  reader.source_index.store(index, std::memory_order_release);
+  reader.source_incarnation.store(source.incarnation.load(), std::memory_order_release);
+  reader.active.store(1, std::memory_order_release);
+  // From here on the publisher finds this reader: it looks again after storing `last` (seq_cst). No claim may
+  // come earlier, or the publisher could recycle a record under a reader it does not know.
+  dsm->match_generation.fetch_add(1, std::memory_order_seq_cst);
+  source.state.store(SourceState::active, std::memory_order_seq_cst);
+  header->source_generation.fetch_add(1, std::memory_order_seq_cst);
+
+  // History, or what was published between the first look at `last` and now.
+  if (dsm->last.load(std::memory_order_seq_cst) > taken) {
+    header->resync.store(1, std::memory_order_seq_cst);
+    notify_process(registry, pair.subscription.process);
+  }
+  note_successor(pair.subscription);
+  for (EndpointEntry * end : {&pair.publisher, &pair.subscription}) {
+    // In this order: matched_of() reads the total first, and never sees more changes than there were.
+    end->matched_current.fetch_add(1);
+    end->matched_total.fetch_add(1);
+    notify_event_watchers(registry, end->process);
+  }
+}
+
+void count_incompatible(Registry & registry, const Pair & pair, QosPolicy policy) {
+  for (EndpointEntry * end : {&pair.publisher, &pair.subscription}) {
+    end->incompatible_policy.store(static_cast<uint32_t>(policy));
+    end->incompatible_total.fetch_add(1);
+    notify_event_watchers(registry, end->process);
+  }
+}
+
+void count_incompatible_type(Registry & registry, const Pair & pair) {
+  for (EndpointEntry * end : {&pair.publisher, &pair.subscription}) {
+    end->incompatible_types.fetch_add(1);
+    notify_event_watchers(registry, end->process);
+  }
+}
+
+void consider(Registry & registry, const Pair & pair) {
+  if (
+    pair.publisher.role != pair.subscription.role ||
+    (pair.subscription.ignore_local != 0 && pair.publisher.process == pair.subscription.process)) {
+    return;
+  }
+  if (std::strcmp(pair.publisher.type, pair.subscription.type) != 0) {
+    count_incompatible_type(registry, pair);
+    return;
+  }
+  const QosPolicy policy = last_incompatible_policy(pair.publisher.qos, pair.subscription.qos);
+  if (policy != QosPolicy::none) {
+    count_incompatible(registry, pair, policy);
+    return;
+  }
+  join(registry, pair);
+}
+
+void undo_half_matches_of(Registry & registry, EndpointEntry & entry) {
+  Cluster * const cluster = registry.clusters().find(entry.block.cluster());
+  auto * const header = registry.clusters().find<SubscriptionHeader>(entry.block);
+  if (cluster == nullptr || header == nullptr) {
+    return;
+  }
+  visit_source_table(*cluster, *header, [&](SourceEntry & source, uint32_t) {
+    if (source.state.load() == SourceState::joining) {
+      detach_reader(registry, source);
+      source.state.store(SourceState::free, std::memory_order_seq_cst);
+    }
+    return false;
+  });
+}
+
+/// Those that are closing count as well until they have left: it is then that they count down.
+void count_matches_of(Registry & registry, uint32_t slot, std::vector<uint64_t> & counts) {
+  const EndpointEntry & entry = registry.endpoints()[slot];
+  Cluster * const cluster = registry.clusters().find(entry.block.cluster());
+  auto * const header = registry.clusters().find<SubscriptionHeader>(entry.block);
+  if (cluster == nullptr || header == nullptr) {
+    return;
+  }
+  visit_source_table(*cluster, *header, [&](SourceEntry & source, uint32_t) {
+    TopicDsmHeader * const dsm = topic_dsm_of(registry, source);
+    if (
+      source.state.load() == SourceState::active && dsm != nullptr && dsm->orphan.load() == 0) {
+      ++counts[slot];
+      ++counts[source.topic_dsm_endpoint.load()];
+    }
+    return false;
+  });
+}
+
+}  // namespace
+
+void connect(Registry & registry, uint32_t endpoint) {
+  EndpointEntry & own = registry.endpoints()[endpoint];
+  registry.for_each_of_topic(own.topic, [&](uint32_t slot, EndpointEntry & other) {
+    if (other.kind == own.kind || !registry.endpoints().is_live(slot)) {
+      return;
+    }
+    if (own.kind == EndpointKind::publisher) {
+      consider(registry, {endpoint, slot, own, other});
+    } else {
+      consider(registry, {slot, endpoint, other, own});
+    }
+  });
+}
+
+void undo_half_matches(Registry & registry) {
+  for (uint32_t slot = 0; slot < registry.endpoints().high_water(); ++slot) {
+    EndpointEntry & entry = registry.endpoints()[slot];
+    if (registry.endpoints().is_live(slot) && entry.kind == EndpointKind::subscription) {
+      undo_half_matches_of(registry, entry);
+    }
+  }
+}
+
+void recount(Registry & registry) {
+  std::vector<uint64_t> counts(registry.endpoints().high_water());
+  for (uint32_t slot = 0; slot < counts.size(); ++slot) {
+    const EndpointEntry & entry = registry.endpoints()[slot];
+    if (
+      entry.slot.state.load(std::memory_order_acquire) != SlotState::free &&
+      entry.kind == EndpointKind::subscription) {
+      count_matches_of(registry, slot, counts);
+    }
+  }
+  for (uint32_t slot = 0; slot < counts.size(); ++slot) {
+    registry.endpoints()[slot].matched_current.store(counts[slot]);
+  }
+}
+
+}  // namespace manycore::matching

@@ -1,0 +1,380 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#include "transport/process.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <cstring>
+#include <map>
+#include <mutex>
+
+#include "platform/cpu.hpp"
+#include "platform/error.hpp"
+#include "platform/os_process.hpp"
+#include "transport/lifecycle/lifecycle.hpp"
+#include "transport/matching/closing.hpp"
+#include "transport/qos/manual_liveliness.hpp"
+#include "transport/matching/matching.hpp"
+#include "transport/publisher_impl.hpp"
+#include "transport/lifecycle/receive_thread_watcher.hpp"
+#include "transport/registry/smem_charge.hpp"
+#include "transport/subscription_impl.hpp"
+
+namespace manycore {
+namespace {
+
+[[noreturn]] void bad_variable(const char * name, const char * value, const char * expected) {
+  throw Error(
+    ErrorCode::invalid_argument,
+    std::string(name) + "='" + value + "' is not valid: expected " + expected);
+}
+
+std::optional<uint32_t> number_from(const char * name, uint32_t least, uint32_t most) {
+  const char * const text = std::getenv(name);
+  if (text == nullptr || *text == 0) {
+    return std::nullopt;
+  }
+  char * end = nullptr;
+  const unsigned long value = std::strtoul(text, &end, 10);
+  if (*end != 0 || text[0] == '-' || value < least || value > most) {
+    bad_variable(
+      name, text,
+      ("a whole number from " + std::to_string(least) + " to " + std::to_string(most)).c_str());
+  }
+  return static_cast<uint32_t>(value);
+}
+
+WaitMode wait_mode_from_environment() {
+  const char * const text = std::getenv("MANYCORE_WAIT");
+  if (text == nullptr || *text == 0 || std::strcmp(text, "block") == 0) {
+    return WaitMode::block;
+  }
+  if (std::strcmp(text, "adaptive") == 0) {
+    return WaitMode::adaptive;
+  }
+  if (std::strcmp(text, "spin") == 0) {
+    return WaitMode::spin;
+  }
+  bad_variable("MANYCORE_WAIT", text, "block, adaptive or spin");
+}
+
+void check_placement(const Placement & placement, const Profile & profile) {
+  if (placement.cluster == 0 || placement.cluster > profile.clusters) {
+    throw Error(
+      ErrorCode::invalid_argument, "there is no cluster " + std::to_string(placement.cluster) +
+        " on platform '" + placement.platform + "': it has clusters 1 to " +
+        std::to_string(profile.clusters));
+  }
+  if (placement.core && *placement.core >= profile.cores_per_cluster) {
+    throw Error(
+      ErrorCode::invalid_argument, "there is no core " + std::to_string(*placement.core) +
+        " on platform '" + placement.platform + "': a cluster has cores 0 to " +
+        std::to_string(profile.cores_per_cluster - 1));
+  }
+}
+
+void ensure_cluster(Registry & registry, uint32_t id) {
+  RegistryHeader & header = registry.header();
+  const uint64_t bit = uint64_t{1} << (id - 1);
+  if ((header.clusters_present.load() & bit) != 0) {
+    registry.clusters().at(id);
+    return;
+  }
+  unlink(registry.paths().cluster(id).c_str());  // a creator that died before it set the bit
+  Cluster::create(registry.paths(), id, header.profile.smem_bytes, registry.nonce());
+  registry.clusters().at(id);
+  header.clusters_present.fetch_or(bit);
+}
+
+Gid make_gid(const Registry & registry, uint32_t slot, uint32_t incarnation) {
+  const uint64_t nonce = registry.nonce();
+  Gid gid{};
+  std::memcpy(gid.data(), &nonce, 8);
+  std::memcpy(gid.data() + 8, &slot, 4);
+  std::memcpy(gid.data() + 12, &incarnation, 4);
+  return gid;
+}
+
+void check_duration(const EndpointSpec & spec, int64_t ns, const char * what) {
+  if (ns <= 0) {
+    throw Error(
+      ErrorCode::invalid_argument, std::string("the ") + what + " of " + std::to_string(ns) +
+        " ns for '" + spec.topic + "' is out of range: expected more than 0");
+  }
+}
+
+void check_qos(const EndpointSpec & spec) {
+  check_duration(spec, spec.qos.deadline_ns, "deadline");
+  check_duration(spec, spec.qos.lifespan_ns, "lifespan");
+  check_duration(spec, spec.qos.liveliness_lease_ns, "liveliness lease duration");
+  constexpr uint32_t most = 1u << 20;
+  if (spec.qos.depth == 0 || spec.qos.depth > most) {
+    throw Error(
+      ErrorCode::invalid_argument, "history depth " + std::to_string(spec.qos.depth) + " for '" +
+        spec.topic + "' is out of range: expected 1 to " + std::to_string(most));
+  }
+}
+
+}  // namespace
+
+Placement Placement::from_environment(size_t domain_id) {
+  Placement placement;
+  const char * const platform = std::getenv("MANYCORE_PLATFORM");
+  placement.platform = platform != nullptr && *platform != 0
+                         ? platform
+                         : "domain-" + std::to_string(domain_id);
+  placement.cluster = number_from("MANYCORE_CLUSTER", 1, max_clusters).value_or(1);
+  placement.core = number_from("MANYCORE_CORE", 0, 1023);
+  placement.wait_mode = wait_mode_from_environment();
+  placement.label = program_name();
+  return placement;
+}
+
+struct Process::Impl {
+  explicit Impl(const Placement & placement_);
+  ~Impl();
+
+  struct Joined {};
+  /// Joins, no more: the first half of what the other constructor does.
+  Impl(const Placement & placement_, Joined);
+
+  uint32_t take_process_slot();
+  uint32_t fill_endpoint(const EndpointSpec & spec, EndpointKind kind);
+  uint32_t add_endpoint(const EndpointSpec & spec, EndpointKind kind);
+  void attach();
+  void leave();
+
+  Placement placement;
+  PlatformPaths paths;
+  std::unique_ptr<Registry> registry;
+  uint32_t slot = nothing;
+  std::unique_ptr<Waiter> waiter;
+  std::unique_ptr<Graph> graph;
+  std::unique_ptr<ReceiveThreadWatcher> watcher;
+};
+
+Process::Impl::Impl(const Placement & placement_, Joined)
+: placement(placement_), paths(PlatformPaths::of(placement_.platform)) {
+  {
+    const JoinLock join_lock(paths);
+    ensure_platform(paths, host_profile(), {});
+    try {
+      registry = std::make_unique<Registry>(paths);
+      check_placement(placement, registry->header().profile);
+      const Registry::Lock lock(*registry);
+      ensure_cluster(*registry, placement.cluster);
+      slot = take_process_slot();
+    } catch (...) {
+      if (!is_alive(paths)) {
+        remove_platform(paths);
+      }
+      throw;
+    }
+  }
+}
+
+/// Delegates, so that ~Impl() leaves again when the rest fails.
+Process::Impl::Impl(const Placement & placement_) : Impl(placement_, Joined{}) {
+  waiter = std::make_unique<Waiter>(registry->processes()[slot].wake, placement.wait_mode);
+  graph = std::make_unique<Graph>(*registry);
+  attach();
+  watcher = std::make_unique<ReceiveThreadWatcher>(*registry, placement.cluster);
+}
+
+/// Has the reaper watch this process; while its cluster has none, the others'.
+void Process::Impl::attach() {
+  Cluster & cluster = registry->clusters().at(placement.cluster);
+  EmcosMessage message{};
+  message.kind = EmcosMessageKind::attach;
+  message.process = slot;
+  if (!cluster.send(message)) {
+    cluster.header().pipe_overflow.store(1, std::memory_order_seq_cst);
+  }
+  if (!alive_locks(paths).is_held(receive_thread_byte + placement.cluster)) {
+    tell_other_reapers(*registry, placement.cluster);
+  }
+}
+
+uint32_t Process::Impl::take_process_slot() {
+  Table<ProcessEntry> & processes = registry->processes();
+  const uint32_t taken = processes.take("processes");
+  ProcessEntry & entry = processes[taken];
+  if (!alive_locks(paths).try_lock(taken)) {
+    throw Error(ErrorCode::corrupt, "process slot is in use; run 'manycore clean'");
+  }
+  entry.pid = getpid();
+  entry.cluster = placement.cluster;
+  entry.core = placement.core ? static_cast<int32_t>(*placement.core) : -1;
+  entry.host_cpu = only_cpu();
+  entry.charged_bytes = 0;
+  std::memset(entry.label, 0, sizeof entry.label);
+  std::strncpy(entry.label, placement.label.c_str(), sizeof entry.label - 1);
+  entry.wake.sleepers.store(0);
+  entry.wake.graph_watchers.store(0);
+  entry.wake.event_watchers.store(0);
+  processes.publish(taken);
+  return taken;
+}
+
+Process::Impl::~Impl() {
+  watcher.reset();
+  try {
+    leave();
+  } catch (const std::exception &) {
+    // The lock stayed taken: the reaper cleans up after this process's end.
+  }
+}
+
+void Process::Impl::leave() {
+  const JoinLock join_lock(paths);
+  {
+    const Registry::Lock lock(*registry);
+    for (uint32_t node = 0; node < registry->nodes().high_water(); ++node) {
+      if (registry->nodes().is_live(node) && registry->nodes()[node].process == slot) {
+        registry->nodes().give_back(node);
+      }
+    }
+    discharge(*registry, slot);
+    registry->processes().give_back(slot);
+  }
+  alive_locks(paths).unlock(slot);
+  if (!is_in_use(*registry)) {
+    remove_platform(paths);
+  }
+}
+
+uint32_t Process::Impl::fill_endpoint(const EndpointSpec & spec, EndpointKind kind) {
+  const uint32_t taken = registry->endpoints().take("endpoints");
+  EndpointEntry & entry = registry->endpoints()[taken];
+  try {
+    store_name(entry.topic, spec.topic, "topic");
+    store_name(entry.type, spec.type, "type");
+  } catch (...) {
+    registry->endpoints().give_back(taken);
+    throw;
+  }
+  const TopicEntry * const configured = registry->find_topic(spec.topic);
+  entry.kind = kind;
+  entry.role = spec.role;
+  entry.ignore_local = spec.ignore_local ? 1 : 0;
+  entry.process = slot;
+  entry.node = spec.node;
+  entry.cluster = placement.cluster;
+  entry.topic_hash = hash_name(entry.topic);
+  entry.block = SegmentRef{};
+  entry.gid = make_gid(*registry, taken, entry.slot.incarnation);
+  entry.qos = spec.qos;
+  entry.type_hash_version = spec.type_hash.version;
+  std::copy(spec.type_hash.value.begin(), spec.type_hash.value.end(), entry.type_hash);
+  entry.topic_dsm_size = configured == nullptr ? 0 : configured->topic_dsm_size;
+  for (std::atomic<uint64_t> * count :
+       {&entry.matched_total, &entry.matched_current, &entry.incompatible_total,
+        &entry.incompatible_types, &entry.counters.messages, &entry.counters.bytes, &entry.counters.lost,
+        &entry.counters.expired, &entry.counters.refused, &entry.counters.overwritten}) {
+    count->store(0);
+  }
+  entry.incompatible_policy.store(0);
+  entry.asserted_ns.store(ManualLiveliness::never);
+  entry.dead_publishers.store(0);
+  return taken;
+}
+
+uint32_t Process::Impl::add_endpoint(const EndpointSpec & spec, EndpointKind kind) {
+  check_qos(spec);
+  const Registry::Lock lock(*registry);
+  closing::sweep(*registry);
+  const uint32_t taken = fill_endpoint(spec, kind);
+  EndpointEntry & entry = registry->endpoints()[taken];
+  try {
+    Cluster & cluster = registry->clusters().at(entry.cluster);
+    const void * const block =
+      kind == EndpointKind::publisher
+        ? static_cast<void *>(&TopicDsmWriter::create(*registry, taken))
+        : static_cast<void *>(&Subscription::Impl::create(*registry, taken));
+    entry.block = cluster.ref_of(block);
+  } catch (...) {
+    registry->endpoints().give_back(taken);
+    throw;
+  }
+  // Live before it is connected: should this process die in between, the reaper ends its matches.
+  registry->endpoints().publish(taken);
+  registry->link_endpoint(taken);
+  try {
+    matching::connect(*registry, taken);
+  } catch (...) {
+    closing::close(*registry, taken, false);
+    closing::sweep(*registry);
+    throw;
+  }
+  return taken;
+}
+
+Process::Process(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+
+Process::~Process() = default;
+
+std::shared_ptr<Process> Process::join(const Placement & placement) {
+  static std::mutex mutex;
+  static std::map<std::string, std::weak_ptr<Process>> joined;
+  const std::lock_guard<std::mutex> guard(mutex);
+  std::weak_ptr<Process> & known = joined[placement.platform];
+  if (std::shared_ptr<Process> process = known.lock()) {
+    return process;
+  }
+  std::shared_ptr<Process> process(new Process(std::make_unique<Impl>(placement)));
+  known = process;
+  return process;
+}
+
+uint32_t Process::add_node(
+  const std::string & name, const std::string & ns, const std::string & enclave) {
+  Registry & registry = *impl_->registry;
+  uint32_t taken = nothing;
+  {
+    const Registry::Lock lock(registry);
+    taken = registry.nodes().take("nodes");
+    NodeEntry & entry = registry.nodes()[taken];
+    try {
+      store_name(entry.name, name, "node name");
+      store_name(entry.ns, ns, "namespace");
+      store_name(entry.enclave, enclave, "enclave");
+    } catch (...) {
+      registry.nodes().give_back(taken);
+      throw;
+    }
+    entry.process = impl_->slot;
+    registry.nodes().publish(taken);
+  }
+  registry.graph_changed();
+  return taken;
+}
+
+void Process::remove_node(uint32_t node) noexcept {
+  try {
+    const Registry::Lock lock(*impl_->registry);
+    impl_->registry->nodes().give_back(node);
+  } catch (const std::exception &) {
+    // The registry stayed locked: the node goes with this process.
+  }
+  impl_->registry->graph_changed();
+}
+
+std::unique_ptr<Publisher> Process::create_publisher(const EndpointSpec & spec) {
+  const uint32_t slot = impl_->add_endpoint(spec, EndpointKind::publisher);
+  impl_->registry->graph_changed();
+  return std::make_unique<Publisher>(std::make_unique<Publisher::Impl>(*impl_->registry, slot));
+}
+
+std::unique_ptr<Subscription> Process::create_subscription(const EndpointSpec & spec) {
+  const uint32_t slot = impl_->add_endpoint(spec, EndpointKind::subscription);
+  impl_->registry->graph_changed();
+  return std::make_unique<Subscription>(
+    std::make_unique<Subscription::Impl>(*impl_->registry, slot));
+}
+
+Waiter & Process::waiter() noexcept { return *impl_->waiter; }
+Graph & Process::graph() noexcept { return *impl_->graph; }
+const Placement & Process::placement() const noexcept { return impl_->placement; }
+
+}  // namespace manycore

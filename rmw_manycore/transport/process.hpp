@@ -1,0 +1,59 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "transport/layout/endpoint.hpp"
+#include "transport/registry/graph.hpp"
+#include "transport/publisher.hpp"
+#include "transport/subscription.hpp"
+#include "transport/waiting/waiter.hpp"
+
+namespace manycore {
+
+/// Where a process runs: platform, virtual cluster and core, and how it waits.
+struct Placement {
+  std::string platform;
+  uint32_t cluster = 1;                ///< from 1
+  std::optional<uint32_t> core;        ///< from 0; unset = not pinned, shares no virtual core
+  WaitMode wait_mode = WaitMode::block;
+  std::string label;                   ///< shown by the tools; default: the program's name
+
+  /// From MANYCORE_PLATFORM, MANYCORE_CLUSTER, MANYCORE_CORE, MANYCORE_WAIT; platform defaults to
+  /// "domain-<domain_id>". Throws Error{invalid_argument} naming the variable.
+  static Placement from_environment(size_t domain_id);
+};
+
+/// This process's membership of a platform. Joining brings up platform, cluster and receive thread
+/// where they are missing; the last one to leave removes everything. Thread-safe.
+class Process {
+public:
+  /// One membership per (process, platform): a second join returns the first one.
+  static std::shared_ptr<Process> join(const Placement & placement);
+  ~Process();
+  Process(const Process &) = delete;
+  Process & operator=(const Process &) = delete;
+
+  /// Returns the node's handle. Names as in ROS: name "talker", namespace "/" or "/a".
+  uint32_t add_node(const std::string & name, const std::string & ns, const std::string & enclave);
+  void remove_node(uint32_t node) noexcept;
+
+  /// Throw Error{unsupported|invalid_argument|no_space}. Endpoints must not outlive the Process.
+  std::unique_ptr<Publisher> create_publisher(const EndpointSpec & spec);
+  std::unique_ptr<Subscription> create_subscription(const EndpointSpec & spec);
+
+  Waiter & waiter() noexcept;
+  Graph & graph() noexcept;
+  const Placement & placement() const noexcept;
+
+private:
+  struct Impl;
+  explicit Process(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace manycore

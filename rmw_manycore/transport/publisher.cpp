@@ -1,0 +1,113 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#include "transport/publisher.hpp"
+
+#include <utility>
+
+#include "transport/matching/closing.hpp"
+#include "transport/registry/endpoint_blocks.hpp"
+#include "transport/notification/notifier.hpp"
+#include "transport/publisher_impl.hpp"
+
+namespace manycore {
+
+Draft::Draft(Draft && other) noexcept
+: publisher_(std::exchange(other.publisher_, nullptr)),
+  data_(other.data_),
+  capacity_(other.capacity_) {}
+
+Draft::~Draft() {
+  if (publisher_ == nullptr) {
+    return;
+  }
+  Publisher::Impl & impl = *publisher_->impl_;
+  impl.writer.abandon_room();
+  impl.writer.leave();
+  impl.mutex.unlock();
+}
+
+Publisher::Publisher(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+
+Publisher::~Publisher() { closing::leave(impl_->registry, impl_->slot); }
+
+const Gid & Publisher::gid() const noexcept { return impl_->entry.gid; }
+
+const Qos & Publisher::qos() const noexcept { return impl_->entry.qos; }
+
+Draft Publisher::draft(size_t size_bytes) {
+  Impl & impl = *impl_;
+  std::unique_lock<std::mutex> lock(impl.mutex);
+  impl.writer.enter();
+  try {
+    const TopicDsmWriter::Room room = impl.writer.find_room(size_bytes);
+    lock.release();
+    return Draft(*this, room.data, room.capacity_bytes);
+  } catch (...) {
+    impl.writer.leave();
+    throw;
+  }
+}
+
+uint64_t Publisher::publish(
+  Draft && draft, size_t size_bytes, int64_t source_timestamp_ns,
+  const Correlation & correlation) {
+  Impl & impl = *impl_;
+  const std::unique_lock<std::mutex> lock(impl.mutex, std::adopt_lock);
+  draft.publisher_ = nullptr;
+  const uint64_t sequence_number = ++impl.published;
+  // Before the message, which tells readers to look.
+  const bool started = impl.has_deadline() && impl.deadline.touch(impl.entry.qos.deadline_ns);
+  const bool revived = impl.is_manual() && impl.liveliness.assert_now();
+  if (started || revived) {  // who slept as nothing was due has to look, too
+    notify_event_watchers(impl.registry, impl.entry.process);
+  }
+  const uint64_t number =
+    impl.writer.commit(size_bytes, source_timestamp_ns, sequence_number, correlation);
+  const bool targeted = impl.entry.role == EndpointRole::reply;
+  announce(
+    impl.registry, impl.cluster, impl.writer.readers(),
+    {impl.entry.block, impl.slot, impl.entry.slot.incarnation, number,
+     targeted ? &correlation.client : nullptr});
+  impl.writer.leave();
+  EndpointCounters & counters = impl.entry.counters;
+  counters.messages.store(sequence_number, std::memory_order_relaxed);
+  counters.bytes.store(
+    counters.bytes.load(std::memory_order_relaxed) + size_bytes, std::memory_order_relaxed);
+  return sequence_number;
+}
+
+MatchedCount Publisher::matched() const { return matched_of(impl_->entry); }
+
+IncompatibleCount Publisher::incompatible() const { return incompatible_of(impl_->entry); }
+
+uint64_t Publisher::incompatible_types() const noexcept {
+  return impl_->entry.incompatible_types.load();
+}
+
+TimedCount Publisher::deadline_missed() const noexcept {
+  return impl_->has_deadline() ? impl_->deadline.missed(impl_->entry.qos.deadline_ns)
+                               : TimedCount{};
+}
+
+TimedCount Publisher::liveliness_lost() const noexcept {
+  return impl_->is_manual() ? impl_->liveliness.lost() : TimedCount{};
+}
+
+void Publisher::assert_liveliness() {
+  if (impl_->is_manual() && impl_->liveliness.assert_now()) {
+    impl_->tell_event_watchers();
+    notify_event_watchers(impl_->registry, impl_->entry.process);
+  }
+}
+
+void Publisher::Impl::tell_event_watchers() {
+  const std::lock_guard<std::mutex> lock(mutex);
+  writer.enter();
+  for (const Reader & reader : writer.readers().readers()) {
+    if (reader.wake->event_watchers.load(std::memory_order_seq_cst) != 0) {
+      reader.wake->notify();
+    }
+  }
+  writer.leave();
+}
+
+}  // namespace manycore

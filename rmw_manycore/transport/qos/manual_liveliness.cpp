@@ -1,0 +1,32 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#include "transport/qos/manual_liveliness.hpp"
+
+#include "platform/clock.hpp"
+
+namespace manycore {
+
+bool ManualLiveliness::ran_out(int64_t asserted_ns) const noexcept {
+  return asserted_ns != never && monotonic_ns() - asserted_ns >= lease_ns_;
+}
+
+bool ManualLiveliness::assert_now() noexcept {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const int64_t before_ns = asserted_ns_.load(std::memory_order_relaxed);
+  const bool revived = ran_out(before_ns);
+  lost_ += revived ? 1 : 0;
+  // seq_cst, before a look at who watches: a watcher counts itself before it looks here.
+  asserted_ns_.store(monotonic_ns(), std::memory_order_seq_cst);
+  return revived || before_ns == never;
+}
+
+TimedCount ManualLiveliness::lost() const noexcept {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const int64_t asserted_ns = asserted_ns_.load(std::memory_order_relaxed);
+  if (ran_out(asserted_ns)) {
+    return {lost_ + 1, infinite_ns};
+  }
+  const bool running = asserted_ns != never && lease_ns_ <= infinite_ns - asserted_ns;
+  return {lost_, running ? asserted_ns + lease_ns_ : infinite_ns};
+}
+
+}  // namespace manycore

@@ -1,0 +1,217 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#include "transport/registry/cluster.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "platform/error.hpp"
+#include "transport/layout/registry_layout.hpp"
+
+namespace manycore {
+namespace {
+
+/// Small SMEMs are cut finely, large ones by the page.
+uint32_t granule_size(uint64_t smem_bytes) { return smem_bytes <= (64u << 20) ? 1024 : 4096; }
+
+uint64_t map_bytes(uint64_t granules) { return align_up(align_up(granules, 64) / 8, 8); }
+
+Error no_room(const Cluster & cluster, uint64_t length, const std::string & advice) {
+  return Error(
+    ErrorCode::no_space, "cluster " + std::to_string(cluster.id()) + " has no room for " +
+      std::to_string(length) + " bytes: " + std::to_string(cluster.used_bytes()) + " of its " +
+      std::to_string(cluster.size()) + " bytes of SMEM are used; " + advice);
+}
+
+}  // namespace
+
+PlatformPaths PlatformPaths::of(const std::string & platform) {
+  const bool valid = !platform.empty() && platform.size() <= 64 && platform[0] != '.' &&
+                     std::all_of(platform.begin(), platform.end(), [](unsigned char c) {
+                       return std::isalnum(c) || c == '-' || c == '_' || c == '.';
+                     });
+  if (!valid) {
+    throw Error(
+      ErrorCode::invalid_argument, "'" + platform +
+        "' is no platform name: expected up to 64 letters, digits, '-', '_', '.'");
+  }
+  const std::string user = "/dev/shm/manycore-" + std::to_string(geteuid());
+  return {user, user + "/" + platform};
+}
+
+void Cluster::create(
+  const PlatformPaths & paths, uint32_t id, uint64_t smem_bytes, uint64_t platform_nonce) {
+  const SharedMemory memory = SharedMemory::create(paths.cluster(id), smem_bytes);
+  const uint32_t granule = granule_size(smem_bytes);
+  const uint64_t granules = smem_bytes / granule;
+  memory.reserve(0, granule_map_offset + map_bytes(granules));
+  auto & header = memory.at<ClusterHeader>(0);
+  header.segment.version = layout_version;
+  header.segment.cluster = id;
+  header.segment.size_bytes = smem_bytes;
+  header.segment.platform_nonce = platform_nonce;
+  header.granule_bytes = granule;
+  header.granule_count = static_cast<uint32_t>(granules);
+  header.segment.magic.store(cluster_magic, std::memory_order_release);
+  Pipe::create(paths.pipe(id));
+  Cluster cluster(paths, id, platform_nonce);
+  cluster.forget_allocations();
+}
+
+Cluster::Cluster(const PlatformPaths & paths, uint32_t id, uint64_t platform_nonce)
+: id_(id),
+  memory_(SharedMemory::open(paths.cluster(id), 4096)),
+  pipe_(Pipe::open(paths.pipe(id))) {
+  const ClusterHeader & head = header();
+  check_segment(head.segment, cluster_magic, memory_.size(), paths.cluster(id).c_str());
+  const std::string advice = "; stop the platform's nodes and run 'manycore clean'";
+  if (head.segment.cluster != id || head.segment.platform_nonce != platform_nonce) {
+    throw Error(ErrorCode::corrupt, paths.cluster(id) + " belongs to another platform" + advice);
+  }
+  const uint32_t granule = granule_size(memory_.size());
+  const bool sound = head.granule_bytes == granule &&
+                     head.granule_count == memory_.size() / granule &&
+                     head.used_bytes.load(std::memory_order_relaxed) <= memory_.size();
+  if (!sound) {
+    throw Error(ErrorCode::corrupt, paths.cluster(id) + " has a damaged header" + advice);
+  }
+}
+
+uint64_t Cluster::granules_of(uint64_t length) const noexcept {
+  return (length + header().granule_bytes - 1) / header().granule_bytes;
+}
+
+bool Cluster::granule_used(uint64_t index) const noexcept {
+  return (granule_map()[index / 64] >> (index % 64) & 1) != 0;
+}
+
+void Cluster::set_granules(uint64_t first, uint64_t count, bool used) const noexcept {
+  uint64_t * const map = granule_map();
+  for (uint64_t i = first; i < first + count; ++i) {
+    const uint64_t bit = uint64_t{1} << (i % 64);
+    map[i / 64] = used ? map[i / 64] | bit : map[i / 64] & ~bit;
+  }
+}
+
+/// First fit; returns granule_count when there is no run.
+uint64_t Cluster::find_run(uint64_t count) const noexcept {
+  const uint64_t total = header().granule_count;
+  uint64_t run = 0;
+  for (uint64_t i = 0; i < total; ++i) {
+    if (run == 0 && i % 64 == 0 && granule_map()[i / 64] == UINT64_MAX) {
+      i += 63;
+      continue;
+    }
+    run = granule_used(i) ? 0 : run + 1;
+    if (run == count) {
+      return i + 1 - count;
+    }
+  }
+  return total;
+}
+
+/// Map and count are changed together, under the registry lock, whose next owner rebuilds both after a death.
+void Cluster::require_sound_map() const {
+  const ClusterHeader & head = header();
+  uint64_t used = 0;
+  for (uint64_t i = 0; i < map_bytes(head.granule_count) / 8; ++i) {
+    used += static_cast<uint64_t>(__builtin_popcountll(granule_map()[i]));
+  }
+  if (used * head.granule_bytes != head.used_bytes.load(std::memory_order_relaxed)) {
+    throw Error(
+      ErrorCode::corrupt, "the memory map of cluster " + std::to_string(id_) +
+        " is damaged; stop the platform's nodes and run 'manycore clean'");
+  }
+}
+
+uint64_t Cluster::allocate(uint64_t length) {
+  require_sound_map();
+  ClusterHeader & head = header();
+  const uint64_t count = granules_of(length);
+  const uint64_t first = find_run(count);
+  if (first == head.granule_count || !has_room(count * head.granule_bytes)) {
+    throw no_room(*this, length, "lower topic_dsm_size or depth, or move nodes to another cluster");
+  }
+  const uint64_t offset = first * head.granule_bytes;
+  memory_.reserve(offset, count * head.granule_bytes);
+  memory_.populate(offset, count * head.granule_bytes);
+  set_granules(first, count, true);
+  head.used_bytes.fetch_add(count * head.granule_bytes, std::memory_order_relaxed);
+  return offset;
+}
+
+void Cluster::free(uint64_t offset, uint64_t length) noexcept {
+  ClusterHeader & head = header();
+  const uint64_t count = granules_of(length);
+  if (!contains(offset, count * head.granule_bytes)) {
+    return;
+  }
+  set_granules(offset / head.granule_bytes, count, false);
+  head.used_bytes.fetch_sub(count * head.granule_bytes, std::memory_order_relaxed);
+  memory_.release(offset, count * head.granule_bytes);
+}
+
+bool Cluster::has_room(uint64_t length) const noexcept {
+  const uint64_t used = used_bytes();
+  return used <= size() && length <= size() - used;
+}
+
+void Cluster::charge(uint64_t before, uint64_t after) {
+  if (after > before && !has_room(after - before)) {
+    const char * const advice = "raise smem_size in the mapfile, or move nodes to another cluster";
+    throw no_room(*this, after - before, advice);
+  }
+  header().charged_bytes.fetch_add(after - before, std::memory_order_relaxed);
+}
+
+void Cluster::mark_charged(uint64_t length) noexcept {
+  header().charged_bytes.fetch_add(length, std::memory_order_relaxed);
+}
+
+void Cluster::forget_allocations() noexcept {
+  ClusterHeader & head = header();
+  const uint64_t own = granules_of(granule_map_offset + map_bytes(head.granule_count));
+  std::fill_n(granule_map(), map_bytes(head.granule_count) / 8, 0);
+  set_granules(0, own, true);
+  head.used_bytes.store(own * head.granule_bytes, std::memory_order_relaxed);
+  head.charged_bytes.store(0, std::memory_order_relaxed);
+}
+
+void Cluster::mark_allocated(uint64_t offset, uint64_t length) noexcept {
+  ClusterHeader & head = header();
+  const uint64_t count = granules_of(length);
+  if (!contains(offset, count * head.granule_bytes)) {
+    return;
+  }
+  set_granules(offset / head.granule_bytes, count, true);
+  head.used_bytes.fetch_add(count * head.granule_bytes, std::memory_order_relaxed);
+}
+
+Clusters::Clusters(PlatformPaths paths, uint64_t platform_nonce)
+: paths_(std::move(paths)), platform_nonce_(platform_nonce) {}
+
+Cluster & Clusters::at(uint32_t id) {
+  if (id == 0 || id > max_clusters) {
+    throw Error(ErrorCode::corrupt, "there is no cluster " + std::to_string(id));
+  }
+  if (Cluster * const known = mapped_[id].load(std::memory_order_acquire)) {
+    return *known;
+  }
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (!owned_[id]) {
+    owned_[id] = std::make_unique<Cluster>(paths_, id, platform_nonce_);
+    mapped_[id].store(owned_[id].get(), std::memory_order_release);
+  }
+  return *owned_[id];
+}
+
+Cluster * Clusters::find(uint32_t id) noexcept {
+  try {
+    return &at(id);
+  } catch (const std::exception &) {
+    return nullptr;
+  }
+}
+
+}  // namespace manycore

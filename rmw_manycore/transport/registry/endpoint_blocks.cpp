@@ -1,0 +1,63 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#include "transport/registry/endpoint_blocks.hpp"
+
+#include <algorithm>
+
+namespace manycore {
+
+MatchedCount matched_of(const EndpointEntry & entry) {
+  const uint64_t total = entry.matched_total.load();
+  return {total, std::min(entry.matched_current.load(), total)};
+}
+
+IncompatibleCount incompatible_of(const EndpointEntry & entry) {
+  return {
+    entry.incompatible_total.load(), static_cast<QosPolicy>(entry.incompatible_policy.load())};
+}
+
+uint64_t lost_so_far(const EndpointEntry & entry, const SubscriptionHeader & header) {
+  // Neither word by itself says anything, so they need no order; the sum wraps.
+  const uint64_t by_drops = header.dropped.load(std::memory_order_relaxed) +
+                            header.lost_beside_dropped.load(std::memory_order_relaxed);
+  return std::max(entry.counters.lost.load(std::memory_order_relaxed), by_drops);
+}
+
+void notify_process(Registry & registry, uint32_t process) {
+  if (registry.processes().is_live(process)) {
+    registry.processes()[process].wake.notify();
+  }
+}
+
+void notify_event_watchers(Registry & registry, uint32_t process) {
+  if (
+    registry.processes().is_live(process) &&
+    registry.processes()[process].wake.event_watchers.load() != 0) {
+    registry.processes()[process].wake.notify();
+  }
+}
+
+TopicDsmHeader * topic_dsm_of(Registry & registry, const SourceEntry & source) {
+  const uint32_t slot = source.topic_dsm_endpoint.load();
+  if (slot >= registry.endpoints().high_water()) {
+    return nullptr;
+  }
+  const Slot & publisher = registry.endpoints()[slot].slot;
+  const bool there = publisher.state.load() != SlotState::free &&
+                     publisher.incarnation == source.topic_dsm_incarnation.load();
+  return there ? registry.clusters().find<TopicDsmHeader>(SegmentRef{source.topic_dsm.load()})
+               : nullptr;
+}
+
+void detach_reader(Registry & registry, SourceEntry & source) {
+  TopicDsmHeader * const dsm = topic_dsm_of(registry, source);
+  auto * const reader = registry.clusters().find<ReaderEntry>(SegmentRef{source.reader.load()});
+  if (dsm == nullptr || reader == nullptr) {
+    return;
+  }
+  reader->active.store(0, std::memory_order_release);
+  dsm->match_generation.fetch_add(1, std::memory_order_seq_cst);
+  dsm->progress.fetch_add(1, std::memory_order_seq_cst);
+  futex_wake_all(dsm->progress);  // a publisher that waited for this reader need not
+}
+
+}  // namespace manycore

@@ -1,0 +1,154 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#include "transport/registry/registry.hpp"
+
+#include <random>
+
+#include "platform/error.hpp"
+#include "transport/layout/subscription_layout.hpp"
+#include "transport/layout/topic_dsm_layout.hpp"
+
+namespace manycore {
+namespace {
+
+uint64_t random_nonce() {
+  std::random_device random;
+  return uint64_t{random()} << 32 | random();
+}
+
+SharedMemory open_registry(const PlatformPaths & paths) {
+  // The version before the size: a registry of another version may well be smaller.
+  SharedMemory memory = SharedMemory::open(paths.registry(), sizeof(SegmentHeader));
+  check_segment(
+    memory.at<SegmentHeader>(0), registry_magic, memory.size(), paths.registry().c_str());
+  const std::string damaged =
+    paths.registry() + " is damaged; stop the platform's nodes and run 'manycore clean'";
+  if (memory.size() < registry_bytes) {
+    throw Error(ErrorCode::corrupt, damaged);
+  }
+  const Profile & profile = memory.at<RegistryHeader>(0).profile;
+  if (profile.clusters == 0 || profile.clusters > max_clusters) {
+    throw Error(ErrorCode::corrupt, damaged);
+  }
+  return memory;
+}
+
+}  // namespace
+
+uint64_t hash_name(const char * name) noexcept {
+  uint64_t hash = 14695981039346656037u;
+  for (; *name != 0; ++name) {
+    hash = (hash ^ static_cast<unsigned char>(*name)) * 1099511628211u;
+  }
+  return hash;
+}
+
+void store_name(char (&field)[name_bytes], const std::string & name, const char * what) {
+  if (name.size() >= name_bytes) {
+    throw Error(
+      ErrorCode::invalid_argument, std::string(what) + " '" + name + "' is longer than " +
+        std::to_string(name_bytes - 1) + " characters");
+  }
+  std::memset(field, 0, name_bytes);
+  std::memcpy(field, name.data(), name.size());
+}
+
+void Registry::create(
+  const PlatformPaths & paths, const Profile & profile,
+  const std::vector<TopicConfiguration> & topics) {
+  SharedMemory memory = SharedMemory::create(paths.registry(), registry_bytes);
+  memory.reserve(0, process_table_offset);
+  auto & header = memory.at<RegistryHeader>(0);
+  header.segment.version = layout_version;
+  header.segment.size_bytes = registry_bytes;
+  header.segment.platform_nonce = random_nonce();
+  header.profile = profile;
+  header.mutex.initialize();
+  header.topic_count = static_cast<uint32_t>(topics.size());
+  for (uint32_t & bucket : header.topic_buckets) {
+    bucket = nothing;
+  }
+  memory.reserve(topic_table_offset, (topics.size() + 1) * sizeof(TopicEntry));
+  for (size_t i = 0; i < topics.size(); ++i) {
+    auto & entry = memory.at<TopicEntry>(topic_table_offset + i * sizeof(TopicEntry));
+    store_name(entry.name, topics[i].name, "topic");
+    entry.topic_hash = hash_name(entry.name);
+    entry.topic_id = topics[i].id;
+    entry.topic_dsm_size = topics[i].dsm_size_bytes;
+    entry.receiver_clusters = topics[i].receiver_clusters;
+  }
+  header.segment.magic.store(registry_magic, std::memory_order_release);
+}
+
+Registry::Registry(const PlatformPaths & paths)
+: paths_(paths),
+  memory_(open_registry(paths)),
+  processes_(memory_, header().processes, process_table_offset, process_capacity),
+  nodes_(memory_, header().nodes, node_table_offset, node_capacity),
+  endpoints_(memory_, header().endpoints, endpoint_table_offset, endpoint_capacity),
+  clusters_(paths, nonce()) {}
+
+Registry::Lock::Lock(Registry & registry, long wait_ns) : registry_(registry) {
+  RobustMutex & mutex = registry.header().mutex;
+  if (mutex.lock(wait_ns) == RobustMutex::Outcome::owner_died) {
+    registry.repair();
+    mutex.mark_consistent();
+  }
+}
+
+Registry::Lock::~Lock() { registry_.header().mutex.unlock(); }
+
+const TopicEntry * Registry::find_topic(const std::string & name) const noexcept {
+  const uint64_t hash = hash_name(name.c_str());
+  for (uint32_t i = 0; i < header().topic_count && i < topic_capacity; ++i) {
+    if (topic(i).topic_hash == hash && name == topic(i).name) {
+      return &topic(i);
+    }
+  }
+  return nullptr;
+}
+
+void Registry::link_endpoint(uint32_t slot) noexcept {
+  EndpointEntry & entry = endpoints_[slot];
+  uint32_t & bucket = header().topic_buckets[entry.topic_hash % topic_bucket_count];
+  entry.next_of_topic = bucket;
+  bucket = slot;
+}
+
+void Registry::unlink_endpoint(uint32_t slot) noexcept {
+  EndpointEntry & entry = endpoints_[slot];
+  uint32_t * link = &header().topic_buckets[entry.topic_hash % topic_bucket_count];
+  // A damaged chain is not followed out of the table, nor round and round.
+  for (uint32_t i = 0; *link != slot && *link < endpoints_.high_water() && i < endpoint_capacity;
+       ++i) {
+    link = &endpoints_[*link].next_of_topic;
+  }
+  if (*link == slot) {
+    *link = entry.next_of_topic;
+  }
+}
+
+void Registry::for_each_of_topic(
+  const char * topic, const std::function<void(uint32_t, EndpointEntry &)> & visit) {
+  const uint64_t hash = hash_name(topic);
+  uint32_t slot = header().topic_buckets[hash % topic_bucket_count];
+  for (uint32_t i = 0; slot < endpoints_.high_water() && i < endpoint_capacity; ++i) {
+    EndpointEntry & entry = endpoints_[slot];
+    const uint32_t next = entry.next_of_topic;
+    if (entry.topic_hash == hash && std::strcmp(entry.topic, topic) == 0) {
+      visit(slot, entry);
+    }
+    slot = next;
+  }
+}
+
+void Registry::graph_changed() noexcept {
+  header().graph_generation.fetch_add(1, std::memory_order_seq_cst);
+  for (uint32_t slot = 0; slot < processes_.high_water(); ++slot) {
+    ProcessEntry & process = processes_[slot];
+    if (processes_.is_live(slot) && process.wake.graph_watchers.load() != 0) {
+      process.wake.notify();
+    }
+  }
+}
+
+}  // namespace manycore

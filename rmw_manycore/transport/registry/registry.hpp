@@ -1,0 +1,158 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "platform/error.hpp"
+#include "platform/shared_memory.hpp"
+#include "transport/registry/cluster.hpp"
+#include "transport/layout/registry_layout.hpp"
+
+namespace manycore {
+
+/// A table of slots in the registry. Adding and removing need the registry lock; looking does not.
+template<typename Entry>
+class Table {
+public:
+  Table(SharedMemory & memory, TableHead & head, uint64_t offset, uint32_t capacity) noexcept
+  : memory_(memory), head_(head), offset_(offset), capacity_(capacity) {}
+
+  Entry & operator[](uint32_t slot) const noexcept {
+    return memory_.at<Entry>(offset_ + uint64_t{slot} * sizeof(Entry));
+  }
+  uint32_t high_water() const noexcept {
+    const uint32_t count = head_.high_water.load(std::memory_order_acquire);
+    return count <= capacity_ ? count : capacity_;
+  }
+  bool is_live(uint32_t slot) const noexcept {
+    return slot < high_water() &&
+           (*this)[slot].slot.state.load(std::memory_order_acquire) == SlotState::live;
+  }
+
+  /// A slot to fill in; it exists for others only after publish(). Throws Error{no_space}.
+  uint32_t take(const char * what);
+  void publish(uint32_t slot) const noexcept {
+    (*this)[slot].slot.state.store(SlotState::live, std::memory_order_release);
+  }
+  void give_back(uint32_t slot) const noexcept {
+    Slot & entry = (*this)[slot].slot;
+    entry.state.store(SlotState::free, std::memory_order_release);
+    entry.next_free = head_.first_free;
+    head_.first_free = slot + 1;
+  }
+  void rebuild_free_list() const noexcept {
+    head_.first_free = 0;
+    for (uint32_t slot = 0; slot < high_water(); ++slot) {
+      if ((*this)[slot].slot.state.load(std::memory_order_relaxed) == SlotState::free) {
+        give_back(slot);
+      }
+    }
+  }
+
+private:
+  SharedMemory & memory_;
+  TableHead & head_;
+  uint64_t offset_;
+  uint32_t capacity_;
+};
+
+/// One line for the topic table of a new platform.
+struct TopicConfiguration {
+  std::string name;
+  uint32_t id = 0;
+  uint32_t dsm_size_bytes = 0;  ///< 0 = grows
+  uint64_t receiver_clusters = 0;
+};
+
+/// The platform's table of processes, nodes, endpoints and topics. Changed under its robust lock, off the
+/// data path.
+class Registry {
+public:
+  static void create(
+    const PlatformPaths & paths, const Profile & profile,
+    const std::vector<TopicConfiguration> & topics);
+  /// Throws Error{corrupt}.
+  explicit Registry(const PlatformPaths & paths);
+
+  /// Holds the registry lock while alive.
+  class Lock {
+  public:
+    static constexpr long usual_wait_ns = 5'000'000'000;
+    static constexpr long short_wait_ns = 100'000'000;  ///< from inside a publish
+    static constexpr long no_wait_ns = 0;
+
+    /// Throws Error{timeout} when the lock is not to be had within `wait_ns`.
+    explicit Lock(Registry & registry, long wait_ns = usual_wait_ns);
+    ~Lock();
+    Lock(const Lock &) = delete;
+    Lock & operator=(const Lock &) = delete;
+
+  private:
+    Registry & registry_;
+  };
+
+  RegistryHeader & header() const noexcept { return memory_.at<RegistryHeader>(0); }
+  Table<ProcessEntry> & processes() noexcept { return processes_; }
+  Table<NodeEntry> & nodes() noexcept { return nodes_; }
+  Table<EndpointEntry> & endpoints() noexcept { return endpoints_; }
+  Clusters & clusters() noexcept { return clusters_; }
+  const PlatformPaths & paths() const noexcept { return paths_; }
+  uint64_t nonce() const noexcept { return header().segment.platform_nonce; }
+
+  TopicEntry & topic(uint32_t index) const noexcept {
+    return memory_.at<TopicEntry>(topic_table_offset + uint64_t{index} * sizeof(TopicEntry));
+  }
+  /// Line of the topic table, or nullptr.
+  const TopicEntry * find_topic(const std::string & name) const noexcept;
+
+  /// Chains of endpoints by topic; the caller holds the lock.
+  void link_endpoint(uint32_t slot) noexcept;
+  void unlink_endpoint(uint32_t slot) noexcept;
+  void for_each_of_topic(
+    const char * topic, const std::function<void(uint32_t, EndpointEntry &)> & visit);
+
+  /// Raises the graph generation and the epochs of processes that watch it.
+  void graph_changed() noexcept;
+
+private:
+  friend class Lock;
+  void repair() noexcept;
+  void mark_blocks_of(EndpointEntry & entry) noexcept;
+
+  PlatformPaths paths_;
+  SharedMemory memory_;
+  Table<ProcessEntry> processes_;
+  Table<NodeEntry> nodes_;
+  Table<EndpointEntry> endpoints_;
+  Clusters clusters_;
+};
+
+/// FNV-1a; a hash of names that is equal in every process.
+uint64_t hash_name(const char * name) noexcept;
+
+/// Copies a name into a fixed field; throws Error{invalid_argument} when it does not fit.
+void store_name(char (&field)[name_bytes], const std::string & name, const char * what);
+
+template<typename Entry>
+uint32_t Table<Entry>::take(const char * what) {
+  if (head_.first_free != 0) {
+    const uint32_t slot = head_.first_free - 1;
+    head_.first_free = (*this)[slot].slot.next_free;
+    ++(*this)[slot].slot.incarnation;
+    return slot;
+  }
+  const uint32_t slot = head_.high_water.load(std::memory_order_relaxed);
+  if (slot >= capacity_) {
+    throw Error(
+      ErrorCode::no_space, "the platform's table of " + std::string(what) + " is full (" +
+        std::to_string(capacity_) + ")");
+  }
+  memory_.reserve(offset_ + uint64_t{slot} * sizeof(Entry), sizeof(Entry));
+  head_.high_water.store(slot + 1, std::memory_order_release);
+  (*this)[slot].slot.incarnation = 1;
+  return slot;
+}
+
+}  // namespace manycore

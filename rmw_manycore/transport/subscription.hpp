@@ -1,0 +1,87 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+
+#include "transport/layout/endpoint.hpp"
+
+namespace manycore {
+
+class Subscription;
+class TopicDsmReader;
+
+/// Metadata of a claimed record.
+struct RecordInfo {
+  int64_t source_timestamp_ns = 0;    ///< CLOCK_REALTIME at publish
+  int64_t received_timestamp_ns = 0;  ///< CLOCK_REALTIME at claim
+  uint64_t publication_sequence_number = 0;
+  uint64_t reception_sequence_number = 0;
+  Gid publisher{};
+  Correlation correlation;
+  bool from_this_process = false;
+};
+
+/// A record that this subscription is reading: claim, deserialize, release (by destruction).
+/// The publisher cannot recycle it meanwhile. Holds the subscription's mutex; stays in one thread.
+class Claim {
+public:
+  Claim(Claim && other) noexcept;
+  Claim & operator=(Claim &&) = delete;
+  ~Claim();
+
+  const uint8_t * data() const noexcept { return data_; }
+  size_t size() const noexcept { return size_; }
+  const RecordInfo & info() const noexcept { return info_; }
+
+private:
+  friend class Subscription;
+  Claim() = default;
+  Subscription * subscription_ = nullptr;
+  TopicDsmReader * reader_ = nullptr;
+  uint64_t number_ = 0;
+  const uint8_t * data_ = nullptr;
+  size_t size_ = 0;
+  RecordInfo info_;
+};
+
+/// The reading role: one subscriber queue (capacity = depth) over any number of topic DSMs. Thread-safe.
+class Subscription {
+public:
+  struct Impl;
+  explicit Subscription(std::unique_ptr<Impl> impl);
+  ~Subscription();
+
+  const Gid & gid() const noexcept;
+  const Qos & qos() const noexcept;
+
+  /// True when claim() is worth calling (it may still find nothing: expired or overwritten).
+  bool has_data() const noexcept;
+
+  /// Step 3 of Fig. 4: pops the queue and claims the record in its topic DSM.
+  std::optional<Claim> claim();
+
+  /// Notifications received since creation (for on_new_message callbacks).
+  uint64_t arrivals() const noexcept;
+
+  /// Notifications that wait to be claimed; some may be stale or doubles.
+  uint64_t waiting() const noexcept;
+
+  /// Messages that were published for this subscription and are gone (overwritten before taken), as far as known:
+  /// those of a publisher are counted by the time a later one of its messages is taken.
+  uint64_t lost() const noexcept;
+
+  MatchedCount matched() const;
+  IncompatibleCount incompatible() const;
+  uint64_t incompatible_types() const noexcept;
+  TimedCount deadline_missed() const noexcept;
+  LivelinessCount liveliness() const;
+
+private:
+  friend class Claim;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace manycore

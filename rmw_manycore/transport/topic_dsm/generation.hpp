@@ -1,0 +1,41 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "transport/registry/cluster.hpp"
+#include "transport/layout/topic_dsm_layout.hpp"
+
+namespace manycore {
+
+constexpr uint64_t record_alignment = 64;
+
+/// Descriptor counts are powers of two.
+constexpr uint64_t power_of_two_at_least(uint64_t x) {
+  uint64_t power = 1;
+  while (power < x) {
+    power *= 2;
+  }
+  return power;
+}
+
+/// A publisher's view of one generation of its topic DSM.
+struct Generation {
+  GenerationEntry * entry = nullptr;
+  RecordDescriptor * descriptors = nullptr;
+  uint64_t count = 0;        ///< of descriptors
+  uint64_t data_offset = 0;  ///< in the cluster segment
+  uint64_t data_bytes = 0;
+  uint64_t first = 0;  ///< number of its first record
+
+  RecordDescriptor & descriptor(uint64_t number) const noexcept {
+    return descriptors[number & (count - 1)];
+  }
+
+  /// Allocates a generation and makes it visible to readers; the caller holds the registry lock. Throws
+  /// Error{no_space}.
+  static void allocate(
+    Cluster & cluster, GenerationEntry & entry, uint64_t data_bytes, uint64_t count,
+    uint64_t first);
+  static Generation view(const Cluster & cluster, GenerationEntry & entry) noexcept;
+};
+
+}  // namespace manycore

@@ -1,0 +1,70 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#include "transport/topic_dsm/reader_list.hpp"
+
+#include <algorithm>
+
+#include "transport/topic_dsm/reader_table.hpp"
+
+namespace manycore {
+namespace {
+
+constexpr uint64_t look_again = UINT64_MAX;  ///< no generation
+
+}  // namespace
+
+/// Acquire, as in ReceiveThread::push_to_readers(): who reads a value of a later reader finds the generation raised.
+Reader ReaderList::resolve(ReaderEntry & entry) {
+  Reader reader;
+  reader.endpoint = entry.endpoint.load(std::memory_order_acquire);
+  const SegmentRef subscription{entry.subscription.load(std::memory_order_acquire)};
+  const SegmentRef source{entry.source.load(std::memory_order_acquire)};
+  reader.cluster = subscription.cluster();
+  const Cluster & cluster = registry_.clusters().at(reader.cluster);
+  reader.subscription = cluster.find<SubscriptionHeader>(subscription.offset());
+  reader.source = registry_.clusters().at(source.cluster()).find<SourceEntry>(source.offset());
+  reader.source_index = entry.source_index.load(std::memory_order_acquire);
+  reader.source_incarnation = entry.source_incarnation.load(std::memory_order_acquire);
+  if (
+    reader.subscription == nullptr || reader.source == nullptr ||
+    reader.endpoint >= registry_.endpoints().high_water() ||
+    registry_.endpoints()[reader.endpoint].process >= registry_.processes().high_water()) {
+    throw Error(
+      ErrorCode::corrupt, "cluster " + std::to_string(cluster_.id()) +
+        " is damaged; stop the platform's nodes and run 'manycore clean'");
+  }
+  const EndpointEntry & endpoint = registry_.endpoints()[reader.endpoint];
+  reader.wake = &registry_.processes()[endpoint.process].wake;
+  reader.reliable = endpoint.qos.reliability == Reliability::reliable;
+  reader.gid = endpoint.gid;
+  return reader;
+}
+
+void ReaderList::throw_unresolved(const std::string & topic) const {
+  throw Error(
+    unresolved_->code(),
+    "publish on '" + topic + "': a subscription is out of reach: " + unresolved_->what());
+}
+
+void ReaderList::rebuild() {
+  do {
+    seen_ = dsm_.match_generation.load(std::memory_order_seq_cst);
+    readers_.clear();
+    unresolved_.reset();
+    for_each_reader(cluster_, dsm_, [&](ReaderEntry & entry) {
+      try {
+        readers_.push_back(resolve(entry));
+      } catch (const Error & error) {
+        unresolved_ = error;
+      }
+    });
+  } while (dsm_.match_generation.load(std::memory_order_seq_cst) != seen_);
+  if (unresolved_) {
+    seen_ = look_again;
+  }
+  // Readers of one process stand together, so that it is woken once.
+  std::sort(readers_.begin(), readers_.end(), [](const Reader & a, const Reader & b) {
+    return a.wake < b.wake;
+  });
+}
+
+}  // namespace manycore

@@ -1,0 +1,162 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+// The part of TopicDsmWriter that adds generations and gives old ones back.
+
+#include <algorithm>
+
+#include "platform/error.hpp"
+#include "transport/topic_dsm/topic_dsm_writer.hpp"
+
+namespace manycore {
+namespace {
+
+constexpr uint64_t descriptor_limit = 1 << 16;
+
+}  // namespace
+
+/// Takes back what nobody wants in an old generation; true once nothing in it can be read any more.
+bool TopicDsmWriter::drain(const Generation & old) {
+  bool wanted = false;
+  for (uint64_t slot = 0; slot < old.count; ++slot) {
+    RecordDescriptor & record = old.descriptors[slot];
+    const uint64_t number = record.number.load(std::memory_order_relaxed);
+    if (number != no_record && is_wanted(number, record)) {
+      wanted = true;
+    } else if (number != no_record) {
+      record.number.store(no_record, std::memory_order_seq_cst);
+    }
+  }
+  readers_.refresh();
+  return !wanted && !readers_.is_any_pinned(old.first, current_.first - 1);
+}
+
+void TopicDsmWriter::free_old_generations() noexcept {
+  try {
+    for (size_t i = 0; i < old_.size();) {
+      if (!drain(old_[i])) {
+        ++i;
+        continue;
+      }
+      const Registry::Lock lock(registry_, Registry::Lock::no_wait_ns);
+      // Cleared before it is given back: a reader that meets foreign bytes in it finds the entry changed.
+      old_[i].entry->first.store(0, std::memory_order_seq_cst);
+      cluster_.free(old_[i].entry->offset.load(), old_[i].entry->extent_bytes());
+      old_.erase(old_.begin() + static_cast<ptrdiff_t>(i));
+    }
+  } catch (const Error &) {
+    // The registry is locked by somebody else: the next publish tries again.
+  }
+}
+
+uint64_t TopicDsmWriter::data_limit() const noexcept {
+  return endpoint_.topic_dsm_size != 0 ? current_.data_bytes : cluster_.size() / 2;
+}
+
+/// The lock is waited for once: whoever stands still holding it must not hold up each record, nor each publish. From
+/// then on growing only tries, until the lock is to be had.
+void TopicDsmWriter::allocate_generation(
+  GenerationEntry & entry, uint64_t data_bytes, uint64_t descriptor_count) {
+  const long wait_ns =
+    registry_answers_ ? Registry::Lock::short_wait_ns : Registry::Lock::no_wait_ns;
+  registry_answers_ = false;
+  const Registry::Lock lock(registry_, wait_ns);
+  registry_answers_ = true;
+  Generation::allocate(cluster_, entry, data_bytes, descriptor_count, next_number_);
+}
+
+bool TopicDsmWriter::grow(uint64_t data_bytes, uint64_t descriptor_count) {
+  try {
+    return add_generation(data_bytes, descriptor_count);
+  } catch (const Error &) {
+    return false;
+  }
+}
+
+bool TopicDsmWriter::add_generation(uint64_t data_bytes, uint64_t descriptor_count) {
+  const bool larger =
+    data_bytes > current_.data_bytes || descriptor_count > current_.count;
+  if (
+    endpoint_.topic_dsm_size != 0 || !larger || data_bytes > data_limit() ||
+    descriptor_count > most_descriptors()) {
+    return false;
+  }
+  GenerationEntry * const free_entry = std::find_if(
+    std::begin(dsm_.generations), std::end(dsm_.generations),
+    [](const GenerationEntry & entry) { return entry.first.load() == 0; });
+  if (free_entry == std::end(dsm_.generations)) {
+    return false;
+  }
+  if (next_number_ == current_.first) {
+    ++next_number_;  // a reader tells generations apart by their first numbers
+  }
+  allocate_generation(*free_entry, data_bytes, descriptor_count);
+  old_.push_back(current_);
+  current_ = Generation::view(cluster_, *free_entry);
+  blocks_.clear();
+  pinned_in_slot_.assign(current_.count, no_record);
+  cursor_ = 0;
+  return true;
+}
+
+uint64_t TopicDsmWriter::most_descriptors() const noexcept {
+  return dsm_.keep_all != 0 ? keep_all_capacity : descriptor_limit;
+}
+
+/// The most records that anybody may want at a time.
+uint64_t TopicDsmWriter::deepest_history() const noexcept {
+  uint64_t deepest = dsm_.transient_local != 0 ? dsm_.depth : 1;
+  for (const Reader & reader : readers_.readers()) {
+    const bool unbounded = reader.subscription->keep_all != 0 || dsm_.keep_all != 0;
+    deepest = std::max<uint64_t>(
+      deepest, unbounded ? keep_all_capacity : uint64_t{reader.subscription->depth});
+  }
+  return deepest;
+}
+
+/// Four times the records, descriptors and bytes alike, but no more than are ever wanted: few generations, since
+/// the old ones stay while their records are wanted. Half as many bytes more at least: records of mixed sizes leave
+/// gaps.
+bool TopicDsmWriter::grow_to_hold_more(uint64_t need_bytes) {
+  const uint64_t held = std::max<uint64_t>(blocks_.size(), 2);
+  const uint64_t records = std::max(held + 2, std::min(held * 4, deepest_history() + 2));
+  const uint64_t bytes_per_record = std::max(need_bytes, blocks_.bytes() / held);
+  const uint64_t bytes = align_up(
+    std::max(records * bytes_per_record, current_.data_bytes * 3 / 2), record_alignment);
+  return grow(
+    std::min(bytes, std::max(data_limit(), current_.data_bytes)),
+    std::clamp(power_of_two_at_least(records), current_.count, most_descriptors()));
+}
+
+void TopicDsmWriter::require_data_bytes(uint64_t need_bytes) {
+  if (need_bytes <= current_.data_bytes) {
+    return;
+  }
+  const std::string size = std::to_string(need_bytes);
+  try {
+    const uint64_t wish = std::min(need_bytes * 2, std::max(need_bytes, data_limit()));
+    if (add_generation(wish, current_.count)) {
+      return;
+    }
+  } catch (const Error & error) {
+    if (error.code() == ErrorCode::timeout) {
+      endpoint_.counters.refused.fetch_add(1, std::memory_order_relaxed);
+      throw Error(
+        ErrorCode::timeout, "a message of " + size + " bytes on '" + endpoint_.topic +
+          "' needs a larger topic DSM, but " + error.what());
+    }
+  }
+  endpoint_.counters.refused.fetch_add(1, std::memory_order_relaxed);
+  if (endpoint_.topic_dsm_size != 0) {
+    throw Error(
+      ErrorCode::too_large, "a message of " + size + " bytes does not fit the topic DSM of '" +
+        endpoint_.topic + "' (" + std::to_string(endpoint_.topic_dsm_size) +
+        " bytes); set its topic_dsm_size to at least " + size);
+  }
+  throw Error(
+    ErrorCode::too_large, "a message of " + size + " bytes on '" + std::string(endpoint_.topic) +
+      "' does not fit into cluster " + std::to_string(cluster_.id()) + ": " +
+      std::to_string(cluster_.used_bytes()) + " of " +
+      std::to_string(cluster_.size()) + " bytes of SMEM are used; it needs at least " + size +
+      " free (is /dev/shm large enough?)");
+}
+
+}  // namespace manycore

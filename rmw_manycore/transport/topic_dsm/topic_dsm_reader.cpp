@@ -1,0 +1,244 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#include "transport/topic_dsm/topic_dsm_reader.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "platform/clock.hpp"
+#include "transport/queue/displaced.hpp"
+#include "transport/topic_dsm/last_published.hpp"
+
+namespace manycore {
+namespace {
+
+/// By number; and no timestamp before an earlier record's, so that merging sources keeps each one's order even
+/// where the clock was set back.
+void order(std::vector<TopicDsmReader::Waiting> & all, ptrdiff_t begin) {
+  using Waiting = TopicDsmReader::Waiting;
+  std::sort(all.begin() + begin, all.end(), [](const Waiting & a, const Waiting & b) {
+    return a.number < b.number;
+  });
+  for (auto i = static_cast<size_t>(begin) + 1; i < all.size(); ++i) {
+    all[i].source_timestamp_ns =
+      std::max(all[i].source_timestamp_ns, all[i - 1].source_timestamp_ns);
+  }
+}
+
+}  // namespace
+
+TopicDsmReader::TopicDsmReader(
+  Registry & registry, SourceEntry & source, uint32_t index, EndpointEntry & subscription)
+: source_(&source),
+  index_(index),
+  incarnation_(source.incarnation.load(std::memory_order_relaxed)),
+  noted_(source.taken.load(std::memory_order_relaxed)),
+  accounted_(source.joined_after.load(std::memory_order_relaxed)),
+  subscription_(&subscription) {
+  const SegmentRef ref{source.topic_dsm.load(std::memory_order_relaxed)};
+  cluster_ = registry.clusters().find(ref.cluster());
+  dsm_ = registry.clusters().find<TopicDsmHeader>(ref);
+}
+
+uint64_t TopicDsmReader::full_number(uint64_t low_bits) const noexcept {
+  constexpr uint64_t period = uint64_t{1} << 28;
+  // The latest published with these low bits: what a queue holds is younger than a period, however long nothing
+  // was taken. Where nothing was published with them it wraps to more than `last`.
+  const uint64_t latest = last();  // once: it rises meanwhile
+  return latest - ((latest - low_bits) & (period - 1));
+}
+
+const GenerationEntry * TopicDsmReader::generation_of(uint64_t number) const noexcept {
+  const GenerationEntry * best = nullptr;
+  uint64_t best_first = 0;
+  for (const GenerationEntry & generation : dsm_->generations) {
+    const uint64_t first = generation.first.load(std::memory_order_acquire);
+    if (first != 0 && first <= number && first > best_first) {
+      best = &generation;
+      best_first = first;
+    }
+  }
+  return best;
+}
+
+RecordDescriptor * TopicDsmReader::descriptors_of(
+  const GenerationEntry & generation) const noexcept {
+  const uint64_t count = generation.descriptor_count.load(std::memory_order_relaxed);
+  if (count == 0 || (count & (count - 1)) != 0) {
+    return nullptr;
+  }
+  return cluster_->find<RecordDescriptor>(
+    generation.offset.load(std::memory_order_relaxed), count * sizeof(RecordDescriptor));
+}
+
+bool TopicDsmReader::is_for_us(const RecordDescriptor & record) const noexcept {
+  return static_cast<EndpointRole>(dsm_->role) != EndpointRole::reply ||
+         record.correlation.client == subscription_->gid;
+}
+
+/// The shorter of the publisher's lifespan and the subscription's counts.
+bool TopicDsmReader::is_expired(const RecordDescriptor & record) const noexcept {
+  const int64_t lifespan_ns = std::min(dsm_->lifespan_ns, subscription_->qos.lifespan_ns);
+  return lifespan_ns != infinite_ns && realtime_ns() - record.source_timestamp_ns > lifespan_ns;
+}
+
+bool TopicDsmReader::may_look() const noexcept {
+  return source_->state.load(std::memory_order_seq_cst) == SourceState::active &&
+         source_->incarnation.load(std::memory_order_seq_cst) == incarnation_;
+}
+
+/// Dekker with take_back(): `reading` is stored before `number` is loaded, both seq_cst, so either the
+/// publisher sees the claim and leaves the bytes alone, or the number is gone here. The same with revoke() and the
+/// source's state: nothing of the topic DSM is touched unless the state was still `active` after the store.
+TopicDsmReader::ClaimResult TopicDsmReader::claim(uint64_t number, View & view) noexcept {
+  source_->reading.store(number, std::memory_order_seq_cst);
+  if (!may_look()) {
+    source_->reading.store(no_record, std::memory_order_release);
+    return ClaimResult::not_ours;
+  }
+  const ClaimResult result = look_at(number, view);
+  if (result != ClaimResult::claimed) {
+    release(number);
+  }
+  return result;
+}
+
+TopicDsmReader::ClaimResult TopicDsmReader::look_at(uint64_t number, View & view) noexcept {
+  const GenerationEntry * const generation = generation_of(number);
+  RecordDescriptor * const descriptors =
+    generation == nullptr ? nullptr : descriptors_of(*generation);
+  if (descriptors == nullptr) {
+    return ClaimResult::gone;
+  }
+  const uint64_t first = generation->first.load(std::memory_order_acquire);
+  const uint32_t count = generation->descriptor_count.load(std::memory_order_relaxed);
+  RecordDescriptor & record = descriptors[number & (count - 1)];
+  if (record.number.load(std::memory_order_seq_cst) != number) {
+    return ClaimResult::gone;
+  }
+  // The generation may have been given back before the claim was seen; its entry then has changed, or it is empty
+  // since before the first look.
+  if (
+    first == 0 || generation->first.load(std::memory_order_acquire) != first || first > number ||
+    !cluster_->contains(record.offset, record.size_bytes)) {
+    return ClaimResult::gone;
+  }
+  if (!is_for_us(record)) {
+    return ClaimResult::not_ours;
+  }
+  count_missing(record.publication_sequence_number - 1);
+  accounted_ = std::max(accounted_, record.publication_sequence_number);
+  if (is_expired(record)) {
+    return ClaimResult::expired;
+  }
+  view.record = &record;
+  view.data = cluster_->find<uint8_t>(record.offset, record.size_bytes);
+  return ClaimResult::claimed;
+}
+
+/// `reading` last: once it is empty the topic DSM may be freed. The publisher waits for `taken` only, so it is told
+/// in time (seq_cst: it raises `writer_waits` before it looks at `taken` once more).
+bool TopicDsmReader::release(uint64_t number) noexcept {
+  if (number > source_->taken.load(std::memory_order_relaxed)) {
+    source_->taken.store(number, std::memory_order_seq_cst);
+  }
+  if (number > noted_) {
+    noted_ = number;
+  }
+  tell_waiting_publisher();
+  const bool finished = is_finished();
+  if (finished) {  // the last look at it
+    const LastPublished published = last_published(*dsm_);
+    count_missing(published.exact ? published.sequence : accounted_);
+  }
+  // seq_cst: revoke() stores the state before it looks at `reading`.
+  source_->reading.store(no_record, std::memory_order_seq_cst);
+  return finished || source_->state.load(std::memory_order_seq_cst) == SourceState::revoked;
+}
+
+void TopicDsmReader::skip(uint64_t number) noexcept {
+  source_->reading.store(every_record, std::memory_order_seq_cst);
+  if (may_look()) {
+    release(number);
+  }
+  source_->reading.store(no_record, std::memory_order_release);
+}
+
+void TopicDsmReader::tell_waiting_publisher() noexcept {
+  if (dsm_->writer_waits.load(std::memory_order_seq_cst) != 0) {
+    dsm_->progress.fetch_add(1, std::memory_order_seq_cst);
+    futex_wake_all(dsm_->progress);
+  }
+}
+
+uint64_t TopicDsmReader::last() const noexcept { return dsm_->last.load(std::memory_order_seq_cst); }
+
+/// Holds one record after the other, so that a scan that is stopped costs one record like any claim. The
+/// generation is held all the time: each value of `reading` is inside it.
+void TopicDsmReader::scan(
+  const GenerationEntry & generation, uint64_t last, std::vector<Waiting> & out) noexcept {
+  source_->reading.store(every_record, std::memory_order_seq_cst);
+  const uint64_t first = generation.first.load(std::memory_order_seq_cst);
+  RecordDescriptor * const descriptors = first == 0 ? nullptr : descriptors_of(generation);
+  const uint32_t count = generation.descriptor_count.load(std::memory_order_relaxed);
+  for (uint32_t i = 0; descriptors != nullptr && i < count; ++i) {
+    const uint64_t number = descriptors[i].number.load(std::memory_order_relaxed);
+    if (number <= noted_ || number > last) {
+      continue;
+    }
+    source_->reading.store(number, std::memory_order_seq_cst);
+    // As in look_at(): the generation may have been given back before the first store of `reading` was seen.
+    const bool live = descriptors[i].number.load(std::memory_order_seq_cst) == number &&
+                      generation.first.load(std::memory_order_acquire) == first;
+    if (live && is_for_us(descriptors[i])) {
+      out.push_back({descriptors[i].source_timestamp_ns, number, index_, incarnation_});
+    }
+  }
+}
+
+void TopicDsmReader::list_waiting(std::vector<Waiting> & out) noexcept {
+  const auto own_part = static_cast<ptrdiff_t>(out.size());
+  source_->reading.store(every_record, std::memory_order_seq_cst);
+  if (may_look()) {
+    const uint64_t last = dsm_->last.load(std::memory_order_seq_cst);
+    for (const GenerationEntry & generation : dsm_->generations) {
+      scan(generation, last, out);
+    }
+    noted_ = std::max(noted_, last);
+  }
+  source_->reading.store(no_record, std::memory_order_release);
+  order(out, own_part);
+}
+
+/// Replies to others are none of ours.
+void TopicDsmReader::count_missing(uint64_t last_sequence) noexcept {
+  const uint64_t before = std::exchange(accounted_, std::max(accounted_, last_sequence));
+  if (accounted_ > before && static_cast<EndpointRole>(dsm_->role) != EndpointRole::reply) {
+    subscription_->counters.lost.fetch_add(accounted_ - before, std::memory_order_relaxed);
+  }
+}
+
+bool TopicDsmReader::settle() noexcept {
+  bool settled = false;
+  source_->reading.store(every_record, std::memory_order_seq_cst);
+  if (may_look()) {
+    const LastPublished published = last_published(*dsm_);
+    const std::optional<uint64_t> displaced = 
+      Displaced::read(source_->displaced, incarnation_);
+    const uint64_t known = displaced ? std::max(noted_, full_number(*displaced)) : noted_;
+    settled = published.exact && published.number <= known;
+    if (settled) {
+      count_missing(published.sequence);
+      release(published.number);  // what was counted as lost may not be found by a later look at the topic DSM
+    }
+  }
+  source_->reading.store(no_record, std::memory_order_release);
+  return settled;
+}
+
+bool TopicDsmReader::is_finished() const noexcept {
+  return dsm_->orphan.load(std::memory_order_acquire) != 0 &&
+         source_->taken.load(std::memory_order_relaxed) >=
+           dsm_->last.load(std::memory_order_acquire);
+}
+
+}  // namespace manycore

@@ -1,0 +1,91 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "transport/registry/registry.hpp"
+#include "transport/layout/subscription_layout.hpp"
+#include "transport/layout/topic_dsm_layout.hpp"
+
+namespace manycore {
+
+/// The reading side of one topic DSM, for one subscription. One thread at a time (the subscription's mutex).
+/// See docs/design/topic_dsm.md, Take.
+class TopicDsmReader {
+public:
+  /// Nullptr-like (operator bool) when the source leads nowhere.
+  /// `subscription` has the gid, and the count of lost messages.
+  TopicDsmReader(
+    Registry & registry, SourceEntry & source, uint32_t index, EndpointEntry & subscription);
+
+  explicit operator bool() const noexcept { return dsm_ != nullptr; }
+  uint32_t index() const noexcept { return index_; }
+  uint32_t incarnation() const noexcept { return incarnation_; }
+  bool is_same_source(const SourceEntry & source) const noexcept {
+    return &source == source_ && source.incarnation.load() == incarnation_;
+  }
+
+  /// Highest record number that needs no further look: taken, or in the backlog.
+  uint64_t noted() const noexcept { return noted_; }
+  /// The full number of which a hint carries the low 28 bits.
+  uint64_t full_number(uint64_t low_bits) const noexcept;
+
+  enum class ClaimResult { claimed, gone, not_ours, expired };
+  struct View {
+    const RecordDescriptor * record = nullptr;
+    const uint8_t * data = nullptr;
+  };
+  /// On `claimed`, release() must follow; any other result has released already.
+  ClaimResult claim(uint64_t number, View & view) noexcept;
+  /// Ends a claim: everything up to `number` is done for this reader. True when the publisher is gone and its topic
+  /// DSM may have waited for this reader only.
+  bool release(uint64_t number) noexcept;
+  /// The same without a claim.
+  void skip(uint64_t number) noexcept;
+  uint64_t taken() const noexcept { return source_->taken.load(std::memory_order_relaxed); }
+  /// Highest record number published.
+  uint64_t last() const noexcept;
+
+  struct Waiting {
+    int64_t source_timestamp_ns;
+    uint64_t number;
+    uint32_t source;
+    uint32_t incarnation;  ///< of the source
+  };
+  /// Step of a resync: appends the live records above noted() to `out`, in order, and notes them.
+  void list_waiting(std::vector<Waiting> & out) noexcept;
+
+  /// With no hint and no backlog left: counts what was lost since the last message accounted for. False while a hint
+  /// is on its way.
+  bool settle() noexcept;
+
+  const Gid & publisher() const noexcept { return dsm_->gid; }
+  uint32_t publisher_process() const noexcept { return dsm_->process; }
+
+private:
+  /// The generation that holds `number`, or nullptr.
+  const GenerationEntry * generation_of(uint64_t number) const noexcept;
+  ClaimResult look_at(uint64_t number, View & view) noexcept;
+  RecordDescriptor * descriptors_of(const GenerationEntry & generation) const noexcept;
+  bool is_for_us(const RecordDescriptor & record) const noexcept;
+  bool is_expired(const RecordDescriptor & record) const noexcept;
+  /// The source is still this one, and open: to be asked after storing `reading`.
+  bool may_look() const noexcept;
+  void scan(const GenerationEntry & generation, uint64_t last, std::vector<Waiting> & out) noexcept;
+  /// Counts messages up to this publication sequence number as lost where they are not accounted for.
+  void count_missing(uint64_t last_sequence) noexcept;
+  /// The publisher is gone and everything it left has been taken.
+  bool is_finished() const noexcept;
+  void tell_waiting_publisher() noexcept;
+
+  Cluster * cluster_ = nullptr;
+  TopicDsmHeader * dsm_ = nullptr;
+  SourceEntry * source_;
+  uint32_t index_;
+  uint32_t incarnation_;
+  uint64_t noted_ = 0;
+  uint64_t accounted_;  ///< publication sequence number up to which messages are taken, expired or counted as lost
+  EndpointEntry * subscription_;
+};
+
+}  // namespace manycore

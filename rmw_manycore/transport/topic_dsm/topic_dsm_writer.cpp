@@ -1,0 +1,308 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#include "transport/topic_dsm/topic_dsm_writer.hpp"
+
+#include <algorithm>
+
+#include "platform/clock.hpp"
+#include "platform/error.hpp"
+
+namespace manycore {
+namespace {
+
+constexpr uint64_t first_data_bytes = 2048;
+constexpr uint64_t first_descriptor_count = 16;
+/// What Fast DDS waits for by default (max_blocking_time).
+constexpr int64_t max_blocking_ns = 100'000'000;
+
+/// A fixed topic DSM cannot get more descriptors later.
+uint64_t initial_descriptor_count(const EndpointEntry & endpoint) {
+  if (endpoint.topic_dsm_size == 0) {
+    return first_descriptor_count;
+  }
+  const uint64_t most = std::max<uint64_t>(endpoint.topic_dsm_size / record_alignment, 2);
+  return power_of_two_at_least(
+    std::min(most, std::max(first_descriptor_count, uint64_t{endpoint.qos.depth} * 2)));
+}
+
+}  // namespace
+
+TopicDsmHeader & TopicDsmWriter::create(Registry & registry, uint32_t endpoint_slot) {
+  EndpointEntry & endpoint = registry.endpoints()[endpoint_slot];
+  Cluster & cluster = registry.clusters().at(endpoint.cluster);
+  TopicDsmHeader & dsm = cluster.allocate_cleared<TopicDsmHeader>();
+  dsm.endpoint.store(endpoint_slot);
+  dsm.incarnation.store(endpoint.slot.incarnation);
+  dsm.lifespan_ns = endpoint.qos.lifespan_ns;
+  dsm.keep_all = endpoint.qos.history == History::keep_all ? 1 : 0;
+  dsm.depth = dsm.keep_all != 0 ? keep_all_capacity : endpoint.qos.depth;
+  dsm.transient_local = endpoint.qos.durability == Durability::transient_local ? 1 : 0;
+  dsm.role = static_cast<uint8_t>(endpoint.role);
+  dsm.process = endpoint.process;
+  dsm.gid = endpoint.gid;
+  try {
+    const uint64_t data_bytes =
+      endpoint.topic_dsm_size == 0 ? first_data_bytes
+                                   : align_up(endpoint.topic_dsm_size, record_alignment);
+    Generation::allocate(
+      cluster, dsm.generations[0], data_bytes, initial_descriptor_count(endpoint), 1);
+  } catch (...) {
+    cluster.free(cluster.ref_of(&dsm).offset(), sizeof dsm);
+    throw;
+  }
+  dsm.magic.store(topic_dsm_magic, std::memory_order_release);
+  return dsm;
+}
+
+TopicDsmWriter::TopicDsmWriter(Registry & registry, Cluster & cluster, EndpointEntry & endpoint)
+: registry_(registry),
+  cluster_(cluster),
+  endpoint_(endpoint),
+  dsm_(*cluster.find<TopicDsmHeader>(endpoint.block.offset())),
+  readers_(registry, cluster, dsm_),
+  current_(Generation::view(cluster, dsm_.generations[0])),
+  pinned_in_slot_(current_.count, no_record) {}
+
+void TopicDsmWriter::enter() noexcept {
+  dsm_.phase.store(dsm_.phase.load(std::memory_order_relaxed) | 1, std::memory_order_seq_cst);
+  readers_.refresh();
+}
+
+void TopicDsmWriter::leave() noexcept {
+  dsm_.phase.store(dsm_.phase.load(std::memory_order_relaxed) + 1, std::memory_order_release);
+}
+
+/// Among the last `depth` messages, the one about to be written included. Record numbers do not tell: some are
+/// skipped.
+bool TopicDsmWriter::is_among_last(uint32_t depth, const RecordDescriptor & record) const noexcept {
+  return record.publication_sequence_number + depth > last_sequence_number_ + 1;
+}
+
+/// KEEP_LAST readers want the last `depth` only. Requests and replies are wanted until taken: their queues do not
+/// displace.
+bool TopicDsmWriter::wants(
+  const Reader & reader, uint64_t number, const RecordDescriptor & record) const noexcept {
+  if (reader.source->taken.load(std::memory_order_seq_cst) >= number || !reader.active()) {
+    return false;
+  }
+  if (endpoint_.role == EndpointRole::reply) {
+    return record.correlation.client == reader.gid;
+  }
+  return reader.subscription->keep_all != 0 ||
+         is_among_last(reader.subscription->depth, record);
+}
+
+bool TopicDsmWriter::is_wanted(
+  uint64_t number, const RecordDescriptor & record) const noexcept {
+  const int64_t lifespan = endpoint_.qos.lifespan_ns;
+  if (lifespan != infinite_ns && realtime_ns() - record.source_timestamp_ns > lifespan) {
+    return false;
+  }
+  if (dsm_.transient_local != 0 && is_among_last(dsm_.depth, record)) {
+    return true;
+  }
+  for (const Reader & reader : readers_.readers()) {
+    if (wants(reader, number, record)) {
+      return true;
+    }
+  }
+  return false;
+}
+
+/// RELIABLE + KEEP_ALL and a reliable reader still wants it: must not be overwritten.
+bool TopicDsmWriter::is_owed(uint64_t number) const noexcept {
+  const std::vector<Reader> & readers = readers_.readers();
+  return dsm_.keep_all != 0 && endpoint_.qos.reliability == Reliability::reliable &&
+         std::any_of(readers.begin(), readers.end(), [&](const Reader & reader) {
+           return reader.reliable && wants(reader, number, current_.descriptor(number));
+         });
+}
+
+TopicDsmWriter::TakeBack TopicDsmWriter::take_back(uint64_t number, bool force) {
+  RecordDescriptor & record = current_.descriptor(number);
+  if (record.number.load(std::memory_order_relaxed) == number) {
+    const bool wanted = is_wanted(number, record);
+    if (wanted && !force) {
+      return TakeBack::wanted;
+    }
+    if (wanted) {
+      endpoint_.counters.overwritten.fetch_add(1, std::memory_order_relaxed);
+    }
+    // Dekker with the claim: the reader stores `reading` before it loads `number`. A reader that joined
+    // just now counts too, so the list is renewed after the store.
+    record.number.store(no_record, std::memory_order_seq_cst);
+    readers_.refresh();
+    pinned_in_slot_[number & (current_.count - 1)] = number;  // until seen unpinned
+  }
+  return readers_.is_pinned(number) ? TakeBack::pinned : TakeBack::freed;
+}
+
+/// Early release (ROS-lite2 III-B: deleted once all subscribers have deserialized). An empty ring starts again
+/// at its beginning, so that a stream whose readers keep up stays in the same cache lines.
+void TopicDsmWriter::take_back_free_records() {
+  while (!blocks_.empty() && take_back(blocks_.front().number, false) == TakeBack::freed) {
+    blocks_.pop_front();
+  }
+  if (blocks_.empty()) {
+    cursor_ = 0;
+  }
+}
+
+void TopicDsmWriter::wait_for_progress(uint64_t number) {
+  if (blocked_until_ns_ == 0) {
+    blocked_until_ns_ = monotonic_ns() + max_blocking_ns;
+  }
+  if (monotonic_ns() >= blocked_until_ns_) {
+    endpoint_.counters.refused.fetch_add(1, std::memory_order_relaxed);
+    throw Error(
+      ErrorCode::timeout, "publish on '" + std::string(endpoint_.topic) +
+        "' timed out: RELIABLE + KEEP_ALL, and a subscription has not taken its messages for " +
+        std::to_string(max_blocking_ns / 1'000'000) + " ms");
+  }
+  const uint32_t seen = dsm_.progress.load(std::memory_order_seq_cst);
+  dsm_.writer_waits.store(1, std::memory_order_seq_cst);
+  if (is_owed(number)) {
+    leave();  // nobody needs to wait for this publisher's references meanwhile
+    futex_wait(dsm_.progress, seen, blocked_until_ns_);
+    enter();
+  }
+  dsm_.writer_waits.store(0, std::memory_order_relaxed);
+}
+
+void TopicDsmWriter::make_place(uint64_t number, uint64_t need_bytes) {
+  if (grow_to_hold_more(need_bytes)) {
+    return;
+  }
+  if (is_owed(number)) {
+    wait_for_progress(number);
+    return;
+  }
+  take_back(number, true);
+}
+
+/// Makes next_number_ one whose descriptor may be written. A number whose descriptor a reader still holds is
+/// skipped: readers count what they miss by publication sequence, not by record number.
+void TopicDsmWriter::claim_descriptor(uint64_t need_bytes) {
+  const uint64_t most_skipped = current_.count * (readers_.readers().size() + 1);
+  for (uint64_t skipped = 0; skipped < most_skipped;) {
+    RecordDescriptor & record = current_.descriptor(next_number_);
+    const uint64_t old = record.number.load(std::memory_order_relaxed);
+    if (old != no_record) {
+      if (take_back(old, false) == TakeBack::wanted) {
+        make_place(old, need_bytes);
+      }
+      continue;
+    }
+    uint64_t & pinned = pinned_in_slot_[next_number_ & (current_.count - 1)];
+    if (pinned == no_record || !readers_.is_pinned(pinned)) {
+      pinned = no_record;
+      return;
+    }
+    ++next_number_;
+    ++skipped;
+  }
+  endpoint_.counters.refused.fetch_add(1, std::memory_order_relaxed);
+  throw Error(
+    ErrorCode::no_space,
+    "every record of '" + std::string(endpoint_.topic) + "' is being read; nothing can be published");
+}
+
+/// Places a block of `need_bytes` at the cursor or after it; false when wanted or pinned records leave no
+/// room within one round.
+bool TopicDsmWriter::try_place(uint64_t need_bytes) {
+  // Quick readers may each hold, in turn, just the record that the cursor meets; each tries a cleared record once.
+  const size_t rounds = readers_.readers().size() + 1;
+  size_t pinned_seen = 0;
+  size_t wraps = 0;
+  while (true) {
+    const bool ahead = !blocks_.empty() && blocks_.front().begin >= cursor_;
+    const uint64_t limit = ahead ? blocks_.front().begin : current_.data_bytes;
+    if (limit - cursor_ >= need_bytes) {
+      blocks_.push_back({cursor_, cursor_ + need_bytes, next_number_});
+      cursor_ += need_bytes;
+      return true;
+    }
+    if (!ahead) {
+      if (++wraps > rounds) {
+        return false;
+      }
+      cursor_ = 0;
+      continue;
+    }
+    const Block block = blocks_.front();
+    switch (take_back(block.number, false)) {
+      case TakeBack::freed:
+        blocks_.pop_front();
+        break;
+      case TakeBack::pinned:  // a hole: passed over now, met again in the next round
+        if (++pinned_seen > blocks_.size() * rounds) {
+          return false;
+        }
+        blocks_.pop_front();
+        blocks_.push_back(block);
+        cursor_ = block.end;
+        break;
+      case TakeBack::wanted: {
+        const GenerationEntry * const before = current_.entry;
+        make_place(block.number, need_bytes);
+        wraps = current_.entry == before ? wraps : size_t{0};
+        break;
+      }
+    }
+  }
+}
+
+TopicDsmWriter::Room TopicDsmWriter::find_room(uint64_t size_bytes) {
+  const uint64_t need = align_up(std::max<uint64_t>(size_bytes, 1), record_alignment);
+  blocked_until_ns_ = 0;
+  readers_.require_all(endpoint_.topic);
+  if (!old_.empty()) {
+    free_old_generations();
+  }
+  take_back_free_records();
+  require_data_bytes(need);
+  claim_descriptor(need);
+  if (!try_place(need) && !(grow(std::max(current_.data_bytes, need) * 2, current_.count) &&
+                            try_place(need))) {
+    endpoint_.counters.refused.fetch_add(1, std::memory_order_relaxed);
+    throw Error(
+      ErrorCode::no_space, "the topic DSM of '" + std::string(endpoint_.topic) +
+        "' is full of records that are being read; a message of " + std::to_string(size_bytes) +
+        " bytes needs a topic_dsm_size of at least " +
+        std::to_string(current_.data_bytes + need));
+  }
+  const Block & block = blocks_.back();
+  return {
+    cluster_.find<uint8_t>(current_.data_offset) + block.begin, block.end - block.begin};
+}
+
+void TopicDsmWriter::abandon_room() noexcept {
+  cursor_ = blocks_.back().begin;
+  blocks_.pop_back();
+}
+
+uint64_t TopicDsmWriter::commit(
+  uint64_t size_bytes, int64_t source_timestamp_ns, uint64_t publication_sequence_number,
+  const Correlation & correlation) {
+  Block & block = blocks_.back();
+  blocks_.shrink_back(block.begin + align_up(std::max<uint64_t>(size_bytes, 1), record_alignment));
+  block.number = next_number_;
+  cursor_ = block.end;
+  RecordDescriptor & record = current_.descriptor(next_number_);
+  record.offset = current_.data_offset + block.begin;
+  record.size_bytes = static_cast<uint32_t>(size_bytes);
+  record.source_timestamp_ns = source_timestamp_ns;
+  record.publication_sequence_number = publication_sequence_number;
+  record.correlation = correlation;
+  // Release: whoever finds the number finds the bytes and the fields above.
+  record.number.store(next_number_, std::memory_order_release);
+  last_sequence_number_ = publication_sequence_number;
+  const uint64_t skipped = next_number_ - publication_sequence_number;
+  dsm_.skipped_before.store(skipped, std::memory_order_relaxed);
+  // Dekker with a late joiner: it activates its reader entry before it loads `last`.
+  dsm_.last.store(next_number_, std::memory_order_seq_cst);
+  dsm_.skipped_after.store(skipped, std::memory_order_release);
+  readers_.refresh();
+  return next_number_++;
+}
+
+}  // namespace manycore

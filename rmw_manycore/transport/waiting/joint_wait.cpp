@@ -1,0 +1,55 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#include "transport/waiting/joint_wait.hpp"
+
+#include <algorithm>
+
+#include "platform/clock.hpp"
+#include "platform/futex_any.hpp"
+#include "transport/layout/wake_word.hpp"
+
+namespace manycore {
+namespace {
+
+/// Counted as a sleeper of each platform: see WakeWord::notify for why no wake-up is lost.
+class CountedSleeper {
+public:
+  explicit CountedSleeper(const std::vector<WakeWord *> & words) noexcept : words_(words) {
+    for (WakeWord * const word : words_) {
+      word->sleepers.fetch_add(1, std::memory_order_seq_cst);
+    }
+  }
+  ~CountedSleeper() {
+    for (WakeWord * const word : words_) {
+      word->sleepers.fetch_sub(1, std::memory_order_relaxed);
+    }
+  }
+  CountedSleeper(const CountedSleeper &) = delete;
+  CountedSleeper & operator=(const CountedSleeper &) = delete;
+
+private:
+  const std::vector<WakeWord *> & words_;
+};
+
+bool any_moved(const std::vector<SeenEpoch> & seen) noexcept {
+  return std::any_of(seen.begin(), seen.end(), [](const SeenEpoch & place) {
+    return place.waiter->epoch() != place.epoch;
+  });
+}
+
+}  // namespace
+
+bool wait_for_any(const std::vector<SeenEpoch> & seen, std::optional<int64_t> deadline_ns) {
+  std::vector<WakeWord *> words;
+  std::vector<AwaitedWord> awaited;
+  for (const SeenEpoch & place : seen) {
+    words.push_back(&place.waiter->word_);
+    awaited.emplace_back(place.waiter->word_.epoch, place.epoch);
+  }
+  const CountedSleeper sleeper(words);
+  while (!any_moved(seen) && (!deadline_ns || monotonic_ns() < *deadline_ns)) {
+    futex_wait_any(awaited, deadline_ns);
+  }
+  return any_moved(seen);
+}
+
+}  // namespace manycore

@@ -1,0 +1,92 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#include "transport/waiting/waiter.hpp"
+
+#include <algorithm>
+
+#include "platform/clock.hpp"
+#include "platform/cpu.hpp"
+#include "transport/layout/wake_word.hpp"
+
+namespace manycore {
+namespace {
+
+/// Twice the cost of waking a process on another CPU of a virtual machine (about 20 us): spinning longer than
+/// that for a message that comes later wins nothing.
+constexpr int64_t spin_budget_ns = 50'000;
+
+/// The score counts recent waits that spinning served (or would have served).
+constexpr uint32_t score_limit = 16;
+constexpr uint32_t score_of_success = 4;
+
+/// Between looks at the clock.
+constexpr int looks_per_check = 64;
+
+}  // namespace
+
+Waiter::Waiter(WakeWord & word, WaitMode mode) noexcept
+: word_(word), mode_(mode), spin_score_(score_of_success) {}
+
+uint32_t Waiter::epoch() const noexcept { return word_.epoch.load(std::memory_order_seq_cst); }
+
+bool Waiter::spin(uint32_t seen, std::optional<int64_t> deadline_ns) noexcept {
+  while (!deadline_ns || monotonic_ns() < *deadline_ns) {
+    for (int i = 0; i < looks_per_check; ++i) {
+      if (word_.epoch.load(std::memory_order_acquire) != seen) {
+        return true;
+      }
+      pause_cpu();
+    }
+    // The receive thread that will bring the message may share this CPU.
+    yield_cpu();
+  }
+  return epoch() != seen;
+}
+
+void Waiter::learn(bool served) noexcept {
+  const uint32_t score = spin_score_.load(std::memory_order_relaxed);
+  spin_score_.store(
+    served ? std::min(score + score_of_success, score_limit) : score - (score != 0 ? 1 : 0),
+    std::memory_order_relaxed);
+}
+
+bool Waiter::sleep(uint32_t seen, std::optional<int64_t> deadline_ns) noexcept {
+  word_.sleepers.fetch_add(1, std::memory_order_seq_cst);
+  while (epoch() == seen && (!deadline_ns || monotonic_ns() < *deadline_ns)) {
+    futex_wait(word_.epoch, seen, deadline_ns);
+  }
+  word_.sleepers.fetch_sub(1, std::memory_order_relaxed);
+  return epoch() != seen;
+}
+
+bool Waiter::wait(uint32_t seen, std::optional<int64_t> deadline_ns) noexcept {
+  if (mode_ == WaitMode::spin) {
+    return spin(seen, deadline_ns);
+  }
+  if (mode_ == WaitMode::block) {
+    return sleep(seen, deadline_ns);
+  }
+  const int64_t start = monotonic_ns();
+  const int64_t spin_end = start + spin_budget_ns;
+  if (spin_score_.load(std::memory_order_relaxed) != 0) {
+    if (spin(seen, deadline_ns ? std::min(*deadline_ns, spin_end) : spin_end)) {
+      learn(true);
+      return true;
+    }
+    learn(false);
+    return sleep(seen, deadline_ns);
+  }
+  const bool woken = sleep(seen, deadline_ns);
+  if (woken && monotonic_ns() < spin_end) {
+    learn(true);  // the message came so soon that spinning would have met it
+  }
+  return woken;
+}
+
+void Waiter::notify() noexcept { word_.notify(); }
+
+void Waiter::watch_graph() noexcept { word_.graph_watchers.fetch_add(1); }
+void Waiter::unwatch_graph() noexcept { word_.graph_watchers.fetch_sub(1); }
+void Waiter::watch_endpoint_events() noexcept { word_.event_watchers.fetch_add(1); }
+void Waiter::unwatch_endpoint_events() noexcept { word_.event_watchers.fetch_sub(1); }
+
+}  // namespace manycore
