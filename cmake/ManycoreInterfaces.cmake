@@ -10,19 +10,21 @@ endif()
 find_package(Python 3.10 REQUIRED COMPONENTS Interpreter Development.Module)
 set(generator ${CMAKE_CURRENT_SOURCE_DIR}/cmake/generate_interfaces.py)
 execute_process(
-  COMMAND ${Python_EXECUTABLE} -c "import em, lark, numpy, rosidl_generator_py; print(numpy.get_include())"
+  COMMAND ${Python_EXECUTABLE} -c
+    "import em, lark, numpy, rosidl_generator_py; print(numpy.get_include())"
   OUTPUT_VARIABLE numpy_include OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET
   RESULT_VARIABLE generators_missing)
 if(generators_missing)
   if(SKBUILD)
-    message(FATAL_ERROR "The generators of rosidl are build requirements of the wheel, but were not found")
+    message(FATAL_ERROR
+      "The generators of rosidl are build requirements of the wheel, but were not found")
   endif()
   message(STATUS "No rosidl generators for ${Python_EXECUTABLE}: the interfaces are not built")
   return()
 endif()
 
-# manycore_interfaces(PACKAGE): everything in interfaces/PACKAGE. The names of the libraries are those
-# that rosidl_typesupport_c loads.
+# manycore_interfaces(PACKAGE): everything in interfaces/PACKAGE. rosidl_typesupport_c loads the
+# libraries by their names.
 function(manycore_interfaces package)
   set(source ${CMAKE_CURRENT_SOURCE_DIR}/interfaces/${package})
   set(root ${CMAKE_CURRENT_BINARY_DIR}/interfaces)
@@ -64,7 +66,8 @@ function(manycore_interfaces package)
   file(WRITE ${root}/packages/${package} "")
   install(FILES ${root}/packages/${package} DESTINATION ${index}/packages)
   install(FILES ${root}/rosidl_interfaces/${package} DESTINATION ${index}/rosidl_interfaces)
-  foreach(directory ${source} ${root}/idl/${package} ${root}/rosidl_generator_type_description/${package})
+  foreach(directory ${source} ${root}/idl/${package}
+      ${root}/rosidl_generator_type_description/${package})
     install(DIRECTORY ${directory} DESTINATION ${share}
       FILES_MATCHING REGEX "\\.(msg|srv|idl|json)$" PATTERN arguments.json EXCLUDE)
   endforeach()
@@ -72,7 +75,8 @@ endfunction()
 
 # In the scope of manycore_interfaces.
 macro(manycore_generated_sources variable generator)
-  file(GLOB_RECURSE ${variable} ${root}/${generator}/${package}/*.c ${root}/${generator}/${package}/*.cpp)
+  set(generated ${root}/${generator}/${package})
+  file(GLOB_RECURSE ${variable} ${generated}/*.c ${generated}/*.cpp)
 endmacro()
 
 macro(manycore_interface_target target kind)
@@ -80,7 +84,8 @@ macro(manycore_interface_target target kind)
   target_include_directories(${target} SYSTEM PRIVATE
     ${numpy_include} ${ros_prefix}/include/rosidl_typesupport_c
     ${ros_prefix}/include/rosidl_typesupport_introspection_c)
-  foreach(generator rosidl_generator_c rosidl_typesupport_fastrtps_c rosidl_typesupport_introspection_c)
+  foreach(generator
+      rosidl_generator_c rosidl_typesupport_fastrtps_c rosidl_typesupport_introspection_c)
     target_include_directories(${target} SYSTEM PRIVATE ${root}/${generator})
   endforeach()
   target_link_libraries(${target} PRIVATE ${libraries} manycore_ros

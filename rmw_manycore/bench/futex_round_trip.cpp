@@ -50,8 +50,8 @@ void run(const Arguments & arguments) {
   std::vector<int64_t> samples_ns(warm_up + arguments.number("iterations"));
   Slot & there = Slot::create(bytes);
   Slot & back = Slot::create(bytes);
-  const pid_t child = fork_on(
-    arguments.number("cpu_2"), [&] { pong(there, back, bytes, samples_ns.size()); });
+  const pid_t child =
+    fork_on(arguments.number("cpu_2"), [&] { pong(there, back, bytes, samples_ns.size()); });
   pin_to(arguments.number("cpu_1"));
   const Payload sent(bytes);
   Payload received(bytes);

@@ -28,8 +28,8 @@ inline void pin_to(size_t cpu) {
 
 /// Zeroed memory, already faulted in, that children of this process share.
 inline std::byte * shared_memory(size_t bytes) {
-  void * memory = mmap(
-    nullptr, bytes, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS | MAP_POPULATE, -1, 0);
+  void * memory =
+    mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS | MAP_POPULATE, -1, 0);
   if (memory == MAP_FAILED) {
     throw std::system_error(errno, std::generic_category(), "mmap");
   }

@@ -6,7 +6,9 @@
 namespace manycore::ndt {
 namespace {
 
-Matrix3 full(const double * s) { return {{{s[0], s[1], s[2]}, {s[3], s[4], s[5]}, {s[6], s[7], s[8]}}}; }
+Matrix3 full(const double * s) {
+  return {{{s[0], s[1], s[2]}, {s[3], s[4], s[5]}, {s[6], s[7], s[8]}}};
+}
 
 Matrix3 symmetric(const double * s) {
   return {{{s[0], s[1], s[2]}, {s[1], s[3], s[4]}, {s[2], s[4], s[5]}}};

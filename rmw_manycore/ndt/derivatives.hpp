@@ -24,7 +24,7 @@ struct Derivatives {
   double score = 0;
   double nearest = 0;  ///< sum over points of the best voxel's score
   double pairs = 0;
-  double points = 0;   ///< that see a voxel
+  double points = 0;  ///< that see a voxel
   Vector6 gradient{};
   Matrix6 hessian{};
 };

@@ -118,9 +118,9 @@ VoxelMap build_voxel_map(const double * xyz_m, size_t count, const MapOptions & 
   const Points points = finite_points(xyz_m, count);
   const auto refuse = [&](const std::string & found) {
     throw Error(
-      ErrorCode::invalid_argument,
-      "the map has " + found + ": expected voxels of " + std::to_string(options.voxel_size_m) +
-        " m with at least " + std::to_string(options.min_points_per_voxel) + " points");
+      ErrorCode::invalid_argument, "the map has " + found + ": expected voxels of " +
+                                     std::to_string(options.voxel_size_m) + " m with at least " +
+                                     std::to_string(options.min_points_per_voxel) + " points");
   };
   if (points.empty()) {
     refuse("no finite point");

@@ -74,8 +74,7 @@ double more_thuente(
   // Until the interval is closed the search is for a minimum of psi (eq. 2.1) instead of phi.
   const double tilt = sufficient_decrease * origin.slope;
   const auto psi = [&](const LinePoint & phi) {
-    return LinePoint{
-      phi.length, phi.value - origin.value - tilt * phi.length, phi.slope - tilt};
+    return LinePoint{phi.length, phi.value - origin.value - tilt * phi.length, phi.slope - tilt};
   };
   const auto phi_of = [&](const LinePoint & p) {
     return LinePoint{p.length, p.value + origin.value + tilt * p.length, p.slope + tilt};
@@ -85,7 +84,8 @@ double more_thuente(
   LinePoint phi = evaluate(first);
   bool is_open = true;
   for (int trial = 0; trial < most_trials; ++trial) {
-    // As in PCL a slope that still falls steeply is accepted: the next iteration goes on from there.
+    // As in PCL a slope that still falls steeply is accepted: the next iteration goes on from
+    // there.
     const bool is_good = psi(phi).value <= 0 && phi.slope <= -curvature * origin.slope;
     if (is_good) {
       break;

@@ -15,8 +15,7 @@ std::vector<Cell> offsets_of(Search search) {
     for (int32_t y = -1; y <= 1; ++y) {
       for (int32_t x = -1; x <= 1; ++x) {
         const int32_t faces = std::abs(x) + std::abs(y) + std::abs(z);
-        if (
-          search == Search::radius || faces == 0 || (search == Search::direct7 && faces == 1)) {
+        if (search == Search::radius || faces == 0 || (search == Search::direct7 && faces == 1)) {
           offsets.push_back({x, y, z});
         }
       }
@@ -31,8 +30,7 @@ bool is_in_reach(const Grid & grid, const PlacedVoxel & voxel, const Cell & cell
   for (size_t i = 0; i < 3; ++i) {
     const double low_m = (cell[i] + grid.first[i]) * grid.voxel_size_m;
     const double mean_m = voxel.line.mean_m[i];
-    const double beyond_m =
-      std::max({low_m - mean_m, mean_m - (low_m + grid.voxel_size_m), 0.0});
+    const double beyond_m = std::max({low_m - mean_m, mean_m - (low_m + grid.voxel_size_m), 0.0});
     squared_m2 += beyond_m * beyond_m;
   }
   constexpr double rounding = 1.001;

@@ -66,7 +66,8 @@ Vector6 newton_step(const Matrix6 & hessian, const Vector6 & gradient) {
   return inverse * gradient;
 }
 
-NewtonResult maximise(const Pose6 & guess, const MatchOptions & options, const Evaluate & evaluate) {
+NewtonResult maximise(
+  const Pose6 & guess, const MatchOptions & options, const Evaluate & evaluate) {
   NewtonResult result{Outcome::iteration_limit, 0, guess, evaluate(guess)};
   TrustRegion trust_region;
   while (result.iterations < options.max_iterations) {

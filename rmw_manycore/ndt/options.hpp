@@ -12,7 +12,8 @@ enum class Search : uint32_t {
   direct1,  ///< its own
 };
 
-/// How the covariance of a voxel follows from its n points, S being the sum of (x - mean)(x - mean)'.
+/// How the covariance of a voxel follows from its n points, S being the sum of (x - mean)(x -
+/// mean)'.
 enum class VoxelCovariance : uint32_t {
   pcl,       ///< S / (n - 1)
   autoware,  ///< (I + S) / (n - 1): the accumulator starts as the identity (1 m^2)

@@ -42,7 +42,8 @@ Simd choose_simd() {
   }
   throw Error(
     ErrorCode::invalid_argument, "MANYCORE_NDT_SIMD: expected portable, avx2 or avx512 up to " +
-      std::string(name_of(most)) + ", which this CPU has, found '" + wanted + "'");
+                                   std::string(name_of(most)) + ", which this CPU has, found '" +
+                                   wanted + "'");
 }
 
 Kernel kernel_of(Simd simd) noexcept {

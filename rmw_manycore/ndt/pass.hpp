@@ -35,8 +35,8 @@ struct Kernel {
 
 enum class Simd { portable, avx2, avx512 };
 
-/// The widest that this CPU has; the environment variable MANYCORE_NDT_SIMD (portable, avx2, avx512)
-/// lowers it. Throws Error{invalid_argument} for another word or what the CPU lacks.
+/// The widest that this CPU has; the environment variable MANYCORE_NDT_SIMD (portable, avx2,
+/// avx512) lowers it. Throws Error{invalid_argument} for another word or what the CPU lacks.
 Simd choose_simd();
 const char * name_of(Simd simd) noexcept;
 Kernel kernel_of(Simd simd) noexcept;

@@ -35,7 +35,9 @@ struct Lanes {
   static F min(F a, F b) { return _mm256_min_ps(a, b); }
   static F max(F a, F b) { return _mm256_max_ps(a, b); }
   static F at_most(F a, F b, F c) { return _mm256_and_ps(_mm256_cmp_ps(a, b, _CMP_LE_OQ), c); }
-  static F shift_exponent(F f, I n) { return reinterpret_cast<F>(reinterpret_cast<I>(f) + (n << 23)); }
+  static F shift_exponent(F f, I n) {
+    return reinterpret_cast<F>(reinterpret_cast<I>(f) + (n << 23));
+  }
 
   /// Four fields of lines i and 4 + i, in that order.
   static F half(const float * const (&lines)[width], size_t i, size_t field) {

@@ -5,7 +5,8 @@
 
 #if defined(__x86_64__)
 #if defined(__GNUC__) && !defined(__clang__)
-// GCC 12 takes the deliberately undefined operands in its own header for a mistake (its bug 105593).
+// GCC 12 takes the deliberately undefined operands in its own header for a mistake (its bug
+// 105593).
 #pragma GCC diagnostic ignored "-Wuninitialized"
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
 #endif
@@ -43,7 +44,9 @@ struct Lanes {
   static F at_most(F a, F b, F c) {
     return _mm512_maskz_mov_ps(_mm512_cmp_ps_mask(a, b, _CMP_LE_OQ), c);
   }
-  static F shift_exponent(F f, I n) { return reinterpret_cast<F>(reinterpret_cast<I>(f) + (n << 23)); }
+  static F shift_exponent(F f, I n) {
+    return reinterpret_cast<F>(reinterpret_cast<I>(f) + (n << 23));
+  }
 
   /// Four fields of lines i, 4 + i, 8 + i, 12 + i, in that order.
   static F quarter(const float * const (&lines)[width], size_t i, size_t field) {

@@ -24,7 +24,7 @@ struct Constants {
   F first_cell[3];
   F last_cell[3];
   F squared_size;
-  F exponent;    // of 2, per unit of x'Bx: -d2 / 2 / ln 2
+  F exponent;  // of 2, per unit of x'Bx: -d2 / 2 / ln 2
   F minus_d2;
   int32_t cells_x;
   int32_t cells_y;
@@ -185,8 +185,7 @@ inline void add_points(const Sight & s, const PointSums & p, F (&sums)[sum_count
   sums[sum_nearest] += p.nearest;
   sums[sum_pairs] += p.pairs;
   sums[sum_points] += Lanes::min(p.pairs, Lanes::set1(1));
-  const F m[3][3] = {
-    {p.m[0], p.m[1], p.m[2]}, {p.m[1], p.m[3], p.m[4]}, {p.m[2], p.m[4], p.m[5]}};
+  const F m[3][3] = {{p.m[0], p.m[1], p.m[2]}, {p.m[1], p.m[3], p.m[4]}, {p.m[2], p.m[4], p.m[5]}};
   F mq[3][3];
   for (size_t i = 0; i < 3; ++i) {
     sums[sum_f + i] += p.f[i];
@@ -274,8 +273,7 @@ TangentSums derive(
 }
 
 void search(
-  const MapView & map, const ScanView & scan, const PassPose & pose, size_t bin,
-  uint32_t * found) {
+  const MapView & map, const ScanView & scan, const PassPose & pose, size_t bin, uint32_t * found) {
   const Constants c = constants_of(*map.header, pose, 0);
   for (size_t group = bin; group < scan.groups; group += bin_count) {
     for (size_t part = 0; part < group_points; part += Lanes::width) {

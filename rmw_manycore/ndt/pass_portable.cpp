@@ -25,14 +25,15 @@ struct Lanes {
   static F to_float(I i) { return __builtin_convertvector(i, F); }
   static F fma(F a, F b, F c) { return a * b + c; }
   static F choose(I mask, F yes, F no) {
-    return reinterpret_cast<F>((reinterpret_cast<I>(yes) & mask) | (reinterpret_cast<I>(no) & ~mask));
+    return reinterpret_cast<F>(
+      (reinterpret_cast<I>(yes) & mask) | (reinterpret_cast<I>(no) & ~mask));
   }
   static F min(F a, F b) { return choose(a < b, a, b); }
   static F max(F a, F b) { return choose(a > b, a, b); }
-  static F at_most(F a, F b, F c) {
-    return reinterpret_cast<F>(reinterpret_cast<I>(c) & (a <= b));
+  static F at_most(F a, F b, F c) { return reinterpret_cast<F>(reinterpret_cast<I>(c) & (a <= b)); }
+  static F shift_exponent(F f, I n) {
+    return reinterpret_cast<F>(reinterpret_cast<I>(f) + (n << 23));
   }
-  static F shift_exponent(F f, I n) { return reinterpret_cast<F>(reinterpret_cast<I>(f) + (n << 23)); }
 
   template<size_t fields>
   static void load_lines(const float * const (&lines)[width], F (&out)[fields]) {
@@ -46,6 +47,8 @@ struct Lanes {
 
 }  // namespace portable
 
-Kernel kernel_portable() noexcept { return {&portable::pass, &portable::search, &portable::derive}; }
+Kernel kernel_portable() noexcept {
+  return {&portable::pass, &portable::search, &portable::derive};
+}
 
 }  // namespace manycore::ndt

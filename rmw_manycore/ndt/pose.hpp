@@ -7,8 +7,8 @@
 
 namespace manycore::ndt {
 
-/// x, y, z [m], roll, pitch, yaw [rad] of T_map_sensor: R = Rx(roll) Ry(pitch) Rz(yaw), the order of
-/// Magnusson's thesis (eq. 6.17), PCL and Autoware.
+/// x, y, z [m], roll, pitch, yaw [rad] of T_map_sensor: R = Rx(roll) Ry(pitch) Rz(yaw), the order
+/// of Magnusson's thesis (eq. 6.17), PCL and Autoware.
 using Pose6 = Vector6;
 
 /// T_map_sensor, row by row.

@@ -10,9 +10,9 @@ namespace manycore::ndt {
 /// Points are worked on in groups of this many, whatever the width of the machine's registers.
 constexpr size_t group_points = 16;
 
-/// Groups are dealt to bins like cards: bin b has the groups b, b + bin_count, ... A worker does whole
-/// bins, and bins are summed in their order, so the result does not depend on the number of workers.
-/// 96 is a multiple of 2, 3, 4, 6, 8, 12 and 16 and at most 9 % off for others up to 16.
+/// Groups are dealt to bins like cards: bin b has the groups b, b + bin_count, ... A worker does
+/// whole bins, and bins are summed in their order, so the result does not depend on the number of
+/// workers. 96 is a multiple of 2, 3, 4, 6, 8, 12 and 16 and at most 9 % off for others up to 16.
 constexpr size_t bin_count = 96;
 
 /// A scan in the sensor frame, coordinate by coordinate; whole groups, the last one filled up with

@@ -16,8 +16,7 @@ double time_ns(F && f) {
 }  // namespace
 
 Problem SerialMatcher::problem(const VoxelMap & map, const float * xyz_m, size_t count) {
-  const ScanView scan =
-    lay_out_scan(xyz_m, count, scan_.with_room_for(scan_floats(count)));
+  const ScanView scan = lay_out_scan(xyz_m, count, scan_.with_room_for(scan_floats(count)));
   used_points_ = scan.points;
   return {map.view(), scan, options_, std::nullopt};
 }
@@ -27,9 +26,8 @@ NewtonResult SerialMatcher::align(
   const std::optional<Regularization> & regularization) {
   Problem matched = problem(map, xyz_m, count);
   matched.regularization = regularization;
-  return maximise(guess, options_, [&](const Pose6 & pose) {
-    return evaluate_alone(matched, kernel_, pose);
-  });
+  return maximise(
+    guess, options_, [&](const Pose6 & pose) { return evaluate_alone(matched, kernel_, pose); });
 }
 
 Derivatives SerialMatcher::evaluate(

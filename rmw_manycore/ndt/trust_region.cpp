@@ -34,7 +34,8 @@ Vector6 uphill_step(const Model & model) {
   }
   // A direction that is flat to rounding is bounded by the radius alone.
   const double flat = 1e-12 * largest;
-  return eigen.map([&](double value) { return 1 / std::max(std::abs(value), flat); }) * model.gradient;
+  return eigen.map([&](double value) { return 1 / std::max(std::abs(value), flat); }) *
+         model.gradient;
 }
 
 }  // namespace

@@ -35,14 +35,14 @@ struct MapHeader {
   uint64_t magic;
   uint32_t version;
   Search search;
-  uint64_t id;            ///< no other map that this process built has it
+  uint64_t id;  ///< no other map that this process built has it
   double voxel_size_m;
   double origin_m[3];     ///< in the map frame; a multiple of the voxel size
   int32_t first_cell[3];  ///< of the grid, counted from the origin
   int32_t cells[3];       ///< of the grid, with the halo and a border that no voxel reaches
   uint32_t voxel_count;
   uint32_t cell_count;
-  uint32_t table_shift;   ///< 32 - log2(slots of the table)
+  uint32_t table_shift;  ///< 32 - log2(slots of the table)
   uint32_t list_length;
   uint64_t table_offset;
   uint64_t lists_offset;
@@ -55,8 +55,8 @@ static_assert(std::is_trivially_copyable_v<MapHeader>);
 struct MapView {
   const MapHeader * header;
   const TableSlot * table;
-  const uint32_t * lists;  ///< of each cell the lines of its neighbours, ended by 0
-  const VoxelLine * lines; ///< line 0 stands for "no voxel"
+  const uint32_t * lists;   ///< of each cell the lines of its neighbours, ended by 0
+  const VoxelLine * lines;  ///< line 0 stands for "no voxel"
 };
 
 /// The normal distributions of a map, immutable, in memory that other processes can map.

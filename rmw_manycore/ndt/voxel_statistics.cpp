@@ -44,7 +44,8 @@ std::optional<Matrix3> inverse_covariance(const Scatter & scatter, VoxelCovarian
   if (!(largest > 0) || !std::isfinite(1 / (least_eigenvalue_ratio * largest))) {
     return std::nullopt;
   }
-  return eigen.map([&](double value) { return 1 / std::max(value, least_eigenvalue_ratio * largest); });
+  return eigen.map(
+    [&](double value) { return 1 / std::max(value, least_eigenvalue_ratio * largest); });
 }
 
 }  // namespace manycore::ndt

@@ -44,7 +44,7 @@ WorkerGroup::WorkerGroup(
   if (host_cpus.empty() || host_cpus.size() > most_workers) {
     throw Error(
       ErrorCode::invalid_argument, "host_cpus: expected 1 to " + std::to_string(most_workers) +
-        " CPUs, found " + std::to_string(host_cpus.size()));
+                                     " CPUs, found " + std::to_string(host_cpus.size()));
   }
   session_.workers = static_cast<uint32_t>(host_cpus.size());
   // Workers that share a CPU must not keep it from each other.
@@ -55,7 +55,8 @@ WorkerGroup::WorkerGroup(
   for (size_t i = 0; i < host_cpus.size(); ++i) {
     if (session_.lines[i].pinned.load(std::memory_order_relaxed) == 0) {
       throw Error(
-        ErrorCode::invalid_argument, "host CPU " + std::to_string(host_cpus[i]) +
+        ErrorCode::invalid_argument,
+        "host CPU " + std::to_string(host_cpus[i]) +
           " cannot be had: expected one that this process may use (see nproc, taskset)");
     }
   }
@@ -130,7 +131,7 @@ NewtonResult WorkerGroup::run_job() {
   }
   throw Error(
     ErrorCode::system, "the workers ended " + std::to_string(most_attempts) +
-      " times in one alignment: see what kills them (memory limit, signals)");
+                         " times in one alignment: see what kills them (memory limit, signals)");
 }
 
 /// One try with all workers; false when one died, and then all others sleep again.
@@ -153,7 +154,8 @@ void WorkerGroup::wait_for_workers(uint32_t job) {
     if (sleep_until(session_.end, [&] { return all_finished(job); }, now_ns + look_ns)) {
       return;
     }
-    if (const uint32_t seen = session_.barrier.events.load(std::memory_order_relaxed); seen != events) {
+    if (const uint32_t seen = session_.barrier.events.load(std::memory_order_relaxed);
+        seen != events) {
       events = seen;
       quiet_since_ns = now_ns;
     } else if (now_ns - quiet_since_ns > stuck_ns) {

@@ -16,7 +16,8 @@ namespace manycore::ndt {
 /// Matches on worker processes, one per host CPU. The calling thread sleeps meanwhile.
 class WorkerGroup {
 public:
-  /// Starts `program` once per host CPU. Throws Error{invalid_argument} for a CPU that cannot be had.
+  /// Starts `program` once per host CPU. Throws Error{invalid_argument} for a CPU that cannot be
+  /// had.
   WorkerGroup(
     const MatchOptions & options, const std::string & program, const std::vector<int> & host_cpus);
 

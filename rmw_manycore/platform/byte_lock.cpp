@@ -80,9 +80,7 @@ bool ByteLocks::is_held(uint32_t byte) const {
   return is_held_elsewhere(byte, 1);
 }
 
-bool ByteLocks::is_any_held() const {
-  return holds_any() || is_held_elsewhere(0, 0);
-}
+bool ByteLocks::is_any_held() const { return holds_any() || is_held_elsewhere(0, 0); }
 
 bool ByteLocks::holds_any() const {
   const std::lock_guard<std::mutex> guard(opened_->mutex);
@@ -109,7 +107,8 @@ std::optional<FileLock> FileLock::acquire(const std::string & path, int timeout_
     if (!fd) {
       throw_errno("cannot open " + path);
     }
-    // Joining holds the lock for well under a millisecond, so a short pause between tries is enough.
+    // Joining holds the lock for well under a millisecond, so a short pause between tries is
+    // enough.
     while (flock(fd.get(), LOCK_EX | LOCK_NB) != 0) {
       if (errno != EWOULDBLOCK && errno != EINTR) {
         throw_errno("cannot lock " + path);
@@ -117,7 +116,8 @@ std::optional<FileLock> FileLock::acquire(const std::string & path, int timeout_
       if (monotonic_ns() > deadline) {
         throw Error(
           ErrorCode::timeout, path + " has been locked by another process for " +
-            std::to_string(timeout_ms) + " ms; is one that was joining stopped?");
+                                std::to_string(timeout_ms) +
+                                " ms; is one that was joining stopped?");
       }
       const timespec pause = to_timespec(200'000);
       nanosleep(&pause, nullptr);

@@ -14,8 +14,8 @@ namespace manycore {
 
 /// One file of byte locks (fcntl): the kernel drops a process's locks when it dies, whatever killed
 /// it, so a held byte proves life and a free one proves death, with no doubt about reused pids.
-/// A process must open the file once only: closing any descriptor of it drops its locks. Copies share one
-/// descriptor, which is closed with the last of them.
+/// A process must open the file once only: closing any descriptor of it drops its locks. Copies
+/// share one descriptor, which is closed with the last of them.
 class ByteLocks {
 public:
   static void create(const std::string & path);
@@ -47,12 +47,12 @@ private:
   std::shared_ptr<Opened> opened_;
 };
 
-/// Exclusive lock of a whole file (flock), held while alive. The file may be unlinked by its holder;
-/// acquiring checks that the locked file is still the one at `path`.
+/// Exclusive lock of a whole file (flock), held while alive. The file may be unlinked by its
+/// holder; acquiring checks that the locked file is still the one at `path`.
 class FileLock {
 public:
-  /// Waits at most `timeout_ms`; throws Error{timeout} naming the file. Empty when the file's directory is
-  /// missing (its last user has just removed it).
+  /// Waits at most `timeout_ms`; throws Error{timeout} naming the file. Empty when the file's
+  /// directory is missing (its last user has just removed it).
   static std::optional<FileLock> acquire(const std::string & path, int timeout_ms);
 
 private:

@@ -8,8 +8,7 @@ namespace manycore {
 
 void throw_errno(const std::string & what) {
   const int error = errno;
-  const auto code =
-    error == EACCES || error == EPERM ? ErrorCode::permission : ErrorCode::system;
+  const auto code = error == EACCES || error == EPERM ? ErrorCode::permission : ErrorCode::system;
   throw Error(code, what + ": " + std::strerror(error));
 }
 

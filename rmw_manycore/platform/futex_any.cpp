@@ -18,8 +18,7 @@ void sleep_until(int64_t deadline_ns) noexcept {
 
 }  // namespace
 
-void futex_wait_any(
-  std::vector<AwaitedWord> & words, std::optional<int64_t> deadline_ns) noexcept {
+void futex_wait_any(std::vector<AwaitedWord> & words, std::optional<int64_t> deadline_ns) noexcept {
   const timespec until = to_timespec(deadline_ns.value_or(0));
   const long woken = syscall(
     futex_waitv_number, words.data(), words.size(), 0, deadline_ns ? &until : nullptr,

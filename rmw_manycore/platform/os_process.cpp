@@ -92,8 +92,7 @@ int spawn_daemon(const std::vector<std::string> & arguments) {
   posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
 
   pid_t pid = -1;
-  const int error =
-    posix_spawn(&pid, argv[0], &actions, &attributes, argv.data(), environ);
+  const int error = posix_spawn(&pid, argv[0], &actions, &attributes, argv.data(), environ);
   posix_spawn_file_actions_destroy(&actions);
   posix_spawnattr_destroy(&attributes);
   if (error != 0) {
@@ -129,8 +128,9 @@ Daemon Daemon::detach() {
     } while (got < 0 && errno == EINTR);
     _exit(got == 1 ? 0 : 1);
   }
-  // A group of its own keeps the terminal's Ctrl-C away. Not a session of its own: the kernel's autogroup would
-  // then make it compete with its cluster's nodes as a whole, which costs milliseconds on a loaded CPU.
+  // A group of its own keeps the terminal's Ctrl-C away. Not a session of its own: the kernel's
+  // autogroup would then make it compete with its cluster's nodes as a whole, which costs
+  // milliseconds on a loaded CPU.
   setpgid(0, 0);
   signal(SIGHUP, SIG_IGN);
   return Daemon(std::move(writer));

@@ -23,8 +23,7 @@ FileDescriptor open_end(const std::string & path, int flags) {
   }
   struct stat status {};
   if (fstat(fd.get(), &status) != 0 || !S_ISFIFO(status.st_mode)) {
-    throw Error(
-      ErrorCode::corrupt, path + " is not a pipe; remove it with 'manycore clean'");
+    throw Error(ErrorCode::corrupt, path + " is not a pipe; remove it with 'manycore clean'");
   }
   return fd;
 }

@@ -9,8 +9,8 @@
 namespace manycore {
 
 /// The eMCOS message primitive on the host: a FIFO that carries messages of one fixed size, at most
-/// PIPE_BUF, so that each write is atomic. Opened for reading and writing by everybody: what lies in
-/// it survives the death of its reader.
+/// PIPE_BUF, so that each write is atomic. Opened for reading and writing by everybody: what lies
+/// in it survives the death of its reader.
 class Pipe {
 public:
   /// Creates the FIFO (mode 0600) where it is missing.
@@ -21,7 +21,8 @@ public:
   /// False when the pipe is full; the sender never waits.
   bool try_send(const void * message, size_t size_bytes) const noexcept;
 
-  /// For a message that makes those before it void: where the pipe is full, some of them are taken away.
+  /// For a message that makes those before it void: where the pipe is full, some of them are taken
+  /// away.
   void send_last(const void * message, size_t size_bytes) const noexcept;
 
   /// Blocks until at least one message is there; returns the bytes read, 0 when interrupted.
@@ -31,8 +32,9 @@ private:
   explicit Pipe(FileDescriptor sender, FileDescriptor receiver)
   : sender_(std::move(sender)), receiver_(std::move(receiver)) {}
 
-  FileDescriptor sender_;    ///< O_NONBLOCK
-  FileDescriptor receiver_;  ///< blocking; a description of its own, since O_NONBLOCK belongs to one
+  FileDescriptor sender_;  ///< O_NONBLOCK
+  FileDescriptor
+    receiver_;  ///< blocking; a description of its own, since O_NONBLOCK belongs to one
 };
 
 }  // namespace manycore

@@ -24,7 +24,8 @@ namespace {
 
 int lock_until(pthread_mutex_t & mutex, const timespec & until) {
 #if MANYCORE_THREAD_SANITIZER
-  // The thread sanitizers of gcc 12 and clang 14 know pthread_mutex_unlock, but not this way to lock.
+  // The thread sanitizers of gcc 12 and clang 14 know pthread_mutex_unlock, but not this way to
+  // lock.
   __tsan_mutex_pre_lock(&mutex, 0);
   const int error = pthread_mutex_clocklock(&mutex, CLOCK_MONOTONIC, &until);
   const bool locked = error == 0 || error == EOWNERDEAD;

@@ -24,8 +24,8 @@ uint64_t page_ceil(uint64_t x) { return page_floor(x + page - 1); }
 
 SharedMemory::SharedMemory(FileDescriptor fd, const std::string & path, size_t size_bytes)
 : fd_(std::move(fd)), path_(path), size_(size_bytes) {
-  void * const mapped = mmap(
-    nullptr, size_bytes, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_NORESERVE, fd_.get(), 0);
+  void * const mapped =
+    mmap(nullptr, size_bytes, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_NORESERVE, fd_.get(), 0);
   if (mapped == MAP_FAILED) {
     throw_errno("cannot map " + path);
   }
@@ -83,8 +83,9 @@ SharedMemory SharedMemory::open(const std::string & path, size_t least_size_byte
   if (!S_ISREG(status.st_mode) || static_cast<size_t>(status.st_size) < least_size_bytes) {
     throw Error(
       ErrorCode::corrupt, path + " is truncated or not a segment (" +
-        std::to_string(status.st_size) + " bytes, expected at least " +
-        std::to_string(least_size_bytes) + "); remove it with 'manycore clean'");
+                            std::to_string(status.st_size) + " bytes, expected at least " +
+                            std::to_string(least_size_bytes) +
+                            "); remove it with 'manycore clean'");
   }
   return SharedMemory(std::move(fd), path, static_cast<size_t>(status.st_size));
 }
@@ -119,7 +120,8 @@ void SharedMemory::reserve(uint64_t offset, uint64_t length) const {
   struct statvfs fs {};
   fstatvfs(fd_.get(), &fs);
   throw Error(
-    ErrorCode::no_space, "no room for " + std::to_string(bytes) + " bytes in " + path_ + ": " +
+    ErrorCode::no_space,
+    "no room for " + std::to_string(bytes) + " bytes in " + path_ + ": " +
       std::to_string(fs.f_bavail * fs.f_frsize) + " of " +
       std::to_string(fs.f_blocks * fs.f_frsize) +
       " bytes are free; enlarge /dev/shm (mount -o remount,size=...) or lower topic_dsm_size");

@@ -46,7 +46,8 @@ void CallbackThread::run() noexcept {
       wake_.wait(lock);
       continue;
     }
-    // Epoch and due time come before the look: what happens or falls due in between ends the wait at once.
+    // Epoch and due time come before the look: what happens or falls due in between ends the wait
+    // at once.
     const uint32_t epoch = waiter_.epoch();
     const std::optional<int64_t> due_ns = next_due_ns();
     report_all();

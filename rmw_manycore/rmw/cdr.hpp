@@ -17,8 +17,8 @@ public:
   /// An upper bound of what `serialize` writes: the exact size, rounded up for types of fixed size.
   size_t size_bound(const void * message) const;
 
-  /// Bytes of a message in memory, where that has the layout of its CDR (plain types: of fixed size, nothing
-  /// allocated, no padding of its own); else 0.
+  /// Bytes of a message in memory, where that has the layout of its CDR (plain types: of fixed
+  /// size, nothing allocated, no padding of its own); else 0.
   size_t plain_bytes() const noexcept { return plain_bytes_; }
 
   /// Returns the number of bytes written; throws manycore::Error or a Fast CDR exception.
@@ -31,7 +31,7 @@ private:
   const message_type_support_callbacks_t * callbacks_;
   size_t fixed_size_bound_ = 0;  ///< of types whose size does not depend on the message; else 0
   size_t plain_bytes_ = 0;
-  bool empty_ = false;           ///< has no members: one filler byte stands for it
+  bool empty_ = false;  ///< has no members: one filler byte stands for it
 };
 
 }  // namespace rmw_manycore

@@ -11,7 +11,7 @@ namespace rmw_manycore {
 rmw_ret_t report_exception() noexcept;
 
 /// The edge of the C interface: no exception of `body` gets past it.
-template <typename Body>
+template<typename Body>
 rmw_ret_t guarded(Body && body) noexcept {
   try {
     return std::forward<Body>(body)();
@@ -24,7 +24,7 @@ rmw_ret_t guarded(Body && body) noexcept {
 inline void ignore(rmw_ret_t) noexcept {}
 
 /// The same as guarded for functions that return a handle; nullptr after an exception.
-template <typename Body>
+template<typename Body>
 auto guarded_handle(Body && body) noexcept -> decltype(body()) {
   try {
     return std::forward<Body>(body)();

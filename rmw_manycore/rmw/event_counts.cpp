@@ -24,7 +24,7 @@ int32_t change(uint64_t now, uint64_t before) noexcept {
   return static_cast<int32_t>(now - before);
 }
 
-template <typename Status>
+template<typename Status>
 void fill_total(const EventCounts & now, const EventCounts & told, void * status) {
   *static_cast<Status *>(status) = {change(now.total, 0), change(now.total, told.total)};
 }

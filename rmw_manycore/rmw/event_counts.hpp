@@ -27,8 +27,8 @@ struct EventCounts {
   }
   /// Beginnings and ends.
   static EventCounts of(const manycore::MatchedCount & count) {
-    return {2 * count.total - count.current, count.total, count.current, 0, {},
-            manycore::infinite_ns};
+    return {
+      2 * count.total - count.current, count.total, count.current, 0, {}, manycore::infinite_ns};
   }
 };
 

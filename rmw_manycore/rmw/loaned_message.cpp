@@ -6,18 +6,18 @@
 #include "rmw/rmw.h"
 #include "rmw/subscription.hpp"
 
-// Messages of plain types are lent: those whose memory is their CDR, as with rmw_fastrtps_cpp. A loan saves the user
-// the message, not the copy into or out of the topic DSM.
+// Messages of plain types are lent: those whose memory is their CDR, as with rmw_fastrtps_cpp. A
+// loan saves the user the message, not the copy into or out of the topic DSM.
 
 using rmw_manycore::Publisher;
 using rmw_manycore::Subscription;
 
 /// Publisher or subscription, and its type is lent.
-#define MANYCORE_CHECK_LENDS(handle)                                                             \
-  MANYCORE_CHECK_HANDLE(handle);                                                                 \
-  if (!(handle)->can_loan_messages) {                                                            \
+#define MANYCORE_CHECK_LENDS(handle)                                                            \
+  MANYCORE_CHECK_HANDLE(handle);                                                                \
+  if (!(handle)->can_loan_messages) {                                                           \
     RMW_SET_ERROR_MSG("messages of this type are not lent: their size or layout is not fixed"); \
-    return RMW_RET_UNSUPPORTED;                                                                  \
+    return RMW_RET_UNSUPPORTED;                                                                 \
   }
 
 namespace {
@@ -27,7 +27,7 @@ rmw_ret_t refuse_stranger() {
   return RMW_RET_ERROR;
 }
 
-template <typename Endpoint>
+template<typename Endpoint>
 rmw_ret_t give_back(Endpoint & endpoint, const void * message) {
   return rmw_manycore::guarded(
     [&] { return endpoint.loans().give_back(message) ? RMW_RET_OK : refuse_stranger(); });

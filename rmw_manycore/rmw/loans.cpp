@@ -9,9 +9,8 @@ namespace rmw_manycore {
 // The array form of new aligns for every fundamental type, and plain types hold nothing else.
 
 Loans::Messages::const_iterator Loans::find(const void * message) const {
-  return std::find_if(lent_.begin(), lent_.end(), [&](const Message & lent) {
-    return lent.get() == message;
-  });
+  return std::find_if(
+    lent_.begin(), lent_.end(), [&](const Message & lent) { return lent.get() == message; });
 }
 
 void * Loans::lend() {

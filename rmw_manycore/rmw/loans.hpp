@@ -8,8 +8,9 @@
 
 namespace rmw_manycore {
 
-/// Messages of one plain type that an endpoint lends to its user. What is given back is lent again, so a steady
-/// user allocates nothing. A loan belongs to its endpoint, and goes with it at the latest. Thread-safe.
+/// Messages of one plain type that an endpoint lends to its user. What is given back is lent again,
+/// so a steady user allocates nothing. A loan belongs to its endpoint, and goes with it at the
+/// latest. Thread-safe.
 class Loans {
 public:
   /// `message_bytes`: size of the type in memory; 0 = of a type that is not lent.

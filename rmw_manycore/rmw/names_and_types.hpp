@@ -15,7 +15,7 @@ namespace rmw_manycore {
 using NamesAndTypes = std::map<std::string, std::set<std::string>>;
 
 /// Names and types of the endpoints that `wanted` selects.
-template <typename Predicate>
+template<typename Predicate>
 NamesAndTypes names_and_types(
   const std::vector<manycore::EndpointInfo> & endpoints, Predicate && wanted) {
   NamesAndTypes result;

@@ -7,7 +7,7 @@
 
 namespace {
 
-template <typename Handle>
+template<typename Handle>
 rmw_ret_t refuse(
   const Handle * handle, rcutils_allocator_t * allocator,
   rmw_network_flow_endpoint_array_t * network_flow_endpoint_array) {
@@ -20,8 +20,7 @@ rmw_ret_t refuse(
 
 }  // namespace
 
-void rmw_manycore::check_network_flow(
-  rmw_unique_network_flow_endpoints_requirement_t requirement) {
+void rmw_manycore::check_network_flow(rmw_unique_network_flow_endpoints_requirement_t requirement) {
   if (requirement == RMW_UNIQUE_NETWORK_FLOW_ENDPOINTS_STRICTLY_REQUIRED) {
     throw manycore::Error(
       manycore::ErrorCode::unsupported,

@@ -13,7 +13,7 @@ using manycore::NodeInfo;
 
 /// One attribute of all nodes.
 void fill(
-  StringArray & array, const std::vector<NodeInfo> & nodes, std::string NodeInfo::* attribute) {
+  StringArray & array, const std::vector<NodeInfo> & nodes, std::string NodeInfo::*attribute) {
   for (size_t i = 0; i < nodes.size(); ++i) {
     array.set(i, (nodes[i].*attribute).c_str());
   }

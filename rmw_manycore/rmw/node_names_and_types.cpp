@@ -28,7 +28,7 @@ std::set<uint32_t> find_nodes(
   return found;
 }
 
-template <typename Predicate>
+template<typename Predicate>
 rmw_ret_t write_of_node(
   const rmw_node_t * node, rcutils_allocator_t * allocator, const char * node_name,
   const char * node_namespace, rmw_names_and_types_t * result, Predicate && wanted) {

@@ -19,7 +19,7 @@ void resolve(rmw_time_t & duration, const rmw_time_t & best_available, int64_t n
   }
 }
 
-template <typename Policy>
+template<typename Policy>
 void resolve(Policy & policy, Policy best_available, Policy value) {
   if (policy == best_available) {
     policy = value;
@@ -42,7 +42,7 @@ rmw_qos_profile_t resolve_for_subscription(
   rmw_qos_profile_t profile, const std::vector<EndpointInfo> & others) {
   const auto all = [&](auto && has) { return std::all_of(others.begin(), others.end(), has); };
   // The longest of the publishers' durations; no limit when one of them (or nobody) has none.
-  const auto longest = [&](int64_t manycore::Qos::* duration) {
+  const auto longest = [&](int64_t manycore::Qos::*duration) {
     int64_t ns = others.empty() ? manycore::infinite_ns : 0;
     for (const EndpointInfo & other : others) {
       ns = std::max(ns, other.qos.*duration);
@@ -74,7 +74,7 @@ rmw_qos_profile_t resolve_for_subscription(
 
 rmw_qos_profile_t resolve_for_publisher(
   rmw_qos_profile_t profile, const std::vector<EndpointInfo> & others) {
-  const auto shortest = [&](int64_t manycore::Qos::* duration) {
+  const auto shortest = [&](int64_t manycore::Qos::*duration) {
     int64_t ns = manycore::infinite_ns;
     for (const EndpointInfo & other : others) {
       ns = std::min(ns, other.qos.*duration);
@@ -89,9 +89,8 @@ rmw_qos_profile_t resolve_for_publisher(
     RMW_QOS_POLICY_DURABILITY_TRANSIENT_LOCAL);
   resolve(
     profile.liveliness, RMW_QOS_POLICY_LIVELINESS_BEST_AVAILABLE,
-    std::any_of(others.begin(), others.end(), is_manual)
-      ? RMW_QOS_POLICY_LIVELINESS_MANUAL_BY_TOPIC
-      : RMW_QOS_POLICY_LIVELINESS_AUTOMATIC);
+    std::any_of(others.begin(), others.end(), is_manual) ? RMW_QOS_POLICY_LIVELINESS_MANUAL_BY_TOPIC
+                                                         : RMW_QOS_POLICY_LIVELINESS_AUTOMATIC);
   resolve(profile.deadline, best_available_deadline, shortest(&manycore::Qos::deadline_ns));
   resolve(
     profile.liveliness_lease_duration, best_available_lease,

@@ -14,7 +14,7 @@ namespace {
 constexpr rmw_time_t unspecified = RMW_DURATION_UNSPECIFIED;
 
 /// Whether the policy's value is decided only when the endpoint exists.
-template <typename Policy>
+template<typename Policy>
 bool is_open(Policy policy, Policy system_default, Policy unknown) {
   return policy == system_default || policy == unknown;
 }
@@ -65,7 +65,7 @@ std::string errors(const rmw_qos_profile_t & offered, const rmw_qos_profile_t & 
 }
 
 /// A warning when the pair could fail: the offer is open or weak, the request open or strong.
-template <typename Policy>
+template<typename Policy>
 std::string warning(
   const char * name, Policy offered, Policy requested, Policy weak, Policy strong,
   Policy system_default, Policy unknown, const char * (*to_string)(Policy)) {

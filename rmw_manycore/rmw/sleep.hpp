@@ -10,9 +10,9 @@
 
 namespace rmw_manycore {
 
-/// Where one call sleeps: on the platform of its wait set, and on those of entities of other contexts, which few
-/// programs have. Changes of graph and events raise an epoch while somebody watches; so only who waits for them is
-/// woken by them.
+/// Where one call sleeps: on the platform of its wait set, and on those of entities of other
+/// contexts, which few programs have. Changes of graph and events raise an epoch while somebody
+/// watches; so only who waits for them is woken by them.
 class Sleep {
 public:
   Sleep(manycore::Waiter & own, const Waited & waited);

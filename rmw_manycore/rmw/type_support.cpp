@@ -14,7 +14,7 @@ namespace rmw_manycore {
 namespace {
 
 /// Looks for the C type support, then for the C++ one. `Find` is rosidl's function for it.
-template <typename TypeSupport>
+template<typename TypeSupport>
 const TypeSupport * find(
   const TypeSupport * type_support,
   const TypeSupport * (*find_handle)(const TypeSupport *, const char *)) {
@@ -47,7 +47,7 @@ std::string ros_name(const char * ns, const char * name) {
   return result.empty() ? name : result + "/" + name;
 }
 
-template <typename TypeSupport>
+template<typename TypeSupport>
 manycore::TypeHash hash_of(const TypeSupport * type_support) {
   manycore::TypeHash hash;
   if (type_support->get_type_hash_func != nullptr) {

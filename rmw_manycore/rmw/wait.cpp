@@ -28,8 +28,7 @@ std::optional<int64_t> deadline_of(const rmw_time_t * timeout) noexcept {
 }
 
 /// The earlier of the deadline and the moment when time alone makes an event ready.
-std::optional<int64_t> with_due_events(
-  const Waited & waited, std::optional<int64_t> deadline_ns) {
+std::optional<int64_t> with_due_events(const Waited & waited, std::optional<int64_t> deadline_ns) {
   int64_t soonest = deadline_ns.value_or(manycore::infinite_ns);
   waited.events.for_each([&](const rmw_event_t & event) {
     soonest = std::min(
@@ -38,13 +37,14 @@ std::optional<int64_t> with_due_events(
   return soonest == manycore::infinite_ns ? std::nullopt : std::optional(soonest);
 }
 
-/// Ends with the context as well: rclpy triggers its guard conditions before it shuts its contexts down on
-/// SIGTERM, and would wait for ever if it came back here in between.
+/// Ends with the context as well: rclpy triggers its guard conditions before it shuts its contexts
+/// down on SIGTERM, and would wait for ever if it came back here in between.
 void sleep_until_ready(
   const WaitSet & wait_set, const Waited & waited, std::optional<int64_t> deadline_ns) {
   Sleep sleep(wait_set.waiter(), waited);
   while (true) {
-    // Epochs and due time are read before the entities: what happens or falls due in between ends the wait at once.
+    // Epochs and due time are read before the entities: what happens or falls due in between ends
+    // the wait at once.
     sleep.read_epochs();
     const std::optional<int64_t> until_ns = with_due_events(waited, deadline_ns);
     if (wait_set.is_shutdown() || waited.any_ready()) {

@@ -39,18 +39,18 @@ inline bool take(rmw_event_t & event) {
   }
   return ready;
 }
-template <typename Entity>
+template<typename Entity>
 bool take(Entity & entity) {
   return is_ready(entity);
 }
 
 /// One of the five arrays that rmw_wait is given, as entities. Entries may be null.
-template <typename Entity>
+template<typename Entity>
 class Entities {
 public:
   Entities(void ** entries, size_t count) noexcept : entries_(entries), count_(count) {}
 
-  template <typename Predicate>
+  template<typename Predicate>
   bool any(Predicate && predicate) const {
     for (size_t i = 0; i < count_; ++i) {
       if (entries_[i] != nullptr && predicate(at(i))) {
@@ -60,7 +60,7 @@ public:
     return false;
   }
 
-  template <typename Visit>
+  template<typename Visit>
   void for_each(Visit && visit) const {
     for (size_t i = 0; i < count_; ++i) {
       if (entries_[i] != nullptr) {
@@ -106,7 +106,7 @@ struct Waited {
            clients.any_ready() || events.any_ready();
   }
 
-  template <typename Visit>
+  template<typename Visit>
   void for_each_waiter(Visit && visit) const {
     const auto visit_waiter = [&](auto & entity) { visit(waiter_of(entity)); };
     subscriptions.for_each(visit_waiter);

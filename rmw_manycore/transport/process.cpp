@@ -13,11 +13,11 @@
 #include "platform/error.hpp"
 #include "platform/os_process.hpp"
 #include "transport/lifecycle/lifecycle.hpp"
+#include "transport/lifecycle/receive_thread_watcher.hpp"
 #include "transport/matching/closing.hpp"
-#include "transport/qos/manual_liveliness.hpp"
 #include "transport/matching/matching.hpp"
 #include "transport/publisher_impl.hpp"
-#include "transport/lifecycle/receive_thread_watcher.hpp"
+#include "transport/qos/manual_liveliness.hpp"
 #include "transport/registry/smem_charge.hpp"
 #include "transport/subscription_impl.hpp"
 
@@ -63,14 +63,15 @@ void check_placement(const Placement & placement, const Profile & profile) {
   if (placement.cluster == 0 || placement.cluster > profile.clusters) {
     throw Error(
       ErrorCode::invalid_argument, "there is no cluster " + std::to_string(placement.cluster) +
-        " on platform '" + placement.platform + "': it has clusters 1 to " +
-        std::to_string(profile.clusters));
+                                     " on platform '" + placement.platform +
+                                     "': it has clusters 1 to " + std::to_string(profile.clusters));
   }
   if (placement.core && *placement.core >= profile.cores_per_cluster) {
     throw Error(
       ErrorCode::invalid_argument, "there is no core " + std::to_string(*placement.core) +
-        " on platform '" + placement.platform + "': a cluster has cores 0 to " +
-        std::to_string(profile.cores_per_cluster - 1));
+                                     " on platform '" + placement.platform +
+                                     "': a cluster has cores 0 to " +
+                                     std::to_string(profile.cores_per_cluster - 1));
   }
 }
 
@@ -100,7 +101,8 @@ void check_duration(const EndpointSpec & spec, int64_t ns, const char * what) {
   if (ns <= 0) {
     throw Error(
       ErrorCode::invalid_argument, std::string("the ") + what + " of " + std::to_string(ns) +
-        " ns for '" + spec.topic + "' is out of range: expected more than 0");
+                                     " ns for '" + spec.topic +
+                                     "' is out of range: expected more than 0");
   }
 }
 
@@ -112,7 +114,8 @@ void check_qos(const EndpointSpec & spec) {
   if (spec.qos.depth == 0 || spec.qos.depth > most) {
     throw Error(
       ErrorCode::invalid_argument, "history depth " + std::to_string(spec.qos.depth) + " for '" +
-        spec.topic + "' is out of range: expected 1 to " + std::to_string(most));
+                                     spec.topic + "' is out of range: expected 1 to " +
+                                     std::to_string(most));
   }
 }
 
@@ -121,9 +124,8 @@ void check_qos(const EndpointSpec & spec) {
 Placement Placement::from_environment(size_t domain_id) {
   Placement placement;
   const char * const platform = std::getenv("MANYCORE_PLATFORM");
-  placement.platform = platform != nullptr && *platform != 0
-                         ? platform
-                         : "domain-" + std::to_string(domain_id);
+  placement.platform =
+    platform != nullptr && *platform != 0 ? platform : "domain-" + std::to_string(domain_id);
   placement.cluster = number_from("MANYCORE_CLUSTER", 1, max_clusters).value_or(1);
   placement.core = number_from("MANYCORE_CORE", 0, 1023);
   placement.wait_mode = wait_mode_from_environment();
@@ -270,8 +272,9 @@ uint32_t Process::Impl::fill_endpoint(const EndpointSpec & spec, EndpointKind ki
   entry.topic_dsm_size = configured == nullptr ? 0 : configured->topic_dsm_size;
   for (std::atomic<uint64_t> * count :
        {&entry.matched_total, &entry.matched_current, &entry.incompatible_total,
-        &entry.incompatible_types, &entry.counters.messages, &entry.counters.bytes, &entry.counters.lost,
-        &entry.counters.expired, &entry.counters.refused, &entry.counters.overwritten}) {
+        &entry.incompatible_types, &entry.counters.messages, &entry.counters.bytes,
+        &entry.counters.lost, &entry.counters.expired, &entry.counters.refused,
+        &entry.counters.overwritten}) {
     count->store(0);
   }
   entry.incompatible_policy.store(0);

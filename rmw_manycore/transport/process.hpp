@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "transport/layout/endpoint.hpp"
-#include "transport/registry/graph.hpp"
 #include "transport/publisher.hpp"
+#include "transport/registry/graph.hpp"
 #include "transport/subscription.hpp"
 #include "transport/waiting/waiter.hpp"
 
@@ -18,10 +18,10 @@ namespace manycore {
 /// Where a process runs: platform, virtual cluster and core, and how it waits.
 struct Placement {
   std::string platform;
-  uint32_t cluster = 1;                ///< from 1
-  std::optional<uint32_t> core;        ///< from 0; unset = not pinned, shares no virtual core
+  uint32_t cluster = 1;          ///< from 1
+  std::optional<uint32_t> core;  ///< from 0; unset = not pinned, shares no virtual core
   WaitMode wait_mode = WaitMode::block;
-  std::string label;                   ///< shown by the tools; default: the program's name
+  std::string label;  ///< shown by the tools; default: the program's name
 
   /// From MANYCORE_PLATFORM, MANYCORE_CLUSTER, MANYCORE_CORE, MANYCORE_WAIT; platform defaults to
   /// "domain-<domain_id>". Throws Error{invalid_argument} naming the variable.

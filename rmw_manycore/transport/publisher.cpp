@@ -4,9 +4,9 @@
 #include <utility>
 
 #include "transport/matching/closing.hpp"
-#include "transport/registry/endpoint_blocks.hpp"
 #include "transport/notification/notifier.hpp"
 #include "transport/publisher_impl.hpp"
+#include "transport/registry/endpoint_blocks.hpp"
 
 namespace manycore {
 
@@ -48,8 +48,7 @@ Draft Publisher::draft(size_t size_bytes) {
 }
 
 uint64_t Publisher::publish(
-  Draft && draft, size_t size_bytes, int64_t source_timestamp_ns,
-  const Correlation & correlation) {
+  Draft && draft, size_t size_bytes, int64_t source_timestamp_ns, const Correlation & correlation) {
   Impl & impl = *impl_;
   const std::unique_lock<std::mutex> lock(impl.mutex, std::adopt_lock);
   draft.publisher_ = nullptr;

@@ -50,7 +50,8 @@ public:
   /// Step 1, second half: makes the first `size_bytes` of the draft a record and notifies readers.
   /// `source_timestamp_ns` is CLOCK_REALTIME. Returns the publication sequence number (from 1).
   /// With a correlation whose client is set and role reply, only that client receives it.
-  uint64_t publish(Draft && draft, size_t size_bytes, int64_t source_timestamp_ns,
+  uint64_t publish(
+    Draft && draft, size_t size_bytes, int64_t source_timestamp_ns,
     const Correlation & correlation = {});
 
   /// For MANUAL_BY_TOPIC liveliness, which publish() asserts as well; else nothing to do.

@@ -4,8 +4,8 @@
 #include <mutex>
 
 #include "transport/layout/deadline_clock.hpp"
-#include "transport/qos/manual_liveliness.hpp"
 #include "transport/publisher.hpp"
+#include "transport/qos/manual_liveliness.hpp"
 #include "transport/topic_dsm/topic_dsm_writer.hpp"
 
 namespace manycore {

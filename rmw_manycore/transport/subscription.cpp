@@ -6,8 +6,8 @@
 
 #include "platform/clock.hpp"
 #include "transport/matching/closing.hpp"
-#include "transport/registry/endpoint_blocks.hpp"
 #include "transport/qos/liveliness.hpp"
+#include "transport/registry/endpoint_blocks.hpp"
 #include "transport/subscription_impl.hpp"
 
 namespace manycore {
@@ -78,8 +78,7 @@ std::optional<Claim> Subscription::claim() {
     claim.info_.reception_sequence_number = impl.received;
     claim.info_.publisher = candidate->reader->publisher();
     claim.info_.correlation = view.record->correlation;
-    claim.info_.from_this_process =
-      candidate->reader->publisher_process() == impl.entry.process;
+    claim.info_.from_this_process = candidate->reader->publisher_process() == impl.entry.process;
     lock.release();
     return claim;
   }

@@ -47,7 +47,8 @@ private:
   RecordInfo info_;
 };
 
-/// The reading role: one subscriber queue (capacity = depth) over any number of topic DSMs. Thread-safe.
+/// The reading role: one subscriber queue (capacity = depth) over any number of topic DSMs.
+/// Thread-safe.
 class Subscription {
 public:
   struct Impl;
@@ -69,8 +70,9 @@ public:
   /// Notifications that wait to be claimed; some may be stale or doubles.
   uint64_t waiting() const noexcept;
 
-  /// Messages that were published for this subscription and are gone (overwritten before taken), as far as known:
-  /// those of a publisher are counted by the time a later one of its messages is taken.
+  /// Messages that were published for this subscription and are gone (overwritten before taken), as
+  /// far as known: those of a publisher are counted by the time a later one of its messages is
+  /// taken.
   uint64_t lost() const noexcept;
 
   MatchedCount matched() const;

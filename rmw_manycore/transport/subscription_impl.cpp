@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "transport/matching/closing.hpp"
-#include "transport/registry/endpoint_blocks.hpp"
 #include "transport/queue/source_table.hpp"
+#include "transport/registry/endpoint_blocks.hpp"
 
 namespace manycore {
 namespace {
@@ -19,7 +19,8 @@ uint32_t log2_at_least(uint32_t x) {
   return log2;
 }
 
-/// Requests and replies are never displaced: a lost request would leave its client waiting for ever.
+/// Requests and replies are never displaced: a lost request would leave its client waiting for
+/// ever.
 bool displaces(const EndpointEntry & entry) {
   return entry.role == EndpointRole::topic && entry.qos.history == History::keep_last;
 }
@@ -29,10 +30,9 @@ bool displaces(const EndpointEntry & entry) {
 SubscriptionHeader & Subscription::Impl::create(Registry & registry, uint32_t endpoint_slot) {
   EndpointEntry & entry = registry.endpoints()[endpoint_slot];
   Cluster & cluster = registry.clusters().at(entry.cluster);
-  const uint32_t depth = displaces(entry) ? entry.qos.depth
-                         : entry.role == EndpointRole::topic
-                           ? keep_all_capacity
-                           : std::max(entry.qos.depth, 16u);
+  const uint32_t depth = displaces(entry)                    ? entry.qos.depth
+                         : entry.role == EndpointRole::topic ? keep_all_capacity
+                                                             : std::max(entry.qos.depth, 16u);
   const uint32_t log2 = log2_at_least(depth);
   auto & header = cluster.allocate_cleared<SubscriptionHeader>(
     sizeof(SubscriptionHeader) + (uint64_t{8} << log2));
@@ -100,7 +100,9 @@ void Subscription::Impl::resync(std::optional<Hint> popped) {
   renew_readers();
   announced.clear();
   for (; popped || (popped = subscriber_queue::pop(header)); popped.reset()) {
-    if (const TopicDsmReader * const reader = find_reader(popped->source, popped->source_incarnation)) {
+    if (
+      const TopicDsmReader * const reader =
+        find_reader(popped->source, popped->source_incarnation)) {
       announced.emplace_back(reader->index(), reader->full_number(popped->number));
     }
   }
@@ -173,8 +175,9 @@ std::optional<Subscription::Impl::Candidate> Subscription::Impl::candidate_of(co
 std::optional<Subscription::Impl::Candidate> Subscription::Impl::next() {
   while (true) {
     resync_if_asked();
-    if (displaces(entry) && !backlog.empty() &&
-        backlog.size() + subscriber_queue::size(header) > header.depth) {
+    if (
+      displaces(entry) && !backlog.empty() &&
+      backlog.size() + subscriber_queue::size(header) > header.depth) {
       resync();  // newer messages displace those of the backlog
     }
     if (const std::optional<Candidate> candidate = next_of_backlog()) {
@@ -186,8 +189,8 @@ std::optional<Subscription::Impl::Candidate> Subscription::Impl::next() {
       return std::nullopt;
     }
     if (renew_readers()) {
-      // A hint of a new source may overtake the matcher's resync, and with it the source's history. Looking
-      // into all sources finds what the hint announced as well.
+      // A hint of a new source may overtake the matcher's resync, and with it the source's history.
+      // Looking into all sources finds what the hint announced as well.
       resync(hint);
     } else if (const std::optional<Candidate> candidate = candidate_of(*hint)) {
       return candidate;
@@ -217,7 +220,8 @@ void Subscription::Impl::sweep() noexcept {
     const Registry::Lock lock(registry, Registry::Lock::no_wait_ns);
     closing::sweep(registry);
   } catch (const std::exception &) {
-    // Somebody holds the registry, and a take does not wait for him: the next change of the graph sweeps.
+    // Somebody holds the registry, and a take does not wait for him: the next change of the graph
+    // sweeps.
   }
 }
 

@@ -33,7 +33,8 @@ struct Subscription::Impl {
   bool renew_readers();
   /// `popped`: a hint that its caller has not used.
   void resync(std::optional<Hint> popped = std::nullopt);
-  /// With nothing left to take: accounts for what was lost after the last message taken of each source.
+  /// With nothing left to take: accounts for what was lost after the last message taken of each
+  /// source.
   void settle() noexcept;
   void count_taken(uint64_t bytes) noexcept;
   /// A finished topic DSM waits for its last reader only: frees it.
@@ -52,9 +53,10 @@ struct Subscription::Impl {
   std::atomic<size_t> backlog_size{0};          ///< for has_data() without the mutex
   std::atomic<uint64_t> arrivals_by_resync{0};  ///< those that no hint announced
   std::vector<TopicDsmReader::Waiting> scratch;
-  std::vector<std::pair<uint32_t, uint64_t>> announced;  ///< of a resync: source and number of each hint
+  std::vector<std::pair<uint32_t, uint64_t>>
+    announced;  ///< of a resync: source and number of each hint
   uint64_t received = 0;
-  bool unsettled = false;     ///< messages may be missing that no later one has shown to be
+  bool unsettled = false;        ///< messages may be missing that no later one has shown to be
   uint64_t settled_dropped = 0;  ///< of the header's `dropped`, when everything was accounted for
   std::atomic<uint64_t> reported_lost{0};
 };

@@ -16,8 +16,8 @@ public:
     while ((1u << log2) < depth) {
       ++log2;
     }
-    void * const memory = mmap(
-      nullptr, bytes_, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+    void * const memory =
+      mmap(nullptr, bytes_, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
     header_ = new (memory) manycore::SubscriptionHeader{};
     header_->depth = depth;
     header_->slot_count_log2 = log2;

@@ -131,8 +131,7 @@ Child::Child(const std::string & role, const Arguments & arguments)
 Child Child::start(const std::string & role, const Arguments & arguments) {
   Ends to_child = make_pipe();
   Ends from_child = make_pipe();
-  const pid_t pid =
-    spawn_role(role, arguments, to_child.reader.get(), from_child.writer.get());
+  const pid_t pid = spawn_role(role, arguments, to_child.reader.get(), from_child.writer.get());
   return {pid, Lines(std::move(from_child.reader), std::move(to_child.writer))};
 }
 

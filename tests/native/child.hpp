@@ -30,7 +30,8 @@ private:
 using Arguments = std::vector<std::string>;
 
 /// What a process that a test starts does. At file scope:
-///   const Role silent_publisher("silent_publisher", [](Lines & test, const Arguments & arguments) {...});
+///   const Role silent_publisher("silent_publisher", [](Lines & test, const Arguments & arguments)
+///   {...});
 class Role {
 public:
   using Play = std::function<void(Lines & test, const Arguments & arguments)>;
@@ -54,12 +55,13 @@ public:
   std::string hear() { return lines_.hear(); }
   void expect(const std::string & line) { lines_.expect(line); }
 
-  void stop();    ///< SIGSTOP; returns once it stands still
+  void stop();  ///< SIGSTOP; returns once it stands still
   /// For one that stops itself: a SIGCONT that came before would be lost.
   void wait_until_stopped();
   void resume();  ///< SIGCONT
   void kill();    ///< SIGKILL; returns once it is gone
-  /// Waits for its end: the exit status, or minus the signal that ended it. Throws when it goes on for `patience_s`.
+  /// Waits for its end: the exit status, or minus the signal that ended it. Throws when it goes on
+  /// for `patience_s`.
   int wait();
 
 private:

@@ -1,6 +1,7 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 //
-// Every test program: its doctest cases, or, started with --role, one of the processes that they need.
+// Every test program: its doctest cases, or, started with --role, one of the processes that they
+// need.
 #define DOCTEST_CONFIG_IMPLEMENT
 #include <doctest/doctest.h>
 

@@ -37,7 +37,9 @@ Qos qos_of(const std::string & word) {
 }
 
 WaitMode mode_of(const std::string & word) {
-  return word == "spin" ? WaitMode::spin : word == "adaptive" ? WaitMode::adaptive : WaitMode::block;
+  return word == "spin"       ? WaitMode::spin
+         : word == "adaptive" ? WaitMode::adaptive
+                              : WaitMode::block;
 }
 
 Placement placement_of(const Arguments & arguments) {

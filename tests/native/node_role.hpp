@@ -16,8 +16,8 @@
 ///   release                       -> ok     .. which is still what it was
 ///   close                         -> ok     publisher and subscription go
 ///   leave                                   ends
-/// QOS: keep_all, or a depth, or a depth with "transient_local", "best_effort", "deadline" or "lease" (of an hour)
-/// after a '+'.
+/// QOS: keep_all, or a depth, or a depth with "transient_local", "best_effort", "deadline" or
+/// "lease" (of an hour) after a '+'.
 class Node : public Child {
 public:
   Node(const TestPlatform & platform, uint32_t cluster, const std::string & wait = "block")

@@ -6,8 +6,8 @@
 #include <string>
 #include <thread>
 
-/// How long a test waits for what must come, before it calls it a hang. Far above what is needed on a loaded
-/// machine with sanitizers: no test passes or fails by timing.
+/// How long a test waits for what must come, before it calls it a hang. Far above what is needed on
+/// a loaded machine with sanitizers: no test passes or fails by timing.
 constexpr int patience_s = 60;
 
 /// Looks until `predicate` holds. Throws naming `what` when it does not become true.

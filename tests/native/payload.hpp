@@ -6,8 +6,8 @@
 #include <cstring>
 #include <stdexcept>
 
-/// Content of a test message: who wrote it, which one it is, and bytes that follow from both, so that a message that
-/// is torn, mixed or of another length shows.
+/// Content of a test message: who wrote it, which one it is, and bytes that follow from both, so
+/// that a message that is torn, mixed or of another length shows.
 struct Payload {
   uint64_t writer;
   uint64_t number;  ///< from 1

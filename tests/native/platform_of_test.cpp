@@ -12,8 +12,8 @@
 #include <sstream>
 
 #include "patience.hpp"
-#include "transport/lifecycle/lifecycle.hpp"
 #include "transport/layout/topic_dsm_layout.hpp"
+#include "transport/lifecycle/lifecycle.hpp"
 
 using namespace manycore;
 
@@ -66,8 +66,8 @@ bool any_thread(pid_t pid, Predicate has) {
   });
 }
 
-/// The half of a daemon that waits until the other one is ready is still there. When it ends, the kernel lets the
-/// other one go on, should somebody have stopped it before.
+/// The half of a daemon that waits until the other one is ready is still there. When it ends, the
+/// kernel lets the other one go on, should somebody have stopped it before.
 bool is_starting(pid_t pid) {
   const pid_t parent = status_of("/proc/" + std::to_string(pid)).parent;
   return content_of("/proc/" + std::to_string(parent) + "/comm").rfind("manycore", 0) == 0;

@@ -32,8 +32,9 @@ private:
   std::string name_;
 };
 
-/// A receive thread that stands still while this lives, and holds no lock. Where no other process is about, the
-/// registry lock is then free for those who wait for it briefly or not at all, and else put off what a test looks for.
+/// A receive thread that stands still while this lives, and holds no lock. Where no other process
+/// is about, the registry lock is then free for those who wait for it briefly or not at all, and
+/// else put off what a test looks for.
 class Standstill {
 public:
   Standstill(const TestPlatform & platform, uint32_t cluster);

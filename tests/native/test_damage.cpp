@@ -1,8 +1,8 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 //
-// Files of a platform that somebody has damaged: who comes gets an error that says what to do, or gets along; nobody
-// crashes or hangs. Random damage is a sample. A file that is cut short while it is mapped ends those who use it
-// (SIGBUS): the kernel leaves no choice.
+// Files of a platform that somebody has damaged: who comes gets an error that says what to do, or
+// gets along; nobody crashes or hangs. Random damage is a sample. A file that is cut short while it
+// is mapped ends those who use it (SIGBUS): the kernel leaves no choice.
 #include <doctest/doctest.h>
 
 #include <sys/stat.h>
@@ -19,10 +19,10 @@
 #include "messages.hpp"
 #include "node_role.hpp"
 #include "patience.hpp"
-#include "transport/lifecycle/configurator.hpp"
 #include "transport/layout/registry_layout.hpp"
 #include "transport/layout/subscription_layout.hpp"
 #include "transport/layout/topic_dsm_layout.hpp"
+#include "transport/lifecycle/configurator.hpp"
 
 using namespace manycore;
 
@@ -67,13 +67,14 @@ const Role chain_breaker("chain_breaker", [](Lines & test, const Arguments & arg
   }
   Cluster & cluster = registry.clusters().at(1);
   const uint64_t offset = entry->block.offset();
-  std::atomic<uint64_t> & first =
-    of_publisher ? cluster.find<TopicDsmHeader>(offset)->next_reader_block
-                 : cluster.find<SubscriptionHeader>(offset)->first_source_block;
+  std::atomic<uint64_t> & first = of_publisher
+                                    ? cluster.find<TopicDsmHeader>(offset)->next_reader_block
+                                    : cluster.find<SubscriptionHeader>(offset)->first_source_block;
   if (arguments.at(2) == "leads out") {
     first = uint64_t{1} << 40;
   } else {
-    *cluster.find<std::atomic<uint64_t>>(first) = first.load();  // a block starts with the offset of the next
+    *cluster.find<std::atomic<uint64_t>>(first) =
+      first.load();  // a block starts with the offset of the next
   }
   if (of_publisher) {
     publisher.reset();
@@ -101,7 +102,8 @@ Bytes read_file(const std::string & path) {
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }
 
-/// Puts another file in the place of one that is in use; those who have it mapped go on with the old one.
+/// Puts another file in the place of one that is in use; those who have it mapped go on with the
+/// old one.
 void replace_file(const std::string & path, const Bytes & content) {
   const std::string fresh = path + ".new";
   std::ofstream(fresh, std::ios::binary).write(content.data(), static_cast<long>(content.size()));
@@ -114,8 +116,8 @@ struct Fixture {
   Fixture() {
     Profile profile = host_profile();
     profile.smem_bytes = 1 << 20;
-    configurator = std::make_unique<Configurator>(
-      platform.name(), profile, std::vector<TopicConfiguration>{});
+    configurator =
+      std::make_unique<Configurator>(platform.name(), profile, std::vector<TopicConfiguration>{});
     node = std::make_unique<Node>(platform, 1);
     node->tell("publisher /x 10+transient_local");
     node->tell("publish 1 10 1000");
@@ -265,7 +267,8 @@ TEST_CASE("random words in a cluster segment in use: visitors get along or get a
   }
 }
 
-TEST_CASE("a chain of blocks that leads out of its cluster, or in a circle, is freed as far as it goes") {
+TEST_CASE(
+  "a chain of blocks that leads out of its cluster, or in a circle, is freed as far as it goes") {
   for (const std::string end : {"publisher", "subscription"}) {
     for (const std::string damage : {"leads out", "leads in a circle"}) {
       CAPTURE(end);

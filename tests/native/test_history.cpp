@@ -121,7 +121,8 @@ TEST_CASE("RELIABLE + KEEP_ALL: a full topic DSM refuses with a timeout, and los
 }
 
 TEST_CASE("RELIABLE + KEEP_ALL: a publisher that waits goes on as soon as there is room") {
-  // Cannot prove that a wake-up is never lost: one that is shows as a timeout of publish(), most of the time.
+  // Cannot prove that a wake-up is never lost: one that is shows as a timeout of publish(), most of
+  // the time.
   Fixture f;
   constexpr uint64_t count = 3000;
   const auto publisher = f.publisher(keep_all(), "/fixed");

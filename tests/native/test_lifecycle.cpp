@@ -38,7 +38,8 @@ void write_file(const std::string & path, const std::string & content) {
   std::ofstream(path, std::ios::binary) << content;
 }
 
-/// Kills everything of a platform whose nodes are in clusters 1, 2 ..: nodes first or receive threads first.
+/// Kills everything of a platform whose nodes are in clusters 1, 2 ..: nodes first or receive
+/// threads first.
 void kill_whole(const TestPlatform & platform, std::vector<Node> & nodes, bool nodes_first) {
   std::vector<pid_t> receive_threads;
   for (uint32_t cluster = 1; cluster <= nodes.size(); ++cluster) {
@@ -111,7 +112,8 @@ TEST_CASE("nodes that are all killed leave nothing: the receive threads see to i
   for (const uint32_t cluster : {1u, 1u, 2u}) {
     nodes.emplace_back(platform, cluster);
     nodes.back().tell("publisher /x 1");
-    platform.receive_thread(cluster);  // who is killed before there is one leaves its files to the next start
+    platform.receive_thread(
+      cluster);  // who is killed before there is one leaves its files to the next start
   }
   nodes.clear();  // ~TestPlatform waits
 }
@@ -166,8 +168,7 @@ TEST_CASE("a configurator keeps the platform while no node is there, also in its
       CHECK(process->graph().clusters().at(0).smem_bytes == 8 << 20);
     }
     CHECK(platform.exists());
-    const Refusal refusal =
-      refusal_of([&] { Configurator second(platform.name(), profile, {}); });
+    const Refusal refusal = refusal_of([&] { Configurator second(platform.name(), profile, {}); });
     CHECK(refusal.code == ErrorCode::invalid_argument);
     CHECK(refusal.says("is running already"));
     Inspection inspection(platform);
@@ -181,8 +182,8 @@ TEST_CASE("a configurator keeps the platform while no node is there, also in its
 
 TEST_CASE("a platform outlives its configurator while a node is there") {
   TestPlatform platform;
-  auto configurator = std::make_unique<Configurator>(platform.name(), host_profile(),
-    std::vector<TopicConfiguration>{});
+  auto configurator = std::make_unique<Configurator>(
+    platform.name(), host_profile(), std::vector<TopicConfiguration>{});
   auto process = platform.join();
   configurator.reset();
   CHECK(platform.exists());
@@ -245,8 +246,9 @@ TEST_CASE("joining and leaving again and again leaves no descriptor open") {
 }
 
 TEST_CASE("names that are no platform names never become paths") {
-  for (const std::string & name : {std::string(""), std::string("."), std::string(".."),
-         std::string("a/b"), std::string(".hidden"), std::string("a b"), std::string(65, 'x')}) {
+  for (const std::string & name :
+       {std::string(""), std::string("."), std::string(".."), std::string("a/b"),
+        std::string(".hidden"), std::string("a b"), std::string(65, 'x')}) {
     CAPTURE(name);
     const Refusal refusal = refusal_of([&] { PlatformPaths::of(name); });
     CHECK(refusal.code == ErrorCode::invalid_argument);

@@ -200,7 +200,8 @@ TEST_CASE("a publisher has more subscriptions than its header and one block of r
   CHECK(f.inspection.used_bytes() == used);
 }
 
-TEST_CASE("a publisher that cannot map a subscription's cluster says so, and publishes once it can") {
+TEST_CASE(
+  "a publisher that cannot map a subscription's cluster says so, and publishes once it can") {
   Fixture f;
   const auto publisher = f.publisher(keep_last(10));
   const auto near = f.subscription(keep_last(10));

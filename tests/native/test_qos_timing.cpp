@@ -1,7 +1,8 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 //
-// DEADLINE and LIVELINESS: what is counted, what wakes, and what becomes of publishers that are killed. Durations are
-// either so short that they only have to pass some time, or so long that they cannot pass during a test.
+// DEADLINE and LIVELINESS: what is counted, what wakes, and what becomes of publishers that are
+// killed. Durations are either so short that they only have to pass some time, or so long that they
+// cannot pass during a test.
 #include <doctest/doctest.h>
 
 #include "messages.hpp"
@@ -65,7 +66,8 @@ TEST_CASE("one word counts periods: a message keeps the count and begins a perio
   CHECK(DeadlineClock::missed_at(origin, 5548, period) == 3);
 }
 
-TEST_CASE("without a deadline, and before the first message, nothing is missed and nothing falls due") {
+TEST_CASE(
+  "without a deadline, and before the first message, nothing is missed and nothing falls due") {
   Fixture f;
   for (const int64_t period : {infinite_ns, short_ns}) {
     const auto publisher = f.publisher(with_deadline(period));
@@ -158,7 +160,8 @@ TEST_CASE("manual liveliness: a lease that runs out is lost once, until the next
   for (uint64_t round = 1; round <= 3; ++round) {
     publisher->assert_liveliness();
     wait_until("the lease to run out", [&] {
-      return subscription->liveliness().not_alive == 1 && publisher->liveliness_lost().total == round;
+      return subscription->liveliness().not_alive == 1 &&
+             publisher->liveliness_lost().total == round;
     });
     CHECK(subscription->liveliness().alive == 0);
     CHECK(publisher->liveliness_lost().next_due_ns == infinite_ns);

@@ -1,8 +1,8 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 //
-// Many pushers and one popper at the same time. Cannot prove that an interleaving is harmless that did not occur:
-// docs/model/ explores all of them for a small queue. A pusher delayed for 65,536 laps of the queue is out of reach
-// of both. Pushers that die: test_killed_queue.
+// Many pushers and one popper at the same time. Cannot prove that an interleaving is harmless that
+// did not occur: docs/model/ explores all of them for a small queue. A pusher delayed for 65,536
+// laps of the queue is out of reach of both. Pushers that die: test_killed_queue.
 #include <doctest/doctest.h>
 
 #include <algorithm>

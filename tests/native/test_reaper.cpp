@@ -1,7 +1,7 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 //
-// What the dead leave behind is cleared away, and what they published before is not lost. Each case kills at one
-// moment of importance; test_killed goes through the moments in between.
+// What the dead leave behind is cleared away, and what they published before is not lost. Each case
+// kills at one moment of importance; test_killed goes through the moments in between.
 #include <doctest/doctest.h>
 
 #include <csignal>
@@ -18,7 +18,8 @@ using namespace manycore;
 
 namespace {
 
-/// Publishes record 1 as a whole, writes record 2 down as far as asked, and stays so until it is killed.
+/// Publishes record 1 as a whole, writes record 2 down as far as asked, and stays so until it is
+/// killed.
 const Role interrupted_publisher("interrupted", [](Lines & test, const Arguments & arguments) {
   Placement placement;
   placement.platform = arguments.at(0);
@@ -82,7 +83,8 @@ TEST_CASE("a subscriber killed while it holds a claim: its publisher goes on, it
   CHECK(f.inspection.used_bytes() == used);
 }
 
-TEST_CASE("a publisher killed after it wrote a record, before it told anybody: the record is found") {
+TEST_CASE(
+  "a publisher killed after it wrote a record, before it told anybody: the record is found") {
   Fixture f;
   const uint64_t used = f.inspection.used_bytes();
   auto subscription = f.process->create_subscription(on_topic("/x", keep_last(10)));
@@ -108,7 +110,9 @@ TEST_CASE("a publisher killed after it wrote a record, before it told anybody: t
   CHECK(f.inspection.used_bytes() == used);
 }
 
-TEST_CASE("a subscriber killed while its publisher follows references: its memory is free once that has ended") {
+TEST_CASE(
+  "a subscriber killed while its publisher follows references: its memory is free once that has "
+  "ended") {
   Fixture f;
   const auto publisher = f.process->create_publisher(on_topic("/x", keep_last(10)));
   const uint64_t used = f.inspection.used_bytes();
@@ -147,7 +151,8 @@ TEST_CASE("what a killed publisher published is still taken") {
   Node publisher(f.platform, 2);
   publisher.tell("publisher /x 1");
   {
-    // A topic DSM that cannot grow, as its publisher does not get the registry lock in time, overwrites.
+    // A topic DSM that cannot grow, as its publisher does not get the registry lock in time,
+    // overwrites.
     const Standstill here(f.platform, 1);
     const Standstill there(f.platform, 2);
     publisher.tell("publish 1 50 5000");

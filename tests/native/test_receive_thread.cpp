@@ -1,7 +1,8 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 //
-// Messages between clusters, and what becomes of them when a receive thread is killed, stopped or fed rubbish. The
-// moments of the kills are those that a test can bring about from outside; all others: tests/stress.
+// Messages between clusters, and what becomes of them when a receive thread is killed, stopped or
+// fed rubbish. The moments of the kills are those that a test can bring about from outside; all
+// others: tests/stress.
 #include <doctest/doctest.h>
 
 #include <fcntl.h>
@@ -24,8 +25,9 @@ namespace {
 constexpr uint32_t deep = 30'000;  ///< a queue that no test fills
 constexpr uint32_t room_for_all_bytes = 2 << 20;
 
-/// A publisher here, in cluster 1, and a subscriber in cluster 2. The topic DSM has room for all that a test publishes:
-/// one that had to grow would overwrite where a receive thread that starts or buries keeps the registry lock too long.
+/// A publisher here, in cluster 1, and a subscriber in cluster 2. The topic DSM has room for all
+/// that a test publishes: one that had to grow would overwrite where a receive thread that starts
+/// or buries keeps the registry lock too long.
 struct Fixture {
   explicit Fixture(const std::string & subscriber_qos = std::to_string(deep)) {
     subscriber.tell("subscription /x " + subscriber_qos);
@@ -49,8 +51,7 @@ struct Fixture {
   TestPlatform platform;
   Configurator configurator{platform.name(), host_profile(), {{"/x", 1, room_for_all_bytes, 0}}};
   std::shared_ptr<Process> process = platform.join(1);
-  std::unique_ptr<Publisher> publisher =
-    process->create_publisher(on_topic("/x", keep_last(deep)));
+  std::unique_ptr<Publisher> publisher = process->create_publisher(on_topic("/x", keep_last(deep)));
   Node subscriber{platform, 2};
   Inspection inspection{platform};
 };
@@ -85,8 +86,8 @@ TEST_CASE("one eMCOS message per record and cluster, one hint per subscription t
   }
   f.expect(1, 100);
   other.tell("take 1 100 1");
-  // A subscriber that looks for itself at the first hint may be faster than the receive thread. Once it has the hint of
-  // a later message, all the others have been pushed.
+  // A subscriber that looks for itself at the first hint may be faster than the receive thread.
+  // Once it has the hint of a later message, all the others have been pushed.
   f.publish_numbers(101, 101);
   f.expect(101, 101);
   other.tell("take 101 101 1");
@@ -184,7 +185,8 @@ TEST_CASE("strangers in the pipe: whatever they write, nothing crashes and nothi
   Fixture f;
   f.publish_numbers(1, 10);
   f.expect(1, 10);
-  const pid_t pid = f.platform.stop_receive_thread(2);  // so that all that follows is read in one piece
+  const pid_t pid =
+    f.platform.stop_receive_thread(2);  // so that all that follows is read in one piece
   std::vector<uint8_t> rubbish;
   SUBCASE("a byte too many") { rubbish.assign(1, 7); }
   SUBCASE("messages of no kind") { rubbish.assign(64 * 10, 0xff); }
@@ -214,7 +216,9 @@ TEST_CASE("strangers in the pipe: whatever they write, nothing crashes and nothi
 TEST_CASE("messages of an earlier publisher in the same place reach nobody") {
   Fixture f;
   const auto place = [&](const Publisher & publisher) {
-    return f.inspection.registry().endpoints()[f.inspection.slot_of(publisher.gid())].block.offset();
+    return f.inspection.registry()
+      .endpoints()[f.inspection.slot_of(publisher.gid())]
+      .block.offset();
   };
   const uint64_t earlier = place(*f.publisher);
   const pid_t pid = f.platform.stop_receive_thread(2);

@@ -102,8 +102,7 @@ TEST_CASE("topics that share a bucket are told apart") {
   std::string second;
   for (int i = 0; second.empty(); ++i) {
     const std::string name = "/t" + std::to_string(i);
-    const auto [known, is_new] =
-      names.emplace(hash_name(name.c_str()) % topic_bucket_count, name);
+    const auto [known, is_new] = names.emplace(hash_name(name.c_str()) % topic_bucket_count, name);
     if (!is_new) {
       first = known->second;
       second = name;
@@ -173,8 +172,8 @@ TEST_CASE("memory outside the segment counts as SMEM, up to what there is") {
   SUBCASE("what is charged cannot be allocated") {
     charge_smem(registry, getpid(), cluster.size() - used - 100);
     CHECK(f.process->graph().clusters().at(0).charged_bytes == cluster.size() - used - 100);
-    const Refusal full = refusal_of(
-      [&] { f.process->create_publisher(on_topic("/x", keep_last(10))); });
+    const Refusal full =
+      refusal_of([&] { f.process->create_publisher(on_topic("/x", keep_last(10))); });
     CHECK(full.code == ErrorCode::no_space);
     charge_smem(registry, getpid(), 0);
     CHECK_NOTHROW(f.process->create_publisher(on_topic("/x", keep_last(10))));
@@ -199,8 +198,8 @@ TEST_CASE("the lock of a stopped owner is waited for, then it is an error that s
   Child holder("lock_holder", {f.platform.name()});
   holder.expect("holding");
   holder.wait_until_stopped();
-  const Refusal refusal = refusal_of(
-    [&] { const Registry::Lock lock(f.registry, Registry::Lock::short_wait_ns); });
+  const Refusal refusal =
+    refusal_of([&] { const Registry::Lock lock(f.registry, Registry::Lock::short_wait_ns); });
   CHECK(refusal.code == ErrorCode::timeout);
   CHECK(refusal.says("stopped"));
   holder.resume();  // its end gives the lock back

@@ -1,7 +1,8 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 //
-// A subscriber that stands still, stopped by SIGSTOP while it reads a record, holds up nobody. That the publisher's
-// rate does not change is measured by tests/stress; here: that it publishes at all, and what each side then has.
+// A subscriber that stands still, stopped by SIGSTOP while it reads a record, holds up nobody. That
+// the publisher's rate does not change is measured by tests/stress; here: that it publishes at all,
+// and what each side then has.
 #include <doctest/doctest.h>
 
 #include <csignal>
@@ -15,7 +16,8 @@ using namespace manycore;
 
 namespace {
 
-/// Stands still while it holds the registry lock, as one may that is stopped while it joins or leaves.
+/// Stands still while it holds the registry lock, as one may that is stopped while it joins or
+/// leaves.
 const Role lock_holder("lock_holder", [](Lines & test, const Arguments & arguments) {
   Registry registry(PlatformPaths::of(arguments.at(0)));
   const Registry::Lock lock(registry);
@@ -44,7 +46,8 @@ void publish_numbers(Publisher & publisher, uint64_t first, uint64_t last) {
 
 }  // namespace
 
-TEST_CASE("stopped with a claim: the publisher goes on, others get everything, the claim stays whole") {
+TEST_CASE(
+  "stopped with a claim: the publisher goes on, others get everything, the claim stays whole") {
   for (const std::string topic : {"/fixed", "/growing"}) {
     for (const uint32_t cluster : {1u, 2u}) {
       CAPTURE(topic);
@@ -111,8 +114,8 @@ TEST_CASE("stopped in a RELIABLE + KEEP_ALL match: the publisher waits its time,
 }
 
 TEST_CASE("a stopped publisher holds up no subscriber, and no other publisher") {
-  // A fixed topic DSM does not grow. Stopped while it holds the registry lock, as growing does for microseconds,
-  // the publisher would hold up whoever creates or closes an endpoint.
+  // A fixed topic DSM does not grow. Stopped while it holds the registry lock, as growing does for
+  // microseconds, the publisher would hold up whoever creates or closes an endpoint.
   Fixture f;
   const auto near = f.process->create_subscription(on_topic("/fixed", keep_last(10)));
   Node stopped(f.platform, 1);
@@ -139,10 +142,12 @@ TEST_CASE("stopped while it holds the registry lock: publishers whose topic DSM 
   const auto near = f.process->create_subscription(on_topic("/growing", keep_last(1000)));
   Node node(f.platform, 1);
   node.tell("publisher /growing 1000");
-  const Standstill receive_thread(f.platform, 1);  // its reaper would wait for the lock as well, and have it first
+  const Standstill receive_thread(
+    f.platform, 1);  // its reaper would wait for the lock as well, and have it first
   Child holder("lock_holder", {f.platform.name()});
   holder.expect("locked");
-  // Each finds a wanted record in its way. To wait for the lock each time would take longer than Node::tell() does.
+  // Each finds a wanted record in its way. To wait for the lock each time would take longer than
+  // Node::tell() does.
   node.tell("publish 1 2000 100");
   const Refusal refusal = refusal_of([&] { publish(*publisher, 1, 100'000); });
   CHECK(refusal.code == ErrorCode::timeout);

@@ -1,7 +1,7 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 //
-// One publisher and its readers in one process, one step at a time: what the writer and the readers of a topic DSM
-// make of the memory. At the same time: test_topic_dsm_threads.
+// One publisher and its readers in one process, one step at a time: what the writer and the readers
+// of a topic DSM make of the memory. At the same time: test_topic_dsm_threads.
 #include <doctest/doctest.h>
 
 #include <numeric>
@@ -61,8 +61,9 @@ TEST_CASE("messages of 0 bytes to several MiB arrive as they were, with their me
   const auto publisher = f.publisher("/sizes", keep_last(10));
   const auto subscription = f.subscription("/sizes", keep_last(10));
   uint64_t number = 0;
-  for (const size_t size : {size_t{0}, size_t{1}, size_t{63}, size_t{64}, size_t{65}, size_t{2047},
-                            size_t{2049}, 3 * mebibyte, size_t{5}, 8 * mebibyte + 1}) {
+  for (const size_t size :
+       {size_t{0}, size_t{1}, size_t{63}, size_t{64}, size_t{65}, size_t{2047}, size_t{2049},
+        3 * mebibyte, size_t{5}, 8 * mebibyte + 1}) {
     CAPTURE(size);
     const std::vector<uint8_t> sent = bytes_of(size, static_cast<uint8_t>(++number));
     const int64_t before_ns = realtime_ns();
@@ -156,7 +157,8 @@ TEST_CASE("any depth is held, whatever the sizes of the messages") {
   }
 }
 
-TEST_CASE("a fixed topic DSM wraps around and overwrites the oldest, which is counted on both sides") {
+TEST_CASE(
+  "a fixed topic DSM wraps around and overwrites the oldest, which is counted on both sides") {
   Fixture f(1000);  // a size that no number of records divides
   const auto publisher = f.publisher("/fixed", keep_last(10));
   const auto subscription = f.subscription("/fixed", keep_last(100));

@@ -1,7 +1,8 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 //
-// Random steps of publishers and subscriptions against the plainest model of KEEP_LAST: each subscription holds the
-// last `depth` of what it has not taken. One thread, so every difference is a fault, and shows again with its seed.
+// Random steps of publishers and subscriptions against the plainest model of KEEP_LAST: each
+// subscription holds the last `depth` of what it has not taken. One thread, so every difference is
+// a fault, and shows again with its seed.
 #include <doctest/doctest.h>
 
 #include <deque>

@@ -1,9 +1,10 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 //
-// Publishers and subscriptions of one process, all at the same time; every message is checked byte by byte. Under the
-// thread sanitizer this shows that claim and release order every access to a record's bytes. It cannot prove the
-// absence of a harmful interleaving that did not occur, nor anything about processes that die: see docs/model/ and
-// test_killed. Only one cluster: with receive threads see test_clusters.
+// Publishers and subscriptions of one process, all at the same time; every message is checked byte
+// by byte. Under the thread sanitizer this shows that claim and release order every access to a
+// record's bytes. It cannot prove the absence of a harmful interleaving that did not occur, nor
+// anything about processes that die: see docs/model/ and test_killed. Only one cluster: with
+// receive threads see test_clusters.
 #include <doctest/doctest.h>
 
 #include <future>
@@ -39,7 +40,8 @@ void publish_all(Publisher & publisher, uint64_t writer) {
   }
 }
 
-/// Takes until `publishers` is ready and nothing is left; how many. Throws on a torn message or a wrong order.
+/// Takes until `publishers` is ready and nothing is left; how many. Throws on a torn message or a
+/// wrong order.
 uint64_t take_until(
   Process & process, Subscription & subscription, std::atomic<bool> & published_all) {
   std::map<uint64_t, uint64_t> last;
@@ -60,7 +62,9 @@ uint64_t take_until(
 
 }  // namespace
 
-TEST_CASE("many publishers, many subscriptions: nothing torn, in order, and all that is missing is counted") {
+TEST_CASE(
+  "many publishers, many subscriptions: nothing torn, in order, and all that is missing is "
+  "counted") {
   for (const std::string topic : {"/fixed", "/growing"}) {
     CAPTURE(topic);
     Fixture f;
@@ -94,7 +98,8 @@ TEST_CASE("many publishers, many subscriptions: nothing torn, in order, and all 
   }
 }
 
-TEST_CASE("one publisher shared by threads: each publishes whole messages, sequence numbers are unique") {
+TEST_CASE(
+  "one publisher shared by threads: each publishes whole messages, sequence numbers are unique") {
   Fixture f;
   const auto publisher = f.process->create_publisher(on_topic("/shared", keep_last(10)));
   const auto subscription =
@@ -121,9 +126,8 @@ TEST_CASE("one subscription shared by threads: each message is taken once") {
   std::atomic<bool> published_all{false};
   std::vector<std::future<uint64_t>> taken;
   for (int i = 0; i < 3; ++i) {
-    taken.push_back(std::async(std::launch::async, [&] {
-      return take_until(*f.process, *subscription, published_all);
-    }));
+    taken.push_back(std::async(
+      std::launch::async, [&] { return take_until(*f.process, *subscription, published_all); }));
   }
   publish_all(*publisher, 1);
   published_all = true;

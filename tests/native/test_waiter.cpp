@@ -1,7 +1,7 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 //
-// The one place where a process sleeps. The stress cannot prove that no wake-up is ever lost; one that is shows as a
-// wait that ends by its deadline.
+// The one place where a process sleeps. The stress cannot prove that no wake-up is ever lost; one
+// that is shows as a wait that ends by its deadline.
 #include <doctest/doctest.h>
 
 #include <future>
@@ -11,8 +11,8 @@
 #include "patience.hpp"
 #include "platform/clock.hpp"
 #include "platform/futex_any.hpp"
-#include "transport/waiting/joint_wait.hpp"
 #include "transport/layout/wake_word.hpp"
+#include "transport/waiting/joint_wait.hpp"
 #include "transport/waiting/waiter.hpp"
 
 using namespace manycore;
@@ -29,7 +29,8 @@ struct Side {
 
 int64_t long_from_now() { return monotonic_ns() + patience_s * ns_per_s; }
 
-/// Passes `ball` to the other side and back, `rounds` times; how often a wait ended by its deadline.
+/// Passes `ball` to the other side and back, `rounds` times; how often a wait ended by its
+/// deadline.
 int play(Side & own, Side & other, std::atomic<int> & ball, int own_parity, int rounds) {
   int missed = 0;
   for (int i = 0; i < rounds; ++i) {
@@ -80,8 +81,8 @@ TEST_CASE("one notification wakes all who wait") {
     const uint32_t seen = side.waiter.epoch();
     std::vector<std::future<bool>> woken;
     for (int i = 0; i < 4; ++i) {
-      woken.push_back(std::async(
-        std::launch::async, [&] { return side.waiter.wait(seen, long_from_now()); }));
+      woken.push_back(
+        std::async(std::launch::async, [&] { return side.waiter.wait(seen, long_from_now()); }));
     }
     if (mode == WaitMode::block) {
       wait_until("all sleep", [&] { return side.word.sleepers == 4; });

@@ -9,8 +9,8 @@
 
 namespace manycore::ndt::python {
 
-using DoublePoints =
-  nanobind::ndarray<const double, nanobind::shape<-1, 3>, nanobind::c_contig, nanobind::device::cpu>;
+using DoublePoints = nanobind::ndarray<
+  const double, nanobind::shape<-1, 3>, nanobind::c_contig, nanobind::device::cpu>;
 using FloatPoints =
   nanobind::ndarray<const float, nanobind::shape<-1, 3>, nanobind::c_contig, nanobind::device::cpu>;
 using PoseMatrix =

@@ -10,11 +10,11 @@
 
 #include <utility>
 
+#include "bench/ndt/thread_matcher.hpp"
+#include "ndt/serial_matcher.hpp"
+#include "ndt/worker_group.hpp"
 #include "python/ndt/arrays.hpp"
 #include "python/ndt/bindings.hpp"
-#include "ndt/serial_matcher.hpp"
-#include "bench/ndt/thread_matcher.hpp"
-#include "ndt/worker_group.hpp"
 
 namespace nb = nanobind;
 
@@ -43,15 +43,13 @@ public:
       regularization = Regularization{scale_factor_, position_m->first, position_m->second};
     }
     return answer([&] {
-      return matcher_.align(
-        map, points.data(), points.shape(0), pose_from(guess), regularization);
+      return matcher_.align(map, points.data(), points.shape(0), pose_from(guess), regularization);
     });
   }
 
   nb::dict evaluate(const VoxelMap & map, const FloatPoints & points, const PoseMatrix & pose) {
-    return answer([&] {
-      return matcher_.evaluate(map, points.data(), points.shape(0), pose_from(pose));
-    });
+    return answer(
+      [&] { return matcher_.evaluate(map, points.data(), points.shape(0), pose_from(pose)); });
   }
 
   Matcher & matcher() { return matcher_; }
@@ -77,8 +75,9 @@ template<typename Matcher>
 nb::class_<Bound<Matcher>> bind(nb::module_ & module, const char * name) {
   using Self = Bound<Matcher>;
   return nb::class_<Self>(module, name)
-    .def("align", &Self::align, nb::arg("map"), nb::arg("points"), nb::arg("guess"),
-         nb::arg("regularization_position_m") = nb::none())
+    .def(
+      "align", &Self::align, nb::arg("map"), nb::arg("points"), nb::arg("guess"),
+      nb::arg("regularization_position_m") = nb::none())
     .def("evaluate", &Self::evaluate, nb::arg("map"), nb::arg("points"), nb::arg("pose"));
 }
 
@@ -90,51 +89,68 @@ void bind_matchers(nb::module_ & module) {
     .value("clamped", StepRule::clamped)
     .value("more_thuente", StepRule::more_thuente);
   nb::class_<MatchOptions>(module, "MatchOptions")
-    .def(nb::new_(&options), nb::kw_only(), nb::arg("step_rule"), nb::arg("max_iterations"),
-         nb::arg("step_size"), nb::arg("trans_epsilon"), nb::arg("outlier_ratio"),
-         nb::arg("regularization_scale_factor"));
+    .def(
+      nb::new_(&options), nb::kw_only(), nb::arg("step_rule"), nb::arg("max_iterations"),
+      nb::arg("step_size"), nb::arg("trans_epsilon"), nb::arg("outlier_ratio"),
+      nb::arg("regularization_scale_factor"));
   using Serial = Bound<SerialMatcher>;
   bind<SerialMatcher>(module, "SerialMatcher")
     .def(nb::init<const MatchOptions &>(), nb::arg("options"))
-    .def("time_passes_ns", [](
-      Serial & serial, const VoxelMap & map, const FloatPoints & points, const PoseMatrix & pose,
-      size_t passes) {
-      const nb::gil_scoped_release released;
-      return serial.matcher().time_passes_ns(
-        map, points.data(), points.shape(0), pose_from(pose), passes);
-    }, nb::arg("map"), nb::arg("points"), nb::arg("pose"), nb::arg("passes"))
-    .def("time_shares_ns", [](
-      Serial & serial, const VoxelMap & map, const FloatPoints & points, const PoseMatrix & pose,
-      size_t workers) {
-      const nb::gil_scoped_release released;
-      return serial.matcher().time_shares_ns(
-        map, points.data(), points.shape(0), pose_from(pose), workers);
-    }, nb::arg("map"), nb::arg("points"), nb::arg("pose"), nb::arg("workers"))
-    .def("profile_ns", [](
-      Serial & serial, const VoxelMap & map, const FloatPoints & points, const PoseMatrix & guess) {
-      const Profile times =
-        serial.matcher().profile(map, points.data(), points.shape(0), pose_from(guess));
-      nb::dict out;
-      out["lay_out"] = times.lay_out_ns;
-      out["search"] = times.search_ns;
-      out["derivatives"] = times.derivatives_ns;
-      out["total"] = times.total_ns;
-      return out;
-    }, nb::arg("map"), nb::arg("points"), nb::arg("guess"));
+    .def(
+      "time_passes_ns",
+      [](
+        Serial & serial, const VoxelMap & map, const FloatPoints & points, const PoseMatrix & pose,
+        size_t passes) {
+        const nb::gil_scoped_release released;
+        return serial.matcher().time_passes_ns(
+          map, points.data(), points.shape(0), pose_from(pose), passes);
+      },
+      nb::arg("map"), nb::arg("points"), nb::arg("pose"), nb::arg("passes"))
+    .def(
+      "time_shares_ns",
+      [](
+        Serial & serial, const VoxelMap & map, const FloatPoints & points, const PoseMatrix & pose,
+        size_t workers) {
+        const nb::gil_scoped_release released;
+        return serial.matcher().time_shares_ns(
+          map, points.data(), points.shape(0), pose_from(pose), workers);
+      },
+      nb::arg("map"), nb::arg("points"), nb::arg("pose"), nb::arg("workers"))
+    .def(
+      "profile_ns",
+      [](
+        Serial & serial, const VoxelMap & map, const FloatPoints & points,
+        const PoseMatrix & guess) {
+        const Profile times =
+          serial.matcher().profile(map, points.data(), points.shape(0), pose_from(guess));
+        nb::dict out;
+        out["lay_out"] = times.lay_out_ns;
+        out["search"] = times.search_ns;
+        out["derivatives"] = times.derivatives_ns;
+        out["total"] = times.total_ns;
+        return out;
+      },
+      nb::arg("map"), nb::arg("points"), nb::arg("guess"));
   bind<ThreadMatcher>(module, "ThreadMatcher")
-    .def(nb::init<const MatchOptions &, const std::vector<int> &, const std::vector<int> &>(),
-         nb::arg("options"), nb::arg("derivative_cpus"), nb::arg("search_cpus"));
+    .def(
+      nb::init<const MatchOptions &, const std::vector<int> &, const std::vector<int> &>(),
+      nb::arg("options"), nb::arg("derivative_cpus"), nb::arg("search_cpus"));
   using Group = Bound<WorkerGroup>;
   bind<WorkerGroup>(module, "WorkerGroup")
-    .def(nb::init<const MatchOptions &, const std::string &, const std::vector<int> &>(),
-         nb::arg("options"), nb::arg("program"), nb::arg("host_cpus"))
-    .def("prepare", [](Group & group, const VoxelMap & map) {
-      const nb::gil_scoped_release released;
-      group.matcher().prepare(map);
-    }, nb::arg("map"))
-    .def("memory_bytes", [](Group & group, size_t points) {
-      return group.matcher().memory_bytes(points);
-    }, nb::arg("points"))
+    .def(
+      nb::init<const MatchOptions &, const std::string &, const std::vector<int> &>(),
+      nb::arg("options"), nb::arg("program"), nb::arg("host_cpus"))
+    .def(
+      "prepare",
+      [](Group & group, const VoxelMap & map) {
+        const nb::gil_scoped_release released;
+        group.matcher().prepare(map);
+      },
+      nb::arg("map"))
+    .def(
+      "memory_bytes",
+      [](Group & group, size_t points) { return group.matcher().memory_bytes(points); },
+      nb::arg("points"))
     .def("pids", [](Group & group) { return group.matcher().pids(); })
     .def("busy_ns", [](Group & group) { return group.matcher().busy_ns(); })
     .def("replaced", [](Group & group) { return group.matcher().replaced(); });

@@ -2,8 +2,8 @@
 #include <nanobind/nanobind.h>
 
 #include "ndt/pass.hpp"
-#include "python/ndt/bindings.hpp"
 #include "platform/error.hpp"
+#include "python/ndt/bindings.hpp"
 
 namespace nb = nanobind;
 

@@ -32,8 +32,9 @@ void bind_voxel_map(nb::module_ & module) {
     .value("autoware", VoxelCovariance::autoware)
     .value("pclomp", VoxelCovariance::pclomp);
   nb::class_<VoxelMap>(module, "VoxelMap")
-    .def(nb::new_(&build), nb::arg("points"), nb::kw_only(), nb::arg("voxel_size_m"),
-         nb::arg("search"), nb::arg("covariance"), nb::arg("min_points_per_voxel"))
+    .def(
+      nb::new_(&build), nb::arg("points"), nb::kw_only(), nb::arg("voxel_size_m"),
+      nb::arg("search"), nb::arg("covariance"), nb::arg("min_points_per_voxel"))
     .def_prop_ro("voxels", [](const VoxelMap & map) { return map.header().voxel_count; })
     .def_prop_ro("size_bytes", [](const VoxelMap & map) { return map.header().size_bytes; });
 }

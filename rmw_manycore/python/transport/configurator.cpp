@@ -44,9 +44,10 @@ Configurator * configure(
 void bind_configurator(nb::module_ & module) {
   module.def("clean", &clean_platform, nb::arg("name"));
   nb::class_<Configurator>(module, "Configurator")
-    .def(nb::new_(&configure), nb::arg("name"), nb::kw_only(), nb::arg("clusters"),
-         nb::arg("cores_per_cluster"), nb::arg("smem_size"),
-         nb::arg("host_cpu_of_receive_thread"), nb::arg("topics"));
+    .def(
+      nb::new_(&configure), nb::arg("name"), nb::kw_only(), nb::arg("clusters"),
+      nb::arg("cores_per_cluster"), nb::arg("smem_size"), nb::arg("host_cpu_of_receive_thread"),
+      nb::arg("topics"));
 }
 
 }  // namespace manycore::python

@@ -17,7 +17,8 @@ int64_t duration_from(const nb::handle & value) {
 }
 
 /// The position of `text` among two words.
-bool second_of(const std::string & key, const std::string & text, const char * first, const char * second) {
+bool second_of(
+  const std::string & key, const std::string & text, const char * first, const char * second) {
   if (text == second) {
     return true;
   }
@@ -140,7 +141,8 @@ Qos qos_from(const nb::dict & values) {
     if (key == "reliability") {
       qos.reliability = static_cast<Reliability>(second_of(key, word(), "best_effort", "reliable"));
     } else if (key == "durability") {
-      qos.durability = static_cast<Durability>(second_of(key, word(), "volatile", "transient_local"));
+      qos.durability =
+        static_cast<Durability>(second_of(key, word(), "volatile", "transient_local"));
     } else if (key == "history") {
       qos.history = static_cast<History>(second_of(key, word(), "keep_last", "keep_all"));
     } else if (key == "liveliness") {

@@ -9,7 +9,8 @@
 namespace nb = nanobind;
 
 NB_MODULE(_transport, module) {
-  module.doc() = "The transport of rmw_manycore without ROS: platforms seen, configured and joined.";
+  module.doc() =
+    "The transport of rmw_manycore without ROS: platforms seen, configured and joined.";
   nb::exception<manycore::Error>(module, "PlatformError", PyExc_RuntimeError);
   manycore::python::bind_platform(module);
   manycore::python::bind_configurator(module);

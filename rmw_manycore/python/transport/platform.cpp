@@ -106,10 +106,13 @@ void bind_platform(nb::module_ & module) {
   module.def("platform_directory", [](const std::string & name) {
     return PlatformPaths::of(name).directory;
   });
-  module.def("charge_smem", [](const std::string & name, uint64_t size_bytes) {
-    Registry registry(PlatformPaths::of(name));
-    charge_smem(registry, getpid(), size_bytes);
-  }, nb::arg("platform"), nb::arg("size_bytes"), nb::call_guard<nb::gil_scoped_release>());
+  module.def(
+    "charge_smem",
+    [](const std::string & name, uint64_t size_bytes) {
+      Registry registry(PlatformPaths::of(name));
+      charge_smem(registry, getpid(), size_bytes);
+    },
+    nb::arg("platform"), nb::arg("size_bytes"), nb::call_guard<nb::gil_scoped_release>());
   nb::class_<Platform>(module, "Platform")
     .def(nb::init<const std::string &>(), nb::arg("name"))
     .def("info", &Platform::info)

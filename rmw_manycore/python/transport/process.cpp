@@ -6,9 +6,9 @@
 #include <nanobind/nanobind.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/shared_ptr.h>
-#include <nanobind/stl/unique_ptr.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/tuple.h>
+#include <nanobind/stl/unique_ptr.h>
 
 #include <cstring>
 
@@ -211,11 +211,13 @@ private:
 
 void bind_process(nb::module_ & module) {
   nb::class_<BoundPublisher>(module, "Publisher")
-    .def("publish", &BoundPublisher::publish, nb::arg("data"),
-         nb::arg("source_timestamp_ns") = nb::none(), nb::arg("client") = nb::none(),
-         nb::arg("number") = 0)
-    .def("publish_from", &BoundPublisher::publish_from, nb::arg("address"), nb::arg("size"),
-         nb::arg("source_timestamp_ns") = nb::none())
+    .def(
+      "publish", &BoundPublisher::publish, nb::arg("data"),
+      nb::arg("source_timestamp_ns") = nb::none(), nb::arg("client") = nb::none(),
+      nb::arg("number") = 0)
+    .def(
+      "publish_from", &BoundPublisher::publish_from, nb::arg("address"), nb::arg("size"),
+      nb::arg("source_timestamp_ns") = nb::none())
     .def_prop_ro("gid", &BoundPublisher::gid)
     .def("matched", &BoundPublisher::matched);
   nb::class_<BoundClaim>(module, "Claim")
@@ -236,13 +238,16 @@ void bind_process(nb::module_ & module) {
     .def("matched", &BoundSubscription::matched)
     .def("lost", &BoundSubscription::lost);
   nb::class_<BoundProcess>(module, "Process")
-    .def(nb::init<const std::string &, uint32_t, std::optional<uint32_t>, const std::string &>(),
-         nb::arg("platform"), nb::arg("cluster") = 1, nb::arg("core") = nb::none(),
-         nb::arg("label") = "tool")
-    .def("publisher", &BoundProcess::publisher, nb::arg("topic"), nb::arg("type"), nb::arg("qos"),
-         nb::arg("role") = "topic", nb::arg("type_hash") = "")
-    .def("subscription", &BoundProcess::subscription, nb::arg("topic"), nb::arg("type"),
-         nb::arg("qos"), nb::arg("role") = "topic", nb::arg("type_hash") = "")
+    .def(
+      nb::init<const std::string &, uint32_t, std::optional<uint32_t>, const std::string &>(),
+      nb::arg("platform"), nb::arg("cluster") = 1, nb::arg("core") = nb::none(),
+      nb::arg("label") = "tool")
+    .def(
+      "publisher", &BoundProcess::publisher, nb::arg("topic"), nb::arg("type"), nb::arg("qos"),
+      nb::arg("role") = "topic", nb::arg("type_hash") = "")
+    .def(
+      "subscription", &BoundProcess::subscription, nb::arg("topic"), nb::arg("type"),
+      nb::arg("qos"), nb::arg("role") = "topic", nb::arg("type_hash") = "")
     .def("endpoints_of", &BoundProcess::endpoints_of, nb::arg("topic"))
     .def("graph_generation", &BoundProcess::graph_generation)
     .def("watch_graph", &BoundProcess::watch_graph)

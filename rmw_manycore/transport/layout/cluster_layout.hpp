@@ -14,7 +14,7 @@ struct ClusterHeader {
   std::atomic<int32_t> receive_thread_pid;
   /// Set by a sender whose eMCOS message found the pipe full, after it set `resync` on its readers.
   std::atomic<uint32_t> pipe_overflow;
-  std::atomic<uint64_t> messages;  ///< eMCOS messages handled
+  std::atomic<uint64_t> messages;       ///< eMCOS messages handled
   std::atomic<uint64_t> notifications;  ///< hints pushed on subscriber queues
   std::atomic<uint64_t> charged_bytes;  ///< sum of its processes' (derived)
   /// Odd while the receive thread follows references (see docs/design/topic_dsm.md, Freeing).

@@ -10,12 +10,14 @@
 
 namespace manycore {
 
-/// Counts periods without a message (DDS DEADLINE) in one word, without a timer: missed(t) = (t - origin) / period.
-/// A message moves the origin so that the count stays and the next period begins. One word, so any process may be
-/// killed at any instruction of a touch(). Unsigned throughout: a damaged word gives a wrong count and nothing worse.
+/// Counts periods without a message (DDS DEADLINE) in one word, without a timer: missed(t) = (t -
+/// origin) / period. A message moves the origin so that the count stays and the next period begins.
+/// One word, so any process may be killed at any instruction of a touch(). Unsigned throughout: a
+/// damaged word gives a wrong count and nothing worse.
 class DeadlineClock {
 public:
-  static constexpr uint64_t not_started = INT64_MAX;  ///< before the first message nothing is missed
+  static constexpr uint64_t not_started =
+    INT64_MAX;  ///< before the first message nothing is missed
 
   /// Misses at `now_ns`; needs origin <= now_ns and a period above 0.
   static constexpr uint64_t missed_at(uint64_t origin_ns, uint64_t now_ns, uint64_t period_ns) {
@@ -28,15 +30,14 @@ public:
 
   void reset() noexcept { origin_ns_.store(not_started, std::memory_order_relaxed); }
 
-  /// A message is there; true when it is the first, before which nothing was due. The clock is read after the origin:
-  /// an origin in the future would lose a miss. seq_cst, before a look at who waits for events: he counts himself
-  /// before he reads the origin.
+  /// A message is there; true when it is the first, before which nothing was due. The clock is read
+  /// after the origin: an origin in the future would lose a miss. seq_cst, before a look at who
+  /// waits for events: he counts himself before he reads the origin.
   bool touch(int64_t period_ns) noexcept {
     uint64_t origin_ns = origin_ns_.load(std::memory_order_acquire);
-    while (period_ns > 0 &&
-           !origin_ns_.compare_exchange_weak(
-             origin_ns, moved(origin_ns, now(), static_cast<uint64_t>(period_ns)),
-             std::memory_order_seq_cst)) {
+    while (period_ns > 0 && !origin_ns_.compare_exchange_weak(
+                              origin_ns, moved(origin_ns, now(), static_cast<uint64_t>(period_ns)),
+                              std::memory_order_seq_cst)) {
     }
     return origin_ns == not_started;
   }

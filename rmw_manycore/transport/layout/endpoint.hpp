@@ -32,7 +32,8 @@ struct EndpointSpec {
   std::string type;   ///< "std_msgs/msg/String"; for services the service's type
   TypeHash type_hash;
   Qos qos;
-  bool ignore_local = false;  ///< subscription only: not matched with publishers of the same process
+  bool ignore_local =
+    false;  ///< subscription only: not matched with publishers of the same process
 };
 
 /// Client and request number that a request or reply belongs to; all zero on topics.
@@ -47,7 +48,8 @@ struct MatchedCount {
   uint64_t current = 0;  ///< matches now
 };
 
-/// A count that rises with time (deadlines missed, leases lost), and when it will next unless something happens.
+/// A count that rises with time (deadlines missed, leases lost), and when it will next unless
+/// something happens.
 struct TimedCount {
   uint64_t total = 0;
   int64_t next_due_ns = infinite_ns;  ///< CLOCK_MONOTONIC

@@ -19,7 +19,8 @@ constexpr uint32_t nothing = UINT32_MAX;  ///< no slot
 
 constexpr size_t name_bytes = 256;  ///< ROS names are at most 255 characters
 
-/// free -> live -> closing -> free; closing only for endpoints (see docs/design/topic_dsm.md, Freeing).
+/// free -> live -> closing -> free; closing only for endpoints (see docs/design/topic_dsm.md,
+/// Freeing).
 enum class SlotState : uint32_t { free, live, closing };
 
 /// First member of every table entry.
@@ -111,7 +112,7 @@ struct TableHead {
 struct Profile {
   uint32_t clusters;
   uint32_t cores_per_cluster;
-  uint64_t smem_bytes;  ///< of each cluster
+  uint64_t smem_bytes;                               ///< of each cluster
   int32_t host_cpu_of_receive_thread[max_clusters];  ///< index cluster - 1; -1 = not pinned
 };
 
@@ -124,7 +125,7 @@ struct RegistryHeader {
   TableHead nodes;
   TableHead endpoints;
   uint32_t topic_count;
-  uint32_t closing_count;  ///< endpoints in SlotState::closing (derived)
+  uint32_t closing_count;                  ///< endpoints in SlotState::closing (derived)
   std::atomic<uint64_t> clusters_present;  ///< bit c - 1: cluster c has a segment
   uint32_t topic_buckets[topic_bucket_count];
 };

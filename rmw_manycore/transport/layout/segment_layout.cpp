@@ -16,13 +16,14 @@ void check_segment(
   if (header.version != layout_version) {
     throw Error(
       ErrorCode::corrupt, std::string(what) + " has layout version " +
-        std::to_string(header.version) + ", this library has " + std::to_string(layout_version) +
-        advice);
+                            std::to_string(header.version) + ", this library has " +
+                            std::to_string(layout_version) + advice);
   }
   if (header.size_bytes != mapped_bytes) {
     throw Error(
       ErrorCode::corrupt, std::string(what) + " has " + std::to_string(mapped_bytes) +
-        " bytes, its header says " + std::to_string(header.size_bytes) + advice);
+                            " bytes, its header says " + std::to_string(header.size_bytes) +
+                            advice);
   }
 }
 

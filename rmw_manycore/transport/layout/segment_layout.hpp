@@ -11,10 +11,10 @@ namespace manycore {
 /// Raised whenever any struct in a *_layout.hpp changes.
 constexpr uint32_t layout_version = 4;
 
-constexpr uint64_t registry_magic = 0x4d43'5245'4749'5354;   // "MCREGIST"
-constexpr uint64_t cluster_magic = 0x4d43'434c'5553'5452;    // "MCCLUSTR"
-constexpr uint32_t topic_dsm_magic = 0x4d43'4453;            // "MCDS"
-constexpr uint32_t subscription_magic = 0x4d43'5342;         // "MCSB"
+constexpr uint64_t registry_magic = 0x4d43'5245'4749'5354;  // "MCREGIST"
+constexpr uint64_t cluster_magic = 0x4d43'434c'5553'5452;   // "MCCLUSTR"
+constexpr uint32_t topic_dsm_magic = 0x4d43'4453;           // "MCDS"
+constexpr uint32_t subscription_magic = 0x4d43'5342;        // "MCSB"
 
 constexpr uint32_t max_clusters = 64;  ///< receiver clusters are a 64-bit mask; Bostan has 20
 

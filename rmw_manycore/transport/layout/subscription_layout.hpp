@@ -6,11 +6,12 @@
 
 namespace manycore {
 
-/// free -> joining -> active -> revoked -> free. Only `active` allows a claim; `joining` until the publisher
-/// can know of the reader.
+/// free -> joining -> active -> revoked -> free. Only `active` allows a claim; `joining` until the
+/// publisher can know of the reader.
 enum class SourceState : uint32_t { free, joining, active, revoked };
 
-/// A topic DSM as seen from one subscription. The cache line is written by the subscriber per message.
+/// A topic DSM as seen from one subscription. The cache line is written by the subscriber per
+/// message.
 struct alignas(64) SourceEntry {
   std::atomic<SourceState> state;
   std::atomic<uint32_t> incarnation;  ///< raised at each use of this entry
@@ -21,7 +22,8 @@ struct alignas(64) SourceEntry {
   std::atomic<uint64_t> reading;  ///< record being read: the claim; no_record or every_record else
   std::atomic<uint64_t> reader;   ///< SegmentRef of the ReaderEntry
   std::atomic<uint64_t> joined_after;  ///< messages published before the match
-  std::atomic<uint64_t> displaced;  ///< newest hint that was displaced, as in its queue slot; 0 = none
+  std::atomic<uint64_t>
+    displaced;  ///< newest hint that was displaced, as in its queue slot; 0 = none
 };
 static_assert(sizeof(SourceEntry) == 64);
 
@@ -45,7 +47,7 @@ struct SubscriptionHeader {
   uint8_t keep_all;
   uint8_t has_deadline;
   uint8_t reserved[2];
-  std::atomic<uint32_t> resync;             ///< hints may be missing: scan the sources
+  std::atomic<uint32_t> resync;  ///< hints may be missing: scan the sources
   std::atomic<uint64_t> first_source_block;
   std::atomic<uint64_t> source_generation;  ///< raised whenever the source table changes
   std::atomic<uint64_t> dropped;            ///< hints that pushers displaced

@@ -24,10 +24,11 @@ struct alignas(64) RecordDescriptor {
 };
 static_assert(sizeof(RecordDescriptor) == 64);
 
-/// One allocation of descriptors followed by data. `first` = number of its first record; 0 = unused.
+/// One allocation of descriptors followed by data. `first` = number of its first record; 0 =
+/// unused.
 struct GenerationEntry {
   std::atomic<uint64_t> first;
-  std::atomic<uint64_t> offset;  ///< of descriptors, in the publisher's cluster segment
+  std::atomic<uint64_t> offset;            ///< of descriptors, in the publisher's cluster segment
   std::atomic<uint32_t> descriptor_count;  ///< power of two
   std::atomic<uint32_t> reserved;
   std::atomic<uint64_t> data_bytes;
@@ -43,9 +44,9 @@ static_assert(sizeof(GenerationEntry) == 32);
 /// read without the registry lock.
 struct ReaderEntry {
   std::atomic<uint32_t> active;
-  std::atomic<uint32_t> endpoint;          ///< slot of the subscription
-  std::atomic<uint64_t> subscription;      ///< SegmentRef of its header
-  std::atomic<uint64_t> source;            ///< SegmentRef of its source entry for this topic DSM
+  std::atomic<uint32_t> endpoint;      ///< slot of the subscription
+  std::atomic<uint64_t> subscription;  ///< SegmentRef of its header
+  std::atomic<uint64_t> source;        ///< SegmentRef of its source entry for this topic DSM
   std::atomic<uint32_t> source_index;
   std::atomic<uint32_t> source_incarnation;
 };
@@ -69,12 +70,12 @@ struct TopicDsmHeader {
   std::atomic<uint32_t> incarnation;  ///< of that slot
   std::atomic<uint32_t> orphan;       ///< its publisher is gone; freed once drained
   int64_t lifespan_ns;
-  uint32_t depth;       ///< of the publisher's KEEP_LAST history
+  uint32_t depth;  ///< of the publisher's KEEP_LAST history
   uint8_t keep_all;
   uint8_t transient_local;
-  uint8_t role;         ///< EndpointRole
+  uint8_t role;  ///< EndpointRole
   uint8_t reserved;
-  uint32_t process;     ///< slot of the publisher's process
+  uint32_t process;  ///< slot of the publisher's process
   uint32_t reserved2;
   Gid gid;
   std::atomic<uint64_t> next_reader_block;

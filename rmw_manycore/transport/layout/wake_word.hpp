@@ -15,7 +15,8 @@ struct alignas(64) WakeWord {
   /// Raises the epoch; one system call only if somebody sleeps.
   ///
   /// No wake-up is lost: the sleeper counts itself before the kernel compares the epoch, the waker
-  /// raises the epoch before it looks at the count; both are seq_cst, so one of them sees the other.
+  /// raises the epoch before it looks at the count; both are seq_cst, so one of them sees the
+  /// other.
   void notify() noexcept {
     epoch.fetch_add(1, std::memory_order_seq_cst);
     if (sleepers.load(std::memory_order_seq_cst) != 0) {

@@ -18,7 +18,8 @@ Configurator::Configurator(
   if (is_alive(paths_)) {
     throw Error(
       ErrorCode::invalid_argument, "platform '" + platform +
-        "' is running already; stop it, or give this one another name (platform: name in the mapfile)");
+                                     "' is running already; stop it, or give this one another name "
+                                     "(platform: name in the mapfile)");
   }
   ensure_platform(paths_, profile, topics);
   alive_locks(paths_).try_lock(configurator_byte);

@@ -8,8 +8,8 @@
 
 namespace manycore {
 
-/// Creates a platform before its first node, and keeps it while alive: profile and topic table come from a
-/// mapfile. For the launcher.
+/// Creates a platform before its first node, and keeps it while alive: profile and topic table come
+/// from a mapfile. For the launcher.
 class Configurator {
 public:
   /// Throws Error{invalid_argument} when a platform of this name is alive already.
@@ -27,7 +27,8 @@ private:
 /// Names of this user's platforms, dead or alive.
 std::vector<std::string> platform_names();
 
-/// Removes what a dead platform left. Throws Error{invalid_argument} when it is alive. Returns the paths.
+/// Removes what a dead platform left. Throws Error{invalid_argument} when it is alive. Returns the
+/// paths.
 std::vector<std::string> clean_platform(const std::string & platform);
 
 }  // namespace manycore

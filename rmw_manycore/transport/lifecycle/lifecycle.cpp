@@ -37,7 +37,8 @@ void make_private_directory(const std::string & path) {
   if (!S_ISDIR(status.st_mode) || status.st_uid != geteuid() || (status.st_mode & 077) != 0) {
     throw Error(
       ErrorCode::permission, path +
-        " is not a private directory of this user; remove it (or ask its owner to), then try again");
+                               " is not a private directory of this user; remove it (or ask its "
+                               "owner to), then try again");
   }
 }
 
@@ -236,8 +237,7 @@ void tell_other_reapers(Registry & registry, uint32_t own) {
 
 void ensure_receive_thread(const PlatformPaths & paths, uint32_t cluster) {
   const JoinLock lock(paths);  // one starter at a time
-  if (!exists(paths.alive()) ||
-      alive_locks(paths).is_held(receive_thread_byte + cluster)) {
+  if (!exists(paths.alive()) || alive_locks(paths).is_held(receive_thread_byte + cluster)) {
     return;
   }
   const std::string program = receive_thread_program();
@@ -246,7 +246,7 @@ void ensure_receive_thread(const PlatformPaths & paths, uint32_t cluster) {
   if (status != 0) {
     throw Error(
       ErrorCode::system, "cannot start the receive thread of cluster " + std::to_string(cluster) +
-        " (" + program + ", status " + std::to_string(status) + ")");
+                           " (" + program + ", status " + std::to_string(status) + ")");
   }
 }
 

@@ -14,8 +14,8 @@ namespace manycore {
 constexpr uint32_t receive_thread_byte = 65536;  ///< + cluster
 constexpr uint32_t configurator_byte = 131072;   ///< who configured the platform and keeps it
 
-/// Serialises joining and leaving of all platforms of this user, while alive. The user directory comes with its
-/// first holder and goes with the last one that leaves no platform in it.
+/// Serialises joining and leaving of all platforms of this user, while alive. The user directory
+/// comes with its first holder and goes with the last one that leaves no platform in it.
 class JoinLock {
 public:
   /// Throws Error{permission} when the user directory is not private.
@@ -32,32 +32,36 @@ private:
 /// The byte locks of a platform. One descriptor per process and file: see ByteLocks.
 ByteLocks alive_locks(const PlatformPaths & paths);
 
-/// Sizes for a platform that nobody configured: Coolidge's shape, SMEM from this machine's /dev/shm.
+/// Sizes for a platform that nobody configured: Coolidge's shape, SMEM from this machine's
+/// /dev/shm.
 Profile host_profile();
 
-/// Brings the platform's directory and registry up where they are missing, and wipes what a dead platform
-/// left. The caller holds the JoinLock.
+/// Brings the platform's directory and registry up where they are missing, and wipes what a dead
+/// platform left. The caller holds the JoinLock.
 void ensure_platform(
   const PlatformPaths & paths, const Profile & profile,
   const std::vector<TopicConfiguration> & topics);
 
-/// True when some process of the platform lives, or its configurator. The caller holds the JoinLock.
+/// True when some process of the platform lives, or its configurator. The caller holds the
+/// JoinLock.
 bool is_in_use(Registry & registry);
 
 /// True when anything of the platform lives, receive threads included.
 bool is_alive(const PlatformPaths & paths);
 
-/// Sends the receive threads home and removes all files. The caller holds the JoinLock. Returns the paths.
+/// Sends the receive threads home and removes all files. The caller holds the JoinLock. Returns the
+/// paths.
 std::vector<std::string> remove_platform(const PlatformPaths & paths);
 
-/// Under the registry lock: closes what dead processes left behind, and frees what could not be freed before.
-/// Returns the number of the dead.
+/// Under the registry lock: closes what dead processes left behind, and frees what could not be
+/// freed before. Returns the number of the dead.
 uint32_t reap_dead(Registry & registry);
 
 /// Has the reapers of all clusters but `own` look whom to watch.
 void tell_other_reapers(Registry & registry, uint32_t own);
 
-/// Starts the cluster's receive thread unless it lives. Throws Error{system} when it cannot be started.
+/// Starts the cluster's receive thread unless it lives. Throws Error{system} when it cannot be
+/// started.
 void ensure_receive_thread(const PlatformPaths & paths, uint32_t cluster);
 
 }  // namespace manycore

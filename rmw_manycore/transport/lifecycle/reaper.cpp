@@ -20,7 +20,8 @@ constexpr int for_ever_ms = -1;
 constexpr int retry_ms = 1000;
 constexpr uint64_t look_again_key = 0;  ///< no process has pid 0
 
-/// True while the platform's directory still holds this registry, and not a later one of the same name.
+/// True while the platform's directory still holds this registry, and not a later one of the same
+/// name.
 bool is_current(Registry & registry) {
   try {
     return Registry(registry.paths()).nonce() == registry.nonce();
@@ -54,7 +55,8 @@ bool end_if_unused(Registry & registry) {
 }  // namespace
 
 void exit_if_unused(Registry & registry) {
-  // One thread at a time: the end of one would cut off the other, and leave the directory that its JoinLock brought up.
+  // One thread at a time: the end of one would cut off the other, and leave the directory that its
+  // JoinLock brought up.
   static std::mutex mutex;
   const std::lock_guard<std::mutex> guard(mutex);
   if (end_if_unused(registry)) {
@@ -94,8 +96,9 @@ void Reaper::watch(pid_t pid) {
   }
 }
 
-/// A cluster that has no receive thread, not yet or not any more, is everybody's. So is one whose receive thread is not
-/// watched: nobody would tell of its end. That it lives is looked at once it is watched.
+/// A cluster that has no receive thread, not yet or not any more, is everybody's. So is one whose
+/// receive thread is not watched: nobody would tell of its end. That it lives is looked at once it
+/// is watched.
 bool Reaper::is_ours(uint32_t cluster) const {
   if (cluster == cluster_) {
     return true;

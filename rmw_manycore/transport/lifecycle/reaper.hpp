@@ -12,8 +12,8 @@
 
 namespace manycore {
 
-/// The second thread of a receive-thread process: sleeps on the pidfds of its cluster's processes and of the other
-/// clusters' receive threads; closes what the dead left behind.
+/// The second thread of a receive-thread process: sleeps on the pidfds of its cluster's processes
+/// and of the other clusters' receive threads; closes what the dead left behind.
 class Reaper {
 public:
   Reaper(Registry & registry, uint32_t cluster);
@@ -44,7 +44,8 @@ private:
   std::thread thread_;
 };
 
-/// Ends this receive-thread process, and the platform with it, if no process uses the platform any more.
+/// Ends this receive-thread process, and the platform with it, if no process uses the platform any
+/// more.
 void exit_if_unused(Registry & registry);
 
 }  // namespace manycore

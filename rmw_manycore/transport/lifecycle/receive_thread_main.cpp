@@ -1,6 +1,6 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-// manycore_receive_thread PLATFORM CLUSTER: the receive thread of one cluster, started by the first process of it
-// and by whoever notices that it died. Not meant to be started by hand.
+// manycore_receive_thread PLATFORM CLUSTER: the receive thread of one cluster, started by the first
+// process of it and by whoever notices that it died. Not meant to be started by hand.
 
 #include <sys/prctl.h>
 #include <unistd.h>

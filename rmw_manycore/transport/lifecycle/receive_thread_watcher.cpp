@@ -13,8 +13,8 @@
 namespace manycore {
 namespace {
 
-constexpr int retry_ms = 1000;   ///< after a start that failed
-constexpr int settle_ms = 1;     ///< while another process is starting it
+constexpr int retry_ms = 1000;  ///< after a start that failed
+constexpr int settle_ms = 1;    ///< while another process is starting it
 constexpr int for_ever_ms = -1;
 
 }  // namespace

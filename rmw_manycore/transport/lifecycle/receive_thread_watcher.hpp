@@ -8,8 +8,8 @@
 
 namespace manycore {
 
-/// Keeps the own cluster's receive thread alive: starts it where it is missing, sleeps on its pidfd, and starts
-/// it again when it died. One thread that is never due, so it costs no CPU.
+/// Keeps the own cluster's receive thread alive: starts it where it is missing, sleeps on its
+/// pidfd, and starts it again when it died. One thread that is never due, so it costs no CPU.
 class ReceiveThreadWatcher {
 public:
   ReceiveThreadWatcher(Registry & registry, uint32_t cluster);

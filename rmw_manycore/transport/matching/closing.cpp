@@ -1,10 +1,10 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #include "transport/matching/closing.hpp"
 
-#include "transport/registry/endpoint_blocks.hpp"
 #include "transport/qos/liveliness.hpp"
-#include "transport/topic_dsm/reader_table.hpp"
 #include "transport/queue/source_table.hpp"
+#include "transport/registry/endpoint_blocks.hpp"
+#include "transport/topic_dsm/reader_table.hpp"
 
 namespace manycore::closing {
 namespace {
@@ -28,8 +28,9 @@ void close_subscription(Registry & registry, EndpointEntry & entry) {
       return false;
     }
     const uint32_t publisher = source.topic_dsm_endpoint.load();
-    if (state == SourceState::active && topic_dsm_of(registry, source) != nullptr &&
-        registry.endpoints().is_live(publisher)) {
+    if (
+      state == SourceState::active && topic_dsm_of(registry, source) != nullptr &&
+      registry.endpoints().is_live(publisher)) {
       count_unmatched(registry, registry.endpoints()[publisher]);
     }
     source.state.store(SourceState::revoked, std::memory_order_seq_cst);
@@ -63,8 +64,9 @@ bool undelivered(
   return false;
 }
 
-/// Hints of its last records may never have been pushed (`died`), or may have been displaced: readers that miss
-/// something are told to look, so that the topic DSM does not wait for them for ever.
+/// Hints of its last records may never have been pushed (`died`), or may have been displaced:
+/// readers that miss something are told to look, so that the topic DSM does not wait for them for
+/// ever.
 void close_publisher(Registry & registry, EndpointEntry & entry, bool died) {
   Cluster * const cluster = registry.clusters().find(entry.block.cluster());
   auto * const dsm = registry.clusters().find<TopicDsmHeader>(entry.block);
@@ -113,7 +115,8 @@ bool receive_threads_are_out(Registry & registry) {
 }
 
 /// Takes the topic DSM away from a reader that is done with it; false while it is not.
-bool revoke(Registry & registry, const Cluster & cluster, TopicDsmHeader & dsm, ReaderEntry & reader) {
+bool revoke(
+  Registry & registry, const Cluster & cluster, TopicDsmHeader & dsm, ReaderEntry & reader) {
   auto * const source = registry.clusters().find<SourceEntry>(SegmentRef{reader.source.load()});
   auto * const header =
     registry.clusters().find<SubscriptionHeader>(SegmentRef{reader.subscription.load()});
@@ -137,7 +140,8 @@ bool revoke(Registry & registry, const Cluster & cluster, TopicDsmHeader & dsm, 
   return true;
 }
 
-/// Frees the blocks of a chain. A damaged chain is not followed out of the cluster, nor round and round.
+/// Frees the blocks of a chain. A damaged chain is not followed out of the cluster, nor round and
+/// round.
 template<typename Block>
 void free_chain(Cluster & cluster, const std::atomic<uint64_t> & first) {
   uint64_t next = first.load();

@@ -5,13 +5,13 @@
 
 namespace manycore::closing {
 
-/// Ends all matches of an endpoint and takes it out of the graph; its memory goes with sweep(). Both need the
-/// registry lock and are safe to repeat after their caller died half way.
-/// `died`: its process is dead, so hints of its last records may never have been pushed.
+/// Ends all matches of an endpoint and takes it out of the graph; its memory goes with sweep().
+/// Both need the registry lock and are safe to repeat after their caller died half way. `died`: its
+/// process is dead, so hints of its last records may never have been pushed.
 void close(Registry & registry, uint32_t endpoint, bool died);
 
-/// Frees what closing endpoints hold, as far as nobody can be using it any more (see docs/design/topic_dsm.md,
-/// Freeing).
+/// Frees what closing endpoints hold, as far as nobody can be using it any more (see
+/// docs/design/topic_dsm.md, Freeing).
 void sweep(Registry & registry);
 
 /// What an endpoint's owner calls: takes the lock, closes, sweeps, and tells who watches the graph.

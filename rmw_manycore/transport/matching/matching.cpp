@@ -4,12 +4,12 @@
 #include <vector>
 
 #include "platform/error.hpp"
-#include "transport/registry/endpoint_blocks.hpp"
-#include "transport/topic_dsm/last_published.hpp"
 #include "transport/qos/liveliness.hpp"
 #include "transport/qos/qos_compatibility.hpp"
-#include "transport/topic_dsm/reader_table.hpp"
 #include "transport/queue/source_table.hpp"
+#include "transport/registry/endpoint_blocks.hpp"
+#include "transport/topic_dsm/last_published.hpp"
+#include "transport/topic_dsm/reader_table.hpp"
 
 namespace manycore::matching {
 namespace {
@@ -30,7 +30,7 @@ std::atomic<uint64_t> * end_of_chain(const Cluster & cluster, std::atomic<uint64
     if (block == nullptr || i == endpoint_capacity) {
       throw Error(
         ErrorCode::corrupt, "cluster " + std::to_string(cluster.id()) +
-          " is damaged; stop the platform's nodes and run 'manycore clean'");
+                              " is damaged; stop the platform's nodes and run 'manycore clean'");
     }
     end = &block->next;
   }
@@ -80,7 +80,8 @@ ReaderEntry & free_reader(Cluster & cluster, TopicDsmHeader & dsm) {
   return block.entries[0];
 }
 
-/// What a new match lets the subscription see: nothing published so far, or the history that is left.
+/// What a new match lets the subscription see: nothing published so far, or the history that is
+/// left.
 bool wants_history(const EndpointEntry & publisher, const EndpointEntry & subscription) {
   return publisher.qos.durability == Durability::transient_local &&
          subscription.qos.durability == Durability::transient_local;
@@ -93,7 +94,8 @@ void join(Registry & registry, const Pair & pair) {
   auto * const header =
     subscription_cluster.find<SubscriptionHeader>(pair.subscription.block.offset());
   if (dsm == nullptr || header == nullptr) {
-    throw Error(ErrorCode::corrupt, "the registry is damaged; stop the nodes, run 'manycore clean'");
+    throw Error(
+      ErrorCode::corrupt, "the registry is damaged; stop the nodes, run 'manycore clean'");
   }
   uint32_t index = 0;
   SourceEntry & source = free_source(subscription_cluster, *header, index);
@@ -119,8 +121,9 @@ void join(Registry & registry, const Pair & pair) {
   reader.source_index.store(index, std::memory_order_release);
   reader.source_incarnation.store(source.incarnation.load(), std::memory_order_release);
   reader.active.store(1, std::memory_order_release);
-  // From here on the publisher finds this reader: it looks again after storing `last` (seq_cst). No claim may
-  // come earlier, or the publisher could recycle a record under a reader it does not know.
+  // From here on the publisher finds this reader: it looks again after storing `last` (seq_cst). No
+  // claim may come earlier, or the publisher could recycle a record under a reader it does not
+  // know.
   dsm->match_generation.fetch_add(1, std::memory_order_seq_cst);
   source.state.store(SourceState::active, std::memory_order_seq_cst);
   header->source_generation.fetch_add(1, std::memory_order_seq_cst);
@@ -132,7 +135,8 @@ void join(Registry & registry, const Pair & pair) {
   }
   note_successor(pair.subscription);
   for (EndpointEntry * end : {&pair.publisher, &pair.subscription}) {
-    // In this order: matched_of() reads the total first, and never sees more changes than there were.
+    // In this order: matched_of() reads the total first, and never sees more changes than there
+    // were.
     end->matched_current.fetch_add(1);
     end->matched_total.fetch_add(1);
     notify_event_watchers(registry, end->process);
@@ -197,8 +201,7 @@ void count_matches_of(Registry & registry, uint32_t slot, std::vector<uint64_t> 
   }
   visit_source_table(*cluster, *header, [&](SourceEntry & source, uint32_t) {
     TopicDsmHeader * const dsm = topic_dsm_of(registry, source);
-    if (
-      source.state.load() == SourceState::active && dsm != nullptr && dsm->orphan.load() == 0) {
+    if (source.state.load() == SourceState::active && dsm != nullptr && dsm->orphan.load() == 0) {
       ++counts[slot];
       ++counts[source.topic_dsm_endpoint.load()];
     }

@@ -11,7 +11,8 @@ void connect(Registry & registry, uint32_t endpoint);
 /// After an owner of the registry lock died in connect(): takes back the match it left half made.
 void undo_half_matches(Registry & registry);
 
-/// After an owner of the registry lock died while counting: counts anew who is matched with how many.
+/// After an owner of the registry lock died while counting: counts anew who is matched with how
+/// many.
 void recount(Registry & registry);
 
 }  // namespace manycore::matching

@@ -1,6 +1,6 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-// Rebuilds the registry after the owner of its lock died. Part of Registry, defined up here because matches are
-// derived state, too.
+// Rebuilds the registry after the owner of its lock died. Part of Registry, defined up here because
+// matches are derived state, too.
 #include "transport/layout/subscription_layout.hpp"
 #include "transport/layout/topic_dsm_layout.hpp"
 #include "transport/matching/matching.hpp"
@@ -39,7 +39,8 @@ void Registry::mark_blocks_of(EndpointEntry & entry) noexcept {
     next = subscription->first_source_block.load();
     block_bytes = sizeof(SourceBlock);
   }
-  // Both kinds of continuation blocks start with the offset of the next one. The bound ends a damaged chain.
+  // Both kinds of continuation blocks start with the offset of the next one. The bound ends a
+  // damaged chain.
   for (uint32_t i = 0; next != 0 && i < endpoint_capacity; ++i) {
     auto * const link = cluster->find<std::atomic<uint64_t>>(next, block_bytes);
     if (link == nullptr) {
@@ -50,8 +51,8 @@ void Registry::mark_blocks_of(EndpointEntry & entry) noexcept {
   }
 }
 
-/// The last owner of the lock died at some instruction of a change. Primary state is the slots' states, which
-/// change in one store; everything derived from them is built anew.
+/// The last owner of the lock died at some instruction of a change. Primary state is the slots'
+/// states, which change in one store; everything derived from them is built anew.
 void Registry::repair() noexcept {
   processes_.rebuild_free_list();
   nodes_.rebuild_free_list();

@@ -25,8 +25,7 @@ uint64_t push_to_own_cluster(
       continue;
     }
     subscriber_queue::push(
-      *reader.subscription,
-      {reader.source_index, reader.source_incarnation, announcement.number},
+      *reader.subscription, {reader.source_index, reader.source_incarnation, announcement.number},
       [&](const Hint & oldest) { note_displaced(own, *reader.subscription, oldest); });
     if (pending != nullptr && pending != reader.wake) {
       pending->notify();
@@ -52,8 +51,8 @@ uint32_t target_slot(const ReaderList & list, const Announcement & announcement)
   return nothing;
 }
 
-/// The pipe was full. Either it still is after `pipe_overflow` is set, then the receive thread has yet to read from
-/// it and looks at the flag afterwards; or the message gets in.
+/// The pipe was full. Either it still is after `pipe_overflow` is set, then the receive thread has
+/// yet to read from it and looks at the flag afterwards; or the message gets in.
 void ask_to_look(Cluster & cluster, const ReaderList & list) noexcept {
   for (const Reader & reader : list.readers()) {
     if (reader.cluster == cluster.id()) {

@@ -14,9 +14,9 @@ struct Announcement {
   const Gid * target;  ///< only the reader with this gid, or nullptr for all
 };
 
-/// Step 1 of Fig. 4, last part: readers of the `own` cluster get a hint on their queue and are woken; every other
-/// cluster with a reader gets one eMCOS message. Never waits: where a pipe is full, the readers are told to look
-/// for themselves.
+/// Step 1 of Fig. 4, last part: readers of the `own` cluster get a hint on their queue and are
+/// woken; every other cluster with a reader gets one eMCOS message. Never waits: where a pipe is
+/// full, the readers are told to look for themselves.
 void announce(
   Registry & registry, const Cluster & own, const ReaderList & list,
   const Announcement & announcement) noexcept;

@@ -1,8 +1,8 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #include "transport/notification/receive_thread.hpp"
 
-#include "transport/topic_dsm/reader_table.hpp"
 #include "transport/queue/source_table.hpp"
+#include "transport/topic_dsm/reader_table.hpp"
 
 namespace manycore {
 
@@ -27,8 +27,8 @@ void ReceiveThread::recover() {
   wake_who_must_look();
 }
 
-/// Every write is atomic and of one size, so what is not a whole message of a known kind was put there by a
-/// stranger. It may stand across messages, which then are unreadable as well.
+/// Every write is atomic and of one size, so what is not a whole message of a known kind was put
+/// there by a stranger. It may stand across messages, which then are unreadable as well.
 bool ReceiveThread::handle(const EmcosMessage & message, const ProcessesChanged & on_change) {
   switch (message.kind) {
     case EmcosMessageKind::publish:
@@ -84,8 +84,8 @@ void ReceiveThread::forward(const EmcosMessage & message) noexcept {
   phase.store(phase.load(std::memory_order_relaxed) + 1, std::memory_order_release);
 }
 
-/// False when the reader table changed meanwhile: an entry may then have been read half old, half new. What was
-/// pushed already is pushed twice; subscribers ignore doubles.
+/// False when the reader table changed meanwhile: an entry may then have been read half old, half
+/// new. What was pushed already is pushed twice; subscribers ignore doubles.
 bool ReceiveThread::push_to_readers(
   const Cluster & source, TopicDsmHeader & dsm, const EmcosMessage & message) noexcept {
   const uint64_t generation = dsm.match_generation.load(std::memory_order_seq_cst);
@@ -129,7 +129,8 @@ void ReceiveThread::push(SegmentRef ref, const Hint & hint) noexcept {
   }
 }
 
-/// After every batch: a sender that found the pipe full relies on the reader of the full pipe to come by here.
+/// After every batch: a sender that found the pipe full relies on the reader of the full pipe to
+/// come by here.
 bool ReceiveThread::take_overflow() noexcept {
   std::atomic<uint32_t> & overflow = cluster_.header().pipe_overflow;
   return overflow.load(std::memory_order_seq_cst) != 0 &&
@@ -139,7 +140,8 @@ bool ReceiveThread::take_overflow() noexcept {
 /// All processes of the cluster: who has nothing to look for sleeps on.
 void ReceiveThread::wake_who_must_look() noexcept {
   for (uint32_t slot = 0; slot < registry_.processes().high_water(); ++slot) {
-    if (registry_.processes().is_live(slot) && registry_.processes()[slot].cluster == cluster_.id()) {
+    if (
+      registry_.processes().is_live(slot) && registry_.processes()[slot].cluster == cluster_.id()) {
       registry_.processes()[slot].wake.notify();
     }
   }

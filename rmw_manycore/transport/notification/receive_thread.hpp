@@ -3,21 +3,23 @@
 
 #include <functional>
 
-#include "transport/registry/registry.hpp"
-#include "transport/queue/subscriber_queue.hpp"
 #include "transport/layout/topic_dsm_layout.hpp"
+#include "transport/queue/subscriber_queue.hpp"
+#include "transport/registry/registry.hpp"
 
 namespace manycore {
 
-/// The receive thread of one cluster (ROS-lite2 III-B): takes publish notices off the cluster's pipe, pushes them
-/// on the queues of the cluster's subscriptions and wakes their nodes. The owner's thread runs it.
+/// The receive thread of one cluster (ROS-lite2 III-B): takes publish notices off the cluster's
+/// pipe, pushes them on the queues of the cluster's subscriptions and wakes their nodes. The
+/// owner's thread runs it.
 class ReceiveThread {
 public:
   using ProcessesChanged = std::function<void(EmcosMessageKind)>;
 
   ReceiveThread(Registry & registry, uint32_t cluster);
 
-  /// After the death of a predecessor, or of messages: every subscription of the cluster looks for itself once.
+  /// After the death of a predecessor, or of messages: every subscription of the cluster looks for
+  /// itself once.
   void recover();
 
   /// For ever. `on_change` is told of attach and detach messages.

@@ -10,7 +10,8 @@
 namespace manycore {
 namespace {
 
-/// The live publisher behind a source, or nullptr. Looks into the registry only: a topic DSM may be freed meanwhile.
+/// The live publisher behind a source, or nullptr. Looks into the registry only: a topic DSM may be
+/// freed meanwhile.
 const EndpointEntry * publisher_of(Registry & registry, const SourceEntry & source) {
   const uint32_t slot = source.topic_dsm_endpoint.load(std::memory_order_relaxed);
   if (

@@ -8,8 +8,9 @@
 
 namespace manycore {
 
-/// The publisher's side of MANUAL_BY_TOPIC liveliness with a lease: remembers the last assertion where subscriptions
-/// read it, and counts how often the lease ran out. Without a timer: both are functions of the clock. Thread-safe.
+/// The publisher's side of MANUAL_BY_TOPIC liveliness with a lease: remembers the last assertion
+/// where subscriptions read it, and counts how often the lease ran out. Without a timer: both are
+/// functions of the clock. Thread-safe.
 class ManualLiveliness {
 public:
   static constexpr int64_t never = 0;
@@ -18,7 +19,8 @@ public:
   ManualLiveliness(std::atomic<int64_t> & asserted_ns, int64_t lease_ns) noexcept
   : asserted_ns_(asserted_ns), lease_ns_(lease_ns) {}
 
-  /// True when this brought the publisher (back) to life, so that subscriptions have something to hear of.
+  /// True when this brought the publisher (back) to life, so that subscriptions have something to
+  /// hear of.
   bool assert_now() noexcept;
   /// How often the lease ran out; nothing before the first assertion, then once until the next one.
   TimedCount lost() const noexcept;

@@ -9,8 +9,9 @@
 
 namespace manycore {
 
-/// SourceEntry::displaced: the newest record of a source whose hint was displaced. Like the hint it holds the low bits of
-/// record number and source incarnation; a pusher may come late, when the entry is another source's.
+/// SourceEntry::displaced: the newest record of a source whose hint was displaced. Like the hint it
+/// holds the low bits of record number and source incarnation; a pusher may come late, when the
+/// entry is another source's.
 struct Displaced {
   static constexpr uint64_t some = uint64_t{1} << 63;
 
@@ -32,7 +33,8 @@ struct Displaced {
 
 private:
   static uint64_t encode(uint32_t incarnation, uint64_t number) noexcept {
-    return some | uint64_t{incarnation & Hint::incarnation_mask} << 32 | (number & Hint::number_mask);
+    return some | uint64_t{incarnation & Hint::incarnation_mask} << 32 |
+           (number & Hint::number_mask);
   }
   static bool is_newer(uint64_t word, uint64_t known) noexcept {
     const uint64_t ahead = (word - known) & Hint::number_mask;

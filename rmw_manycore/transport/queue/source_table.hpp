@@ -1,14 +1,14 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "transport/registry/cluster.hpp"
 #include "transport/queue/displaced.hpp"
 #include "transport/queue/subscriber_queue.hpp"
+#include "transport/registry/cluster.hpp"
 
 namespace manycore {
 
-/// Calls `visit(SourceEntry &, index)` for each entry of a subscription's source table, used or not, until
-/// it returns true. Bounded: a damaged chain ends.
+/// Calls `visit(SourceEntry &, index)` for each entry of a subscription's source table, used or
+/// not, until it returns true. Bounded: a damaged chain ends.
 template<typename Visit>
 void visit_source_table(const Cluster & cluster, SubscriptionHeader & subscription, Visit visit) {
   uint64_t next = subscription.first_source_block.load(std::memory_order_acquire);
@@ -26,7 +26,8 @@ void visit_source_table(const Cluster & cluster, SubscriptionHeader & subscripti
   }
 }
 
-/// Notes in its source's entry that a hint was displaced, for the subscriber to know that it is not on its way.
+/// Notes in its source's entry that a hint was displaced, for the subscriber to know that it is not
+/// on its way.
 inline void note_displaced(
   const Cluster & cluster, SubscriptionHeader & subscription, const Hint & hint) noexcept {
   visit_source_table(cluster, subscription, [&](SourceEntry & source, uint32_t index) {

@@ -53,7 +53,8 @@ private:
   uint32_t log2_;
 };
 
-/// Once, before the subscription is known to anybody: lap 0 is "never filled", positions start at lap 1.
+/// Once, before the subscription is known to anybody: lap 0 is "never filled", positions start at
+/// lap 1.
 inline void initialize(SubscriptionHeader & header) noexcept {
   const uint64_t count = uint64_t{1} << header.slot_count_log2;
   for (uint64_t i = 0; i < count; ++i) {
@@ -63,12 +64,13 @@ inline void initialize(SubscriptionHeader & header) noexcept {
   header.tail.store(count, std::memory_order_relaxed);
 }
 
-/// Step 2 of Fig. 4 (or step 1 inside a cluster): appends a hint, displacing the oldest when the queue holds
-/// `depth`. Any number of pushers in any processes; each may die at any instruction. A full KEEP_ALL queue
-/// displaces nothing: `resync` tells the subscriber to look for itself.
+/// Step 2 of Fig. 4 (or step 1 inside a cluster): appends a hint, displacing the oldest when the
+/// queue holds `depth`. Any number of pushers in any processes; each may die at any instruction. A
+/// full KEEP_ALL queue displaces nothing: `resync` tells the subscriber to look for itself.
 ///
-/// The exchange on the slot is the push; whoever finds a filled slot at `tail` moves `tail` on, so a
-/// pusher that died in between holds nobody up. `on_displaced(Hint)` is called for each that it displaces.
+/// The exchange on the slot is the push; whoever finds a filled slot at `tail` moves `tail` on, so
+/// a pusher that died in between holds nobody up. `on_displaced(Hint)` is called for each that it
+/// displaces.
 template<typename OnDisplaced>
 void push(SubscriptionHeader & header, const Hint & hint, OnDisplaced on_displaced) noexcept {
   header.note_arrival();
@@ -98,7 +100,7 @@ void push(SubscriptionHeader & header, const Hint & hint, OnDisplaced on_displac
       continue;
     }
     if (slot.compare_exchange_strong(
-        word, encode(slots.lap(tail), hint), std::memory_order_acq_rel)) {
+          word, encode(slots.lap(tail), hint), std::memory_order_acq_rel)) {
       header.tail.compare_exchange_strong(tail, tail + 1, std::memory_order_acq_rel);
       return;
     }
@@ -117,7 +119,8 @@ inline std::optional<Hint> pop(SubscriptionHeader & header) noexcept {
     if (!slots.filled(word, head)) {
       return std::nullopt;
     }
-    // A filled slot at `tail`: finish the push of a pusher that is late or dead, so that head <= tail.
+    // A filled slot at `tail`: finish the push of a pusher that is late or dead, so that head <=
+    // tail.
     uint64_t tail = head;
     header.tail.compare_exchange_strong(tail, head + 1, std::memory_order_acq_rel);
     // Success means that nobody displaced position `head`, so `word` was its content.

@@ -20,8 +20,9 @@ uint64_t map_bytes(uint64_t granules) { return align_up(align_up(granules, 64) /
 Error no_room(const Cluster & cluster, uint64_t length, const std::string & advice) {
   return Error(
     ErrorCode::no_space, "cluster " + std::to_string(cluster.id()) + " has no room for " +
-      std::to_string(length) + " bytes: " + std::to_string(cluster.used_bytes()) + " of its " +
-      std::to_string(cluster.size()) + " bytes of SMEM are used; " + advice);
+                           std::to_string(length) +
+                           " bytes: " + std::to_string(cluster.used_bytes()) + " of its " +
+                           std::to_string(cluster.size()) + " bytes of SMEM are used; " + advice);
 }
 
 }  // namespace
@@ -33,8 +34,8 @@ PlatformPaths PlatformPaths::of(const std::string & platform) {
                      });
   if (!valid) {
     throw Error(
-      ErrorCode::invalid_argument, "'" + platform +
-        "' is no platform name: expected up to 64 letters, digits, '-', '_', '.'");
+      ErrorCode::invalid_argument,
+      "'" + platform + "' is no platform name: expected up to 64 letters, digits, '-', '_', '.'");
   }
   const std::string user = "/dev/shm/manycore-" + std::to_string(geteuid());
   return {user, user + "/" + platform};
@@ -60,9 +61,7 @@ void Cluster::create(
 }
 
 Cluster::Cluster(const PlatformPaths & paths, uint32_t id, uint64_t platform_nonce)
-: id_(id),
-  memory_(SharedMemory::open(paths.cluster(id), 4096)),
-  pipe_(Pipe::open(paths.pipe(id))) {
+: id_(id), memory_(SharedMemory::open(paths.cluster(id), 4096)), pipe_(Pipe::open(paths.pipe(id))) {
   const ClusterHeader & head = header();
   check_segment(head.segment, cluster_magic, memory_.size(), paths.cluster(id).c_str());
   const std::string advice = "; stop the platform's nodes and run 'manycore clean'";
@@ -111,7 +110,8 @@ uint64_t Cluster::find_run(uint64_t count) const noexcept {
   return total;
 }
 
-/// Map and count are changed together, under the registry lock, whose next owner rebuilds both after a death.
+/// Map and count are changed together, under the registry lock, whose next owner rebuilds both
+/// after a death.
 void Cluster::require_sound_map() const {
   const ClusterHeader & head = header();
   uint64_t used = 0;
@@ -121,7 +121,7 @@ void Cluster::require_sound_map() const {
   if (used * head.granule_bytes != head.used_bytes.load(std::memory_order_relaxed)) {
     throw Error(
       ErrorCode::corrupt, "the memory map of cluster " + std::to_string(id_) +
-        " is damaged; stop the platform's nodes and run 'manycore clean'");
+                            " is damaged; stop the platform's nodes and run 'manycore clean'");
   }
 }
 

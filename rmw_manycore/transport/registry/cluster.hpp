@@ -44,7 +44,8 @@ public:
   bool contains(uint64_t offset, uint64_t length) const noexcept {
     return offset <= memory_.size() && length <= memory_.size() - offset;
   }
-  /// Nullptr for a reference that is out of bounds or where no T can be: shared memory is never followed blindly.
+  /// Nullptr for a reference that is out of bounds or where no T can be: shared memory is never
+  /// followed blindly.
   template<typename T>
   T * find(uint64_t offset, uint64_t length = sizeof(T)) const noexcept {
     return offset % alignof(T) == 0 && contains(offset, length) ? &memory_.at<T>(offset) : nullptr;
@@ -98,7 +99,8 @@ private:
   Pipe pipe_;
 };
 
-/// The clusters that this process has mapped, each on first use. Thread-safe, lock-free once mapped.
+/// The clusters that this process has mapped, each on first use. Thread-safe, lock-free once
+/// mapped.
 class Clusters {
 public:
   Clusters(PlatformPaths paths, uint64_t platform_nonce);

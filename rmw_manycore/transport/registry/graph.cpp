@@ -10,8 +10,9 @@ namespace {
 
 CounterValues read_counters(Registry & registry, const EndpointEntry & entry) {
   const EndpointCounters & counters = entry.counters;
-  CounterValues values{counters.messages.load(), counters.bytes.load(),   counters.lost.load(),
-                       counters.expired.load(),  counters.refused.load(), counters.overwritten.load()};
+  CounterValues values{counters.messages.load(), counters.bytes.load(),
+                       counters.lost.load(),     counters.expired.load(),
+                       counters.refused.load(),  counters.overwritten.load()};
   if (entry.kind == EndpointKind::subscription) {
     const auto * const header = registry.clusters().find<SubscriptionHeader>(entry.block);
     values.lost = header == nullptr ? values.lost : lost_so_far(entry, *header);

@@ -46,7 +46,7 @@ void store_name(char (&field)[name_bytes], const std::string & name, const char 
   if (name.size() >= name_bytes) {
     throw Error(
       ErrorCode::invalid_argument, std::string(what) + " '" + name + "' is longer than " +
-        std::to_string(name_bytes - 1) + " characters");
+                                     std::to_string(name_bytes - 1) + " characters");
   }
   std::memset(field, 0, name_bytes);
   std::memcpy(field, name.data(), name.size());

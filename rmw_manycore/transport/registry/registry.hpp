@@ -7,8 +7,8 @@
 
 #include "platform/error.hpp"
 #include "platform/shared_memory.hpp"
-#include "transport/registry/cluster.hpp"
 #include "transport/layout/registry_layout.hpp"
+#include "transport/registry/cluster.hpp"
 
 namespace manycore {
 
@@ -66,8 +66,8 @@ struct TopicConfiguration {
   uint64_t receiver_clusters = 0;
 };
 
-/// The platform's table of processes, nodes, endpoints and topics. Changed under its robust lock, off the
-/// data path.
+/// The platform's table of processes, nodes, endpoints and topics. Changed under its robust lock,
+/// off the data path.
 class Registry {
 public:
   static void create(
@@ -147,7 +147,7 @@ uint32_t Table<Entry>::take(const char * what) {
   if (slot >= capacity_) {
     throw Error(
       ErrorCode::no_space, "the platform's table of " + std::string(what) + " is full (" +
-        std::to_string(capacity_) + ")");
+                             std::to_string(capacity_) + ")");
   }
   memory_.reserve(offset_ + uint64_t{slot} * sizeof(Entry), sizeof(Entry));
   head_.high_water.store(slot + 1, std::memory_order_release);

@@ -9,9 +9,9 @@
 
 namespace manycore {
 
-/// Counts memory that process `pid` shares with its helpers as SMEM of its cluster, instead of what it
-/// had counted before. Its end gives it back, however it ends. Throws Error{no_space}, with the old
-/// count left, and Error{invalid_argument} when the process is not on the platform.
+/// Counts memory that process `pid` shares with its helpers as SMEM of its cluster, instead of what
+/// it had counted before. Its end gives it back, however it ends. Throws Error{no_space}, with the
+/// old count left, and Error{invalid_argument} when the process is not on the platform.
 void charge_smem(Registry & registry, pid_t pid, uint64_t size_bytes);
 
 /// For a process that goes; the caller holds the registry lock.

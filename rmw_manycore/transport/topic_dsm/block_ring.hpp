@@ -15,8 +15,8 @@ struct Block {
   uint64_t number;
 };
 
-/// A publisher's private list of blocks, in the order in which its cursor will meet them. Grows, never shrinks, so
-/// that the steady state allocates nothing.
+/// A publisher's private list of blocks, in the order in which its cursor will meet them. Grows,
+/// never shrinks, so that the steady state allocates nothing.
 class BlockRing {
 public:
   BlockRing() : slots_(64) {}

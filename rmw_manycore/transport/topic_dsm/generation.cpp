@@ -4,12 +4,11 @@
 namespace manycore {
 
 void Generation::allocate(
-  Cluster & cluster, GenerationEntry & entry, uint64_t data_bytes, uint64_t count,
-  uint64_t first) {
+  Cluster & cluster, GenerationEntry & entry, uint64_t data_bytes, uint64_t count, uint64_t first) {
   const uint64_t descriptor_bytes = count * sizeof(RecordDescriptor);
   const uint64_t offset = cluster.allocate(descriptor_bytes + data_bytes);
-  // A reader may still be looking here for a number of a generation that was given back; it looks at that
-  // generation's entry again before it believes what it finds.
+  // A reader may still be looking here for a number of a generation that was given back; it looks
+  // at that generation's entry again before it believes what it finds.
   auto * const descriptors = cluster.find<RecordDescriptor>(offset);
   for (uint64_t i = 0; i < count; ++i) {
     descriptors[i].number.store(no_record, std::memory_order_relaxed);

@@ -1,8 +1,8 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "transport/registry/cluster.hpp"
 #include "transport/layout/topic_dsm_layout.hpp"
+#include "transport/registry/cluster.hpp"
 
 namespace manycore {
 
@@ -30,8 +30,8 @@ struct Generation {
     return descriptors[number & (count - 1)];
   }
 
-  /// Allocates a generation and makes it visible to readers; the caller holds the registry lock. Throws
-  /// Error{no_space}.
+  /// Allocates a generation and makes it visible to readers; the caller holds the registry lock.
+  /// Throws Error{no_space}.
   static void allocate(
     Cluster & cluster, GenerationEntry & entry, uint64_t data_bytes, uint64_t count,
     uint64_t first);

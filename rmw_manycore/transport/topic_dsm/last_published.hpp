@@ -9,11 +9,13 @@ namespace manycore {
 struct LastPublished {
   uint64_t number;    ///< of its record
   uint64_t sequence;  ///< how many messages the publisher has published with it
-  bool exact;         ///< false when the publisher stands still at a moment where the two may not fit together
+  bool exact;  ///< false when the publisher stands still at a moment where the two may not fit
+               ///< together
 };
 
-/// The publisher stores `skipped_before`, `last`, `skipped_after` in this order. Read the other way round, equal
-/// outer values mean that `last` was stored under this count. Never waits for a publisher that was stopped in between.
+/// The publisher stores `skipped_before`, `last`, `skipped_after` in this order. Read the other way
+/// round, equal outer values mean that `last` was stored under this count. Never waits for a
+/// publisher that was stopped in between.
 inline LastPublished last_published(const TopicDsmHeader & dsm) noexcept {
   constexpr int tries = 100;
   LastPublished published{};

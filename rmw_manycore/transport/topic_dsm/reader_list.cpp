@@ -12,7 +12,8 @@ constexpr uint64_t look_again = UINT64_MAX;  ///< no generation
 
 }  // namespace
 
-/// Acquire, as in ReceiveThread::push_to_readers(): who reads a value of a later reader finds the generation raised.
+/// Acquire, as in ReceiveThread::push_to_readers(): who reads a value of a later reader finds the
+/// generation raised.
 Reader ReaderList::resolve(ReaderEntry & entry) {
   Reader reader;
   reader.endpoint = entry.endpoint.load(std::memory_order_acquire);
@@ -30,7 +31,7 @@ Reader ReaderList::resolve(ReaderEntry & entry) {
     registry_.endpoints()[reader.endpoint].process >= registry_.processes().high_water()) {
     throw Error(
       ErrorCode::corrupt, "cluster " + std::to_string(cluster_.id()) +
-        " is damaged; stop the platform's nodes and run 'manycore clean'");
+                            " is damaged; stop the platform's nodes and run 'manycore clean'");
   }
   const EndpointEntry & endpoint = registry_.endpoints()[reader.endpoint];
   reader.wake = &registry_.processes()[endpoint.process].wake;

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "platform/error.hpp"
-#include "transport/registry/registry.hpp"
 #include "transport/layout/subscription_layout.hpp"
 #include "transport/layout/topic_dsm_layout.hpp"
+#include "transport/registry/registry.hpp"
 
 namespace manycore {
 
@@ -29,15 +29,15 @@ struct Reader {
   }
 };
 
-/// A publisher's private copy of its reader table, renewed when the table changes. The addresses in it are
-/// good while the publisher's phase is odd (see docs/design/topic_dsm.md, Freeing).
+/// A publisher's private copy of its reader table, renewed when the table changes. The addresses in
+/// it are good while the publisher's phase is odd (see docs/design/topic_dsm.md, Freeing).
 class ReaderList {
 public:
   ReaderList(Registry & registry, Cluster & cluster, TopicDsmHeader & dsm) noexcept
   : registry_(registry), cluster_(cluster), dsm_(dsm) {}
 
-  /// Renews the copy if the table changed. The load is seq_cst: it must not move before the caller's
-  /// preceding seq_cst store of `phase`, `number` or `last`.
+  /// Renews the copy if the table changed. The load is seq_cst: it must not move before the
+  /// caller's preceding seq_cst store of `phase`, `number` or `last`.
   void refresh() {
     if (dsm_.match_generation.load(std::memory_order_seq_cst) != seen_) {
       rebuild();
@@ -53,8 +53,8 @@ public:
     }
   }
 
-  /// True while some reader holds a claim on record `number`, or may: the claims of one that cannot be resolved are not
-  /// to be seen.
+  /// True while some reader holds a claim on record `number`, or may: the claims of one that cannot
+  /// be resolved are not to be seen.
   bool is_pinned(uint64_t number) const noexcept {
     if (unresolved_) {
       return true;

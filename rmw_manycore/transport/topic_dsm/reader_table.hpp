@@ -1,8 +1,8 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "transport/registry/cluster.hpp"
 #include "transport/layout/topic_dsm_layout.hpp"
+#include "transport/registry/cluster.hpp"
 
 namespace manycore {
 

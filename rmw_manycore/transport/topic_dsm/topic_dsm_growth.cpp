@@ -37,7 +37,8 @@ void TopicDsmWriter::free_old_generations() noexcept {
         continue;
       }
       const Registry::Lock lock(registry_, Registry::Lock::no_wait_ns);
-      // Cleared before it is given back: a reader that meets foreign bytes in it finds the entry changed.
+      // Cleared before it is given back: a reader that meets foreign bytes in it finds the entry
+      // changed.
       old_[i].entry->first.store(0, std::memory_order_seq_cst);
       cluster_.free(old_[i].entry->offset.load(), old_[i].entry->extent_bytes());
       old_.erase(old_.begin() + static_cast<ptrdiff_t>(i));
@@ -51,8 +52,8 @@ uint64_t TopicDsmWriter::data_limit() const noexcept {
   return endpoint_.topic_dsm_size != 0 ? current_.data_bytes : cluster_.size() / 2;
 }
 
-/// The lock is waited for once: whoever stands still holding it must not hold up each record, nor each publish. From
-/// then on growing only tries, until the lock is to be had.
+/// The lock is waited for once: whoever stands still holding it must not hold up each record, nor
+/// each publish. From then on growing only tries, until the lock is to be had.
 void TopicDsmWriter::allocate_generation(
   GenerationEntry & entry, uint64_t data_bytes, uint64_t descriptor_count) {
   const long wait_ns =
@@ -72,8 +73,7 @@ bool TopicDsmWriter::grow(uint64_t data_bytes, uint64_t descriptor_count) {
 }
 
 bool TopicDsmWriter::add_generation(uint64_t data_bytes, uint64_t descriptor_count) {
-  const bool larger =
-    data_bytes > current_.data_bytes || descriptor_count > current_.count;
+  const bool larger = data_bytes > current_.data_bytes || descriptor_count > current_.count;
   if (
     endpoint_.topic_dsm_size != 0 || !larger || data_bytes > data_limit() ||
     descriptor_count > most_descriptors()) {
@@ -112,15 +112,15 @@ uint64_t TopicDsmWriter::deepest_history() const noexcept {
   return deepest;
 }
 
-/// Four times the records, descriptors and bytes alike, but no more than are ever wanted: few generations, since
-/// the old ones stay while their records are wanted. Half as many bytes more at least: records of mixed sizes leave
-/// gaps.
+/// Four times the records, descriptors and bytes alike, but no more than are ever wanted: few
+/// generations, since the old ones stay while their records are wanted. Half as many bytes more at
+/// least: records of mixed sizes leave gaps.
 bool TopicDsmWriter::grow_to_hold_more(uint64_t need_bytes) {
   const uint64_t held = std::max<uint64_t>(blocks_.size(), 2);
   const uint64_t records = std::max(held + 2, std::min(held * 4, deepest_history() + 2));
   const uint64_t bytes_per_record = std::max(need_bytes, blocks_.bytes() / held);
-  const uint64_t bytes = align_up(
-    std::max(records * bytes_per_record, current_.data_bytes * 3 / 2), record_alignment);
+  const uint64_t bytes =
+    align_up(std::max(records * bytes_per_record, current_.data_bytes * 3 / 2), record_alignment);
   return grow(
     std::min(bytes, std::max(data_limit(), current_.data_bytes)),
     std::clamp(power_of_two_at_least(records), current_.count, most_descriptors()));
@@ -141,22 +141,22 @@ void TopicDsmWriter::require_data_bytes(uint64_t need_bytes) {
       endpoint_.counters.refused.fetch_add(1, std::memory_order_relaxed);
       throw Error(
         ErrorCode::timeout, "a message of " + size + " bytes on '" + endpoint_.topic +
-          "' needs a larger topic DSM, but " + error.what());
+                              "' needs a larger topic DSM, but " + error.what());
     }
   }
   endpoint_.counters.refused.fetch_add(1, std::memory_order_relaxed);
   if (endpoint_.topic_dsm_size != 0) {
     throw Error(
       ErrorCode::too_large, "a message of " + size + " bytes does not fit the topic DSM of '" +
-        endpoint_.topic + "' (" + std::to_string(endpoint_.topic_dsm_size) +
-        " bytes); set its topic_dsm_size to at least " + size);
+                              endpoint_.topic + "' (" + std::to_string(endpoint_.topic_dsm_size) +
+                              " bytes); set its topic_dsm_size to at least " + size);
   }
   throw Error(
-    ErrorCode::too_large, "a message of " + size + " bytes on '" + std::string(endpoint_.topic) +
+    ErrorCode::too_large,
+    "a message of " + size + " bytes on '" + std::string(endpoint_.topic) +
       "' does not fit into cluster " + std::to_string(cluster_.id()) + ": " +
-      std::to_string(cluster_.used_bytes()) + " of " +
-      std::to_string(cluster_.size()) + " bytes of SMEM are used; it needs at least " + size +
-      " free (is /dev/shm large enough?)");
+      std::to_string(cluster_.used_bytes()) + " of " + std::to_string(cluster_.size()) +
+      " bytes of SMEM are used; it needs at least " + size + " free (is /dev/shm large enough?)");
 }
 
 }  // namespace manycore

@@ -11,8 +11,8 @@
 namespace manycore {
 namespace {
 
-/// By number; and no timestamp before an earlier record's, so that merging sources keeps each one's order even
-/// where the clock was set back.
+/// By number; and no timestamp before an earlier record's, so that merging sources keeps each one's
+/// order even where the clock was set back.
 void order(std::vector<TopicDsmReader::Waiting> & all, ptrdiff_t begin) {
   using Waiting = TopicDsmReader::Waiting;
   std::sort(all.begin() + begin, all.end(), [](const Waiting & a, const Waiting & b) {
@@ -41,8 +41,8 @@ TopicDsmReader::TopicDsmReader(
 
 uint64_t TopicDsmReader::full_number(uint64_t low_bits) const noexcept {
   constexpr uint64_t period = uint64_t{1} << 28;
-  // The latest published with these low bits: what a queue holds is younger than a period, however long nothing
-  // was taken. Where nothing was published with them it wraps to more than `last`.
+  // The latest published with these low bits: what a queue holds is younger than a period, however
+  // long nothing was taken. Where nothing was published with them it wraps to more than `last`.
   const uint64_t latest = last();  // once: it rises meanwhile
   return latest - ((latest - low_bits) & (period - 1));
 }
@@ -86,9 +86,10 @@ bool TopicDsmReader::may_look() const noexcept {
          source_->incarnation.load(std::memory_order_seq_cst) == incarnation_;
 }
 
-/// Dekker with take_back(): `reading` is stored before `number` is loaded, both seq_cst, so either the
-/// publisher sees the claim and leaves the bytes alone, or the number is gone here. The same with revoke() and the
-/// source's state: nothing of the topic DSM is touched unless the state was still `active` after the store.
+/// Dekker with take_back(): `reading` is stored before `number` is loaded, both seq_cst, so either
+/// the publisher sees the claim and leaves the bytes alone, or the number is gone here. The same
+/// with revoke() and the source's state: nothing of the topic DSM is touched unless the state was
+/// still `active` after the store.
 TopicDsmReader::ClaimResult TopicDsmReader::claim(uint64_t number, View & view) noexcept {
   source_->reading.store(number, std::memory_order_seq_cst);
   if (!may_look()) {
@@ -115,8 +116,8 @@ TopicDsmReader::ClaimResult TopicDsmReader::look_at(uint64_t number, View & view
   if (record.number.load(std::memory_order_seq_cst) != number) {
     return ClaimResult::gone;
   }
-  // The generation may have been given back before the claim was seen; its entry then has changed, or it is empty
-  // since before the first look.
+  // The generation may have been given back before the claim was seen; its entry then has changed,
+  // or it is empty since before the first look.
   if (
     first == 0 || generation->first.load(std::memory_order_acquire) != first || first > number ||
     !cluster_->contains(record.offset, record.size_bytes)) {
@@ -135,8 +136,9 @@ TopicDsmReader::ClaimResult TopicDsmReader::look_at(uint64_t number, View & view
   return ClaimResult::claimed;
 }
 
-/// `reading` last: once it is empty the topic DSM may be freed. The publisher waits for `taken` only, so it is told
-/// in time (seq_cst: it raises `writer_waits` before it looks at `taken` once more).
+/// `reading` last: once it is empty the topic DSM may be freed. The publisher waits for `taken`
+/// only, so it is told in time (seq_cst: it raises `writer_waits` before it looks at `taken` once
+/// more).
 bool TopicDsmReader::release(uint64_t number) noexcept {
   if (number > source_->taken.load(std::memory_order_relaxed)) {
     source_->taken.store(number, std::memory_order_seq_cst);
@@ -170,10 +172,12 @@ void TopicDsmReader::tell_waiting_publisher() noexcept {
   }
 }
 
-uint64_t TopicDsmReader::last() const noexcept { return dsm_->last.load(std::memory_order_seq_cst); }
+uint64_t TopicDsmReader::last() const noexcept {
+  return dsm_->last.load(std::memory_order_seq_cst);
+}
 
-/// Holds one record after the other, so that a scan that is stopped costs one record like any claim. The
-/// generation is held all the time: each value of `reading` is inside it.
+/// Holds one record after the other, so that a scan that is stopped costs one record like any
+/// claim. The generation is held all the time: each value of `reading` is inside it.
 void TopicDsmReader::scan(
   const GenerationEntry & generation, uint64_t last, std::vector<Waiting> & out) noexcept {
   source_->reading.store(every_record, std::memory_order_seq_cst);
@@ -186,7 +190,8 @@ void TopicDsmReader::scan(
       continue;
     }
     source_->reading.store(number, std::memory_order_seq_cst);
-    // As in look_at(): the generation may have been given back before the first store of `reading` was seen.
+    // As in look_at(): the generation may have been given back before the first store of `reading`
+    // was seen.
     const bool live = descriptors[i].number.load(std::memory_order_seq_cst) == number &&
                       generation.first.load(std::memory_order_acquire) == first;
     if (live && is_for_us(descriptors[i])) {
@@ -222,13 +227,14 @@ bool TopicDsmReader::settle() noexcept {
   source_->reading.store(every_record, std::memory_order_seq_cst);
   if (may_look()) {
     const LastPublished published = last_published(*dsm_);
-    const std::optional<uint64_t> displaced = 
-      Displaced::read(source_->displaced, incarnation_);
+    const std::optional<uint64_t> displaced = Displaced::read(source_->displaced, incarnation_);
     const uint64_t known = displaced ? std::max(noted_, full_number(*displaced)) : noted_;
     settled = published.exact && published.number <= known;
     if (settled) {
       count_missing(published.sequence);
-      release(published.number);  // what was counted as lost may not be found by a later look at the topic DSM
+      release(
+        published
+          .number);  // what was counted as lost may not be found by a later look at the topic DSM
     }
   }
   source_->reading.store(no_record, std::memory_order_release);

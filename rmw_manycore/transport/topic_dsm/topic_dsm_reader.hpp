@@ -3,14 +3,14 @@
 
 #include <vector>
 
-#include "transport/registry/registry.hpp"
 #include "transport/layout/subscription_layout.hpp"
 #include "transport/layout/topic_dsm_layout.hpp"
+#include "transport/registry/registry.hpp"
 
 namespace manycore {
 
-/// The reading side of one topic DSM, for one subscription. One thread at a time (the subscription's mutex).
-/// See docs/design/topic_dsm.md, Take.
+/// The reading side of one topic DSM, for one subscription. One thread at a time (the
+/// subscription's mutex). See docs/design/topic_dsm.md, Take.
 class TopicDsmReader {
 public:
   /// Nullptr-like (operator bool) when the source leads nowhere.
@@ -37,8 +37,8 @@ public:
   };
   /// On `claimed`, release() must follow; any other result has released already.
   ClaimResult claim(uint64_t number, View & view) noexcept;
-  /// Ends a claim: everything up to `number` is done for this reader. True when the publisher is gone and its topic
-  /// DSM may have waited for this reader only.
+  /// Ends a claim: everything up to `number` is done for this reader. True when the publisher is
+  /// gone and its topic DSM may have waited for this reader only.
   bool release(uint64_t number) noexcept;
   /// The same without a claim.
   void skip(uint64_t number) noexcept;
@@ -55,8 +55,8 @@ public:
   /// Step of a resync: appends the live records above noted() to `out`, in order, and notes them.
   void list_waiting(std::vector<Waiting> & out) noexcept;
 
-  /// With no hint and no backlog left: counts what was lost since the last message accounted for. False while a hint
-  /// is on its way.
+  /// With no hint and no backlog left: counts what was lost since the last message accounted for.
+  /// False while a hint is on its way.
   bool settle() noexcept;
 
   const Gid & publisher() const noexcept { return dsm_->gid; }
@@ -72,7 +72,8 @@ private:
   /// The source is still this one, and open: to be asked after storing `reading`.
   bool may_look() const noexcept;
   void scan(const GenerationEntry & generation, uint64_t last, std::vector<Waiting> & out) noexcept;
-  /// Counts messages up to this publication sequence number as lost where they are not accounted for.
+  /// Counts messages up to this publication sequence number as lost where they are not accounted
+  /// for.
   void count_missing(uint64_t last_sequence) noexcept;
   /// The publisher is gone and everything it left has been taken.
   bool is_finished() const noexcept;
@@ -84,7 +85,8 @@ private:
   uint32_t index_;
   uint32_t incarnation_;
   uint64_t noted_ = 0;
-  uint64_t accounted_;  ///< publication sequence number up to which messages are taken, expired or counted as lost
+  uint64_t accounted_;  ///< publication sequence number up to which messages are taken, expired or
+                        ///< counted as lost
   EndpointEntry * subscription_;
 };
 

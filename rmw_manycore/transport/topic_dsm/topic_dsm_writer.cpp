@@ -40,9 +40,9 @@ TopicDsmHeader & TopicDsmWriter::create(Registry & registry, uint32_t endpoint_s
   dsm.process = endpoint.process;
   dsm.gid = endpoint.gid;
   try {
-    const uint64_t data_bytes =
-      endpoint.topic_dsm_size == 0 ? first_data_bytes
-                                   : align_up(endpoint.topic_dsm_size, record_alignment);
+    const uint64_t data_bytes = endpoint.topic_dsm_size == 0
+                                  ? first_data_bytes
+                                  : align_up(endpoint.topic_dsm_size, record_alignment);
     Generation::allocate(
       cluster, dsm.generations[0], data_bytes, initial_descriptor_count(endpoint), 1);
   } catch (...) {
@@ -71,14 +71,14 @@ void TopicDsmWriter::leave() noexcept {
   dsm_.phase.store(dsm_.phase.load(std::memory_order_relaxed) + 1, std::memory_order_release);
 }
 
-/// Among the last `depth` messages, the one about to be written included. Record numbers do not tell: some are
-/// skipped.
+/// Among the last `depth` messages, the one about to be written included. Record numbers do not
+/// tell: some are skipped.
 bool TopicDsmWriter::is_among_last(uint32_t depth, const RecordDescriptor & record) const noexcept {
   return record.publication_sequence_number + depth > last_sequence_number_ + 1;
 }
 
-/// KEEP_LAST readers want the last `depth` only. Requests and replies are wanted until taken: their queues do not
-/// displace.
+/// KEEP_LAST readers want the last `depth` only. Requests and replies are wanted until taken: their
+/// queues do not displace.
 bool TopicDsmWriter::wants(
   const Reader & reader, uint64_t number, const RecordDescriptor & record) const noexcept {
   if (reader.source->taken.load(std::memory_order_seq_cst) >= number || !reader.active()) {
@@ -87,12 +87,10 @@ bool TopicDsmWriter::wants(
   if (endpoint_.role == EndpointRole::reply) {
     return record.correlation.client == reader.gid;
   }
-  return reader.subscription->keep_all != 0 ||
-         is_among_last(reader.subscription->depth, record);
+  return reader.subscription->keep_all != 0 || is_among_last(reader.subscription->depth, record);
 }
 
-bool TopicDsmWriter::is_wanted(
-  uint64_t number, const RecordDescriptor & record) const noexcept {
+bool TopicDsmWriter::is_wanted(uint64_t number, const RecordDescriptor & record) const noexcept {
   const int64_t lifespan = endpoint_.qos.lifespan_ns;
   if (lifespan != infinite_ns && realtime_ns() - record.source_timestamp_ns > lifespan) {
     return false;
@@ -127,8 +125,8 @@ TopicDsmWriter::TakeBack TopicDsmWriter::take_back(uint64_t number, bool force) 
     if (wanted) {
       endpoint_.counters.overwritten.fetch_add(1, std::memory_order_relaxed);
     }
-    // Dekker with the claim: the reader stores `reading` before it loads `number`. A reader that joined
-    // just now counts too, so the list is renewed after the store.
+    // Dekker with the claim: the reader stores `reading` before it loads `number`. A reader that
+    // joined just now counts too, so the list is renewed after the store.
     record.number.store(no_record, std::memory_order_seq_cst);
     readers_.refresh();
     pinned_in_slot_[number & (current_.count - 1)] = number;  // until seen unpinned
@@ -136,8 +134,9 @@ TopicDsmWriter::TakeBack TopicDsmWriter::take_back(uint64_t number, bool force) 
   return readers_.is_pinned(number) ? TakeBack::pinned : TakeBack::freed;
 }
 
-/// Early release (ROS-lite2 III-B: deleted once all subscribers have deserialized). An empty ring starts again
-/// at its beginning, so that a stream whose readers keep up stays in the same cache lines.
+/// Early release (ROS-lite2 III-B: deleted once all subscribers have deserialized). An empty ring
+/// starts again at its beginning, so that a stream whose readers keep up stays in the same cache
+/// lines.
 void TopicDsmWriter::take_back_free_records() {
   while (!blocks_.empty() && take_back(blocks_.front().number, false) == TakeBack::freed) {
     blocks_.pop_front();
@@ -154,7 +153,8 @@ void TopicDsmWriter::wait_for_progress(uint64_t number) {
   if (monotonic_ns() >= blocked_until_ns_) {
     endpoint_.counters.refused.fetch_add(1, std::memory_order_relaxed);
     throw Error(
-      ErrorCode::timeout, "publish on '" + std::string(endpoint_.topic) +
+      ErrorCode::timeout,
+      "publish on '" + std::string(endpoint_.topic) +
         "' timed out: RELIABLE + KEEP_ALL, and a subscription has not taken its messages for " +
         std::to_string(max_blocking_ns / 1'000'000) + " ms");
   }
@@ -179,8 +179,8 @@ void TopicDsmWriter::make_place(uint64_t number, uint64_t need_bytes) {
   take_back(number, true);
 }
 
-/// Makes next_number_ one whose descriptor may be written. A number whose descriptor a reader still holds is
-/// skipped: readers count what they miss by publication sequence, not by record number.
+/// Makes next_number_ one whose descriptor may be written. A number whose descriptor a reader still
+/// holds is skipped: readers count what they miss by publication sequence, not by record number.
 void TopicDsmWriter::claim_descriptor(uint64_t need_bytes) {
   const uint64_t most_skipped = current_.count * (readers_.readers().size() + 1);
   for (uint64_t skipped = 0; skipped < most_skipped;) {
@@ -202,14 +202,15 @@ void TopicDsmWriter::claim_descriptor(uint64_t need_bytes) {
   }
   endpoint_.counters.refused.fetch_add(1, std::memory_order_relaxed);
   throw Error(
-    ErrorCode::no_space,
-    "every record of '" + std::string(endpoint_.topic) + "' is being read; nothing can be published");
+    ErrorCode::no_space, "every record of '" + std::string(endpoint_.topic) +
+                           "' is being read; nothing can be published");
 }
 
-/// Places a block of `need_bytes` at the cursor or after it; false when wanted or pinned records leave no
-/// room within one round.
+/// Places a block of `need_bytes` at the cursor or after it; false when wanted or pinned records
+/// leave no room within one round.
 bool TopicDsmWriter::try_place(uint64_t need_bytes) {
-  // Quick readers may each hold, in turn, just the record that the cursor meets; each tries a cleared record once.
+  // Quick readers may each hold, in turn, just the record that the cursor meets; each tries a
+  // cleared record once.
   const size_t rounds = readers_.readers().size() + 1;
   size_t pinned_seen = 0;
   size_t wraps = 0;
@@ -261,18 +262,18 @@ TopicDsmWriter::Room TopicDsmWriter::find_room(uint64_t size_bytes) {
   take_back_free_records();
   require_data_bytes(need);
   claim_descriptor(need);
-  if (!try_place(need) && !(grow(std::max(current_.data_bytes, need) * 2, current_.count) &&
-                            try_place(need))) {
+  if (
+    !try_place(need) &&
+    !(grow(std::max(current_.data_bytes, need) * 2, current_.count) && try_place(need))) {
     endpoint_.counters.refused.fetch_add(1, std::memory_order_relaxed);
     throw Error(
-      ErrorCode::no_space, "the topic DSM of '" + std::string(endpoint_.topic) +
+      ErrorCode::no_space,
+      "the topic DSM of '" + std::string(endpoint_.topic) +
         "' is full of records that are being read; a message of " + std::to_string(size_bytes) +
-        " bytes needs a topic_dsm_size of at least " +
-        std::to_string(current_.data_bytes + need));
+        " bytes needs a topic_dsm_size of at least " + std::to_string(current_.data_bytes + need));
   }
   const Block & block = blocks_.back();
-  return {
-    cluster_.find<uint8_t>(current_.data_offset) + block.begin, block.end - block.begin};
+  return {cluster_.find<uint8_t>(current_.data_offset) + block.begin, block.end - block.begin};
 }
 
 void TopicDsmWriter::abandon_room() noexcept {

@@ -9,8 +9,8 @@
 
 namespace manycore {
 
-/// The writing side of one topic DSM: finds room, makes records, takes them back. One thread at a time (the
-/// publisher's mutex). See docs/design/topic_dsm.md, Publish.
+/// The writing side of one topic DSM: finds room, makes records, takes them back. One thread at a
+/// time (the publisher's mutex). See docs/design/topic_dsm.md, Publish.
 class TopicDsmWriter {
 public:
   struct Room {
@@ -31,7 +31,8 @@ public:
   Room find_room(uint64_t size_bytes);
   /// Gives the room of the last find_room() back.
   void abandon_room() noexcept;
-  /// Makes the room's first `size_bytes` record; returns its number. Readers are up to date afterwards.
+  /// Makes the room's first `size_bytes` record; returns its number. Readers are up to date
+  /// afterwards.
   uint64_t commit(
     uint64_t size_bytes, int64_t source_timestamp_ns, uint64_t publication_sequence_number,
     const Correlation & correlation);
@@ -42,8 +43,8 @@ public:
 private:
   enum class TakeBack { freed, pinned, wanted };
 
-  bool wants(const Reader & reader, uint64_t number, const RecordDescriptor & record)
-    const noexcept;
+  bool wants(
+    const Reader & reader, uint64_t number, const RecordDescriptor & record) const noexcept;
   bool is_among_last(uint32_t depth, const RecordDescriptor & record) const noexcept;
   bool is_wanted(uint64_t number, const RecordDescriptor & record) const noexcept;
   bool is_owed(uint64_t number) const noexcept;
@@ -59,10 +60,10 @@ private:
   uint64_t deepest_history() const noexcept;
   bool grow_to_hold_more(uint64_t need_bytes);
   bool grow(uint64_t data_bytes, uint64_t descriptor_count);
-  /// As grow(), but throws what keeps it from growing as far as it may: Error{no_space|corrupt|timeout}.
+  /// As grow(), but throws what keeps it from growing as far as it may:
+  /// Error{no_space|corrupt|timeout}.
   bool add_generation(uint64_t data_bytes, uint64_t descriptor_count);
-  void allocate_generation(
-    GenerationEntry & entry, uint64_t data_bytes, uint64_t descriptor_count);
+  void allocate_generation(GenerationEntry & entry, uint64_t data_bytes, uint64_t descriptor_count);
   void require_data_bytes(uint64_t need_bytes);
   void wait_for_progress(uint64_t number);
   uint64_t data_limit() const noexcept;
@@ -75,8 +76,9 @@ private:
   Generation current_;
   std::vector<Generation> old_;
   BlockRing blocks_;
-  std::vector<uint64_t> pinned_in_slot_;  ///< by descriptor: number that a reader may still hold, or 0
-  uint64_t cursor_ = 0;                   ///< next free byte of the data area
+  std::vector<uint64_t>
+    pinned_in_slot_;     ///< by descriptor: number that a reader may still hold, or 0
+  uint64_t cursor_ = 0;  ///< next free byte of the data area
   uint64_t next_number_ = 1;
   uint64_t last_sequence_number_ = 0;
   int64_t blocked_until_ns_ = 0;

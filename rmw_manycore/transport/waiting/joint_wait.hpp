@@ -15,8 +15,8 @@ struct SeenEpoch {
   uint32_t epoch;
 };
 
-/// As Waiter::wait, on several platforms at once: true when one of the epochs is no longer the seen one, false at
-/// `deadline_ns`. Never spins, whatever the wait modes are.
+/// As Waiter::wait, on several platforms at once: true when one of the epochs is no longer the seen
+/// one, false at `deadline_ns`. Never spins, whatever the wait modes are.
 bool wait_for_any(const std::vector<SeenEpoch> & seen, std::optional<int64_t> deadline_ns);
 
 }  // namespace manycore

@@ -10,8 +10,8 @@
 namespace manycore {
 namespace {
 
-/// Twice the cost of waking a process on another CPU of a virtual machine (about 20 us): spinning longer than
-/// that for a message that comes later wins nothing.
+/// Twice the cost of waking a process on another CPU of a virtual machine (about 20 us): spinning
+/// longer than that for a message that comes later wins nothing.
 constexpr int64_t spin_budget_ns = 50'000;
 
 /// The score counts recent waits that spinning served (or would have served).

@@ -37,7 +37,8 @@ public:
   void watch_graph() noexcept;
   void unwatch_graph() noexcept;
 
-  /// Matched and incompatible-QoS changes raise the epoch only while at least one watcher is counted.
+  /// Matched and incompatible-QoS changes raise the epoch only while at least one watcher is
+  /// counted.
   void watch_endpoint_events() noexcept;
   void unwatch_endpoint_events() noexcept;
 
