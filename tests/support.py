@@ -18,7 +18,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
-from rmw_manycore_py.launch.ending import is_rclpys
+from rmw_manycore_py.launch.processes.ending import is_rclpys
 
 TESTS = Path(__file__).parent
 REPOSITORY = TESTS.parent

@@ -14,9 +14,8 @@ from typing import Any, Literal
 from pydantic import Field, StrictBool, ValidationError, field_validator
 
 from rmw_manycore_py.errors import MapfileError, Problem
-from rmw_manycore_py.mapfile.crossings import overrides
-from rmw_manycore_py.mapfile.document import Document, read_yaml
-from rmw_manycore_py.mapfile.model import (
+from rmw_manycore_py.mapfile.format.document import Document, read_yaml
+from rmw_manycore_py.mapfile.format.model import (
     Domain,
     QosSection,
     Rate,
@@ -25,9 +24,10 @@ from rmw_manycore_py.mapfile.model import (
     Timeout,
     TopicName,
 )
-from rmw_manycore_py.mapfile.names import expand
-from rmw_manycore_py.mapfile.validation import describe
-from rmw_manycore_py.mapfile.values import ActionType, MessageType, ServiceType, Size
+from rmw_manycore_py.mapfile.format.validation import describe
+from rmw_manycore_py.mapfile.format.values import ActionType, MessageType, ServiceType, Size
+from rmw_manycore_py.mapfile.placing.crossings import overrides
+from rmw_manycore_py.ros.names import expand
 from rmw_manycore_py.routes import REQUEST_TIMEOUT_S, Direction, Route, action_routes, arranged
 
 _KINDS = ("topics", "services", "actions")

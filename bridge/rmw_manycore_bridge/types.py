@@ -7,7 +7,7 @@ import importlib
 import json
 from typing import Any
 
-from rmw_manycore_py.mapfile.ament import package_share
+from rmw_manycore_py.ros.ament import package_share
 
 # Parts of an action, and where rclpy keeps them in the action's class.
 _ACTION_PARTS = {

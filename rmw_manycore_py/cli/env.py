@@ -10,7 +10,7 @@ import click
 from rmw_manycore_hook import LIBRARY_PATH, WHEELS_BOOTSTRAPPED
 from rmw_manycore_py.cli.common.options import examples, json_option
 from rmw_manycore_py.cli.common.printing import print_json
-from rmw_manycore_py.launch.environment import program_environment
+from rmw_manycore_py.launch.processes.environment import program_environment
 
 VARIABLES = ("RMW_IMPLEMENTATION", LIBRARY_PATH, WHEELS_BOOTSTRAPPED)
 

@@ -12,7 +12,7 @@ import click
 from rmw_manycore_py.cli.common.options import examples, mapfile_argument
 from rmw_manycore_py.cli.common.run_printer import RunPrinter
 from rmw_manycore_py.launch.events import Event
-from rmw_manycore_py.launch.run import program_names, run_placement
+from rmw_manycore_py.launch.run import Run
 from rmw_manycore_py.mapfile import load_mapfile, resolve
 
 
@@ -46,10 +46,9 @@ def command(mapfile: Path, duration_s: float | None, as_json: bool) -> None:
     Ends when all nodes have ended, when the duration is over, or on Ctrl-C; a second Ctrl-C does
     not wait for nodes that take their time. The exit status is 0 unless a node failed.
     """
-    placement = resolve(load_mapfile(mapfile))
-    names = program_names(placement)
-    report = _print_json if as_json else RunPrinter(names).report
-    sys.exit(run_placement(placement, report, duration_s))
+    run = Run(resolve(load_mapfile(mapfile)))
+    report = _print_json if as_json else RunPrinter(run.program_names).report
+    sys.exit(run.run(report, duration_s))
 
 
 def _print_json(event: Event) -> None:

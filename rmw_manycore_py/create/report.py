@@ -7,8 +7,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
-from rmw_manycore_py.mapfile.parameter_files import parameters_in
-from rmw_manycore_py.mapfile.placement import PlacedNode, Placement
+from rmw_manycore_py.mapfile.placing.parameter_files import parameters_in
+from rmw_manycore_py.mapfile.placing.placement import PlacedNode, Placement
 
 # The terms of ROS-lite2, section V-A: lines per node, and per topic of a node.
 _LINES_PER_NODE = 10

@@ -7,7 +7,7 @@ import os
 import shlex
 from pathlib import PurePosixPath
 
-from rmw_manycore_py.mapfile.placement import PlacedNode
+from rmw_manycore_py.mapfile.placing.placement import PlacedNode
 
 # What an installation of ROS 2 is found by; taken from the environment of `create`.
 _OF_THE_INSTALLATION = ("AMENT_PREFIX_PATH", "PYTHONPATH", "ROS_DOMAIN_ID")

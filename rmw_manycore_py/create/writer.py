@@ -12,7 +12,7 @@ from rmw_manycore_py.create.report import CreateReport, count_lines, delta_loc
 from rmw_manycore_py.create.scripts import launch_script
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
 from rmw_manycore_py.mapfile import load_mapfile, resolve
-from rmw_manycore_py.mapfile.placement import PlacedNode, Placement
+from rmw_manycore_py.mapfile.placing.placement import PlacedNode, Placement
 
 TOPIC_TABLE = "topic_table.yaml"
 MEMORY = "memory.yaml"

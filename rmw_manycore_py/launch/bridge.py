@@ -6,11 +6,11 @@ from __future__ import annotations
 import sys
 
 from rmw_manycore_py.bridge_plan import Plan
-from rmw_manycore_py.launch.environment import outside_environment
 from rmw_manycore_py.launch.events import Finished
-from rmw_manycore_py.launch.program import NodeProgram
+from rmw_manycore_py.launch.processes.environment import outside_environment
+from rmw_manycore_py.launch.processes.program import NodeProgram
 from rmw_manycore_py.launch.runner import Report, Runner
-from rmw_manycore_py.mapfile.placement import Placement
+from rmw_manycore_py.mapfile.placing.placement import Placement
 from rmw_manycore_py.routes import DIRECTIONS, Direction
 from rmw_manycore_py.topology import Core, usable_cpus
 

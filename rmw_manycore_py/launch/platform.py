@@ -8,7 +8,7 @@ from contextlib import contextmanager
 
 from rmw_manycore_py import _transport
 from rmw_manycore_py.errors import ManycoreError
-from rmw_manycore_py.mapfile.placement import Placement
+from rmw_manycore_py.mapfile.placing.placement import Placement
 from rmw_manycore_py.topology import RECEIVE_THREAD_CORE
 
 GROWS = 0  # the size of a topic DSM that starts small

@@ -3,38 +3,48 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 from rmw_manycore_py.launch.bridge import bridge_programs
 from rmw_manycore_py.launch.events import Finished, Notice, PlacedCore, Platform
 from rmw_manycore_py.launch.platform import configured_platform, remaining_users
-from rmw_manycore_py.launch.program import NodeProgram
+from rmw_manycore_py.launch.processes.program import NodeProgram
 from rmw_manycore_py.launch.runner import Report, Runner
-from rmw_manycore_py.mapfile.placement import Placement
+from rmw_manycore_py.mapfile.placing.placement import Placement
 from rmw_manycore_py.topology import RECEIVE_THREAD_CORE
 
 RECEIVE_THREAD = "(receive thread)"  # no node can have a name with blanks
 
 
-def program_names(placement: Placement) -> list[str]:
-    """Return the names under which the processes of a run print."""
-    return [p.name for p in bridge_programs(placement)] + [node.name for node in placement.nodes]
+class Run:
+    """The nodes of a placement and its bridge, on a platform of their own."""
+
+    def __init__(self, placement: Placement) -> None:
+        self._placement = placement
+        self._bridge = bridge_programs(placement)
+
+    @property
+    def program_names(self) -> list[str]:
+        """The names under which the processes of the run print."""
+        return [p.name for p in self._bridge] + [node.name for node in self._placement.nodes]
+
+    def run(self, report: Report, duration_s: float | None = None) -> int:
+        """Start all processes, wait until they have ended, and return the exit status."""
+        placement = self._placement
+        for text in placement.notices:
+            report(Notice(text))
+        with configured_platform(placement):
+            report(_describe(placement, self._bridge))
+            nodes = [NodeProgram.of(node) for node in placement.nodes]
+            runner = Runner([*self._bridge, *nodes], report)
+            exit_status = runner.run(duration_s)
+        if users := remaining_users(placement.name):
+            report(Notice(f"platform {placement.name} stays, for {', '.join(users)}"))
+        report(Finished(runner.failed, exit_status))
+        return exit_status
 
 
-def run_placement(placement: Placement, report: Report, duration_s: float | None = None) -> int:
-    """Run the nodes of a placement on a platform of their own; return the exit status."""
-    for text in placement.notices:
-        report(Notice(text))
-    with configured_platform(placement):
-        report(_describe(placement))
-        nodes = [NodeProgram.of(node) for node in placement.nodes]
-        runner = Runner([*bridge_programs(placement), *nodes], report)
-        exit_status = runner.run(duration_s)
-    if users := remaining_users(placement.name):
-        report(Notice(f"platform {placement.name} stays, for {', '.join(users)}"))
-    report(Finished(runner.failed, exit_status))
-    return exit_status
-
-
-def _describe(placement: Placement) -> Platform:
+def _describe(placement: Placement, bridge: Iterable[NodeProgram]) -> Platform:
     topology = placement.topology
     nodes = [PlacedCore(node.name, *node.place, node.host_cpu) for node in placement.nodes]
     workers = [
@@ -42,10 +52,7 @@ def _describe(placement: Placement) -> Platform:
         for node in placement.nodes
         for core, cpu in node.workers
     ]
-    bridge = [
-        PlacedCore(program.name, *program.core, program.host_cpu)
-        for program in bridge_programs(placement)
-    ]
+    crossing = [PlacedCore(one.name, *one.core, one.host_cpu) for one in bridge]
     receive_threads = [
         PlacedCore(RECEIVE_THREAD, *core, cpu)
         for core, cpu in placement.host_cpus.items()
@@ -57,5 +64,5 @@ def _describe(placement: Placement) -> Platform:
         clusters=len(topology.clusters),
         cores_per_cluster=topology.cores_per_cluster,
         smem_size=topology.smem_size,
-        cores=(*nodes, *workers, *bridge, *receive_threads),
+        cores=(*nodes, *workers, *crossing, *receive_threads),
     )

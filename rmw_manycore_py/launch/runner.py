@@ -19,9 +19,9 @@ from rmw_manycore_py.launch.events import (
     Started,
     Stopping,
 )
-from rmw_manycore_py.launch.node_process import NodeProcess
-from rmw_manycore_py.launch.program import NodeProgram
-from rmw_manycore_py.launch.state import NodeState
+from rmw_manycore_py.launch.processes.node_process import NodeProcess
+from rmw_manycore_py.launch.processes.program import NodeProgram
+from rmw_manycore_py.launch.processes.state import NodeState
 from rmw_manycore_py.signals import SignalInbox, signal_inbox
 
 Report = Callable[[Event], None]

@@ -5,16 +5,17 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from rmw_manycore_py.mapfile.loader import Mapfile, load_mapfile
-from rmw_manycore_py.mapfile.placement import (
+from rmw_manycore_py.mapfile.format.loader import load_mapfile
+from rmw_manycore_py.mapfile.format.mapfile import Mapfile
+from rmw_manycore_py.mapfile.placing.placement import (
     BridgePlacement,
     ClusterMemory,
     PlacedNode,
     Placement,
     TopicEntry,
 )
-from rmw_manycore_py.mapfile.resolve import resolve
-from rmw_manycore_py.mapfile.show import as_data
+from rmw_manycore_py.mapfile.placing.resolve import resolve
+from rmw_manycore_py.mapfile.placing.show import as_data
 from rmw_manycore_py.mapfile.template import init
 
 __all__ = [

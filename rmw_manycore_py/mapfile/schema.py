@@ -6,8 +6,8 @@ from __future__ import annotations
 import json
 from typing import Any
 
-from rmw_manycore_py.mapfile.crossings import CROSSINGS
-from rmw_manycore_py.mapfile.model import MapfileSections, PlatformSection
+from rmw_manycore_py.mapfile.format.model import MapfileSections, PlatformSection
+from rmw_manycore_py.mapfile.placing.crossings import CROSSINGS
 from rmw_manycore_py.topology import PROFILES
 
 _ID = "https://json-schema.org/draft/2020-12/schema"

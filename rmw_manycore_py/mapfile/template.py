@@ -9,10 +9,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
-from rmw_manycore_py.mapfile.executables import find_module
 from rmw_manycore_py.mapfile.launch_file import read_launch_file
-from rmw_manycore_py.mapfile.names import full_node_name
-from rmw_manycore_py.mapfile.source import SourceNode, scan
+from rmw_manycore_py.mapfile.programs.executables import find_module
+from rmw_manycore_py.mapfile.programs.source import SourceNode, scan
+from rmw_manycore_py.ros.names import full_node_name
 
 _ADVICE = "# Choose the clusters. A node takes the first free core, unless its 'core' is given."
 _LAUNCH_SUFFIXES = (".launch.py", ".launch.xml", ".launch.yaml", ".launch.yml", ".xml", ".yaml")

@@ -16,9 +16,9 @@ from typing import Any
 import pytest
 from support import PATIENCE_S, Program, peer_command, wait_until
 
-from rmw_manycore_py.launch.program import NodeProgram
+from rmw_manycore_py.launch.processes.program import NodeProgram
+from rmw_manycore_py.launch.processes.state import STOP_STEPS
 from rmw_manycore_py.launch.runner import Runner
-from rmw_manycore_py.launch.state import STOP_STEPS
 from rmw_manycore_py.topology import Core
 
 pytestmark = pytest.mark.integration

@@ -3,17 +3,11 @@
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 
 import click
 
-
-def default_platform() -> str:
-    """Return the platform of programs that are not told another one."""
-    domain = os.environ.get("ROS_DOMAIN_ID") or "0"
-    return os.environ.get("MANYCORE_PLATFORM") or f"domain-{domain}"
-
+from rmw_manycore_py.ros.domain import default_platform
 
 json_option = click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 platform_option = click.option(

@@ -13,7 +13,7 @@ from contextlib import contextmanager, suppress
 from typing import Any
 
 from rmw_manycore_py.errors import ManycoreError
-from rmw_manycore_py.launch.environment import enter_middleware
+from rmw_manycore_py.launch.processes.environment import enter_middleware
 
 # How long a node may take to answer that is there.
 ANSWER_TIMEOUT_S = 5.0

@@ -14,7 +14,7 @@ from pathlib import Path
 
 import rmw_manycore_hook
 from rmw_manycore_py.cli.doctor.finding import Finding, Verdict, advised, judged
-from rmw_manycore_py.mapfile.ament import prefixes
+from rmw_manycore_py.ros.ament import prefixes
 
 LEAST_PYTHON = (3, 10)
 ROS_PACKAGE = "ros-rclpy"

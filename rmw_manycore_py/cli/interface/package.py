@@ -9,7 +9,7 @@ from rmw_manycore_py.cli.common.options import examples, json_option
 from rmw_manycore_py.cli.common.printing import print_json
 from rmw_manycore_py.cli.interface.kinds import kind_options, of_kinds
 from rmw_manycore_py.errors import ManycoreError
-from rmw_manycore_py.mapfile.ament import interfaces
+from rmw_manycore_py.ros.ament import interfaces
 
 
 @click.command("package", epilog=examples("manycore interface package std_srvs"))

@@ -8,7 +8,7 @@ import click
 from rmw_manycore_py.cli.common.options import examples, json_option
 from rmw_manycore_py.cli.common.printing import print_json
 from rmw_manycore_py.cli.interface.kinds import kind_options, of_kinds
-from rmw_manycore_py.mapfile.ament import interfaces, packages_with_interfaces
+from rmw_manycore_py.ros.ament import interfaces, packages_with_interfaces
 
 
 @click.command("packages", epilog=examples("manycore interface packages --only-actions"))

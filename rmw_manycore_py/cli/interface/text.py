@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
-from rmw_manycore_py.mapfile.ament import package_share
+from rmw_manycore_py.ros.ament import package_share
 
 # Up to a comment: quoted text, in which # is a character as any other, or anything else.
 _CODE = re.compile(r"""(?:"[^"]*"|'[^']*'|[^#"'])*""")

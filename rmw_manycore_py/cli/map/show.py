@@ -17,7 +17,7 @@ from rmw_manycore_py.cli.common.printing import (
     size_text,
 )
 from rmw_manycore_py.mapfile import Placement, load_mapfile, resolve
-from rmw_manycore_py.mapfile.show import as_data
+from rmw_manycore_py.mapfile.placing.show import as_data
 
 
 @click.command("show", epilog=examples("manycore map show mapfiles/three_nodes.yaml"))

@@ -14,7 +14,7 @@ from rmw_manycore_py.cli.common.printing import new_table, print_json, print_tab
 from rmw_manycore_py.cli.ndt.output_file import OutputFile, writing
 from rmw_manycore_py.cli.ndt.recording_options import recording_options
 from rmw_manycore_py.figures import load_figure
-from rmw_manycore_py.launch.environment import enter_middleware, leave_middleware
+from rmw_manycore_py.launch.processes.environment import enter_middleware, leave_middleware
 from rmw_manycore_py.ndt.map_file import read_points
 from rmw_manycore_py.ndt.map_tiles import open_map
 from rmw_manycore_py.ndt.precision import why_coarse

@@ -13,7 +13,7 @@ from rmw_manycore_py.cli.common.tool_node import spin_once, tool_node
 from rmw_manycore_py.cli.common.view import Row
 from rmw_manycore_py.cli.topic.qos_options import QosOptions
 from rmw_manycore_py.errors import ManycoreError
-from rmw_manycore_py.mapfile.names import expand
+from rmw_manycore_py.ros.names import expand
 
 ANY_QOS = QosOptions()
 

@@ -13,8 +13,8 @@ from typing import Any
 from rmw_manycore_py.cli.common.interface_types import load_type
 from rmw_manycore_py.cli.topic.qos_options import QosOptions
 from rmw_manycore_py.errors import ManycoreError
-from rmw_manycore_py.launch.environment import OUTSIDE_IMPLEMENTATION, outside_environment
-from rmw_manycore_py.mapfile.names import expand
+from rmw_manycore_py.launch.processes.environment import OUTSIDE_IMPLEMENTATION, outside_environment
+from rmw_manycore_py.ros.names import expand
 
 # Who publishes is looked up as often until somebody does.
 _LOOK_S = 0.1

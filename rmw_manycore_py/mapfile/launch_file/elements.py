@@ -9,7 +9,7 @@ from typing import Any
 from xml.parsers import expat
 
 from rmw_manycore_py.errors import MapfileError, Problem
-from rmw_manycore_py.mapfile.document import Document, KeyPath, read_text, read_yaml
+from rmw_manycore_py.mapfile.format.document import Document, KeyPath, read_text, read_yaml
 
 # In YAML these keys hold children; everything else is an attribute.
 _CHILD_LISTS = ("param", "remap", "env", "arg", "let")

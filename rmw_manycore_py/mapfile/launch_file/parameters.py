@@ -9,7 +9,7 @@ from typing import Any
 
 import yaml
 
-from rmw_manycore_py.mapfile.document import read_text
+from rmw_manycore_py.mapfile.format.document import read_text
 from rmw_manycore_py.mapfile.launch_file import text
 from rmw_manycore_py.mapfile.launch_file.context import LaunchContext, ParameterSource, RefusedError
 from rmw_manycore_py.mapfile.launch_file.substitutions import Substitution, is_true, perform

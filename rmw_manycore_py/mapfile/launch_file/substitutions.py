@@ -14,8 +14,8 @@ from typing import Any
 
 from typing_extensions import override
 
-from rmw_manycore_py.mapfile import ament
 from rmw_manycore_py.mapfile.launch_file.context import LaunchContext, RefusedError
+from rmw_manycore_py.ros import ament
 
 
 class Substitution:

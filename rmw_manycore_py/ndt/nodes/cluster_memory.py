@@ -3,8 +3,6 @@
 
 from __future__ import annotations
 
-import os
-
 from rclpy.node import Node
 from rclpy.utilities import get_rmw_implementation_identifier
 
@@ -12,6 +10,7 @@ from rmw_manycore_py import _transport
 from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.ndt.matcher import Matcher
 from rmw_manycore_py.ndt.voxel_map import VoxelMap
+from rmw_manycore_py.ros.domain import default_platform
 
 
 class ClusterMemory:
@@ -24,8 +23,7 @@ class ClusterMemory:
         self._matcher = matcher
         self._platform = ""
         if get_rmw_implementation_identifier() == "rmw_manycore":
-            domain = f"domain-{node.context.get_domain_id()}"
-            self._platform = os.environ.get("MANYCORE_PLATFORM") or domain
+            self._platform = default_platform(node.context.get_domain_id())
         self._held_bytes = 0
         self._hold(matcher.shared_bytes())
 

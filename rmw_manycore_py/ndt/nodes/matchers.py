@@ -6,7 +6,7 @@ from __future__ import annotations
 import os
 
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
-from rmw_manycore_py.mapfile.workers import WORKER_CPUS
+from rmw_manycore_py.mapfile.placing.workers import WORKER_CPUS
 from rmw_manycore_py.ndt.matcher import Matcher, SerialMatcher
 from rmw_manycore_py.ndt.options import MatcherOptions
 from rmw_manycore_py.ndt.worker_matcher import WorkerMatcher

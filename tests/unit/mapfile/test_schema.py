@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from rmw_manycore_py.mapfile.model import (
+from rmw_manycore_py.mapfile.format.model import (
     MapfileSections,
     NodeSection,
     PlatformSection,

@@ -1,0 +1,95 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Why a node ended, and whether it ended well."""
+
+from __future__ import annotations
+
+import re
+import signal
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from rmw_manycore_py.launch.processes.state import INTERRUPT_GRACE_S, TERMINATE_GRACE_S, NodeState
+
+# How a traceback ends where rclpy has made something else of an interruption, with any RMW:
+# pybind11 where it strikes while an argument is made; rcl where rclpy's own handler of the signal
+# has shut the context down already, between two calls or before the node's `rclpy.shutdown()`.
+_PYBIND11 = re.compile(r"RuntimeError: Unable to convert call argument '\d+' to Python object\b.*")
+_RCL = re.compile(
+    r"rclpy\._rclpy_pybind11\.RCLError: .*"
+    r"\b(the given context is not valid|rcl_shutdown already called on the given context)\b.*"
+)
+_RCLPY_FRAME = re.compile(r'\s*File ".*/rclpy/[^"]+", line \d+.*')
+_INTERRUPTIONS = ("KeyboardInterrupt", "rclpy.executors.ExternalShutdownException")
+_STOP_SIGNALS = (signal.SIGINT, signal.SIGTERM)
+_ENDED_ON_REQUEST = {
+    status for number in _STOP_SIGNALS for status in (-number.value, 128 + number.value)
+}
+
+
+@dataclass(frozen=True)
+class Ending:
+    """How a process ended: `exit_status` or `signal`, in words in `reason`."""
+
+    failed: bool
+    reason: str
+    exit_status: int | None = None
+    signal: str | None = None
+
+
+def judge(return_code: int, state: NodeState, last_lines: Sequence[str] = ()) -> Ending:
+    """Judge the return code (minus a signal's number, as in subprocess) of a node in `state`.
+
+    Python that an interruption ends otherwise than by the signal has status 1; only its last lines
+    say why.
+    """
+    asked = state in (NodeState.INTERRUPTED, NodeState.TERMINATED)
+    if asked and return_code == 1 and _was_interrupted(last_lines):
+        return Ending(False, "stopped", exit_status=return_code)
+    if state is NodeState.KILLED:
+        return Ending(True, _stubborn(), signal=_signal_name(signal.SIGKILL))
+    if return_code == 0 or (asked and return_code in _ENDED_ON_REQUEST):
+        failed, why = False, "stopped" if asked else "finished"
+    else:
+        failed, why = True, _describe(return_code)
+    if return_code < 0:
+        return Ending(failed, why, signal=_signal_name(-return_code))
+    return Ending(failed, why, exit_status=return_code)
+
+
+def is_rclpys(traceback: Sequence[str]) -> bool:
+    """Tell whether these last lines of a node are what rclpy makes of some interruptions."""
+    last_line = next(reversed(traceback), "")
+    if _RCL.fullmatch(last_line):
+        return True
+    in_rclpy = any(_RCLPY_FRAME.fullmatch(line) for line in traceback)
+    return in_rclpy and _PYBIND11.fullmatch(last_line) is not None
+
+
+def _was_interrupted(last_lines: Sequence[str]) -> bool:
+    return next(reversed(last_lines), "") in _INTERRUPTIONS or is_rclpys(last_lines)
+
+
+def not_started(error: OSError) -> Ending:
+    """Return the end of a node that never was."""
+    what = f": {error.filename}" if error.filename else ""
+    return Ending(True, f"could not be started: {error.strerror}{what}")
+
+
+def _describe(return_code: int) -> str:
+    if return_code >= 0:
+        return f"exit status {return_code}"
+    return f"killed by {_signal_name(-return_code)} ({signal.strsignal(-return_code)})"
+
+
+def _stubborn() -> str:
+    return (
+        f"did not stop within {INTERRUPT_GRACE_S:g} s of SIGINT "
+        f"and {TERMINATE_GRACE_S:g} s of SIGTERM, and was killed"
+    )
+
+
+def _signal_name(number: int) -> str:
+    try:
+        return signal.Signals(number).name
+    except ValueError:
+        return f"signal {number}"  # the real-time signals have no names

@@ -1,0 +1,41 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""What the runner needs to know of a node: how it is started, and where."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from rmw_manycore_py.launch.processes.environment import program_environment
+from rmw_manycore_py.mapfile.placing.placement import PlacedNode
+from rmw_manycore_py.topology import Core
+
+
+@dataclass(frozen=True)
+class NodeProgram:
+    """One node as a process: its command line, its whole environment, its core.
+
+    A `supervised` one serves the others: it is started again whenever it ends, and a run is over
+    without it.
+    """
+
+    name: str
+    command: tuple[str, ...]
+    environment: Mapping[str, str]
+    core: Core
+    host_cpu: int
+    directory: Path | None = None
+    supervised: bool = False
+
+    @classmethod
+    def of(cls, node: PlacedNode) -> NodeProgram:
+        """Return the program of a node that a mapfile places."""
+        return cls(
+            name=node.name,
+            command=tuple(node.argv),
+            environment=program_environment(node.env),
+            core=node.place,
+            host_cpu=node.host_cpu,
+            directory=node.cwd,
+        )

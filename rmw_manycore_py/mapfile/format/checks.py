@@ -1,0 +1,95 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""What the types of a mapfile cannot say: places, ways to start, files that are referred to."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from rmw_manycore_py.errors import Problem
+from rmw_manycore_py.mapfile.format.document import KeyPath
+from rmw_manycore_py.mapfile.format.mapfile import Mapfile
+from rmw_manycore_py.mapfile.format.model import NodeSection
+from rmw_manycore_py.topology import Core
+
+# These follow from the placement; a node that is told otherwise would be somewhere else.
+PLACE_VARIABLES = ("MANYCORE_PLATFORM", "MANYCORE_CLUSTER", "MANYCORE_CORE")
+WAYS_TO_START = ("module", "script", "executable", "command")
+
+
+def check_placement(mapfile: Mapfile) -> Iterator[Problem]:
+    """Yield nodes outside of a cluster, on reserved cores, or two on one core."""
+    taken: dict[Core, str] = {}
+    for name, node in mapfile.sections.nodes.items():
+        problem = _misplaced(mapfile, name, node)
+        if problem:
+            yield problem
+        elif node.core is not None:
+            core = Core(node.cluster, node.core)
+            if core in taken and not mapfile.sections.allow_shared_cores:
+                expected = "a core of its own (allow_shared_cores: true lifts this)"
+                found = f"{core}, where '{taken[core]}' runs"
+                yield mapfile.document.problem(("nodes", name, "core"), expected, found)
+            taken.setdefault(core, name)
+
+
+def _misplaced(mapfile: Mapfile, name: str, node: NodeSection) -> Problem | None:
+    topology = mapfile.topology
+    problem = mapfile.document.problem
+    cluster = topology.cluster(node.cluster)
+    if cluster is None:
+        expected = f"1 to {len(topology.clusters)}, the clusters of '{topology.profile}'"
+        return problem(("nodes", name, "cluster"), expected, str(node.cluster))
+    if node.core is None:
+        return None
+    if node.core >= cluster.cores:
+        expected = f"0 to {cluster.cores - 1}, the cores of cluster {cluster.id}"
+        return problem(("nodes", name, "core"), expected, str(node.core))
+    if node.core in cluster.reserved and not mapfile.sections.allow_reserved_cores:
+        expected = (
+            f"a core that is free, {cluster.free[0]} to {cluster.free[-1]} "
+            "(allow_reserved_cores: true lifts this)"
+        )
+        return problem(("nodes", name, "core"), expected, f"the reserved core {node.core}")
+    return None
+
+
+def check_starts(mapfile: Mapfile) -> Iterator[Problem]:
+    """Yield nodes with no way to start, or with more than one."""
+    for name, node in mapfile.sections.nodes.items():
+        ways = [way for way in WAYS_TO_START if getattr(node, way) is not None]
+        path = ("nodes", name)
+        if len(ways) > 1:
+            expected = f"only one of {', '.join(WAYS_TO_START)}"
+            yield mapfile.document.problem((*path, ways[1]), expected, " and ".join(ways))
+        elif not ways and mapfile.sections.launch_path is None:
+            expected = f"one of {', '.join(WAYS_TO_START)}, or a launch_path that has the node"
+            yield mapfile.document.problem(path, expected, "no way to start the node")
+        if (node.package is None) != (node.executable is None):
+            one, other = "package", "executable"
+            if node.package is None:
+                one, other = other, one
+            yield mapfile.document.problem((*path, one), f"'{other}' beside '{one}'", "it alone")
+        if not node.ros_arguments and node.command is None:
+            expected = "true, except beside 'command'"
+            yield mapfile.document.problem((*path, "ros_arguments"), expected, "false")
+
+
+def check_environment(mapfile: Mapfile) -> Iterator[Problem]:
+    """Yield variables by which a node would be elsewhere than where it is placed."""
+    for name, node in mapfile.sections.nodes.items():
+        for variable in PLACE_VARIABLES:
+            if variable in node.env:
+                expected = "no variable that platform, cluster and core already say"
+                path = ("nodes", name, "env", variable)
+                yield mapfile.document.problem(path, expected, f"'{variable}'")
+
+
+def check_files(mapfile: Mapfile) -> Iterator[Problem]:
+    """Yield files that the mapfile names and that do not exist."""
+    named: list[tuple[KeyPath, str | None]] = [(("launch_path",), mapfile.sections.launch_path)]
+    for name, node in mapfile.sections.nodes.items():
+        named.append((("nodes", name, "script"), node.script))
+        named += [(("nodes", name, "param_file"), file) for file in node.param_file]
+    for path, file in named:
+        if file is not None and not mapfile.file(file).is_file():
+            yield mapfile.document.problem(path, "an existing file", str(mapfile.file(file)))

@@ -1,0 +1,63 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Reads a mapfile; everything that is wrong with it comes in one error."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from pydantic import ValidationError
+
+from rmw_manycore_py.errors import MapfileError, Problem
+from rmw_manycore_py.mapfile.format.checks import (
+    check_environment,
+    check_files,
+    check_placement,
+    check_starts,
+)
+from rmw_manycore_py.mapfile.format.document import Document, read_yaml
+from rmw_manycore_py.mapfile.format.mapfile import Mapfile
+from rmw_manycore_py.mapfile.format.model import MapfileSections, PlatformSection
+from rmw_manycore_py.mapfile.format.normalise import normalise
+from rmw_manycore_py.mapfile.format.ros_lite import from_list
+from rmw_manycore_py.mapfile.format.validation import describe, problems_of
+from rmw_manycore_py.topology import Topology, profile
+
+
+def load_mapfile(path: Path | str) -> Mapfile:
+    """Read and check a mapfile or a .map list."""
+    path = Path(path)
+    document = read_yaml(path)
+    if isinstance(document.data, list):
+        document = from_list(document)
+    if not isinstance(document.data, dict):
+        expected = "a mapping with the key 'nodes', or a list of nodes"
+        raise MapfileError(document.problem((), expected, describe(document.data)))
+    notices = normalise(document)
+    sections = _validate(document)
+    mapfile = Mapfile(path, sections, _topology(sections.platform), document, tuple(notices))
+    problems = [
+        *check_placement(mapfile),
+        *check_starts(mapfile),
+        *check_environment(mapfile),
+        *check_files(mapfile),
+    ]
+    if problems:
+        raise MapfileError(*problems)
+    return mapfile
+
+
+def _validate(document: Document) -> MapfileSections:
+    try:
+        return MapfileSections.model_validate(document.data)
+    except ValidationError as error:
+        problems: list[Problem] = problems_of(error, document)
+    raise MapfileError(*problems)
+
+
+def _topology(platform: PlatformSection) -> Topology:
+    return profile(
+        platform.profile,
+        clusters=platform.clusters,
+        cores_per_cluster=platform.cores_per_cluster,
+        smem_size=platform.smem_size,
+    )

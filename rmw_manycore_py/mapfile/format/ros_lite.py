@@ -1,0 +1,63 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""The .map list of ROS-lite (its Fig. 7), turned into the mapfile's form."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from rmw_manycore_py.errors import MapfileError, Problem
+from rmw_manycore_py.mapfile.format.document import Document, KeyPath
+from rmw_manycore_py.mapfile.format.validation import describe
+
+# ROS-lite's maps describe the MPPA-256; they have no place to say so.
+_PLATFORM = "bostan"
+
+
+def from_list(document: Document) -> Document:
+    """Return the same nodes as a mapping by name; lines stay those of the list."""
+    result = Document(document.file, {"platform": _PLATFORM, "nodes": {}}, {(): 1})
+    problems: list[Problem] = []
+    for index, entry in enumerate(document.data):
+        try:
+            _add_entry(document, (index,), entry, result)
+        except MapfileError as error:
+            problems += error.problems
+    if problems:
+        raise MapfileError(*problems)
+    return result
+
+
+def _add_entry(document: Document, path: KeyPath, entry: Any, result: Document) -> None:
+    if not isinstance(entry, dict) or not isinstance(entry.get("name"), str):
+        problem = document.problem(path, "an entry with the key 'name'", describe(entry))
+        raise MapfileError(problem)
+    name = entry["name"]
+    nodes = result.data["nodes"]
+    if name in nodes:
+        raise MapfileError(document.problem((*path, "name"), "each name once", f"'{name}' again"))
+    node = {key: value for key, value in entry.items() if key != "name"}
+    for old, line in document.lines.items():
+        if old[:1] == path:
+            new = ("nodes", name, *old[1:])
+            result.lines[new] = line
+    for key in ("publish", "subscribe"):
+        node[key] = _join_topics(document, path, node.get(key), node.pop(f"{key}_type", None), key)
+    nodes[name] = node
+
+
+def _join_topics(
+    document: Document, path: KeyPath, topics: Any, types: Any, key: str
+) -> dict[str, Any]:
+    topics = [] if topics is None else topics
+    types = [] if types is None else types
+    for name, value in ((key, topics), (f"{key}_type", types)):
+        if not isinstance(value, list):
+            raise MapfileError(document.problem((*path, name), "a list", describe(value)))
+    for index, topic in enumerate(topics):
+        if not isinstance(topic, str) or topic in topics[:index]:
+            expected = "names of topics, each once"
+            raise MapfileError(document.problem((*path, key, index), expected, describe(topic)))
+    if len(topics) != len(types):
+        expected = f"one type for each topic of '{key}', {len(topics)} in all"
+        raise MapfileError(document.problem((*path, f"{key}_type"), expected, str(len(types))))
+    return dict(zip(topics, types, strict=True))

@@ -1,0 +1,145 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""What a mapfile lets cross to the outside, and where the bridge runs."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator
+from typing import TYPE_CHECKING, Any
+
+from rmw_manycore_py.errors import MapfileError
+from rmw_manycore_py.mapfile.format.model import (
+    BridgeSection,
+    NodeSection,
+    QosSection,
+    RouteSection,
+)
+from rmw_manycore_py.mapfile.placing.placement import BridgePlacement
+from rmw_manycore_py.ros.domain import ros_domain
+from rmw_manycore_py.ros.names import expand, resolve_topic
+from rmw_manycore_py.routes import (
+    REQUEST_TIMEOUT_S,
+    Direction,
+    Route,
+    action_routes,
+    arranged,
+    parameter_routes,
+)
+from rmw_manycore_py.topology import Core
+
+if TYPE_CHECKING:
+    from rmw_manycore_py.mapfile.format.mapfile import Mapfile
+    from rmw_manycore_py.mapfile.placing.start import NodeStart
+
+# Keys of a node that name what crosses.
+CROSSINGS: dict[str, Direction] = {
+    "topic_in": "inward",
+    "topic_to": "outward",
+    "service_in": "inward",
+    "service_to": "outward",
+    "action_in": "inward",
+    "action_to": "outward",
+}
+
+# Keys of a route that say nothing of the other kind; an action is both.
+ONLY_OF = {"max_hz": "topic", "max_size": "topic", "qos": "topic", "timeout": "service"}
+
+
+def bridge_placement(
+    mapfile: Mapfile, starts: dict[str, NodeStart], used: Collection[Core]
+) -> BridgePlacement | None:
+    """Return what crosses; the bridge takes the first cores left in cluster 1, two per lane."""
+    bridge = mapfile.sections.bridge
+    routes: list[Route] = []
+    for name, node in mapfile.sections.nodes.items():
+        routes += _routes_of(bridge, node, starts[name])
+    _check_routes(mapfile, routes)
+    if not routes:
+        return None
+    first = mapfile.topology.clusters[0]
+    free = [Core(1, core) for core in first.free if Core(1, core) not in used]
+    # With every core taken the bridge shares the last one rather than refuse to run.
+    cores = [*free, *[Core(1, first.free[-1])] * 2 * bridge.lanes]
+    lanes = tuple((cores[2 * i], cores[2 * i + 1]) for i in range(bridge.lanes))
+    return BridgePlacement(arranged(routes, bridge.lanes), lanes)
+
+
+def _routes_of(bridge: BridgeSection, node: NodeSection, start: NodeStart) -> Iterator[Route]:
+    for key, direction in CROSSINGS.items():
+        for name, type_name in getattr(node, key).items():
+            inside = resolve_topic(name, start.full_name, start.remappings)
+            route = _route(bridge, inside, type_name, direction)
+            yield from action_routes(route) if key.startswith("action") else (route,)
+    if node.parameters_in:
+        yield from parameter_routes(_route(bridge, start.full_name, "", "inward"))
+
+
+def _route(bridge: BridgeSection, inside: str, type_name: str, direction: Direction) -> Route:
+    section = _section_of(bridge, inside)
+    domain = section.domain if section.domain is not None else bridge.domain
+    outside = section.name or f"{(bridge.prefix or '').rstrip('/')}{inside}"
+    return Route(
+        kind="topic" if "/msg/" in type_name else "service",
+        direction=direction,
+        inside=inside,
+        outside=expand(outside, "/"),
+        type=type_name,
+        domain=ros_domain() if domain is None else domain,
+        qos=overrides(section.qos),
+        max_hz=section.max_hz,
+        max_size=section.max_size,
+        timeout_s=section.timeout or REQUEST_TIMEOUT_S,
+    )
+
+
+def _section_of(bridge: BridgeSection, inside: str) -> RouteSection:
+    named = {expand(name, "/"): section for name, section in bridge.routes.items()}
+    return named.get(inside, RouteSection())
+
+
+def _check_routes(mapfile: Mapfile, routes: list[Route]) -> None:
+    """Refuse options for what does not cross."""
+    crossing: dict[str, set[str]] = {}
+    for route in routes:
+        crossing.setdefault(_written_as(route), set()).add(route.kind)
+    problems = []
+    for name, section in mapfile.sections.bridge.routes.items():
+        path, kinds = ("bridge", "routes", name), crossing.get(expand(name, "/"))
+        if kinds is None:
+            known = ", ".join(sorted(crossing)) or "nothing does"
+            expected = f"the name of something that crosses ({known})"
+            problems.append(mapfile.document.problem(path, expected, f"'{name}'"))
+            continue
+        for key in sorted(section.model_fields_set):
+            if (kind := ONLY_OF.get(key, next(iter(kinds)))) not in kinds:
+                expected = f"a key of a {next(iter(kinds))}"
+                found = f"'{key}', which is for a {kind}"
+                problems.append(mapfile.document.problem((*path, key), expected, found))
+    if problems:
+        raise MapfileError(*problems)
+
+
+def _written_as(route: Route) -> str:
+    """Return the full name inside by which the mapfile knows it: of an action or node, its own."""
+    if "/_action/" in route.inside:
+        return route.inside.rpartition("/_action/")[0]
+    return route.inside.rpartition("/")[0] if route.node is not None else route.inside
+
+
+def overrides(qos: QosSection) -> dict[str, Any]:
+    """Return the policies that were written, by their names in the registry."""
+    found: dict[str, Any] = {
+        key: getattr(qos, key)
+        for key in ("reliability", "durability", "history", "depth")
+        if getattr(qos, key) is not None
+    }
+    if qos.liveliness not in (None, "system_default"):
+        found["liveliness"] = qos.liveliness
+    times = {
+        "deadline_ns": qos.deadline,
+        "lifespan_ns": qos.lifespan,
+        "liveliness_lease_ns": qos.liveliness_lease_duration,
+    }
+    for key, value in times.items():
+        if isinstance(value, int):
+            found[key] = value if value > 0 else None
+    return found

@@ -1,0 +1,254 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""From a mapfile to a placement: finds programs, cores, host CPUs and topics."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from rmw_manycore_py.errors import MapfileError, Problem
+from rmw_manycore_py.mapfile.format.mapfile import Mapfile
+from rmw_manycore_py.mapfile.launch_file import LaunchFile, read_launch_file
+from rmw_manycore_py.mapfile.placing.crossings import bridge_placement
+from rmw_manycore_py.mapfile.placing.imports import check_imports
+from rmw_manycore_py.mapfile.placing.placement import PlacedNode, Placement
+from rmw_manycore_py.mapfile.placing.start import NodeStart, node_start, ros_arguments
+from rmw_manycore_py.mapfile.placing.topics import (
+    check_crossing_types,
+    check_memory,
+    check_types,
+    memory_of_clusters,
+    topic_table,
+)
+from rmw_manycore_py.mapfile.placing.workers import WORKER_CPUS, worker_cores
+from rmw_manycore_py.mapfile.programs.source import SourceNode, scan
+from rmw_manycore_py.ros.ament import canonical_type
+from rmw_manycore_py.ros.domain import default_platform
+from rmw_manycore_py.ros.names import full_node_name, resolve_topic
+from rmw_manycore_py.topology import (
+    RECEIVE_THREAD_CORE,
+    Core,
+    assign_host_cpus,
+    usable_cpus,
+)
+
+# Above any message: glibc then keeps freed memory instead of faulting it in again each time.
+_MALLOC_THRESHOLD = str(1 << 30)
+
+
+def resolve(mapfile: Mapfile) -> Placement:
+    """Find everything a mapfile refers to; what does not exist is an error."""
+    launch = _launch_file(mapfile)
+    starts = _starts(mapfile, launch)
+    cores = _cores(mapfile)
+    workers = worker_cores(mapfile, cores.values())
+    of_workers = [core for one in workers.values() for core in one]
+    bridge = bridge_placement(mapfile, starts, {*cores.values(), *of_workers})
+    bridge_cores = [core for lane in bridge.cores for core in lane] if bridge else []
+    cpus = usable_cpus()
+    host_cpus = _host_cpus(mapfile, [*cores.values(), *of_workers, *bridge_cores], cpus)
+    nodes = tuple(
+        _place(mapfile, name, start, cores[name], workers[name], host_cpus)
+        for name, start in starts.items()
+    )
+    topics = topic_table(mapfile, nodes)
+    memory = memory_of_clusters(mapfile, topics)
+    problems = [
+        *check_types(mapfile, topics),
+        *check_crossing_types(mapfile, starts, topics),
+        *check_imports(mapfile, starts),
+        *check_memory(mapfile, memory),
+    ]
+    if problems:
+        raise MapfileError(*problems)
+    return Placement(
+        name=platform_name(mapfile),
+        topology=mapfile.topology,
+        nodes=nodes,
+        topics=topics,
+        memory=memory,
+        host_cpus=host_cpus,
+        bridge=bridge,
+        notices=(*mapfile.notices, *_notices(mapfile, launch, host_cpus, cpus)),
+    )
+
+
+def platform_name(mapfile: Mapfile) -> str:
+    """Return the platform's name, by default that of nodes started by hand."""
+    return mapfile.sections.platform.name or default_platform()
+
+
+def _launch_file(mapfile: Mapfile) -> LaunchFile | None:
+    sections = mapfile.sections
+    if sections.launch_path is None:
+        return None
+    launch = read_launch_file(mapfile.file(sections.launch_path), sections.launch_arguments)
+    known = ", ".join(sorted(launch.arguments)) or "it has none"
+    problems = [
+        mapfile.document.problem(
+            ("launch_arguments", name), f"an argument of the launch file ({known})", f"'{name}'"
+        )
+        for name in sections.launch_arguments
+        if name not in launch.arguments
+    ]
+    if problems:
+        raise MapfileError(*problems)
+    return launch
+
+
+def _starts(mapfile: Mapfile, launch: LaunchFile | None) -> dict[str, NodeStart]:
+    starts: dict[str, NodeStart] = {}
+    owners: dict[str, str] = {}
+    problems: list[Problem] = []
+    for name in mapfile.sections.nodes:
+        try:
+            start = node_start(mapfile, name, launch)
+        except MapfileError as error:
+            problems += error.problems
+            continue
+        starts[name] = start
+        if start.full_name in owners:
+            found = f"{start.full_name}, the name of '{owners[start.full_name]}'"
+            problems.append(mapfile.document.problem(("nodes", name), "a name of its own", found))
+        owners.setdefault(start.full_name, name)
+    if problems:
+        raise MapfileError(*problems)
+    return starts
+
+
+def _cores(mapfile: Mapfile) -> dict[str, Core]:
+    """Return each node's core; nodes that name none get the first free ones of their cluster."""
+    nodes = mapfile.sections.nodes
+    taken = {Core(node.cluster, node.core) for node in nodes.values() if node.core is not None}
+    cores: dict[str, Core] = {}
+    for name, node in nodes.items():
+        if node.core is not None:
+            cores[name] = Core(node.cluster, node.core)
+            continue
+        cluster = mapfile.topology.clusters[node.cluster - 1]
+        free = [core for core in cluster.free if Core(cluster.id, core) not in taken]
+        if not free:
+            expected = f"a free core in cluster {cluster.id}"
+            found = f"all {len(cluster.free)} taken"
+            raise MapfileError(mapfile.document.problem(("nodes", name), expected, found))
+        cores[name] = Core(cluster.id, free[0])
+        taken.add(cores[name])
+    return cores
+
+
+def _host_cpus(mapfile: Mapfile, used: Sequence[Core], cpus: Sequence[int]) -> dict[Core, int]:
+    """Return the CPU of every used core: nodes, workers, bridge, then receive threads."""
+    fixed: dict[Core, int] = {}
+    problems = []
+    for (name, node), core in zip(mapfile.sections.nodes.items(), used, strict=False):
+        if node.host_cpu is None:
+            continue
+        if node.host_cpu not in cpus:
+            expected = f"a CPU this process may use ({', '.join(map(str, cpus))})"
+            path = ("nodes", name, "host_cpu")
+            problems.append(mapfile.document.problem(path, expected, str(node.host_cpu)))
+        if node.host_cpu != fixed.setdefault(core, node.host_cpu):
+            expected = f"{fixed[core]}, as another node on core {core.core} has it"
+            path = ("nodes", name, "host_cpu")
+            problems.append(mapfile.document.problem(path, expected, str(node.host_cpu)))
+    if problems:
+        raise MapfileError(*problems)
+    receivers = [Core(cluster, RECEIVE_THREAD_CORE) for cluster in sorted({c for c, _ in used})]
+    return assign_host_cpus([*used, *receivers], fixed, cpus)
+
+
+def _place(
+    mapfile: Mapfile,
+    name: str,
+    start: NodeStart,
+    core: Core,
+    workers: tuple[Core, ...],
+    host_cpus: dict[Core, int],
+) -> PlacedNode:
+    words = ros_arguments(start, start.parameters, start.param_files)
+    publish, subscribe = _topics_of(mapfile, name, start)
+    placed_workers = tuple((worker, host_cpus[worker]) for worker in workers)
+    worker_cpus = ",".join(str(cpu) for _, cpu in placed_workers)
+    worker_environment = {WORKER_CPUS: worker_cpus} if workers else {}
+    return PlacedNode(
+        name=name,
+        full_name=start.full_name,
+        cluster=core.cluster,
+        core=core.core,
+        host_cpu=host_cpus[core],
+        argv=[*start.program.argv, *start.arguments, *words],
+        env={**_environment(mapfile, name, core, start), **worker_environment},
+        cwd=mapfile.path.parent.resolve(),
+        program=(*start.program.argv, *start.arguments),
+        ros_arguments=words,
+        parameters=start.parameters,
+        param_files=start.param_files,
+        publish=publish,
+        subscribe=subscribe,
+        workers=placed_workers,
+    )
+
+
+def _environment(mapfile: Mapfile, name: str, core: Core, start: NodeStart) -> dict[str, str]:
+    place = {
+        "MANYCORE_PLATFORM": platform_name(mapfile),
+        "MANYCORE_CLUSTER": str(core.cluster),
+        "MANYCORE_CORE": str(core.core),
+    }
+    env = {
+        "RMW_IMPLEMENTATION": "rmw_manycore",
+        "MANYCORE_WAIT": mapfile.sections.nodes[name].wait or "block",
+        "PYTHONUNBUFFERED": "1",
+    }
+    if mapfile.sections.malloc_tuning:
+        env["MALLOC_TRIM_THRESHOLD_"] = env["MALLOC_MMAP_THRESHOLD_"] = _MALLOC_THRESHOLD
+    return {**env, **start.env, **place}  # a launch file may set all but the place
+
+
+def _topics_of(
+    mapfile: Mapfile, name: str, start: NodeStart
+) -> tuple[dict[str, str], dict[str, str]]:
+    """Return published and subscribed topics: what the mapfile says, and what the source shows."""
+    node = mapfile.sections.nodes[name]
+    shown = _shown_by_source(start)
+    result = []
+    for key in ("publish", "subscribe"):
+        written = {**getattr(shown, key, {}), **getattr(node, key)}
+        result.append(
+            {
+                resolve_topic(topic, start.full_name, start.remappings): canonical_type(type_name)
+                for topic, type_name in written.items()
+            }
+        )
+    return result[0], result[1]
+
+
+def _shown_by_source(start: NodeStart) -> SourceNode | None:
+    source: Path | None = start.program.source
+    if source is None:
+        return None
+    try:
+        nodes = scan(source)
+    except MapfileError:
+        return None  # Python will say what is wrong with it when it runs.
+    return nodes[0] if len(nodes) == 1 else None
+
+
+def _notices(
+    mapfile: Mapfile,
+    launch: LaunchFile | None,
+    host_cpus: dict[Core, int],
+    cpus: Sequence[int],
+) -> list[str]:
+    notices = list(launch.notices) if launch else []
+    for node in launch.nodes if launch else ():
+        full = full_node_name(node.namespace, node.label)
+        if not {node.label, full, full[1:]} & set(mapfile.sections.nodes):
+            place = f"{node.file}:{node.line}"
+            notices.append(f"{place}: '{node.label}' is not in the mapfile and does not run here")
+    if len(host_cpus) > len(cpus):
+        notices.append(
+            f"{len(host_cpus)} cores in use on {len(cpus)} host CPUs: some share a CPU, "
+            "so timing is not that of the target"
+        )
+    return notices

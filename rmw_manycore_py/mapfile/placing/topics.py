@@ -1,0 +1,123 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""The topic table, and the memory of the clusters."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING
+
+from rmw_manycore_py.errors import Problem
+from rmw_manycore_py.mapfile.placing.crossings import CROSSINGS
+from rmw_manycore_py.mapfile.placing.placement import ClusterMemory, PlacedNode, TopicEntry
+from rmw_manycore_py.ros import ament
+from rmw_manycore_py.ros.names import expand, resolve_topic
+
+if TYPE_CHECKING:
+    from rmw_manycore_py.mapfile.format.mapfile import Mapfile
+    from rmw_manycore_py.mapfile.placing.start import NodeStart
+
+
+def topic_table(mapfile: Mapfile, nodes: Sequence[PlacedNode]) -> tuple[TopicEntry, ...]:
+    """Return the topics: first those the mapfile lists, then those of the nodes by name."""
+    listed = {expand(name, "/"): topic for name, topic in mapfile.sections.topics.items()}
+    seen = {name for node in nodes for name in (*node.publish, *node.subscribe)}
+    entries = []
+    for number, name in enumerate([*listed, *sorted(seen - set(listed))], start=1):
+        publishers = tuple(node for node in nodes if name in node.publish)
+        subscribers = tuple(node for node in nodes if name in node.subscribe)
+        types = [node.publish[name] for node in publishers]
+        types += [node.subscribe[name] for node in subscribers]
+        section = listed.get(name)
+        entries.append(
+            TopicEntry(
+                id=number,
+                name=name,
+                type=(section.type if section else None) or next(iter(types), None),
+                topic_dsm_size=section.topic_dsm_size if section else None,
+                publishers=publishers,
+                subscribers=subscribers,
+            )
+        )
+    return tuple(entries)
+
+
+def check_types(mapfile: Mapfile, topics: Iterable[TopicEntry]) -> Iterator[Problem]:
+    """Yield types that are not installed, and nodes that disagree with the table."""
+    sections = mapfile.sections
+    for name, topic in sections.topics.items():
+        if topic.type is not None:
+            yield from _check_installed(mapfile, ("topics", name, "type"), topic.type)
+    for node, section in sections.nodes.items():
+        for key in ("publish", "subscribe", *CROSSINGS):
+            for name, type_name in getattr(section, key).items():
+                yield from _check_installed(mapfile, ("nodes", node, key, name), type_name)
+    for entry in topics:
+        used = [(node, node.publish[entry.name]) for node in entry.publishers]
+        used += [(node, node.subscribe[entry.name]) for node in entry.subscribers]
+        for node_placed, type_name in used:
+            if type_name != entry.type:
+                expected = f"{entry.type} for the topic {entry.name}"
+                yield mapfile.document.problem(("nodes", node_placed.name), expected, type_name)
+
+
+def check_crossing_types(
+    mapfile: Mapfile, starts: Mapping[str, NodeStart], topics: Iterable[TopicEntry]
+) -> Iterator[Problem]:
+    """Yield what crosses as another type than the topic table or an earlier line says."""
+    known = {("msg", entry.name): entry.type for entry in topics if entry.type is not None}
+    for node, section in mapfile.sections.nodes.items():
+        for key in CROSSINGS:
+            for name, type_name in getattr(section, key).items():
+                full = resolve_topic(name, starts[node].full_name, starts[node].remappings)
+                kind = type_name.split("/")[1]
+                expected = known.setdefault((kind, full), type_name)
+                if type_name != expected:
+                    path = ("nodes", node, key, name)
+                    yield mapfile.document.problem(path, f"{expected} for {full}", type_name)
+
+
+def _check_installed(mapfile: Mapfile, path: tuple[str, ...], type_name: str) -> Iterator[Problem]:
+    package = type_name.split("/")[0]
+    installed = ament.interfaces(package)
+    if not installed:
+        expected = "a type of an installed package"
+        yield mapfile.document.problem(path, expected, f"{type_name} of '{package}'")
+    elif type_name not in installed:
+        yield mapfile.document.problem(path, f"a type of the package '{package}'", type_name)
+
+
+def memory_of_clusters(mapfile: Mapfile, topics: Sequence[TopicEntry]) -> tuple[ClusterMemory, ...]:
+    """Return what the topic DSMs of fixed size take in each cluster: one ring per publisher."""
+    result = []
+    for cluster in mapfile.topology.clusters:
+        sizes = {}
+        for topic in topics:
+            rings = sum(node.cluster == cluster.id for node in topic.publishers)
+            if rings and topic.topic_dsm_size is not None:
+                sizes[topic.name] = rings * topic.topic_dsm_size
+        result.append(ClusterMemory(cluster.id, cluster.smem_size, sizes))
+    return tuple(result)
+
+
+def check_memory(mapfile: Mapfile, memory: Iterable[ClusterMemory]) -> Iterator[Problem]:
+    """Yield topics that fit no cluster, or clusters that are too small for all their topics."""
+    smem_size = mapfile.topology.smem_size
+    for name, topic in mapfile.sections.topics.items():
+        if topic.topic_dsm_size is not None and topic.topic_dsm_size > smem_size:
+            path = ("topics", name, "topic_dsm_size")
+            expected = f"at most {smem_size}, the local memory of a cluster"
+            yield mapfile.document.problem(path, expected, str(topic.topic_dsm_size))
+            return
+    for cluster in memory:
+        if cluster.used > cluster.smem_size:
+            largest = max(cluster.topic_dsms, key=lambda name: cluster.topic_dsms[name])
+            expected = (
+                f"at most {cluster.smem_size} bytes of topic DSMs in cluster {cluster.cluster}"
+            )
+            sizes = ", ".join(f"{name} {size}" for name, size in cluster.topic_dsms.items())
+            path = ("topics", _as_written(mapfile, largest), "topic_dsm_size")
+            yield mapfile.document.problem(path, expected, f"{cluster.used} ({sizes})")
+
+
+def _as_written(mapfile: Mapfile, topic: str) -> str:
+    return next(name for name in mapfile.sections.topics if expand(name, "/") == topic)

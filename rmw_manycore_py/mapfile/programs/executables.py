@@ -1,0 +1,149 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Finds what a node is started with: modules, scripts, executables of packages, commands."""
+
+from __future__ import annotations
+
+import importlib.util
+import os
+import re
+import shutil
+import sys
+from collections.abc import Sequence
+from dataclasses import dataclass
+from importlib.machinery import ModuleSpec, PathFinder
+from pathlib import Path
+
+from rmw_manycore_py.mapfile.programs.entry_script import console_scripts, module_of_script
+from rmw_manycore_py.ros import ament
+
+
+@dataclass(frozen=True)
+class Program:
+    """The words that start a program, and its source where that is Python."""
+
+    argv: tuple[str, ...]
+    source: Path | None = None
+
+
+def find_script(file: Path) -> Program:
+    """Return the program of a Python file."""
+    return Program((sys.executable, str(file)), file)
+
+
+def find_module(module: str, directory: Path) -> Program | None:
+    """Return the program of a Python module, looked for without importing it."""
+    spec = _module_spec(module, directory)
+    if spec is not None and spec.submodule_search_locations is not None:
+        spec = _module_spec(f"{module}.__main__", directory)
+    if spec is None:
+        return None
+    return Program((sys.executable, "-m", module), _python_source(spec))
+
+
+def _python_source(spec: ModuleSpec | None) -> Path | None:
+    origin = spec.origin if spec else None
+    return Path(origin) if origin and origin.endswith(".py") else None
+
+
+def _module_spec(module: str, directory: Path) -> ModuleSpec | None:
+    """Look for a module without importing the packages around it: they may do anything."""
+    first, *rest = module.split(".")
+    spec = PathFinder.find_spec(first, [str(directory)]) or _top_level_spec(first)
+    name = first
+    for part in rest:
+        if spec is None or spec.submodule_search_locations is None:
+            return None
+        name = f"{name}.{part}"
+        spec = PathFinder.find_spec(name, list(spec.submodule_search_locations))
+    return spec
+
+
+def _top_level_spec(name: str) -> ModuleSpec | None:
+    try:
+        return importlib.util.find_spec(name)
+    except (ValueError, ImportError):
+        return None
+
+
+def find_executable(package: str, executable: str) -> Program | None:
+    """Return the program `ros2 run package executable` would start."""
+    for prefix in ament.prefixes():
+        path = prefix / "lib" / package / executable
+        if path.is_file() and os.access(path, os.X_OK):
+            return _of_file(path)
+    return _entry_point(package, executable)
+
+
+def executables_of(package: str) -> list[str]:
+    """Return the names of all executables of a package."""
+    files = (
+        path
+        for prefix in ament.prefixes()
+        for path in (prefix / "lib" / package).glob("*")
+        if path.is_file() and os.access(path, os.X_OK) and ".so" not in path.suffixes
+    )
+    return sorted(
+        {path.name for path in files} | {entry.name for entry in console_scripts(package)}
+    )
+
+
+def find_command(words: Sequence[str], directory: Path) -> Program | None:
+    """Return the program of a command; a path in it is relative to `directory`.
+
+    A bare name is looked for beside this interpreter first: `python3` is the one that has ROS,
+    whether or not its environment is activated.
+    """
+    first = Path(words[0]).expanduser()
+    found = str(directory / first) if len(first.parts) > 1 else words[0]
+    own = Path(sys.executable).parent
+    path = shutil.which(found, path=f"{own}{os.pathsep}{os.environ.get('PATH', os.defpath)}")
+    if path is None or unfound_script(words, directory):
+        return None
+    return Program((path, *words[1:]), _source_of(words, directory))
+
+
+def unfound_script(words: Sequence[str], directory: Path) -> str | None:
+    """Return the file or module that python is to run, where there is no such thing."""
+    if len(words) < 2 or not _is_python(words[0]):
+        return None
+    if words[1] == "-m" and len(words) > 2 and words[0] == Path(words[0]).name:
+        return None if find_module(words[2], directory) else words[2]
+    is_missing = words[1].endswith(".py") and not (directory / words[1]).is_file()
+    return words[1] if is_missing else None
+
+
+def _is_python(word: str) -> bool:
+    return re.fullmatch(r"python[\d.]*", Path(word).name) is not None
+
+
+def _source_of(words: Sequence[str], directory: Path) -> Path | None:
+    """Return the source of `python3 -m module` and `python3 file.py`."""
+    if len(words) < 2 or not _is_python(words[0]):
+        return None
+    if words[1] == "-m" and len(words) > 2:
+        module = find_module(words[2], directory)
+        return module.source if module else None
+    file = directory / words[1]
+    return file if file.suffix == ".py" and file.is_file() else None
+
+
+def _of_file(path: Path) -> Program:
+    with path.open("rb") as file:
+        first_line = file.readline(200)
+    if not re.match(rb"#!.*\bpython", first_line):
+        return Program((str(path),))
+    # `env python3` finds the interpreter of this environment only where that is activated.
+    by_name = b"/env " in first_line
+    module = module_of_script(path)
+    source = _python_source(_module_spec(module, path.parent)) if module else None
+    return Program((sys.executable, str(path)) if by_name else (str(path),), source or path)
+
+
+def _entry_point(package: str, executable: str) -> Program | None:
+    entry = next((e for e in console_scripts(package) if e.name == executable), None)
+    if entry is None:
+        return None
+    attribute = entry.attr.split(".")[0]
+    code = f"import sys; from {entry.module} import {attribute}; sys.exit({entry.attr}())"
+    source = _python_source(_module_spec(entry.module, Path.cwd()))
+    return Program((sys.executable, "-c", code), source)

@@ -1,0 +1,172 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""What Python sources of nodes say about themselves: names, topics, types. Nothing is executed."""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from rmw_manycore_py.errors import MapfileError, Problem
+from rmw_manycore_py.mapfile.format.document import read_text
+
+_CALLS = {"create_publisher": "publish", "create_subscription": "subscribe"}
+# Not the parts of services and actions (SetBool_Request), which no list of types names.
+_INTERFACE = re.compile(r"\w+\.(msg|srv|action)\.[A-Z][A-Za-z0-9]*")
+_NODE_CLASSES = ("Node", "LifecycleNode")
+
+
+@dataclass
+class SourceNode:
+    """A node as its source shows it; `unclear` holds the lines of topics that are computed."""
+
+    file: Path
+    line: int
+    name: str | None
+    publish: dict[str, str] = field(default_factory=dict)
+    subscribe: dict[str, str] = field(default_factory=dict)
+    unclear: list[int] = field(default_factory=list)
+
+
+def scan(file: Path) -> list[SourceNode]:
+    """Return the nodes a Python file makes, in the order of their lines."""
+    tree = _parse(file)
+    names = _Names(tree)
+    classes = [node for node in ast.walk(tree) if isinstance(node, ast.ClassDef)]
+    nodes = [found for cls in classes if (found := _class_node(file, cls, names))]
+    in_classes = {id(node) for cls in classes for node in ast.walk(cls)}
+    rest = [node for node in ast.walk(tree) if id(node) not in in_classes]
+    nodes += _function_nodes(file, rest, names)
+    return sorted(nodes, key=lambda node: node.line)
+
+
+def imported_interfaces(file: Path) -> dict[str, int]:
+    """Return the interface types a Python file cannot run without, each with its line."""
+    imports = (part for part in _parse(file).body if isinstance(part, ast.ImportFrom))
+    return {
+        f"{part.module}.{alias.name}".replace(".", "/"): part.lineno
+        for part in imports
+        for alias in part.names
+        if _INTERFACE.fullmatch(f"{part.module}.{alias.name}") and not part.level
+    }
+
+
+def _parse(file: Path) -> ast.Module:
+    try:
+        return ast.parse(read_text(file), str(file))
+    except (SyntaxError, ValueError) as error:
+        line = getattr(error, "lineno", None) or 0
+        raise MapfileError(Problem(file, line, "", "valid Python", str(error))) from error
+
+
+class _Names:
+    """What names stand for: imported message types and module constants."""
+
+    def __init__(self, tree: ast.Module) -> None:
+        self._imported: dict[str, str] = {}
+        self._constants: dict[str, str] = {}
+        for node in ast.walk(tree):
+            if isinstance(node, ast.ImportFrom) and node.module and node.level == 0:
+                for alias in node.names:
+                    self._imported[alias.asname or alias.name] = f"{node.module}.{alias.name}"
+            elif isinstance(node, ast.Import):
+                for alias in node.names:
+                    self._imported[alias.asname or alias.name.split(".")[0]] = (
+                        alias.name if alias.asname else alias.name.split(".")[0]
+                    )
+            elif isinstance(node, ast.Assign):
+                self._note_constant(node)
+
+    def _note_constant(self, node: ast.Assign) -> None:
+        if isinstance(node.value, ast.Constant) and isinstance(node.value.value, str):
+            for target in node.targets:
+                if isinstance(target, ast.Name):
+                    self._constants[target.id] = node.value.value
+
+    def qualified(self, node: ast.expr) -> str:
+        """Return a dotted name with its first part replaced by what was imported."""
+        if isinstance(node, ast.Name):
+            return self._imported.get(node.id, node.id)
+        if isinstance(node, ast.Attribute):
+            return f"{self.qualified(node.value)}.{node.attr}"
+        return ""
+
+    def message_type(self, node: ast.expr) -> str | None:
+        """Return package/msg/Name for an expression such as String or std_msgs.msg.String."""
+        parts = self.qualified(node).split(".")
+        return "/".join(parts) if len(parts) == 3 and parts[1] == "msg" else None
+
+    def text(self, node: ast.expr) -> str | None:
+        """Return the value of a string or of a constant that holds one."""
+        if isinstance(node, ast.Constant) and isinstance(node.value, str):
+            return node.value
+        return self._constants.get(node.id) if isinstance(node, ast.Name) else None
+
+
+def _class_node(file: Path, cls: ast.ClassDef, names: _Names) -> SourceNode | None:
+    calls = list(_calls(list(ast.walk(cls))))
+    is_node = any(names.qualified(b).split(".")[-1] in _NODE_CLASSES for b in cls.bases)
+    if not is_node and not any(_method(call) in _CALLS for call in calls):
+        return None
+    node = SourceNode(file, cls.lineno, None)
+    for call in calls:
+        if _is_super_init(call):
+            node.name = _argument_text(call, 0, "node_name", names)
+    _add_topics(node, calls, names)
+    return node
+
+
+def _function_nodes(file: Path, rest: list[ast.AST], names: _Names) -> list[SourceNode]:
+    """Return nodes made outside of classes; topics go to the last node made before them."""
+    calls = sorted(_calls(rest), key=lambda call: call.lineno)
+    nodes: list[SourceNode] = []
+    for call in calls:
+        made = names.qualified(call.func)
+        if made.endswith("create_node") or made in ("rclpy.node.Node", "rclpy.Node"):
+            name = _argument_text(call, 0, "node_name", names)
+            nodes.append(SourceNode(file, call.lineno, name))
+        elif _method(call) in _CALLS and nodes:
+            _add_topics(nodes[-1], [call], names)
+    return nodes
+
+
+def _add_topics(node: SourceNode, calls: list[ast.Call], names: _Names) -> None:
+    for call in calls:
+        kind = _CALLS.get(_method(call))
+        if kind is None:
+            continue
+        type_node = _argument(call, 0, "msg_type")
+        message_type = names.message_type(type_node) if type_node is not None else None
+        topic = _argument_text(call, 1, "topic", names)
+        if message_type is None or topic is None:
+            node.unclear.append(call.lineno)
+        else:
+            getattr(node, kind)[topic] = message_type
+
+
+def _calls(nodes: list[ast.AST]) -> Iterator[ast.Call]:
+    return (node for node in nodes if isinstance(node, ast.Call))
+
+
+def _method(call: ast.Call) -> str:
+    return call.func.attr if isinstance(call.func, ast.Attribute) else ""
+
+
+def _is_super_init(call: ast.Call) -> bool:
+    if _method(call) != "__init__" or not isinstance(call.func, ast.Attribute):
+        return False
+    owner = call.func.value
+    return isinstance(owner, ast.Call) and getattr(owner.func, "id", "") == "super"
+
+
+def _argument(call: ast.Call, index: int, name: str) -> ast.expr | None:
+    if len(call.args) > index:
+        return call.args[index]
+    return next((keyword.value for keyword in call.keywords if keyword.arg == name), None)
+
+
+def _argument_text(call: ast.Call, index: int, name: str, names: _Names) -> str | None:
+    node = _argument(call, index, name)
+    return None if node is None else names.text(node)

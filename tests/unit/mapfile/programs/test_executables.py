@@ -1,0 +1,90 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Executables of packages, and the modules behind those that installers write."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from rmw_manycore_py import examples
+from rmw_manycore_py.mapfile import check
+from rmw_manycore_py.mapfile.programs.executables import executables_of, find_executable
+
+pytestmark = pytest.mark.unit
+
+EXAMPLES = {
+    file.stem: file
+    for file in Path(examples.__path__[0]).glob("*.py")
+    if "def main(" in file.read_text()
+}
+BY_PIP = """\
+#!/usr/bin/python3
+import sys
+from rmw_manycore_py.examples.talker import main as run
+if __name__ == '__main__':
+    sys.exit(run())
+"""
+BY_SETUPTOOLS = """\
+#!/usr/bin/python3
+# EASY-INSTALL-ENTRY-SCRIPT: 'rmw-manycore==0.1.0','console_scripts','manycore'
+import sys
+def importlib_load_entry_point(spec, group, name): ...
+if __name__ == '__main__':
+    sys.exit(load_entry_point('rmw-manycore==0.1.0', 'console_scripts', 'manycore')())
+"""
+BY_HAND = """\
+#!/usr/bin/python3
+from rmw_manycore_py.examples.talker import main
+class Talker: ...
+main()
+"""
+
+
+@pytest.fixture
+def installed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """Yield where the executables of `demo` lie."""
+    monkeypatch.setenv("AMENT_PREFIX_PATH", str(tmp_path))
+    directory = tmp_path / "lib/demo"
+    directory.mkdir(parents=True)
+    return directory
+
+
+def source_of(script: Path, text: str) -> Path | None:
+    script.write_text(text)
+    script.chmod(0o755)
+    program = find_executable("demo", script.name)
+    assert program is not None
+    assert program.argv == (str(script),)
+    return program.source
+
+
+def test_the_examples_are_executables() -> None:
+    assert set(EXAMPLES) <= set(executables_of("rmw_manycore"))
+
+
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_the_source_of_an_example_is_its_module(name: str) -> None:
+    program = find_executable("rmw_manycore", name)
+    assert program is not None
+    assert program.source == EXAMPLES[name]
+
+
+def test_scripts_of_installers_show_the_module_they_start(installed: Path) -> None:
+    assert source_of(installed / "talker", BY_PIP) == EXAMPLES["talker"]
+    cli = source_of(installed / "tool", BY_SETUPTOOLS)
+    assert cli is not None
+    assert cli.parts[-3:] == ("rmw_manycore_py", "cli", "__init__.py")
+
+
+def test_scripts_with_code_of_their_own_are_their_own_source(installed: Path) -> None:
+    script = installed / "talker"
+    assert source_of(script, BY_HAND) == script
+    assert source_of(script, "#!/usr/bin/python3\nprint('unclear (\n") == script
+
+
+def test_topics_of_a_package_executable_are_known(tmp_path: Path) -> None:
+    mapfile = tmp_path / "mapfile.yaml"
+    mapfile.write_text("nodes:\n  a: {cluster: 1, package: rmw_manycore, executable: talker}\n")
+    (topic,) = check(mapfile).topics
+    assert (topic.name, topic.type) == ("/chatter", "std_msgs/msg/String")

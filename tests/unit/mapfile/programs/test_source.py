@@ -1,0 +1,75 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from rmw_manycore_py.errors import MapfileError
+from rmw_manycore_py.mapfile.programs.source import SourceNode, scan
+
+pytestmark = pytest.mark.unit
+
+
+def scan_text(directory: Path, text: str) -> list[SourceNode]:
+    file = directory / "node.py"
+    file.write_text(text)
+    return scan(file)
+
+
+def test_a_class_shows_its_name_topics_and_types(tmp_path: Path) -> None:
+    (node,) = scan_text(
+        tmp_path,
+        "import sensor_msgs.msg as sm\n"
+        "import geometry_msgs.msg\n"
+        "from rclpy.node import Node\n"
+        "from std_msgs.msg import String as Text\n"
+        "TOPIC = 'pose'\n"
+        "class Relay(Node):\n"
+        "    def __init__(self):\n"
+        "        super().__init__('relay')\n"
+        "        self.create_publisher(Text, 'out', 10)\n"
+        "        self.create_publisher(sm.Image, topic='image', qos_profile=10)\n"
+        "        self.create_subscription(geometry_msgs.msg.Pose, TOPIC, print, 10)\n",
+    )
+    assert node.name == "relay"
+    assert node.publish == {"out": "std_msgs/msg/String", "image": "sensor_msgs/msg/Image"}
+    assert node.subscribe == {"pose": "geometry_msgs/msg/Pose"}
+    assert node.unclear == []
+
+
+def test_nodes_made_by_functions_are_found(tmp_path: Path) -> None:
+    first, second = scan_text(
+        tmp_path,
+        "import rclpy\n"
+        "from std_msgs.msg import String\n"
+        "def main():\n"
+        "    node = rclpy.create_node('one')\n"
+        "    node.create_publisher(String, 'a', 1)\n"
+        "    other = rclpy.create_node('two')\n"
+        "    other.create_subscription(String, 'a', print, 1)\n",
+    )
+    assert (first.name, first.publish) == ("one", {"a": "std_msgs/msg/String"})
+    assert (second.name, second.subscribe) == ("two", {"a": "std_msgs/msg/String"})
+
+
+def test_a_computed_topic_is_named_by_its_line(tmp_path: Path) -> None:
+    (node,) = scan_text(
+        tmp_path,
+        "from rclpy.node import Node\n"
+        "from std_msgs.msg import String\n"
+        "class A(Node):\n"
+        "    def __init__(self, name):\n"
+        "        super().__init__(name)\n"
+        "        self.create_publisher(String, f'{name}/out', 10)\n",
+    )
+    assert (node.name, node.publish, node.unclear) == (None, {}, [6])
+
+
+def test_nothing_is_executed(tmp_path: Path) -> None:
+    assert scan_text(tmp_path, "raise SystemExit('executed')\n") == []
+
+
+def test_a_file_that_is_not_python_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(MapfileError, match=r"node.py:1: expected valid Python"):
+        scan_text(tmp_path, "class:\n")
