@@ -40,3 +40,8 @@ class MapfileError(ManycoreError):
     def __init__(self, *problems: Problem) -> None:
         self.problems = tuple(sorted(problems, key=lambda p: (str(p.file), p.line)))
         super().__init__("\n".join(str(problem) for problem in self.problems), EXIT_BAD_INPUT)
+
+
+def what_is_wrong(error: Exception) -> str:
+    """Return what an error says, which is nothing for some of them."""
+    return str(error) or type(error).__name__

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from rmw_manycore_py.ndt.poses import to_quaternion
+from rmw_manycore_py.ndt.geometry.poses import to_quaternion
 
 T0_S = 1_700_000_000
 DATATYPES = {"i1": 1, "u1": 2, "i2": 3, "u2": 4, "i4": 5, "u4": 6, "f4": 7, "f8": 8}

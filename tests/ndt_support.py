@@ -24,12 +24,12 @@ from ros_support import spin_until
 from sensor_msgs.msg import PointCloud2
 from support import PATIENCE_S
 
-from rmw_manycore_py.ndt import poses
-from rmw_manycore_py.ndt.drive import poses_along
-from rmw_manycore_py.ndt.lidar import Lidar
-from rmw_manycore_py.ndt.nodes.conversions import matrix_of, nanoseconds, pose_with_covariance
-from rmw_manycore_py.ndt.nodes.point_cloud import encode
-from rmw_manycore_py.ndt.street import build_street
+from rmw_manycore_py.ndt.geometry import poses
+from rmw_manycore_py.ndt.messages.conversions import matrix_of, nanoseconds, pose_with_covariance
+from rmw_manycore_py.ndt.messages.point_cloud import encode
+from rmw_manycore_py.ndt.simulation.drive import poses_along
+from rmw_manycore_py.ndt.simulation.lidar import Lidar
+from rmw_manycore_py.ndt.simulation.street import build_street
 
 LIDAR = Lidar(rings=16, azimuths=360)
 COVARIANCE = np.diag([0.04, 0.04, 0.04, 0.01, 0.01, 0.01])

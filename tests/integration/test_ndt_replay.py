@@ -98,8 +98,8 @@ def test_guesses_of_all_kinds(start, offload, street, guess):
 @pytest.mark.parametrize("suffix", [".pcd", ".npz"])
 def test_a_drive_in_utm_coordinates(start, offload, street, tmp_path, suffix):
     """Five million metres from the origin the same poses are found as at it."""
-    from rmw_manycore_py.ndt.map_file import read_points, write_points
-    from rmw_manycore_py.ndt.recording import Recording, load_recording, save_recording
+    from rmw_manycore_py.ndt.maps.map_file import read_points, write_points
+    from rmw_manycore_py.ndt.recordings.recording import Recording, load_recording, save_recording
 
     utm_m = np.array([500_000.0, 5_000_000.0, 100.0])
     drive = load_recording(street / "drive.npz")

@@ -15,8 +15,8 @@ from ros_support import spin_until
 from rosgraph_msgs.msg import Clock
 from support import Program
 
-from rmw_manycore_py.ndt.nodes.conversions import matrix_of, pose_with_covariance
-from rmw_manycore_py.ndt.poses import distance_m, from_xyz_rpy
+from rmw_manycore_py.ndt.geometry.poses import distance_m, from_xyz_rpy
+from rmw_manycore_py.ndt.messages.conversions import matrix_of, pose_with_covariance
 
 HERE = from_xyz_rpy((3.0, -2.0, 1.0), (0.0, 0.0, 0.5))
 THERE = from_xyz_rpy((5.0, -2.0, 1.0), (0.0, 0.0, 0.5))

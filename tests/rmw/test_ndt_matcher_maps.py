@@ -28,10 +28,10 @@ from sensor_msgs.msg import PointCloud2
 from support import IS_MANYCORE
 
 from rmw_manycore_py import _transport
-from rmw_manycore_py.ndt.map_tiles import open_map, write_tiles
-from rmw_manycore_py.ndt.nodes.conversions import nanoseconds
-from rmw_manycore_py.ndt.nodes.point_cloud import decode, encode
-from rmw_manycore_py.ndt.poses import from_xyz_rpy, inverse, transform
+from rmw_manycore_py.ndt.geometry.poses import from_xyz_rpy, inverse, transform
+from rmw_manycore_py.ndt.maps.map_tiles import open_map, write_tiles
+from rmw_manycore_py.ndt.messages.conversions import nanoseconds
+from rmw_manycore_py.ndt.messages.point_cloud import decode, encode
 
 OK, ERROR = b"\x00", b"\x02"
 UTM = from_xyz_rpy((500_000.0, 5_000_000.0, 100.0))

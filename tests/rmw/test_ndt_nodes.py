@@ -26,12 +26,12 @@ from ros_support import spin_until
 from sensor_msgs.msg import PointCloud2
 from support import Program
 
-from rmw_manycore_py.ndt.map_file import write_points
-from rmw_manycore_py.ndt.map_tiles import write_tiles
-from rmw_manycore_py.ndt.nodes.conversions import matrix_of, pose_with_covariance
-from rmw_manycore_py.ndt.nodes.point_cloud import decode, encode
-from rmw_manycore_py.ndt.poses import from_xyz_rpy
-from rmw_manycore_py.ndt.thinning import voxel_centroids
+from rmw_manycore_py.ndt.geometry.poses import from_xyz_rpy
+from rmw_manycore_py.ndt.geometry.thinning import voxel_centroids
+from rmw_manycore_py.ndt.maps.map_file import write_points
+from rmw_manycore_py.ndt.maps.map_tiles import write_tiles
+from rmw_manycore_py.ndt.messages.conversions import matrix_of, pose_with_covariance
+from rmw_manycore_py.ndt.messages.point_cloud import decode, encode
 
 KEPT = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 

@@ -36,15 +36,15 @@ from tf2_msgs.msg import TFMessage
 from tier4_localization_msgs.srv import PoseWithCovarianceStamped as AlignService
 from visualization_msgs.msg import MarkerArray
 
-from rmw_manycore_py.ndt.nodes.conversions import (
+from rmw_manycore_py.ndt.geometry.poses import from_xyz_rpy, inverse, transform
+from rmw_manycore_py.ndt.messages.conversions import (
     matrix_of,
     matrix_of_transform,
     nanoseconds,
     pose_with_covariance,
     transform_stamped,
 )
-from rmw_manycore_py.ndt.nodes.point_cloud import decode, encode
-from rmw_manycore_py.ndt.poses import from_xyz_rpy, inverse, transform
+from rmw_manycore_py.ndt.messages.point_cloud import decode, encode
 
 GENERATOR = np.random.default_rng(3)
 OK, WARN, ERROR = b"\x00", b"\x01", b"\x02"

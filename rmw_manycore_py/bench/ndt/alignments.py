@@ -16,8 +16,8 @@ from rmw_manycore_py.bench.ndt.world import world
 from rmw_manycore_py.bench.question import Measure, Question, Run
 from rmw_manycore_py.bench.summary import Curve, Goal, Result
 from rmw_manycore_py.ndt import MatcherOptions, SerialMatcher, WorkerMatcher
-from rmw_manycore_py.ndt.arrays import scan_points
-from rmw_manycore_py.ndt.matcher import Matcher, native_options
+from rmw_manycore_py.ndt.geometry.arrays import scan_points
+from rmw_manycore_py.ndt.matching.matcher import Matcher, native_options
 
 NAME = f"time per scan, direct7, {VOXEL_SIZE_M:g} m"
 TAIL = "time per scan / median of that scan"

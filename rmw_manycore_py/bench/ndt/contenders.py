@@ -9,7 +9,7 @@ from contextlib import contextmanager
 
 from rmw_manycore_py import _ndt
 from rmw_manycore_py.ndt import MatcherOptions, VoxelMap
-from rmw_manycore_py.ndt.matcher import native_options
+from rmw_manycore_py.ndt.matching.matcher import native_options
 
 SIMD_VARIABLE = "MANYCORE_NDT_SIMD"
 SIMDS = ("avx512", "avx2", "portable")

@@ -18,7 +18,7 @@ from rmw_manycore_py.bench.ndt.world import world
 from rmw_manycore_py.bench.question import Measure, Question, Run
 from rmw_manycore_py.bench.summary import Goal, Result
 from rmw_manycore_py.ndt import MatcherOptions, SerialMatcher
-from rmw_manycore_py.ndt.options import Search, VoxelCovariance
+from rmw_manycore_py.ndt.matching.options import Search, VoxelCovariance
 
 PASSES = 20
 SCORE = "score, off the peer's"

@@ -12,8 +12,8 @@ from rmw_manycore_py.bench.ndt.world import world
 from rmw_manycore_py.bench.question import Measure, Question, Run
 from rmw_manycore_py.bench.summary import Curve, Goal, Result
 from rmw_manycore_py.ndt import MatcherOptions
-from rmw_manycore_py.ndt.arrays import scan_points
-from rmw_manycore_py.ndt.matcher import native_options
+from rmw_manycore_py.ndt.geometry.arrays import scan_points
+from rmw_manycore_py.ndt.matching.matcher import native_options
 
 SPLIT = f"search + derivatives apart, radius, {VOXEL_SIZE_M:g} m"
 PROFILE = f"share of an alignment, radius, {VOXEL_SIZE_M:g} m"

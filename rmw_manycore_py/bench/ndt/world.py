@@ -12,10 +12,10 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from rmw_manycore_py.ndt.drive import poses_along, record, scans_along
-from rmw_manycore_py.ndt.lidar import Lidar
-from rmw_manycore_py.ndt.recording import Recording, load_recording
-from rmw_manycore_py.ndt.street import build_street
+from rmw_manycore_py.ndt.recordings.recording import Recording, load_recording
+from rmw_manycore_py.ndt.simulation.drive import poses_along, record, scans_along
+from rmw_manycore_py.ndt.simulation.lidar import Lidar
+from rmw_manycore_py.ndt.simulation.street import build_street
 
 DATA_VARIABLE = "MANYCORE_DATA"
 RECORDING = "balm_seq177_v0.10.npz"

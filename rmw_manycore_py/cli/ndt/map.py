@@ -10,10 +10,10 @@ import click
 from rmw_manycore_py.cli.common.options import examples
 from rmw_manycore_py.cli.ndt.output_file import writing
 from rmw_manycore_py.cli.ndt.recording_options import recording_options
-from rmw_manycore_py.ndt.map_file import SUFFIXES, write_points
-from rmw_manycore_py.ndt.map_tiles import write_tiles
+from rmw_manycore_py.ndt.geometry.thinning import voxel_centroids
+from rmw_manycore_py.ndt.maps.map_file import SUFFIXES, write_points
+from rmw_manycore_py.ndt.maps.map_tiles import write_tiles
 from rmw_manycore_py.ndt.recordings.opening import open_recording
-from rmw_manycore_py.ndt.thinning import voxel_centroids
 
 
 @click.command(

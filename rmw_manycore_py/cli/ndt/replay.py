@@ -15,13 +15,14 @@ from rmw_manycore_py.cli.ndt.output_file import OutputFile, writing
 from rmw_manycore_py.cli.ndt.recording_options import recording_options
 from rmw_manycore_py.figures import load_figure
 from rmw_manycore_py.launch.processes.environment import enter_middleware, leave_middleware
-from rmw_manycore_py.ndt.map_file import read_points
-from rmw_manycore_py.ndt.map_tiles import open_map
-from rmw_manycore_py.ndt.precision import why_coarse
-from rmw_manycore_py.ndt.recording import Recording
+from rmw_manycore_py.ndt.geometry.arrays import Points
+from rmw_manycore_py.ndt.geometry.precision import why_coarse
+from rmw_manycore_py.ndt.geometry.thinning import voxel_centroids
+from rmw_manycore_py.ndt.maps.map_file import read_points
+from rmw_manycore_py.ndt.maps.map_tiles import open_map
 from rmw_manycore_py.ndt.recordings.opening import open_recording
+from rmw_manycore_py.ndt.recordings.recording import Recording
 from rmw_manycore_py.ndt.replay.tally import Summary, Tally, as_json
-from rmw_manycore_py.ndt.thinning import Points, voxel_centroids
 
 MAP_VOXEL_M = 0.2
 PICTURES = (".png", ".svg", ".pdf")

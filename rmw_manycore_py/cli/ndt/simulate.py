@@ -11,18 +11,18 @@ from rich.progress import track
 
 from rmw_manycore_py.cli.common.options import examples
 from rmw_manycore_py.cli.ndt.output_file import writing
-from rmw_manycore_py.ndt.drive import (
+from rmw_manycore_py.ndt.geometry.poses import transform
+from rmw_manycore_py.ndt.geometry.thinning import voxel_centroids
+from rmw_manycore_py.ndt.maps.map_file import write_points
+from rmw_manycore_py.ndt.recordings.recording import save_recording
+from rmw_manycore_py.ndt.simulation.drive import (
     drive_poses,
     mapping_poses,
     record,
     scans_along,
 )
-from rmw_manycore_py.ndt.lidar import Lidar
-from rmw_manycore_py.ndt.map_file import write_points
-from rmw_manycore_py.ndt.poses import transform
-from rmw_manycore_py.ndt.recording import save_recording
-from rmw_manycore_py.ndt.street import build_street
-from rmw_manycore_py.ndt.thinning import voxel_centroids
+from rmw_manycore_py.ndt.simulation.lidar import Lidar
+from rmw_manycore_py.ndt.simulation.street import build_street
 
 MAP_VOXEL_M = 0.2
 

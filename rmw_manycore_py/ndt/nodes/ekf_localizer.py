@@ -18,7 +18,9 @@ from rclpy.node import Node
 from std_srvs.srv import SetBool
 from tf2_msgs.msg import TFMessage
 
-from rmw_manycore_py.ndt.nodes.conversions import (
+from rmw_manycore_py.ndt.geometry.arrays import Matrix
+from rmw_manycore_py.ndt.geometry.pose_filter import FilterOptions, PoseFilter, State
+from rmw_manycore_py.ndt.messages.conversions import (
     PoseError,
     covariance_of,
     matrix_of,
@@ -27,11 +29,9 @@ from rmw_manycore_py.ndt.nodes.conversions import (
     seconds,
     transform_stamped,
 )
-from rmw_manycore_py.ndt.nodes.declared import declare, parameter
-from rmw_manycore_py.ndt.nodes.log_throttle import LogThrottle
-from rmw_manycore_py.ndt.nodes.running import run_node
-from rmw_manycore_py.ndt.pose_filter import FilterOptions, PoseFilter, State
-from rmw_manycore_py.ndt.poses import Matrix
+from rmw_manycore_py.ndt.nodes.support.declared import declare, parameter
+from rmw_manycore_py.ndt.nodes.support.log_throttle import LogThrottle
+from rmw_manycore_py.ndt.nodes.support.running import run_node
 
 LEAST_VARIANCE = 1e-8  # of a measurement: one without noise cannot be weighed
 

@@ -15,33 +15,32 @@ from std_srvs.srv import SetBool
 from tier4_localization_msgs.srv import PoseWithCovarianceStamped as AlignService
 
 from rmw_manycore_py.errors import ManycoreError
-from rmw_manycore_py.ndt import poses
-from rmw_manycore_py.ndt.initial_pose import Particle, particles
-from rmw_manycore_py.ndt.nodes import judgement
-from rmw_manycore_py.ndt.nodes.cluster_memory import ClusterMemory
-from rmw_manycore_py.ndt.nodes.conversions import (
+from rmw_manycore_py.ndt.geometry import poses
+from rmw_manycore_py.ndt.geometry.arrays import Matrix, Points
+from rmw_manycore_py.ndt.matching.initial_pose import Particle, particles
+from rmw_manycore_py.ndt.matching.voxel_map import VoxelMap
+from rmw_manycore_py.ndt.messages.conversions import (
     PoseError,
     covariance_of,
     matrix_of,
     pose_with_covariance,
     seconds,
 )
-from rmw_manycore_py.ndt.nodes.cpu_time import tree_cpu_s
-from rmw_manycore_py.ndt.nodes.declared import declare
-from rmw_manycore_py.ndt.nodes.diagnostics import Diagnostics
-from rmw_manycore_py.ndt.nodes.frame_tree import FrameError, FrameTree
-from rmw_manycore_py.ndt.nodes.map_supply import MapSupply
-from rmw_manycore_py.ndt.nodes.markers import PoseMarkers
-from rmw_manycore_py.ndt.nodes.matcher_options import matcher_options
-from rmw_manycore_py.ndt.nodes.matcher_outputs import MatcherOutputs
-from rmw_manycore_py.ndt.nodes.matcher_parameters import MatcherParameters, OwnParameters
-from rmw_manycore_py.ndt.nodes.matchers import make_matcher
-from rmw_manycore_py.ndt.nodes.point_cloud import CloudError, decode
-from rmw_manycore_py.ndt.nodes.pose_buffer import Interpolated, PoseBuffer
-from rmw_manycore_py.ndt.nodes.running import run_node
-from rmw_manycore_py.ndt.poses import Matrix
-from rmw_manycore_py.ndt.thinning import Points
-from rmw_manycore_py.ndt.voxel_map import VoxelMap
+from rmw_manycore_py.ndt.messages.point_cloud import CloudError, decode
+from rmw_manycore_py.ndt.nodes.scan_matcher import judgement
+from rmw_manycore_py.ndt.nodes.scan_matcher.cluster_memory import ClusterMemory
+from rmw_manycore_py.ndt.nodes.scan_matcher.cpu_time import tree_cpu_s
+from rmw_manycore_py.ndt.nodes.scan_matcher.diagnostics import Diagnostics
+from rmw_manycore_py.ndt.nodes.scan_matcher.frame_tree import FrameError, FrameTree
+from rmw_manycore_py.ndt.nodes.scan_matcher.map_supply import MapSupply
+from rmw_manycore_py.ndt.nodes.scan_matcher.markers import PoseMarkers
+from rmw_manycore_py.ndt.nodes.scan_matcher.matcher_options import matcher_options
+from rmw_manycore_py.ndt.nodes.scan_matcher.matchers import make_matcher
+from rmw_manycore_py.ndt.nodes.scan_matcher.outputs import MatcherOutputs
+from rmw_manycore_py.ndt.nodes.scan_matcher.parameters import MatcherParameters, OwnParameters
+from rmw_manycore_py.ndt.nodes.scan_matcher.pose_buffer import Interpolated, PoseBuffer
+from rmw_manycore_py.ndt.nodes.support.declared import declare
+from rmw_manycore_py.ndt.nodes.support.running import run_node
 
 MAP_UPDATE_PERIOD_S = 1.0
 SCAN_DEPTH = 5  # a scan that waits is late, one that is overwritten is lost

@@ -14,14 +14,14 @@ from rclpy.qos import DurabilityPolicy, QoSProfile
 from sensor_msgs.msg import PointCloud2
 
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
-from rmw_manycore_py.ndt.map_area import MapArea
-from rmw_manycore_py.ndt.map_tiles import open_map
-from rmw_manycore_py.ndt.nodes.conversions import PoseError, matrix_of
-from rmw_manycore_py.ndt.nodes.declared import declare, parameter
-from rmw_manycore_py.ndt.nodes.point_cloud import encode
-from rmw_manycore_py.ndt.nodes.running import run_node
-from rmw_manycore_py.ndt.precision import why_coarse
-from rmw_manycore_py.ndt.thinning import Points
+from rmw_manycore_py.ndt.geometry.arrays import Points
+from rmw_manycore_py.ndt.geometry.precision import why_coarse
+from rmw_manycore_py.ndt.maps.map_area import MapArea
+from rmw_manycore_py.ndt.maps.map_tiles import open_map
+from rmw_manycore_py.ndt.messages.conversions import PoseError, matrix_of
+from rmw_manycore_py.ndt.messages.point_cloud import encode
+from rmw_manycore_py.ndt.nodes.support.declared import declare, parameter
+from rmw_manycore_py.ndt.nodes.support.running import run_node
 
 
 @dataclass(frozen=True)

@@ -18,15 +18,15 @@ from std_srvs.srv import SetBool
 from tier4_localization_msgs.srv import PoseWithCovarianceStamped as AlignService
 
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
-from rmw_manycore_py.ndt.nodes.conversions import (
+from rmw_manycore_py.ndt.geometry.poses import from_quaternion
+from rmw_manycore_py.ndt.messages.conversions import (
     PoseError,
     matrix_of,
     pose_with_covariance,
     seconds,
 )
-from rmw_manycore_py.ndt.nodes.declared import declare, parameter
-from rmw_manycore_py.ndt.nodes.running import run_node
-from rmw_manycore_py.ndt.poses import from_quaternion
+from rmw_manycore_py.ndt.nodes.support.declared import declare, parameter
+from rmw_manycore_py.ndt.nodes.support.running import run_node
 
 VARIANCES = (1.0, 1.0, 0.01, 0.01, 0.01, 0.2)  # m^2, rad^2
 AT_ORIGIN = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0)  # x, y, z, quaternion

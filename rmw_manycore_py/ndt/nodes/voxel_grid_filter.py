@@ -11,10 +11,10 @@ from rclpy.qos import QoSProfile, ReliabilityPolicy
 from sensor_msgs.msg import PointCloud2
 
 from rmw_manycore_py.errors import ManycoreError
-from rmw_manycore_py.ndt.nodes.declared import declare, parameter
-from rmw_manycore_py.ndt.nodes.point_cloud import CloudError, decode, encode
-from rmw_manycore_py.ndt.nodes.running import run_node
-from rmw_manycore_py.ndt.thinning import voxel_centroids
+from rmw_manycore_py.ndt.geometry.thinning import voxel_centroids
+from rmw_manycore_py.ndt.messages.point_cloud import CloudError, decode, encode
+from rmw_manycore_py.ndt.nodes.support.declared import declare, parameter
+from rmw_manycore_py.ndt.nodes.support.running import run_node
 
 REPEAT_S = 1.0
 

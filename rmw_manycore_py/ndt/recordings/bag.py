@@ -17,12 +17,12 @@ from typing import Any
 import numpy as np
 
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
-from rmw_manycore_py.ndt.recording import Recording
+from rmw_manycore_py.ndt.geometry.arrays import Points
 from rmw_manycore_py.ndt.recordings.bag_poses import poses_of
 from rmw_manycore_py.ndt.recordings.connections import connections_of
 from rmw_manycore_py.ndt.recordings.matching import recorded
 from rmw_manycore_py.ndt.recordings.pose_file import read_poses
-from rmw_manycore_py.ndt.thinning import Points
+from rmw_manycore_py.ndt.recordings.recording import Recording
 
 CLOUD = "sensor_msgs/msg/PointCloud2"
 SUFFIXES = (".bag", ".mcap", ".db3")
@@ -47,7 +47,7 @@ class BagScans:
 
     def __getitem__(self, index: int) -> Points:
         """Read a scan; a broken one is a ManycoreError."""
-        from rmw_manycore_py.ndt.nodes.point_cloud import CloudError, decode
+        from rmw_manycore_py.ndt.messages.point_cloud import CloudError, decode
 
         at_ns = self.times_ns[index]
         with _bad_bag(f"scan {index} of the bag"):
@@ -73,7 +73,7 @@ def open_bag(path: Path, poses_path: Path | None, topic: str, pose_topic: str) -
 def _recording_of(
     path: Path, closing: ExitStack, poses_path: Path | None, topic: str, pose_topic: str
 ) -> Recording:
-    from rmw_manycore_py.ndt.nodes.conversions import seconds
+    from rmw_manycore_py.ndt.messages.conversions import seconds
 
     reader = _opened(path)
     closing.callback(reader.close)

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
-from rmw_manycore_py.ndt.poses import Matrix
+from rmw_manycore_py.ndt.geometry.arrays import Matrix
 from rmw_manycore_py.ndt.recordings.connections import connections_of
 from rmw_manycore_py.ndt.recordings.pose_file import PoseLine
 from rmw_manycore_py.ndt.recordings.transforms import Transforms, is_transforms
@@ -49,7 +49,7 @@ def poses_of(path: Path, reader: Any, topic: str, lidar: str) -> tuple[PoseLine,
 
 def _of_topic(path: Path, reader: Any, topic: str) -> tuple[PoseLine, str]:
     """Return the poses of a topic, and the frame whose poses they are."""
-    from rmw_manycore_py.ndt.nodes.conversions import PoseError, seconds
+    from rmw_manycore_py.ndt.messages.conversions import PoseError, seconds
 
     kinds = set(POSE_PATHS)
     connections = connections_of(path, reader, kinds, topic, "--pose-topic, or a file with --poses")
@@ -71,7 +71,7 @@ def _of_topic(path: Path, reader: Any, topic: str) -> tuple[PoseLine, str]:
 
 
 def _matrix(message: Any, kind: str) -> Matrix:
-    from rmw_manycore_py.ndt.nodes.conversions import matrix_of, matrix_of_transform
+    from rmw_manycore_py.ndt.messages.conversions import matrix_of, matrix_of_transform
 
     for name in POSE_PATHS[kind]:
         message = getattr(message, name)

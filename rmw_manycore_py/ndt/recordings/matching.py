@@ -10,10 +10,9 @@ import numpy as np
 import numpy.typing as npt
 
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
-from rmw_manycore_py.ndt.poses import Matrix
-from rmw_manycore_py.ndt.recording import Recording, Scans
+from rmw_manycore_py.ndt.geometry.arrays import Matrix, Points
 from rmw_manycore_py.ndt.recordings.pose_file import PoseLine
-from rmw_manycore_py.ndt.thinning import Points
+from rmw_manycore_py.ndt.recordings.recording import Recording, Scans
 
 
 @dataclass(frozen=True)

@@ -6,8 +6,8 @@ from __future__ import annotations
 from pathlib import Path
 
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
-from rmw_manycore_py.ndt.recording import Recording, load_recording
 from rmw_manycore_py.ndt.recordings.bag import SUFFIXES, is_bag, open_bag
+from rmw_manycore_py.ndt.recordings.recording import Recording, load_recording
 from rmw_manycore_py.ndt.recordings.scan_folder import open_folder
 
 

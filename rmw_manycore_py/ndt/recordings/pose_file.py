@@ -20,8 +20,8 @@ import numpy as np
 import numpy.typing as npt
 
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
-from rmw_manycore_py.ndt import poses
-from rmw_manycore_py.ndt.poses import Matrix
+from rmw_manycore_py.ndt.geometry import poses
+from rmw_manycore_py.ndt.geometry.arrays import Matrix
 from rmw_manycore_py.ndt.recordings.stamps import in_seconds
 
 FORMATS = "lines of 12 numbers (KITTI) or of time x y z qx qy qz qw (TUM)"

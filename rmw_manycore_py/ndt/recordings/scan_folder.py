@@ -14,15 +14,14 @@ from pathlib import Path
 
 import numpy as np
 
-from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
-from rmw_manycore_py.ndt.map_file import read_cloud
-from rmw_manycore_py.ndt.poses import Matrix
-from rmw_manycore_py.ndt.recording import Recording
+from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError, what_is_wrong
+from rmw_manycore_py.ndt.files.cloud_file import read_cloud
+from rmw_manycore_py.ndt.files.unreadable import UNREADABLE
+from rmw_manycore_py.ndt.geometry.arrays import Matrix, Points
 from rmw_manycore_py.ndt.recordings.matching import recorded
 from rmw_manycore_py.ndt.recordings.pose_file import FORMATS, read_poses
+from rmw_manycore_py.ndt.recordings.recording import Recording
 from rmw_manycore_py.ndt.recordings.stamps import of_names, read_stamps
-from rmw_manycore_py.ndt.thinning import Points
-from rmw_manycore_py.ndt.unreadable import UNREADABLE, what_is_wrong
 
 SUFFIXES = (".bin", ".npy", ".pcd", ".ply")
 STAMP_FILES = ("times.txt", "timestamps.txt")

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from rmw_manycore_py.ndt.poses import Matrix
+from rmw_manycore_py.ndt.geometry.arrays import Matrix
 
 # In seconds, milliseconds, microseconds and nanoseconds: the time since 1970 is at least, and the
 # time between two scans at most ...

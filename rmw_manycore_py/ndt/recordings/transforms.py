@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from rmw_manycore_py.ndt import poses
-from rmw_manycore_py.ndt.poses import Matrix
+from rmw_manycore_py.ndt.geometry import poses
+from rmw_manycore_py.ndt.geometry.arrays import Matrix
 from rmw_manycore_py.ndt.recordings.pose_file import PoseLine
 
 TYPES = {"tf2_msgs/msg/TFMessage", "tf/msg/tfMessage"}
@@ -40,7 +40,7 @@ class Transforms:
     """Each frame has one parent, the one it had first."""
 
     def __init__(self, reader: Any) -> None:
-        from rmw_manycore_py.ndt.nodes.conversions import seconds
+        from rmw_manycore_py.ndt.messages.conversions import seconds
 
         self._joints: dict[str, Joint] = {}
         found = [one for one in reader.connections if is_transforms(one)]
@@ -50,7 +50,7 @@ class Transforms:
 
     def _add(self, message: Any, stamp_s: float) -> None:
         """Take a transform; one that is none is passed over."""
-        from rmw_manycore_py.ndt.nodes.conversions import PoseError, matrix_of_transform
+        from rmw_manycore_py.ndt.messages.conversions import PoseError, matrix_of_transform
 
         try:
             T_parent_child = matrix_of_transform(message.transform)

@@ -10,9 +10,9 @@ import numpy as np
 from rich.console import Console
 from rich.progress import track
 
-from rmw_manycore_py.ndt import poses
-from rmw_manycore_py.ndt.poses import Matrix
-from rmw_manycore_py.ndt.recording import Recording
+from rmw_manycore_py.ndt.geometry import poses
+from rmw_manycore_py.ndt.geometry.arrays import Matrix
+from rmw_manycore_py.ndt.recordings.recording import Recording
 from rmw_manycore_py.ndt.replay import motion, prediction
 from rmw_manycore_py.ndt.replay.guess_source import Guesses, GuessSource, StackInputs
 

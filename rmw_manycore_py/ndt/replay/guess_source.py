@@ -12,9 +12,9 @@ from builtin_interfaces.msg import Time
 from geometry_msgs.msg import PoseWithCovarianceStamped, TwistWithCovarianceStamped
 from rclpy.node import Node
 
-from rmw_manycore_py.ndt import poses
-from rmw_manycore_py.ndt.nodes.conversions import pose_with_covariance
-from rmw_manycore_py.ndt.poses import Matrix
+from rmw_manycore_py.ndt.geometry import poses
+from rmw_manycore_py.ndt.geometry.arrays import Matrix
+from rmw_manycore_py.ndt.messages.conversions import pose_with_covariance
 from rmw_manycore_py.ndt.replay.prediction import MEASURED, Prediction
 
 MAP_FRAME = "map"

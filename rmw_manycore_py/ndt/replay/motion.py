@@ -12,14 +12,14 @@ from collections.abc import Callable, Iterator
 import numpy as np
 
 from rmw_manycore_py.errors import ManycoreError
-from rmw_manycore_py.ndt import poses
-from rmw_manycore_py.ndt.alignment import Alignment
-from rmw_manycore_py.ndt.matcher import Matcher, SerialMatcher
-from rmw_manycore_py.ndt.options import MatcherOptions
-from rmw_manycore_py.ndt.poses import Matrix
-from rmw_manycore_py.ndt.recording import Recording
-from rmw_manycore_py.ndt.thinning import Points, voxel_centroids
-from rmw_manycore_py.ndt.voxel_map import VoxelMap
+from rmw_manycore_py.ndt.geometry import poses
+from rmw_manycore_py.ndt.geometry.arrays import Matrix, Points
+from rmw_manycore_py.ndt.geometry.thinning import voxel_centroids
+from rmw_manycore_py.ndt.matching.alignment import Alignment
+from rmw_manycore_py.ndt.matching.matcher import Matcher, SerialMatcher
+from rmw_manycore_py.ndt.matching.options import MatcherOptions
+from rmw_manycore_py.ndt.matching.voxel_map import VoxelMap
+from rmw_manycore_py.ndt.recordings.recording import Recording
 
 VOXEL_M = 0.25  # scans are thinned to it, which leaves some ten thousand points
 # From a guess beside the truth an alignment finds back over ten degrees and two metres.

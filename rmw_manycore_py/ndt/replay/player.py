@@ -17,12 +17,13 @@ from rclpy.qos import DurabilityPolicy, QoSProfile
 from sensor_msgs.msg import PointCloud2
 
 from rmw_manycore_py.errors import ManycoreError
-from rmw_manycore_py.ndt.nodes.conversions import matrix_of, nanoseconds
-from rmw_manycore_py.ndt.nodes.point_cloud import encode
-from rmw_manycore_py.ndt.recording import Recording
+from rmw_manycore_py.ndt.geometry.arrays import Points
+from rmw_manycore_py.ndt.geometry.thinning import voxel_centroids
+from rmw_manycore_py.ndt.messages.conversions import matrix_of, nanoseconds
+from rmw_manycore_py.ndt.messages.point_cloud import encode
+from rmw_manycore_py.ndt.recordings.recording import Recording
 from rmw_manycore_py.ndt.replay.guess_source import MAP_FRAME, GuessSource, stamp_of
 from rmw_manycore_py.ndt.replay.tally import Played, Tally
-from rmw_manycore_py.ndt.thinning import Points, voxel_centroids
 
 BASE_FRAME = "base_link"
 WARM_UP_PERIOD_S = 0.25

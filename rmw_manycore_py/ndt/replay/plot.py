@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 
 from rmw_manycore_py.figures import load_figure
+from rmw_manycore_py.ndt.geometry.arrays import Points
 from rmw_manycore_py.ndt.replay.tally import Tally
-from rmw_manycore_py.ndt.thinning import Points
 
 MAP_POINTS = 30_000
 

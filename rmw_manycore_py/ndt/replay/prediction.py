@@ -8,10 +8,10 @@ from typing import Protocol
 
 import numpy as np
 
-from rmw_manycore_py.ndt import poses
-from rmw_manycore_py.ndt.pose_filter import PoseFilter
-from rmw_manycore_py.ndt.poses import Matrix
-from rmw_manycore_py.ndt.recording import Recording
+from rmw_manycore_py.ndt.geometry import poses
+from rmw_manycore_py.ndt.geometry.arrays import Matrix
+from rmw_manycore_py.ndt.geometry.pose_filter import PoseFilter
+from rmw_manycore_py.ndt.recordings.recording import Recording
 
 MEASURED = np.diag([0.0225, 0.0225, 0.0225, 0.000625, 0.000625, 0.000625])  # m^2, rad^2
 

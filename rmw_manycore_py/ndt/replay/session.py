@@ -7,12 +7,12 @@ import gc
 
 import rclpy
 
-from rmw_manycore_py.ndt.recording import Recording
+from rmw_manycore_py.ndt.geometry.arrays import Points
+from rmw_manycore_py.ndt.recordings.recording import Recording
 from rmw_manycore_py.ndt.replay.guess_source import GuessSource
 from rmw_manycore_py.ndt.replay.player import Player
 from rmw_manycore_py.ndt.replay.progress import ReplayProgress
 from rmw_manycore_py.ndt.replay.tally import Tally
-from rmw_manycore_py.ndt.thinning import Points
 
 
 def run(

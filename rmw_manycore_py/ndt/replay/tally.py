@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from rmw_manycore_py.ndt import poses
-from rmw_manycore_py.ndt.poses import Matrix
+from rmw_manycore_py.ndt.geometry import poses
+from rmw_manycore_py.ndt.geometry.arrays import Matrix
 
 DIVERGED_M, DIVERGED_DEG = 1.0, 10.0
 

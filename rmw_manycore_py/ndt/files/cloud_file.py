@@ -1,0 +1,54 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Point clouds in files: PCD, and PLY through Open3D."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from types import ModuleType
+
+import numpy as np
+
+from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError, what_is_wrong
+from rmw_manycore_py.ndt.files.pcd_file import read_pcd
+from rmw_manycore_py.ndt.files.ply_file import check_ply
+from rmw_manycore_py.ndt.files.unreadable import UNREADABLE
+from rmw_manycore_py.ndt.geometry.arrays import Points
+from rmw_manycore_py.ndt.geometry.precision import as_they_were
+
+
+def read_cloud(path: Path) -> Points:
+    """Return the points (N, 3) of a PCD or PLY file, finite or not."""
+    read = read_pcd if path.suffix == ".pcd" else _read_ply
+    try:
+        return as_they_were(read(path))
+    except UNREADABLE as error:
+        raise map_error(path, what_is_wrong(error)) from error
+
+
+def _read_ply(path: Path) -> Points:
+    o3d = load_open3d()
+    check_ply(path)
+    try:
+        return np.asarray(o3d.io.read_point_cloud(str(path)).points)
+    except RuntimeError as error:
+        raise ValueError(f"Open3D cannot read it: {error}") from error
+
+
+def load_open3d() -> ModuleType:
+    """Return Open3D; without it an error says how to get it."""
+    try:
+        import open3d
+    except ImportError as error:
+        raise ManycoreError(
+            f"Open3D cannot be loaded ({error}). Maps as PLY, and thinning, need it: "
+            "pip install 'rmw-manycore[ndt]'; its system libraries: "
+            "apt install libusb-1.0-0 libgl1 libegl1 libgomp1 libx11-6"
+        ) from error
+    assert isinstance(open3d, ModuleType)
+    open3d.utility.set_verbosity_level(open3d.utility.VerbosityLevel.Error)
+    return open3d
+
+
+def map_error(path: Path, problem: str) -> ManycoreError:
+    """Return the error of a map that cannot be read or written."""
+    return ManycoreError(f"map {path}: {problem}", EXIT_BAD_INPUT)

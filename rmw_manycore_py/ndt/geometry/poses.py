@@ -1,0 +1,169 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Rigid transforms as 4x4 matrices; T_a_b takes points of frame b to frame a. Metres, radians.
+
+Quaternions are [x, y, z, w] as in ROS messages; roll, pitch and yaw turn about the fixed axes
+x, y, z in that order (REP 103).
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from rmw_manycore_py.ndt.geometry.arrays import Matrix
+
+
+def transform(T_a_b: Matrix, points_b: npt.NDArray[Any]) -> npt.NDArray[Any]:
+    """Return points (N, 3) in frame a, of the type they have."""
+    moved: Matrix = points_b @ T_a_b[:3, :3].T + T_a_b[:3, 3]
+    return moved.astype(points_b.dtype, copy=False)
+
+
+def inverse(T_a_b: Matrix) -> Matrix:
+    """Return T_b_a."""
+    T_b_a = np.eye(4)
+    T_b_a[:3, :3] = T_a_b[:3, :3].T
+    T_b_a[:3, 3] = -T_a_b[:3, :3].T @ T_a_b[:3, 3]
+    return T_b_a
+
+
+def from_xyz_rpy(xyz_m: npt.ArrayLike, rpy_rad: npt.ArrayLike = (0.0, 0.0, 0.0)) -> Matrix:
+    """Return the transform of a position and of roll, pitch, yaw."""
+    (cr, cp, cy), (sr, sp, sy) = np.cos(rpy_rad), np.sin(rpy_rad)
+    T = np.eye(4)
+    T[:3, :3] = [
+        [cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr],
+        [sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr],
+        [-sp, cp * sr, cp * cr],
+    ]
+    T[:3, 3] = xyz_m
+    return T
+
+
+def to_rpy(T: Matrix) -> Matrix:
+    """Return roll, pitch, yaw."""
+    pitch = np.arctan2(-T[2, 0], np.hypot(T[0, 0], T[1, 0]))
+    return np.array([np.arctan2(T[2, 1], T[2, 2]), pitch, np.arctan2(T[1, 0], T[0, 0])])
+
+
+def rotation_vector(R: Matrix) -> Matrix:
+    """Return axis times angle of a rotation matrix (3, 3)."""
+    x, y, z, w = to_quaternion(R)
+    sine = np.sqrt(x * x + y * y + z * z)
+    if sine < 1e-12:
+        return np.zeros(3)
+    vector: Matrix = np.array([x, y, z]) * (2.0 * np.arctan2(sine, w) / sine)
+    return vector
+
+
+def from_rotation_vector(vector_rad: npt.ArrayLike) -> Matrix:
+    """Return the rotation matrix (3, 3) of axis times angle (Rodrigues)."""
+    vector = np.asarray(vector_rad, dtype=np.float64)
+    angle = float(np.linalg.norm(vector))
+    if angle < 1e-12:
+        return np.eye(3)
+    x, y, z = vector / angle
+    K = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    R: Matrix = np.eye(3) + np.sin(angle) * K + (1.0 - np.cos(angle)) * (K @ K)
+    return R
+
+
+def to_quaternion(R: Matrix) -> Matrix:
+    """Return the quaternion of a rotation matrix (3, 3), with w >= 0 (Shepperd's method)."""
+    m = R[:3, :3]
+    squares = np.array(
+        [
+            1.0 + m[0, 0] - m[1, 1] - m[2, 2],
+            1.0 - m[0, 0] + m[1, 1] - m[2, 2],
+            1.0 - m[0, 0] - m[1, 1] + m[2, 2],
+            1.0 + np.trace(m),
+        ]
+    )
+    products = np.array(
+        [
+            [0.0, m[0, 1] + m[1, 0], m[0, 2] + m[2, 0], m[2, 1] - m[1, 2]],
+            [m[0, 1] + m[1, 0], 0.0, m[1, 2] + m[2, 1], m[0, 2] - m[2, 0]],
+            [m[0, 2] + m[2, 0], m[1, 2] + m[2, 1], 0.0, m[1, 0] - m[0, 1]],
+            [m[2, 1] - m[1, 2], m[0, 2] - m[2, 0], m[1, 0] - m[0, 1], 0.0],
+        ]
+    )
+    largest = int(np.argmax(squares))
+    quaternion: Matrix = products[largest] + np.eye(4)[largest] * squares[largest]
+    quaternion /= np.linalg.norm(quaternion)
+    return -quaternion if quaternion[3] < 0.0 else quaternion
+
+
+def from_quaternion(quaternion: npt.ArrayLike) -> Matrix:
+    """Return the rotation matrix (3, 3) of a quaternion of any length but zero."""
+    x, y, z, w = np.asarray(quaternion, dtype=np.float64) / np.linalg.norm(quaternion)
+    return np.array(
+        [
+            [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+            [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+            [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
+        ]
+    )
+
+
+def interpolate(T_old: Matrix, T_new: Matrix, share: float) -> Matrix:
+    """Return the pose at a share of the way, 0 to 1: a line, and one axis of rotation."""
+    T = np.eye(4)
+    turn = rotation_vector(T_old[:3, :3].T @ T_new[:3, :3])
+    T[:3, :3] = T_old[:3, :3] @ from_rotation_vector(share * turn)
+    T[:3, 3] = (1.0 - share) * T_old[:3, 3] + share * T_new[:3, 3]
+    return T
+
+
+ROTATION_TOLERANCE = 0.01
+
+
+def rigid(matrices: npt.NDArray[Any]) -> Matrix:
+    """Return (S, 4, 4) or (S, 3, 4) as rigid transforms, free of what rounding did to them.
+
+    A ValueError tells which one is not finite or far from rigid.
+    """
+    T = np.tile(np.eye(4), (len(matrices), 1, 1))
+    T[:, :3] = matrices[:, :3]
+    if not np.isfinite(T).all():
+        first = int(np.flatnonzero(~np.isfinite(T).all(axis=(1, 2)))[0])
+        raise ValueError(f"pose {first} is not finite")
+    U, _, V = np.linalg.svd(T[:, :3, :3])
+    R = U @ V
+    is_far = (np.abs(R - T[:, :3, :3]).max(axis=(1, 2)) > ROTATION_TOLERANCE) | (
+        np.linalg.det(R) < 0
+    )
+    if is_far.any():
+        raise ValueError(f"pose {int(np.flatnonzero(is_far)[0])} holds no rotation")
+    T[:, :3, :3] = R
+    return T
+
+
+def distance_m(T_a: Matrix, T_b: Matrix) -> float:
+    """Return the distance between two positions."""
+    return float(np.linalg.norm(T_a[:3, 3] - T_b[:3, 3]))
+
+
+def angle_rad(T_a: Matrix, T_b: Matrix) -> float:
+    """Return the angle between two orientations."""
+    return float(np.linalg.norm(rotation_vector(T_a[:3, :3].T @ T_b[:3, :3])))
+
+
+def perturbed(
+    T: Matrix,
+    offset_m: float,
+    turn_rad: float,
+    generator: np.random.Generator,
+) -> Matrix:
+    """Return a pose moved and turned by the given amounts, each in a random direction."""
+    T_new: Matrix = T.copy()
+    T_new[:3, 3] += offset_m * _direction(generator)
+    T_new[:3, :3] = T[:3, :3] @ from_rotation_vector(turn_rad * _direction(generator))
+    return T_new
+
+
+def _direction(generator: np.random.Generator) -> Matrix:
+    vector: Matrix = generator.normal(size=3)
+    vector /= np.linalg.norm(vector)
+    return vector

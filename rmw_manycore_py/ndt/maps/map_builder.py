@@ -1,0 +1,79 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Voxel maps built beside the work that goes on, to be swapped in between two scans."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from concurrent.futures import Future, ThreadPoolExecutor
+from dataclasses import dataclass
+
+from rmw_manycore_py.errors import what_is_wrong
+from rmw_manycore_py.ndt.geometry.arrays import Points
+from rmw_manycore_py.ndt.geometry.precision import why_coarse
+from rmw_manycore_py.ndt.matching.options import MatcherOptions
+from rmw_manycore_py.ndt.matching.voxel_map import VoxelMap
+
+
+@dataclass(frozen=True)
+class BuiltMap:
+    """What came of it: a map, or why there is none; None and no problem: nothing has changed.
+
+    :param warning: what makes the map worse than it could be.
+    """
+
+    voxel_map: VoxelMap | None
+    points: Points | None
+    problem: str
+    warning: str
+    duration_ms: float
+
+
+class MapBuilder:
+    """One thread reads points and builds voxels; of what waits, only the newest is done."""
+
+    def __init__(self, options: MatcherOptions) -> None:
+        self._options = options
+        self._executor = ThreadPoolExecutor(max_workers=1, thread_name_prefix="map")
+        self._running: Future[BuiltMap] | None = None
+        self._waiting: Callable[[], Points | None] | None = None
+
+    @property
+    def is_idle(self) -> bool:
+        """Tell whether nothing is built or waits to be taken."""
+        return self._running is None
+
+    def submit(self, read: Callable[[], Points | None]) -> None:
+        """Build a map of the points that `read` returns, if it returns some."""
+        if self._running is None:
+            self._running = self._executor.submit(self._build, read)
+        else:
+            self._waiting = read
+
+    def take(self, wait: bool = False) -> BuiltMap | None:
+        """Return what is finished, once; with `wait` also what is being built."""
+        if self._running is None or not (wait or self._running.done()):
+            return None
+        built = self._running.result()
+        self._running = None
+        if self._waiting is not None:
+            waiting, self._waiting = self._waiting, None
+            self.submit(waiting)
+        return built
+
+    def close(self) -> None:
+        """End the thread after what it is doing."""
+        self._executor.shutdown(wait=True, cancel_futures=True)
+
+    def _build(self, read: Callable[[], Points | None]) -> BuiltMap:
+        start = time.perf_counter()
+        voxel_map, points, problem, warning = None, None, "", ""
+        try:
+            points = read()
+            if points is not None:
+                voxel_map = VoxelMap.from_points(points, self._options)
+                warning = why_coarse(points)
+        except Exception as error:  # whatever is wrong with a map, the one before it stays
+            problem = what_is_wrong(error)
+        duration_ms = 1e3 * (time.perf_counter() - start)
+        return BuiltMap(voxel_map, points, problem, warning, duration_ms)

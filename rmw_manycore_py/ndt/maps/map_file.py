@@ -1,0 +1,81 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Point-cloud maps in files: PCD, PLY (through Open3D) and npz (the format of recordings).
+
+Points are read in the precision that the file has: double, or single (precision.py).
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from rmw_manycore_py.errors import what_is_wrong
+from rmw_manycore_py.ndt.files.cloud_file import load_open3d, map_error, read_cloud
+from rmw_manycore_py.ndt.files.pcd_file import write_pcd
+from rmw_manycore_py.ndt.files.unreadable import UNREADABLE
+from rmw_manycore_py.ndt.geometry.arrays import Points
+from rmw_manycore_py.ndt.geometry.precision import needs_doubles
+from rmw_manycore_py.ndt.recordings.recording import load_recording
+
+SUFFIXES = (".pcd", ".ply", ".npz")
+
+
+def read_points(path: Path, leaf_m: float = 0.0) -> Points:
+    """Return the finite points (N, 3) of a map, thinned to voxels of `leaf_m` unless it is 0.
+
+    An npz file is a recording whose scans are accumulated with their poses. A file that is
+    missing, broken, empty or of another kind is a ManycoreError.
+    """
+    if path.suffix not in SUFFIXES:
+        raise map_error(path, f"expected a file that ends in {', '.join(SUFFIXES)}")
+    if not path.is_file():
+        raise map_error(path, "there is no such file")
+    points = _read_npz(path) if path.suffix == ".npz" else read_cloud(path)
+    points = points[np.isfinite(points).all(axis=1)]
+    if len(points) == 0:
+        raise map_error(path, "it has no points: it is empty, broken, or not what its name says")
+    try:
+        return _thinned(points, leaf_m) if leaf_m > 0.0 else points
+    except RuntimeError as error:
+        raise map_error(path, f"it cannot be thinned to {leaf_m:g} m: {error}") from error
+
+
+def write_points(path: Path, points: Points) -> None:
+    """Write a map of points (N, 3) in the map frame, in single precision where that will do."""
+    kept = points if needs_doubles(points) else points.astype(np.float32)
+    if path.suffix == ".npz":
+        _write_npz(path, kept)
+    elif path.suffix == ".pcd":
+        write_pcd(path, kept)
+    elif path.suffix == ".ply":
+        _write_ply(path, kept)
+    else:
+        raise map_error(path, f"expected a file that ends in {', '.join(SUFFIXES)}")
+
+
+def _write_npz(path: Path, points: Points) -> None:
+    """Write a recording of one scan whose sensor is the map's origin."""
+    offsets = np.array([0, len(points)])
+    np.savez_compressed(path, points=points, offsets=offsets, poses=np.eye(4)[None], note="map")
+
+
+def _write_ply(path: Path, points: Points) -> None:
+    o3d = load_open3d()
+    cloud = o3d.geometry.PointCloud(o3d.utility.Vector3dVector(points.astype(np.float64)))
+    if not o3d.io.write_point_cloud(str(path), cloud):
+        raise map_error(path, "it cannot be written")
+
+
+def _read_npz(path: Path) -> Points:
+    recording = load_recording(path)
+    try:
+        return recording.accumulated(range(len(recording)))
+    except UNREADABLE as error:
+        raise map_error(path, what_is_wrong(error)) from error
+
+
+def _thinned(points: Points, leaf_m: float) -> Points:
+    o3d = load_open3d()
+    cloud = o3d.geometry.PointCloud(o3d.utility.Vector3dVector(points.astype(np.float64)))
+    return np.asarray(cloud.voxel_down_sample(leaf_m).points).astype(points.dtype)

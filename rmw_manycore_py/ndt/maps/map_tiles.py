@@ -1,0 +1,127 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""A map as a folder of tiles, of which those around a place are loaded.
+
+Where the folder has Autoware's `pointcloud_map_metadata.yaml` (tile size, and the lower corner of
+each file), no tile is opened before it is needed; else all are read once for their extent.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+import yaml
+
+from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
+from rmw_manycore_py.ndt.geometry.arrays import Points
+from rmw_manycore_py.ndt.maps.map_file import SUFFIXES, read_points, write_points
+
+METADATA = "pointcloud_map_metadata.yaml"
+
+
+@dataclass(frozen=True)
+class Tile:
+    """A file and its extent in x and y, metres in the map frame."""
+
+    path: Path
+    lower: tuple[float, float]
+    upper: tuple[float, float]
+
+    def is_within(self, x: float, y: float, radius_m: float) -> bool:
+        """Tell whether any of the extent lies within a radius."""
+        dx = max(self.lower[0] - x, 0.0, x - self.upper[0])
+        dy = max(self.lower[1] - y, 0.0, y - self.upper[1])
+        return dx * dx + dy * dy <= radius_m * radius_m
+
+
+@dataclass
+class TiledMap:
+    """Tiles of a map; keeps the points of those that were returned last."""
+
+    tiles: tuple[Tile, ...]
+    leaf_m: float = 0.0
+    _loaded: dict[Path, Points] = field(default_factory=dict)
+
+    def around(self, x: float, y: float, radius_m: float) -> tuple[frozenset[Path], Points]:
+        """Return the files within a radius of a place, and their points (N, 3)."""
+        wanted = [tile.path for tile in self.tiles if tile.is_within(x, y, radius_m)]
+        self._loaded = {path: self._points_of(path) for path in wanted}
+        clouds = list(self._loaded.values())
+        points = np.concatenate(clouds) if clouds else np.zeros((0, 3), np.float32)
+        return frozenset(wanted), points
+
+    def names_around(self, x: float, y: float, radius_m: float) -> frozenset[Path]:
+        """Return the files within a radius of a place, without loading any."""
+        return frozenset(tile.path for tile in self.tiles if tile.is_within(x, y, radius_m))
+
+    def _points_of(self, path: Path) -> Points:
+        loaded = self._loaded.get(path)
+        return read_points(path, self.leaf_m) if loaded is None else loaded
+
+
+def open_map(path: Path, leaf_m: float = 0.0) -> TiledMap:
+    """Return a map that is one file (its only tile, without limits) or a folder of them.
+
+    What is none, or cannot be read, is a ManycoreError.
+    """
+    try:
+        return _opened(path, leaf_m)
+    except OSError as error:
+        raise ManycoreError(f"map {path}: {error.strerror}", EXIT_BAD_INPUT) from error
+
+
+def _opened(path: Path, leaf_m: float) -> TiledMap:
+    if not path.is_dir():
+        points = read_points(path, leaf_m)
+        everywhere = Tile(path, (-np.inf, -np.inf), (np.inf, np.inf))
+        return TiledMap((everywhere,), leaf_m, {path: points})
+    metadata = path / METADATA
+    tiles = _listed(metadata) if metadata.exists() else _measured(path)
+    if not tiles:
+        raise ManycoreError(f"map {path}: the folder has no PCD, PLY or npz file", EXIT_BAD_INPUT)
+    return TiledMap(tuple(tiles), leaf_m)
+
+
+def write_tiles(folder: Path, points: Points, size_m: float, suffix: str) -> int:
+    """Write points as square tiles with Autoware's list of them; return their number."""
+    folder.mkdir(parents=True, exist_ok=True)
+    cells = np.floor(points[:, :2] / size_m).astype(int)
+    table: dict[str, object] = {"x_resolution": size_m, "y_resolution": size_m}
+    corners = np.unique(cells, axis=0)
+    for column, row in corners:
+        name = f"{column}_{row}{suffix}"
+        write_points(folder / name, points[(cells == (column, row)).all(axis=1)])
+        table[name] = [float(column * size_m), float(row * size_m)]
+    (folder / METADATA).write_text(yaml.safe_dump(table, sort_keys=False))
+    return len(corners)
+
+
+def _listed(metadata: Path) -> list[Tile]:
+    try:
+        table = yaml.safe_load(metadata.read_text())
+        size_x, size_y = float(table.pop("x_resolution")), float(table.pop("y_resolution"))
+        corners = {name: (float(x), float(y)) for name, (x, y) in table.items()}
+    except (yaml.YAMLError, AttributeError, KeyError, TypeError, ValueError) as error:
+        raise ManycoreError(
+            f"{metadata}: expected x_resolution, y_resolution and FILE: [x, y] for each tile "
+            f"({error!r})",
+            EXIT_BAD_INPUT,
+        ) from error
+    tiles = [
+        Tile(metadata.parent / name, (x, y), (x + size_x, y + size_y))
+        for name, (x, y) in corners.items()
+    ]
+    for tile in tiles:
+        if not tile.path.is_file():
+            raise ManycoreError(f"{metadata}: the tile {tile.path.name} is missing", EXIT_BAD_INPUT)
+    return tiles
+
+
+def _measured(folder: Path) -> list[Tile]:
+    tiles = []
+    for path in sorted(path for path in folder.iterdir() if path.suffix in SUFFIXES):
+        points = read_points(path)
+        (x0, y0), (x1, y1) = points[:, :2].min(axis=0), points[:, :2].max(axis=0)
+        tiles.append(Tile(path, (float(x0), float(y0)), (float(x1), float(y1))))
+    return tiles

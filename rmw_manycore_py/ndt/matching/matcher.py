@@ -1,0 +1,215 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""The matcher, on the calling thread or on workers: one signature."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from types import TracebackType
+from typing import Any, Protocol
+
+from numpy.typing import ArrayLike
+
+from rmw_manycore_py import _ndt
+from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
+from rmw_manycore_py.ndt.geometry.arrays import (
+    Pose,
+    ScanPoints,
+    pose_matrix,
+    scan_points,
+    why_no_pose,
+)
+from rmw_manycore_py.ndt.matching import covariance
+from rmw_manycore_py.ndt.matching.alignment import Alignment, Score
+from rmw_manycore_py.ndt.matching.answers import alignment_from, refused, score_from
+from rmw_manycore_py.ndt.matching.kernel_errors import reported
+from rmw_manycore_py.ndt.matching.level import levelled
+from rmw_manycore_py.ndt.matching.options import MatcherOptions
+from rmw_manycore_py.ndt.matching.voxel_map import VoxelMap
+
+Position = tuple[float, float]
+
+FEWEST_POINTS = 6  # a pose has six unknowns, and the surface that a point lies on fixes one
+
+
+class NativeMatcher(Protocol):
+    """What the kernel offers, alone or with workers."""
+
+    def align(
+        self,
+        map: _ndt.VoxelMap,  # noqa: A002 - named as the binding names it
+        points: ScanPoints,
+        guess: Pose,
+        regularization_position_m: Position | None = None,
+    ) -> dict[str, Any]:
+        """Align from a guess."""
+        ...
+
+    def evaluate(
+        self,
+        map: _ndt.VoxelMap,  # noqa: A002
+        points: ScanPoints,
+        pose: Pose,
+    ) -> dict[str, Any]:
+        """Return score and derivatives at a pose."""
+        ...
+
+
+class Matcher:
+    """Matches scans to a map. Not for several threads at once; the map may be swapped in between.
+
+    Bad input is answered, not raised: see :class:`Alignment`. Raised are only mistakes of the
+    calling program (arrays of a wrong shape, no map, a map built for other options), and what
+    keeps the matcher from working: no memory, workers that die again and again. Each is a
+    ManycoreError, and the matcher may be used on.
+    """
+
+    def __init__(self, options: MatcherOptions, native: NativeMatcher) -> None:
+        self.options = options
+        self._native = native
+        self._map: VoxelMap | None = None
+
+    def __enter__(self) -> Matcher:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Give back what the matcher holds."""
+        self._map = None
+
+    def set_map(self, voxel_map: VoxelMap) -> None:
+        """Match to this map from now on."""
+        for name in ("voxel_size_m", "search", "voxel_covariance"):
+            found = getattr(voxel_map.options, name)
+            expected = getattr(self.options, name)
+            if found != expected:
+                raise ManycoreError(
+                    f"map: expected one built with {name}={expected!r}, found {found!r}",
+                    EXIT_BAD_INPUT,
+                )
+        self._map = voxel_map
+
+    def shared_bytes(
+        self,
+        points: int = 0,  # noqa: ARG002 - on the calling thread nothing is shared
+        next_map: VoxelMap | None = None,  # noqa: ARG002
+    ) -> int:
+        """Return the memory shared with other processes, once a scan of so many points is aligned.
+
+        :param next_map: one that is about to follow the present one, beside which it lies then.
+        """
+        return 0
+
+    def align(
+        self,
+        points: ArrayLike,
+        T_map_guess: ArrayLike,
+        T_map_regularization: ArrayLike | None = None,
+        *,
+        only_pose: bool = False,
+    ) -> Alignment:
+        """Find the pose near the guess (4, 4) at which points (N, 3) [m, sensor frame] fit best.
+
+        :param T_map_regularization: a pose (4, 4) to keep near along the vehicle's axis.
+        :param only_pose: spare the alignments and scores that only the covariance is made of.
+        """
+        voxel_map = self._require_map()
+        scan = scan_points(points)
+        guess = pose_matrix(T_map_guess)
+        wrong = why_no_pose(guess)
+        if wrong:
+            return refused(None, f"the guess {wrong}", self.options)
+        position = None
+        if T_map_regularization is not None:
+            regularization = pose_matrix(T_map_regularization)
+            wrong = why_no_pose(regularization)
+            if wrong:
+                return refused(guess, f"the regularization pose {wrong}", self.options)
+            position = (float(regularization[0, 3]), float(regularization[1, 3]))
+        alignment = self._aligned(voxel_map, scan, guess, position)
+        if only_pose or not alignment.converged:
+            return alignment
+        return self._with_covariance(alignment, voxel_map, scan, position)
+
+    def _aligned(
+        self, voxel_map: VoxelMap, scan: ScanPoints, guess: Pose, position: Position | None
+    ) -> Alignment:
+        level = levelled(scan, guess)
+        with reported():
+            numbers = self._native.align(voxel_map.native, level.points, level.guess, position)
+        if numbers["used_points"] == 0:
+            return refused(guess, "the scan has no finite point", self.options)
+        if numbers["used_points"] < FEWEST_POINTS:
+            few = f"{numbers['used_points']} finite points do not say where a scan fits"
+            return refused(guess, f"too few points: {few}", self.options)
+        found = alignment_from(numbers, self.options)
+        return replace(found, T_map_sensor=level.result(found.T_map_sensor))
+
+    def _with_covariance(
+        self,
+        alignment: Alignment,
+        voxel_map: VoxelMap,
+        scan: ScanPoints,
+        position: Position | None,
+    ) -> Alignment:
+        """Return the alignment with what takes more than itself to know its covariance."""
+        kind = self.options.pose_covariance
+        if kind not in ("multi_ndt", "multi_ndt_score"):
+            return alignment
+        around = covariance.poses_around(alignment.T_map_sensor, self.options.offsets_m)
+        results: list[Pose] = []
+        if kind == "multi_ndt":
+            results = [self._aligned(voxel_map, scan, T, position).T_map_sensor for T in around]
+            found = covariance.from_results(alignment, results)
+        else:
+            likelihoods = [self.score(scan, T).nearest_voxel_likelihood for T in around]
+            found = covariance.from_likelihoods(
+                alignment, around, likelihoods, self.options.temperature
+            )
+        return replace(
+            alignment,
+            covariance=found,
+            guesses_around=tuple(around),
+            results_around=tuple(results),
+        )
+
+    def score(self, points: ArrayLike, T_map_sensor: ArrayLike) -> Score:
+        """Return how well points (N, 3) fit at a pose (4, 4); 0 for what is no scan or no pose."""
+        voxel_map = self._require_map()
+        scan = scan_points(points)
+        pose = pose_matrix(T_map_sensor)
+        if why_no_pose(pose):
+            return Score(0.0, 0.0, 0.0, 0)
+        with reported():
+            return score_from(self._native.evaluate(voxel_map.native, scan, pose))
+
+    def _require_map(self) -> VoxelMap:
+        if self._map is None:
+            raise ManycoreError("the matcher has no map: call set_map first", EXIT_BAD_INPUT)
+        return self._map
+
+
+class SerialMatcher(Matcher):
+    """Matches on the calling thread."""
+
+    def __init__(self, options: MatcherOptions | None = None) -> None:
+        options = options or MatcherOptions()
+        super().__init__(options, _ndt.SerialMatcher(native_options(options)))
+
+
+def native_options(options: MatcherOptions) -> _ndt.MatchOptions:
+    """Return the options of a match as the kernel takes them."""
+    return _ndt.MatchOptions(
+        step_rule=getattr(_ndt.StepRule, options.step_rule),
+        max_iterations=options.max_iterations,
+        step_size=options.step_size,
+        trans_epsilon=options.trans_epsilon,
+        outlier_ratio=options.outlier_ratio,
+        regularization_scale_factor=options.regularization_scale_factor,
+    )

@@ -1,0 +1,97 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""The matcher on worker processes, each pinned to its core."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from rmw_manycore_py import _ndt
+from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
+from rmw_manycore_py.ndt.matching.kernel_errors import reported
+from rmw_manycore_py.ndt.matching.matcher import Matcher, native_options
+from rmw_manycore_py.ndt.matching.options import MatcherOptions
+from rmw_manycore_py.ndt.matching.voxel_map import VoxelMap
+
+WORKER = "manycore_ndt_worker"
+
+
+class WorkerMatcher(Matcher):
+    """Matches on workers, one process per host CPU; the caller sleeps meanwhile.
+
+    Any number of workers finds the same pose as :class:`SerialMatcher`, bit for bit. A worker that
+    is killed is replaced and the alignment repeated; between alignments all of them sleep. They end
+    with :meth:`close`, and with this process however it ends.
+
+    :param host_cpus: one worker for each; a CPU named twice gets two.
+    :raises ManycoreError: when a CPU cannot be had or the worker program is not installed.
+    """
+
+    def __init__(self, options: MatcherOptions | None, host_cpus: Sequence[int]) -> None:
+        options = options or MatcherOptions()
+        try:
+            group = _ndt.WorkerGroup(
+                native_options(options), str(_worker_program()), [int(cpu) for cpu in host_cpus]
+            )
+        except _ndt.NdtError as error:
+            raise ManycoreError(str(error), EXIT_BAD_INPUT) from error
+        super().__init__(options, group)
+        self._group: _ndt.WorkerGroup | None = group
+
+    def set_map(self, voxel_map: VoxelMap) -> None:
+        """Match to this map once all workers have it at hand; if they fail the old one stays."""
+        with reported():
+            self._require_group().prepare(voxel_map.native)
+        super().set_map(voxel_map)
+
+    def shared_bytes(self, points: int = 0, next_map: VoxelMap | None = None) -> int:
+        """Return the size of session, scan and map."""
+        maps = sum(voxel_map.size_bytes for voxel_map in (self._map, next_map) if voxel_map)
+        return self._require_group().memory_bytes(points) + maps
+
+    def close(self) -> None:
+        """End the workers."""
+        super().close()
+        self._group = None
+        self._native = _Closed()
+
+    @property
+    def worker_pids(self) -> list[int]:
+        """Return the process ids of the workers, in the order of their host CPUs."""
+        return self._require_group().pids()
+
+    @property
+    def replaced_workers(self) -> int:
+        """Return how many workers had to be replaced so far."""
+        return self._require_group().replaced()
+
+    @property
+    def busy_ns(self) -> list[float]:
+        """Return how long each worker worked for the last answer, without waiting for others."""
+        return self._require_group().busy_ns()
+
+    def _require_group(self) -> _ndt.WorkerGroup:
+        if self._group is None:
+            raise ManycoreError("the matcher is closed", EXIT_BAD_INPUT)
+        return self._group
+
+
+class _Closed:
+    """Stands in the place of workers that have ended."""
+
+    def align(self, *_: object) -> dict[str, object]:
+        raise ManycoreError("the matcher is closed", EXIT_BAD_INPUT)
+
+    evaluate = align
+
+
+def _worker_program() -> Path:
+    # Installed, site-packages lie in <prefix>/lib/pythonX.Y; in a build tree next to lib.
+    here = Path(_ndt.__file__).resolve()
+    prefixes = [here.parents[4], here.parents[1], Path(sys.prefix)]
+    for prefix in prefixes:
+        program = prefix / "lib" / "rmw_manycore" / WORKER
+        if program.exists():
+            return program
+    raise ManycoreError(f"{WORKER} was not found near {here}: reinstall rmw-manycore")

@@ -1,0 +1,128 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Where `ndt_scan_matcher` has its map from: a topic, or files of its own around the vehicle."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from rmw_manycore_py.errors import ManycoreError
+from rmw_manycore_py.ndt.geometry.arrays import Points
+from rmw_manycore_py.ndt.maps.map_area import MapArea
+from rmw_manycore_py.ndt.maps.map_builder import MapBuilder
+from rmw_manycore_py.ndt.maps.map_tiles import open_map
+from rmw_manycore_py.ndt.matching.options import MatcherOptions
+from rmw_manycore_py.ndt.matching.voxel_map import VoxelMap
+from rmw_manycore_py.ndt.messages.point_cloud import decode
+from rmw_manycore_py.ndt.nodes.scan_matcher.diagnostics import Diagnostics
+from rmw_manycore_py.ndt.nodes.scan_matcher.parameters import MatcherParameters, OwnParameters
+
+
+class MapSupply:
+    """Has maps built beside the matching, and says what is wrong with them."""
+
+    def __init__(
+        self,
+        options: MatcherOptions,
+        parameters: MatcherParameters,
+        own: OwnParameters,
+        admit: Callable[[VoxelMap], None],
+    ) -> None:
+        """Prepare for maps; `admit` takes one over, or raises a ManycoreError that says why not."""
+        self._p = parameters
+        self._admit = admit
+        self._builder = MapBuilder(options)
+        self._area: MapArea | None = None
+        if own.map_path:
+            tiles = open_map(Path(own.map_path).expanduser(), own.map_leaf_m)
+            self._area = MapArea(tiles, parameters.map_radius_m, parameters.update_distance_m)
+        self._vehicle: tuple[float, float] | None = None
+        self._problem = ""
+        self._warning = ""
+        self.duration_ms = 0.0
+        self.is_set = False
+
+    def on_message(self, message: Any) -> None:
+        """Take a map from the topic; the newest one holds."""
+        if self._area is None:
+            self._builder.submit(partial(self._points_of, message))
+
+    def _points_of(self, message: Any) -> Points:
+        """Return the points of a map; one of another frame would be of another place."""
+        frame = message.header.frame_id
+        if frame not in ("", self._p.map_frame):
+            raise ManycoreError(
+                f"pointcloud_map is in the frame '{frame}', expected '{self._p.map_frame}'"
+            )
+        return decode(message)
+
+    def vehicle_is_at(self, x: float, y: float) -> None:
+        """Load other tiles when the vehicle has moved far enough."""
+        self._vehicle = (x, y)
+        area = self._area
+        if area is None or not self._builder.is_idle:
+            return
+        if area.distance_m(x, y) > self._p.update_distance_m:
+            self._builder.submit(partial(area.update, x, y))
+
+    def take(self, wait: bool = False) -> tuple[VoxelMap, Points] | None:
+        """Return a map that was built since the last call, and its points."""
+        built = self._builder.take(wait)
+        if built is None:
+            return None
+        if built.voxel_map is None or built.points is None:
+            self._refuse(built.problem)
+            return None
+        try:
+            self._admit(built.voxel_map)
+        except ManycoreError as error:
+            self._refuse(str(error))
+            return None
+        self._problem = ""
+        self.is_set = True
+        self._warning = built.warning
+        self.duration_ms = built.duration_ms
+        return built.voxel_map, built.points
+
+    def _refuse(self, problem: str) -> None:
+        """Keep the map there is; without a problem the same tiles were needed again."""
+        if not problem:
+            return
+        self._problem = problem
+        if self._area is not None:
+            self._area.forget_tiles()
+
+    def is_leaving(self, x: float, y: float) -> bool:
+        """Tell whether the LiDAR sees beyond what is loaded."""
+        if self._area is None:
+            return False
+        return self._area.distance_m(x, y) + self._p.lidar_radius_m > self._p.map_radius_m
+
+    def what_is_missing(self) -> str:
+        """Say why there is no map."""
+        if self._problem:
+            return self._problem
+        if self._area is not None:
+            return "it is being loaded, or ekf_pose_with_covariance says nothing of the place"
+        return "publish pointcloud_map or set the parameter map_path"
+
+    def report(self, diagnostics: Diagnostics) -> None:
+        """Add the state of the map to a report."""
+        diagnostics.value("is_set_last_update_position", self._vehicle is not None)
+        diagnostics.value("is_set_map_points", self.is_set)
+        diagnostics.value("map_update_execution_time", round(self.duration_ms, 3))
+        if self._problem:
+            diagnostics.error(f"the map cannot be used: {self._problem}")
+        if self._warning:
+            diagnostics.warn(f"the map is coarse: {self._warning}")
+        if self._area is not None and self._vehicle is not None:
+            distance_m = self._area.distance_m(*self._vehicle)
+            diagnostics.value("distance_last_update_position_to_current_position", distance_m)
+            if self.is_set and self.is_leaving(*self._vehicle):
+                diagnostics.error("Dynamic map loading is not keeping up.")
+
+    def close(self) -> None:
+        """End the building of maps."""
+        self._builder.close()

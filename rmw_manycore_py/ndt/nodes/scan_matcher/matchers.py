@@ -1,0 +1,32 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""The matcher of a node: on its own thread, or on the workers that its mapfile gives it."""
+
+from __future__ import annotations
+
+import os
+
+from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
+from rmw_manycore_py.mapfile.placing.workers import WORKER_CPUS
+from rmw_manycore_py.ndt.matching.matcher import Matcher, SerialMatcher
+from rmw_manycore_py.ndt.matching.options import MatcherOptions
+from rmw_manycore_py.ndt.matching.worker_matcher import WorkerMatcher
+
+
+def make_matcher(options: MatcherOptions, named_cpus: tuple[int, ...]) -> Matcher:
+    """Return a matcher with a worker on each of the host CPUs, or the mapfile's if none is named.
+
+    Several workers on one CPU would wait for each other, so cores that share a host CPU share a
+    worker; where that leaves one, the node's own thread does as well.
+    """
+    cpus = sorted(set(named_cpus or _mapfile_cpus()))
+    return WorkerMatcher(options, cpus) if len(cpus) > 1 else SerialMatcher(options)
+
+
+def _mapfile_cpus() -> tuple[int, ...]:
+    text = os.environ.get(WORKER_CPUS, "")
+    try:
+        return tuple(int(word) for word in text.split(",") if word)
+    except ValueError as error:
+        raise ManycoreError(
+            f"{WORKER_CPUS}: expected numbers separated by commas, found '{text}'", EXIT_BAD_INPUT
+        ) from error

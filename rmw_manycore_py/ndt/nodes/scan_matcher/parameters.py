@@ -1,0 +1,110 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""The parameters of `ndt_scan_matcher`: Autoware's names and defaults, and a few of ours."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from rmw_manycore_py.ndt.matching.options import Search, StepRule, VoxelCovariance
+from rmw_manycore_py.ndt.nodes.support.declared import parameter
+
+TRANSFORM_PROBABILITY, NEAREST_VOXEL_LIKELIHOOD = 0, 1
+FIXED_VALUE, LAPLACE_APPROXIMATION, MULTI_NDT, MULTI_NDT_SCORE = range(4)
+VARIANCES = (0.0225, 0.0225, 0.0225, 0.000625, 0.000625, 0.000625)  # m^2, rad^2
+DIAGONAL = tuple(VARIANCES[i] if i == j else 0.0 for i in range(6) for j in range(6))
+
+
+@dataclass(frozen=True)
+class MatcherParameters:
+    """Autoware's, in its order."""
+
+    base_frame: str = parameter("frame.base_frame", "base_link")
+    ndt_base_frame: str = parameter("frame.ndt_base_frame", "ndt_base_link")
+    map_frame: str = parameter("frame.map_frame", "map")
+
+    timeout_s: float = parameter("sensor_points.timeout_sec", 1.0, above=0.0)
+    required_distance_m: float = parameter("sensor_points.required_distance", 10.0, least=0.0)
+
+    trans_epsilon: float = parameter("ndt.trans_epsilon", 0.01, above=0.0, most=1.0)
+    step_size: float = parameter("ndt.step_size", 0.1, above=0.0, most=10.0)
+    resolution_m: float = parameter("ndt.resolution", 2.0, least=0.1, most=100.0)
+    max_iterations: int = parameter("ndt.max_iterations", 30, least=1, most=1000)
+    num_threads: int = parameter("ndt.num_threads", 4, least=1, most=256)
+    regularization: bool = parameter("ndt.regularization.enable", False)
+    regularization_scale: float = parameter("ndt.regularization.scale_factor", 0.01, least=0.0)
+
+    particles: int = parameter("initial_pose_estimation.particles_num", 200, least=1, most=100000)
+    startup_trials: int = parameter("initial_pose_estimation.n_startup_trials", 100, least=1)
+
+    initial_pose_timeout_s: float = parameter("validation.initial_pose_timeout_sec", 1.0, above=0.0)
+    initial_pose_distance_m: float = parameter(
+        "validation.initial_pose_distance_tolerance_m", 10.0, above=0.0
+    )
+    result_distance_m: float = parameter(
+        "validation.initial_to_result_distance_tolerance_m", 3.0, above=0.0
+    )
+    critical_exe_time_ms: float = parameter(
+        "validation.critical_upper_bound_exe_time_ms", 100.0, above=0.0
+    )
+    skipping_publish_num: int = parameter("validation.skipping_publish_num", 5, least=1)
+
+    converged_param_type: int = parameter(
+        "score_estimation.converged_param_type",
+        NEAREST_VOXEL_LIKELIHOOD,
+        choices=(TRANSFORM_PROBABILITY, NEAREST_VOXEL_LIKELIHOOD),
+    )
+    least_transform_probability: float = parameter(
+        "score_estimation.converged_param_transform_probability", 3.0, least=0.0
+    )
+    least_nearest_voxel_likelihood: float = parameter(
+        "score_estimation.converged_param_nearest_voxel_transformation_likelihood", 2.3, least=0.0
+    )
+    no_ground: bool = parameter("score_estimation.no_ground_points.enable", False)
+    ground_margin_m: float = parameter(
+        "score_estimation.no_ground_points.z_margin_for_ground_removal", 0.8
+    )
+
+    covariance: tuple[float, ...] = parameter(
+        "covariance.output_pose_covariance", DIAGONAL, length=36
+    )
+    covariance_type: int = parameter(
+        "covariance.covariance_estimation.covariance_estimation_type",
+        FIXED_VALUE,
+        choices=(FIXED_VALUE, LAPLACE_APPROXIMATION, MULTI_NDT, MULTI_NDT_SCORE),
+    )
+    offsets_x_m: tuple[float, ...] = parameter(
+        "covariance.covariance_estimation.initial_pose_offset_model_x",
+        (0.0, 0.0, 0.5, -0.5, 1.0, -1.0),
+    )
+    offsets_y_m: tuple[float, ...] = parameter(
+        "covariance.covariance_estimation.initial_pose_offset_model_y",
+        (0.5, -0.5, 0.0, 0.0, 0.0, 0.0),
+    )
+    temperature: float = parameter("covariance.covariance_estimation.temperature", 0.05, above=0.0)
+    covariance_scale: float = parameter(
+        "covariance.covariance_estimation.scale_factor", 1.0, above=0.0
+    )
+
+    update_distance_m: float = parameter("dynamic_map_loading.update_distance", 20.0, above=0.0)
+    map_radius_m: float = parameter("dynamic_map_loading.map_radius", 150.0, above=0.0)
+    lidar_radius_m: float = parameter("dynamic_map_loading.lidar_radius", 100.0, above=0.0)
+    publish_loaded_map: bool = parameter("dynamic_map_loading.publish_loaded_map", False)
+
+
+@dataclass(frozen=True)
+class OwnParameters:
+    """What Autoware's node has no parameter for."""
+
+    search: Search = parameter("ndt.search", "radius", choices=("radius", "direct7", "direct1"))
+    voxel_covariance: VoxelCovariance = parameter(
+        "ndt.covariance", "autoware", choices=("autoware", "pcl", "pclomp")
+    )
+    step_rule: StepRule = parameter(
+        "ndt.step_rule", "trust_region", choices=("trust_region", "clamped", "more_thuente")
+    )
+    outlier_ratio: float = parameter("ndt.outlier_ratio", 0.55, above=0.0, most=0.99)
+    scan_limit: int = parameter("sensor_points.limit", 200_000, least=100, most=10_000_000)
+    map_path: str = parameter("map_path", "")
+    map_leaf_m: float = parameter("map_leaf_size", 0.0, least=0.0)
+    activated: bool = parameter("activated", False)
+    worker_cpus: tuple[int, ...] = parameter("worker_host_cpus", (), whole=True)

@@ -1,0 +1,180 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""A recorded drive: LiDAR scans with their poses, as npz.
+
+| array | shape | meaning |
+|---|---|---|
+| `points` | int16 (N, 3 or more), or floating point | times `scale_m`: metres in the sensor frame |
+| `scale_m` | scalar, 1 where it is missing | |
+| `offsets` | integer (S + 1) | scan i is `points[offsets[i]:offsets[i + 1]]` |
+| `poses` | (S, 4, 4) or (S, 3, 4) | T_map_sensor of each scan |
+| `stamps` | (S), empty or missing | seconds, or whatever `recordings.stamps` takes for them |
+| `note` | text; may be missing | where it came from |
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Protocol
+
+import numpy as np
+import numpy.typing as npt
+
+from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError, what_is_wrong
+from rmw_manycore_py.ndt.files.unreadable import UNREADABLE
+from rmw_manycore_py.ndt.geometry.arrays import Matrix, Points
+from rmw_manycore_py.ndt.geometry.poses import rigid, transform
+from rmw_manycore_py.ndt.geometry.precision import needs_doubles, why_coarse
+from rmw_manycore_py.ndt.recordings.stamps import in_seconds
+
+DEFAULT_SCALE_M = 0.002
+DEFAULT_PERIOD_S = 0.1  # of recordings without stamps: the 10 Hz of most LiDARs
+INT16_MAX = 32767
+SINGLES = (np.int8, np.uint8, np.int16, np.uint16, np.float16, np.float32)  # fit into float32
+
+
+class Scans(Protocol):
+    """The points (n, 3) of each scan [m, sensor frame], maybe read when they are asked for."""
+
+    def __getitem__(self, index: int) -> Points:
+        """Return the points of a scan, finite or not."""
+        ...
+
+
+@dataclass(frozen=True)
+class StoredScans:
+    """Scans one behind the other in an array, as numbers of `scale_m`."""
+
+    points: npt.NDArray[Any]
+    scale_m: float
+    offsets: npt.NDArray[np.int64]
+
+    def __getitem__(self, index: int) -> Points:
+        """Return the points of a scan."""
+        part = self.points[self.offsets[index] : self.offsets[index + 1], :3]
+        number = np.float32 if part.dtype in SINGLES else np.float64
+        metres: Points = part.astype(number) * number(self.scale_m)
+        return metres
+
+
+@dataclass(frozen=True)
+class Recording:
+    """Scans of a drive; `poses` T_map_sensor (S, 4, 4), `stamps` (S) in seconds, or empty."""
+
+    scans: Scans
+    poses: Matrix
+    stamps: Matrix
+    note: str = ""
+
+    def __len__(self) -> int:
+        return len(self.poses)
+
+    def scan(self, index: int) -> Points:
+        """Return the finite points (n, 3) of a scan in metres, in the sensor frame."""
+        points = self.scans[index]
+        finite = np.isfinite(points).all(axis=1)
+        return points if finite.all() else points[finite]
+
+    def times_s(self) -> Matrix:
+        """Return the time of each scan after the first; even where there are no stamps."""
+        if len(self.stamps) == 0:
+            return np.arange(len(self), dtype=np.float64) * DEFAULT_PERIOD_S
+        times: Matrix = self.stamps - self.stamps[0]
+        return times
+
+    def accumulated(self, indices: Sequence[int]) -> Points:
+        """Return all points of some scans, in the map frame."""
+        scans = [self._in_map(i) for i in indices]
+        return np.concatenate(scans) if scans else np.zeros((0, 3), np.float32)
+
+    def _in_map(self, index: int) -> Points:
+        """Return a scan in the map frame; a map far from its origin needs doubles.
+
+        What single precision has spoiled before stays in it, so that it can be told.
+        """
+        points = self.scan(index)
+        moved = transform(self.poses[index], points.astype(np.float64))
+        is_double = needs_doubles(moved) and not why_coarse(points)
+        return moved if is_double else moved.astype(points.dtype, copy=False)
+
+    def first(self, count: int | None) -> Recording:
+        """Return the first scans only, None for all."""
+        return Recording(self.scans, self.poses[:count], self.stamps[:count], self.note)
+
+
+def save_recording(path: Path, drive: Recording, scale_m: float = DEFAULT_SCALE_M) -> None:
+    """Write a recording as npz, its points rounded to `scale_m`."""
+    stored = stored_scans([drive.scan(index) for index in range(len(drive))], scale_m)
+    np.savez_compressed(
+        path,
+        points=stored.points,
+        scale_m=stored.scale_m,
+        offsets=stored.offsets,
+        poses=drive.poses,
+        stamps=drive.stamps,
+        note=drive.note,
+    )
+
+
+def stored_scans(scans: Sequence[Points], scale_m: float) -> StoredScans:
+    """Return scans in metres as whole numbers of `scale_m`."""
+    offsets = np.cumsum([0, *(len(scan) for scan in scans)], dtype=np.int64)
+    steps = np.rint(np.concatenate(scans) / scale_m)
+    if steps.size and np.abs(steps).max() > INT16_MAX:
+        raise ValueError(f"points beyond {INT16_MAX * scale_m:.0f} m need a larger scale_m")
+    return StoredScans(steps.astype(np.int16), scale_m, offsets)
+
+
+def load_recording(path: Path) -> Recording:
+    """Read a recording; a file that is none is an error that says what is wrong with it."""
+    try:
+        with path.open("rb") as raw, np.load(raw, allow_pickle=False) as file:
+            # What is no array comes as bytes.
+            arrays = {name: np.asarray(file[name]) for name in file.files}
+    except UNREADABLE as error:
+        raise _bad(path, f"cannot be read as npz: {what_is_wrong(error)}") from error
+    missing = {"points", "offsets", "poses"} - arrays.keys()
+    if missing:
+        raise _bad(path, f"has no array {', '.join(sorted(missing))}")
+    points, poses = arrays["points"], arrays["poses"]
+    if problem := _problem(arrays):
+        raise _bad(path, problem)
+    try:
+        return Recording(
+            StoredScans(points, float(arrays.get("scale_m", 1.0)), arrays["offsets"]),
+            rigid(poses),
+            in_seconds(arrays.get("stamps", np.zeros(0))),
+            str(arrays.get("note", "")),
+        )
+    except UNREADABLE as error:
+        raise _bad(path, what_is_wrong(error)) from error
+
+
+def _problem(arrays: dict[str, npt.NDArray[Any]]) -> str | None:
+    """Return the first thing that is wrong with the shapes of the arrays."""
+    points, poses, offsets = arrays["points"], arrays["poses"], arrays["offsets"]
+    stamps, scale = arrays.get("stamps", np.zeros(0)), arrays.get("scale_m")
+    count = len(poses) if poses.ndim else 0
+    has_columns = points.ndim == 2 and points.shape[1] >= 3
+    is_scale = scale is None or (scale.ndim == 0 and scale.dtype.kind in "iuf" and 0 < scale < 1e3)
+    checks = [
+        (points.dtype.kind in "iuf" and has_columns, "points are not (N, 3) numbers"),
+        (is_scale, "scale_m is not a positive number"),
+        (count > 0 and poses.shape[1:] in ((4, 4), (3, 4)), "poses are not (S, 4, 4) with S > 0"),
+        (offsets.shape == (count + 1,), "offsets are not one more than poses"),
+        (offsets.dtype.kind in "iu", "offsets are not whole numbers"),
+        (stamps.shape in ((0,), (count,)), "stamps are neither empty nor one per pose"),
+    ]
+    for good, problem in checks:
+        if not good:
+            return problem
+    if (np.diff(offsets.astype(np.int64)) < 0).any() or not 0 <= offsets[0] <= offsets[-1] <= len(
+        points
+    ):
+        return "offsets do not increase within points"
+    return None
+
+
+def _bad(path: Path, problem: str) -> ManycoreError:
+    return ManycoreError(f"{path}: no recording: {problem}", EXIT_BAD_INPUT)

@@ -1,0 +1,93 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""A spinning LiDAR in a synthetic street: one ray per ring and azimuth, the nearest hit counts."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from rmw_manycore_py.ndt.geometry.arrays import Matrix, Points
+from rmw_manycore_py.ndt.simulation.street import Street
+
+
+@dataclass(frozen=True)
+class Lidar:
+    """What the sensor is like; the defaults are those of a common one with 32 rings."""
+
+    rings: int = 32
+    azimuths: int = 600
+    lowest_deg: float = -25.0
+    highest_deg: float = 15.0
+    range_m: float = 60.0
+    noise_m: float = 0.02
+
+    def directions(self) -> Matrix:
+        """Return unit vectors (rings * azimuths, 3) in the sensor frame."""
+        elevation = np.radians(np.linspace(self.lowest_deg, self.highest_deg, self.rings))
+        azimuth = np.linspace(-np.pi, np.pi, self.azimuths, endpoint=False)
+        e, a = (grid.ravel() for grid in np.meshgrid(elevation, azimuth, indexing="ij"))
+        return np.stack([np.cos(e) * np.cos(a), np.cos(e) * np.sin(a), np.sin(e)], axis=1)
+
+    def scan(
+        self,
+        street: Street,
+        T_map_sensor: Matrix,
+        generator: np.random.Generator,
+    ) -> Points:
+        """Return what the sensor sees from a pose: points (n, 3) in the sensor frame."""
+        directions = self.directions()
+        rays = directions @ T_map_sensor[:3, :3].T
+        range_m = _nearest_hits(street, T_map_sensor[:3, 3], rays, self.range_m)
+        hit = range_m < self.range_m
+        measured = range_m[hit] + generator.normal(0.0, self.noise_m, int(hit.sum()))
+        return (directions[hit] * measured[:, None]).astype(np.float32)
+
+
+def _nearest_hits(street: Street, origin: Matrix, rays: Matrix, range_m: float) -> Matrix:
+    """Return the distance (R,) along each ray to the first surface; infinity without one."""
+    nearest = _ground(origin, rays)
+    near_box = _is_near(origin, street.lower[:, 0], street.upper[:, 0], range_m)
+    for lower, upper in zip(street.lower[near_box], street.upper[near_box], strict=True):
+        np.minimum(nearest, _box(origin, rays, lower, upper), out=nearest)
+    near_upright = _is_near(origin, street.centres[:, 0], street.centres[:, 0], range_m)
+    for index in np.flatnonzero(near_upright):
+        centre, radius, height = street.centres[index], street.radii[index], street.heights[index]
+        np.minimum(nearest, _cylinder(origin, rays, centre, radius, height), out=nearest)
+    return nearest
+
+
+def _is_near(
+    origin: Matrix, lower_x: Matrix, upper_x: Matrix, range_m: float
+) -> npt.NDArray[np.bool_]:
+    near: npt.NDArray[np.bool_] = (upper_x > origin[0] - range_m) & (lower_x < origin[0] + range_m)
+    return near
+
+
+def _ground(origin: Matrix, rays: Matrix) -> Matrix:
+    with np.errstate(divide="ignore"):
+        distance = -origin[2] / rays[:, 2]
+    return np.where(rays[:, 2] < 0.0, distance, np.inf)
+
+
+def _box(origin: Matrix, rays: Matrix, lower: Matrix, upper: Matrix) -> Matrix:
+    """Intersect rays with one box: the slab method."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        first, second = (lower - origin) / rays, (upper - origin) / rays
+    enter = np.minimum(first, second).max(axis=1)
+    leave = np.maximum(first, second).min(axis=1)
+    return np.where((enter <= leave) & (enter > 0.0), enter, np.inf)
+
+
+def _cylinder(origin: Matrix, rays: Matrix, centre: Matrix, radius: float, height: float) -> Matrix:
+    """Intersect rays with the mantle of one upright cylinder."""
+    offset = origin[:2] - centre
+    a = rays[:, 0] ** 2 + rays[:, 1] ** 2
+    b = rays[:, :2] @ offset
+    root = b * b - a * (offset @ offset - radius * radius)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        distance = (-b - np.sqrt(root)) / a
+    z = origin[2] + distance * rays[:, 2]
+    hit = (root > 0.0) & (distance > 0.0) & (z > 0.0) & (z < height)
+    return np.where(hit, distance, np.inf)

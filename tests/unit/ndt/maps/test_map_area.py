@@ -1,0 +1,29 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""The part of a map around a vehicle."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from rmw_manycore_py.ndt.maps.map_area import MapArea
+from rmw_manycore_py.ndt.maps.map_tiles import open_map, write_tiles
+
+pytestmark = pytest.mark.unit
+
+
+def test_an_area_is_loaded_again_only_where_other_tiles_are_needed(tmp_path):
+    points = np.random.default_rng(1).uniform((0, 0, 0), (200, 20, 5), (20000, 3)).astype("f4")
+    write_tiles(tmp_path, points, 20.0, ".npz")
+    area = MapArea(open_map(tmp_path), radius_m=22.0, update_distance_m=5.0)
+    assert area.distance_m(50.0, 10.0) == np.inf
+    first = area.update(50.0, 10.0)
+    assert (first[:, 0].min() > 19.9, first[:, 0].max() < 80.1) == (True, True)
+    assert area.update(54.0, 10.0) is None
+    assert area.update(56.0, 10.0) is None
+    assert area.distance_m(56.0, 10.0) == 0.0
+    area.forget_tiles()
+    assert area.update(54.0, 10.0) is None  # not at once
+    np.testing.assert_array_equal(area.update(50.0, 10.0), first)
+    moved = area.update(90.0, 10.0)
+    assert moved[:, 0].min() > 59.9

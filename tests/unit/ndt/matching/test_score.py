@@ -1,0 +1,135 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Score and derivatives are what the published formulas say, re-derived here point by point."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+from ndt_world import Points, pose, scan_at, street
+
+from rmw_manycore_py.ndt import MatcherOptions, SerialMatcher, VoxelMap
+from rmw_manycore_py.ndt.geometry.arrays import scan_points
+from rmw_manycore_py.ndt.matching.options import Search, VoxelCovariance
+
+pytestmark = pytest.mark.unit
+
+WORLD = street()
+TRUE = (40, 0.5, 1.8, 0.01, -0.02, 0.3)
+SCAN = scan_at(WORLD, pose(*TRUE))[::7]
+
+Voxels = dict[tuple[int, ...], tuple[Points, Points]]  # cell: mean, inverse covariance
+
+
+def voxels_of(points: Points, size_m: float, covariance: VoxelCovariance) -> Voxels:
+    cells = np.floor(points / size_m).astype(int)
+    found: Voxels = {}
+    for cell in np.unique(cells, axis=0):
+        inside = points[(cells == cell).all(axis=1)]
+        count = len(inside)
+        if count < 6:
+            continue
+        scatter = np.cov(inside.T) * (count - 1)
+        matrix = {
+            "pcl": scatter / (count - 1),
+            "autoware": (np.eye(3) + scatter) / (count - 1),
+            "pclomp": (np.eye(3) + scatter) / count * (count - 1) / count,
+        }[covariance]
+        values, vectors = np.linalg.eigh(matrix)
+        values = np.maximum(values, values[2] / 100)
+        found[tuple(cell)] = (inside.mean(axis=0), (vectors / values) @ vectors.T)
+    return found
+
+
+def neighbours(voxels: Voxels, point: Points, size_m: float, search: Search) -> list[Any]:
+    if search == "radius":
+        return [v for v in voxels.values() if np.linalg.norm(point - v[0]) <= size_m]
+    cell = np.floor(point / size_m).astype(int)
+    offsets = [np.zeros(3, int)]
+    if search == "direct7":
+        offsets += [*np.eye(3, dtype=int), *-np.eye(3, dtype=int)]
+    keys = [tuple(cell + offset) for offset in offsets]
+    return [voxels[key] for key in keys if key in voxels]
+
+
+def expected_score(at: Points, options: MatcherOptions) -> tuple[float, float]:
+    """Return Magnusson's eq. 6.9 summed, and the mean of each point's best voxel."""
+    size = options.voxel_size_m
+    c1, c2 = 10 * (1 - options.outlier_ratio), options.outlier_ratio / size**3
+    d3 = -np.log(c2)
+    d1 = -np.log(c1 + c2) - d3
+    d2 = -2 * np.log((-np.log(c1 * np.exp(-0.5) + c2) - d3) / d1)
+    voxels = voxels_of(WORLD, size, options.voxel_covariance)
+    total, best = 0.0, []
+    for point in SCAN @ at[:3, :3].T + at[:3, 3]:
+        scores = [
+            -d1 * np.exp(-d2 / 2 * (point - mean) @ inverse @ (point - mean))
+            for mean, inverse in neighbours(voxels, point, size, options.search)
+        ]
+        total += sum(scores)
+        best += [max(scores)] if scores else []
+    return total, float(np.mean(best))
+
+
+@pytest.mark.parametrize("covariance", ["pcl", "autoware", "pclomp"])
+@pytest.mark.parametrize("search", ["radius", "direct7", "direct1"])
+def test_the_score_is_the_published_one(search: Search, covariance: VoxelCovariance) -> None:
+    options = MatcherOptions(search=search, voxel_covariance=covariance)
+    at = pose(40.2, 0.4, 1.8, 0, 0, 0.31)
+    score, nearest = expected_score(at, options)
+    with SerialMatcher(options) as matcher:
+        matcher.set_map(VoxelMap.from_points(WORLD, options))
+        found = matcher.score(SCAN, at)
+    assert found.score == pytest.approx(score, rel=1e-5)
+    assert found.transform_probability == pytest.approx(score / len(SCAN), rel=1e-5)
+    assert found.nearest_voxel_likelihood == pytest.approx(nearest, rel=1e-5)
+
+
+def central(scan: Points, at: tuple[float, ...], size_m: float) -> Points:
+    """Return the points that a small change of the pose leaves in their voxel."""
+    matrix = pose(*at)
+    place = (scan @ matrix[:3, :3].T + matrix[:3, 3]) / size_m
+    inside = np.abs(place - np.floor(place) - 0.5).max(axis=1) < 0.45
+    return np.ascontiguousarray(scan[inside])
+
+
+@pytest.mark.parametrize("angles", [(0.01, -0.02, 0.3), (0.4, -0.7, 2.5), (-1.2, 0.9, -0.4)])
+def test_gradient_and_hessian_are_those_of_the_score(angles: tuple[float, float, float]) -> None:
+    options = replace(MatcherOptions(), search="direct1")
+    voxel_map = VoxelMap.from_points(WORLD, options)
+    native: Any = SerialMatcher(options)._native
+    true = (*TRUE[:3], *angles)
+    at = (true[0] + 0.2, true[1] - 0.1, true[2] + 0.1, *(angle + 0.005 for angle in angles))
+    scan = scan_points(central(scan_at(WORLD, pose(*true)), at, options.voxel_size_m))
+
+    def evaluate(changed: Any) -> dict[str, Any]:
+        return dict(native.evaluate(voxel_map.native, scan, pose(*changed)))
+
+    here = evaluate(at)
+    step = 1e-3
+    gradient, hessian = [], []
+    for axis in range(6):
+        change = step * np.eye(6)[axis]
+        after, before = evaluate(np.add(at, change)), evaluate(np.subtract(at, change))
+        gradient.append((after["score"] - before["score"]) / (2 * step))
+        slopes = np.subtract(after["gradient"], before["gradient"]) / (2 * step)
+        hessian.append(slopes)
+    assert here["gradient"] == pytest.approx(gradient, rel=1e-2, abs=2e-3 * np.abs(gradient).max())
+    scale = np.abs(hessian).max()
+    assert np.array(here["hessian"]) == pytest.approx(np.array(hessian), abs=2e-3 * scale)
+
+
+def test_regularization_pulls_along_the_vehicle_only() -> None:
+    options = MatcherOptions(regularization_scale_factor=0.05)
+    true = pose(*TRUE)
+    beside = pose(41.0, 3.0, 1.8, 0, 0, 0.3)
+    with SerialMatcher(options) as matcher:
+        matcher.set_map(VoxelMap.from_points(WORLD, options))
+        free = matcher.align(SCAN, true).T_map_sensor
+        pulled = matcher.align(SCAN, true, beside).T_map_sensor
+    ahead, left = true[:2, 0], true[:2, 1]
+    moved = pulled[:2, 3] - free[:2, 3]
+    assert moved @ ahead > 0.05
+    assert abs(moved @ left) < abs(moved @ ahead) / 4
