@@ -37,9 +37,13 @@ std::optional<int64_t> with_due_events(const Waited & waited, std::optional<int6
   return soonest == manycore::infinite_ns ? std::nullopt : std::optional(soonest);
 }
 
+/// How a wait ended. Only the passing of the caller's timeout is RMW_RET_TIMEOUT: rclcpp's graph
+/// listener, which waits without one, takes that answer as an error and ends its process.
+enum class Ended { woken, by_timeout };
+
 /// Ends with the context as well: rclpy triggers its guard conditions before it shuts its contexts
 /// down on SIGTERM, and would wait for ever if it came back here in between.
-void sleep_until_ready(
+Ended sleep_until_ready(
   const WaitSet & wait_set, const Waited & waited, std::optional<int64_t> deadline_ns) {
   Sleep sleep(wait_set.waiter(), waited);
   while (true) {
@@ -48,10 +52,10 @@ void sleep_until_ready(
     sleep.read_epochs();
     const std::optional<int64_t> until_ns = with_due_events(waited, deadline_ns);
     if (wait_set.is_shutdown() || waited.any_ready()) {
-      return;
+      return Ended::woken;
     }
     if (!sleep.until(until_ns) && until_ns == deadline_ns) {
-      return;
+      return Ended::by_timeout;
     }
   }
 }
@@ -77,11 +81,13 @@ rmw_ret_t rmw_wait(
       {clients ? clients->clients : nullptr, clients ? clients->client_count : 0},
       {events ? events->events : nullptr, events ? events->event_count : 0}};
     const bool poll = wait_timeout != nullptr && rmw_time_total_nsec(*wait_timeout) == 0;
+    auto ended = poll ? rmw_manycore::Ended::by_timeout : rmw_manycore::Ended::woken;
     if (!poll && !waited.any_ready()) {
-      rmw_manycore::sleep_until_ready(
+      ended = rmw_manycore::sleep_until_ready(
         *static_cast<const rmw_manycore::WaitSet *>(wait_set->data), waited,
         rmw_manycore::deadline_of(wait_timeout));
     }
-    return waited.keep_ready() ? RMW_RET_OK : RMW_RET_TIMEOUT;
+    const bool some_ready = waited.keep_ready();
+    return some_ready || ended == rmw_manycore::Ended::woken ? RMW_RET_OK : RMW_RET_TIMEOUT;
   });
 }
