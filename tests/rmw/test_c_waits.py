@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What rmw_wait answers, in C: rclpy takes a timeout and a wake-up for the same, rclcpp does not."""
+"""What rmw_wait answers, in C: rclpy takes timeouts and wake-ups for the same, rclcpp does not."""
 
 from __future__ import annotations
 
