@@ -1,9 +1,8 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Includes and imports go downwards only."""
+"""Includes go downwards only."""
 
 from __future__ import annotations
 
-import ast
 import re
 from pathlib import Path
 
@@ -12,7 +11,6 @@ import pytest
 pytestmark = pytest.mark.unit
 
 PACKAGE = Path(__file__).parents[2] / "rmw_manycore_py"
-BRIDGE = PACKAGE.with_name("bridge") / "rmw_manycore_bridge"
 NATIVE = PACKAGE.with_name("rmw_manycore")
 
 # What each native directory may include of the others, besides itself.
@@ -34,9 +32,6 @@ ROS_HEADER = re.compile(r"(rmw|rcl|rcutils|rcpputils|rosidl_\w+|fastcdr|\w+_msgs
 # Mapping, pinning and futexes are wrapped once.
 PLATFORM_ONLY = {"sys/mman.h", "linux/futex.h", "sys/syscall.h", "sched.h"}
 CALLS_THE_SYSTEM = {"platform", "bench"}
-
-# Lowest first; a module may import those of its own layer and of layers before it.
-PYTHON_LAYERS = ["errors", "topology", "mapfile", "create", "launch", "ndt", "cli"]
 
 INCLUDE = re.compile(r'^\s*#\s*include\s+[<"]([^>"]+)[>"]', re.MULTILINE)
 
@@ -98,36 +93,3 @@ def test_native_code_includes_downwards_only() -> None:
 )
 def test_an_upward_include_is_seen(path: str, header: str) -> None:
     assert not allowed(NATIVE / path, header)
-
-
-def layer_of(module: str) -> int | None:
-    """Return the layer of a dotted module name, None for one that is in none."""
-    parts = module.split(".")
-    if parts[0] != "rmw_manycore_py" or len(parts) < 2 or parts[1] not in PYTHON_LAYERS:
-        return None
-    return PYTHON_LAYERS.index(parts[1])
-
-
-def imported_modules(path: Path) -> list[str]:
-    """Return the dotted names of all modules that a file imports."""
-    modules: list[str] = []
-    for statement in ast.walk(ast.parse(path.read_text())):
-        if isinstance(statement, ast.Import):
-            modules += [alias.name for alias in statement.names]
-        elif isinstance(statement, ast.ImportFrom) and statement.module:
-            modules += [f"{statement.module}.{alias.name}" for alias in statement.names]
-    return modules
-
-
-def test_python_imports_downwards_only() -> None:
-    wrong = []
-    bridge = {path: f"rmw_manycore_bridge.{path.stem}" for path in BRIDGE.glob("*.py")}
-    for path in [*PACKAGE.rglob("*.py"), *bridge]:
-        module = ".".join(path.relative_to(PACKAGE.parent).with_suffix("").parts)
-        module = bridge.get(path, module)
-        own = layer_of(module)
-        for imported in imported_modules(path):
-            below = layer_of(imported)
-            if own is not None and below is not None and below > own:
-                wrong.append(f"{module} imports {imported}")
-    assert wrong == []
