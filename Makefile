@@ -5,10 +5,12 @@
 VENV := .venv/bin
 NATIVE := build/native
 JOBS ?= $(shell nproc)
+CPP := $(shell git ls-files '*.cpp' '*.hpp')
+BUILD_SCRIPTS := $(shell git ls-files '*.cmake' '*CMakeLists.txt' '*.sh' .ci/run)
 NATIVE_SOURCES := $(shell find CMakeLists.txt cmake startup rmw_manycore \
 	-type f -not -name '*.md')
 
-.PHONY: help setup demo test test-native stress sanitize bench lint docs clean
+.PHONY: help setup demo test test-native stress sanitize bench lint tidy docs clean
 
 help:  ## this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -40,10 +42,20 @@ sanitize: setup  ## the C++ tests with sanitizers: address and undefined behavio
 bench: setup  ## every bench, briefly; tables, and CSV in build/bench
 	$(VENV)/manycore bench all --quick --output build/bench
 
-lint: setup  ## style and types
+lint: setup  ## style, types, spelling
 	$(VENV)/ruff check
 	$(VENV)/ruff format --check
 	$(VENV)/mypy
+	$(VENV)/clang-format --dry-run --Werror $(CPP)
+	! grep -nE '^.{101,}' $(BUILD_SCRIPTS)
+	$(VENV)/codespell
+
+tidy: setup  ## clang-tidy with the checks of .clang-tidy
+	$(VENV)/cmake -S . -B build/tidy -G Ninja -DCMAKE_MAKE_PROGRAM=$(CURDIR)/$(VENV)/ninja \
+	  -DCMAKE_PREFIX_PATH=$(CURDIR)/.venv -DMANYCORE_BUILD_TESTS=ON -DMANYCORE_BUILD_BENCH=ON \
+	  -DCMAKE_EXPORT_COMPILE_COMMANDS=ON >build/tidy.log
+	printf '%s\n' $(filter %.cpp,$(CPP)) | \
+	  xargs -P $(JOBS) -n 8 $(VENV)/clang-tidy -p build/tidy --quiet 2>build/tidy.log
 
 docs: setup  ## the documentation as HTML in build/docs, links checked
 	$(VENV)/mkdocs build --quiet --strict --site-dir build/docs

@@ -7,10 +7,12 @@
 
 // The C library's own functions, under the names that stay reachable.
 extern "C" {
+// NOLINTBEGIN(readability-identifier-naming)
 void * __libc_malloc(size_t size);
 void * __libc_calloc(size_t count, size_t size);
 void * __libc_realloc(void * memory, size_t size);
 void * __libc_memalign(size_t alignment, size_t size);
+// NOLINTEND(readability-identifier-naming)
 }
 
 namespace {

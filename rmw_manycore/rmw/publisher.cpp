@@ -15,8 +15,8 @@ using manycore::EndpointKind;
 using manycore::EndpointRole;
 
 Publisher::Publisher(
-  const Node & node, MessageType type, const char * topic, const rmw_qos_profile_t & profile,
-  const rmw_publisher_options_t & options)
+  const Node & node, const MessageType & type, const char * topic,
+  const rmw_qos_profile_t & profile, const rmw_publisher_options_t & options)
 : EndpointEvents(node.callback_thread()),
   topic_(topic),
   cdr_(type.cdr),
@@ -69,9 +69,8 @@ rmw_publisher_t * rmw_create_publisher(
     const auto & owner = rmw_manycore::Node::of(node);
     const rmw_qos_profile_t profile =
       rmw_manycore::best_available_for_publisher(owner, topic_name, *qos_profile);
-    auto type = rmw_manycore::MessageType::of(type_support);
-    return &(new Publisher(owner, std::move(type), topic_name, profile, *publisher_options))
-              ->handle;
+    const auto type = rmw_manycore::MessageType::of(type_support);
+    return &(new Publisher(owner, type, topic_name, profile, *publisher_options))->handle;
   });
 }
 

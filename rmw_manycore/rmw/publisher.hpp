@@ -17,8 +17,8 @@ class Publisher final : public EndpointEvents {
 public:
   /// Throws manycore::Error.
   Publisher(
-    const Node & node, MessageType type, const char * topic, const rmw_qos_profile_t & profile,
-    const rmw_publisher_options_t & options);
+    const Node & node, const MessageType & type, const char * topic,
+    const rmw_qos_profile_t & profile, const rmw_publisher_options_t & options);
   ~Publisher() override { clear_callbacks(); }
 
   static Publisher & of(const rmw_publisher_t * handle) {

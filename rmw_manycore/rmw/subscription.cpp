@@ -25,8 +25,8 @@ manycore::EndpointSpec spec_of(
 }  // namespace
 
 Subscription::Subscription(
-  const Node & node, MessageType type, const char * topic, const rmw_qos_profile_t & profile,
-  const rmw_subscription_options_t & options)
+  const Node & node, const MessageType & type, const char * topic,
+  const rmw_qos_profile_t & profile, const rmw_subscription_options_t & options)
 : EndpointEvents(node.callback_thread()),
   topic_(topic),
   cdr_(type.cdr),
@@ -84,9 +84,8 @@ rmw_subscription_t * rmw_create_subscription(
     const auto & owner = rmw_manycore::Node::of(node);
     const rmw_qos_profile_t profile =
       rmw_manycore::best_available_for_subscription(owner, topic_name, *qos_policies);
-    auto type = rmw_manycore::MessageType::of(type_support);
-    return &(new Subscription(owner, std::move(type), topic_name, profile, *subscription_options))
-              ->handle;
+    const auto type = rmw_manycore::MessageType::of(type_support);
+    return &(new Subscription(owner, type, topic_name, profile, *subscription_options))->handle;
   });
 }
 

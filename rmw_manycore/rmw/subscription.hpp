@@ -16,8 +16,8 @@ class Subscription final : public EndpointEvents {
 public:
   /// Throws manycore::Error.
   Subscription(
-    const Node & node, MessageType type, const char * topic, const rmw_qos_profile_t & profile,
-    const rmw_subscription_options_t & options);
+    const Node & node, const MessageType & type, const char * topic,
+    const rmw_qos_profile_t & profile, const rmw_subscription_options_t & options);
   ~Subscription() override { clear_callbacks(); }
 
   static Subscription & of(const rmw_subscription_t * handle) {

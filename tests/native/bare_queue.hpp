@@ -17,14 +17,14 @@ public:
       ++log2;
     }
     void * const memory =
-      mmap(nullptr, bytes_, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+      mmap(nullptr, segment_bytes, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
     header_ = new (memory) manycore::SubscriptionHeader{};
     header_->depth = depth;
     header_->slot_count_log2 = log2;
     header_->keep_all = keep_all ? 1 : 0;
     manycore::subscriber_queue::initialize(*header_);
   }
-  ~BareQueue() { munmap(header_, bytes_); }
+  ~BareQueue() { munmap(header_, segment_bytes); }
   BareQueue(const BareQueue &) = delete;
   BareQueue & operator=(const BareQueue &) = delete;
 
@@ -36,6 +36,6 @@ public:
   bool empty() noexcept { return manycore::subscriber_queue::empty(*header_); }
 
 private:
-  static constexpr size_t bytes_ = 1 << 20;
+  static constexpr size_t segment_bytes = 1 << 20;
   manycore::SubscriptionHeader * header_;
 };

@@ -149,7 +149,7 @@ Bytes random_bytes(size_t size) {
 
 struct Damage {
   const char * name;
-  Bytes (*apply)(Bytes content);
+  Bytes (*apply)(const Bytes & content);
 };
 
 Bytes with_word(Bytes content, size_t offset, uint32_t word) {
@@ -163,14 +163,14 @@ Bytes cut(Bytes content, size_t size) {
 }
 
 constexpr Damage damages[] = {
-  {"empty", [](Bytes) { return Bytes(); }},
-  {"cut in the header", [](Bytes content) { return cut(std::move(content), 10); }},
-  {"cut in the middle", [](Bytes content) { return cut(content, content.size() / 2); }},
-  {"a byte too long", [](Bytes content) { return cut(content, content.size() + 1); }},
-  {"zeroed", [](Bytes content) { return Bytes(content.size()); }},
-  {"random", [](Bytes content) { return random_bytes(content.size()); }},
-  {"of no magic", [](Bytes content) { return with_word(std::move(content), 0, 1); }},
-  {"of another layout", [](Bytes content) { return with_word(std::move(content), 8, 99); }},
+  {"empty", [](const Bytes &) { return Bytes(); }},
+  {"cut in the header", [](const Bytes & content) { return cut(content, 10); }},
+  {"cut in the middle", [](const Bytes & content) { return cut(content, content.size() / 2); }},
+  {"a byte too long", [](const Bytes & content) { return cut(content, content.size() + 1); }},
+  {"zeroed", [](const Bytes & content) { return Bytes(content.size()); }},
+  {"random", [](const Bytes & content) { return random_bytes(content.size()); }},
+  {"of no magic", [](const Bytes & content) { return with_word(content, 0, 1); }},
+  {"of another layout", [](const Bytes & content) { return with_word(content, 8, 99); }},
 };
 
 }  // namespace

@@ -95,7 +95,7 @@ TEST_CASE("one notification wakes all who wait") {
   }
 }
 
-TEST_CASE("no wake-up is lost: a ball goes to and fro between each two modes") {
+TEST_CASE("no wake-up is lost: a ball goes back and forth between each two modes") {
   for (const WaitMode mine : modes) {
     for (const WaitMode theirs : modes) {
       const bool both_spin = mine == WaitMode::spin && theirs == WaitMode::spin;

@@ -9,7 +9,7 @@ namespace nb = nanobind;
 
 NB_MODULE(_ndt, module) {
   module.doc() = "The scan matcher of rmw_manycore; used through rmw_manycore_py.ndt.";
-  nb::exception<manycore::Error>(module, "NdtError", PyExc_RuntimeError);
+  const nb::exception<manycore::Error> error(module, "NdtError", PyExc_RuntimeError);
   manycore::ndt::python::bind_voxel_map(module);
   manycore::ndt::python::bind_matchers(module);
   module.def("simd", [] { return manycore::ndt::name_of(manycore::ndt::choose_simd()); });

@@ -11,7 +11,7 @@ namespace nb = nanobind;
 NB_MODULE(_transport, module) {
   module.doc() =
     "The transport of rmw_manycore without ROS: platforms seen, configured and joined.";
-  nb::exception<manycore::Error>(module, "PlatformError", PyExc_RuntimeError);
+  const nb::exception<manycore::Error> error(module, "PlatformError", PyExc_RuntimeError);
   manycore::python::bind_platform(module);
   manycore::python::bind_configurator(module);
   manycore::python::bind_process(module);
