@@ -7,7 +7,8 @@ set -eu
 cd "$(dirname "$0")/.."
 build=$1
 shift
-echo '#include <doctest/doctest.h>' | ${CXX:-c++} -E -x c++ - >/dev/null 2>&1 || scripts/setup.sh system doctest-dev
+echo '#include <doctest/doctest.h>' | ${CXX:-c++} -E -x c++ - >/dev/null 2>&1 ||
+  scripts/setup.sh system doctest-dev
 PATH="$PWD/.venv/bin:$PATH"
 cmake -S . -B "$build" -G Ninja -DMANYCORE_BUILD_TESTS=ON -DMANYCORE_BUILD_RMW=OFF \
   -DMANYCORE_BUILD_PYTHON=OFF "$@" >"$build.log" 2>&1 || { cat "$build.log"; exit 1; }

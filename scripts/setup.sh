@@ -37,11 +37,13 @@ install_packages() {
 check_python() {
   "$PYTHON" -c 'import sys; sys.exit(sys.version_info < (3, 10))' 2>/dev/null && return
   found=$("$PYTHON" --version 2>&1) || found="no such program"
-  echo "Python 3.10 or newer is needed. $PYTHON: $found. Name another: PYTHON=/path/to/python3 make" >&2
+  echo "Python 3.10 or newer is needed. $PYTHON: $found." >&2
+  echo "Name another: PYTHON=/path/to/python3 make" >&2
   exit 1
 }
 
-# What pyproject.toml asks for, line by line: with all of it in .venv a rebuild takes seconds and no network.
+# What pyproject.toml asks for, line by line: with all of it in .venv a rebuild takes seconds and
+# no network.
 # requirements [EXTRA]
 requirements() {
   .venv/bin/python - "$@" <<'END'
