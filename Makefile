@@ -5,8 +5,6 @@
 VENV := .venv/bin
 NATIVE := build/native
 JOBS ?= $(shell nproc)
-CPP := $(shell git ls-files '*.cpp' '*.hpp')
-BUILD_SCRIPTS := $(shell git ls-files '*.cmake' '*CMakeLists.txt' '*.sh' .ci/run)
 NATIVE_SOURCES := $(shell find CMakeLists.txt cmake startup rmw_manycore \
 	-type f -not -name '*.md')
 
@@ -46,15 +44,15 @@ lint: setup  ## style, types, spelling
 	$(VENV)/ruff check
 	$(VENV)/ruff format --check
 	$(VENV)/mypy
-	$(VENV)/clang-format --dry-run --Werror $(CPP)
-	! grep -nE '^.{101,}' $(BUILD_SCRIPTS)
+	git ls-files '*.cpp' '*.hpp' | xargs $(VENV)/clang-format --dry-run --Werror
+	! git grep -nE '^.{101,}' '*.cmake' '*CMakeLists.txt' '*.sh' .ci/run
 	$(VENV)/codespell
 
 tidy: setup  ## clang-tidy with the checks of .clang-tidy
 	$(VENV)/cmake -S . -B build/tidy -G Ninja -DCMAKE_MAKE_PROGRAM=$(CURDIR)/$(VENV)/ninja \
 	  -DCMAKE_PREFIX_PATH=$(CURDIR)/.venv -DMANYCORE_BUILD_TESTS=ON -DMANYCORE_BUILD_BENCH=ON \
 	  -DCMAKE_EXPORT_COMPILE_COMMANDS=ON >build/tidy.log
-	printf '%s\n' $(filter %.cpp,$(CPP)) | \
+	git ls-files 'rmw_manycore/*.cpp' 'tests/native/*.cpp' | \
 	  xargs -P $(JOBS) -n 8 $(VENV)/clang-tidy -p build/tidy --quiet 2>build/tidy.log
 
 docs: setup  ## the documentation as HTML in build/docs, links checked
