@@ -1,10 +1,10 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-#include "rmw/checks.hpp"
-#include "rmw/client.hpp"
-#include "rmw/error.hpp"
+#include "rmw/common/checks.hpp"
+#include "rmw/common/error.hpp"
 #include "rmw/rmw.h"
-#include "rmw/service.hpp"
-#include "rmw/subscription.hpp"
+#include "rmw/services/client.hpp"
+#include "rmw/services/service.hpp"
+#include "rmw/topics/subscription.hpp"
 
 namespace {
 

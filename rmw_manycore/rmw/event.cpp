@@ -1,12 +1,12 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #include "rmw/event.h"
 
-#include "rmw/checks.hpp"
-#include "rmw/endpoint_events.hpp"
-#include "rmw/error.hpp"
-#include "rmw/publisher.hpp"
+#include "rmw/common/checks.hpp"
+#include "rmw/common/error.hpp"
+#include "rmw/events/endpoint_events.hpp"
 #include "rmw/rmw.h"
-#include "rmw/subscription.hpp"
+#include "rmw/topics/publisher.hpp"
+#include "rmw/topics/subscription.hpp"
 
 namespace rmw_manycore {
 namespace {

@@ -1,11 +1,11 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #include <cstring>
 
-#include "rmw/checks.hpp"
-#include "rmw/client.hpp"
-#include "rmw/message_info.hpp"
-#include "rmw/publisher.hpp"
+#include "rmw/common/checks.hpp"
 #include "rmw/rmw.h"
+#include "rmw/services/client.hpp"
+#include "rmw/topics/message_info.hpp"
+#include "rmw/topics/publisher.hpp"
 
 rmw_ret_t rmw_get_gid_for_publisher(const rmw_publisher_t * publisher, rmw_gid_t * gid) {
   // Invariants

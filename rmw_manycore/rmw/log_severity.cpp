@@ -1,6 +1,6 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #include "rcutils/logging.h"
-#include "rmw/checks.hpp"
+#include "rmw/common/checks.hpp"
 #include "rmw/rmw.h"
 
 rmw_ret_t rmw_set_log_severity(rmw_log_severity_t severity) {

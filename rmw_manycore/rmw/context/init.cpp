@@ -1,0 +1,113 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#include "rmw/init.h"
+
+#include <unistd.h>
+
+#include <memory>
+#include <string>
+
+#include "platform/error.hpp"
+#include "rcutils/logging_macros.h"
+#include "rmw/common/checks.hpp"
+#include "rmw/common/error.hpp"
+#include "rmw/context/context.hpp"
+#include "rmw/domain_id.h"
+
+namespace rmw_manycore {
+namespace {
+
+/// Security enclaves are a matter of DDS; a platform is private to its user by file permissions.
+void refuse_security(const rmw_security_options_t & security) {
+  if (security.enforce_security == RMW_SECURITY_ENFORCEMENT_ENFORCE) {
+    throw manycore::Error(
+      manycore::ErrorCode::unsupported,
+      "rmw_manycore has no DDS security: unset ROS_SECURITY_STRATEGY=Enforce or "
+      "ROS_SECURITY_ENABLE; a platform is private to its user by file permissions");
+  }
+}
+
+/// A platform never leaves the machine, so every discovery range but OFF comes to the same.
+manycore::Placement placement_of(const rmw_init_options_t & options, size_t domain_id) {
+  const rmw_discovery_options_t & discovery = options.discovery_options;
+  manycore::Placement placement = manycore::Placement::from_environment(domain_id);
+  if (discovery.automatic_discovery_range == RMW_AUTOMATIC_DISCOVERY_RANGE_OFF) {
+    placement.platform += "-private-" + std::to_string(getpid());
+  }
+  if (discovery.static_peers_count != 0) {
+    RCUTILS_LOG_WARN_NAMED(
+      identifier,
+      "static discovery peers are ignored: rmw_manycore does not leave the machine, "
+      "a bridge joins topics to other machines");
+  }
+  return placement;
+}
+
+}  // namespace
+}  // namespace rmw_manycore
+
+rmw_ret_t rmw_init(const rmw_init_options_t * options, rmw_context_t * context) {
+  // Invariants
+  MANYCORE_CHECK_ARGUMENT(options);
+  MANYCORE_CHECK_ARGUMENT(context);
+  RMW_CHECK_FOR_NULL_WITH_MSG(
+    options->implementation_identifier, "expected initialized init options",
+    return RMW_RET_INVALID_ARGUMENT);
+  MANYCORE_CHECK_HANDLE(options);
+  RMW_CHECK_FOR_NULL_WITH_MSG(
+    options->enclave, "expected non-null enclave", return RMW_RET_INVALID_ARGUMENT);
+  if (context->implementation_identifier != nullptr) {
+    RMW_SET_ERROR_MSG("expected a zero-initialized context");
+    return RMW_RET_INVALID_ARGUMENT;
+  }
+
+  // Implementation
+  return rmw_manycore::guarded([&] {
+    rmw_manycore::refuse_security(options->security_options);
+    rmw_context_t created = rmw_get_zero_initialized_context();
+    created.instance_id = options->instance_id;
+    created.implementation_identifier = rmw_manycore::identifier;
+    created.actual_domain_id = options->domain_id == RMW_DEFAULT_DOMAIN_ID ? 0 : options->domain_id;
+    auto impl = std::make_unique<rmw_context_impl_s>(
+      manycore::Process::join(rmw_manycore::placement_of(*options, created.actual_domain_id)));
+    rmw_manycore::check(rmw_init_options_copy(options, &created.options));
+    created.impl = impl.release();
+    *context = created;
+    return RMW_RET_OK;
+  });
+}
+
+rmw_ret_t rmw_shutdown(rmw_context_t * context) {
+  // Invariants
+  MANYCORE_CHECK_ARGUMENT(context);
+  RMW_CHECK_FOR_NULL_WITH_MSG(
+    context->impl, "expected initialized context", return RMW_RET_INVALID_ARGUMENT);
+  MANYCORE_CHECK_HANDLE(context);
+
+  // Implementation
+  *context->impl->is_shutdown = true;
+  context->impl->process->waiter().notify();
+  context->impl->callback_thread.stop();
+  return RMW_RET_OK;
+}
+
+rmw_ret_t rmw_context_fini(rmw_context_t * context) {
+  // Invariants
+  MANYCORE_CHECK_ARGUMENT(context);
+  RMW_CHECK_FOR_NULL_WITH_MSG(
+    context->impl, "expected initialized context", return RMW_RET_INVALID_ARGUMENT);
+  MANYCORE_CHECK_HANDLE(context);
+  if (!*context->impl->is_shutdown) {
+    RMW_SET_ERROR_MSG("context has not been shutdown");
+    return RMW_RET_INVALID_ARGUMENT;
+  }
+  if (context->impl->node_count != 0) {
+    RMW_SET_ERROR_MSG("finalizing a context with active nodes");
+    return RMW_RET_ERROR;
+  }
+
+  // Implementation
+  const rmw_ret_t result = rmw_init_options_fini(&context->options);
+  delete context->impl;
+  *context = rmw_get_zero_initialized_context();
+  return result;
+}

@@ -1,0 +1,55 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+
+#include "rmw/event.h"
+#include "rmw/events/callback_thread.hpp"
+#include "rmw/events/event_counts.hpp"
+
+namespace rmw_manycore {
+
+/// The events of one publisher or subscription. The transport only counts; here is what of it was
+/// told to the user. `rmw_event_t::data` points to it. Thread-safe.
+class EndpointEvents {
+public:
+  explicit EndpointEvents(CallbackThread & thread) noexcept : thread_(thread) {}
+  virtual ~EndpointEvents() = default;
+  EndpointEvents(const EndpointEvents &) = delete;
+  EndpointEvents & operator=(const EndpointEvents &) = delete;
+
+  /// Where who waits for events sleeps.
+  manycore::Waiter & waiter() const noexcept { return thread_.waiter(); }
+  bool ready(rmw_event_type_t type) const { return untold(type) != 0; }
+  /// When the event may become ready by the passing of time alone (CLOCK_MONOTONIC).
+  int64_t next_due_ns(rmw_event_type_t type) const { return counts(type).next_due_ns; }
+  /// Writes the status structure of `type` to `status`; its changes are told thereby.
+  void take(rmw_event_type_t type, void * status);
+  void set_callback(rmw_event_type_t type, rmw_event_callback_t function, const void * user_data);
+  /// Calls the callback now, if there is one, for what the callback thread has not got to yet.
+  void report(rmw_event_type_t type);
+
+protected:
+  /// What the endpoint counts for events of `type`; thread-safe.
+  virtual EventCounts counts(rmw_event_type_t type) const = 0;
+  /// Callbacks use the above: to be called by the destructor of the derived class.
+  void clear_callbacks() noexcept;
+
+private:
+  uint64_t untold(rmw_event_type_t type) const {
+    return counts(type).changes - told_changes_[type].load(std::memory_order_relaxed);
+  }
+  Callback & callback(rmw_event_type_t type);
+
+  CallbackThread & thread_;
+  std::mutex mutex_;  ///< of told_ and callbacks_; never held while user code runs
+  std::array<EventCounts, RMW_EVENT_INVALID> told_;
+  std::array<std::atomic<uint64_t>, RMW_EVENT_INVALID> told_changes_{};
+  std::array<std::unique_ptr<Callback>, RMW_EVENT_INVALID> callbacks_;
+};
+
+}  // namespace rmw_manycore

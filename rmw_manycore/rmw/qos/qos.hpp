@@ -1,0 +1,16 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "rmw/types.h"
+#include "transport/layout/endpoint.hpp"
+
+namespace rmw_manycore {
+
+/// Resolves system defaults as rmw_fastrtps_cpp does (publishers: reliable and transient local;
+/// subscriptions: best effort and volatile; depth 1). Throws manycore::Error{invalid_argument} for
+/// a policy that has no meaning, the MANUAL_BY_NODE that ROS 2 gave up included.
+manycore::Qos to_transport(const rmw_qos_profile_t & profile, manycore::EndpointKind kind);
+
+rmw_qos_profile_t to_rmw(const manycore::Qos & qos);
+
+}  // namespace rmw_manycore

@@ -1,0 +1,66 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#include "rmw/serialization/cdr.hpp"
+
+#include <cstddef>
+#include <string>
+
+#include "fastcdr/Cdr.h"
+#include "fastcdr/FastBuffer.h"
+#include "platform/error.hpp"
+
+namespace rmw_manycore {
+namespace {
+
+constexpr size_t encapsulation_bytes = 4;
+
+}  // namespace
+
+Cdr::Cdr(const message_type_support_callbacks_t & callbacks) : callbacks_(&callbacks) {
+  char bounds = ROSIDL_TYPESUPPORT_FASTRTPS_UNBOUNDED_TYPE;
+  const size_t max_size = callbacks.max_serialized_size(bounds);
+  if (bounds == ROSIDL_TYPESUPPORT_FASTRTPS_PLAIN_TYPE) {
+    empty_ = max_size == 0;
+    // In memory the last member may be followed by padding, up to the largest alignment.
+    plain_bytes_ = (max_size / alignof(max_align_t) + 1) * alignof(max_align_t);
+    // Rounded up to 4 bytes as rmw_fastrtps_cpp does, so that rmw_serialize gives equal lengths.
+    fixed_size_bound_ = (encapsulation_bytes + (empty_ ? 1 : max_size) + 3) & ~size_t{3};
+  }
+}
+
+size_t Cdr::size_bound(const void * message) const {
+  return fixed_size_bound_ != 0 ? fixed_size_bound_
+                                : encapsulation_bytes + callbacks_->get_serialized_size(message);
+}
+
+size_t Cdr::serialize(const void * message, uint8_t * data, size_t capacity) const {
+  eprosima::fastcdr::FastBuffer buffer(reinterpret_cast<char *>(data), capacity);
+  eprosima::fastcdr::Cdr cdr(
+    buffer, eprosima::fastcdr::Cdr::DEFAULT_ENDIAN, eprosima::fastcdr::CdrVersion::XCDRv1);
+  cdr.set_encoding_flag(eprosima::fastcdr::EncodingAlgorithmFlag::PLAIN_CDR);
+  cdr.serialize_encapsulation();
+  if (empty_) {
+    cdr << uint8_t{0};
+  } else if (!callbacks_->cdr_serialize(message, cdr)) {
+    throw manycore::Error(
+      manycore::ErrorCode::invalid_argument,
+      std::string("cannot serialize a message of type ") + callbacks_->message_name_);
+  }
+  return cdr.get_serialized_data_length();
+}
+
+void Cdr::deserialize(const uint8_t * data, size_t size, void * message) const {
+  // Fast CDR has no buffer of const bytes; it only reads here.
+  eprosima::fastcdr::FastBuffer buffer(reinterpret_cast<char *>(const_cast<uint8_t *>(data)), size);
+  eprosima::fastcdr::Cdr cdr(buffer, eprosima::fastcdr::Cdr::DEFAULT_ENDIAN);
+  cdr.read_encapsulation();
+  if (empty_) {
+    uint8_t filler = 0;
+    cdr >> filler;
+  } else if (!callbacks_->cdr_deserialize(cdr, message)) {
+    throw manycore::Error(
+      manycore::ErrorCode::corrupt,
+      std::string("cannot deserialize a message of type ") + callbacks_->message_name_);
+  }
+}
+
+}  // namespace rmw_manycore

@@ -1,0 +1,45 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <string>
+
+#include "rmw/context/node.hpp"
+#include "rmw/events/inbox.hpp"
+#include "rmw/serialization/type_support.hpp"
+#include "rmw/types.h"
+#include "transport/publisher.hpp"
+
+namespace rmw_manycore {
+
+/// A service client: writes requests, reads replies. It can be replied to before its first request,
+/// and until its last one is gone.
+class Client {
+public:
+  /// Throws manycore::Error.
+  Client(const Node & node, ServiceType type, const char * name, const rmw_qos_profile_t & profile);
+  Client(const Client &) = delete;
+  Client & operator=(const Client &) = delete;
+
+  static Client & of(const rmw_client_t * handle) { return *static_cast<Client *>(handle->data); }
+
+  rmw_client_t handle{};
+
+  const ServiceType & type() const noexcept { return type_; }
+  manycore::Publisher & requests() const noexcept { return *requests_; }
+  Inbox & replies() noexcept { return replies_; }
+
+  /// Who asks; names the client in requests and replies.
+  const manycore::Gid & gid() const noexcept { return replies_.transport().gid(); }
+  manycore::Correlation next_request() noexcept { return {gid(), ++last_number_}; }
+
+private:
+  const std::string name_;
+  const ServiceType type_;
+  Inbox replies_;
+  const std::unique_ptr<manycore::Publisher> requests_;
+  std::atomic<int64_t> last_number_{0};
+};
+
+}  // namespace rmw_manycore

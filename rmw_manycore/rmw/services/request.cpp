@@ -1,0 +1,51 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#include "platform/clock.hpp"
+#include "rmw/common/checks.hpp"
+#include "rmw/common/error.hpp"
+#include "rmw/rmw.h"
+#include "rmw/services/client.hpp"
+#include "rmw/services/service.hpp"
+#include "rmw/topics/message_info.hpp"
+
+rmw_ret_t rmw_send_request(
+  const rmw_client_t * client, const void * ros_request, int64_t * sequence_id) {
+  // Invariants
+  MANYCORE_CHECK_HANDLE(client);
+  MANYCORE_CHECK_ARGUMENT(ros_request);
+  MANYCORE_CHECK_ARGUMENT(sequence_id);
+
+  // Implementation
+  return rmw_manycore::guarded([&] {
+    auto & asking = rmw_manycore::Client::of(client);
+    const rmw_manycore::Cdr & cdr = asking.type().request;
+    const int64_t now_ns = manycore::realtime_ns();
+    manycore::Draft draft = asking.requests().draft(cdr.size_bound(ros_request));
+    const size_t size = cdr.serialize(ros_request, draft.data(), draft.capacity());
+    const manycore::Correlation correlation = asking.next_request();
+    asking.requests().publish(std::move(draft), size, now_ns, correlation);
+    *sequence_id = correlation.number;
+    return RMW_RET_OK;
+  });
+}
+
+rmw_ret_t rmw_take_request(
+  const rmw_service_t * service, rmw_service_info_t * request_header, void * ros_request,
+  bool * taken) {
+  // Invariants
+  MANYCORE_CHECK_HANDLE(service);
+  MANYCORE_CHECK_ARGUMENT(request_header);
+  MANYCORE_CHECK_ARGUMENT(ros_request);
+  MANYCORE_CHECK_ARGUMENT(taken);
+
+  // Implementation
+  *taken = false;
+  return rmw_manycore::guarded([&] {
+    auto & serving = rmw_manycore::Service::of(service);
+    if (const auto claim = serving.requests().claim()) {
+      serving.type().request.deserialize(claim->data(), claim->size(), ros_request);
+      *request_header = rmw_manycore::to_service_info(claim->info());
+      *taken = true;
+    }
+    return RMW_RET_OK;
+  });
+}

@@ -1,0 +1,50 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#include "platform/clock.hpp"
+#include "rmw/common/checks.hpp"
+#include "rmw/common/error.hpp"
+#include "rmw/rmw.h"
+#include "rmw/services/client.hpp"
+#include "rmw/services/service.hpp"
+#include "rmw/topics/message_info.hpp"
+
+rmw_ret_t rmw_send_response(
+  const rmw_service_t * service, rmw_request_id_t * request_header, void * ros_response) {
+  // Invariants
+  MANYCORE_CHECK_HANDLE(service);
+  MANYCORE_CHECK_ARGUMENT(request_header);
+  MANYCORE_CHECK_ARGUMENT(ros_response);
+
+  // Implementation: a client that is gone by now receives nothing, which is no error
+  return rmw_manycore::guarded([&] {
+    auto & serving = rmw_manycore::Service::of(service);
+    const rmw_manycore::Cdr & cdr = serving.type().response;
+    const int64_t now_ns = manycore::realtime_ns();
+    manycore::Draft draft = serving.replies().draft(cdr.size_bound(ros_response));
+    const size_t size = cdr.serialize(ros_response, draft.data(), draft.capacity());
+    serving.replies().publish(
+      std::move(draft), size, now_ns, rmw_manycore::to_correlation(*request_header));
+    return RMW_RET_OK;
+  });
+}
+
+rmw_ret_t rmw_take_response(
+  const rmw_client_t * client, rmw_service_info_t * request_header, void * ros_response,
+  bool * taken) {
+  // Invariants
+  MANYCORE_CHECK_HANDLE(client);
+  MANYCORE_CHECK_ARGUMENT(request_header);
+  MANYCORE_CHECK_ARGUMENT(ros_response);
+  MANYCORE_CHECK_ARGUMENT(taken);
+
+  // Implementation
+  *taken = false;
+  return rmw_manycore::guarded([&] {
+    auto & asking = rmw_manycore::Client::of(client);
+    if (const auto claim = asking.replies().claim()) {
+      asking.type().response.deserialize(claim->data(), claim->size(), ros_response);
+      *request_header = rmw_manycore::to_service_info(claim->info());
+      *taken = true;
+    }
+    return RMW_RET_OK;
+  });
+}

@@ -1,0 +1,86 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#include "rmw/services/service.hpp"
+
+#include "rmw/common/checks.hpp"
+#include "rmw/common/error.hpp"
+#include "rmw/common/names.hpp"
+#include "rmw/qos/qos.hpp"
+#include "rmw/rmw.h"
+#include "rmw/topics/endpoint_spec.hpp"
+#include "rmw/topics/qos_best_available.hpp"
+
+namespace rmw_manycore {
+
+using manycore::EndpointKind;
+using manycore::EndpointRole;
+
+Service::Service(
+  const Node & node, ServiceType type, const char * name, const rmw_qos_profile_t & profile)
+: name_(name),
+  type_(std::move(type)),
+  replies_(node.process().create_publisher(
+    endpoint_spec(node, EndpointRole::reply, name, type_, profile, EndpointKind::publisher))),
+  requests_(
+    node.process().create_subscription(
+      endpoint_spec(node, EndpointRole::request, name, type_, profile, EndpointKind::subscription)),
+    node.callback_thread()) {
+  handle.implementation_identifier = identifier;
+  handle.data = this;
+  handle.service_name = name_.c_str();
+}
+
+}  // namespace rmw_manycore
+
+using rmw_manycore::Service;
+
+rmw_service_t * rmw_create_service(
+  const rmw_node_t * node, const rosidl_service_type_support_t * type_support,
+  const char * service_name, const rmw_qos_profile_t * qos_profile) {
+  // Invariants
+  MANYCORE_CHECK_HANDLE_OR_NULL(node);
+  RMW_CHECK_ARGUMENT_FOR_NULL(type_support, nullptr);
+  RMW_CHECK_ARGUMENT_FOR_NULL(service_name, nullptr);
+  RMW_CHECK_ARGUMENT_FOR_NULL(qos_profile, nullptr);
+
+  // Implementation
+  return rmw_manycore::guarded_handle([&] {
+    rmw_manycore::check_endpoint_name(service_name, *qos_profile);
+    auto type = rmw_manycore::ServiceType::of(type_support);
+    return &(new Service(
+               rmw_manycore::Node::of(node), std::move(type), service_name,
+               rmw_manycore::best_available_for_service(*qos_profile)))
+              ->handle;
+  });
+}
+
+rmw_ret_t rmw_destroy_service(rmw_node_t * node, rmw_service_t * service) {
+  // Invariants
+  MANYCORE_CHECK_HANDLE(node);
+  MANYCORE_CHECK_HANDLE(service);
+
+  // Implementation
+  delete &Service::of(service);
+  return RMW_RET_OK;
+}
+
+rmw_ret_t rmw_service_request_subscription_get_actual_qos(
+  const rmw_service_t * service, rmw_qos_profile_t * qos) {
+  // Invariants
+  MANYCORE_CHECK_HANDLE(service);
+  MANYCORE_CHECK_ARGUMENT(qos);
+
+  // Implementation
+  *qos = rmw_manycore::to_rmw(Service::of(service).requests().transport().qos());
+  return RMW_RET_OK;
+}
+
+rmw_ret_t rmw_service_response_publisher_get_actual_qos(
+  const rmw_service_t * service, rmw_qos_profile_t * qos) {
+  // Invariants
+  MANYCORE_CHECK_HANDLE(service);
+  MANYCORE_CHECK_ARGUMENT(qos);
+
+  // Implementation
+  *qos = rmw_manycore::to_rmw(Service::of(service).replies().qos());
+  return RMW_RET_OK;
+}

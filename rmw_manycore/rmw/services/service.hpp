@@ -1,0 +1,42 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "rmw/context/node.hpp"
+#include "rmw/events/inbox.hpp"
+#include "rmw/serialization/type_support.hpp"
+#include "rmw/types.h"
+#include "transport/publisher.hpp"
+
+namespace rmw_manycore {
+
+/// A service server: reads requests, writes replies. The replies' publisher is there before the
+/// first request can arrive, and goes after the last.
+class Service {
+public:
+  /// Throws manycore::Error.
+  Service(
+    const Node & node, ServiceType type, const char * name, const rmw_qos_profile_t & profile);
+  Service(const Service &) = delete;
+  Service & operator=(const Service &) = delete;
+
+  static Service & of(const rmw_service_t * handle) {
+    return *static_cast<Service *>(handle->data);
+  }
+
+  rmw_service_t handle{};
+
+  const ServiceType & type() const noexcept { return type_; }
+  manycore::Publisher & replies() const noexcept { return *replies_; }
+  Inbox & requests() noexcept { return requests_; }
+
+private:
+  const std::string name_;
+  const ServiceType type_;
+  const std::unique_ptr<manycore::Publisher> replies_;
+  Inbox requests_;
+};
+
+}  // namespace rmw_manycore

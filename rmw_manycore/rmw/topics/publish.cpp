@@ -1,0 +1,48 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#include <cstring>
+
+#include "platform/clock.hpp"
+#include "rmw/common/checks.hpp"
+#include "rmw/common/error.hpp"
+#include "rmw/rmw.h"
+#include "rmw/topics/publisher.hpp"
+
+using rmw_manycore::Publisher;
+
+rmw_ret_t rmw_publish(
+  const rmw_publisher_t * publisher, const void * ros_message, rmw_publisher_allocation_t *) {
+  // Invariants
+  MANYCORE_CHECK_HANDLE(publisher);
+  MANYCORE_CHECK_ARGUMENT(ros_message);
+
+  // Implementation: straight into the topic DSM
+  return rmw_manycore::guarded([&] {
+    const Publisher & sender = Publisher::of(publisher);
+    const int64_t now_ns = manycore::realtime_ns();
+    manycore::Draft draft = sender.transport().draft(sender.cdr().size_bound(ros_message));
+    const size_t size = sender.cdr().serialize(ros_message, draft.data(), draft.capacity());
+    sender.transport().publish(std::move(draft), size, now_ns);
+    return RMW_RET_OK;
+  });
+}
+
+rmw_ret_t rmw_publish_serialized_message(
+  const rmw_publisher_t * publisher, const rmw_serialized_message_t * serialized_message,
+  rmw_publisher_allocation_t *) {
+  // Invariants
+  MANYCORE_CHECK_HANDLE(publisher);
+  MANYCORE_CHECK_ARGUMENT(serialized_message);
+
+  // Implementation
+  return rmw_manycore::guarded([&] {
+    manycore::Publisher & transport = Publisher::of(publisher).transport();
+    const int64_t now_ns = manycore::realtime_ns();
+    const size_t size = serialized_message->buffer_length;
+    manycore::Draft draft = transport.draft(size);
+    if (size != 0) {
+      std::memcpy(draft.data(), serialized_message->buffer, size);
+    }
+    transport.publish(std::move(draft), size, now_ns);
+    return RMW_RET_OK;
+  });
+}

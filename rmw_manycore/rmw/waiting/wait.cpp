@@ -1,0 +1,93 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <optional>
+
+#include "platform/clock.hpp"
+#include "rmw/common/checks.hpp"
+#include "rmw/common/error.hpp"
+#include "rmw/rmw.h"
+#include "rmw/time.h"
+#include "rmw/waiting/sleep.hpp"
+#include "rmw/waiting/wait_set.hpp"
+#include "rmw/waiting/waited.hpp"
+
+namespace rmw_manycore {
+namespace {
+
+/// CLOCK_MONOTONIC; unset = no limit.
+std::optional<int64_t> deadline_of(const rmw_time_t * timeout) noexcept {
+  if (timeout == nullptr) {
+    return std::nullopt;
+  }
+  const int64_t timeout_ns = rmw_time_total_nsec(*timeout);
+  const int64_t now_ns = manycore::monotonic_ns();
+  if (timeout_ns > INT64_MAX - now_ns) {
+    return std::nullopt;
+  }
+  return now_ns + timeout_ns;
+}
+
+/// The earlier of the deadline and the moment when time alone makes an event ready.
+std::optional<int64_t> with_due_events(const Waited & waited, std::optional<int64_t> deadline_ns) {
+  int64_t soonest = deadline_ns.value_or(manycore::infinite_ns);
+  waited.events.for_each([&](const rmw_event_t & event) {
+    soonest = std::min(
+      soonest, static_cast<const EndpointEvents *>(event.data)->next_due_ns(event.event_type));
+  });
+  return soonest == manycore::infinite_ns ? std::nullopt : std::optional(soonest);
+}
+
+/// How a wait ended. Only the passing of the caller's timeout is RMW_RET_TIMEOUT: rclcpp's graph
+/// listener, which waits without one, takes that answer as an error and ends its process.
+enum class Ended { woken, by_timeout };
+
+/// Ends with the context as well: rclpy triggers its guard conditions before it shuts its contexts
+/// down on SIGTERM, and would wait for ever if it came back here in between.
+Ended sleep_until_ready(
+  const WaitSet & wait_set, const Waited & waited, std::optional<int64_t> deadline_ns) {
+  Sleep sleep(wait_set.waiter(), waited);
+  while (true) {
+    // Epochs and due time are read before the entities: what happens or falls due in between ends
+    // the wait at once.
+    sleep.read_epochs();
+    const std::optional<int64_t> until_ns = with_due_events(waited, deadline_ns);
+    if (wait_set.is_shutdown() || waited.any_ready()) {
+      return Ended::woken;
+    }
+    if (!sleep.until(until_ns) && until_ns == deadline_ns) {
+      return Ended::by_timeout;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace rmw_manycore
+
+rmw_ret_t rmw_wait(
+  rmw_subscriptions_t * subscriptions, rmw_guard_conditions_t * guard_conditions,
+  rmw_services_t * services, rmw_clients_t * clients, rmw_events_t * events,
+  rmw_wait_set_t * wait_set, const rmw_time_t * wait_timeout) {
+  // Invariants
+  MANYCORE_CHECK_HANDLE(wait_set);
+
+  // Implementation
+  return rmw_manycore::guarded([&] {
+    rmw_manycore::Waited waited{
+      {subscriptions ? subscriptions->subscribers : nullptr,
+       subscriptions ? subscriptions->subscriber_count : 0},
+      {guard_conditions ? guard_conditions->guard_conditions : nullptr,
+       guard_conditions ? guard_conditions->guard_condition_count : 0},
+      {services ? services->services : nullptr, services ? services->service_count : 0},
+      {clients ? clients->clients : nullptr, clients ? clients->client_count : 0},
+      {events ? events->events : nullptr, events ? events->event_count : 0}};
+    const bool poll = wait_timeout != nullptr && rmw_time_total_nsec(*wait_timeout) == 0;
+    auto ended = poll ? rmw_manycore::Ended::by_timeout : rmw_manycore::Ended::woken;
+    if (!poll && !waited.any_ready()) {
+      ended = rmw_manycore::sleep_until_ready(
+        *static_cast<const rmw_manycore::WaitSet *>(wait_set->data), waited,
+        rmw_manycore::deadline_of(wait_timeout));
+    }
+    const bool some_ready = waited.keep_ready();
+    return some_ready || ended == rmw_manycore::Ended::woken ? RMW_RET_OK : RMW_RET_TIMEOUT;
+  });
+}

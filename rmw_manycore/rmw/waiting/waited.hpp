@@ -1,0 +1,129 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "rmw/context/guard_condition.hpp"
+#include "rmw/events/endpoint_events.hpp"
+#include "rmw/services/client.hpp"
+#include "rmw/services/service.hpp"
+#include "rmw/topics/subscription.hpp"
+
+namespace rmw_manycore {
+
+/// Whether a wait for it would end at once.
+inline bool is_ready(Subscription & subscription) { return subscription.inbox().has_data(); }
+inline bool is_ready(Service & service) { return service.requests().has_data(); }
+inline bool is_ready(Client & client) { return client.replies().has_data(); }
+inline bool is_ready(const GuardCondition & condition) { return condition.ready(); }
+inline bool is_ready(const rmw_event_t & event) {
+  return static_cast<const EndpointEvents *>(event.data)->ready(event.event_type);
+}
+
+/// Where who waits for it sleeps.
+inline manycore::Waiter & waiter_of(Subscription & subscription) {
+  return subscription.inbox().waiter();
+}
+inline manycore::Waiter & waiter_of(Service & service) { return service.requests().waiter(); }
+inline manycore::Waiter & waiter_of(Client & client) { return client.replies().waiter(); }
+inline manycore::Waiter & waiter_of(const GuardCondition & condition) { return condition.waiter(); }
+inline manycore::Waiter & waiter_of(const rmw_event_t & event) {
+  return static_cast<const EndpointEvents *>(event.data)->waiter();
+}
+
+/// As is_ready, at the end of a wait: a guard condition is reset by it.
+inline bool take(GuardCondition & condition) { return condition.take(); }
+/// Who is told of an event by a wait finds its callback called, as with other middlewares.
+inline bool take(rmw_event_t & event) {
+  const bool ready = is_ready(event);
+  if (ready) {
+    static_cast<EndpointEvents *>(event.data)->report(event.event_type);
+  }
+  return ready;
+}
+template<typename Entity>
+bool take(Entity & entity) {
+  return is_ready(entity);
+}
+
+/// One of the five arrays that rmw_wait is given, as entities. Entries may be null.
+template<typename Entity>
+class Entities {
+public:
+  Entities(void ** entries, size_t count) noexcept : entries_(entries), count_(count) {}
+
+  template<typename Predicate>
+  bool any(Predicate && predicate) const {
+    for (size_t i = 0; i < count_; ++i) {
+      if (entries_[i] != nullptr && predicate(at(i))) {
+        return true;
+      }
+    }
+    return false;
+  }
+
+  template<typename Visit>
+  void for_each(Visit && visit) const {
+    for (size_t i = 0; i < count_; ++i) {
+      if (entries_[i] != nullptr) {
+        visit(at(i));
+      }
+    }
+  }
+
+  bool any_ready() const {
+    return any([](Entity & entity) { return is_ready(entity); });
+  }
+
+  /// Leaves only those that are ready; true if there are some. Resets guard conditions.
+  bool keep_ready() {
+    bool some = false;
+    for (size_t i = 0; i < count_; ++i) {
+      if (entries_[i] != nullptr && take(at(i))) {
+        some = true;
+      } else {
+        entries_[i] = nullptr;
+      }
+    }
+    return some;
+  }
+
+private:
+  Entity & at(size_t i) const { return *static_cast<Entity *>(entries_[i]); }
+
+  void ** entries_;
+  size_t count_;
+};
+
+/// All that one call waits for.
+struct Waited {
+  Entities<Subscription> subscriptions;
+  Entities<GuardCondition> conditions;
+  Entities<Service> services;
+  Entities<Client> clients;
+  Entities<rmw_event_t> events;
+
+  bool any_ready() const {
+    return subscriptions.any_ready() || conditions.any_ready() || services.any_ready() ||
+           clients.any_ready() || events.any_ready();
+  }
+
+  template<typename Visit>
+  void for_each_waiter(Visit && visit) const {
+    const auto visit_waiter = [&](auto & entity) { visit(waiter_of(entity)); };
+    subscriptions.for_each(visit_waiter);
+    conditions.for_each(visit_waiter);
+    services.for_each(visit_waiter);
+    clients.for_each(visit_waiter);
+    events.for_each(visit_waiter);
+  }
+
+  bool keep_ready() {
+    bool some = subscriptions.keep_ready();
+    some |= conditions.keep_ready();
+    some |= services.keep_ready();
+    some |= clients.keep_ready();
+    some |= events.keep_ready();
+    return some;
+  }
+};
+
+}  // namespace rmw_manycore
