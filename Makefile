@@ -5,6 +5,8 @@
 VENV := .venv/bin
 NATIVE := build/native
 JOBS ?= $(shell nproc)
+# Tests at a time: most wait most of the time, and each needs memory and a few ROS domains.
+TEST_JOBS ?= $(shell n=$$((2 * $$(nproc))); echo $$((n < 8 ? n : 8)))
 NATIVE_SOURCES := $(shell find CMakeLists.txt cmake startup rmw_manycore \
 	-type f -not -name '*.md')
 
@@ -25,7 +27,7 @@ demo: setup  ## run talker and listener in two clusters for ten seconds
 	$(VENV)/manycore run mapfiles/talker_listener.yaml --duration 10
 
 test: setup .venv/ndt test-native  ## all tests but the long ones
-	$(VENV)/pytest
+	$(VENV)/pytest -n $(TEST_JOBS) --dist loadgroup
 
 stress: setup  ## the long tests: random kills, many nodes
 	$(VENV)/pytest -m stress

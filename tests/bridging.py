@@ -7,7 +7,8 @@ import sys
 from collections.abc import Callable
 from typing import Any
 
-from support import Program, environment, peer_command
+from domains import domain_of
+from support import Program, peer_command
 
 from rmw_manycore_bridge.status import status
 from rmw_manycore_py.bridge_plan import Plan
@@ -15,11 +16,6 @@ from rmw_manycore_py.routes import DIRECTIONS, Direction, Route, arranged
 
 OUTSIDE = {"RMW_IMPLEMENTATION": "rmw_fastrtps_cpp"}
 STRING = "std_msgs/msg/String"
-
-
-def domain_of(platform: str) -> int:
-    """Return the domain in which programs of a test meet outside."""
-    return int(environment(platform)["ROS_DOMAIN_ID"])
 
 
 class Bridge:

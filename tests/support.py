@@ -18,6 +18,8 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
+from domains import domain_of
+
 from rmw_manycore_py.launch.processes.ending import is_rclpys
 
 TESTS = Path(__file__).parent
@@ -49,13 +51,12 @@ def environment(platform: str, cluster: int = 1, **more: str) -> dict[str, str]:
 
     Other middlewares have no platforms, so there each platform is a ROS domain of its own.
     """
-    domain = sum(platform.encode()) * 7 % 100 + 1
     return {
         **os.environ,
         "RMW_IMPLEMENTATION": RMW,
         "MANYCORE_PLATFORM": platform,
         "MANYCORE_CLUSTER": str(cluster),
-        "ROS_DOMAIN_ID": str(domain),
+        "ROS_DOMAIN_ID": str(domain_of(platform)),
         "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
         "PYTHONUNBUFFERED": "1",
         **more,

@@ -21,23 +21,23 @@ OTHERS = ("--only", "futex", "--only", "pipe", "--only", "Fast DDS")
 
 def run_bench(*arguments: str) -> dict[str, Any]:
     command = manycore_command("bench", *arguments, "--quick", "--json")
-    result = subprocess.run(
+    bench = subprocess.Popen(
         [str(word) for word in command],
         env={**os.environ, "MANYCORE_PLATFORM": "untouched"},
         text=True,
-        capture_output=True,
-        timeout=4 * PATIENCE_S,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
     )
-    assert result.returncode == 0, result.stderr
-    report: dict[str, Any] = json.loads(result.stdout)
+    try:
+        output, errors = bench.communicate(timeout=4 * PATIENCE_S)
+    finally:
+        bench.kill()
+    assert bench.returncode == 0, errors
+    own = f"bench-{bench.pid}-*"
+    wait_until(lambda: not entries(PLATFORMS, own), "no platform of the bench is left")
+    report: dict[str, Any] = json.loads(output)
     assert report["results"]
     return report
-
-
-@pytest.fixture(autouse=True)
-def _leave_nothing() -> Any:
-    yield
-    wait_until(lambda: not entries(PLATFORMS, "bench-*"), "no platform of a bench is left")
 
 
 @pytest.mark.parametrize(

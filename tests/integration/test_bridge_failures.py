@@ -11,7 +11,8 @@ import subprocess
 from contextlib import ExitStack, suppress
 
 import pytest
-from bridging import OUTSIDE, Bridge, domain_of
+from bridging import OUTSIDE, Bridge
+from domains import domain_of
 from processes import has_receive_threads
 from support import (
     IS_MANYCORE,

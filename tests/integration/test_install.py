@@ -19,7 +19,8 @@ from zipfile import ZipFile
 import pytest
 from support import MAPFILES, REPOSITORY, environment, unique_platform
 
-pytestmark = pytest.mark.integration
+# One worker builds the wheel for all of them.
+pytestmark = [pytest.mark.integration, pytest.mark.xdist_group("install")]
 
 INSTALL_TIMEOUT_S = 900
 BUILT_MESSAGES = {path.name for path in (REPOSITORY / "interfaces").iterdir()}

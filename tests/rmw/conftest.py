@@ -3,13 +3,13 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
 import rclpy
+from domains import domain_of
 from ndt_support import Stack, matcher_command, street_map
 from rclpy.node import Node
 from support import IS_MANYCORE, Program, leftovers, peer_command, wait_until
@@ -45,15 +45,15 @@ def start_peer(start: Callable[..., Program]) -> Callable[..., Program]:
 
 @pytest.fixture
 def domains() -> Iterator[tuple[int, int]]:
-    """Yield two ROS domains of this process alone; afterwards nothing of their platforms is left.
+    """Yield two ROS domains of this test alone; afterwards nothing of their platforms is left.
 
     Ask for it before programs are started in them: those have to end first.
     """
-    first = 101 + os.getpid() % 66 * 2  # to 232, the last one that DDS has
-    yield first, first + 1
+    domains = domain_of("first"), domain_of("second")
+    yield domains
     if IS_MANYCORE:
-        for domain in (f"domain-{first}", f"domain-{first + 1}"):
-            wait_until(lambda name=domain: not leftovers(name), f"{domain} leaves nothing")
+        for name in (f"domain-{domain}" for domain in domains):
+            wait_until(lambda name=name: not leftovers(name), f"{name} leaves nothing")
 
 
 @pytest.fixture(params=[1, 2], ids=["same_cluster", "other_cluster"])
