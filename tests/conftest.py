@@ -14,10 +14,13 @@ import pytest
 # Test files import `support` by name, from whatever directory pytest is started in.
 sys.path.insert(0, str(Path(__file__).parent))
 
-import isolation
+from fork_server import ForkServer, is_inside
+from isolation import Isolation
+from peers import PeerServers
 from processes import has_receive_threads
 from support import IS_MANYCORE, Program, environment, leftovers, unique_platform, wait_until
 
+PEER_SERVERS = pytest.StashKey[PeerServers]()
 StartProgram = Callable[..., Program]
 
 
@@ -28,22 +31,18 @@ def pytest_configure(config: pytest.Config) -> None:
     signal.signal(signal.SIGHUP, signal.SIG_DFL)
     # The wheels of rosidl bring an old parser along, which uses modules that Python gave up.
     config.addinivalue_line("filterwarnings", "ignore:module 'sre_:DeprecationWarning")
-    if report_path := os.environ.get(isolation.REPORT_VARIABLE):
-        config.pluginmanager.register(isolation.ReportWriter(config, Path(report_path)))
-
-
-@pytest.hookimpl(tryfirst=True)
-def pytest_runtest_protocol(item: pytest.Item) -> bool | None:
-    if isolation.is_inside() or not item.get_closest_marker("rmw"):
-        return None
-    isolation.run(item)
-    return True
+    if is_inside():
+        config.pluginmanager.register(ForkServer(config))
+    else:
+        config.stash[PEER_SERVERS] = servers = PeerServers()
+        config.add_cleanup(servers.end)
+        config.pluginmanager.register(Isolation(servers))
 
 
 @pytest.fixture
 def platform() -> Iterator[str]:
     """Yield the name of the test's platform; afterwards nothing of it may be left."""
-    if isolation.is_inside():
+    if is_inside():
         yield os.environ["MANYCORE_PLATFORM"]
         return
     name = unique_platform()
@@ -53,12 +52,16 @@ def platform() -> Iterator[str]:
 
 
 @pytest.fixture
-def start(platform: str) -> Iterator[StartProgram]:
+def start(platform: str, request: pytest.FixtureRequest) -> Iterator[StartProgram]:
     """Yield a function that starts a program on the test's platform; none outlives the test."""
     programs: list[Program] = []
+    servers = request.config.stash.get(PEER_SERVERS, None)
 
     def start_program(command: list[str], cluster: int = 1, **env: str) -> Program:
-        programs.append(Program(command, environment(platform, cluster, **env)))
+        full_env = environment(platform, cluster, **env)
+        if servers:
+            servers.serve(command, full_env)
+        programs.append(Program(command, full_env))
         return programs[-1]
 
     yield start_program

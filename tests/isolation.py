@@ -5,14 +5,18 @@ from __future__ import annotations
 
 import json
 import os
+import signal
+import socket
 import subprocess
 import sys
 import tempfile
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
 import pytest
-from processes import has_receive_threads
+from fork_server import SOCKET_VARIABLE
+from peers import PEER, PeerServers
 from support import (
     IS_MANYCORE,
     PATIENCE_S,
@@ -23,73 +27,117 @@ from support import (
     wait_until,
 )
 
-REPORT_VARIABLE = "MANYCORE_TEST_REPORT"
+MARKER = "rmw"
+TEST_RAN = (pytest.ExitCode.OK, pytest.ExitCode.TESTS_FAILED)
 
 
-def is_inside() -> bool:
-    """Tell whether this process is the one of a single test."""
-    return REPORT_VARIABLE in os.environ
+class Isolation:
+    """Has the tests of the rmw interface run by a fork server and passes their reports on."""
 
+    def __init__(self, peers: PeerServers) -> None:
+        self._peers = peers
+        self._server: _Server | None = None
 
-class ReportWriter:
-    """Writes each report of the inner pytest for the outer one, a line of JSON each."""
-
-    def __init__(self, config: pytest.Config, path: Path) -> None:
-        self._config = config
-        self._path = path
-
-    def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
-        data = self._config.hook.pytest_report_to_serializable(config=self._config, report=report)
-        with self._path.open("a") as file:
-            file.write(json.dumps(data) + "\n")
+    @pytest.hookimpl(tryfirst=True)
+    def pytest_runtest_protocol(self, item: pytest.Item) -> bool | None:
+        if not item.get_closest_marker(MARKER):
+            return None
+        item.ihook.pytest_runtest_logstart(nodeid=item.nodeid, location=item.location)
+        for report in self._reports(item):
+            item.ihook.pytest_runtest_logreport(report=report)
+        item.ihook.pytest_runtest_logfinish(nodeid=item.nodeid, location=item.location)
+        return True
 
     def pytest_sessionfinish(self) -> None:
-        """Let nobody who has not left end before there is a receive thread to clear up after it."""
-        platform = os.environ["MANYCORE_PLATFORM"]
-        if IS_MANYCORE:
-            wait_until(lambda: has_receive_threads(platform), f"the receive threads of {platform}")
+        self._end_server()
+
+    def _reports(self, item: pytest.Item) -> list[pytest.TestReport]:
+        platform = unique_platform()
+        if self._server is None:
+            self._server = _Server(item.session)
+            self._peers.serve([sys.executable, str(PEER)], environment(platform))
+        lines, problem = self._server.run(item.nodeid, platform)
+        if problem is not None:  # the server may have suffered, too
+            self._end_server()
+        reports = [_to_report(item.config, json.loads(line)) for line in lines]
+        if problem is None and not any(report.failed for report in reports):
+            problem = _leftover_problem(platform)
+        return reports if problem is None else [*reports, _failure(item, problem)]
+
+    def _end_server(self) -> None:
+        if self._server is not None:
+            self._server.end()
+            self._server = None
 
 
-def run(item: pytest.Item) -> None:
-    """Run one test in a pytest of its own and pass its reports on."""
-    item.ihook.pytest_runtest_logstart(nodeid=item.nodeid, location=item.location)
-    for report in _reports(item):
-        item.ihook.pytest_runtest_logreport(report=report)
-    item.ihook.pytest_runtest_logfinish(nodeid=item.nodeid, location=item.location)
+class _Server:
+    """A fork server with the test files of this session."""
 
+    def __init__(self, session: pytest.Session) -> None:
+        self._directory = tempfile.TemporaryDirectory()
+        self._output = Path(self._directory.name) / "output"
+        self._reports = Path(self._directory.name) / "reports"
+        tests = [item for item in session.items if item.get_closest_marker(MARKER)]
+        files = sorted({str(item.path) for item in tests})
+        connection, remote = socket.socketpair()
+        env = {SOCKET_VARIABLE: str(remote.fileno()), "OPENBLAS_NUM_THREADS": "1"}
+        with remote, self._output.open("w") as output:
+            self._process = subprocess.Popen(
+                [sys.executable, "-m", "pytest", "-p", "no:cacheprovider", "-m", MARKER, *files],
+                env=environment(unique_platform(), **env),
+                cwd=TESTS,
+                stdin=subprocess.DEVNULL,
+                stdout=output,
+                stderr=subprocess.STDOUT,
+                pass_fds=[remote.fileno()],
+            )
+        connection.settimeout(4 * PATIENCE_S)
+        self._stream = connection.makefile("rw")
+        connection.close()
 
-def _reports(item: pytest.Item) -> list[pytest.TestReport]:
-    platform = unique_platform()
-    with tempfile.TemporaryDirectory() as directory:
-        report_path = Path(directory) / "reports"
-        problem = _run_pytest(item, platform, report_path)
-        lines = report_path.read_text().splitlines() if report_path.exists() else []
-    reports = [_to_report(item.config, json.loads(line)) for line in lines]
-    if problem is None and not any(report.failed for report in reports):
-        problem = _leftover_problem(platform)
-    return reports if problem is None else [*reports, _failure(item, problem)]
+    def run(self, test: str, platform: str) -> tuple[list[str], str | None]:
+        """Return the reports of a test, and what is wrong with the process that it ran in."""
+        self._reports.unlink(missing_ok=True)
+        output_start = self._output.stat().st_size
+        names = ("MANYCORE_PLATFORM", "ROS_DOMAIN_ID")
+        request = {
+            "test": test,
+            "reports": str(self._reports),
+            "environment": {name: environment(platform)[name] for name in names},
+        }
+        problem = self._wait_for(request)
+        lines = self._reports.read_text().splitlines() if self._reports.exists() else []
+        if problem is not None:
+            output = self._output.read_bytes()[output_start:].decode(errors="replace")
+            problem += f":\n{output}"
+        return lines, problem
 
+    def _wait_for(self, request: dict[str, Any]) -> str | None:
+        """Wait until the requested test has run; return what is wrong with its process."""
+        try:
+            print(json.dumps(request), file=self._stream, flush=True)
+            pid = json.loads(self._stream.readline())["pid"]
+        except (OSError, ValueError):
+            return "the fork server has not started the test"
+        try:
+            status = json.loads(self._stream.readline())["exit_status"]
+        except TimeoutError:
+            with suppress(ProcessLookupError):
+                os.kill(pid, signal.SIGABRT)  # which prints where its threads are
+            return "the test hangs"
+        except ValueError:
+            return "the fork server has ended"
+        return None if status in TEST_RAN else f"exit status {status} of the test's process"
 
-def _run_pytest(item: pytest.Item, platform: str, report_path: Path) -> str | None:
-    test = str(item.config.rootpath / item.nodeid)
-    command = [sys.executable, "-m", "pytest", "-p", "no:cacheprovider", "-m", "rmw", test]
-    env = environment(platform, **{REPORT_VARIABLE: str(report_path)})
-    try:
-        result = subprocess.run(
-            command,
-            env=env,
-            cwd=TESTS,
-            text=True,
-            errors="replace",
-            stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
-            timeout=4 * PATIENCE_S,
-        )
-    except subprocess.TimeoutExpired as expired:
-        return f"the test hangs:\n{expired.output!r}"
-    if result.returncode in (pytest.ExitCode.OK, pytest.ExitCode.TESTS_FAILED):
-        return None
-    return f"exit status {result.returncode} of the test's process:\n{result.stdout}"
+    def end(self) -> None:
+        """End the server, once its test has ended."""
+        self._stream.close()
+        try:
+            self._process.wait(PATIENCE_S)
+        except subprocess.TimeoutExpired:
+            self._process.kill()
+            self._process.wait()
+        self._directory.cleanup()
 
 
 def _leftover_problem(platform: str) -> str | None:

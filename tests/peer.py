@@ -17,7 +17,11 @@ def load(path: str) -> ModuleType:
     return module
 
 
-if __name__ == "__main__":
-    path, function, arguments = sys.argv[1:4]
+def call(path: str, function: str, arguments: str) -> None:
+    """Call a function of a test file."""
     del sys.argv[1:]
     getattr(load(path), function)(*json.loads(arguments))
+
+
+if __name__ == "__main__":
+    call(*sys.argv[1:4])

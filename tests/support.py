@@ -19,10 +19,10 @@ from pathlib import Path
 from typing import Any
 
 from domains import domain_of
+from peers import PEER, TESTS, ForkedPeer, has_server
 
 from rmw_manycore_py.launch.processes.ending import is_rclpys
 
-TESTS = Path(__file__).parent
 REPOSITORY = TESTS.parent
 MAPFILES = REPOSITORY / "mapfiles"
 
@@ -87,6 +87,21 @@ def wait_until(condition: Callable[[], Any], what: str, timeout_s: float = PATIE
         time.sleep(0.01)
 
 
+def _started(command: list[str], env: dict[str, str]) -> subprocess.Popen[str] | ForkedPeer:
+    if has_server(command, env):
+        return ForkedPeer(command, env)
+    return subprocess.Popen(
+        command,
+        env=env,
+        cwd=TESTS,  # not the repository, whose sources would hide the installed package
+        text=True,
+        errors="replace",
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+    )
+
+
 class Program:
     """A started process; its output, errors included, is read line by line."""
 
@@ -96,16 +111,7 @@ class Program:
         self._next_line = 0
         self._ended = False
         self._changed = threading.Condition()
-        self._process = subprocess.Popen(
-            self.command,
-            env=env,
-            cwd=TESTS,  # not the repository, whose sources would hide the installed package
-            text=True,
-            errors="replace",
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
-        )
+        self._process = _started(self.command, env)
         self._reader = threading.Thread(target=self._read, daemon=True)
         self._reader.start()
 
@@ -195,8 +201,7 @@ class Program:
 def peer_command(function: Callable[..., None], *arguments: Any) -> list[str]:
     """Return the command that calls a function of a test file in a process of its own."""
     source = function.__code__.co_filename
-    peer = str(TESTS / "peer.py")
-    return [sys.executable, peer, source, function.__name__, json.dumps(arguments)]
+    return [sys.executable, str(PEER), source, function.__name__, json.dumps(arguments)]
 
 
 def example_command(name: str, *arguments: str) -> list[str]:

@@ -1,0 +1,79 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""A pytest that has loaded and collected everything, and forks a process for each test.
+
+Loading python, pytest and rclpy costs about a second of CPU, a fork some milliseconds. The fork
+comes before anything of ROS is initialised, so each child is a process as any other.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import socket
+from pathlib import Path
+from typing import Any
+
+import pytest
+from forking import fork, preload
+from processes import has_receive_threads
+from support import IS_MANYCORE, wait_until
+
+# The number of the socket on which a server gets its requests, a line of JSON each.
+SOCKET_VARIABLE = "MANYCORE_TEST_SOCKET"
+
+
+def is_inside() -> bool:
+    """Tell whether this process is a fork server, or one that it forked for a test."""
+    return SOCKET_VARIABLE in os.environ
+
+
+class ForkServer:
+    """Runs the requested tests in place of all; a forked process is a session of one test."""
+
+    def __init__(self, config: pytest.Config) -> None:
+        self._config = config
+        self._reports: Path | None = None
+        # Numpy's threads would not survive the fork, so the server loads it without.
+        os.environ.pop("OPENBLAS_NUM_THREADS", None)
+
+    def pytest_runtestloop(self, session: pytest.Session) -> bool:
+        tests = {item.nodeid: item for item in session.items}
+        preload()
+        if request := _serve(int(os.environ[SOCKET_VARIABLE])):
+            self._reports = Path(request["reports"])
+            os.environ.update(request["environment"])
+            test = tests[request["test"]]
+            test.ihook.pytest_runtest_protocol(item=test, nextitem=None)
+        return True
+
+    def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
+        assert self._reports is not None
+        data = self._config.hook.pytest_report_to_serializable(config=self._config, report=report)
+        with self._reports.open("a") as file:
+            file.write(json.dumps(data) + "\n")
+
+    def pytest_sessionfinish(self) -> None:
+        """Let a test end only beside a receive thread, which clears up what it did not leave."""
+        platform = os.environ["MANYCORE_PLATFORM"]
+        if IS_MANYCORE:
+            wait_until(lambda: has_receive_threads(platform), f"the receive threads of {platform}")
+
+
+def _serve(fileno: int) -> dict[str, Any] | None:
+    """Fork for each request; return it in the child, and nothing in the parent."""
+    with (
+        socket.socket(fileno=fileno) as connection,
+        connection.makefile("r") as requests,
+        connection.makefile("w") as answers,
+    ):
+        for line in requests:
+            if (pid := fork()) == 0:
+                request: dict[str, Any] = json.loads(line)
+                return request
+            _tell(answers, pid=pid)
+            _tell(answers, exit_status=os.waitstatus_to_exitcode(os.waitpid(pid, 0)[1]))
+    return None
+
+
+def _tell(stream: Any, **what: int) -> None:
+    print(json.dumps(what), file=stream, flush=True)
