@@ -25,6 +25,10 @@ set(CMAKE_POSITION_INDEPENDENT_CODE ON)
 # Nothing may name the build machine; a library that needs a path sets its own $ORIGIN.
 set(CMAKE_BUILD_WITH_INSTALL_RPATH ON)
 
+# Paths in messages and in debug information are those of the checkout, on whatever machine.
+add_compile_options(
+  -ffile-prefix-map=${CMAKE_BINARY_DIR}=build -ffile-prefix-map=${CMAKE_SOURCE_DIR}/=)
+
 add_library(manycore_options INTERFACE)
 target_compile_features(manycore_options INTERFACE cxx_std_17)
 target_include_directories(manycore_options INTERFACE

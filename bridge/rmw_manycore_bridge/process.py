@@ -24,6 +24,7 @@ from rmw_manycore_bridge.sides import OwnPublishers, Sides
 from rmw_manycore_bridge.topic_inward import InwardTopic
 from rmw_manycore_bridge.topic_outward import OutwardTopic
 from rmw_manycore_py.bridge_plan import Plan
+from rmw_manycore_py.readiness import report_ready
 from rmw_manycore_py.routes import Direction
 from rmw_manycore_py.signals import signal_inbox
 
@@ -87,6 +88,7 @@ class BridgeProcess:
             for loop in self._loops:
                 loop.on_failure(partial(os.eventfd_write, self._failed, 1))
                 loop.start()
+            report_ready()
             endings = [inbox.fileno(), self._failed]
             try:
                 while not select.select(endings, [], [], self._lanes.period_s)[0]:

@@ -63,7 +63,10 @@ std::string program_name() {
       return words[i + 1];
     }
     if (words[i][0] != '-') {
-      return base_name(words[i]);
+      const std::string script = base_name(words[i]);
+      // Runs a module of ours: startup/rmw_manycore_program.py.
+      const bool runs_module = script == "rmw_manycore_program.py" && i + 1 < words.size();
+      return runs_module ? words[i + 1] : script;
     }
   }
   return executable;

@@ -16,6 +16,7 @@ from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import IO, Any
 
+from rmw_manycore_program import own_program
 from rmw_manycore_py._transport import Platform, platform_directory
 from rmw_manycore_py.bench.contenders import Middleware, Peer
 from rmw_manycore_py.errors import ManycoreError
@@ -156,12 +157,12 @@ class Session:
 
     def python(self, module: str, party: int, *arguments: object, by_hand: bool = False) -> Process:
         """Start an rclpy program as a party; by hand means without the library path set."""
-        command = [sys.executable, "-m", f"{NODES}.{module}", *map(str, arguments)]
+        command = own_program(f"{NODES}.{module}", *map(str, arguments))
         return self._start(command, party, with_library_path=not by_hand)
 
     def module(self, name: str, party: int, *arguments: object) -> Process:
-        """Start any Python program as a party."""
-        return self._start([sys.executable, "-m", name, *map(str, arguments)], party)
+        """Start any module of ours as a party."""
+        return self._start(own_program(name, *map(str, arguments)), party)
 
     def _start(
         self, command: Sequence[str | Path], party: int, with_library_path: bool = True

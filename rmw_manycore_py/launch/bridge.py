@@ -3,8 +3,7 @@
 
 from __future__ import annotations
 
-import sys
-
+from rmw_manycore_program import own_program
 from rmw_manycore_py.bridge_plan import Plan
 from rmw_manycore_py.launch.events import Finished
 from rmw_manycore_py.launch.processes.environment import outside_environment
@@ -54,7 +53,7 @@ def bridge_program(
     words = (plan.to_json(), direction, *map(str, (lane, *core)))
     return NodeProgram(
         name=f"(bridge {direction}{f' {lane}' if lane else ''})",
-        command=(sys.executable, "-m", "rmw_manycore_bridge", *words),
+        command=own_program("rmw_manycore_bridge", *words),
         environment=outside_environment(),
         core=core,
         host_cpu=host_cpu,

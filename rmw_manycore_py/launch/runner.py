@@ -29,6 +29,8 @@ Handler = Callable[[], None]
 
 # A supervised process that cannot live is started at this rate.
 RESTART_PAUSE_S = 1.0
+# After so many processes in a row that ended before they had come up, the next one would, too.
+MAX_VAIN_STARTS = 3
 
 
 class _Readable(Protocol):
@@ -129,8 +131,14 @@ class Runner:
 
     def _restart(self, node: NodeProcess) -> None:
         assert node.ending is not None
+        vain_starts = 0 if node.came_up else node.vain_starts + 1
+        if vain_starts == MAX_VAIN_STARTS:
+            self._report_end(node)
+            self._stop(f"{node.program.name} ended {vain_starts} times before it had come up")
+            return
         self._report(Restarting(node.program.name, node.ending.reason, node.last_lines))
         successor = NodeProcess(node.program)
+        successor.vain_starts = vain_starts
         successor.start_at_s = max(time.monotonic(), node.start_at_s + RESTART_PAUSE_S)
         self._nodes[self._nodes.index(node)] = successor
 

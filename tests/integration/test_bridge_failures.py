@@ -32,6 +32,8 @@ pytestmark = [
 
 TALKER_LISTENER = MAPFILES / "talker_listener.yaml"
 HEARD = "I heard: 'Hello World"
+# With these ROS 2 makes no DDS participant.
+NO_KEYS = {"ROS_SECURITY_ENABLE": "true", "ROS_SECURITY_STRATEGY": "Enforce"}
 
 
 def started(run, node: str) -> int:
@@ -84,6 +86,19 @@ def test_the_bridge_ends_with_the_nodes(start, tmp_path, platform) -> None:
     run = start(manycore_command("run", mapfile))
     assert run.wait() == 0
     assert "manycore | stopping: all nodes have ended" in run.lines
+
+
+def test_a_bridge_that_never_comes_up_ends_the_run(start, tmp_path) -> None:
+    mapfile = tmp_path / "map.yaml"
+    mapfile.write_text(
+        "nodes:\n  endless: {cluster: 1, command: [sleep, '1000'], ros_arguments: false,"
+        " topic_to: {chatter: std_msgs/msg/String}}\n"
+    )
+    run = start(manycore_command("run", mapfile), **NO_KEYS)
+    assert run.wait() == 1
+    assert "(bridge outward) ended 3 times before it had come up" in run.output
+    end = run.output.rpartition("(bridge outward) failed: exit status 1\n")[2]
+    assert "failed to initialize rcl" in end
 
 
 def test_status_shows_the_routes(start, platform) -> None:

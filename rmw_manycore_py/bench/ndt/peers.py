@@ -13,6 +13,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+from rmw_manycore_program import own_program
 from rmw_manycore_py.bench.ndt.world import world
 from rmw_manycore_py.errors import ManycoreError
 
@@ -87,7 +88,7 @@ def _command(name: str, directory: Path, pclomp: Path | None) -> list[str]:
     if name in PYTHON_PEERS:
         if find_spec(name) is None:
             return _missing(name, f"pip install {name.replace('open3d', 'open3d-cpu')}")
-        return [sys.executable, "-m", "rmw_manycore_py.bench.ndt.python_peer", name]
+        return [*own_program("rmw_manycore_py.bench.ndt.python_peer", name)]
     flags = _pcl_flags()
     if not flags:
         return _missing(name, "apt-get install libpcl-dev pkg-config g++")

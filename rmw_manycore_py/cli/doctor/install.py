@@ -13,6 +13,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import rmw_manycore_hook
+from rmw_manycore_program import own_program
 from rmw_manycore_py.cli.doctor.finding import Finding, Verdict, advised, judged
 from rmw_manycore_py.ros.ament import prefixes
 
@@ -28,14 +29,6 @@ FILES = {
     "stand-ins": "lib/rmw_manycore/standin/librmw_fastrtps_cpp.so",
     "ament index": "share/ament_index/resource_index/rmw_typesupport/rmw_manycore",
 }
-
-# Run by a python that uses rmw_manycore: prints what rclpy got, and what else was loaded.
-_PROBE = """
-import rclpy
-maps = [line for line in open("/proc/self/maps") if "/standin/" not in line]
-print(rclpy.get_rmw_implementation_identifier())
-print(*(any(name in line for line in maps) for name in ("librmw_manycore.so", "libfastrtps.so")))
-"""
 
 
 def check_install() -> Iterator[Finding]:
@@ -93,7 +86,7 @@ def _substitution() -> Finding:
     environment = {**os.environ, "RMW_IMPLEMENTATION": "rmw_manycore"}
     try:
         result = subprocess.run(
-            [sys.executable, "-c", _PROBE],
+            own_program("rmw_manycore_py.cli.doctor.probe"),
             env=environment,
             text=True,
             timeout=START_TIMEOUT_S,

@@ -36,19 +36,23 @@ class Ending:
     signal: str | None = None
 
 
-def judge(return_code: int, state: NodeState, last_lines: Sequence[str] = ()) -> Ending:
+def judge(
+    return_code: int, state: NodeState, last_lines: Sequence[str] = (), came_up: bool = True
+) -> Ending:
     """Judge the return code (minus a signal's number, as in subprocess) of a node in `state`.
 
     Python that an interruption ends otherwise than by the signal has status 1; only its last lines
-    say why.
+    say why. A process that was to stay, and ends before it `came_up`, has failed.
     """
     asked = state in (NodeState.INTERRUPTED, NodeState.TERMINATED)
     if asked and return_code == 1 and _was_interrupted(last_lines):
         return Ending(False, "stopped", exit_status=return_code)
     if state is NodeState.KILLED:
         return Ending(True, _stubborn(), signal=_signal_name(signal.SIGKILL))
-    if return_code == 0 or (asked and return_code in _ENDED_ON_REQUEST):
-        failed, why = False, "stopped" if asked else "finished"
+    if asked and return_code in (0, *_ENDED_ON_REQUEST):
+        failed, why = False, "stopped"
+    elif return_code == 0 and came_up:
+        failed, why = False, "finished"
     else:
         failed, why = True, _describe(return_code)
     if return_code < 0:

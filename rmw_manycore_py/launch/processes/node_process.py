@@ -13,6 +13,7 @@ from rmw_manycore_py.launch.processes.ending import Ending, judge, not_started
 from rmw_manycore_py.launch.processes.output import OutputReader
 from rmw_manycore_py.launch.processes.program import NodeProgram
 from rmw_manycore_py.launch.processes.state import STOP_STEPS, NodeState, check_transition
+from rmw_manycore_py.readiness import Readiness
 
 # How long children of a node may go on printing after the node itself has ended.
 ORPHAN_GRACE_S = 1.0
@@ -32,8 +33,11 @@ class NodeProcess:
         self.deadline_s = float("inf")  # on the monotonic clock: when the next step is due
         self.start_at_s = 0.0  # on the monotonic clock: not before, and later when it was started
         self.pidfd = -1  # open while the node itself runs
+        self.came_up = not program.supervised  # a supervised process reports it; known at its end
+        self.vain_starts = 0  # how many processes before it ended without having come up
         self._process: subprocess.Popen[bytes] | None = None
         self._output: OutputReader | None = None
+        self._readiness: Readiness | None = None
 
     @property
     def process(self) -> subprocess.Popen[bytes]:
@@ -70,17 +74,20 @@ class NodeProcess:
     def start(self) -> bool:
         """Start the node on its CPU; where that fails the ending says why."""
         self.start_at_s = time.monotonic()
+        if self.program.supervised:
+            self._readiness = Readiness()
         try:
             with pinned_to(self.program.host_cpu):
                 self._process = subprocess.Popen(
                     self.program.command,
-                    env=self.program.environment,
+                    env={**self.program.environment, **self._readiness_variables()},
                     cwd=self.program.directory,
                     stdin=subprocess.DEVNULL,
                     stdout=subprocess.PIPE,
                     stderr=subprocess.STDOUT,
                     bufsize=0,
                     start_new_session=True,
+                    pass_fds=[self._readiness.fd] if self._readiness else [],
                     preexec_fn=dies_with_this_process(),
                 )
         except OSError as error:
@@ -117,7 +124,11 @@ class NodeProcess:
         """End the rest of the group and judge the exit status; return the last lines."""
         self._signal_group(signal.SIGKILL)
         lines = self.output.close()
-        self._end(judge(self.process.wait(), self.state, self.last_lines))
+        return_code = self.process.wait()
+        if self._readiness:
+            self.came_up = self._readiness.close()
+            self._readiness = None
+        self._end(judge(return_code, self.state, self.last_lines, self.came_up))
         return lines
 
     def destroy(self) -> None:
@@ -128,6 +139,11 @@ class NodeProcess:
             self.output.close()
         if self.pidfd >= 0:
             os.close(self.pidfd)
+        if self._readiness:
+            self._readiness.close()
+
+    def _readiness_variables(self) -> dict[str, str]:
+        return self._readiness.variables if self._readiness else {}
 
     def _signal_group(self, number: signal.Signals) -> None:
         os.killpg(self.process.pid, number)

@@ -16,8 +16,8 @@ from rmw_manycore_py.topology import Core
 class NodeProgram:
     """One node as a process: its command line, its whole environment, its core.
 
-    A `supervised` one serves the others: it is started again whenever it ends, and a run is over
-    without it.
+    A `supervised` one serves the others: it calls `report_ready` once it has come up, it is started
+    again whenever it ends, and a run is over without it.
     """
 
     name: str

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from importlib.machinery import ModuleSpec, PathFinder
 from pathlib import Path
 
+from rmw_manycore_program import own_program
 from rmw_manycore_py.mapfile.programs.entry_script import console_scripts, module_of_script
 from rmw_manycore_py.ros import ament
 
@@ -31,13 +32,19 @@ def find_script(file: Path) -> Program:
 
 
 def find_module(module: str, directory: Path) -> Program | None:
-    """Return the program of a Python module, looked for without importing it."""
-    spec = _module_spec(module, directory)
+    """Return the program of a Python module, looked for without importing it.
+
+    Nodes of rmw_manycore are the installed ones, even in a checkout, whose sources lack the
+    native modules.
+    """
+    is_own = module.split(".")[0] == "rmw_manycore_py"
+    spec = _module_spec(module, None if is_own else directory)
     if spec is not None and spec.submodule_search_locations is not None:
-        spec = _module_spec(f"{module}.__main__", directory)
+        spec = _module_spec(f"{module}.__main__", None if is_own else directory)
     if spec is None:
         return None
-    return Program((sys.executable, "-m", module), _python_source(spec))
+    argv = own_program(module) if is_own else (sys.executable, "-m", module)
+    return Program(argv, _python_source(spec))
 
 
 def _python_source(spec: ModuleSpec | None) -> Path | None:
@@ -45,10 +52,11 @@ def _python_source(spec: ModuleSpec | None) -> Path | None:
     return Path(origin) if origin and origin.endswith(".py") else None
 
 
-def _module_spec(module: str, directory: Path) -> ModuleSpec | None:
+def _module_spec(module: str, directory: Path | None) -> ModuleSpec | None:
     """Look for a module without importing the packages around it: they may do anything."""
     first, *rest = module.split(".")
-    spec = PathFinder.find_spec(first, [str(directory)]) or _top_level_spec(first)
+    spec = PathFinder.find_spec(first, [str(directory)]) if directory else None
+    spec = spec or _top_level_spec(first)
     name = first
     for part in rest:
         if spec is None or spec.submodule_search_locations is None:
@@ -144,6 +152,10 @@ def _entry_point(package: str, executable: str) -> Program | None:
     if entry is None:
         return None
     attribute = entry.attr.split(".")[0]
-    code = f"import sys; from {entry.module} import {attribute}; sys.exit({entry.attr}())"
-    source = _python_source(_module_spec(entry.module, Path.cwd()))
+    # As in the script that pip writes, the working directory is not in the path of imports.
+    code = (
+        "import sys; sys.path[:] = filter(None, sys.path); "
+        f"from {entry.module} import {attribute}; sys.exit({entry.attr}())"
+    )
+    source = _python_source(_module_spec(entry.module, None))
     return Program((sys.executable, "-c", code), source)

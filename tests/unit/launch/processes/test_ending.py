@@ -32,6 +32,12 @@ def test_judgement(return_code: int, state: NodeState, failed: bool, reason: str
     assert (ending.failed, ending.reason) == (failed, reason)
 
 
+def test_what_was_to_stay_fails_when_it_ends_before_it_had_come_up() -> None:
+    ending = judge(0, NodeState.RUNNING, came_up=False)
+    assert (ending.failed, ending.reason) == (True, "exit status 0")
+    assert not judge(0, NodeState.INTERRUPTED, came_up=False).failed
+
+
 FRAME = '  File "/x/site-packages/rclpy/executors.py", line 396, in _take_subscription'
 PYBIND11 = (
     "RuntimeError: Unable to convert call argument '0' to Python object (#define "

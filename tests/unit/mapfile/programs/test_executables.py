@@ -74,7 +74,7 @@ def test_scripts_of_installers_show_the_module_they_start(installed: Path) -> No
     assert source_of(installed / "talker", BY_PIP) == EXAMPLES["talker"]
     cli = source_of(installed / "tool", BY_SETUPTOOLS)
     assert cli is not None
-    assert cli.parts[-3:] == ("rmw_manycore_py", "cli", "__init__.py")
+    assert cli.name == "rmw_manycore_program.py"
 
 
 def test_scripts_with_code_of_their_own_are_their_own_source(installed: Path) -> None:

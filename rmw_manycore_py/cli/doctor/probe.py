@@ -1,0 +1,22 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""A process that starts rclpy for the doctor: prints the middleware, and what else was loaded."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import rclpy
+
+LIBRARIES = ("librmw_manycore.so", "libfastrtps.so")
+
+
+def main() -> None:
+    """Print the identifier, and for each library whether it was loaded."""
+    lines = Path("/proc/self/maps").read_text().splitlines()
+    maps = [line for line in lines if "/standin/" not in line]
+    print(rclpy.get_rmw_implementation_identifier())
+    print(*(any(name in line for line in maps) for name in LIBRARIES))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,118 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Where our own programs import from, in real python processes started among hostile files."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from python_prefix import SHOW, Prefix
+
+from rmw_manycore_program import own_program
+
+pytestmark = pytest.mark.unit
+
+SHADOWED = ("random", "enum", "types", "re", "json", "shown", "rmw_manycore_py")
+SHOW_IMPORTS = f"import random, enum, types, re\n{SHOW}"
+PIP_SCRIPT = """import re
+import sys
+from rmw_manycore_program import manycore
+if __name__ == '__main__':
+    sys.argv[0] = re.sub(r'(-script|.exe)?$', '', sys.argv[0])
+    sys.exit(manycore())
+"""
+CMAKE_SCRIPT = """import rmw_manycore_program
+rmw_manycore_program.isolate_imports()
+from shown import main
+main()
+"""
+
+
+@pytest.fixture(scope="module")
+def prefix(tmp_path_factory: pytest.TempPathFactory) -> Prefix:
+    """An installation, with a start-up hook of others that imports something."""
+    prefix = Prefix(tmp_path_factory.mktemp("prefix"))
+    (prefix.site_packages / "ros_wheels_bootstrapper.pth").write_text("import pathlib, enum\n")
+    main = "def main():\n" + "".join(f"    {line}\n" for line in SHOW_IMPORTS.splitlines())
+    (prefix.site_packages / "shown.py").write_text(f"{main}if __name__ == '__main__': main()\n")
+    cli = prefix.site_packages / "rmw_manycore_py" / "cli.py"
+    cli.parent.mkdir()
+    (cli.parent / "__init__.py").touch()
+    cli.write_text("from shown import main\n")
+    (prefix.path / "bin/manycore").write_text(PIP_SCRIPT)
+    (prefix.path / "lib/rmw_manycore/talker").write_text(CMAKE_SCRIPT)
+    return prefix
+
+
+@pytest.fixture
+def hostile(tmp_path: Path) -> Path:
+    directory = tmp_path / "hostile"
+    directory.mkdir()
+    for name in SHADOWED:
+        (directory / f"{name}.py").write_text(f"raise SystemError('{name} of {directory}')\n")
+    return directory
+
+
+@pytest.fixture(params=["module", "manycore", "executable"])
+def own(request: pytest.FixtureRequest, prefix: Prefix) -> list[str | Path]:
+    """The command line of a program of ours, without the interpreter."""
+    commands: dict[str, list[str | Path]] = {
+        "module": [prefix.site_packages / "rmw_manycore_program.py", "shown"],
+        "manycore": [prefix.path / "bin/manycore"],
+        "executable": [prefix.path / "lib/rmw_manycore/talker"],
+    }
+    return commands[request.param]
+
+
+@pytest.mark.parametrize("rmw", ["rmw_manycore", "rmw_fastrtps_cpp"])
+@pytest.mark.parametrize("entries", [None, "", ":", ":{more}", "{hostile}"])
+def test_own_programs_import_what_is_installed(
+    prefix: Prefix, hostile: Path, own: list, tmp_path: Path, entries: str | None, rmw: str
+) -> None:
+    variables = {"RMW_IMPLEMENTATION": rmw}
+    if entries is not None:
+        variables["PYTHONPATH"] = entries.format(more=tmp_path / "more", hostile=hostile)
+    shown = prefix.show(*own, "a b", directory=hostile, **variables)
+    assert shown["argv"][1:] == ["a b"]
+    named = [entry for entry in variables.get("PYTHONPATH", "").split(":") if entry]
+    rest = shown["path"][: len(shown["path"]) - len(named)]
+    assert shown["path"] == [*rest, *named]
+    assert not {"", str(hostile)} & set(rest)
+
+
+def test_options_of_python_survive(prefix: Prefix, hostile: Path, own: list) -> None:
+    shown = prefix.show("-X", "utf8", "-u", *own, directory=hostile, PYTHONPATH=":")
+    assert shown["flags"] == 1
+    assert shown["orig_argv"] == ["-X", "utf8", "-u", *map(str, own)]
+    assert not {"", str(hostile)} & set(shown["path"])
+
+
+def test_files_beside_the_script_are_not_imported(prefix: Prefix, own: list) -> None:
+    beside = prefix.path / "bin/random.py", prefix.path / "lib/rmw_manycore/random.py"
+    for file in beside:
+        file.write_text("raise SystemError('random of bin')\n")
+    shown = prefix.show(*own)
+    for file in beside:
+        file.unlink()
+    assert not {str(file.parent) for file in beside} & set(shown["path"])
+
+
+def test_an_installation_that_is_named_in_the_path_stays(prefix: Prefix, own: list) -> None:
+    variables = {"PYTHONPATH": f":{prefix.site_packages}"}
+    shown = prefix.show(*own, directory=prefix.site_packages, **variables)
+    assert str(prefix.site_packages) in shown["path"]
+
+
+def test_other_programs_keep_the_rules_of_python(prefix: Prefix, tmp_path: Path) -> None:
+    script = tmp_path / "manycore"
+    script.write_text(SHOW)
+    shown = prefix.show(script, PYTHONPATH="/named")
+    assert shown["path"][:2] == [str(tmp_path), "/named"]
+    assert prefix.show("-c", SHOW, PYTHONPATH="/named")["path"][:2] == ["", "/named"]
+
+
+def test_a_module_of_ours_is_named_in_the_command_line() -> None:
+    python, program, *words = own_program("rmw_manycore_bridge", "inward")
+    assert Path(program).is_file()
+    assert words == ["rmw_manycore_bridge", "inward"]
+    assert Path(python).is_file()
