@@ -10,8 +10,7 @@ import pytest
 
 pytestmark = pytest.mark.unit
 
-PACKAGE = Path(__file__).parents[2] / "rmw_manycore_py"
-NATIVE = PACKAGE.with_name("rmw_manycore")
+NATIVE = Path(__file__).parents[2] / "rmw_manycore"
 
 # What each native directory may include of the others, besides itself.
 NATIVE_BELOW = {

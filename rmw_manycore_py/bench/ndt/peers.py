@@ -16,8 +16,8 @@ from tempfile import TemporaryDirectory
 from rmw_manycore_program import own_program
 from rmw_manycore_py.bench.ndt.world import world
 from rmw_manycore_py.errors import ManycoreError
+from rmw_manycore_py.ros.ament import package_share
 
-SOURCE = Path(__file__).with_name("peer.cpp")
 PCL_PACKAGES = ("pcl_registration", "pcl_registration-1.12", "pcl_registration-1.14")
 PCL_FLAGS = ("-O3", "-DNDEBUG", "-std=c++17")
 # As its own CMakeLists.txt says.
@@ -97,11 +97,19 @@ def _command(name: str, directory: Path, pclomp: Path | None) -> list[str]:
     program = directory / name
     own = (*PCLOMP_FLAGS, f"-I{pclomp}/include") if name == "pclomp" else PCL_FLAGS
     built = subprocess.run(
-        ["g++", *own, str(SOURCE), "-o", str(program), *flags], capture_output=True, text=True
+        ["g++", *own, str(_pcl_peer()), "-o", str(program), *flags], capture_output=True, text=True
     )
     if built.returncode != 0:
         raise ManycoreError(f"{name} does not compile:\n{built.stderr[:2000]}")
     return [str(program)]
+
+
+def _pcl_peer() -> Path:
+    """Return the installed source of the peers that are built against PCL."""
+    share = package_share("rmw_manycore")
+    if share is None:
+        raise ManycoreError("rmw_manycore is not in the ament index: install it again")
+    return share / "bench/peer.cpp"
 
 
 def _pcl_flags() -> list[str]:
