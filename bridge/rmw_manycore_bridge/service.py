@@ -42,9 +42,12 @@ class Service(Mover):
             self._sides.row.set_state("waiting")
 
     def _endpoint(self, kind: str, role: str) -> Any:
+        """Return an end on the platform; what it reads is not displaced before it is passed on."""
         route = self._sides.route
         make = getattr(self._sides.inside.process, kind)
-        return make(route.inside, route.type, self._policies, role=role, type_hash=self._hash)
+        kept = {"history": "keep_all"} if kind == "subscription" else {}
+        policies = {**self._policies, **kept}
+        return make(route.inside, route.type, policies, role=role, type_hash=self._hash)
 
     @abstractmethod
     def _reply(self, caller: Any, response: Any) -> None:

@@ -55,6 +55,7 @@ std::optional<Claim> Subscription::claim() {
     switch (candidate->reader->claim(candidate->number, view)) {
       case TopicDsmReader::ClaimResult::gone:
         impl.unsettled = true;
+        impl.count_lost_replies(1);
         continue;
       case TopicDsmReader::ClaimResult::expired:
         impl.entry.counters.expired.fetch_add(1, std::memory_order_relaxed);

@@ -19,20 +19,14 @@ uint32_t log2_at_least(uint32_t x) {
   return log2;
 }
 
-/// Requests and replies are never displaced: a lost request would leave its client waiting for
-/// ever.
-bool displaces(const EndpointEntry & entry) {
-  return entry.role == EndpointRole::topic && entry.qos.history == History::keep_last;
-}
+bool displaces(const EndpointEntry & entry) { return entry.qos.history == History::keep_last; }
 
 }  // namespace
 
 SubscriptionHeader & Subscription::Impl::create(Registry & registry, uint32_t endpoint_slot) {
   EndpointEntry & entry = registry.endpoints()[endpoint_slot];
   Cluster & cluster = registry.clusters().at(entry.cluster);
-  const uint32_t depth = displaces(entry)                    ? entry.qos.depth
-                         : entry.role == EndpointRole::topic ? keep_all_capacity
-                                                             : std::max(entry.qos.depth, 16u);
+  const uint32_t depth = displaces(entry) ? entry.qos.depth : keep_all_capacity;
   const uint32_t log2 = log2_at_least(depth);
   auto & header = cluster.allocate_cleared<SubscriptionHeader>(
     sizeof(SubscriptionHeader) + (uint64_t{8} << log2));
@@ -100,13 +94,12 @@ void Subscription::Impl::resync(std::optional<Hint> popped) {
   renew_readers();
   announced.clear();
   for (; popped || (popped = subscriber_queue::pop(header)); popped.reset()) {
-    if (
-      const TopicDsmReader * const reader =
-        find_reader(popped->source, popped->source_incarnation)) {
-      announced.emplace_back(reader->index(), reader->full_number(popped->number));
+    if (const std::optional<Candidate> candidate = candidate_of(*popped)) {
+      announced.emplace_back(candidate->reader->index(), candidate->number);
     }
   }
   std::sort(announced.begin(), announced.end());
+  announced.erase(std::unique(announced.begin(), announced.end()), announced.end());
   scratch.clear();
   for (TopicDsmReader & reader : readers) {
     reader.list_waiting(scratch);
@@ -120,6 +113,8 @@ void Subscription::Impl::resync(std::optional<Hint> popped) {
     return !std::binary_search(
       announced.begin(), announced.end(), std::pair(waiting.source, waiting.number));
   });
+  const auto found_of_announced = static_cast<ptrdiff_t>(scratch.size()) - unannounced;
+  count_lost_replies(announced.size() - static_cast<size_t>(found_of_announced));
   unsettled = true;
   if (unannounced > 0) {
     arrivals_by_resync.fetch_add(static_cast<uint64_t>(unannounced), std::memory_order_relaxed);
@@ -131,6 +126,7 @@ void Subscription::Impl::resync(std::optional<Hint> popped) {
     if (TopicDsmReader * const reader = find_reader(oldest.source, oldest.incarnation)) {
       reader->skip(oldest.number);
     }
+    count_lost_replies(1);
   }
   backlog_size.store(backlog.size(), std::memory_order_release);
   if (!backlog.empty()) {
@@ -166,7 +162,7 @@ std::optional<Subscription::Impl::Candidate> Subscription::Impl::candidate_of(co
     return std::nullopt;  // its topic DSM is gone
   }
   const uint64_t number = reader->full_number(hint.number);
-  if (number <= reader->noted() || number > reader->last()) {
+  if (number <= reader->noted() || number > reader->last() || reader->is_given_up(number)) {
     return std::nullopt;  // a double, or not of this source
   }
   return Candidate{reader, number};
@@ -199,6 +195,9 @@ std::optional<Subscription::Impl::Candidate> Subscription::Impl::next() {
 }
 
 void Subscription::Impl::settle() noexcept {
+  if (entry.role == EndpointRole::reply) {
+    return;
+  }
   const uint64_t dropped = header.dropped.load(std::memory_order_relaxed);
   if (!unsettled && dropped == settled_dropped) {
     return;
@@ -222,6 +221,13 @@ void Subscription::Impl::sweep() noexcept {
   } catch (const std::exception &) {
     // Somebody holds the registry, and a take does not wait for him: the next change of the graph
     // sweeps.
+  }
+}
+
+void Subscription::Impl::count_lost_replies(uint64_t count) noexcept {
+  if (entry.role == EndpointRole::reply && count != 0) {
+    entry.counters.lost.fetch_add(count, std::memory_order_relaxed);
+    header.lost_beside_dropped.fetch_add(count, std::memory_order_relaxed);
   }
 }
 

@@ -36,6 +36,9 @@ struct Subscription::Impl {
   /// With nothing left to take: accounts for what was lost after the last message taken of each
   /// source.
   void settle() noexcept;
+  /// The displaced ones aside, which pushers count. The publisher numbers its replies to all
+  /// clients together, so this subscription counts its own one by one as it misses them.
+  void count_lost_replies(uint64_t count) noexcept;
   void count_taken(uint64_t bytes) noexcept;
   /// A finished topic DSM waits for its last reader only: frees it.
   void sweep() noexcept;

@@ -103,11 +103,13 @@ def test_a_server_that_dies(bridge) -> None:
 
 def call_at_once(times: int) -> None:
     """When told so, call SetBool so often without waiting for answers; print how many came."""
+    from rclpy.qos import QoSProfile
+
     told: list[int] = []
     signal.signal(signal.SIGUSR1, lambda number, _: told.append(number))
     with peer_node("caller") as node:
         kind = type_of(SET_BOOL)
-        client = node.create_client(kind, "/lamp")
+        client = node.create_client(kind, "/lamp", qos_profile=QoSProfile(depth=times))
         assert client.wait_for_service(PATIENCE_S)
         announce("ready")
         spin_until(node, lambda: told)

@@ -198,4 +198,9 @@ uint32_t Inspection::generations_of(const Publisher & publisher) {
   return count;
 }
 
+SubscriptionHeader & Inspection::header_of(const Subscription & subscription) {
+  return *registry_.clusters().find<SubscriptionHeader>(
+    registry_.endpoints()[slot_of(subscription.gid())].block);
+}
+
 void Inspection::wait_for_reaper() { const Registry::Lock lock(registry_); }

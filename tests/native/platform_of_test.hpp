@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "transport/layout/subscription_layout.hpp"
 #include "transport/process.hpp"
 #include "transport/registry/registry.hpp"
 
@@ -59,6 +60,9 @@ public:
   uint32_t slot_of(const manycore::Gid & gid);
   /// Allocations of a publisher's topic DSM that are in use.
   uint32_t generations_of(const manycore::Publisher & publisher);
+  manycore::SubscriptionHeader & header_of(const manycore::Subscription & subscription);
+  /// Endpoints that are gone, and whose memory is not free yet.
+  uint32_t closing_endpoints() { return registry_.header().closing_count; }
   /// A reaper that was seen at work has done all it could when this returns.
   void wait_for_reaper();
 

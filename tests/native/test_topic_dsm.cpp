@@ -269,37 +269,3 @@ TEST_CASE("an expired message is not delivered, and does not hold up the others"
   CHECK_FALSE(subscription->claim());
   CHECK(subscription->lost() == 0);
 }
-
-TEST_CASE("a reply goes to the client that asked, and to no other") {
-  Fixture f;
-  EndpointSpec spec = on_topic("/service", keep_last(10));
-  spec.role = EndpointRole::reply;
-  const auto server = f.process->create_publisher(spec);
-  const auto asking = f.process->create_subscription(spec);
-  const auto other = f.process->create_subscription(spec);
-  server->publish(server->draft(8), 8, realtime_ns(), {asking->gid(), 42});
-  CHECK_FALSE(other->has_data());
-  CHECK(asking->claim()->info().correlation.number == 42);
-  server->publish(server->draft(8), 8, realtime_ns(), {other->gid(), 43});
-  CHECK_FALSE(asking->has_data());
-  CHECK(other->claim()->info().correlation.number == 43);
-}
-
-TEST_CASE("replies and requests are not displaced by depth") {
-  for (const EndpointRole role : {EndpointRole::request, EndpointRole::reply}) {
-    Fixture f;
-    EndpointSpec spec = on_topic("/service", keep_last(1));
-    spec.role = role;
-    const auto sender = f.process->create_publisher(spec);
-    const auto receiver = f.process->create_subscription(spec);
-    for (int64_t number = 1; number <= 200; ++number) {
-      sender->publish(sender->draft(100), 100, realtime_ns(), {receiver->gid(), number});
-    }
-    for (int64_t number = 1; number <= 200; ++number) {
-      const std::optional<Claim> claim = receiver->claim();
-      REQUIRE(claim);
-      CHECK(claim->info().correlation.number == number);
-    }
-    CHECK(receiver->lost() == 0);
-  }
-}

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import os
+import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
@@ -12,6 +14,7 @@ import rclpy
 from domains import domain_of
 from ndt_support import Stack, matcher_command, street_map
 from rclpy.node import Node
+from ros_support import announce
 from support import IS_MANYCORE, Program, leftovers, peer_command, wait_until
 
 
@@ -54,6 +57,33 @@ def domains() -> Iterator[tuple[int, int]]:
     if IS_MANYCORE:
         for name in (f"domain-{domain}" for domain in domains):
             wait_until(lambda name=name: not leftovers(name), f"{name} leaves nothing")
+
+
+@pytest.fixture
+def small_topic(start_peer: Callable[..., Program]) -> Iterator[str]:
+    """Yield a topic, or service, with little room, on a platform that rclpy has joined."""
+    topic = "/small"
+    start_peer(configure, topic).wait_for("configured")
+    rclpy.init()
+    yield topic
+    rclpy.shutdown()
+
+
+def configure(topic: str) -> None:
+    """Configure a platform. Not in the test's process: rclpy's library would not see it alive."""
+    from rmw_manycore_py import _transport
+
+    configurator = _transport.Configurator(
+        os.environ["MANYCORE_PLATFORM"],
+        clusters=2,
+        cores_per_cluster=4,
+        smem_size=0,
+        host_cpu_of_receive_thread={},
+        topics=[(topic, 1, 8192, 0)],
+    )
+    announce("configured")
+    sys.stdin.read()
+    del configurator
 
 
 @pytest.fixture(params=[1, 2], ids=["same_cluster", "other_cluster"])

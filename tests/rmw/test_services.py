@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import rclpy
-from rclpy.qos import qos_profile_system_default
+from rclpy.qos import QoSProfile, qos_profile_system_default
 from rclpy.service_introspection import ServiceIntrospectionState
 from ros_support import announce, peer_node, spin_until
 from service_msgs.msg import ServiceEventInfo
@@ -43,7 +43,7 @@ def ask(name: str, count: int) -> None:
 
 def test_several_clients(node, start_peer):
     """Six clients with overlapping request numbers, in three clusters, one server."""
-    node.create_service(BasicTypes, "double", double)
+    node.create_service(BasicTypes, "double", double, qos_profile=QoSProfile(depth=60))
     clients = [start_peer(ask, f"client_{n}", 10, cluster=1 + n % 3) for n in range(6)]
     ended = lambda: not any(client.is_running() for client in clients)  # noqa: E731
     spin_until(node, ended, 2 * PATIENCE_S)  # six interpreters start

@@ -47,6 +47,7 @@ bool undelivered(
     return false;
   }
   const auto role = static_cast<EndpointRole>(dsm.role);
+  const uint32_t incarnation = source.incarnation.load(std::memory_order_relaxed);
   for (GenerationEntry & generation : dsm.generations) {
     const uint32_t count = generation.descriptor_count.load();
     auto * const descriptors = cluster.find<RecordDescriptor>(
@@ -55,8 +56,11 @@ bool undelivered(
       continue;
     }
     for (uint32_t i = 0; i < count; ++i) {
-      const bool live = descriptors[i].number.load(std::memory_order_acquire) > taken;
-      if (live && (role != EndpointRole::reply || descriptors[i].correlation.client == reader)) {
+      const uint64_t number = descriptors[i].number.load(std::memory_order_acquire);
+      const bool its_own =
+        role != EndpointRole::reply || (descriptors[i].correlation.client == reader &&
+                                        !Displaced::covers(source.displaced, incarnation, number));
+      if (number > taken && its_own) {
         return true;
       }
     }

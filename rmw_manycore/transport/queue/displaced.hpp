@@ -23,6 +23,14 @@ struct Displaced {
            !displaced.compare_exchange_weak(known, word, std::memory_order_release)) {
     }
   }
+  /// True when the hint of this record was displaced: that record's, or that of a later one, as the
+  /// queue drops a source's hints in order.
+  static bool covers(
+    const std::atomic<uint64_t> & displaced, uint32_t source_incarnation,
+    uint64_t number) noexcept {
+    const std::optional<uint64_t> newest = read(displaced, source_incarnation);
+    return newest && ((*newest - number) & Hint::number_mask) <= Hint::number_mask / 2;
+  }
   /// Low bits of its number.
   static std::optional<uint64_t> read(
     const std::atomic<uint64_t> & displaced, uint32_t source_incarnation) noexcept {

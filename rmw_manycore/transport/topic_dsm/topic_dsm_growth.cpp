@@ -101,13 +101,13 @@ uint64_t TopicDsmWriter::most_descriptors() const noexcept {
   return dsm_.keep_all != 0 ? keep_all_capacity : descriptor_limit;
 }
 
-/// The most records that anybody may want at a time.
+/// The most records that are wanted at a time. Each reply is for one client, so theirs add up.
 uint64_t TopicDsmWriter::deepest_history() const noexcept {
   uint64_t deepest = dsm_.transient_local != 0 ? dsm_.depth : 1;
   for (const Reader & reader : readers_.readers()) {
     const bool unbounded = reader.subscription->keep_all != 0 || dsm_.keep_all != 0;
-    deepest = std::max<uint64_t>(
-      deepest, unbounded ? keep_all_capacity : uint64_t{reader.subscription->depth});
+    const uint64_t wanted = unbounded ? keep_all_capacity : reader.subscription->depth;
+    deepest = endpoint_.role == EndpointRole::reply ? deepest + wanted : std::max(deepest, wanted);
   }
   return deepest;
 }

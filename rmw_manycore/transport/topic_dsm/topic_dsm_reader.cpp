@@ -39,6 +39,11 @@ TopicDsmReader::TopicDsmReader(
   dsm_ = registry.clusters().find<TopicDsmHeader>(ref);
 }
 
+bool TopicDsmReader::is_given_up(uint64_t number) const noexcept {
+  return subscription_->role == EndpointRole::reply &&
+         Displaced::covers(source_->displaced, incarnation_, number);
+}
+
 uint64_t TopicDsmReader::full_number(uint64_t low_bits) const noexcept {
   constexpr uint64_t period = uint64_t{1} << 28;
   // The latest published with these low bits: what a queue holds is younger than a period, however
@@ -186,7 +191,7 @@ void TopicDsmReader::scan(
   const uint32_t count = generation.descriptor_count.load(std::memory_order_relaxed);
   for (uint32_t i = 0; descriptors != nullptr && i < count; ++i) {
     const uint64_t number = descriptors[i].number.load(std::memory_order_relaxed);
-    if (number <= noted_ || number > last) {
+    if (number <= noted_ || number > last || is_given_up(number)) {
       continue;
     }
     source_->reading.store(number, std::memory_order_seq_cst);
@@ -214,7 +219,7 @@ void TopicDsmReader::list_waiting(std::vector<Waiting> & out) noexcept {
   order(out, own_part);
 }
 
-/// Replies to others are none of ours.
+/// Sequence numbers count the replies to all clients: see Subscription::Impl::count_lost_replies().
 void TopicDsmReader::count_missing(uint64_t last_sequence) noexcept {
   const uint64_t before = std::exchange(accounted_, std::max(accounted_, last_sequence));
   if (accounted_ > before && static_cast<EndpointRole>(dsm_->role) != EndpointRole::reply) {

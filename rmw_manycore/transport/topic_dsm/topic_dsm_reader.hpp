@@ -27,6 +27,10 @@ public:
 
   /// Highest record number that needs no further look: taken, or in the backlog.
   uint64_t noted() const noexcept { return noted_; }
+  /// A reply whose hint was displaced: counted as lost, and not to be delivered any more. Missing
+  /// messages of other roles are counted by their sequence numbers, so those may still be
+  /// delivered.
+  bool is_given_up(uint64_t number) const noexcept;
   /// The full number of which a hint carries the low 28 bits.
   uint64_t full_number(uint64_t low_bits) const noexcept;
 

@@ -5,6 +5,7 @@
 
 #include "platform/clock.hpp"
 #include "platform/error.hpp"
+#include "transport/queue/displaced.hpp"
 
 namespace manycore {
 namespace {
@@ -77,17 +78,20 @@ bool TopicDsmWriter::is_among_last(uint32_t depth, const RecordDescriptor & reco
   return record.publication_sequence_number + depth > last_sequence_number_ + 1;
 }
 
-/// KEEP_LAST readers want the last `depth` only. Requests and replies are wanted until taken: their
-/// queues do not displace.
+/// KEEP_LAST readers want the last `depth` only. A client's replies are not numbered one by one
+/// among those to others, so it wants what its queue has not displaced.
 bool TopicDsmWriter::wants(
   const Reader & reader, uint64_t number, const RecordDescriptor & record) const noexcept {
   if (reader.source->taken.load(std::memory_order_seq_cst) >= number || !reader.active()) {
     return false;
   }
+  const bool keeps_all = reader.subscription->keep_all != 0;
   if (endpoint_.role == EndpointRole::reply) {
-    return record.correlation.client == reader.gid;
+    return record.correlation.client == reader.gid &&
+           (keeps_all ||
+            !Displaced::covers(reader.source->displaced, reader.source_incarnation, number));
   }
-  return reader.subscription->keep_all != 0 || is_among_last(reader.subscription->depth, record);
+  return keeps_all || is_among_last(reader.subscription->depth, record);
 }
 
 bool TopicDsmWriter::is_wanted(uint64_t number, const RecordDescriptor & record) const noexcept {
