@@ -27,7 +27,7 @@ demo: setup  ## run talker and listener in two clusters for ten seconds
 	$(VENV)/manycore run mapfiles/talker_listener.yaml --duration 10
 
 test: setup .venv/ndt test-native  ## all tests but the long ones
-	$(VENV)/pytest -n $(TEST_JOBS) --dist loadgroup
+	$(VENV)/pytest -n $(TEST_JOBS)
 
 stress: setup  ## the long tests: random kills, many nodes
 	$(VENV)/pytest -m stress

@@ -8,6 +8,7 @@ import signal
 import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -18,6 +19,7 @@ from fork_server import ForkServer, is_inside
 from isolation import Isolation
 from peers import PeerServers
 from processes import has_receive_threads
+from scheduling import make_scheduler
 from support import IS_MANYCORE, Program, environment, leftovers, unique_platform, wait_until
 
 PEER_SERVERS = pytest.StashKey[PeerServers]()
@@ -37,6 +39,11 @@ def pytest_configure(config: pytest.Config) -> None:
         config.stash[PEER_SERVERS] = servers = PeerServers()
         config.add_cleanup(servers.end)
         config.pluginmanager.register(Isolation(servers))
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
+    return make_scheduler(config, log)
 
 
 @pytest.fixture

@@ -19,8 +19,7 @@ from zipfile import ZipFile
 import pytest
 from support import MAPFILES, REPOSITORY, environment, unique_platform
 
-# One worker builds the wheel for all of them.
-pytestmark = [pytest.mark.integration, pytest.mark.xdist_group("install")]
+pytestmark = pytest.mark.integration
 
 INSTALL_TIMEOUT_S = 900
 BUILT_MESSAGES = {path.name for path in (REPOSITORY / "interfaces").iterdir()}
