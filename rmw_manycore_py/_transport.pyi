@@ -2,34 +2,257 @@
 """The transport without ROS: platforms seen, configured and joined."""
 
 from collections.abc import Mapping, Sequence
-from typing import Any
+from types import TracebackType
 
-_Row = dict[str, Any]
+from typing_extensions import Self
+
+from rmw_manycore_py.words import (
+    Durability,
+    EndpointKind,
+    EndpointRole,
+    History,
+    Liveliness,
+    Reliability,
+)
 
 class PlatformError(RuntimeError):
     """Something is wrong with a platform; the message says what to do."""
+
+class Qos:
+    """The policies of an endpoint. Durations in nanoseconds, None = no limit."""
+
+    def __init__(
+        self,
+        *,
+        reliability: Reliability = "reliable",
+        durability: Durability = "volatile",
+        history: History = "keep_last",
+        depth: int = 10,
+        deadline_ns: int | None = None,
+        lifespan_ns: int | None = None,
+        liveliness: Liveliness = "automatic",
+        liveliness_lease_ns: int | None = None,
+    ) -> None: ...
+    @property
+    def reliability(self) -> Reliability: ...
+    @property
+    def durability(self) -> Durability: ...
+    @property
+    def history(self) -> History: ...
+    @property
+    def depth(self) -> int:
+        """Messages kept, at least 1; for `keep_last`."""
+
+    @property
+    def deadline_ns(self) -> int | None: ...
+    @property
+    def lifespan_ns(self) -> int | None: ...
+    @property
+    def liveliness(self) -> Liveliness: ...
+    @property
+    def liveliness_lease_ns(self) -> int | None: ...
+
+class PlatformInfo:
+    """The shape of a platform, fixed when it was created."""
+
+    @property
+    def name(self) -> str: ...
+    @property
+    def clusters(self) -> int:
+        """Number of clusters."""
+
+    @property
+    def cores_per_cluster(self) -> int: ...
+    @property
+    def smem_bytes(self) -> int:
+        """Local memory of each cluster."""
+
+    @property
+    def alive(self) -> bool:
+        """Whether a process, a receive thread or the configurator lives."""
+
+class ProcessInfo:
+    """A member process of a platform."""
+
+    @property
+    def slot(self) -> int:
+        """Place in the registry; nodes and endpoints name their process by it."""
+
+    @property
+    def pid(self) -> int: ...
+    @property
+    def cluster(self) -> int:
+        """Counted from 1."""
+
+    @property
+    def core(self) -> int | None:
+        """Counted from 0 in its cluster; None = not placed on a core."""
+
+    @property
+    def host_cpu(self) -> int | None:
+        """None = not pinned."""
+
+    @property
+    def label(self) -> str:
+        """What the tools call it."""
+
+    @property
+    def alive(self) -> bool: ...
+
+class ClusterInfo:
+    """A cluster whose segment exists, and what its receive thread has done."""
+
+    @property
+    def id(self) -> int:
+        """Counted from 1."""
+
+    @property
+    def smem_bytes(self) -> int: ...
+    @property
+    def used_bytes(self) -> int:
+        """Of `smem_bytes`."""
+
+    @property
+    def charged_bytes(self) -> int:
+        """Of `used_bytes`: memory of processes outside the segment."""
+
+    @property
+    def receive_thread_pid(self) -> int: ...
+    @property
+    def messages(self) -> int:
+        """Number of eMCOS messages handled."""
+
+    @property
+    def notifications(self) -> int:
+        """Number of entries that the receive thread put into subscriber queues."""
+
+    @property
+    def alive(self) -> bool:
+        """Whether the receive thread lives."""
+
+class NodeInfo:
+    """A node of a member process."""
+
+    @property
+    def handle(self) -> int: ...
+    @property
+    def process(self) -> int:
+        """Slot of its process."""
+
+    @property
+    def name(self) -> str: ...
+    @property
+    def namespace(self) -> str: ...
+    @property
+    def enclave(self) -> str: ...
+
+class CounterValues:
+    """Numbers of messages that an endpoint has seen so far."""
+
+    @property
+    def messages(self) -> int:
+        """Published or taken."""
+
+    @property
+    def bytes(self) -> int:
+        """Size of their serialized data."""
+
+    @property
+    def lost(self) -> int:
+        """Subscription: gone before they were taken."""
+
+    @property
+    def expired(self) -> int:
+        """Subscription: older than their lifespan when their turn came."""
+
+    @property
+    def refused(self) -> int:
+        """Publisher: did not fit."""
+
+    @property
+    def overwritten(self) -> int:
+        """Publisher: recycled while a reader still wanted them."""
+
+class EndpointInfo:
+    """A publisher or subscription of a topic, or of a service's requests or replies."""
+
+    @property
+    def kind(self) -> EndpointKind: ...
+    @property
+    def role(self) -> EndpointRole: ...
+    @property
+    def topic(self) -> str:
+        """Full name; for requests and replies the service's name."""
+
+    @property
+    def type(self) -> str:
+        """As "std_msgs/msg/String"; for requests and replies the service's type."""
+
+    @property
+    def type_hash(self) -> str:
+        """As "RIHS01_" and 64 hexadecimal digits (REP 2011)."""
+
+    @property
+    def gid(self) -> bytes:
+        """Unique, 16 bytes."""
+
+    @property
+    def node_name(self) -> str: ...
+    @property
+    def node_namespace(self) -> str: ...
+    @property
+    def cluster(self) -> int: ...
+    @property
+    def process(self) -> int:
+        """Slot of its process."""
+
+    @property
+    def qos(self) -> Qos: ...
+    @property
+    def matched(self) -> int:
+        """Number of endpoints it is matched with now."""
+
+    @property
+    def counters(self) -> CounterValues: ...
+
+class TopicConfiguration:
+    """A row of the topic table: the topic DSM of a topic with a fixed size."""
+
+    def __init__(
+        self, name: str, *, id: int, dsm_size_bytes: int, receiver_clusters: int
+    ) -> None: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def id(self) -> int: ...
+    @property
+    def dsm_size_bytes(self) -> int:
+        """0 = starts small and grows."""
+
+    @property
+    def receiver_clusters(self) -> int:
+        """Bit mask: bit c - 1 = cluster c."""
 
 def platforms() -> list[str]:
     """Return the names of this user's platforms, dead or alive."""
 
 def platform_directory(name: str) -> str:
-    """Return where everything of a platform lies."""
+    """Return the directory that holds all files of a platform."""
 
 def clean(name: str) -> list[str]:
     """Remove what a dead platform left and return the paths; PlatformError while it lives."""
 
 def charge_smem(platform: str, size_bytes: int) -> None:
-    """Count so many bytes of this process, outside the segment, as SMEM of its cluster.
+    """Count `size_bytes` of this process, outside the segment, as SMEM of its cluster.
 
     They replace what it had counted before, and end with it; PlatformError where there is no room.
     """
 
 class Configurator:
-    """Creates a platform before its first node, and keeps it while this object exists.
+    """Creates a platform before its first node, and keeps it until closed.
 
-    `smem_size` is in bytes for each cluster, 0 = this machine's; `topics` are rows (name, topic id,
-    topic DSM size in bytes, bit mask of the receiver clusters). When the object goes, so does the
-    platform, unless somebody is on it.
+    `smem_bytes` is for each cluster, 0 = this machine's. `close` removes the platform unless
+    processes are still on it.
     """
 
     def __init__(
@@ -38,45 +261,47 @@ class Configurator:
         *,
         clusters: int,
         cores_per_cluster: int,
-        smem_size: int,
+        smem_bytes: int,
         host_cpu_of_receive_thread: Mapping[int, int],
-        topics: Sequence[tuple[str, int, int, int]],
+        topics: Sequence[TopicConfiguration],
+    ) -> None: ...
+    def close(self) -> None: ...
+    def __enter__(self) -> Self: ...
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
     ) -> None: ...
 
 class Platform:
-    """A look at a platform: does not join it, and does not keep it alive."""
+    """A view of a platform: does not join it, and does not keep it alive."""
 
     def __init__(self, name: str) -> None: ...
-    def info(self) -> _Row:
-        """Return name, clusters, cores_per_cluster, smem_size, alive."""
+    def info(self) -> PlatformInfo: ...
+    def processes(self) -> list[ProcessInfo]: ...
+    def clusters(self) -> list[ClusterInfo]: ...
+    def nodes(self) -> list[NodeInfo]: ...
+    def endpoints(self) -> list[EndpointInfo]: ...
+    def topic_table(self) -> list[TopicConfiguration]: ...
+    def close(self) -> None:
+        """Unmap the registry; the rows stay valid."""
 
-    def processes(self) -> list[_Row]:
-        """Return slot, pid, cluster, core, host_cpu, label, alive of each."""
-
-    def nodes(self) -> list[_Row]:
-        """Return handle, process (slot), name, namespace, enclave of each."""
-
-    def endpoints(self) -> list[_Row]:
-        """Return each publisher and subscription.
-
-        Keys: kind (publisher, subscription), role (topic, request, reply), topic, type, type_hash,
-        gid, node, namespace, cluster, process (slot), qos, matched, counters.
-        """
-
-    def clusters(self) -> list[_Row]:
-        """Return the state of each.
-
-        Keys: id, smem_size, used, charged (of used), receive_thread_pid, messages, notifications,
-        alive.
-        """
-
-    def topic_table(self) -> list[_Row]:
-        """Return topic_name, topic_id, topic_dsm_size, receiver_clusters (bit mask) of each."""
+    def __enter__(self) -> Self: ...
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None: ...
 
 class Publisher:
-    """Publishes serialized messages; `gid` is what subscriptions know it by, 16 bytes."""
+    """Publishes serialized messages."""
 
-    gid: bytes
+    @property
+    def gid(self) -> bytes:
+        """What subscriptions know it by, 16 bytes."""
+
     def publish(
         self,
         data: bytes,
@@ -93,65 +318,79 @@ class Publisher:
     def publish_from(self, address: int, size: int, source_timestamp_ns: int | None = None) -> int:
         """Publish `size` bytes of this process's memory."""
 
-    def matched(self) -> int: ...
+    def matched(self) -> int:
+        """Return the number of subscriptions it is matched with."""
 
 class Claim:
     """A record in its place in the topic DSM. The publisher cannot reuse it before `release`.
 
-    A subscription has one claim at a time. `number` is the client's of a request or reply;
-    `sequence` counts up by one with each message of the publisher.
+    A subscription has one claim at a time.
     """
 
-    address: int
-    size: int
-    data: bytes
-    publisher: bytes
-    client: bytes
-    number: int
-    source_timestamp_ns: int
-    sequence: int
+    @property
+    def address(self) -> int: ...
+    @property
+    def size(self) -> int: ...
+    @property
+    def data(self) -> bytes: ...
+    @property
+    def publisher(self) -> bytes:
+        """Gid of the publisher."""
+
+    @property
+    def client(self) -> bytes:
+        """Request or reply: gid of the client's reply subscription."""
+
+    @property
+    def number(self) -> int:
+        """Request or reply: the client's number of the request."""
+
+    @property
+    def source_timestamp_ns(self) -> int: ...
+    @property
+    def sequence(self) -> int:
+        """Rises by one with each message of the publisher."""
+
     def release(self) -> None: ...
 
 class Subscription:
-    """Takes serialized messages; `gid` names a client where it is the one of its replies."""
+    """Takes serialized messages."""
 
-    gid: bytes
+    @property
+    def gid(self) -> bytes:
+        """Names a client where it is the subscription of its replies, 16 bytes."""
+
     def claim(self) -> Claim | None:
         """Return the next record without a copy."""
 
-    def take(self) -> tuple[bytes, _Row] | None: ...
     def has_data(self) -> bool: ...
-    def matched(self) -> int: ...
-    def lost(self) -> int: ...
+    def matched(self) -> int:
+        """Return the number of publishers it is matched with."""
+
+    def lost(self) -> int:
+        """Return the number of messages that were gone before they were taken."""
 
 class Process:
-    """A member of a platform without ROS, with one node named after its label."""
+    """A member of a platform without ROS, with one node named after its label.
+
+    It leaves the platform once it is closed and its publishers and subscriptions are gone.
+    """
 
     def __init__(
         self, platform: str, cluster: int = 1, core: int | None = None, label: str = "tool"
     ) -> None: ...
     def publisher(
-        self,
-        topic: str,
-        type: str,
-        qos: Mapping[str, Any],
-        role: str = "topic",
-        type_hash: str = "",
+        self, topic: str, type: str, qos: Qos, role: EndpointRole = "topic", type_hash: str = ""
     ) -> Publisher:
         """Return a publisher of a topic, or of a service's requests or replies (its role)."""
 
     def subscription(
-        self,
-        topic: str,
-        type: str,
-        qos: Mapping[str, Any],
-        role: str = "topic",
-        type_hash: str = "",
+        self, topic: str, type: str, qos: Qos, role: EndpointRole = "topic", type_hash: str = ""
     ) -> Subscription:
         """Return a subscription of a topic, or of a service's requests or replies (its role)."""
 
-    def endpoints_of(self, topic: str) -> list[_Row]:
-        """Return rows as `Platform.endpoints` of one topic or service."""
+    def endpoints_of(self, topic: str) -> list[EndpointInfo]:
+        """Return the endpoints of one topic or service."""
 
     def graph_generation(self) -> int:
         """Return a number that changes when a node or endpoint comes or goes."""
@@ -166,4 +405,13 @@ class Process:
         """Sleep until the epoch is another than `seen`; False when the time is over."""
 
     def notify(self) -> None:
-        """Wake whoever waits."""
+        """Wake the thread that waits."""
+
+    def close(self) -> None: ...
+    def __enter__(self) -> Self: ...
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None: ...

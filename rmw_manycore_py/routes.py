@@ -3,9 +3,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field, replace
 from typing import Any, Literal
+
+from rmw_manycore_py.qos import Policies
 
 # The directions of the paper: topic_in and service_in are inward, topic_to and service_to outward.
 Direction = Literal["inward", "outward"]
@@ -19,10 +21,10 @@ REQUEST_TIMEOUT_S = 60.0
 class Route:
     """One topic or service. A service is inward when its server is on the platform.
 
-    `qos` overrides policies of a topic by their names in the registry; `timeout_s` is how long a
-    request may stay unanswered, None = as long as its server is there. A `mirrored` topic crosses
-    in both directions, so that its own messages have to be told from others. An `eager` one listens
-    as soon as somebody publishes: what an action says first must not wait for a listener.
+    `qos` overrides policies of a topic; `timeout_s` is how long a request may stay unanswered,
+    None = as long as its server is there. A `mirrored` topic crosses in both directions, so that
+    its own messages have to be told from others. An `eager` one listens as soon as somebody
+    publishes: what an action says first must not wait for a listener.
     `node` is the full name outside of the node whose service it is, where tools ask for it.
     """
 
@@ -32,7 +34,7 @@ class Route:
     outside: str
     type: str
     domain: int
-    qos: Mapping[str, Any] = field(default_factory=dict)
+    qos: Policies = field(default_factory=Policies)
     max_hz: float | None = None
     max_size: int | None = None
     timeout_s: float | None = REQUEST_TIMEOUT_S

@@ -4,13 +4,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, Protocol
+from typing import Protocol
 
 from rmw_manycore_bridge.loop import Loop
 from rmw_manycore_py import _transport
+from rmw_manycore_py._transport import EndpointInfo
 from rmw_manycore_py.bridge_plan import Plan
+from rmw_manycore_py.words import EndpointKind, EndpointRole
 
-Row = dict[str, Any]
 NODE_PREFIX = "_manycore_bridge_"  # hidden: on the platform the bridge is not one of the nodes
 
 
@@ -33,24 +34,24 @@ class Inside(Loop):
         self._changed = changed
         self._generation = self.process.graph_generation()
 
-    def publishers(self, topic: str) -> list[Row]:
+    def publishers(self, topic: str) -> list[EndpointInfo]:
         """Return the publishers of a topic that are not the bridge's."""
         return self._endpoints(topic, "topic", "publisher")
 
-    def subscriptions(self, topic: str) -> list[Row]:
+    def subscriptions(self, topic: str) -> list[EndpointInfo]:
         """Return the subscriptions of a topic that are not the bridge's."""
         return self._endpoints(topic, "topic", "subscription")
 
-    def servers(self, service: str) -> list[Row]:
+    def servers(self, service: str) -> list[EndpointInfo]:
         """Return the servers of a service that are not the bridge's."""
         return self._endpoints(service, "request", "subscription")
 
-    def _endpoints(self, name: str, role: str, kind: str) -> list[Row]:
+    def _endpoints(self, name: str, role: EndpointRole, kind: EndpointKind) -> list[EndpointInfo]:
         return [
             endpoint
             for endpoint in self.process.endpoints_of(name)
-            if (endpoint["role"], endpoint["kind"]) == (role, kind)
-            and not endpoint["node"].startswith(NODE_PREFIX)
+            if (endpoint.role, endpoint.kind) == (role, kind)
+            and not endpoint.node_name.startswith(NODE_PREFIX)
         ]
 
     def wake(self) -> None:
@@ -73,5 +74,6 @@ class Inside(Loop):
         self.process.wait(seen, timeout_s)
 
     def close(self) -> None:
-        """Nothing but the readers has to end here; the process leaves when this program does."""
+        """Leave the platform, once the movers have ended their endpoints."""
         self.readers.clear()
+        self.process.close()

@@ -14,8 +14,10 @@ from rclpy.qos import qos_profile_services_default
 from rmw_manycore_bridge import types
 from rmw_manycore_bridge.loop import Mover
 from rmw_manycore_bridge.pending import Asked, Pending, empty_answer
-from rmw_manycore_bridge.policies import from_rclpy
+from rmw_manycore_bridge.policies import from_rclpy, replaced
 from rmw_manycore_bridge.sides import Sides
+from rmw_manycore_py import _transport
+from rmw_manycore_py.words import EndpointRole
 
 
 class Service(Mover):
@@ -26,7 +28,7 @@ class Service(Mover):
         self._sides = sides
         self._type = types.load(sides.route.type)
         self._hash = types.hash_of(sides.route.type)
-        self._policies = from_rclpy(qos_profile_services_default)
+        self._qos = from_rclpy(qos_profile_services_default)
         self._pending = Pending(sides.route.timeout_s)
 
     @property
@@ -41,13 +43,15 @@ class Service(Mover):
         else:
             self._sides.row.set_state("waiting")
 
-    def _endpoint(self, kind: str, role: str) -> Any:
-        """Return an end on the platform; what it reads is not displaced before it is passed on."""
-        route = self._sides.route
-        make = getattr(self._sides.inside.process, kind)
-        kept = {"history": "keep_all"} if kind == "subscription" else {}
-        policies = {**self._policies, **kept}
-        return make(route.inside, route.type, policies, role=role, type_hash=self._hash)
+    def _publisher(self, role: EndpointRole) -> _transport.Publisher:
+        route, process = self._sides.route, self._sides.inside.process
+        return process.publisher(route.inside, route.type, self._qos, role, self._hash)
+
+    def _subscription(self, role: EndpointRole) -> _transport.Subscription:
+        """Return an end that reads: nothing is displaced before it is passed on."""
+        route, process = self._sides.route, self._sides.inside.process
+        qos = replaced(self._qos, {"history": "keep_all"})
+        return process.subscription(route.inside, route.type, qos, role, self._hash)
 
     @abstractmethod
     def _reply(self, caller: Any, response: Any) -> None:

@@ -28,7 +28,7 @@ class InwardService(Service):
     def __init__(self, sides: Sides) -> None:
         super().__init__(sides)
         self._numbers = itertools.count(1)
-        self._servers: set[str] = set()
+        self._servers: set[bytes] = set()
         self._ends_s = _NEVER_S  # once the last server has gone
         self._requests: _transport.Publisher | None = None
         self._replies: _transport.Subscription | None = None
@@ -38,7 +38,7 @@ class InwardService(Service):
     def reconcile(self) -> None:
         """Offer the service outside while a server is there inside."""
         found = self._sides.inside.servers(self._sides.route.inside)
-        servers = {row["gid"] for row in found if row["type"] == self._sides.route.type}
+        servers = {server.gid for server in found if server.type == self._sides.route.type}
         if self._servers and not self._servers & servers:
             self._abandon()  # whoever replaces them knows nothing of the requests
         self._servers = servers
@@ -48,7 +48,7 @@ class InwardService(Service):
                 self._appear()
                 self._sides.row.set_state("forwarding")
         elif self.entity is None:
-            self._wait_or_fail([row["type"] for row in found], "inside")
+            self._wait_or_fail([server.type for server in found], "inside")
         elif self._ends_s == _NEVER_S:
             self._ends_s = time.monotonic() + LINGER_S
 
@@ -65,8 +65,8 @@ class InwardService(Service):
             self.try_to_reconcile()
 
     def _appear(self) -> None:
-        self._replies = self._endpoint("subscription", "reply")
-        self._requests = self._endpoint("publisher", "request")
+        self._replies = self._subscription("reply")
+        self._requests = self._publisher("request")
         self._node = self._sides.outside.enter_node(self._sides.route.node)
         try:
             self.entity = self._node.create_service(

@@ -49,8 +49,8 @@ class OutwardService(Service):
             return
         self._seen_s = _NEVER_S
         if self._requests is None:
-            self._replies = self._endpoint("publisher", "reply")
-            self._requests = self._endpoint("subscription", "request")
+            self._replies = self._publisher("reply")
+            self._requests = self._subscription("request")
             self._sides.inside.readers.append(self)
             self._sides.inside.wake()
             self._sides.row.set_state("forwarding")

@@ -14,9 +14,9 @@ from rmw_manycore_bridge.lanes import Share
 from rmw_manycore_bridge.limits import Limits
 from rmw_manycore_bridge.loop import Mover
 from rmw_manycore_bridge.place import SETTLE_S, STEP_S, Held, Place
-from rmw_manycore_bridge.policies import Policies
 from rmw_manycore_bridge.sides import Sides
 from rmw_manycore_py import _transport
+from rmw_manycore_py._transport import Qos
 
 BATCH = 16  # messages of one route before the others have their turn
 LINGER_S = 1.0  # who gave a topic away keeps its publisher while subscribers take what it said
@@ -33,12 +33,12 @@ class Topic(Mover):
         self._sides, self._place = sides, place
         self._type: Any = types.load(sides.route.type)
         self._limits = Limits(sides.route)
-        self._offer: Policies | None = None
+        self._offer: Qos | None = None
         self._depth = 0  # of the subscription: no more than that can be unread
         self._paused = False
         self._paused_s = 0.0
         self._settled_s = _NEVER_S
-        self._offer_held: Policies | None = None  # what the heir's endpoints were made for
+        self._offer_held: Qos | None = None  # what the heir's endpoints were made for
 
     def reconcile(self) -> None:
         """Bring the endpoints in line with both graphs, and a move one step further."""
@@ -54,7 +54,7 @@ class Topic(Mover):
             self.resume()
         if not self._paused:
             self.match()
-            latched = self._offer is not None and self._offer["durability"] == "transient_local"
+            latched = self._offer is not None and self._offer.durability == "transient_local"
             self._sides.row.set_latched(latched)
         if before == "heir":
             self._prepare(share)
@@ -97,7 +97,7 @@ class Topic(Mover):
         if self._offer is None:
             if self._place.holds:
                 self._place.decline()
-        elif self._offer["durability"] == "transient_local":
+        elif self._offer.durability == "transient_local":
             self._place.decline()
         elif self._settled_s == _NEVER_S and not self._place.holds:
             self._settled_s, self._offer_held = now_s + SETTLE_S, self._offer
@@ -112,7 +112,7 @@ class Topic(Mover):
     def _give(self, share: Share) -> None:
         """As owner: stop where the heir can go on, and say so when all have what was said."""
         self.due_s = time.monotonic() + STEP_S
-        if self._offer is None or self._offer["durability"] == "transient_local":
+        if self._offer is None or self._offer.durability == "transient_local":
             self._place.decline()
         elif self._place.may_hand_over(share):
             if not self._paused:

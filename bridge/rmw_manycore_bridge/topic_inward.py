@@ -13,7 +13,6 @@ from rmw_manycore_bridge import types
 from rmw_manycore_bridge.limits import Gaps
 from rmw_manycore_bridge.place import Place
 from rmw_manycore_bridge.policies import (
-    Policies,
     common_offer,
     from_rclpy,
     request_for,
@@ -25,6 +24,7 @@ from rmw_manycore_bridge.rcl import RawReader
 from rmw_manycore_bridge.sides import Sides
 from rmw_manycore_bridge.topic import BATCH, Topic
 from rmw_manycore_py import _transport
+from rmw_manycore_py._transport import Qos
 
 
 class InwardTopic(Topic):
@@ -62,13 +62,13 @@ class InwardTopic(Topic):
             if not self._appear(offer):
                 return
         listeners = self._sides.inside.subscriptions(route.inside)
-        if listeners or route.eager or offer["durability"] == "transient_local":
-            self._listen(max((e["qos"]["depth"] for e in listeners), default=1))
+        if listeners or route.eager or offer.durability == "transient_local":
+            self._listen(max((e.qos.depth for e in listeners), default=1))
         else:
             self.stop_listening()
         self._sides.row.set_state("ready" if self.entity is None else "forwarding")
 
-    def _appear(self, offer: Policies) -> bool:
+    def _appear(self, offer: Qos) -> bool:
         route = self._sides.route
         try:
             self._publisher = self._sides.inside.process.publisher(
@@ -95,7 +95,7 @@ class InwardTopic(Topic):
             event_callbacks=SubscriptionEventCallbacks(use_default_callbacks=False),
         )
         self._reader = RawReader(self.entity)
-        self._depth, self._gaps = request["depth"], Gaps(self._sides.row)
+        self._depth, self._gaps = request.depth, Gaps(self._sides.row)
         self._sides.outside.readers.append(self)
 
     def stop_listening(self) -> None:

@@ -12,7 +12,6 @@ from rclpy.event_handler import PublisherEventCallbacks
 from rmw_manycore_bridge import types
 from rmw_manycore_bridge.place import STEP_S, Place
 from rmw_manycore_bridge.policies import (
-    Policies,
     common_offer,
     request_for,
     satisfies,
@@ -23,6 +22,7 @@ from rmw_manycore_bridge.rcl import RawWriter
 from rmw_manycore_bridge.sides import Sides
 from rmw_manycore_bridge.topic import BATCH, Topic
 from rmw_manycore_py import _transport
+from rmw_manycore_py._transport import Qos
 
 
 class OutwardTopic(Topic):
@@ -39,15 +39,15 @@ class OutwardTopic(Topic):
         """Publish outside while somebody does inside; listen inside while somebody does outside."""
         route, inside = self._sides.route, self._sides.inside
         publishers = inside.publishers(route.inside)
-        fitting = [p for p in publishers if p["type"] == route.type]
+        fitting = [p for p in publishers if p.type == route.type]
         if not fitting:
             self._leave()
             if publishers:
-                self._sides.fail(f"is {publishers[0]['type']} inside, not {route.type}")
+                self._sides.fail(f"is {publishers[0].type} inside, not {route.type}")
             else:
                 self._sides.row.set_state("waiting")
             return
-        offers = [p["qos"] for p in fitting]
+        offers = [p.qos for p in fitting]
         if reason := unmet(offers, route.qos):
             self._leave()
             self._sides.fail(reason)
@@ -62,8 +62,8 @@ class OutwardTopic(Topic):
             self.stop_listening()
         self._sides.row.set_state("ready" if self._subscription is None else "forwarding")
 
-    def _is_wanted(self, offer: Policies) -> bool:
-        route, kept = self._sides.route, offer["durability"] == "transient_local"
+    def _is_wanted(self, offer: Qos) -> bool:
+        route, kept = self._sides.route, offer.durability == "transient_local"
         return kept or route.eager or bool(self._sides.outside.subscriptions(route.outside))
 
     def _leave(self) -> None:
@@ -78,7 +78,7 @@ class OutwardTopic(Topic):
         else:
             self.due_s = time.monotonic() + STEP_S
 
-    def _appear(self, offer: Policies) -> None:
+    def _appear(self, offer: Qos) -> None:
         self._publisher = self._sides.outside.node.create_publisher(
             self._type,
             self._sides.route.outside,
@@ -96,7 +96,7 @@ class OutwardTopic(Topic):
         self._subscription = self._sides.inside.process.subscription(
             route.inside, route.type, request, type_hash=types.hash_of(route.type)
         )
-        self._depth, self._lost = request["depth"], 0
+        self._depth, self._lost = request.depth, 0
         self._sides.inside.readers.append(self)
 
     def stop_listening(self) -> None:

@@ -180,13 +180,13 @@ class Session:
         """Return the processes of the clusters' receive threads, once all have started."""
         if not self.middleware.is_manycore:
             return []
-        platform = Platform(self.platform)
         deadline = time.monotonic() + PATIENCE_S
-        while time.monotonic() < deadline:
-            clusters = platform.clusters()
-            if all(cluster["alive"] for cluster in clusters):
-                return [cluster["receive_thread_pid"] for cluster in clusters]
-            time.sleep(0.01)
+        with Platform(self.platform) as platform:
+            while time.monotonic() < deadline:
+                clusters = platform.clusters()
+                if all(cluster.alive for cluster in clusters):
+                    return [cluster.receive_thread_pid for cluster in clusters]
+                time.sleep(0.01)
         raise ManycoreError(f"{self.platform}: a receive thread does not start")
 
     def shared_sizes(self) -> dict[str, int]:

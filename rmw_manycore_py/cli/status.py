@@ -3,14 +3,65 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import click
 
 from rmw_manycore_py import _transport
 from rmw_manycore_py.cli.common import view
 from rmw_manycore_py.cli.common.options import examples, json_option
 from rmw_manycore_py.cli.common.printing import new_table, print_json, print_table, size_text
-from rmw_manycore_py.cli.common.view import Row
+from rmw_manycore_py.cli.common.rows import Row, cluster_row, platform_row, process_row
 from rmw_manycore_py.errors import ManycoreError
+
+
+@dataclass(frozen=True)
+class PlatformState:
+    """Everything that is shown of a platform."""
+
+    info: _transport.PlatformInfo
+    clusters: list[_transport.ClusterInfo]
+    processes: list[_transport.ProcessInfo]
+    nodes: dict[int, list[str]]  # their full names, by the slot of their process
+    losses: list[Row]
+
+    @classmethod
+    def of(cls, name: str) -> PlatformState:
+        """Look at a platform."""
+        with view.open_platform(name) as opened:
+            nodes, endpoints = opened.nodes(), opened.endpoints()
+            processes = opened.processes()
+            return cls(
+                opened.info(),
+                opened.clusters(),
+                processes,
+                {
+                    process.slot: [view.full_name(n) for n in nodes if n.process == process.slot]
+                    for process in processes
+                },
+                view.losses(endpoints),
+            )
+
+    def row(self) -> Row:
+        """Return it for programs."""
+        return {
+            **platform_row(self.info),
+            "clusters": [cluster_row(cluster) for cluster in self.clusters],
+            "processes": [{**process_row(p), "nodes": self.nodes[p.slot]} for p in self.processes],
+            "losses": self.losses,
+        }
+
+
+@dataclass(frozen=True)
+class Unreadable:
+    """A platform that cannot be looked at."""
+
+    name: str
+    error: str
+
+    def row(self) -> Row:
+        """Return it for programs."""
+        return {"name": self.name, "error": self.error}
 
 
 @click.command("status", epilog=examples("manycore status", "manycore status --platform domain-0"))
@@ -19,11 +70,11 @@ from rmw_manycore_py.errors import ManycoreError
 def command(platform: str | None, as_json: bool) -> None:
     """Show the platforms of this user: clusters, processes, and messages that were lost."""
     if platform:
-        states = [view.platform_state(view.open_platform(platform))]
+        states: list[PlatformState | Unreadable] = [PlatformState.of(platform)]
     else:
         states = [_look_at(name) for name in view.platform_names()]
     if as_json:
-        print_json(states)
+        print_json([state.row() for state in states])
         return
     if not states:
         click.echo("no platform is running")
@@ -33,42 +84,42 @@ def command(platform: str | None, as_json: bool) -> None:
         _show(state)
 
 
-def _look_at(name: str) -> Row:
+def _look_at(name: str) -> PlatformState | Unreadable:
     """Return the state of a platform, or what is wrong with it: one bad one hides no other."""
     try:
-        return view.platform_state(view.open_platform(name))
+        return PlatformState.of(name)
     except (ManycoreError, _transport.PlatformError) as error:
-        return {"name": name, "error": str(error)}
+        return Unreadable(name, str(error))
 
 
-def _show(state: Row) -> None:
-    if "error" in state:
-        click.echo(f"platform {state['name']}: {state['error']}")
+def _show(state: PlatformState | Unreadable) -> None:
+    if isinstance(state, Unreadable):
+        click.echo(f"platform {state.name}: {state.error}")
         return
-    alive = "alive" if state["alive"] else "dead: `manycore clean` removes it"
-    click.echo(f"platform {state['name']}: {alive}")
-    _show_clusters(state["clusters"])
-    _show_processes(state["processes"])
-    for loss in state["losses"]:
+    alive = "alive" if state.info.alive else "dead: `manycore clean` removes it"
+    click.echo(f"platform {state.info.name}: {alive}")
+    _show_clusters(state.clusters)
+    _show_processes(state)
+    for loss in state.losses:
         click.echo(f"{loss['node']} {loss['topic']}: {loss['counter']} {loss['count']}")
 
 
-def _show_clusters(clusters: list[Row]) -> None:
+def _show_clusters(clusters: list[_transport.ClusterInfo]) -> None:
     columns = ("#cluster", "receive thread", "#SMEM", "#used", "#messages")
     table = new_table(*columns)
-    for row in clusters:
-        thread = f"pid {row['receive_thread_pid']}" if row["alive"] else "not running"
-        sizes = (size_text(row["smem_size"]), size_text(row["used"]))
-        table.add_row(str(row["id"]), thread, *sizes, str(row["messages"]))
+    for cluster in clusters:
+        thread = f"pid {cluster.receive_thread_pid}" if cluster.alive else "not running"
+        sizes = (size_text(cluster.smem_bytes), size_text(cluster.used_bytes))
+        table.add_row(str(cluster.id), thread, *sizes, str(cluster.messages))
     print_table(table)
 
 
-def _show_processes(processes: list[Row]) -> None:
+def _show_processes(state: PlatformState) -> None:
     columns = ("#pid", "#cluster", "#core", "#host CPU", "program", "nodes", "state")
     table = new_table(*columns)
-    for row in processes:
-        numbers = (row["pid"], row["cluster"], row["core"], row["host_cpu"])
+    for process in state.processes:
+        numbers = (process.pid, process.cluster, process.core, process.host_cpu)
         texts = ("-" if number is None else str(number) for number in numbers)
-        state = "alive" if row["alive"] else "dead"
-        table.add_row(*texts, row["label"], ", ".join(row["nodes"]), state)
+        alive = "alive" if process.alive else "dead"
+        table.add_row(*texts, process.label, ", ".join(state.nodes[process.slot]), alive)
     print_table(table)

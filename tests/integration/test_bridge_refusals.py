@@ -27,16 +27,15 @@ DOES_NOT_FIT = r"^answer False bridge: a message of 8\d{6} bytes on '/camera' do
 @pytest.fixture
 def platform(platform) -> Iterator[str]:
     """Give the test's platform as little SMEM as a cluster of the MPPA3-80 has."""
-    configurator = _transport.Configurator(
+    with _transport.Configurator(
         platform,
         clusters=1,
         cores_per_cluster=16,
-        smem_size=SMEM_BYTES,
+        smem_bytes=SMEM_BYTES,
         host_cpu_of_receive_thread={},
         topics=[],
-    )
-    yield platform
-    del configurator
+    ):
+        yield platform
 
 
 def serve_camera() -> None:
@@ -99,19 +98,20 @@ def ask_nonsense(platform: str) -> None:
 
     from rmw_manycore_bridge.policies import from_rclpy
 
-    process = _transport.Process(platform)
-    endpoint = ("/camera", SET_CAMERA, from_rclpy(qos_profile_services_default))
-    replies = process.subscription(*endpoint, role="reply")
-    requests = process.publisher(*endpoint, role="request")
-    seen = process.epoch()
-    while not (requests.matched() and replies.matched()):
-        process.wait(seen, 0.05)
+    with _transport.Process(platform) as process:
+        endpoint = ("/camera", SET_CAMERA, from_rclpy(qos_profile_services_default))
+        replies = process.subscription(*endpoint, role="reply")
+        requests = process.publisher(*endpoint, role="request")
         seen = process.epoch()
-    requests.publish(b"?", client=replies.gid, number=1)
-    while (reply := replies.take()) is None:
-        process.wait(seen, None)
-        seen = process.epoch()
-    announce(f"answer {b'bridge: ' in reply[0]}")
+        while not (requests.matched() and replies.matched()):
+            process.wait(seen, 0.05)
+            seen = process.epoch()
+        requests.publish(b"?", client=replies.gid, number=1)
+        while (reply := replies.claim()) is None:
+            process.wait(seen, None)
+            seen = process.epoch()
+        announce(f"answer {b'bridge: ' in reply.data}")
+        reply.release()
 
 
 def test_a_request_that_cannot_be_read(bridge) -> None:

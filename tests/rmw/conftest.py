@@ -73,17 +73,17 @@ def configure(topic: str) -> None:
     """Configure a platform. Not in the test's process: rclpy's library would not see it alive."""
     from rmw_manycore_py import _transport
 
-    configurator = _transport.Configurator(
+    small = _transport.TopicConfiguration(topic, id=1, dsm_size_bytes=8192, receiver_clusters=0)
+    with _transport.Configurator(
         os.environ["MANYCORE_PLATFORM"],
         clusters=2,
         cores_per_cluster=4,
-        smem_size=0,
+        smem_bytes=0,
         host_cpu_of_receive_thread={},
-        topics=[(topic, 1, 8192, 0)],
-    )
-    announce("configured")
-    sys.stdin.read()
-    del configurator
+        topics=[small],
+    ):
+        announce("configured")
+        sys.stdin.read()
 
 
 @pytest.fixture(params=[1, 2], ids=["same_cluster", "other_cluster"])

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import os
-from typing import Any
 
 import numpy as np
 import pytest
@@ -106,8 +105,9 @@ def test_a_map_of_another_frame_is_refused(matched):
     assert error_m(matched.pose_of(street_scan(), NEAR)) < 0.1
 
 
-def own_cluster() -> dict[str, Any]:
-    return _transport.Platform(os.environ["MANYCORE_PLATFORM"]).clusters()[0]
+def own_cluster() -> _transport.ClusterInfo:
+    with _transport.Platform(os.environ["MANYCORE_PLATFORM"]) as platform:
+        return platform.clusters()[0]
 
 
 @pytest.mark.skipif(not IS_MANYCORE, reason="the SMEM of a cluster is rmw_manycore's")
@@ -116,16 +116,16 @@ def test_a_map_that_the_cluster_has_no_room_for(stack, start):
     program = start(matcher_command(worker_host_cpus=two_host_cpus()), cluster=1)
     stack.wait_for_matcher()
     before = own_cluster()
-    assert before["used"] > before["charged"] > 1 << 20  # the place for scans
+    assert before.used_bytes > before.charged_bytes > 1 << 20  # the place for scans
     for _ in range(2):
         stack.publish_map(street_map())
         stack.pose_of(street_scan(), NEAR)
         program.wait_for("matching to a map of")
     cluster = own_cluster()
-    assert cluster["charged"] > before["charged"]
+    assert cluster.charged_bytes > before.charged_bytes
 
     platform = os.environ["MANYCORE_PLATFORM"]
-    _transport.charge_smem(platform, cluster["smem_size"] - cluster["used"] - 64 * 1024)
+    _transport.charge_smem(platform, cluster.smem_bytes - cluster.used_bytes - 64 * 1024)
     stack.publish_map(street_map())
     report = stack.next_report("map_update_status", ERROR)
     assert "cluster 1 has no room for" in report.message

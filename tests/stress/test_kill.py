@@ -105,8 +105,9 @@ class Graves:
             return []
         from rmw_manycore_py._transport import Platform
 
-        processes = Platform(self._platform).processes()
-        dead = [process["pid"] for process in processes if not process["alive"]]
+        with Platform(self._platform) as platform:
+            processes = platform.processes()
+        dead = [process.pid for process in processes if not process.alive]
         return [pid for pid in dead if pid in self._killed_ns]
 
 

@@ -24,18 +24,20 @@ def small_topic(platform) -> Iterator[None]:
     if not IS_MANYCORE:
         yield
         return
-    from rmw_manycore_py._transport import Configurator
+    from rmw_manycore_py._transport import Configurator, TopicConfiguration
 
-    configurator = Configurator(
+    small = TopicConfiguration(
+        f"/{TOPIC}", id=1, dsm_size_bytes=SMALL_DSM_BYTES, receiver_clusters=ALL_CLUSTERS
+    )
+    with Configurator(
         platform,
         clusters=2,
         cores_per_cluster=4,
-        smem_size=16 << 20,
+        smem_bytes=16 << 20,
         host_cpu_of_receive_thread={},
-        topics=[(f"/{TOPIC}", 1, SMALL_DSM_BYTES, ALL_CLUSTERS)],
-    )
-    yield
-    del configurator
+        topics=[small],
+    ):
+        yield
 
 
 def test_readers_that_stop_in_the_middle(small_topic, start):

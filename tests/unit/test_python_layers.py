@@ -16,7 +16,9 @@ ROOTS = (REPOSITORY, REPOSITORY / "bridge", REPOSITORY / "startup")
 
 # Lowest first; packages of one layer do not see each other. A leading dot: in rmw_manycore_py.
 LAYERS = [
-    ("rmw_manycore_hook", "rmw_manycore_py", "._transport", "._ndt", ".errors", ".examples"),
+    ("rmw_manycore_hook", "rmw_manycore_py", ".errors", ".examples", ".words"),
+    ("._transport", "._ndt"),
+    (".native_errors", ".qos"),
     (".figures", ".ros", ".routes", ".signals", ".topology"),
     (".bridge_plan",),
     (".mapfile.format",),

@@ -5,8 +5,12 @@
 
 namespace manycore::python {
 
+void bind_qos(nanobind::module_ & module);
+void bind_rows(nanobind::module_ & module);
 void bind_platform(nanobind::module_ & module);
 void bind_configurator(nanobind::module_ & module);
+void bind_publisher(nanobind::module_ & module);
+void bind_subscription(nanobind::module_ & module);
 void bind_process(nanobind::module_ & module);
 
 }  // namespace manycore::python

@@ -4,9 +4,11 @@
 #include <nanobind/nanobind.h>
 #include <nanobind/stl/map.h>
 #include <nanobind/stl/string.h>
-#include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
+#include <memory>
+
+#include "python/context.hpp"
 #include "python/transport/bindings.hpp"
 
 namespace nb = nanobind;
@@ -14,40 +16,66 @@ namespace nb = nanobind;
 namespace manycore::python {
 namespace {
 
-using TopicLine = std::tuple<std::string, uint32_t, uint32_t, uint64_t>;
-
-Configurator * configure(
-  const std::string & name, uint32_t clusters, uint32_t cores_per_cluster, uint64_t smem_size,
-  const std::map<uint32_t, int> & host_cpu_of_receive_thread,
-  const std::vector<TopicLine> & topic_lines) {
-  Profile profile = host_profile();
+Profile profile_of(
+  uint32_t clusters, uint32_t cores_per_cluster, uint64_t smem_bytes,
+  const std::map<uint32_t, int> & host_cpu_of_receive_thread) {
   if (clusters == 0 || clusters > max_clusters) {
     throw nb::value_error("clusters: expected 1 to 64");
   }
+  Profile profile = host_profile();
   profile.clusters = clusters;
   profile.cores_per_cluster = cores_per_cluster;
-  profile.smem_bytes = smem_size != 0 ? smem_size / 4096 * 4096 : profile.smem_bytes;
+  profile.smem_bytes = smem_bytes != 0 ? smem_bytes / 4096 * 4096 : profile.smem_bytes;
   for (const auto & [cluster, cpu] : host_cpu_of_receive_thread) {
     if (cluster >= 1 && cluster <= clusters) {
       profile.host_cpu_of_receive_thread[cluster - 1] = cpu;
     }
   }
-  std::vector<TopicConfiguration> topics;
-  for (const auto & [topic, id, size, receivers] : topic_lines) {
-    topics.push_back({topic, id, size, receivers});
-  }
-  return new Configurator(name, profile, topics);
+  return profile;
+}
+
+/// A configurator that ends before its Python object does.
+class BoundConfigurator {
+public:
+  BoundConfigurator(
+    const std::string & name, uint32_t clusters, uint32_t cores_per_cluster, uint64_t smem_bytes,
+    const std::map<uint32_t, int> & host_cpu_of_receive_thread,
+    const std::vector<TopicConfiguration> & topics)
+  : configurator_(std::make_unique<Configurator>(
+      name, profile_of(clusters, cores_per_cluster, smem_bytes, host_cpu_of_receive_thread),
+      topics)) {}
+
+  void close() { configurator_.reset(); }
+
+private:
+  std::unique_ptr<Configurator> configurator_;
+};
+
+void init_topic(
+  TopicConfiguration * topic, const std::string & name, uint32_t id, uint32_t dsm_size_bytes,
+  uint64_t receiver_clusters) {
+  new (topic) TopicConfiguration{name, id, dsm_size_bytes, receiver_clusters};
 }
 
 }  // namespace
 
 void bind_configurator(nb::module_ & module) {
-  module.def("clean", &clean_platform, nb::arg("name"));
-  nb::class_<Configurator>(module, "Configurator")
+  nb::class_<TopicConfiguration>(module, "TopicConfiguration")
     .def(
-      nb::new_(&configure), nb::arg("name"), nb::kw_only(), nb::arg("clusters"),
-      nb::arg("cores_per_cluster"), nb::arg("smem_size"), nb::arg("host_cpu_of_receive_thread"),
-      nb::arg("topics"));
+      "__init__", &init_topic, nb::arg("name"), nb::kw_only(), nb::arg("id"),
+      nb::arg("dsm_size_bytes"), nb::arg("receiver_clusters"))
+    .def_ro("name", &TopicConfiguration::name)
+    .def_ro("id", &TopicConfiguration::id)
+    .def_ro("dsm_size_bytes", &TopicConfiguration::dsm_size_bytes)
+    .def_ro("receiver_clusters", &TopicConfiguration::receiver_clusters);
+  nb::class_<BoundConfigurator> bound(module, "Configurator");
+  bound.def(
+    nb::init<
+      const std::string &, uint32_t, uint32_t, uint64_t, const std::map<uint32_t, int> &,
+      const std::vector<TopicConfiguration> &>(),
+    nb::arg("name"), nb::kw_only(), nb::arg("clusters"), nb::arg("cores_per_cluster"),
+    nb::arg("smem_bytes"), nb::arg("host_cpu_of_receive_thread"), nb::arg("topics"));
+  bind_context(bound);
 }
 
 }  // namespace manycore::python

@@ -9,10 +9,15 @@
 namespace nb = nanobind;
 
 NB_MODULE(_transport, module) {
+  using namespace manycore::python;
   module.doc() =
     "The transport of rmw_manycore without ROS: platforms seen, configured and joined.";
   const nb::exception<manycore::Error> error(module, "PlatformError", PyExc_RuntimeError);
-  manycore::python::bind_platform(module);
-  manycore::python::bind_configurator(module);
-  manycore::python::bind_process(module);
+  bind_qos(module);
+  bind_rows(module);
+  bind_platform(module);
+  bind_configurator(module);
+  bind_publisher(module);
+  bind_subscription(module);
+  bind_process(module);
 }

@@ -25,7 +25,7 @@ from rmw_manycore_py.cli.common.printing import print_json
 @platform_option
 def command(action: str, platform: str, as_json: bool, show_types: bool, count: bool) -> None:
     """Show the nodes that serve ACTION and those that use it."""
-    row = row_of(view.actions(view.open_platform(platform).endpoints()), action, "action")
+    row = row_of(view.actions(view.endpoints_on(platform)), action, "action")
     if as_json:
         print_json(row)
         return

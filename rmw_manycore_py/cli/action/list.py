@@ -23,5 +23,5 @@ from rmw_manycore_py.cli.common.options import (
 @platform_option
 def command(platform: str, as_json: bool, show_types: bool, count: bool) -> None:
     """List the actions of a platform, served or only asked for."""
-    rows = view.actions(view.open_platform(platform).endpoints())
+    rows = view.actions(view.endpoints_on(platform))
     show_names(rows, as_json=as_json, types=show_types, count=count)

@@ -15,4 +15,4 @@ from rmw_manycore_py.cli.common.options import examples, platform_option
 @platform_option
 def command(action: str, platform: str) -> None:
     """Print the type of ACTION."""
-    show_types(view.actions(view.open_platform(platform).endpoints()), action, "action")
+    show_types(view.actions(view.endpoints_on(platform)), action, "action")

@@ -21,8 +21,8 @@ _ARROWS = {"inward": "<-", "outward": "->"}
 @json_option
 def command(platform: str, as_json: bool) -> None:
     """Show what crosses, how much has crossed, and what was kept back and why."""
-    open_platform(platform)
-    rows = status(platform)
+    with open_platform(platform):
+        rows = status(platform)
     if as_json:
         print_json(rows)
     elif not rows:

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import click
 
 from rmw_manycore_py.cli.common.printing import print_json
-from rmw_manycore_py.cli.common.view import Row
+from rmw_manycore_py.cli.common.rows import Row
 from rmw_manycore_py.errors import ManycoreError
 
 

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-from rmw_manycore_py import _transport
 from rmw_manycore_py.cli.common import view
 from rmw_manycore_py.errors import ManycoreError
 
@@ -13,21 +12,25 @@ def absolute_name(name: str) -> str:
     return name if name.startswith("/") else f"/{name}"
 
 
-def existing_node(platform: _transport.Platform, name: str) -> str:
+def existing_node(platform: str, name: str) -> str:
     """Return the full name of a node that is there."""
     full_name = absolute_name(name)
-    if full_name not in view.node_names(platform.nodes(), hidden=True):
+    with view.open_platform(platform) as opened:
+        names = view.node_names(opened.nodes(), hidden=True)
+    if full_name not in names:
         raise ManycoreError(f"unable to find node '{full_name}' (manycore node list shows all)")
     return full_name
 
 
-def nodes_with_service(platform: _transport.Platform, service: str, type_name: str) -> list[str]:
+def nodes_with_service(platform: str, service: str, type_name: str) -> list[str]:
     """Return the nodes that serve `service` of that type below their own name."""
+    with view.open_platform(platform) as opened:
+        endpoints, nodes = opened.endpoints(), opened.nodes()
     served = {
-        endpoint["topic"]
-        for endpoint in platform.endpoints()
-        if (endpoint["role"], endpoint["kind"]) == ("request", "subscription")
-        and endpoint["type"] == type_name
+        endpoint.topic
+        for endpoint in endpoints
+        if (endpoint.role, endpoint.kind) == ("request", "subscription")
+        and endpoint.type == type_name
     }
-    names = view.node_names(platform.nodes(), hidden=True)
+    names = view.node_names(nodes, hidden=True)
     return [name for name in names if f"{name}/{service}" in served]

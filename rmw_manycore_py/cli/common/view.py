@@ -4,20 +4,18 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Any
 
 from rmw_manycore_py import _transport
+from rmw_manycore_py._transport import EndpointInfo, NodeInfo, ProcessInfo
+from rmw_manycore_py.cli.common.rows import Row, counters_row
 from rmw_manycore_py.errors import ManycoreError
-
-Row = dict[str, Any]
+from rmw_manycore_py.native_errors import translate_native_errors
 
 
 def platform_names() -> list[str]:
     """Return the names of this user's platforms, dead ones included."""
-    try:
+    with translate_native_errors():  # no permission
         return _transport.platforms()
-    except _transport.PlatformError as error:  # no permission
-        raise ManycoreError(str(error)) from error
 
 
 def open_platform(name: str) -> _transport.Platform:
@@ -26,46 +24,29 @@ def open_platform(name: str) -> _transport.Platform:
     if name not in names:
         others = f"; there is {', '.join(names)} (--platform)" if names else "; none is running"
         raise ManycoreError(f"no platform '{name}'{others}")
-    try:
+    with translate_native_errors():
         return _transport.Platform(name)
-    except _transport.PlatformError as error:
-        raise ManycoreError(str(error)) from error
 
 
-def platform_state(platform: _transport.Platform) -> Row:
-    """Return everything `manycore status` shows."""
-    nodes, endpoints = platform.nodes(), platform.endpoints()
-    processes = [
-        {**process, "nodes": [full_name(n) for n in nodes if n["process"] == process["slot"]]}
-        for process in platform.processes()
-    ]
-    clusters = platform.clusters()
-    return {
-        **platform.info(),
-        "clusters": clusters,
-        "processes": processes,
-        "losses": losses(endpoints),
-    }
+def endpoints_on(platform: str) -> list[EndpointInfo]:
+    """Return all publishers and subscriptions of a platform."""
+    with open_platform(platform) as opened:
+        return opened.endpoints()
 
 
-def losses(endpoints: Iterable[Row]) -> list[Row]:
+def losses(endpoints: Iterable[EndpointInfo]) -> list[Row]:
     """Return each counter of messages that did not arrive and that is not zero."""
     return [
-        {
-            "node": _owner(e),
-            "topic": e["topic"],
-            "counter": counter,
-            "count": e["counters"][counter],
-        }
+        {"node": _owner(e), "topic": e.topic, "counter": counter, "count": count}
         for e in endpoints
-        for counter in ("lost", "expired", "refused")
-        if e["counters"][counter]
+        for counter, count in counters_row(e.counters).items()
+        if counter in LOSSES and count
     ]
 
 
-def full_name(node: Row) -> str:
+def full_name(node: NodeInfo) -> str:
     """Return a node's namespace and name in one."""
-    return f"{node['namespace'].rstrip('/')}/{node['name']}"
+    return _joined(node.namespace, node.name)
 
 
 def is_hidden(name: str) -> bool:
@@ -73,83 +54,90 @@ def is_hidden(name: str) -> bool:
     return any(part.startswith("_") for part in name.split("/"))
 
 
-def topics(endpoints: Iterable[Row], *, hidden: bool = False) -> list[Row]:
+def topics(endpoints: Iterable[EndpointInfo], *, hidden: bool = False) -> list[Row]:
     """Return each topic by name, with its types and the numbers of its endpoints."""
     rows: dict[str, Row] = {}
     for endpoint in endpoints:
-        if endpoint["role"] != "topic" or (is_hidden(endpoint["topic"]) and not hidden):
+        if endpoint.role != "topic" or (is_hidden(endpoint.topic) and not hidden):
             continue
         row = rows.setdefault(
-            endpoint["topic"],
-            {"name": endpoint["topic"], "types": [], "publishers": 0, "subscriptions": 0},
+            endpoint.topic,
+            {"name": endpoint.topic, "types": [], "publishers": 0, "subscriptions": 0},
         )
-        if endpoint["type"] not in row["types"]:
-            row["types"].append(endpoint["type"])
-        row[f"{endpoint['kind']}s"] += 1
+        if endpoint.type not in row["types"]:
+            row["types"].append(endpoint.type)
+        row[f"{endpoint.kind}s"] += 1
     return [rows[name] for name in sorted(rows)]
 
 
-def services(endpoints: Iterable[Row], *, hidden: bool = False) -> list[Row]:
+def services(endpoints: Iterable[EndpointInfo], *, hidden: bool = False) -> list[Row]:
     """Return each service by name, with its types and the numbers of its servers and clients."""
     rows: dict[str, Row] = {}
     for endpoint in endpoints:
-        if endpoint["role"] != "request" or (is_hidden(endpoint["topic"]) and not hidden):
+        if endpoint.role != "request" or (is_hidden(endpoint.topic) and not hidden):
             continue
-        name = endpoint["topic"]
+        name = endpoint.topic
         row = rows.setdefault(name, {"name": name, "types": [], "servers": 0, "clients": 0})
-        if endpoint["type"] not in row["types"]:
-            row["types"].append(endpoint["type"])
-        row["servers" if endpoint["kind"] == "subscription" else "clients"] += 1
+        if endpoint.type not in row["types"]:
+            row["types"].append(endpoint.type)
+        row["servers" if endpoint.kind == "subscription" else "clients"] += 1
     return [rows[name] for name in sorted(rows)]
 
 
-def actions(endpoints: Iterable[Row]) -> list[Row]:
+def actions(endpoints: Iterable[EndpointInfo]) -> list[Row]:
     """Return each action by name, with its types and the nodes that serve and use it."""
     rows: dict[str, Row] = {}
     for endpoint in endpoints:
-        if endpoint["role"] != "request" or not endpoint["topic"].endswith(_SEND_GOAL):
+        if endpoint.role != "request" or not endpoint.topic.endswith(_SEND_GOAL):
             continue
-        name = endpoint["topic"].removesuffix(_SEND_GOAL)
+        name = endpoint.topic.removesuffix(_SEND_GOAL)
         row = rows.setdefault(name, {"name": name, "types": [], "servers": [], "clients": []})
-        type_name = endpoint["type"].removesuffix("_SendGoal")
+        type_name = endpoint.type.removesuffix("_SendGoal")
         if type_name not in row["types"]:
             row["types"].append(type_name)
-        nodes = row["servers" if endpoint["kind"] == "subscription" else "clients"]
+        nodes = row["servers" if endpoint.kind == "subscription" else "clients"]
         nodes.append({"node": _owner(endpoint), "type": type_name})
     return [rows[name] for name in sorted(rows)]
 
 
-def endpoints_of_topic(endpoints: Iterable[Row], topic: str) -> list[Row]:
+def endpoints_of_topic(endpoints: Iterable[EndpointInfo], topic: str) -> list[EndpointInfo]:
     """Return the publishers and subscriptions of one topic."""
-    return [e for e in endpoints if e["role"] == "topic" and e["topic"] == topic]
+    return [e for e in endpoints if e.role == "topic" and e.topic == topic]
 
 
-def node_names(nodes: Iterable[Row], *, hidden: bool = False) -> list[str]:
+def node_names(nodes: Iterable[NodeInfo], *, hidden: bool = False) -> list[str]:
     """Return the full names of the nodes."""
     names = map(full_name, nodes)
     return sorted(name for name in names if hidden or not is_hidden(name))
 
 
-def placed_nodes(nodes: Iterable[Row], processes: Iterable[Row], names: set[str]) -> list[Row]:
+def placed_nodes(
+    nodes: Iterable[NodeInfo], processes: Iterable[ProcessInfo], names: set[str]
+) -> list[Row]:
     """Return the nodes of these names with the place of their process."""
-    places = {process["slot"]: process for process in processes}
+    in_slots = {process.slot: process for process in processes}
     rows = []
     for node in nodes:
-        process = places.get(node["process"])
+        process = in_slots.get(node.process)
         if process is not None and full_name(node) in names:
-            place = {key: process[key] for key in ("cluster", "core", "host_cpu", "pid")}
+            place = {
+                "cluster": process.cluster,
+                "core": process.core,
+                "host_cpu": process.host_cpu,
+                "pid": process.pid,
+            }
             rows.append({"node": full_name(node), **place})
     return sorted(rows, key=lambda row: str(row["node"]))
 
 
-def node_interfaces(endpoints: Iterable[Row], node: str, *, hidden: bool = False) -> Row:
+def node_interfaces(endpoints: Iterable[EndpointInfo], node: str, *, hidden: bool = False) -> Row:
     """Return what a node offers and uses: each a mapping from names to types."""
     found: Row = {kind: {} for kind in INTERFACES}
     for endpoint in endpoints:
-        kind = _INTERFACE_KINDS.get((endpoint["role"], endpoint["kind"]))
+        kind = _INTERFACE_KINDS.get((endpoint.role, endpoint.kind))
         if kind is None or _owner(endpoint) != node:
             continue
-        name, type_name = endpoint["topic"], endpoint["type"]
+        name, type_name = endpoint.topic, endpoint.type
         if name.endswith(_SEND_GOAL) and kind in _ACTION_KINDS:
             action = type_name.removesuffix("_SendGoal")
             found[_ACTION_KINDS[kind]][name.removesuffix(_SEND_GOAL)] = action
@@ -158,10 +146,15 @@ def node_interfaces(endpoints: Iterable[Row], node: str, *, hidden: bool = False
     return {kind: dict(sorted(found[kind].items())) for kind in INTERFACES}
 
 
-def _owner(endpoint: Row) -> str:
-    return full_name({"name": endpoint["node"], "namespace": endpoint["namespace"]})
+def _owner(endpoint: EndpointInfo) -> str:
+    return _joined(endpoint.node_namespace, endpoint.node_name)
 
 
+def _joined(namespace: str, name: str) -> str:
+    return f"{namespace.rstrip('/')}/{name}"
+
+
+LOSSES = ("lost", "expired", "refused")
 INTERFACES = (
     "subscribers",
     "publishers",

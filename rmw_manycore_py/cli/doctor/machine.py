@@ -127,6 +127,7 @@ def is_alive(name: str) -> bool:
     from rmw_manycore_py import _transport
 
     try:
-        return bool(_transport.Platform(name).info()["alive"])
+        with _transport.Platform(name) as opened:
+            return opened.info().alive
     except _transport.PlatformError:
         return False

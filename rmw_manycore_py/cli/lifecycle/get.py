@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import click
 
-from rmw_manycore_py.cli.common import view
 from rmw_manycore_py.cli.common.options import examples, json_option, platform_option
 from rmw_manycore_py.cli.common.printing import print_json
 from rmw_manycore_py.cli.common.tool_node import tool_node
@@ -22,8 +21,7 @@ from rmw_manycore_py.cli.lifecycle.services import (
 @platform_option
 def command(node: str | None, platform: str, as_json: bool) -> None:
     """Print the state of NODE, or of all nodes with a lifecycle."""
-    opened = view.open_platform(platform)
-    names = [existing_lifecycle_node(opened, node)] if node else lifecycle_nodes(opened)
+    names = [existing_lifecycle_node(platform, node)] if node else lifecycle_nodes(platform)
     with tool_node(platform) as tool:
         states = {name: Lifecycle(tool, name).state() for name in names}
     if as_json:

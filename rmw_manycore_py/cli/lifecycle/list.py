@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import click
 
-from rmw_manycore_py.cli.common import view
 from rmw_manycore_py.cli.common.message_text import to_plain
 from rmw_manycore_py.cli.common.options import examples, json_option, platform_option
 from rmw_manycore_py.cli.common.printing import print_json
@@ -20,7 +19,7 @@ from rmw_manycore_py.cli.lifecycle.services import Lifecycle, existing_lifecycle
 @platform_option
 def command(node: str, every: bool, platform: str, as_json: bool) -> None:
     """List the transitions that NODE can take from its present state."""
-    name = existing_lifecycle_node(view.open_platform(platform), node)
+    name = existing_lifecycle_node(platform, node)
     with tool_node(platform) as tool:
         transitions = Lifecycle(tool, name).transitions(every=every)
     if as_json:

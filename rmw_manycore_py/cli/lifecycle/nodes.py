@@ -24,7 +24,7 @@ from rmw_manycore_py.cli.lifecycle.services import lifecycle_nodes
 @platform_option
 def command(platform: str, count: bool, hidden: bool, as_json: bool) -> None:
     """List the nodes that have a lifecycle."""
-    found = lifecycle_nodes(view.open_platform(platform))
+    found = lifecycle_nodes(platform)
     names = [name for name in found if hidden or not view.is_hidden(name)]
     if as_json:
         print_json(names)

@@ -5,18 +5,17 @@ from __future__ import annotations
 
 from typing import Any
 
-from rmw_manycore_py import _transport
 from rmw_manycore_py.cli.common.node_names import absolute_name, nodes_with_service
 from rmw_manycore_py.cli.common.tool_node import answer_of
 from rmw_manycore_py.errors import ManycoreError
 
 
-def lifecycle_nodes(platform: _transport.Platform) -> list[str]:
+def lifecycle_nodes(platform: str) -> list[str]:
     """Return the full names of the nodes that have a lifecycle."""
     return nodes_with_service(platform, "get_state", "lifecycle_msgs/srv/GetState")
 
 
-def existing_lifecycle_node(platform: _transport.Platform, name: str) -> str:
+def existing_lifecycle_node(platform: str, name: str) -> str:
     """Return the full name of a node that is there and has a lifecycle."""
     full_name = absolute_name(name)
     if full_name not in lifecycle_nodes(platform):

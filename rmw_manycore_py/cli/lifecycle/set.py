@@ -7,7 +7,6 @@ from typing import Any
 
 import click
 
-from rmw_manycore_py.cli.common import view
 from rmw_manycore_py.cli.common.options import examples, platform_option
 from rmw_manycore_py.cli.common.tool_node import tool_node
 from rmw_manycore_py.cli.lifecycle.services import Lifecycle, existing_lifecycle_node
@@ -20,7 +19,7 @@ from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
 @platform_option
 def command(node: str, transition: str, platform: str) -> None:
     """Let NODE take a TRANSITION, given by its label or number."""
-    name = existing_lifecycle_node(view.open_platform(platform), node)
+    name = existing_lifecycle_node(platform, node)
     with tool_node(platform) as tool:
         lifecycle = Lifecycle(tool, name)
         available = [found.transition for found in lifecycle.transitions()]

@@ -18,9 +18,8 @@ from rmw_manycore_py.cli.common.printing import print_json
 @platform_option
 def command(node: str, platform: str, as_json: bool, hidden: bool) -> None:
     """Show the topics, services and actions of NODE."""
-    opened = view.open_platform(platform)
-    node = existing_node(opened, node)
-    interfaces = view.node_interfaces(opened.endpoints(), node, hidden=hidden)
+    node = existing_node(platform, node)
+    interfaces = view.node_interfaces(view.endpoints_on(platform), node, hidden=hidden)
     if as_json:
         print_json({"node": node, **interfaces})
         return

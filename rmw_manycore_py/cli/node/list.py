@@ -24,10 +24,11 @@ from rmw_manycore_py.cli.common.printing import print_json
 @platform_option
 def command(platform: str, as_json: bool, hidden: bool, everything: bool, count: bool) -> None:
     """List the nodes of a platform."""
-    opened = view.open_platform(platform)
-    names = view.node_names(opened.nodes(), hidden=hidden or everything)
+    with view.open_platform(platform) as opened:
+        nodes, processes = opened.nodes(), opened.processes()
+    names = view.node_names(nodes, hidden=hidden or everything)
     if as_json:
-        print_json(view.placed_nodes(opened.nodes(), opened.processes(), set(names)))
+        print_json(view.placed_nodes(nodes, processes, set(names)))
         return
     for name in [len(names)] if count else names:
         click.echo(name)

@@ -8,7 +8,6 @@ from typing import Any
 
 import click
 
-from rmw_manycore_py.cli.common import view
 from rmw_manycore_py.cli.common.message_text import to_plain
 from rmw_manycore_py.cli.common.node_names import existing_node
 from rmw_manycore_py.cli.common.options import examples, json_option, platform_option
@@ -24,7 +23,7 @@ from rmw_manycore_py.cli.param.parameters import TYPES, Parameters
 @platform_option
 def command(node: str, parameters: tuple[str, ...], platform: str, as_json: bool) -> None:
     """Show type, description and constraints of PARAMETERS of NODE."""
-    name = existing_node(view.open_platform(platform), node)
+    name = existing_node(platform, node)
     with tool_node(platform) as tool:
         descriptors = Parameters(tool, name).descriptors(parameters)
     if as_json:

@@ -6,7 +6,6 @@ from __future__ import annotations
 import click
 import yaml
 
-from rmw_manycore_py.cli.common import view
 from rmw_manycore_py.cli.common.node_names import existing_node
 from rmw_manycore_py.cli.common.options import examples, json_option, platform_option
 from rmw_manycore_py.cli.common.printing import print_json
@@ -20,7 +19,7 @@ from rmw_manycore_py.cli.param.parameters import Parameters, nested
 @platform_option
 def command(node: str, platform: str, as_json: bool) -> None:
     """Print all parameters of NODE as a parameter file."""
-    name = existing_node(view.open_platform(platform), node)
+    name = existing_node(platform, node)
     with tool_node(platform) as tool:
         parameters = Parameters(tool, name)
         names = parameters.names()

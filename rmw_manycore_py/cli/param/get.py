@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import click
 
-from rmw_manycore_py.cli.common import view
 from rmw_manycore_py.cli.common.node_names import existing_node
 from rmw_manycore_py.cli.common.options import examples, json_option, platform_option
 from rmw_manycore_py.cli.common.printing import print_json
@@ -21,7 +20,7 @@ from rmw_manycore_py.cli.param.parameters import TYPES, Parameters
 @platform_option
 def command(node: str, parameter: str, hide_type: bool, platform: str, as_json: bool) -> None:
     """Print the value of a PARAMETER of NODE."""
-    name = existing_node(view.open_platform(platform), node)
+    name = existing_node(platform, node)
     with tool_node(platform) as tool:
         ((kind, value),) = Parameters(tool, name).values([parameter])
     if as_json:

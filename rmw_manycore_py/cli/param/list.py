@@ -41,11 +41,12 @@ def command(
 ) -> None:
     """List the parameters of NODE, or of all nodes that have some."""
     wanted = _pattern(expression or "")
-    opened = view.open_platform(platform)
     if node:
-        names = [existing_node(opened, node)]
+        names = [existing_node(platform, node)]
     else:
-        owners = nodes_with_service(opened, "list_parameters", "rcl_interfaces/srv/ListParameters")
+        owners = nodes_with_service(
+            platform, "list_parameters", "rcl_interfaces/srv/ListParameters"
+        )
         names = [name for name in owners if hidden or not view.is_hidden(name)]
     with tool_node(platform) as tool:
         found = {name: _types(Parameters(tool, name), prefixes) for name in names}

@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import click
 
-from rmw_manycore_py.cli.common import view
 from rmw_manycore_py.cli.common.node_names import existing_node
 from rmw_manycore_py.cli.common.options import examples, platform_option
 from rmw_manycore_py.cli.common.tool_node import tool_node
@@ -19,7 +18,7 @@ from rmw_manycore_py.errors import ManycoreError
 @platform_option
 def command(node: str, file: str, platform: str) -> None:
     """Set the parameters of NODE that stand in a parameter FILE."""
-    name = existing_node(view.open_platform(platform), node)
+    name = existing_node(platform, node)
     refused = []
     with tool_node(platform) as tool:
         wanted = parameters_of_file(file, name)

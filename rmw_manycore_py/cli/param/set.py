@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import click
 
-from rmw_manycore_py.cli.common import view
 from rmw_manycore_py.cli.common.node_names import existing_node
 from rmw_manycore_py.cli.common.options import examples, platform_option
 from rmw_manycore_py.cli.common.tool_node import tool_node
@@ -20,7 +19,7 @@ from rmw_manycore_py.errors import ManycoreError
 @platform_option
 def command(node: str, parameter: str, value: str, platform: str) -> None:
     """Set a PARAMETER of NODE to a VALUE in YAML."""
-    name = existing_node(view.open_platform(platform), node)
+    name = existing_node(platform, node)
     with tool_node(platform) as tool:
         ((_, result),) = Parameters(tool, name).set([parameter_of(parameter, value)])
     reason = f": {result.reason}" if result.reason else ""

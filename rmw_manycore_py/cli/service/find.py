@@ -24,6 +24,6 @@ from rmw_manycore_py.cli.common.options import (
 @platform_option
 def command(type_name: str, platform: str, as_json: bool, hidden: bool, count: bool) -> None:
     """List the services of TYPE."""
-    rows = view.services(view.open_platform(platform).endpoints(), hidden=hidden)
+    rows = view.services(view.endpoints_on(platform), hidden=hidden)
     rows = [row for row in rows if type_name in row["types"]]
     show_names(rows, as_json=as_json, count=count)

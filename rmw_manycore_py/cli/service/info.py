@@ -17,7 +17,7 @@ from rmw_manycore_py.cli.common.printing import print_json
 @platform_option
 def command(service: str, platform: str, as_json: bool) -> None:
     """Show how many nodes serve SERVICE and how many use it."""
-    rows = view.services(view.open_platform(platform).endpoints(), hidden=True)
+    rows = view.services(view.endpoints_on(platform), hidden=True)
     row = row_of(rows, service, "service")
     if as_json:
         print_json(row)

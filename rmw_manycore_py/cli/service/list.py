@@ -25,5 +25,5 @@ from rmw_manycore_py.cli.common.options import (
 @platform_option
 def command(platform: str, as_json: bool, show_types: bool, count: bool, hidden: bool) -> None:
     """List the services of a platform, served or only asked for."""
-    rows = view.services(view.open_platform(platform).endpoints(), hidden=hidden)
+    rows = view.services(view.endpoints_on(platform), hidden=hidden)
     show_names(rows, as_json=as_json, types=show_types, count=count)

@@ -15,5 +15,5 @@ from rmw_manycore_py.cli.common.options import examples, platform_option
 @platform_option
 def command(service: str, platform: str) -> None:
     """Print the type of SERVICE."""
-    rows = view.services(view.open_platform(platform).endpoints(), hidden=True)
+    rows = view.services(view.endpoints_on(platform), hidden=True)
     show_types(rows, service, "service")

@@ -16,7 +16,7 @@ from rich.table import Table
 from rmw_manycore_py.cli.common import view
 from rmw_manycore_py.cli.common.options import examples, platform_option
 from rmw_manycore_py.cli.common.printing import new_table, print_table, size_text
-from rmw_manycore_py.cli.common.view import Row
+from rmw_manycore_py.cli.common.rows import Row
 from rmw_manycore_py.cli.top.load import process_loads, take_sample, topic_loads
 
 
@@ -34,9 +34,10 @@ from rmw_manycore_py.cli.top.load import process_loads, take_sample, topic_loads
 @platform_option
 def command(platform: str, period_s: float, count: int | None, as_json: bool) -> None:
     """Show the busiest processes and topics of a platform, until Ctrl-C."""
-    opened = view.open_platform(platform)
-    before, looks = take_sample(opened), 0
-    with suppress(KeyboardInterrupt), ExitStack() as stack:
+    with ExitStack() as stack:
+        opened = stack.enter_context(view.open_platform(platform))
+        before, looks = take_sample(opened), 0
+        stack.enter_context(suppress(KeyboardInterrupt))
         live = stack.enter_context(_screen()) if sys.stdout.isatty() and not as_json else None
         while count is None or looks < count:
             time.sleep(period_s)

@@ -5,10 +5,11 @@ from __future__ import annotations
 
 import click
 
+from rmw_manycore_py._transport import EndpointInfo, Qos
 from rmw_manycore_py.cli.common import view
 from rmw_manycore_py.cli.common.options import examples, json_option, platform_option
 from rmw_manycore_py.cli.common.printing import print_json
-from rmw_manycore_py.cli.common.view import Row
+from rmw_manycore_py.cli.common.rows import counters_row, endpoint_row
 from rmw_manycore_py.errors import ManycoreError
 
 
@@ -22,56 +23,57 @@ from rmw_manycore_py.errors import ManycoreError
 @platform_option
 def command(topic: str, platform: str, as_json: bool, verbose: bool) -> None:
     """Show who publishes TOPIC and who subscribes to it."""
-    endpoints = view.endpoints_of_topic(view.open_platform(platform).endpoints(), topic)
+    endpoints = view.endpoints_of_topic(view.endpoints_on(platform), topic)
     if not endpoints:
         raise ManycoreError(f"unknown topic '{topic}' (manycore topic list shows all)")
-    publishers = [e for e in endpoints if e["kind"] == "publisher"]
-    subscriptions = [e for e in endpoints if e["kind"] == "subscription"]
+    publishers = [e for e in endpoints if e.kind == "publisher"]
+    subscriptions = [e for e in endpoints if e.kind == "subscription"]
     if as_json:
-        print_json({"topic": topic, "publishers": publishers, "subscriptions": subscriptions})
+        kinds = {"publishers": publishers, "subscriptions": subscriptions}
+        rows = {kind: [endpoint_row(e) for e in found] for kind, found in kinds.items()}
+        print_json({"topic": topic, **rows})
         return
-    types = list(dict.fromkeys(e["type"] for e in endpoints))
+    types = list(dict.fromkeys(e.type for e in endpoints))
     click.echo(f"Type: {types[0] if len(types) == 1 else types}")
-    for title, rows in (("Publisher", publishers), ("Subscription", subscriptions)):
+    for title, found in (("Publisher", publishers), ("Subscription", subscriptions)):
         if not verbose:
-            click.echo(f"{title} count: {len(rows)}")
+            click.echo(f"{title} count: {len(found)}")
             continue
-        click.echo(f"\n{title} count: {len(rows)}")
-        for row in rows:
-            click.echo(f"\n{describe(row)}")
+        click.echo(f"\n{title} count: {len(found)}")
+        for endpoint in found:
+            click.echo(f"\n{describe(endpoint)}")
 
 
-def describe(endpoint: Row) -> str:
+def describe(endpoint: EndpointInfo) -> str:
     """Return one endpoint as `ros2 topic info --verbose` does, and below it where it runs."""
-    gid = endpoint["gid"]
-    counters = ", ".join(f"{name} {count}" for name, count in endpoint["counters"].items())
+    counters = counters_row(endpoint.counters)
     return "\n".join(
         (
-            f"Node name: {endpoint['node']}",
-            f"Node namespace: {endpoint['namespace']}",
-            f"Topic type: {endpoint['type']}",
-            f"Topic type hash: {endpoint['type_hash']}",
-            f"Endpoint type: {endpoint['kind'].upper()}",
-            f"GID: {'.'.join(gid[i : i + 2] for i in range(0, len(gid), 2))}",
+            f"Node name: {endpoint.node_name}",
+            f"Node namespace: {endpoint.node_namespace}",
+            f"Topic type: {endpoint.type}",
+            f"Topic type hash: {endpoint.type_hash}",
+            f"Endpoint type: {endpoint.kind.upper()}",
+            f"GID: {endpoint.gid.hex('.')}",
             "QoS profile:",
-            *(f"  {line}" for line in _describe_qos(endpoint["qos"])),
-            f"Cluster: {endpoint['cluster']}",
-            f"Matched: {endpoint['matched']}",
-            f"Counters: {counters}",
+            *(f"  {line}" for line in _describe_qos(endpoint.qos)),
+            f"Cluster: {endpoint.cluster}",
+            f"Matched: {endpoint.matched}",
+            f"Counters: {', '.join(f'{name} {count}' for name, count in counters.items())}",
         )
     )
 
 
-def _describe_qos(qos: Row) -> list[str]:
-    history = qos["history"].upper()
+def _describe_qos(qos: Qos) -> list[str]:
+    history = qos.history.upper()
     return [
-        f"Reliability: {qos['reliability'].upper()}",
-        f"History (Depth): {history}" + (f" ({qos['depth']})" if history == "KEEP_LAST" else ""),
-        f"Durability: {qos['durability'].upper()}",
-        f"Lifespan: {_duration(qos['lifespan_ns'])}",
-        f"Deadline: {_duration(qos['deadline_ns'])}",
-        f"Liveliness: {qos['liveliness'].upper()}",
-        f"Liveliness lease duration: {_duration(qos['liveliness_lease_ns'])}",
+        f"Reliability: {qos.reliability.upper()}",
+        f"History (Depth): {history}" + (f" ({qos.depth})" if history == "KEEP_LAST" else ""),
+        f"Durability: {qos.durability.upper()}",
+        f"Lifespan: {_duration(qos.lifespan_ns)}",
+        f"Deadline: {_duration(qos.deadline_ns)}",
+        f"Liveliness: {qos.liveliness.upper()}",
+        f"Liveliness lease duration: {_duration(qos.liveliness_lease_ns)}",
     ]
 
 

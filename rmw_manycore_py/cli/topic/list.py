@@ -18,7 +18,7 @@ from rmw_manycore_py.cli.common.options import (
     types_option,
 )
 from rmw_manycore_py.cli.common.printing import counted
-from rmw_manycore_py.cli.common.view import Row
+from rmw_manycore_py.cli.common.rows import Row
 
 
 @click.command("list", epilog=examples("manycore topic list -t", "manycore topic list --json"))
@@ -32,7 +32,7 @@ def command(
     platform: str, as_json: bool, show_types: bool, verbose: bool, count: bool, hidden: bool
 ) -> None:
     """List the topics of a platform."""
-    rows = view.topics(view.open_platform(platform).endpoints(), hidden=hidden)
+    rows = view.topics(view.endpoints_on(platform), hidden=hidden)
     if verbose and not as_json:
         _show_users(rows, "Published topics", "publisher")
         _show_users(rows, "Subscribed topics", "subscription")

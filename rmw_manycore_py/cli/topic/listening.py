@@ -7,10 +7,10 @@ import time
 from collections.abc import Callable, Iterable
 from typing import Any
 
+from rmw_manycore_py._transport import EndpointInfo
 from rmw_manycore_py.cli.common import view
 from rmw_manycore_py.cli.common.interface_types import load_type
 from rmw_manycore_py.cli.common.tool_node import spin_once, tool_node
-from rmw_manycore_py.cli.common.view import Row
 from rmw_manycore_py.cli.topic.qos_options import QosOptions
 from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.ros.names import expand
@@ -75,9 +75,9 @@ class Listener:
                 spin_once(node, max(end_s - time.monotonic(), 0))
 
 
-def type_of_topic(topic: str, endpoints: Iterable[Row]) -> str:
+def type_of_topic(topic: str, endpoints: Iterable[EndpointInfo]) -> str:
     """Return the one type of a topic."""
-    types: list[str] = sorted({endpoint["type"] for endpoint in endpoints})
+    types = sorted({endpoint.type for endpoint in endpoints})
     if not types:
         raise ManycoreError(f"nobody uses the topic '{topic}' yet; give its type to wait for it")
     if len(types) > 1:
@@ -85,15 +85,15 @@ def type_of_topic(topic: str, endpoints: Iterable[Row]) -> str:
     return types[0]
 
 
-def _endpoints(platform: str, topic: str) -> list[Row]:
+def _endpoints(platform: str, topic: str) -> list[EndpointInfo]:
     if platform not in view.platform_names():
         return []
-    return view.endpoints_of_topic(view.open_platform(platform).endpoints(), topic)
+    return view.endpoints_of_topic(view.endpoints_on(platform), topic)
 
 
-def offered_policies(endpoints: Iterable[Row]) -> tuple[bool, bool]:
+def offered_policies(endpoints: Iterable[EndpointInfo]) -> tuple[bool, bool]:
     """Return whether all publishers of a topic are reliable, and whether all keep messages."""
-    offers = [e["qos"] for e in endpoints if e["kind"] == "publisher"]
-    reliable = all(qos["reliability"] == "reliable" for qos in offers)
-    kept = bool(offers) and all(qos["durability"] == "transient_local" for qos in offers)
+    offers = [e.qos for e in endpoints if e.kind == "publisher"]
+    reliable = all(qos.reliability == "reliable" for qos in offers)
+    kept = bool(offers) and all(qos.durability == "transient_local" for qos in offers)
     return reliable, kept

@@ -15,4 +15,4 @@ from rmw_manycore_py.cli.common.options import examples, platform_option
 @platform_option
 def command(topic: str, platform: str) -> None:
     """Print the type of TOPIC."""
-    show_types(view.topics(view.open_platform(platform).endpoints(), hidden=True), topic, "topic")
+    show_types(view.topics(view.endpoints_on(platform), hidden=True), topic, "topic")

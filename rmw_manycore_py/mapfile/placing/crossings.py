@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 from rmw_manycore_py.errors import MapfileError
 from rmw_manycore_py.mapfile.format.model import (
@@ -14,6 +14,7 @@ from rmw_manycore_py.mapfile.format.model import (
     RouteSection,
 )
 from rmw_manycore_py.mapfile.placing.placement import BridgePlacement
+from rmw_manycore_py.qos import Policies
 from rmw_manycore_py.ros.domain import ros_domain
 from rmw_manycore_py.ros.names import expand, resolve_topic
 from rmw_manycore_py.routes import (
@@ -125,8 +126,8 @@ def _written_as(route: Route) -> str:
     return route.inside.rpartition("/")[0] if route.node is not None else route.inside
 
 
-def overrides(qos: QosSection) -> dict[str, Any]:
-    """Return the policies that were written, by their names in the registry."""
+def overrides(qos: QosSection) -> Policies:
+    """Return the policies that were written."""
     found: dict[str, Any] = {
         key: getattr(qos, key)
         for key in ("reliability", "durability", "history", "depth")
@@ -142,4 +143,4 @@ def overrides(qos: QosSection) -> dict[str, Any]:
     for key, value in times.items():
         if isinstance(value, int):
             found[key] = value if value > 0 else None
-    return found
+    return cast(Policies, found)

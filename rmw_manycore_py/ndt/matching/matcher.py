@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 
 from rmw_manycore_py import _ndt
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
+from rmw_manycore_py.native_errors import translate_native_errors
 from rmw_manycore_py.ndt.geometry.arrays import (
     Pose,
     ScanPoints,
@@ -21,13 +22,13 @@ from rmw_manycore_py.ndt.geometry.arrays import (
 from rmw_manycore_py.ndt.matching import covariance
 from rmw_manycore_py.ndt.matching.alignment import Alignment, Score
 from rmw_manycore_py.ndt.matching.answers import alignment_from, refused, score_from
-from rmw_manycore_py.ndt.matching.kernel_errors import reported
 from rmw_manycore_py.ndt.matching.level import levelled
 from rmw_manycore_py.ndt.matching.options import MatcherOptions
 from rmw_manycore_py.ndt.matching.voxel_map import VoxelMap
 
 Position = tuple[float, float]
 
+CANNOT_WORK = "the matcher cannot work"  # no memory, or workers die again and again
 FEWEST_POINTS = 6  # a pose has six unknowns, and the surface that a point lies on fixes one
 
 
@@ -141,7 +142,7 @@ class Matcher:
         self, voxel_map: VoxelMap, scan: ScanPoints, guess: Pose, position: Position | None
     ) -> Alignment:
         level = levelled(scan, guess)
-        with reported():
+        with translate_native_errors(CANNOT_WORK):
             numbers = self._native.align(voxel_map.native, level.points, level.guess, position)
         if numbers["used_points"] == 0:
             return refused(guess, "the scan has no finite point", self.options)
@@ -186,7 +187,7 @@ class Matcher:
         pose = pose_matrix(T_map_sensor)
         if why_no_pose(pose):
             return Score(0.0, 0.0, 0.0, 0)
-        with reported():
+        with translate_native_errors(CANNOT_WORK):
             return score_from(self._native.evaluate(voxel_map.native, scan, pose))
 
     def _require_map(self) -> VoxelMap:

@@ -6,7 +6,8 @@ from __future__ import annotations
 from numpy.typing import ArrayLike
 
 from rmw_manycore_py import _ndt
-from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
+from rmw_manycore_py.errors import EXIT_BAD_INPUT
+from rmw_manycore_py.native_errors import translate_native_errors
 from rmw_manycore_py.ndt.geometry.arrays import map_points
 from rmw_manycore_py.ndt.matching.options import MatcherOptions
 
@@ -29,7 +30,7 @@ class VoxelMap:
         :raises ManycoreError: when no voxel has enough points, or the points span too many voxels.
         """
         options = options or MatcherOptions()
-        try:
+        with translate_native_errors(exit_status=EXIT_BAD_INPUT):
             native = _ndt.VoxelMap(
                 map_points(points),
                 voxel_size_m=options.voxel_size_m,
@@ -37,8 +38,6 @@ class VoxelMap:
                 covariance=getattr(_ndt.VoxelCovariance, options.voxel_covariance),
                 min_points_per_voxel=options.min_points_per_voxel,
             )
-        except _ndt.NdtError as error:
-            raise ManycoreError(str(error), EXIT_BAD_INPUT) from error
         return cls(native, options)
 
     @property

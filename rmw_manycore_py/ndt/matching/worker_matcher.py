@@ -9,8 +9,8 @@ from pathlib import Path
 
 from rmw_manycore_py import _ndt
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
-from rmw_manycore_py.ndt.matching.kernel_errors import reported
-from rmw_manycore_py.ndt.matching.matcher import Matcher, native_options
+from rmw_manycore_py.native_errors import translate_native_errors
+from rmw_manycore_py.ndt.matching.matcher import CANNOT_WORK, Matcher, native_options
 from rmw_manycore_py.ndt.matching.options import MatcherOptions
 from rmw_manycore_py.ndt.matching.voxel_map import VoxelMap
 
@@ -30,18 +30,16 @@ class WorkerMatcher(Matcher):
 
     def __init__(self, options: MatcherOptions | None, host_cpus: Sequence[int]) -> None:
         options = options or MatcherOptions()
-        try:
+        with translate_native_errors(exit_status=EXIT_BAD_INPUT):
             group = _ndt.WorkerGroup(
                 native_options(options), str(_worker_program()), [int(cpu) for cpu in host_cpus]
             )
-        except _ndt.NdtError as error:
-            raise ManycoreError(str(error), EXIT_BAD_INPUT) from error
         super().__init__(options, group)
         self._group: _ndt.WorkerGroup | None = group
 
     def set_map(self, voxel_map: VoxelMap) -> None:
         """Match to this map once all workers have it at hand; if they fail the old one stays."""
-        with reported():
+        with translate_native_errors(CANNOT_WORK):
             self._require_group().prepare(voxel_map.native)
         super().set_map(voxel_map)
 

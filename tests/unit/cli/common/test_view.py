@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -11,13 +12,20 @@ from rmw_manycore_py.cli.common import view
 
 pytestmark = pytest.mark.unit
 
-COUNTERS = {"messages": 9, "lost": 0, "expired": 0, "refused": 0}
+COUNTERS = {"messages": 9, "bytes": 90, "lost": 0, "expired": 0, "refused": 0, "overwritten": 0}
 
 
-def endpoint(node: str, kind: str, role: str, topic: str, type_name: str, **more: Any) -> view.Row:
+def endpoint(node: str, kind: str, role: str, topic: str, type_name: str, **counters: int) -> Any:
     namespace, _, name = node.rpartition("/")
-    row = {"kind": kind, "role": role, "topic": topic, "type": type_name, "counters": COUNTERS}
-    return {**row, "node": name, "namespace": namespace or "/", **more}
+    return SimpleNamespace(
+        kind=kind,
+        role=role,
+        topic=topic,
+        type=type_name,
+        node_name=name,
+        node_namespace=namespace or "/",
+        counters=SimpleNamespace(**{**COUNTERS, **counters}),
+    )
 
 
 ENDPOINTS = [
@@ -66,10 +74,10 @@ def test_the_parts_of_an_action_are_shown_when_asked_for() -> None:
 
 def test_nodes_come_with_their_place() -> None:
     nodes = [
-        {"name": "talker", "namespace": "/", "process": 1},
-        {"name": "_hidden", "namespace": "/", "process": 0},
+        SimpleNamespace(name="talker", namespace="/", process=1),
+        SimpleNamespace(name="_hidden", namespace="/", process=0),
     ]
-    processes = [{"slot": 1, "cluster": 2, "core": None, "host_cpu": None, "pid": 42}]
+    processes = [SimpleNamespace(slot=1, cluster=2, core=None, host_cpu=None, pid=42)]
     names = view.node_names(nodes)
     assert names == ["/talker"]
     place = {"cluster": 2, "core": None, "host_cpu": None, "pid": 42}
@@ -77,9 +85,7 @@ def test_nodes_come_with_their_place() -> None:
 
 
 def test_only_losses_are_reported() -> None:
-    lossy = endpoint(
-        "/a/b", "subscription", "topic", "/t", "x/msg/X", counters={**COUNTERS, "lost": 3}
-    )
+    lossy = endpoint("/a/b", "subscription", "topic", "/t", "x/msg/X", lost=3)
     assert view.losses([*ENDPOINTS, lossy]) == [
         {"node": "/a/b", "topic": "/t", "counter": "lost", "count": 3}
     ]

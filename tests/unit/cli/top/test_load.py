@@ -3,6 +3,9 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+from typing import Any
+
 import pytest
 
 from rmw_manycore_py.cli.top.load import Sample, process_loads, topic_loads
@@ -10,25 +13,26 @@ from rmw_manycore_py.cli.top.load import Sample, process_loads, topic_loads
 pytestmark = pytest.mark.unit
 
 
-def endpoint(gid: str, kind: str, **counters: int) -> dict[str, object]:
-    return {"gid": gid, "kind": kind, "role": "topic", "topic": "/t", "counters": counters}
+def endpoint(gid: bytes, kind: str, **counters: int) -> Any:
+    counted = SimpleNamespace(**counters)
+    return SimpleNamespace(gid=gid, kind=kind, role="topic", topic="/t", counters=counted)
 
 
 def test_loads_are_differences() -> None:
-    process = {"pid": 7, "label": "talker", "cluster": 1, "core": 2, "host_cpu": 0}
+    process: Any = SimpleNamespace(pid=7, label="talker", cluster=1, core=2, host_cpu=0)
     before = Sample(
         10.0,
         [process],
-        [endpoint("a", "publisher", messages=5, bytes=50)],
+        [endpoint(b"a", "publisher", messages=5, bytes=50)],
         {7: 1.0, 8: 0.5},
     )
     after = Sample(
         12.0,
         [process],
         [
-            endpoint("a", "publisher", messages=9, bytes=90),
-            endpoint("b", "publisher", messages=2, bytes=20),
-            endpoint("c", "subscription", messages=3, bytes=30, lost=4),
+            endpoint(b"a", "publisher", messages=9, bytes=90),
+            endpoint(b"b", "publisher", messages=2, bytes=20),
+            endpoint(b"c", "subscription", messages=3, bytes=30, lost=4),
         ],
         {7: 1.5, 8: 0.5, 9: 3.0},
     )

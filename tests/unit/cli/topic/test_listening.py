@@ -3,25 +3,35 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+from typing import Any
+
 import pytest
 
+from rmw_manycore_py import _transport
 from rmw_manycore_py.cli.common.interface_types import load_type
 from rmw_manycore_py.cli.topic.listening import offered_policies, type_of_topic
 from rmw_manycore_py.errors import ManycoreError
+from rmw_manycore_py.words import Durability, Reliability
 
 pytestmark = pytest.mark.unit
 
 
-def publisher(reliability: str, durability: str) -> dict[str, object]:
-    return {"kind": "publisher", "qos": {"reliability": reliability, "durability": durability}}
+def publisher(reliability: Reliability, durability: Durability) -> Any:
+    qos = _transport.Qos(reliability=reliability, durability=durability)
+    return SimpleNamespace(kind="publisher", qos=qos)
+
+
+def of_type(type_name: str) -> Any:
+    return SimpleNamespace(type=type_name)
 
 
 def test_the_type_is_the_one_in_use() -> None:
-    assert type_of_topic("/t", [{"type": "a/msg/A"}, {"type": "a/msg/A"}]) == "a/msg/A"
+    assert type_of_topic("/t", [of_type("a/msg/A"), of_type("a/msg/A")]) == "a/msg/A"
     with pytest.raises(ManycoreError, match="give its type"):
         type_of_topic("/t", [])
     with pytest.raises(ManycoreError, match="a/msg/A, a/msg/B"):
-        type_of_topic("/t", [{"type": "a/msg/B"}, {"type": "a/msg/A"}])
+        type_of_topic("/t", [of_type("a/msg/B"), of_type("a/msg/A")])
 
 
 def test_types_that_are_not_there() -> None:

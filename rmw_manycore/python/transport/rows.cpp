@@ -1,0 +1,123 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+// What a platform consists of, row by row.
+
+#include "python/transport/rows.hpp"
+
+#include <nanobind/nanobind.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/string.h>
+
+#include <utility>
+
+#include "python/transport/bindings.hpp"
+#include "python/transport/gid.hpp"
+#include "python/transport/type_hash.hpp"
+#include "python/transport/words.hpp"
+
+namespace nb = nanobind;
+
+namespace manycore::python {
+namespace {
+
+auto unless_negative(int32_t ProcessRow::*member) {
+  return [member](const ProcessRow & self) {
+    return self.*member < 0 ? std::nullopt : std::optional<int32_t>(self.*member);
+  };
+}
+
+void bind_platform_info(nb::module_ & module) {
+  nb::class_<PlatformRow>(module, "PlatformInfo")
+    .def_ro("name", &PlatformRow::name)
+    .def_prop_ro("clusters", [](const PlatformRow & row) { return row.profile.clusters; })
+    .def_prop_ro(
+      "cores_per_cluster", [](const PlatformRow & row) { return row.profile.cores_per_cluster; })
+    .def_prop_ro("smem_bytes", [](const PlatformRow & row) { return row.profile.smem_bytes; })
+    .def_ro("alive", &PlatformRow::alive);
+}
+
+void bind_process_info(nb::module_ & module) {
+  nb::class_<ProcessRow>(module, "ProcessInfo")
+    .def_ro("slot", &ProcessRow::slot)
+    .def_ro("pid", &ProcessRow::pid)
+    .def_ro("cluster", &ProcessRow::cluster)
+    .def_prop_ro("core", unless_negative(&ProcessRow::core))
+    .def_prop_ro("host_cpu", unless_negative(&ProcessRow::host_cpu))
+    .def_ro("label", &ProcessRow::label)
+    .def_ro("alive", &ProcessRow::alive);
+}
+
+void bind_cluster_info(nb::module_ & module) {
+  nb::class_<ClusterRow>(module, "ClusterInfo")
+    .def_ro("id", &ClusterRow::id)
+    .def_ro("smem_bytes", &ClusterRow::smem_bytes)
+    .def_ro("used_bytes", &ClusterRow::used_bytes)
+    .def_ro("charged_bytes", &ClusterRow::charged_bytes)
+    .def_ro("receive_thread_pid", &ClusterRow::receive_thread_pid)
+    .def_ro("messages", &ClusterRow::messages)
+    .def_ro("notifications", &ClusterRow::notifications)
+    .def_ro("alive", &ClusterRow::alive);
+}
+
+void bind_node_info(nb::module_ & module) {
+  nb::class_<NodeInfo>(module, "NodeInfo")
+    .def_ro("handle", &NodeInfo::handle)
+    .def_ro("process", &NodeInfo::process)
+    .def_ro("name", &NodeInfo::name)
+    .def_ro("namespace", &NodeInfo::ns)
+    .def_ro("enclave", &NodeInfo::enclave);
+}
+
+void bind_counter_values(nb::module_ & module) {
+  nb::class_<CounterValues>(module, "CounterValues")
+    .def_ro("messages", &CounterValues::messages)
+    .def_ro("bytes", &CounterValues::bytes)
+    .def_ro("lost", &CounterValues::lost)
+    .def_ro("expired", &CounterValues::expired)
+    .def_ro("refused", &CounterValues::refused)
+    .def_ro("overwritten", &CounterValues::overwritten);
+}
+
+void bind_endpoint_info(nb::module_ & module) {
+  nb::class_<EndpointRow>(module, "EndpointInfo")
+    .def_prop_ro("kind", word<EndpointRow>(&EndpointRow::kind))
+    .def_prop_ro("role", word<EndpointRow>(&EndpointRow::role))
+    .def_ro("topic", &EndpointRow::topic)
+    .def_ro("type", &EndpointRow::type)
+    .def_prop_ro("type_hash", [](const EndpointRow & row) { return to_text(row.type_hash); })
+    .def_prop_ro("gid", [](const EndpointRow & row) { return to_bytes(row.gid); })
+    .def_ro("node_name", &EndpointRow::node_name)
+    .def_ro("node_namespace", &EndpointRow::node_namespace)
+    .def_ro("cluster", &EndpointRow::cluster)
+    .def_ro("process", &EndpointRow::process)
+    .def_ro("qos", &EndpointRow::qos)
+    .def_prop_ro("matched", [](const EndpointRow & row) { return row.matched.current; })
+    .def_ro("counters", &EndpointRow::counters);
+}
+
+}  // namespace
+
+std::vector<EndpointRow> with_node_names(
+  std::vector<EndpointInfo> endpoints, const std::vector<NodeInfo> & nodes) {
+  std::vector<EndpointRow> rows;
+  for (EndpointInfo & endpoint : endpoints) {
+    EndpointRow & row = rows.emplace_back(EndpointRow{std::move(endpoint), "", ""});
+    for (const NodeInfo & node : nodes) {
+      if (node.handle == row.node) {
+        row.node_name = node.name;
+        row.node_namespace = node.ns;
+      }
+    }
+  }
+  return rows;
+}
+
+void bind_rows(nb::module_ & module) {
+  bind_platform_info(module);
+  bind_process_info(module);
+  bind_cluster_info(module);
+  bind_node_info(module);
+  bind_counter_values(module);
+  bind_endpoint_info(module);
+}
+
+}  // namespace manycore::python

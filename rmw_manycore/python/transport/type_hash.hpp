@@ -1,0 +1,16 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "transport/layout/endpoint.hpp"
+
+namespace manycore::python {
+
+/// "RIHS01_" and 64 hexadecimal digits.
+std::string to_text(const TypeHash & hash);
+
+/// ValueError in Python for anything but the text of a type hash.
+TypeHash type_hash_from(const std::string & text);
+
+}  // namespace manycore::python

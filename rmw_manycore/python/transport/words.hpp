@@ -1,0 +1,45 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "python/words.hpp"
+#include "transport/layout/endpoint.hpp"
+
+namespace manycore::python {
+
+template<>
+struct Words<Reliability> {
+  static constexpr const char * name = "reliability";
+  static constexpr std::array<const char *, 2> all = {"best_effort", "reliable"};
+};
+
+template<>
+struct Words<Durability> {
+  static constexpr const char * name = "durability";
+  static constexpr std::array<const char *, 2> all = {"volatile", "transient_local"};
+};
+
+template<>
+struct Words<History> {
+  static constexpr const char * name = "history";
+  static constexpr std::array<const char *, 2> all = {"keep_last", "keep_all"};
+};
+
+template<>
+struct Words<Liveliness> {
+  static constexpr const char * name = "liveliness";
+  static constexpr std::array<const char *, 2> all = {"automatic", "manual_by_topic"};
+};
+
+template<>
+struct Words<EndpointKind> {
+  static constexpr const char * name = "kind";
+  static constexpr std::array<const char *, 2> all = {"publisher", "subscription"};
+};
+
+template<>
+struct Words<EndpointRole> {
+  static constexpr const char * name = "role";
+  static constexpr std::array<const char *, 3> all = {"topic", "request", "reply"};
+};
+
+}  // namespace manycore::python

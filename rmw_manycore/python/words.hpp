@@ -1,0 +1,54 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <nanobind/nanobind.h>
+
+#include <array>
+#include <cstddef>
+#include <string>
+
+#include "platform/error.hpp"
+
+namespace manycore::python {
+
+/// Python sees an enumeration as words, which it types as Literal: files, parameters and JSON hold
+/// the same words. A specialisation has `name`, for messages, and `all`, in the order of the
+/// values.
+template<typename Enum>
+struct Words;
+
+/// Throws Error{corrupt} for a value from shared memory that the enumeration does not have.
+template<typename Enum>
+const char * word_of(Enum value) {
+  const auto index = static_cast<size_t>(value);
+  if (index >= Words<Enum>::all.size()) {
+    throw Error(
+      ErrorCode::corrupt, std::string(Words<Enum>::name) + ": unknown value " +
+                            std::to_string(index) + " in shared memory");
+  }
+  return Words<Enum>::all[index];
+}
+
+/// ValueError in Python for a word that the enumeration does not have.
+template<typename Enum>
+Enum from_word(const std::string & word) {
+  constexpr auto & all = Words<Enum>::all;
+  std::string expected;
+  for (size_t i = 0; i < all.size(); ++i) {
+    if (word == all[i]) {
+      return static_cast<Enum>(i);
+    }
+    expected += (i == 0 ? "'" : i + 1 < all.size() ? ", '" : " or '") + std::string(all[i]) + "'";
+  }
+  const std::string name = Words<Enum>::name;
+  throw nanobind::value_error((name + ": expected " + expected + ", found '" + word + "'").c_str());
+}
+
+/// The getter of an attribute that is an enumeration; `Class` is the bound one, which may derive
+/// it.
+template<typename Class, typename Base, typename Enum>
+auto word(Enum Base::*member) {
+  return [member](const Class & self) { return word_of(self.*member); };
+}
+
+}  // namespace manycore::python

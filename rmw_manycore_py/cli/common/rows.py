@@ -1,0 +1,80 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""The parts of a platform as --json prints them."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from rmw_manycore_py import _transport
+from rmw_manycore_py.qos import policies_of
+
+Row = dict[str, Any]
+
+
+def platform_row(info: _transport.PlatformInfo) -> Row:
+    """Return the shape of a platform."""
+    return {
+        "name": info.name,
+        "clusters": info.clusters,
+        "cores_per_cluster": info.cores_per_cluster,
+        "smem_size": info.smem_bytes,
+        "alive": info.alive,
+    }
+
+
+def cluster_row(cluster: _transport.ClusterInfo) -> Row:
+    """Return the state of a cluster."""
+    return {
+        "id": cluster.id,
+        "smem_size": cluster.smem_bytes,
+        "used": cluster.used_bytes,
+        "charged": cluster.charged_bytes,
+        "receive_thread_pid": cluster.receive_thread_pid,
+        "messages": cluster.messages,
+        "notifications": cluster.notifications,
+        "alive": cluster.alive,
+    }
+
+
+def process_row(process: _transport.ProcessInfo) -> Row:
+    """Return a process and its place."""
+    return {
+        "slot": process.slot,
+        "pid": process.pid,
+        "cluster": process.cluster,
+        "core": process.core,
+        "host_cpu": process.host_cpu,
+        "label": process.label,
+        "alive": process.alive,
+    }
+
+
+def counters_row(counters: _transport.CounterValues) -> dict[str, int]:
+    """Return what an endpoint has counted."""
+    return {
+        "messages": counters.messages,
+        "bytes": counters.bytes,
+        "lost": counters.lost,
+        "expired": counters.expired,
+        "refused": counters.refused,
+        "overwritten": counters.overwritten,
+    }
+
+
+def endpoint_row(endpoint: _transport.EndpointInfo) -> Row:
+    """Return a publisher or subscription."""
+    return {
+        "kind": endpoint.kind,
+        "role": endpoint.role,
+        "topic": endpoint.topic,
+        "type": endpoint.type,
+        "type_hash": endpoint.type_hash,
+        "gid": endpoint.gid.hex(),
+        "node": endpoint.node_name,
+        "namespace": endpoint.node_namespace,
+        "cluster": endpoint.cluster,
+        "process": endpoint.process,
+        "qos": policies_of(endpoint.qos),
+        "matched": endpoint.matched,
+        "counters": counters_row(endpoint.counters),
+    }

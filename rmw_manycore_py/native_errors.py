@@ -1,0 +1,23 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Errors of the native modules, as the one error that callers know."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from rmw_manycore_py import _ndt, _transport
+from rmw_manycore_py.errors import EXIT_FAILURE, ManycoreError, what_is_wrong
+
+
+@contextmanager
+def translate_native_errors(subject: str = "", exit_status: int = EXIT_FAILURE) -> Iterator[None]:
+    """Raise a ManycoreError for an error of `_transport` or `_ndt`, or where memory ran out.
+
+    :param subject: what failed, for the beginning of the message.
+    """
+    try:
+        yield
+    except (_transport.PlatformError, _ndt.NdtError, MemoryError) as error:
+        text = what_is_wrong(error)
+        raise ManycoreError(f"{subject}: {text}" if subject else text, exit_status) from error
