@@ -1,45 +1,29 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 """The native scan matcher."""
 
-import enum
-from typing import Any
-
 import numpy as np
 from numpy.typing import NDArray
 
-class NdtError(RuntimeError): ...
+from rmw_manycore_py.words import Outcome, Search, StepRule, VoxelCovariance
 
-class Search(enum.Enum):
-    radius = 0
-    direct7 = 1
-    direct1 = 2
+class NdtError(RuntimeError):
+    """Something is wrong with a map, a host CPU or the workers; the message says what."""
 
-class VoxelCovariance(enum.Enum):
-    pcl = 0
-    autoware = 1
-    pclomp = 2
+class MapOptions:
+    """What a map is built with; :class:`MatcherOptions` describes each and has the defaults."""
 
-class StepRule(enum.Enum):
-    trust_region = 0
-    clamped = 1
-    more_thuente = 2
-
-class VoxelMap:
     def __init__(
         self,
-        points: NDArray[np.float64],
         *,
         voxel_size_m: float,
         search: Search,
         covariance: VoxelCovariance,
         min_points_per_voxel: int,
     ) -> None: ...
-    @property
-    def voxels(self) -> int: ...
-    @property
-    def size_bytes(self) -> int: ...
 
 class MatchOptions:
+    """What scans are matched with; :class:`MatcherOptions` describes each and has the defaults."""
+
     def __init__(
         self,
         *,
@@ -51,7 +35,66 @@ class MatchOptions:
         regularization_scale_factor: float,
     ) -> None: ...
 
+class VoxelMap:
+    """The normal distributions of points (N, 3) [m, map frame], in memory that workers share."""
+
+    def __init__(self, points: NDArray[np.float64], options: MapOptions) -> None: ...
+    @property
+    def voxels(self) -> int:
+        """Number of voxels with a normal distribution."""
+
+    @property
+    def size_bytes(self) -> int: ...
+
+class Derivatives:
+    """Score at a pose, to be maximised, and its derivatives by x, y, z, roll, pitch, yaw."""
+
+    @property
+    def score(self) -> float:
+        """Sum over points and the voxels they see (Magnusson, eq. 6.9)."""
+
+    @property
+    def nearest(self) -> float:
+        """Sum over points of their best voxel's score."""
+
+    @property
+    def pairs(self) -> float:
+        """Number of pairs of a point and a voxel that it sees."""
+
+    @property
+    def points(self) -> float:
+        """Number of points that see a voxel."""
+
+    @property
+    def scan_points(self) -> int:
+        """Number of finite points of the scan."""
+
+    @property
+    def gradient(self) -> NDArray[np.float64]:
+        """(6,), per m and rad."""
+
+    @property
+    def hessian(self) -> NDArray[np.float64]:
+        """(6, 6), per m and rad."""
+
+class NewtonResult:
+    """Where an alignment ended."""
+
+    @property
+    def outcome(self) -> Outcome: ...
+    @property
+    def iterations(self) -> int: ...
+    @property
+    def pose(self) -> NDArray[np.float64]:
+        """T_map_sensor (4, 4)."""
+
+    @property
+    def at(self) -> Derivatives:
+        """The derivatives at this pose."""
+
 class SerialMatcher:
+    """Matches scans (N, 3) [m, sensor frame] on the calling thread."""
+
     def __init__(self, options: MatchOptions) -> None: ...
     def align(
         self,
@@ -59,36 +102,14 @@ class SerialMatcher:
         points: NDArray[np.float32],
         guess: NDArray[np.float64],
         regularization_position_m: tuple[float, float] | None = None,
-    ) -> dict[str, Any]: ...
+    ) -> NewtonResult: ...
     def evaluate(
         self, map: VoxelMap, points: NDArray[np.float32], pose: NDArray[np.float64]
-    ) -> dict[str, Any]: ...
-    def time_passes_ns(
-        self, map: VoxelMap, points: NDArray[np.float32], pose: NDArray[np.float64], passes: int
-    ) -> list[float]: ...
-    def time_shares_ns(
-        self, map: VoxelMap, points: NDArray[np.float32], pose: NDArray[np.float64], workers: int
-    ) -> list[float]: ...
-    def profile_ns(
-        self, map: VoxelMap, points: NDArray[np.float32], guess: NDArray[np.float64]
-    ) -> dict[str, float]: ...
-
-class ThreadMatcher:
-    def __init__(
-        self, options: MatchOptions, derivative_cpus: list[int], search_cpus: list[int]
-    ) -> None: ...
-    def align(
-        self,
-        map: VoxelMap,
-        points: NDArray[np.float32],
-        guess: NDArray[np.float64],
-        regularization_position_m: tuple[float, float] | None = None,
-    ) -> dict[str, Any]: ...
-    def evaluate(
-        self, map: VoxelMap, points: NDArray[np.float32], pose: NDArray[np.float64]
-    ) -> dict[str, Any]: ...
+    ) -> Derivatives: ...
 
 class WorkerGroup:
+    """Matches on worker processes that run `program`, one per host CPU."""
+
     def __init__(self, options: MatchOptions, program: str, host_cpus: list[int]) -> None: ...
     def align(
         self,
@@ -96,14 +117,22 @@ class WorkerGroup:
         points: NDArray[np.float32],
         guess: NDArray[np.float64],
         regularization_position_m: tuple[float, float] | None = None,
-    ) -> dict[str, Any]: ...
+    ) -> NewtonResult: ...
     def evaluate(
         self, map: VoxelMap, points: NDArray[np.float32], pose: NDArray[np.float64]
-    ) -> dict[str, Any]: ...
-    def prepare(self, map: VoxelMap) -> None: ...
-    def memory_bytes(self, points: int) -> int: ...
-    def pids(self) -> list[int]: ...
-    def busy_ns(self) -> list[float]: ...
-    def replaced(self) -> int: ...
+    ) -> Derivatives: ...
+    def prepare(self, map: VoxelMap) -> None:
+        """Let the workers map it, so that the next alignment need not wait for that."""
 
-def simd() -> str: ...
+    def memory_bytes(self, points: int) -> int:
+        """Return what is shared with the workers beside the map, for scans of `points` points."""
+
+    def pids(self) -> list[int]: ...
+    def busy_ns(self) -> list[float]:
+        """Return how long each worker was busy in the last job."""
+
+    def replaced(self) -> int:
+        """Return how many workers had to be replaced so far."""
+
+def simd() -> str:
+    """Return the kind of vector instructions that the kernel uses: avx512, avx2 or portable."""

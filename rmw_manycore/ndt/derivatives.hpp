@@ -1,7 +1,7 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <optional>
+#include <cstdint>
 
 #include "ndt/matrix.hpp"
 #include "ndt/options.hpp"
@@ -24,7 +24,8 @@ struct Derivatives {
   double score = 0;
   double nearest = 0;  ///< sum over points of the best voxel's score
   double pairs = 0;
-  double points = 0;  ///< that see a voxel
+  double points = 0;         ///< that see a voxel
+  uint64_t scan_points = 0;  ///< finite points of the scan
   Vector6 gradient{};
   Matrix6 hessian{};
 };

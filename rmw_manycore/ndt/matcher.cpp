@@ -20,6 +20,7 @@ Derivatives finish_pass(const Problem & problem, const TangentSums & sums, const
   if (problem.regularization) {
     regularize(*problem.regularization, pose, d);
   }
+  d.scan_points = problem.scan.points;
   return d;
 }
 

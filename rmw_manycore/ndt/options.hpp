@@ -27,20 +27,21 @@ enum class StepRule : uint32_t {
   more_thuente,  ///< More and Thuente's line search up to step_size (PCL)
 };
 
+/// Without defaults: those are of MatcherOptions in rmw_manycore_py/ndt.
 struct MapOptions {
-  double voxel_size_m = 2.0;
-  Search search = Search::direct7;
-  VoxelCovariance covariance = VoxelCovariance::autoware;
-  uint32_t min_points_per_voxel = 6;
+  double voxel_size_m;
+  Search search;
+  VoxelCovariance covariance;
+  uint32_t min_points_per_voxel;
 };
 
 struct MatchOptions {
-  StepRule step_rule = StepRule::trust_region;
-  uint32_t max_iterations = 30;
-  double step_size = 0.1;  ///< longest step in (m, rad), of the other two rules
-  double trans_epsilon = 0.01;
-  double outlier_ratio = 0.55;
-  double regularization_scale_factor = 0.0;
+  StepRule step_rule;
+  uint32_t max_iterations;
+  double step_size;  ///< longest step in (m, rad), of clamped and more_thuente
+  double trans_epsilon;
+  double outlier_ratio;
+  double regularization_scale_factor;
 };
 
 }  // namespace manycore::ndt

@@ -2,20 +2,11 @@
 #pragma once
 
 #include <optional>
-#include <vector>
 
 #include "ndt/aligned_floats.hpp"
 #include "ndt/matcher.hpp"
 
 namespace manycore::ndt {
-
-/// Where the time of an alignment goes.
-struct Profile {
-  double lay_out_ns;
-  double search_ns;
-  double derivatives_ns;
-  double total_ns;
-};
 
 /// Matches on the calling thread.
 class SerialMatcher {
@@ -29,16 +20,6 @@ public:
     const std::optional<Regularization> & regularization);
   /// Derivatives at a pose.
   Derivatives evaluate(const VoxelMap & map, const float * xyz_m, size_t count, const Pose6 & pose);
-  /// What each of so many passes at a pose takes, without laying out the scan.
-  std::vector<double> time_passes_ns(
-    const VoxelMap & map, const float * xyz_m, size_t count, const Pose6 & pose, size_t passes);
-  /// What each of so many workers' shares of a pass takes when this thread does all of them.
-  std::vector<double> time_shares_ns(
-    const VoxelMap & map, const float * xyz_m, size_t count, const Pose6 & pose, size_t workers);
-  /// An alignment with search and derivatives one after the other, each timed.
-  Profile profile(const VoxelMap & map, const float * xyz_m, size_t count, const Pose6 & guess);
-  /// Points that counted in the last call.
-  size_t used_points() const noexcept { return used_points_; }
 
 private:
   Problem problem(const VoxelMap & map, const float * xyz_m, size_t count);
@@ -46,7 +27,6 @@ private:
   MatchOptions options_;
   Kernel kernel_;
   AlignedFloats scan_;
-  size_t used_points_ = 0;
 };
 
 }  // namespace manycore::ndt

@@ -34,8 +34,6 @@ public:
   uint64_t replaced() const noexcept { return replaced_; }
   /// Memory shared with the workers, beside the map, once a scan of `points` points was aligned.
   uint64_t memory_bytes(size_t points) const noexcept;
-  /// Points that counted in the last call.
-  size_t used_points() const noexcept { return session_.what.points; }
 
 private:
   void put_scan(const float * xyz_m, size_t count);

@@ -13,7 +13,7 @@ import pytest
 from ndt_world import errors, pose, scan_at, street
 
 from rmw_manycore_py.ndt import MatcherOptions, SerialMatcher, VoxelMap
-from rmw_manycore_py.ndt.matching.options import Search, VoxelCovariance
+from rmw_manycore_py.words import Search, VoxelCovariance
 
 pytestmark = pytest.mark.integration
 

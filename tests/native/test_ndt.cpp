@@ -54,6 +54,9 @@ std::vector<Simd> kinds() {
   return found;
 }
 
+MapOptions map_options(Search search) { return {2.0, search, VoxelCovariance::autoware, 6}; }
+
+const MatchOptions match_options{StepRule::trust_region, 30, 0.1, 0.01, 0.55, 0.0};
 const Pose6 pose{0.3, -0.2, 0.1, 0.02, -0.03, 0.4};
 
 }  // namespace
@@ -61,20 +64,19 @@ const Pose6 pose{0.3, -0.2, 0.1, 0.02, -0.03, 0.4};
 TEST_CASE("every kind of CPU adds up the same, whatever the size of the scan") {
   const std::vector<double> points = ground();
   for (const Search search : {Search::radius, Search::direct7, Search::direct1}) {
-    MapOptions options;
-    options.search = search;
-    const VoxelMap map = build_voxel_map(points.data(), points.size() / 3, options);
+    const VoxelMap map = build_voxel_map(points.data(), points.size() / 3, map_options(search));
     for (const size_t count : {0, 1, 15, 16, 17, 1535, 1536, 1537, 60000}) {
       const std::vector<float> scan = scan_of(count);
       AlignedFloats floats;
       const ScanView view =
         lay_out_scan(scan.data(), count, floats.with_room_for(scan_floats(count)));
-      const Problem problem{map.view(), view, {}, {}};
+      const Problem problem{map.view(), view, match_options, {}};
       const Derivatives expected = evaluate_alone(problem, kernel_portable(), pose);
       for (const Simd simd : kinds()) {
         const Derivatives found = evaluate_alone(problem, kernel_of(simd), pose);
         CHECK(found.pairs == expected.pairs);
         CHECK(found.points == expected.points);
+        CHECK(found.scan_points == count);
         CHECK(found.score == doctest::Approx(expected.score).epsilon(1e-5));
         for (size_t i = 0; i < 6; ++i) {
           CHECK(found.hessian[i][i] == doctest::Approx(expected.hessian[i][i]).epsilon(1e-3));
@@ -86,7 +88,8 @@ TEST_CASE("every kind of CPU adds up the same, whatever the size of the scan") {
 
 TEST_CASE("search and derivatives apart are the pass") {
   const std::vector<double> points = ground();
-  const VoxelMap map = build_voxel_map(points.data(), points.size() / 3, {});
+  const VoxelMap map =
+    build_voxel_map(points.data(), points.size() / 3, map_options(Search::direct7));
   const std::vector<float> scan = scan_of(5000);
   AlignedFloats floats;
   const ScanView view = lay_out_scan(scan.data(), 5000, floats.with_room_for(scan_floats(5000)));
@@ -105,7 +108,8 @@ TEST_CASE("search and derivatives apart are the pass") {
 
 TEST_CASE("cells that see nothing have the empty list") {
   const std::vector<double> points = ground();
-  const VoxelMap map = build_voxel_map(points.data(), points.size() / 3, {});
+  const VoxelMap map =
+    build_voxel_map(points.data(), points.size() / 3, map_options(Search::direct7));
   CHECK(find_list(map.view(), 0) == empty_list);
   CHECK(map.view().lists[empty_list] == 0);
 }

@@ -18,8 +18,8 @@ NATIVE_BELOW = {
     "transport": {"platform"},
     "rmw": {"platform", "transport"},
     "ndt": {"platform"},
-    "python": {"platform", "transport", "ndt", "bench"},
-    "bench": {"platform", "transport", "ndt"},
+    "python": {"platform", "transport", "ndt"},
+    "bench": {"platform", "transport", "ndt", "python"},
 }
 # Folders inside these directories, lowest first. Files directly in the directory are its face,
 # above all of its folders.

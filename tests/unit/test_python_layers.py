@@ -18,7 +18,7 @@ ROOTS = (REPOSITORY, REPOSITORY / "bridge", REPOSITORY / "startup")
 LAYERS = [
     ("rmw_manycore_hook", "rmw_manycore_py", ".errors", ".examples", ".words"),
     ("._transport", "._ndt"),
-    (".native_errors", ".qos"),
+    ("._ndt_bench", ".native_errors", ".qos"),
     (".figures", ".ros", ".routes", ".signals", ".topology"),
     (".bridge_plan",),
     (".mapfile.format",),

@@ -27,8 +27,6 @@ public:
     const VoxelMap & map, const float * xyz_m, size_t count, const Pose6 & guess,
     const std::optional<Regularization> & regularization);
   Derivatives evaluate(const VoxelMap & map, const float * xyz_m, size_t count, const Pose6 & pose);
-  /// Points that counted in the last call.
-  size_t used_points() const noexcept { return problem_.scan.points; }
 
 private:
   void put(const VoxelMap & map, const float * xyz_m, size_t count);

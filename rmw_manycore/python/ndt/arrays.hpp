@@ -4,7 +4,8 @@
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 
-#include "ndt/newton.hpp"
+#include <algorithm>
+
 #include "ndt/pose.hpp"
 
 namespace manycore::ndt::python {
@@ -16,11 +17,10 @@ using FloatPoints =
 using PoseMatrix =
   nanobind::ndarray<const double, nanobind::shape<4, 4>, nanobind::c_contig, nanobind::device::cpu>;
 
-Pose6 pose_from(const PoseMatrix & matrix);
-
-/// Score, counts, gradient (6) and hessian (36, row by row) as lists.
-nanobind::dict to_dict(const Derivatives & derivatives);
-/// The same with the outcome's name, iterations, and the pose as 16 numbers, row by row.
-nanobind::dict to_dict(const NewtonResult & result);
+inline Pose6 pose_from(const PoseMatrix & matrix) {
+  Pose4x4 rows;
+  std::copy_n(matrix.data(), rows.size(), rows.begin());
+  return to_pose6(rows);
+}
 
 }  // namespace manycore::ndt::python

@@ -5,7 +5,9 @@
 
 namespace manycore::ndt::python {
 
+void bind_options(nanobind::module_ & module);
 void bind_voxel_map(nanobind::module_ & module);
+void bind_results(nanobind::module_ & module);
 void bind_matchers(nanobind::module_ & module);
 
 }  // namespace manycore::ndt::python

@@ -8,9 +8,12 @@
 namespace nb = nanobind;
 
 NB_MODULE(_ndt, module) {
+  using namespace manycore::ndt;
   module.doc() = "The scan matcher of rmw_manycore; used through rmw_manycore_py.ndt.";
   const nb::exception<manycore::Error> error(module, "NdtError", PyExc_RuntimeError);
-  manycore::ndt::python::bind_voxel_map(module);
-  manycore::ndt::python::bind_matchers(module);
-  module.def("simd", [] { return manycore::ndt::name_of(manycore::ndt::choose_simd()); });
+  python::bind_options(module);
+  python::bind_voxel_map(module);
+  python::bind_results(module);
+  python::bind_matchers(module);
+  module.def("simd", [] { return name_of(choose_simd()); });
 }

@@ -8,16 +8,17 @@ from collections.abc import Sequence
 from contextlib import ExitStack
 from dataclasses import replace
 
-from rmw_manycore_py import _ndt
+from rmw_manycore_py import _ndt_bench
 from rmw_manycore_py.bench.ndt.apart import Align, apart, matchers_apart
 from rmw_manycore_py.bench.ndt.contenders import VOXEL_SIZE_M, map_for, on_cpu, usable
 from rmw_manycore_py.bench.ndt.peers import PYTHON_PEERS, Peer, all_peers
 from rmw_manycore_py.bench.ndt.world import world
 from rmw_manycore_py.bench.question import Measure, Question, Run
 from rmw_manycore_py.bench.summary import Curve, Goal, Result
-from rmw_manycore_py.ndt import MatcherOptions, SerialMatcher, WorkerMatcher
+from rmw_manycore_py.ndt import MatcherOptions, WorkerMatcher
 from rmw_manycore_py.ndt.geometry.arrays import scan_points
-from rmw_manycore_py.ndt.matching.matcher import Matcher, native_options
+from rmw_manycore_py.ndt.matching.kernel_options import match_options
+from rmw_manycore_py.ndt.matching.matcher import Matcher
 
 NAME = f"time per scan, direct7, {VOXEL_SIZE_M:g} m"
 TAIL = "time per scan / median of that scan"
@@ -53,8 +54,8 @@ def measure(run: Run) -> list[Result]:
             matcher.set_map(voxel_map)
             contenders[workers(count)] = _own(run, matcher.align)
             curves[workers(count)] = Curve("rmw_manycore workers", count)
-            threaded = SerialMatcher(options)
-            threaded._native = _ndt.ThreadMatcher(native_options(options), cpus[:count], [])
+            native = _ndt_bench.ThreadMatcher(match_options(options), cpus[:count], [])
+            threaded = stack.enter_context(Matcher(options, native))
             threaded.set_map(voxel_map)
             contenders[threads(count)] = _own(run, threaded.align)
             curves[threads(count)] = Curve("threads", count)
@@ -105,13 +106,13 @@ def _mixed(result: Result) -> Result:
 def _imbalance(run: Run, options: MatcherOptions) -> list[Result]:
     """Return how evenly a pass is dealt to 16 workers, each scan's shares timed on one CPU."""
     voxel_map = map_for(options)
-    matcher = _ndt.SerialMatcher(native_options(options))
+    profiler = _ndt_bench.Profiler(match_options(options))
     found = []
     with on_cpu(usable()[0]):
         for scan, pose in zip(world().scans, world().poses, strict=True):
             points = scan_points(scan)
             shares = [
-                matcher.time_shares_ns(voxel_map.native, points, pose, MOST_WORKERS)
+                profiler.time_shares_ns(voxel_map.native, points, pose, MOST_WORKERS)
                 for _ in range(run.iterations(SHARE_REPEATS))
             ]
             # The fastest of each: what the share itself takes, undisturbed.

@@ -7,9 +7,9 @@ import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from rmw_manycore_py import _ndt
+from rmw_manycore_py import _ndt, _ndt_bench
 from rmw_manycore_py.ndt import MatcherOptions, VoxelMap
-from rmw_manycore_py.ndt.matching.matcher import native_options
+from rmw_manycore_py.ndt.matching.kernel_options import match_options
 
 SIMD_VARIABLE = "MANYCORE_NDT_SIMD"
 SIMDS = ("avx512", "avx2", "portable")
@@ -32,14 +32,14 @@ def on_cpu(cpu: int) -> Iterator[None]:
         os.sched_setaffinity(0, before)
 
 
-def serial_of_each_kind(options: MatcherOptions) -> dict[str, _ndt.SerialMatcher]:
-    """Return a matcher for each kind of CPU code that this CPU can run."""
+def profiler_of_each_kind(options: MatcherOptions) -> dict[str, _ndt_bench.Profiler]:
+    """Return a profiler for each kind of CPU code that this CPU can run."""
     before = os.environ.get(SIMD_VARIABLE)
     found = {}
     for simd in SIMDS:
         os.environ[SIMD_VARIABLE] = simd
         try:
-            found[simd] = _ndt.SerialMatcher(native_options(options))
+            found[simd] = _ndt_bench.Profiler(match_options(options))
         except _ndt.NdtError:
             continue
     os.environ.pop(SIMD_VARIABLE)

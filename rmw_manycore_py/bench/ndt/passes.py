@@ -5,12 +5,12 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from rmw_manycore_py import _ndt
+from rmw_manycore_py import _ndt_bench
 from rmw_manycore_py.bench.ndt.contenders import (
     VOXEL_SIZE_M,
     map_for,
     on_cpu,
-    serial_of_each_kind,
+    profiler_of_each_kind,
     usable,
 )
 from rmw_manycore_py.bench.ndt.peers import Peer, all_peers
@@ -18,7 +18,7 @@ from rmw_manycore_py.bench.ndt.world import world
 from rmw_manycore_py.bench.question import Measure, Question, Run
 from rmw_manycore_py.bench.summary import Goal, Result
 from rmw_manycore_py.ndt import MatcherOptions, SerialMatcher
-from rmw_manycore_py.ndt.matching.options import Search, VoxelCovariance
+from rmw_manycore_py.words import Search, VoxelCovariance
 
 PASSES = 20
 SCORE = "score, off the peer's"
@@ -67,13 +67,13 @@ def _measure_kind(
     options = MatcherOptions(voxel_size_m=VOXEL_SIZE_M, search=search, voxel_covariance=covariance)
     voxel_map = map_for(options)
     contenders: dict[str, Measure] = {}
-    for simd, matcher in serial_of_each_kind(options).items():
+    for simd, profiler in profiler_of_each_kind(options).items():
 
-        def own(matcher: _ndt.SerialMatcher = matcher) -> list[float]:
+        def own(profiler: _ndt_bench.Profiler = profiler) -> list[float]:
             found = []
             for scan, pose in zip(world().scans, world().poses, strict=True):
                 passes = run.iterations(PASSES)
-                times = matcher.time_passes_ns(voxel_map.native, scan, pose, passes)
+                times = profiler.time_passes_ns(voxel_map.native, scan, pose, passes)
                 found += [time_ns / len(scan) for time_ns in times]
             return found
 

@@ -6,14 +6,14 @@ from __future__ import annotations
 import time
 from dataclasses import replace
 
-from rmw_manycore_py import _ndt
+from rmw_manycore_py import _ndt_bench
 from rmw_manycore_py.bench.ndt.contenders import VOXEL_SIZE_M, map_for, on_cpu, usable
 from rmw_manycore_py.bench.ndt.world import world
 from rmw_manycore_py.bench.question import Measure, Question, Run
 from rmw_manycore_py.bench.summary import Curve, Goal, Result
 from rmw_manycore_py.ndt import MatcherOptions
 from rmw_manycore_py.ndt.geometry.arrays import scan_points
-from rmw_manycore_py.ndt.matching.matcher import native_options
+from rmw_manycore_py.ndt.matching.kernel_options import match_options
 
 SPLIT = f"search + derivatives apart, radius, {VOXEL_SIZE_M:g} m"
 PROFILE = f"share of an alignment, radius, {VOXEL_SIZE_M:g} m"
@@ -40,11 +40,11 @@ def _measure_split(run: Run, options: MatcherOptions) -> list[Result]:
         name = f"{derivatives} for derivatives, {search} for the search" if search else WHOLE
         curve = f"{search} for the search, the others for derivatives" if search else WHOLE
         curves[f"rmw_manycore {name}"] = Curve(curve, derivatives + search)
-        matcher = _ndt.ThreadMatcher(
-            native_options(options), cpus[:derivatives], cpus[derivatives : derivatives + search]
+        matcher = _ndt_bench.ThreadMatcher(
+            match_options(options), cpus[:derivatives], cpus[derivatives : derivatives + search]
         )
 
-        def aligned(matcher: _ndt.ThreadMatcher = matcher) -> list[float]:
+        def aligned(matcher: _ndt_bench.ThreadMatcher = matcher) -> list[float]:
             times = []
             for _ in range(run.iterations(REPEATS)):
                 for scan, guess in zip(world().scans, world().guesses, strict=True):
@@ -71,12 +71,12 @@ def _ways(cores: int) -> list[tuple[int, int]]:
 
 def _measure_profile(run: Run, options: MatcherOptions) -> list[Result]:
     voxel_map = map_for(options)
-    matcher = _ndt.SerialMatcher(native_options(options))
+    profiler = _ndt_bench.Profiler(match_options(options))
     shares: dict[str, list[float]] = {}
     with on_cpu(usable()[0]):
         for _ in range(run.iterations(REPEATS)):
             for scan, guess in zip(world().scans, world().guesses, strict=True):
-                times = matcher.profile_ns(voxel_map.native, scan_points(scan), guess)
+                times = profiler.profile(voxel_map.native, scan_points(scan), guess)
                 for name, share in _shares(times).items():
                     shares.setdefault(name, []).append(100 * share)
     return [
@@ -85,15 +85,15 @@ def _measure_profile(run: Run, options: MatcherOptions) -> list[Result]:
     ]
 
 
-def _shares(times_ns: dict[str, float]) -> dict[str, float]:
+def _shares(times: _ndt_bench.Profile) -> dict[str, float]:
     """Return the shares of an alignment; ROS-lite2 (Fig. 9) has 99 % for search and derivatives."""
-    both_ns = times_ns["search"] + times_ns["derivatives"]
+    both_ns = times.search_ns + times.derivatives_ns
     return {
-        "laying out the scan": times_ns["lay_out"] / times_ns["total"],
-        "search": times_ns["search"] / times_ns["total"],
-        "derivatives": times_ns["derivatives"] / times_ns["total"],
-        "search + derivatives": both_ns / times_ns["total"],
-        PASSES: both_ns / (times_ns["total"] - times_ns["lay_out"]),
+        "laying out the scan": times.lay_out_ns / times.total_ns,
+        "search": times.search_ns / times.total_ns,
+        "derivatives": times.derivatives_ns / times.total_ns,
+        "search + derivatives": both_ns / times.total_ns,
+        PASSES: both_ns / (times.total_ns - times.lay_out_ns),
     }
 
 

@@ -5,7 +5,19 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+
+from rmw_manycore_py import _ndt
 from rmw_manycore_py.ndt.geometry.arrays import Matrix6, Pose
+from rmw_manycore_py.ndt.matching.options import MatcherOptions
+from rmw_manycore_py.words import Outcome
+
+WHY: dict[Outcome, str] = {
+    "converged": "",
+    "iteration_limit": "still moving after max_iterations steps",
+    "no_overlap": "no point of the scan lies in the map: wrong guess, or a map of another place",
+    "degenerate": "the scan does not say where it fits: too few points, or too far from the map",
+}
 
 
 @dataclass(frozen=True)
@@ -23,6 +35,17 @@ class Score:
     transform_probability: float
     nearest_voxel_likelihood: float
     points_in_map: int
+
+    @classmethod
+    def of(cls, found: _ndt.Derivatives) -> Score:
+        """Return the score that the kernel found."""
+        seen, points = found.points, found.scan_points
+        return cls(
+            score=found.score,
+            transform_probability=found.score / points if points else 0.0,
+            nearest_voxel_likelihood=found.nearest / seen if seen else 0.0,
+            points_in_map=int(seen),
+        )
 
 
 @dataclass(frozen=True)
@@ -48,3 +71,43 @@ class Alignment:
     why: str
     guesses_around: tuple[Pose, ...] = ()
     results_around: tuple[Pose, ...] = ()
+
+    @classmethod
+    def of(cls, found: _ndt.NewtonResult, options: MatcherOptions) -> Alignment:
+        """Return the alignment that the kernel found.
+
+        A pose from which the score does not fall in all directions is no result: scans of a few
+        points have no best place.
+        """
+        score = Score.of(found.at)
+        values, vectors = np.linalg.eigh(-found.at.hessian)
+        is_maximum = bool(values[0] > 0)
+        ended = found.outcome
+        outcome = "degenerate" if ended == "converged" and not is_maximum else ended
+        covariance: Matrix6 = np.diag(options.fixed_pose_variances)
+        if options.pose_covariance == "laplace" and is_maximum:
+            covariance = (vectors / values) @ vectors.T
+        return cls(
+            T_map_sensor=found.pose,
+            covariance=covariance,
+            iterations=found.iterations,
+            score=score.score,
+            transform_probability=score.transform_probability,
+            nearest_voxel_likelihood=score.nearest_voxel_likelihood,
+            converged=outcome == "converged",
+            why=WHY[outcome],
+        )
+
+    @classmethod
+    def refused(cls, guess: Pose | None, why: str, options: MatcherOptions) -> Alignment:
+        """Return the answer to what cannot be aligned at all."""
+        return cls(
+            T_map_sensor=np.eye(4) if guess is None else guess.copy(),
+            covariance=np.diag(options.fixed_pose_variances),
+            iterations=0,
+            score=0.0,
+            transform_probability=0.0,
+            nearest_voxel_likelihood=0.0,
+            converged=False,
+            why=why,
+        )

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from types import TracebackType
-from typing import Any, Protocol
+from typing import Protocol
 
 from numpy.typing import ArrayLike
 
@@ -21,7 +21,7 @@ from rmw_manycore_py.ndt.geometry.arrays import (
 )
 from rmw_manycore_py.ndt.matching import covariance
 from rmw_manycore_py.ndt.matching.alignment import Alignment, Score
-from rmw_manycore_py.ndt.matching.answers import alignment_from, refused, score_from
+from rmw_manycore_py.ndt.matching.kernel_options import match_options
 from rmw_manycore_py.ndt.matching.level import levelled
 from rmw_manycore_py.ndt.matching.options import MatcherOptions
 from rmw_manycore_py.ndt.matching.voxel_map import VoxelMap
@@ -41,7 +41,7 @@ class NativeMatcher(Protocol):
         points: ScanPoints,
         guess: Pose,
         regularization_position_m: Position | None = None,
-    ) -> dict[str, Any]:
+    ) -> _ndt.NewtonResult:
         """Align from a guess."""
         ...
 
@@ -50,7 +50,7 @@ class NativeMatcher(Protocol):
         map: _ndt.VoxelMap,  # noqa: A002
         points: ScanPoints,
         pose: Pose,
-    ) -> dict[str, Any]:
+    ) -> _ndt.Derivatives:
         """Return score and derivatives at a pose."""
         ...
 
@@ -125,13 +125,13 @@ class Matcher:
         guess = pose_matrix(T_map_guess)
         wrong = why_no_pose(guess)
         if wrong:
-            return refused(None, f"the guess {wrong}", self.options)
+            return Alignment.refused(None, f"the guess {wrong}", self.options)
         position = None
         if T_map_regularization is not None:
             regularization = pose_matrix(T_map_regularization)
             wrong = why_no_pose(regularization)
             if wrong:
-                return refused(guess, f"the regularization pose {wrong}", self.options)
+                return Alignment.refused(guess, f"the regularization pose {wrong}", self.options)
             position = (float(regularization[0, 3]), float(regularization[1, 3]))
         alignment = self._aligned(voxel_map, scan, guess, position)
         if only_pose or not alignment.converged:
@@ -143,13 +143,14 @@ class Matcher:
     ) -> Alignment:
         level = levelled(scan, guess)
         with translate_native_errors(CANNOT_WORK):
-            numbers = self._native.align(voxel_map.native, level.points, level.guess, position)
-        if numbers["used_points"] == 0:
-            return refused(guess, "the scan has no finite point", self.options)
-        if numbers["used_points"] < FEWEST_POINTS:
-            few = f"{numbers['used_points']} finite points do not say where a scan fits"
-            return refused(guess, f"too few points: {few}", self.options)
-        found = alignment_from(numbers, self.options)
+            result = self._native.align(voxel_map.native, level.points, level.guess, position)
+        points = result.at.scan_points
+        if points == 0:
+            return Alignment.refused(guess, "the scan has no finite point", self.options)
+        if points < FEWEST_POINTS:
+            few = f"{points} finite points do not say where a scan fits"
+            return Alignment.refused(guess, f"too few points: {few}", self.options)
+        found = Alignment.of(result, self.options)
         return replace(found, T_map_sensor=level.result(found.T_map_sensor))
 
     def _with_covariance(
@@ -188,7 +189,7 @@ class Matcher:
         if why_no_pose(pose):
             return Score(0.0, 0.0, 0.0, 0)
         with translate_native_errors(CANNOT_WORK):
-            return score_from(self._native.evaluate(voxel_map.native, scan, pose))
+            return Score.of(self._native.evaluate(voxel_map.native, scan, pose))
 
     def _require_map(self) -> VoxelMap:
         if self._map is None:
@@ -201,16 +202,4 @@ class SerialMatcher(Matcher):
 
     def __init__(self, options: MatcherOptions | None = None) -> None:
         options = options or MatcherOptions()
-        super().__init__(options, _ndt.SerialMatcher(native_options(options)))
-
-
-def native_options(options: MatcherOptions) -> _ndt.MatchOptions:
-    """Return the options of a match as the kernel takes them."""
-    return _ndt.MatchOptions(
-        step_rule=getattr(_ndt.StepRule, options.step_rule),
-        max_iterations=options.max_iterations,
-        step_size=options.step_size,
-        trans_epsilon=options.trans_epsilon,
-        outlier_ratio=options.outlier_ratio,
-        regularization_scale_factor=options.regularization_scale_factor,
-    )
+        super().__init__(options, _ndt.SerialMatcher(match_options(options)))

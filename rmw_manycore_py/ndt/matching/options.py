@@ -8,10 +8,8 @@ from dataclasses import dataclass, fields
 from typing import Literal, get_args, get_type_hints
 
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
+from rmw_manycore_py.words import Search, StepRule, VoxelCovariance
 
-Search = Literal["radius", "direct7", "direct1"]
-VoxelCovariance = Literal["pcl", "autoware", "pclomp"]
-StepRule = Literal["trust_region", "clamped", "more_thuente"]
 PoseCovariance = Literal["laplace", "fixed", "multi_ndt", "multi_ndt_score"]
 Offsets = tuple[tuple[float, float], ...]
 

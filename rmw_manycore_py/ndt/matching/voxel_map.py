@@ -9,6 +9,7 @@ from rmw_manycore_py import _ndt
 from rmw_manycore_py.errors import EXIT_BAD_INPUT
 from rmw_manycore_py.native_errors import translate_native_errors
 from rmw_manycore_py.ndt.geometry.arrays import map_points
+from rmw_manycore_py.ndt.matching.kernel_options import map_options
 from rmw_manycore_py.ndt.matching.options import MatcherOptions
 
 
@@ -31,13 +32,7 @@ class VoxelMap:
         """
         options = options or MatcherOptions()
         with translate_native_errors(exit_status=EXIT_BAD_INPUT):
-            native = _ndt.VoxelMap(
-                map_points(points),
-                voxel_size_m=options.voxel_size_m,
-                search=getattr(_ndt.Search, options.search),
-                covariance=getattr(_ndt.VoxelCovariance, options.voxel_covariance),
-                min_points_per_voxel=options.min_points_per_voxel,
-            )
+            native = _ndt.VoxelMap(map_points(points), map_options(options))
         return cls(native, options)
 
     @property

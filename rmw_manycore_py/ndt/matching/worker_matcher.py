@@ -6,11 +6,13 @@ from __future__ import annotations
 import sys
 from collections.abc import Sequence
 from pathlib import Path
+from typing import NoReturn
 
 from rmw_manycore_py import _ndt
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
 from rmw_manycore_py.native_errors import translate_native_errors
-from rmw_manycore_py.ndt.matching.matcher import CANNOT_WORK, Matcher, native_options
+from rmw_manycore_py.ndt.matching.kernel_options import match_options
+from rmw_manycore_py.ndt.matching.matcher import CANNOT_WORK, Matcher
 from rmw_manycore_py.ndt.matching.options import MatcherOptions
 from rmw_manycore_py.ndt.matching.voxel_map import VoxelMap
 
@@ -32,7 +34,7 @@ class WorkerMatcher(Matcher):
         options = options or MatcherOptions()
         with translate_native_errors(exit_status=EXIT_BAD_INPUT):
             group = _ndt.WorkerGroup(
-                native_options(options), str(_worker_program()), [int(cpu) for cpu in host_cpus]
+                match_options(options), str(_worker_program()), [int(cpu) for cpu in host_cpus]
             )
         super().__init__(options, group)
         self._group: _ndt.WorkerGroup | None = group
@@ -78,7 +80,7 @@ class WorkerMatcher(Matcher):
 class _Closed:
     """Stands in the place of workers that have ended."""
 
-    def align(self, *_: object) -> dict[str, object]:
+    def align(self, *_: object) -> NoReturn:
         raise ManycoreError("the matcher is closed", EXIT_BAD_INPUT)
 
     evaluate = align

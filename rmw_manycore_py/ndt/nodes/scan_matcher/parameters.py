@@ -5,8 +5,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from rmw_manycore_py.ndt.matching.options import Search, StepRule, VoxelCovariance
 from rmw_manycore_py.ndt.nodes.support.declared import parameter
+from rmw_manycore_py.words import Search, StepRule, VoxelCovariance
 
 TRANSFORM_PROBABILITY, NEAREST_VOXEL_LIKELIHOOD = 0, 1
 FIXED_VALUE, LAPLACE_APPROXIMATION, MULTI_NDT, MULTI_NDT_SCORE = range(4)

@@ -10,9 +10,11 @@ import numpy as np
 import pytest
 from ndt_world import Points, pose, scan_at, street
 
+from rmw_manycore_py import _ndt
 from rmw_manycore_py.ndt import MatcherOptions, SerialMatcher, VoxelMap
 from rmw_manycore_py.ndt.geometry.arrays import scan_points
-from rmw_manycore_py.ndt.matching.options import Search, VoxelCovariance
+from rmw_manycore_py.ndt.matching.kernel_options import match_options
+from rmw_manycore_py.words import Search, VoxelCovariance
 
 pytestmark = pytest.mark.unit
 
@@ -99,13 +101,13 @@ def central(scan: Points, at: tuple[float, ...], size_m: float) -> Points:
 def test_gradient_and_hessian_are_those_of_the_score(angles: tuple[float, float, float]) -> None:
     options = replace(MatcherOptions(), search="direct1")
     voxel_map = VoxelMap.from_points(WORLD, options)
-    native: Any = SerialMatcher(options)._native
+    native = _ndt.SerialMatcher(match_options(options))
     true = (*TRUE[:3], *angles)
     at = (true[0] + 0.2, true[1] - 0.1, true[2] + 0.1, *(angle + 0.005 for angle in angles))
     scan = scan_points(central(scan_at(WORLD, pose(*true)), at, options.voxel_size_m))
 
-    def evaluate(changed: Any) -> dict[str, Any]:
-        return dict(native.evaluate(voxel_map.native, scan, pose(*changed)))
+    def evaluate(changed: Any) -> _ndt.Derivatives:
+        return native.evaluate(voxel_map.native, scan, pose(*changed))
 
     here = evaluate(at)
     step = 1e-3
@@ -113,12 +115,12 @@ def test_gradient_and_hessian_are_those_of_the_score(angles: tuple[float, float,
     for axis in range(6):
         change = step * np.eye(6)[axis]
         after, before = evaluate(np.add(at, change)), evaluate(np.subtract(at, change))
-        gradient.append((after["score"] - before["score"]) / (2 * step))
-        slopes = np.subtract(after["gradient"], before["gradient"]) / (2 * step)
+        gradient.append((after.score - before.score) / (2 * step))
+        slopes = (after.gradient - before.gradient) / (2 * step)
         hessian.append(slopes)
-    assert here["gradient"] == pytest.approx(gradient, rel=1e-2, abs=2e-3 * np.abs(gradient).max())
+    assert here.gradient == pytest.approx(gradient, rel=1e-2, abs=2e-3 * np.abs(gradient).max())
     scale = np.abs(hessian).max()
-    assert np.array(here["hessian"]) == pytest.approx(np.array(hessian), abs=2e-3 * scale)
+    assert here.hessian == pytest.approx(np.array(hessian), abs=2e-3 * scale)
 
 
 def test_regularization_pulls_along_the_vehicle_only() -> None:

@@ -12,7 +12,7 @@ from ndt_world import errors, pose, scan_at, street
 
 from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.ndt import MatcherOptions, SerialMatcher, VoxelMap
-from rmw_manycore_py.ndt.matching.options import Search, StepRule, VoxelCovariance
+from rmw_manycore_py.words import Search, StepRule, VoxelCovariance
 
 pytestmark = pytest.mark.unit
 

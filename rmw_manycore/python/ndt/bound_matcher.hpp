@@ -1,0 +1,62 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <nanobind/nanobind.h>
+#include <nanobind/ndarray.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
+
+#include <optional>
+#include <utility>
+
+#include "ndt/newton.hpp"
+#include "ndt/voxel_map.hpp"
+#include "python/ndt/arrays.hpp"
+
+namespace manycore::ndt::python {
+
+/// A matcher that Python calls; it works without the GIL.
+template<typename Matcher>
+class Bound {
+public:
+  template<typename... More>
+  explicit Bound(const MatchOptions & options, const More &... more)
+  : scale_factor_(options.regularization_scale_factor), matcher_(options, more...) {}
+
+  NewtonResult align(
+    const VoxelMap & map, const FloatPoints & points, const PoseMatrix & guess,
+    const std::optional<std::pair<double, double>> & position_m) {
+    std::optional<Regularization> regularization;
+    if (position_m) {
+      regularization = Regularization{scale_factor_, position_m->first, position_m->second};
+    }
+    const nanobind::gil_scoped_release released;
+    return matcher_.align(map, points.data(), points.shape(0), pose_from(guess), regularization);
+  }
+
+  Derivatives evaluate(const VoxelMap & map, const FloatPoints & points, const PoseMatrix & pose) {
+    const nanobind::gil_scoped_release released;
+    return matcher_.evaluate(map, points.data(), points.shape(0), pose_from(pose));
+  }
+
+  Matcher & matcher() { return matcher_; }
+
+private:
+  double scale_factor_;
+  Matcher matcher_;
+};
+
+/// Binds what all matchers have in common.
+template<typename Matcher>
+nanobind::class_<Bound<Matcher>> bind_matcher(nanobind::module_ & module, const char * name) {
+  using Self = Bound<Matcher>;
+  return nanobind::class_<Self>(module, name)
+    .def(
+      "align", &Self::align, nanobind::arg("map"), nanobind::arg("points"), nanobind::arg("guess"),
+      nanobind::arg("regularization_position_m") = nanobind::none())
+    .def(
+      "evaluate", &Self::evaluate, nanobind::arg("map"), nanobind::arg("points"),
+      nanobind::arg("pose"));
+}
+
+}  // namespace manycore::ndt::python
