@@ -20,7 +20,7 @@ from isolation import Isolation
 from peers import PeerServers
 from processes import has_receive_threads
 from scheduling import make_scheduler
-from support import IS_MANYCORE, Program, environment, leftovers, unique_platform, wait_until
+from support import IS_MANYCORE, TESTS, Program, environment, leftovers, unique_platform, wait_until
 
 PEER_SERVERS = pytest.StashKey[PeerServers]()
 StartProgram = Callable[..., Program]
@@ -64,11 +64,13 @@ def start(platform: str, request: pytest.FixtureRequest) -> Iterator[StartProgra
     programs: list[Program] = []
     servers = request.config.stash.get(PEER_SERVERS, None)
 
-    def start_program(command: list[str], cluster: int = 1, **env: str) -> Program:
+    def start_program(
+        command: list[str], cluster: int = 1, directory: Path = TESTS, **env: str
+    ) -> Program:
         full_env = environment(platform, cluster, **env)
         if servers:
             servers.serve(command, full_env)
-        programs.append(Program(command, full_env))
+        programs.append(Program(command, full_env, directory))
         return programs[-1]
 
     yield start_program

@@ -87,13 +87,15 @@ def wait_until(condition: Callable[[], Any], what: str, timeout_s: float = PATIE
         time.sleep(0.01)
 
 
-def _started(command: list[str], env: dict[str, str]) -> subprocess.Popen[str] | ForkedPeer:
+def _started(
+    command: list[str], env: dict[str, str], directory: Path
+) -> subprocess.Popen[str] | ForkedPeer:
     if has_server(command, env):
         return ForkedPeer(command, env)
     return subprocess.Popen(
         command,
         env=env,
-        cwd=TESTS,  # not the repository, whose sources would hide the installed package
+        cwd=directory,
         text=True,
         errors="replace",
         stdin=subprocess.PIPE,
@@ -105,13 +107,15 @@ def _started(command: list[str], env: dict[str, str]) -> subprocess.Popen[str] |
 class Program:
     """A started process; its output, errors included, is read line by line."""
 
-    def __init__(self, command: Iterable[str | Path], env: dict[str, str]) -> None:
+    def __init__(
+        self, command: Iterable[str | Path], env: dict[str, str], directory: Path = TESTS
+    ) -> None:
         self.command = [str(word) for word in command]
         self.lines: list[str] = []
         self._next_line = 0
         self._ended = False
         self._changed = threading.Condition()
-        self._process = _started(self.command, env)
+        self._process = _started(self.command, env, directory)
         self._reader = threading.Thread(target=self._read, daemon=True)
         self._reader.start()
 

@@ -3,8 +3,24 @@
 
 from __future__ import annotations
 
+import sys
+from pathlib import Path
+
 import pytest
 from bridging import Bridge
+from installing import Installation, build_wheel
+
+
+@pytest.fixture(scope="session")
+def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The wheel of this checkout for this python: a full compilation."""
+    return build_wheel(Path(sys.executable), tmp_path_factory.mktemp("wheel"))
+
+
+@pytest.fixture(scope="session")
+def installation(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Installation:
+    """An environment with that wheel."""
+    return Installation(Path(sys.executable), wheel, tmp_path_factory.mktemp("installed") / "venv")
 
 
 @pytest.fixture

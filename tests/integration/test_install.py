@@ -9,42 +9,20 @@ from __future__ import annotations
 import os
 import re
 import shutil
-import subprocess
 import sys
-import venv
 from collections.abc import Iterator
 from pathlib import Path
 from zipfile import ZipFile
 
 import pytest
+from installing import Installation, build_wheel, run
 from support import MAPFILES, REPOSITORY, environment, unique_platform
 
 pytestmark = pytest.mark.integration
 
-INSTALL_TIMEOUT_S = 900
 BUILT_MESSAGES = {path.name for path in (REPOSITORY / "interfaces").iterdir()}
 STAND_INS = {"librmw_fastrtps_cpp.so", "librmw_fastrtps_shared_cpp.so", "libfastrtps.so.2.14"}
 ROS_LIBRARY = re.compile(r"lib(rmw|rcl|rcutils|rcpputils|rosidl_|fastcdr|fastrtps|tracetools)\w*\.")
-
-
-def run(*command: str | Path, **more: object) -> str:
-    """Return what a command prints; its standard error belongs to the message of a failure."""
-    done = subprocess.run(
-        [str(word) for word in command],
-        capture_output=True,
-        text=True,
-        timeout=INSTALL_TIMEOUT_S,
-        **more,  # type: ignore[call-overload]
-    )
-    assert done.returncode == 0, f"{command}\n{done.stdout}\n{done.stderr}"
-    return str(done.stdout)
-
-
-def build_wheel(python: Path, directory: Path) -> Path:
-    """Return the wheel that `pip install .` would install."""
-    build = f"--config-settings=build-dir={directory}/build"
-    run(python, "-m", "pip", "wheel", "--no-deps", build, "-w", directory, REPOSITORY)
-    return next(directory.glob("*.whl"))
 
 
 def other_pythons() -> Iterator[Path]:
@@ -55,11 +33,6 @@ def other_pythons() -> Iterator[Path]:
         if found := shutil.which(f"/usr/bin/python3.{minor}"):
             installed.append(Path(found))
         yield from installed[:1]
-
-
-@pytest.fixture(scope="module")
-def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return build_wheel(Path(sys.executable), tmp_path_factory.mktemp("wheel"))
 
 
 @pytest.fixture(scope="module")
@@ -97,6 +70,20 @@ def test_nothing_names_the_build_machine(native_files: list[Path]) -> None:
         assert all(part.startswith("$ORIGIN") for found in paths for part in found.split(":"))
 
 
+def test_no_path_of_the_build_machine_is_in_the_files(
+    wheel: Path, native_files: list[Path]
+) -> None:
+    """Neither in messages, which name the source file, nor in debug information."""
+    machine = [str(REPOSITORY).encode(), str(wheel.parent).encode()]
+    assert [path for path in native_files for name in machine if name in path.read_bytes()] == []
+
+
+def test_messages_name_source_files_as_the_checkout_does(prefix: Path) -> None:
+    sources = re.findall(rb"[\w/.-]+\.cpp\b", (prefix / "lib/librmw_manycore.so").read_bytes())
+    assert sources
+    assert [name for name in sources if not (REPOSITORY / name.decode()).is_file()] == []
+
+
 def test_only_the_rmw_interface_is_exported(prefix: Path) -> None:
     library = prefix / "lib/librmw_manycore.so"
     names = {line.split()[0] for line in run("nm", "-DP", "--defined-only", library).splitlines()}
@@ -125,8 +112,8 @@ def test_an_ordinary_ros_finds_the_middleware(prefix: Path, kind: str) -> None:
 
 def test_top_level_names(unpacked: Path) -> None:
     names = {path.name for path in unpacked.iterdir() if not path.name.startswith("rmw_manycore-")}
-    own = {"rmw_manycore.pth", "rmw_manycore_hook.py", "rmw_manycore_bridge", "rmw_manycore_py"}
-    assert names == own | BUILT_MESSAGES
+    startup = {"rmw_manycore.pth", "rmw_manycore_hook.py", "rmw_manycore_program.py"}
+    assert names == startup | {"rmw_manycore_bridge", "rmw_manycore_py"} | BUILT_MESSAGES
 
 
 def test_fast_dds_is_not_loaded() -> None:
@@ -138,25 +125,10 @@ def test_fast_dds_is_not_loaded() -> None:
     assert {path.parent.name for path in replaced} == {"standin"}
 
 
-@pytest.mark.parametrize(
-    "python",
-    [
-        pytest.param(None, id="this python"),
-        *(pytest.param(p, id=str(p), marks=pytest.mark.stress) for p in other_pythons()),
-    ],
-)
-def test_a_fresh_environment_runs_a_mapfile(
-    python: Path | None, request: pytest.FixtureRequest, tmp_path: Path, start
-) -> None:
-    if python is None:
-        wheel = request.getfixturevalue("wheel")
-        venv.create(tmp_path / "venv", with_pip=True)
-    else:
-        wheel = build_wheel(python, tmp_path)
-        run(python, "-m", "venv", tmp_path / "venv")
-    run(tmp_path / "venv/bin/pip", "install", wheel)
-    mapfile = MAPFILES / "talker_listener.yaml"
-    manycore = tmp_path / "venv/bin/manycore"
-    nodes = start([manycore, "run", mapfile])
+@pytest.mark.stress
+@pytest.mark.parametrize("python", other_pythons(), ids=str)
+def test_another_python_runs_a_mapfile(python: Path, tmp_path: Path, start) -> None:
+    installation = Installation(python, build_wheel(python, tmp_path), tmp_path / "venv")
+    nodes = start([installation.manycore, "run", MAPFILES / "talker_listener.yaml"])
     nodes.wait_for("I heard")
     assert nodes.stop() == 0, nodes
