@@ -105,7 +105,10 @@ def _started(
 
 
 class Program:
-    """A started process; its output, errors included, is read line by line."""
+    """A started process; its output, errors included, is read line by line.
+
+    It starts in TESTS: in the repository `python -m` would take the sources there.
+    """
 
     def __init__(
         self, command: Iterable[str | Path], env: dict[str, str], directory: Path = TESTS

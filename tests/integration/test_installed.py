@@ -6,7 +6,6 @@ from __future__ import annotations
 import json
 import os
 import shutil
-import signal
 from collections.abc import Callable
 from pathlib import Path
 
@@ -38,39 +37,50 @@ to_domain: {outside}
 topics: {{chatter: {{type: std_msgs/msg/String}}}}
 """
 TEST_MSGS = "ros-test-msgs==2.0.3"
-Run = Callable[..., str]
+STRING = "std_msgs/msg/String"
+PUBLISH_ONCE = ("--once", "-w", "0")
+Start = Callable[..., Program]
 
 
-@pytest.fixture(params=["checkout", "empty folder", "hostile folder"])
-def directory(request: pytest.FixtureRequest, tmp_path: Path) -> Path:
-    """The working directory: nothing in it may take the place of what is installed."""
-    directory = tmp_path / "here"
-    directory.mkdir()
+class Place:
+    """A working directory, and an installation that is used in it."""
+
+    def __init__(self, installation: Installation, directory: Path, start: Start) -> None:
+        self.installation = installation
+        self.directory = directory
+        self.variables: dict[str, str] = {}
+        self._start = start
+
+    def start(self, *words: str | Path) -> Program:
+        """Start `manycore`."""
+        command = [self.installation.manycore, *words]
+        return self._start(command, directory=self.directory, **self.variables)
+
+    def run(self, *words: str | Path) -> str:
+        """Return what `manycore` prints until it ends."""
+        program = self.start(*words)
+        assert program.wait() == 0, program
+        return program.output
+
+
+@pytest.fixture(params=["checkout", "empty folder", "hostile folder", "hostile PYTHONPATH"])
+def place(
+    request: pytest.FixtureRequest, tmp_path: Path, installation: Installation, start: Start
+) -> Place:
+    """A place whose files must not take the place of what is installed."""
+    place = Place(installation, tmp_path / "here", start)
+    place.directory.mkdir()
     if request.param == "checkout":
         for name in ("rmw_manycore_py", "bridge", "mapfiles", "launch_scripts", "startup"):
             sources = shutil.ignore_patterns("__pycache__", "*.so")
-            shutil.copytree(REPOSITORY / name, directory / name, ignore=sources)
-    elif request.param == "hostile folder":
+            shutil.copytree(REPOSITORY / name, place.directory / name, ignore=sources)
+    elif request.param.startswith("hostile"):
         for name in HOSTILE:
-            (directory / f"{name}.py").write_text(f"raise SystemError('{name} of the folder')\n")
-    return directory
-
-
-@pytest.fixture(params=[None, ":"], ids=["", "empty entry in PYTHONPATH"])
-def variables(request: pytest.FixtureRequest) -> dict[str, str]:
-    """Variables; an empty entry of PYTHONPATH means the working directory."""
-    return {"PYTHONPATH": request.param} if request.param else {}
-
-
-@pytest.fixture
-def manycore(installation: Installation, platform: str, directory: Path, variables) -> Run:
-    """Return a function that runs a command to its end and returns what it printed."""
-
-    def manycore(*words: str | Path) -> str:
-        env = environment(platform, **variables)
-        return run(installation.manycore, *words, env=env, cwd=directory)
-
-    return manycore
+            file = place.directory / f"{name}.py"
+            file.write_text(f"raise SystemError('{name} of the folder')\n")
+    if request.param == "hostile PYTHONPATH":
+        place.variables["PYTHONPATH"] = ":"  # an empty entry is the working directory
+    return place
 
 
 def workers(installation: Installation) -> list[Path]:
@@ -86,85 +96,65 @@ def _executable(process: Path) -> str:
         return ""
 
 
-def test_a_run_with_bridge_and_workers(
-    installation: Installation, start, manycore: Run, directory: Path, variables
-) -> None:
-    (directory / "map.yaml").write_text(MAPFILE)
-    nodes = start([installation.manycore, "run", "map.yaml"], directory=directory, **variables)
+def test_a_run_with_bridge_and_workers(place: Place) -> None:
+    (place.directory / "map.yaml").write_text(MAPFILE)
+    nodes = place.start("run", "map.yaml")
     nodes.wait_for("I heard")
-    wait_until(lambda: len(workers(installation)) == 2, "the matcher has its workers")
-    wait_until(lambda: routes(manycore), "the bridge counts")
-    wait_until(lambda: routes(manycore)[0]["messages"], "the bridge carries")
+    wait_until(lambda: len(workers(place.installation)) == 2, "the matcher has its workers")
+    place.start("topic", "echo", "--outside", "/chatter").wait_for("Hello World")
+    assert [row["alive"] for row in json.loads(place.run("bridge", "status", "--json"))] == [True]
     assert nodes.stop() == 0, nodes
     assert "is started again" not in nodes.output
     assert "of the folder" not in nodes.output
 
 
-def routes(manycore: Run) -> list[dict]:
-    rows = json.loads(manycore("bridge", "status", "--json"))
-    return [row for row in rows if row["alive"]]
-
-
-def test_the_tools(
-    installation: Installation, start, manycore: Run, directory: Path, variables, tmp_path: Path
-) -> None:
+def test_the_tools(place: Place, start: Start, tmp_path: Path) -> None:
     (tmp_path / "empty").mkdir()
-    talker = [installation.python, "-m", "rmw_manycore_py.examples.talker"]
+    talker = [place.installation.python, "-m", "rmw_manycore_py.examples.talker"]
     start(talker, directory=tmp_path / "empty").wait_for("Publishing")
-    assert "/chatter" in manycore("topic", "list").split()
-    assert "Hello World" in manycore("topic", "echo", "--once", "/chatter")
-    assert "lamp" in manycore(
-        "topic", "pub", "--once", "/name", "std_msgs/msg/String", "data: lamp"
-    )
-    assert "examples.talker" in manycore("status")
-    assert "rclpy uses rmw_manycore" in manycore("doctor")
-    assert "drive.npz" in manycore("ndt", "simulate", "--length", "5", directory / "street")
+    assert "/chatter" in place.run("topic", "list").split()
+    assert "Hello World" in place.run("topic", "echo", "--once", "/chatter")
+    assert "lamp" in place.run("topic", "pub", *PUBLISH_ONCE, "/name", STRING, "data: lamp")
+    assert "examples.talker" in place.run("status")
+    assert "rclpy uses rmw_manycore" in place.run("doctor")
+    assert "drive.npz" in place.run("ndt", "simulate", "--length", "5", "street")
 
 
-def test_a_bridge_of_its_own(
-    installation: Installation, start, manycore: Run, directory: Path, variables, platform: str
-) -> None:
+def test_a_bridge_of_its_own(place: Place, platform: str) -> None:
     domain = int(environment(platform)["ROS_DOMAIN_ID"])
-    (directory / "bridge.yaml").write_text(BRIDGE.format(inside=domain, outside=domain % 100 + 1))
-    command = [installation.manycore, "bridge", "bridge.yaml"]
-    bridge = start(command, directory=directory, **variables)
-    bridge.wait_for("started")
-    wait_until(lambda: bridge_is_up(manycore), "the bridge is up")
+    text = BRIDGE.format(inside=domain + 1, outside=domain)
+    (place.directory / "bridge.yaml").write_text(text)
+    bridge = place.start("bridge", "bridge.yaml", "--inside", str(domain + 1))
+    place.start("topic", "pub", "-r", "10", "/chatter", STRING, "data: carried")
+    place.start("topic", "echo", "--outside", "/chatter").wait_for("carried")
     assert bridge.stop() == 0, bridge
     assert "is started again" not in bridge.output
 
 
-def bridge_is_up(manycore: Run) -> bool:
-    try:
-        return bool(routes(manycore))
-    except AssertionError:  # the platform is not there yet
-        return False
-
-
-@pytest.mark.parametrize("directory", ["checkout", "empty folder"], indirect=True)
-def test_the_examples_as_modules(installation: Installation, start, directory: Path) -> None:
+@pytest.mark.parametrize("place", ["checkout", "empty folder"], indirect=True)
+def test_the_examples_as_modules(place: Place, start: Start) -> None:
     """With Python's own rules, so not among files that are named like modules."""
-    module = "rmw_manycore_py.examples."
-    start([installation.python, "-m", f"{module}talker"], directory=directory)
-    listener = start([installation.python, "-m", f"{module}listener"], 2, directory=directory)
-    listener.wait_for("I heard")
+    talker, listener = (
+        [place.installation.python, "-m", f"rmw_manycore_py.examples.{name}"]
+        for name in ("talker", "listener")
+    )
+    start(talker, directory=place.directory)
+    start(listener, 2, directory=place.directory).wait_for("I heard")
 
 
 def test_messages_are_found_where_pythonpath_says(
-    installation: Installation, platform: str, tmp_path: Path
+    installation: Installation, start: Start, tmp_path: Path
 ) -> None:
     folder = tmp_path / "messages"
     run(installation.python, "-m", "pip", "install", "--no-deps", "--target", folder, TEST_MSGS)
     (folder / "random.py").write_text("raise SystemError('random of the folder')\n")
-    env = environment(platform, PYTHONPATH=str(folder), LD_LIBRARY_PATH=str(folder / "lib"))
-    words = ["topic", "pub", "-r", "10", "/strings", "test_msgs/msg/Strings", "string_value: found"]
-    publisher = Program([installation.manycore, *words], env)
-    try:
-        assert "found" in run(installation.manycore, "topic", "echo", "--once", "/strings", env=env)
-    finally:
-        publisher.signal(signal.SIGINT)
-        publisher.wait()
-        publisher.kill()
+    found = {"PYTHONPATH": str(folder), "LD_LIBRARY_PATH": str(folder / "lib")}
+    topic = [installation.manycore, "topic"]
+    publish = ["pub", "-r", "10", "/strings", "test_msgs/msg/Strings", "string_value: found"]
+    start([*topic, *publish], **found)
+    start([*topic, "echo", "/strings", "test_msgs/msg/Strings"], **found).wait_for(
+        "string_value: found"
+    )
 
 
 def test_a_node_keeps_the_rules_of_python(
@@ -173,7 +163,7 @@ def test_a_node_keeps_the_rules_of_python(
     (tmp_path / "helper.py").write_text("NAME = 'beside the node'\n")
     (tmp_path / "named.py").write_text("import helper, os; print(helper.NAME, os.getcwd())\n")
     mapfile = tmp_path / "map.yaml"
-    mapfile.write_text("nodes: {node: {module: named, cluster: 1, ros_arguments: false}}\n")
+    mapfile.write_text("nodes: {node: {module: named, cluster: 1}}\n")
     nodes = start([installation.manycore, "run", mapfile], directory=Path("/"))
     assert nodes.wait() == 0, nodes
     assert f"beside the node {tmp_path}" in nodes.output
