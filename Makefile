@@ -24,7 +24,7 @@ help:  ## this list
 setup: .venv/installed  ## build, and install this checkout into .venv
 
 demo: setup  ## run talker and listener in two clusters for ten seconds
-	$(VENV)/manycore run mapfiles/talker_listener.yaml --duration 10
+	$(VENV)/manycore demo
 
 test: setup .venv/ndt test-native  ## all tests but the long ones
 	$(VENV)/pytest -n $(TEST_JOBS)

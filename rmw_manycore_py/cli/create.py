@@ -12,9 +12,7 @@ from rmw_manycore_py.cli.common.printing import print_json, print_notices
 from rmw_manycore_py.create import create
 
 
-@click.command(
-    "create", epilog=examples("manycore create mapfiles/talker_listener.yaml -o generated")
-)
+@click.command("create", epilog=examples("manycore create talker_listener -o generated"))
 @mapfile_argument
 @click.option(
     "-o",

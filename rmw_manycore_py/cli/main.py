@@ -11,6 +11,7 @@ from rmw_manycore_py.cli.common.options import examples
 
 VERBS = {
     "run": "rmw_manycore_py.cli.run:command",
+    "demo": "rmw_manycore_py.cli.demo:command",
     "create": "rmw_manycore_py.cli.create:command",
     "map": "rmw_manycore_py.cli.map:command",
     "status": "rmw_manycore_py.cli.status:command",
@@ -36,7 +37,8 @@ VERBS = {
     commands_at=VERBS,
     context_settings={"help_option_names": ["-h", "--help"]},
     epilog=examples(
-        "manycore run mapfiles/talker_listener.yaml",
+        "manycore demo",
+        "manycore run talker_listener",
         "manycore status",
         "manycore topic echo /chatter",
     ),

@@ -3,12 +3,12 @@
 
 from __future__ import annotations
 
-import math
 import sys
 from pathlib import Path
 
 import click
 
+from rmw_manycore_py.cli.common.duration import duration_option
 from rmw_manycore_py.cli.common.options import examples, mapfile_argument
 from rmw_manycore_py.cli.common.run_printer import RunPrinter
 from rmw_manycore_py.launch.events import Event
@@ -16,33 +16,21 @@ from rmw_manycore_py.launch.run import Run
 from rmw_manycore_py.mapfile import load_mapfile, resolve
 
 
-def _number(_context: click.Context, _option: click.Parameter, value: float | None) -> float | None:
-    if value is not None and math.isnan(value):
-        raise click.BadParameter("nan is not a number of seconds.")
-    return value
-
-
 @click.command(
     "run",
     epilog=examples(
-        "manycore run mapfiles/talker_listener.yaml",
-        "manycore run mapfiles/talker_listener.yaml --duration 10",
-        "manycore run mapfiles/talker_listener.yaml --json | jq 'select(.event == \"output\")'",
+        "manycore run my_map.yaml",
+        "manycore run talker_listener --duration 10",
+        "manycore run talker_listener --json | jq 'select(.event == \"output\")'",
     ),
 )
 @mapfile_argument
-@click.option(
-    "--duration",
-    "duration_s",
-    type=click.FloatRange(min=0, min_open=True),
-    metavar="S",
-    callback=_number,
-    help="Stop after this many seconds, counted from the start of the last node.",
-)
+@duration_option()
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object per event.")
 def command(mapfile: Path, duration_s: float | None, as_json: bool) -> None:
     """Start the nodes of MAPFILE, each on its core, and stop them together.
 
+    MAPFILE is a file, or the name of an installed one (manycore demo --list).
     Ends when all nodes have ended, when the duration is over, or on Ctrl-C; a second Ctrl-C does
     not wait for nodes that take their time. The exit status is 0 unless a node failed.
     """

@@ -13,7 +13,7 @@ from rmw_manycore_py.errors import MapfileError
 from rmw_manycore_py.mapfile import load_mapfile, resolve
 
 
-@click.command("check", epilog=examples("manycore map check mapfiles/talker_listener.yaml"))
+@click.command("check", epilog=examples("manycore map check talker_listener"))
 @mapfile_argument
 @json_option
 def command(mapfile: Path, as_json: bool) -> None:

@@ -20,7 +20,7 @@ from rmw_manycore_py.mapfile import Placement, load_mapfile, resolve
 from rmw_manycore_py.mapfile.placing.show import as_data
 
 
-@click.command("show", epilog=examples("manycore map show mapfiles/three_nodes.yaml"))
+@click.command("show", epilog=examples("manycore map show three_nodes"))
 @mapfile_argument
 @json_option
 def command(mapfile: Path, as_json: bool) -> None:

@@ -94,7 +94,9 @@ def test_an_unknown_verb_is_an_error() -> None:
 def test_a_mapfile_that_does_not_exist() -> None:
     result = manycore("run", "no-such.yaml")
     assert result.exit_code == EXIT_BAD_INPUT
-    assert "no-such.yaml" in result.output
+    text = " ".join(result.output.split())
+    assert "There is no file 'no-such.yaml'; installed mapfiles: " in text
+    assert "three_nodes, three_nodes.map" in text
 
 
 @pytest.mark.parametrize("verb", [("run",), ("map", "check"), ("map", "show")], ids=" ".join)

@@ -1,0 +1,78 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""`manycore demo`."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import click
+
+from rmw_manycore_py.cli.common.duration import duration_option
+from rmw_manycore_py.cli.common.mapfile_name import MapfileName
+from rmw_manycore_py.cli.common.options import examples
+from rmw_manycore_py.cli.common.printing import new_table, print_table
+from rmw_manycore_py.cli.common.run_printer import RunPrinter
+from rmw_manycore_py.launch.run import Run
+from rmw_manycore_py.mapfile import Placement, load_mapfile, resolve
+from rmw_manycore_py.mapfile.installed import description, installed_mapfiles
+
+DEFAULT = "talker_listener"
+DEFAULT_DURATION_S = 10.0
+
+
+@click.command(
+    "demo",
+    epilog=examples(
+        "manycore demo",
+        "manycore demo image_pipeline --duration 5",
+        "manycore demo --list",
+    ),
+)
+@click.argument("mapfile", metavar="[NAME]", type=MapfileName(), default=DEFAULT)
+@duration_option(DEFAULT_DURATION_S)
+@click.option("--list", "as_list", is_flag=True, help="List the installed mapfiles instead.")
+def command(mapfile: Path, duration_s: float, as_list: bool) -> None:
+    """Run an installed mapfile for some seconds, and say what there is to see.
+
+    NAME is talker_listener unless another one is given.
+    """
+    if as_list:
+        _list()
+        return
+    placement = resolve(load_mapfile(mapfile))
+    click.echo(f"{mapfile}: {description(mapfile)}\n")
+    run = Run(placement)
+    exit_status = run.run(RunPrinter(run.program_names).report, duration_s)
+    if exit_status == 0:
+        _explain(mapfile, placement)
+    sys.exit(exit_status)
+
+
+def _list() -> None:
+    table = new_table("name", "what it runs")
+    for name, mapfile in installed_mapfiles().items():
+        table.add_row(name, description(mapfile))
+    print_table(table)
+
+
+def _explain(mapfile: Path, placement: Placement) -> None:
+    click.echo("\nEach node was a process of its own, pinned to the host CPU of its core:")
+    for node in placement.nodes:
+        place = f"cluster {node.cluster}, core {node.core}, host CPU {node.host_cpu}"
+        click.echo(f"  {node.full_name}: {place}")
+    names = {file: name for name, file in installed_mapfiles().items()}
+    name = names.get(mapfile, str(mapfile))
+    topic = next((topic.name for topic in placement.topics), "TOPIC")
+    commands = {
+        f"manycore map show {name}": "what is placed where, and the memory it takes",
+        f"manycore run {name}": "the same until Ctrl-C; meanwhile, in another shell:",
+        f"manycore topic echo {topic}": "what the nodes say",
+        "manycore top": "what they cost",
+        "manycore demo --list": "other mapfiles",
+    }
+    click.echo("\nGo on with:")
+    width = max(map(len, commands))
+    for words, purpose in commands.items():
+        click.echo(f"  {words:<{width}}  {purpose}")
+    click.echo(f"A mapfile to start yours from: {mapfile}")
