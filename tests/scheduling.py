@@ -7,8 +7,8 @@ from typing import Any
 
 import pytest
 
-# One worker runs all tests of such a file, as they share something that takes long to make.
-TOGETHER = ("tests/integration/test_install.py",)
+# One worker runs all tests of files that begin so, as they share something that takes long to make.
+TOGETHER = ("tests/integration/test_install",)
 
 
 def make_scheduler(config: pytest.Config, log: Any) -> Any:
@@ -17,7 +17,6 @@ def make_scheduler(config: pytest.Config, log: Any) -> Any:
 
     class OneByOne(LoadScopeScheduling):
         def _split_scope(self, nodeid: str) -> str:
-            file = nodeid.split("::")[0]
-            return file if file in TOGETHER else nodeid
+            return next((files for files in TOGETHER if nodeid.startswith(files)), nodeid)
 
     return OneByOne(config, log)

@@ -13,7 +13,7 @@ import pytest
 from installing import Installation, run
 from support import REPOSITORY, Program, environment, wait_until
 
-pytestmark = [pytest.mark.integration, pytest.mark.xdist_group("install")]
+pytestmark = pytest.mark.integration
 
 HOSTILE = (
     *("random", "yaml", "logging", "rclpy", "types", "numpy", "signal", "selectors", "json"),
