@@ -24,9 +24,9 @@ def own_program(module: str, *arguments: str) -> tuple[str, ...]:
 def manycore() -> None:
     """Be the command `manycore`."""
     isolate_imports()
-    from rmw_manycore_py.cli import main
+    import importlib
 
-    main()
+    importlib.import_module("rmw_manycore_py.cli").main()
 
 
 def isolate_imports() -> None:

@@ -4,12 +4,11 @@
 from __future__ import annotations
 
 import csv
-import os
 import subprocess
+import sys
 from pathlib import Path
 
 import pytest
-from support import manycore_command
 
 from rmw_manycore_py.bench.plot import plot
 from rmw_manycore_py.bench.summary import Curve, Result
@@ -18,6 +17,12 @@ from rmw_manycore_py.figures import load_figure
 
 pytestmark = pytest.mark.unit
 
+WITHOUT_MATPLOTLIB = """
+import sys
+sys.modules["matplotlib"] = None
+from rmw_manycore_py.cli import main
+main()
+"""
 RESULTS = [
     *(
         Result("time", f"{n} workers", "ms", (6 / n, 6.5 / n, 7 / n), curve=Curve("workers", n))
@@ -70,12 +75,10 @@ def test_the_table_has_curve_and_spread(tmp_path: Path) -> None:
 def test_a_missing_matplotlib_is_said_before_the_run(
     command: tuple[str, ...], tmp_path: Path
 ) -> None:
-    (tmp_path / "matplotlib.py").write_text("raise ImportError('not here')\n")
     (tmp_path / "drive.npz").touch()
     run = subprocess.run(
-        [str(word) for word in manycore_command(*command)],
+        [sys.executable, "-c", WITHOUT_MATPLOTLIB, *command],
         cwd=tmp_path,
-        env={**os.environ, "PYTHONPATH": str(tmp_path)},
         capture_output=True,
         text=True,
         timeout=60,
