@@ -11,11 +11,11 @@
 #include <thread>
 #include <vector>
 
-#include "ndt/aligned_floats.hpp"
-#include "ndt/matcher.hpp"
-#include "ndt/more_thuente.hpp"
-#include "ndt/table.hpp"
-#include "ndt/worker_session.hpp"
+#include "ndt/common/aligned_floats.hpp"
+#include "ndt/matching/matcher.hpp"
+#include "ndt/optimisation/more_thuente.hpp"
+#include "ndt/map/table.hpp"
+#include "ndt/matching/worker_session.hpp"
 
 namespace manycore::ndt {
 namespace {

@@ -32,6 +32,7 @@ FOLDERS = {
         *("common", "serialization", "events", "context", "qos", "graph", "topics", "services"),
         "waiting",
     ],
+    "ndt": ["common", "map", "kernel", "optimisation", "matching"],
 }
 SEES_ROS = {"rmw", "bench"}
 ROS_HEADER = re.compile(r"(rmw|rcl|rcutils|rcpputils|rosidl_\w+|fastcdr|\w+_msgs)/")

@@ -4,9 +4,9 @@
 #include <cstddef>
 #include <vector>
 
-#include "ndt/aligned_floats.hpp"
-#include "ndt/matcher.hpp"
-#include "ndt/voxel_map.hpp"
+#include "ndt/common/aligned_floats.hpp"
+#include "ndt/map/voxel_map.hpp"
+#include "ndt/matching/matcher.hpp"
 
 namespace manycore::ndt {
 

@@ -7,9 +7,9 @@
 #include <thread>
 #include <vector>
 
-#include "ndt/aligned_floats.hpp"
-#include "ndt/matcher.hpp"
-#include "ndt/worker_session.hpp"
+#include "ndt/common/aligned_floats.hpp"
+#include "ndt/matching/matcher.hpp"
+#include "ndt/matching/worker_session.hpp"
 
 namespace manycore::ndt {
 

@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-#include "ndt/pose.hpp"
+#include "ndt/common/pose.hpp"
 
 namespace manycore::ndt::python {
 

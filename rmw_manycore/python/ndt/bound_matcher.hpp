@@ -9,8 +9,8 @@
 #include <optional>
 #include <utility>
 
-#include "ndt/newton.hpp"
-#include "ndt/voxel_map.hpp"
+#include "ndt/map/voxel_map.hpp"
+#include "ndt/optimisation/newton.hpp"
 #include "python/ndt/arrays.hpp"
 
 namespace manycore::ndt::python {

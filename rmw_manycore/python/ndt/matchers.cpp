@@ -5,8 +5,8 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
-#include "ndt/serial_matcher.hpp"
-#include "ndt/worker_group.hpp"
+#include "ndt/matching/serial_matcher.hpp"
+#include "ndt/matching/worker_group.hpp"
 #include "python/ndt/bindings.hpp"
 #include "python/ndt/bound_matcher.hpp"
 

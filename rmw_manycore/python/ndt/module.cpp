@@ -1,7 +1,7 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #include <nanobind/nanobind.h>
 
-#include "ndt/pass.hpp"
+#include "ndt/kernel/pass.hpp"
 #include "platform/error.hpp"
 #include "python/ndt/bindings.hpp"
 

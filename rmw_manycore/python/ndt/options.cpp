@@ -1,5 +1,5 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-#include "ndt/options.hpp"
+#include "ndt/common/options.hpp"
 
 #include <nanobind/nanobind.h>
 #include <nanobind/stl/string.h>

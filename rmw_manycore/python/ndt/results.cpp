@@ -4,7 +4,7 @@
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 
-#include "ndt/newton.hpp"
+#include "ndt/optimisation/newton.hpp"
 #include "python/ndt/bindings.hpp"
 #include "python/ndt/words.hpp"
 

@@ -1,5 +1,5 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-#include "ndt/voxel_map.hpp"
+#include "ndt/map/voxel_map.hpp"
 
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>

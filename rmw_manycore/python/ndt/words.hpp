@@ -1,8 +1,8 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "ndt/newton.hpp"
-#include "ndt/options.hpp"
+#include "ndt/common/options.hpp"
+#include "ndt/optimisation/newton.hpp"
 #include "python/words.hpp"
 
 namespace manycore::python {

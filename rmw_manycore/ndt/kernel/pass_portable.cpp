@@ -1,0 +1,54 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+// For any CPU: the compiler's own vectors of four, which are SSE2 on x86-64 and NEON on ARM.
+
+#include <cstring>
+
+#include "ndt/kernel/pass.hpp"
+#include "ndt/map/table.hpp"
+
+namespace manycore::ndt {
+namespace portable {
+
+struct Lanes {
+  static constexpr size_t width = 4;
+  typedef float F __attribute__((vector_size(16)));
+  typedef int32_t I __attribute__((vector_size(16)));
+
+  static F load(const float * at) {
+    F f;
+    std::memcpy(&f, at, sizeof f);
+    return f;
+  }
+  static void store(float * at, F f) { std::memcpy(at, &f, sizeof f); }
+  static F set1(float f) { return F{f, f, f, f}; }
+  static I to_int(F f) { return __builtin_convertvector(f, I); }
+  static F to_float(I i) { return __builtin_convertvector(i, F); }
+  static F fma(F a, F b, F c) { return a * b + c; }
+  static F choose(I mask, F yes, F no) {
+    return reinterpret_cast<F>(
+      (reinterpret_cast<I>(yes) & mask) | (reinterpret_cast<I>(no) & ~mask));
+  }
+  static F min(F a, F b) { return choose(a < b, a, b); }
+  static F max(F a, F b) { return choose(a > b, a, b); }
+  static F at_most(F a, F b, F c) { return reinterpret_cast<F>(reinterpret_cast<I>(c) & (a <= b)); }
+  static F shift_exponent(F f, I n) {
+    return reinterpret_cast<F>(reinterpret_cast<I>(f) + (n << 23));
+  }
+
+  template<size_t fields>
+  static void load_lines(const float * const (&lines)[width], F (&out)[fields]) {
+    for (size_t field = 0; field < fields; ++field) {
+      out[field] = F{lines[0][field], lines[1][field], lines[2][field], lines[3][field]};
+    }
+  }
+};
+
+#include "ndt/kernel/pass_body.hpp"
+
+}  // namespace portable
+
+Kernel kernel_portable() noexcept {
+  return {&portable::pass, &portable::search, &portable::derive};
+}
+
+}  // namespace manycore::ndt

@@ -1,0 +1,32 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+
+#include "ndt/common/aligned_floats.hpp"
+#include "ndt/matching/matcher.hpp"
+
+namespace manycore::ndt {
+
+/// Matches on the calling thread.
+class SerialMatcher {
+public:
+  explicit SerialMatcher(const MatchOptions & options)
+  : options_(options), kernel_(kernel_of(choose_simd())) {}
+
+  /// Points x, y, z [m] in the sensor frame, of which the finite ones count.
+  NewtonResult align(
+    const VoxelMap & map, const float * xyz_m, size_t count, const Pose6 & guess,
+    const std::optional<Regularization> & regularization);
+  /// Derivatives at a pose.
+  Derivatives evaluate(const VoxelMap & map, const float * xyz_m, size_t count, const Pose6 & pose);
+
+private:
+  Problem problem(const VoxelMap & map, const float * xyz_m, size_t count);
+
+  MatchOptions options_;
+  Kernel kernel_;
+  AlignedFloats scan_;
+};
+
+}  // namespace manycore::ndt

@@ -1,0 +1,144 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#include "ndt/matching/worker.hpp"
+
+#include <utility>
+
+#include "platform/clock.hpp"
+#include "platform/cpu.hpp"
+
+namespace manycore::ndt {
+namespace {
+
+/// Thrown through the optimiser when the others cannot go on.
+struct Aborted {};
+
+}  // namespace
+
+Worker::Worker(SharedMemory session, uint32_t index)
+: memory_(std::move(session)),
+  session_(memory_.at<Session>(0)),
+  own_(session_.lines[index]),
+  index_(index),
+  kernel_(kernel_of(choose_simd())) {
+  own_.pinned.store(only_cpu() >= 0 ? 1 : 0, std::memory_order_relaxed);
+}
+
+void Worker::run() {
+  // The coordinator noted here which job was the last one before we came.
+  uint32_t seen = own_.finished.load(std::memory_order_acquire);
+  for (;;) {
+    uint32_t job = session_.job.load(std::memory_order_acquire);
+    while (job == seen) {
+      futex_wait(session_.job, seen, std::nullopt);
+      job = session_.job.load(std::memory_order_acquire);
+    }
+    do_job(job);
+    own_.finished.store(job, std::memory_order_seq_cst);
+    if (all_finished(job)) {
+      announce(session_.end);
+    }
+    seen = job;
+  }
+}
+
+/// Of those who end a job at the same time at least one sees that all have.
+bool Worker::all_finished(uint32_t job) const noexcept {
+  for (uint32_t i = 0; i < session_.workers; ++i) {
+    if (session_.lines[i].finished.load(std::memory_order_seq_cst) != job) {
+      return false;
+    }
+  }
+  return true;
+}
+
+void Worker::attach() {
+  const Job & what = session_.what;
+  if (what.map.id != map_id_) {
+    map_.emplace(SharedMemory::attach(what.map.path));
+    map_->memory().populate(0, map_->memory().size());
+    map_id_ = what.map.id;
+  }
+  if (what.scan.id != scan_id_) {
+    scan_ = SharedMemory::attach(what.scan.path);
+    scan_.populate(0, scan_.size());
+    scan_id_ = what.scan.id;
+  }
+}
+
+void Worker::do_job(uint32_t job) {
+  const Job & what = session_.what;
+  if (what.map.id == 0) {
+    return;  // a first job, only to see whether everybody is there
+  }
+  attach();
+  const int64_t start_ns = monotonic_ns();
+  job_ = job;
+  pass_ = 0;
+  waited_ns_ = 0;
+  Problem problem{map_->view(), view_scan(&scan_.at<float>(0), what.points), what.options, {}};
+  if (what.has_regularization) {
+    problem.regularization = what.regularization;
+  }
+  try {
+    const NewtonResult result = maximise(what.guess, what.options, [&](const Pose6 & pose) {
+      const std::optional<TangentSums> sums = pass(problem, pose);
+      if (!sums) {
+        throw Aborted();
+      }
+      return finish_pass(problem, *sums, pose);
+    });
+    if (index_ == 0) {
+      session_.result = result;
+    }
+  } catch (const Aborted &) {
+    return;
+  }
+  own_.busy_ns.store(
+    static_cast<uint64_t>(monotonic_ns() - start_ns - waited_ns_), std::memory_order_relaxed);
+}
+
+std::optional<TangentSums> Worker::pass(const Problem & problem, const Pose6 & pose) {
+  const PassPose at = pass_pose(pose, *problem.map.header);
+  const float d2 = kernel_d2(problem);
+  auto & bins = session_.bins[pass_ % 2];
+  const uint64_t ticket = ticket_of(job_, ++pass_);
+  const uint32_t workers = session_.workers;
+  // First the own share, then what others, disturbed on their CPUs, have not begun.
+  for (uint32_t i = 0; i < workers; ++i) {
+    const uint32_t owner = (index_ + i) % workers;
+    while (const auto bin = session_.shares[owner].begin(ticket, owner, workers)) {
+      bins[*bin] = kernel_.pass(problem.map, problem.scan, at, d2, *bin);
+    }
+  }
+  if (!wait_for_all(ticket)) {
+    return std::nullopt;
+  }
+  return add_bins(bins);
+}
+
+bool Worker::wait_for_all(uint64_t ticket) {
+  own_.arrived.store(ticket, std::memory_order_release);
+  announce(session_.barrier);
+  const auto all_are_here = [&] {
+    for (uint32_t i = 0; i < session_.workers; ++i) {
+      if (session_.lines[i].arrived.load(std::memory_order_acquire) < ticket) {
+        return session_.aborted.load(std::memory_order_acquire) == job_;
+      }
+    }
+    return true;
+  };
+  const int64_t start_ns = monotonic_ns();
+  const int64_t patience_ns = start_ns + session_.what.spin_ns;
+  bool here = all_are_here();
+  while (!here && monotonic_ns() < patience_ns) {
+    pause_cpu();
+    here = all_are_here();
+  }
+  if (!here) {
+    sleep_until(session_.barrier, all_are_here, std::nullopt);
+  }
+  waited_ns_ += monotonic_ns() - start_ns;
+  return session_.aborted.load(std::memory_order_acquire) != job_;
+}
+
+}  // namespace manycore::ndt

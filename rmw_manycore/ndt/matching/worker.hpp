@@ -1,0 +1,42 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+
+#include "ndt/map/voxel_map.hpp"
+#include "ndt/matching/worker_session.hpp"
+#include "platform/shared_memory.hpp"
+
+namespace manycore::ndt {
+
+/// The loop of one worker process: sleeps until there is a job, then does its share of the bins of
+/// every pass, in step with the other workers. Each worker adds up all bins and takes Newton's step
+/// itself: the same numbers in the same order give the same pose, so one barrier a pass is enough.
+class Worker {
+public:
+  Worker(SharedMemory session, uint32_t index);
+  [[noreturn]] void run();
+
+private:
+  bool all_finished(uint32_t job) const noexcept;
+  void attach();
+  void do_job(uint32_t job);
+  /// The sums of all bins at a pose; empty when the job is aborted.
+  std::optional<TangentSums> pass(const Problem & problem, const Pose6 & pose);
+  bool wait_for_all(uint64_t ticket);
+
+  SharedMemory memory_;
+  Session & session_;
+  WorkerLine & own_;
+  uint32_t index_;
+  Kernel kernel_;
+  std::optional<VoxelMap> map_;
+  uint64_t map_id_ = 0;
+  SharedMemory scan_;
+  uint64_t scan_id_ = 0;
+  uint32_t job_ = 0;
+  uint32_t pass_ = 0;
+  int64_t waited_ns_ = 0;
+};
+
+}  // namespace manycore::ndt

@@ -1,0 +1,221 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#include "ndt/matching/worker_group.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstring>
+#include <set>
+
+#include "platform/clock.hpp"
+#include "platform/error.hpp"
+
+namespace manycore::ndt {
+namespace {
+
+/// The pidfds are looked at this often while a job runs; a healthy job is over before that.
+constexpr int64_t look_ns = 10'000'000;
+/// A worker that does not reach a barrier the others wait at for so long is stopped or stuck. The
+/// longest pass there is, 2 million points by radius in portable code, takes 0.5 s on one core.
+constexpr int64_t stuck_ns = 5 * ns_per_s;
+/// Waiting for a worker on another CPU is over within this time unless something goes wrong.
+constexpr int64_t spin_ns = 200'000;
+constexpr int most_attempts = 5;
+constexpr size_t first_scan_points = 100'000;
+
+void name_part(SharedPart & part, uint64_t id, const SharedMemory & memory) {
+  part.id = id;
+  std::strncpy(part.path, memory.shared_path().c_str(), sizeof part.path - 1);
+}
+
+size_t scan_bytes(size_t points) {
+  return scan_floats(std::max(points, first_scan_points)) * sizeof(float);
+}
+
+}  // namespace
+
+WorkerGroup::WorkerGroup(
+  const MatchOptions & options, const std::string & program, const std::vector<int> & host_cpus)
+: program_(program),
+  host_cpus_(host_cpus),
+  options_(options),
+  memory_(SharedMemory::anonymous("manycore-ndt-session", sizeof(Session))),
+  session_(memory_.at<Session>(0)) {
+  if (host_cpus.empty() || host_cpus.size() > most_workers) {
+    throw Error(
+      ErrorCode::invalid_argument, "host_cpus: expected 1 to " + std::to_string(most_workers) +
+                                     " CPUs, found " + std::to_string(host_cpus.size()));
+  }
+  session_.workers = static_cast<uint32_t>(host_cpus.size());
+  // Workers that share a CPU must not keep it from each other.
+  const bool share = std::set<int>(host_cpus.begin(), host_cpus.end()).size() < host_cpus.size();
+  session_.what.spin_ns = share ? 0 : spin_ns;
+  workers_.resize(host_cpus.size());
+  run_job();
+  for (size_t i = 0; i < host_cpus.size(); ++i) {
+    if (session_.lines[i].pinned.load(std::memory_order_relaxed) == 0) {
+      throw Error(
+        ErrorCode::invalid_argument,
+        "host CPU " + std::to_string(host_cpus[i]) +
+          " cannot be had: expected one that this process may use (see nproc, taskset)");
+    }
+  }
+  put_scan(nullptr, 0);
+}
+
+uint64_t WorkerGroup::memory_bytes(size_t points) const noexcept {
+  return memory_.size() + std::max<uint64_t>(scan_.size(), scan_bytes(points));
+}
+
+void WorkerGroup::put_scan(const float * xyz_m, size_t count) {
+  const size_t bytes = scan_bytes(count);
+  if (scan_.size() < bytes) {
+    scan_ = SharedMemory::anonymous("manycore-ndt-scan", bytes);
+    name_part(session_.what.scan, session_.what.scan.id + 1, scan_);
+  }
+  session_.what.points = lay_out_scan(xyz_m, count, &scan_.at<float>(0)).points;
+}
+
+NewtonResult WorkerGroup::align(
+  const VoxelMap & map, const float * xyz_m, size_t count, const Pose6 & guess,
+  const std::optional<Regularization> & regularization) {
+  const std::lock_guard lock(busy_);
+  Job & what = session_.what;
+  name_part(what.map, map.header().id, map.memory());
+  put_scan(xyz_m, count);
+  what.options = options_;
+  what.guess = guess;
+  what.has_regularization = regularization.has_value();
+  what.regularization = regularization.value_or(Regularization{});
+  return run_job();
+}
+
+Derivatives WorkerGroup::evaluate(
+  const VoxelMap & map, const float * xyz_m, size_t count, const Pose6 & pose) {
+  const std::lock_guard lock(busy_);
+  Job & what = session_.what;
+  name_part(what.map, map.header().id, map.memory());
+  put_scan(xyz_m, count);
+  what.options = options_;
+  what.options.max_iterations = 0;
+  what.guess = pose;
+  what.has_regularization = false;
+  return run_job().at;
+}
+
+void WorkerGroup::prepare(const VoxelMap & map) { evaluate(map, nullptr, 0, Pose6{}); }
+
+std::vector<int> WorkerGroup::pids() const {
+  std::vector<int> out;
+  for (const ChildProcess & worker : workers_) {
+    out.push_back(worker.pid());
+  }
+  return out;
+}
+
+std::vector<double> WorkerGroup::busy_ns() const {
+  std::vector<double> out;
+  for (size_t i = 0; i < workers_.size(); ++i) {
+    const uint64_t busy_ns = session_.lines[i].busy_ns.load(std::memory_order_relaxed);
+    out.push_back(static_cast<double>(busy_ns));
+  }
+  return out;
+}
+
+NewtonResult WorkerGroup::run_job() {
+  for (int i = 0; i < most_attempts; ++i) {
+    replace_ended_workers();
+    if (attempt()) {
+      return session_.result;
+    }
+  }
+  throw Error(
+    ErrorCode::system, "the workers ended " + std::to_string(most_attempts) +
+                         " times in one alignment: see what kills them (memory limit, signals)");
+}
+
+/// One try with all workers; false when one died, and then all others sleep again.
+bool WorkerGroup::attempt() {
+  const uint32_t job = session_.job.fetch_add(1, std::memory_order_release) + 1;
+  futex_wake_all(session_.job);
+  wait_for_workers(job);
+  if (all_finished(job) && session_.aborted.load(std::memory_order_relaxed) != job) {
+    return true;
+  }
+  session_.barrier.sleepers.store(0, std::memory_order_relaxed);  // the dead may have been counted
+  return false;
+}
+
+void WorkerGroup::wait_for_workers(uint32_t job) {
+  uint32_t events = session_.barrier.events.load(std::memory_order_relaxed);
+  int64_t quiet_since_ns = monotonic_ns();
+  for (;;) {
+    const int64_t now_ns = monotonic_ns();
+    if (sleep_until(session_.end, [&] { return all_finished(job); }, now_ns + look_ns)) {
+      return;
+    }
+    if (const uint32_t seen = session_.barrier.events.load(std::memory_order_relaxed);
+        seen != events) {
+      events = seen;
+      quiet_since_ns = now_ns;
+    } else if (now_ns - quiet_since_ns > stuck_ns) {
+      end_stuck_workers(job);
+    }
+    if (some_worker_ended() && session_.aborted.load(std::memory_order_relaxed) != job) {
+      session_.aborted.store(job, std::memory_order_release);
+      announce(session_.barrier);
+    }
+  }
+}
+
+/// Of those that still live all are done; a dead one will not become so.
+bool WorkerGroup::all_finished(uint32_t job) const noexcept {
+  const bool aborted = session_.aborted.load(std::memory_order_acquire) == job;
+  for (size_t i = 0; i < workers_.size(); ++i) {
+    if (session_.lines[i].finished.load(std::memory_order_acquire) != job) {
+      if (!aborted || !workers_[i].has_ended()) {
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
+bool WorkerGroup::some_worker_ended() const noexcept {
+  return std::any_of(
+    workers_.begin(), workers_.end(), [](const ChildProcess & w) { return w.has_ended(); });
+}
+
+void WorkerGroup::end_stuck_workers(uint32_t job) noexcept {
+  uint64_t furthest = 0;
+  for (size_t i = 0; i < workers_.size(); ++i) {
+    furthest = std::max(furthest, session_.lines[i].arrived.load(std::memory_order_relaxed));
+  }
+  for (size_t i = 0; i < workers_.size(); ++i) {
+    const WorkerLine & line = session_.lines[i];
+    const bool is_behind =
+      job_of(furthest) != job || line.arrived.load(std::memory_order_relaxed) < furthest;
+    if (is_behind && line.finished.load(std::memory_order_relaxed) != job) {
+      workers_[i].kill();
+    }
+  }
+}
+
+void WorkerGroup::replace_ended_workers() {
+  for (uint32_t i = 0; i < workers_.size(); ++i) {
+    if (workers_[i].has_ended()) {
+      replaced_ += workers_[i].pid() >= 0;
+      start_worker(i);
+    }
+  }
+}
+
+void WorkerGroup::start_worker(uint32_t index) {
+  session_.lines[index].finished.store(
+    session_.job.load(std::memory_order_relaxed), std::memory_order_release);
+  workers_[index] = ChildProcess(
+    {program_, memory_.shared_path(), std::to_string(index), std::to_string(host_cpus_[index]),
+     std::to_string(getpid())});
+}
+
+}  // namespace manycore::ndt

@@ -1,0 +1,60 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "ndt/map/voxel_map.hpp"
+#include "ndt/matching/worker_session.hpp"
+#include "platform/child_process.hpp"
+#include "platform/shared_memory.hpp"
+
+namespace manycore::ndt {
+
+/// Matches on worker processes, one per host CPU. The calling thread sleeps meanwhile.
+class WorkerGroup {
+public:
+  /// Starts `program` once per host CPU. Throws Error{invalid_argument} for a CPU that cannot be
+  /// had.
+  WorkerGroup(
+    const MatchOptions & options, const std::string & program, const std::vector<int> & host_cpus);
+
+  NewtonResult align(
+    const VoxelMap & map, const float * xyz_m, size_t count, const Pose6 & guess,
+    const std::optional<Regularization> & regularization);
+  Derivatives evaluate(const VoxelMap & map, const float * xyz_m, size_t count, const Pose6 & pose);
+  /// Lets the workers map it, so that the next alignment need not wait for that.
+  void prepare(const VoxelMap & map);
+
+  std::vector<int> pids() const;
+  /// Time each worker was busy in the last job.
+  std::vector<double> busy_ns() const;
+  uint64_t replaced() const noexcept { return replaced_; }
+  /// Memory shared with the workers, beside the map, once a scan of `points` points was aligned.
+  uint64_t memory_bytes(size_t points) const noexcept;
+
+private:
+  void put_scan(const float * xyz_m, size_t count);
+  NewtonResult run_job();
+  bool attempt();
+  void wait_for_workers(uint32_t job);
+  bool all_finished(uint32_t job) const noexcept;
+  bool some_worker_ended() const noexcept;
+  void end_stuck_workers(uint32_t job) noexcept;
+  void replace_ended_workers();
+  void start_worker(uint32_t index);
+
+  std::mutex busy_;
+  std::string program_;
+  std::vector<int> host_cpus_;
+  MatchOptions options_;
+  SharedMemory memory_;
+  Session & session_;
+  SharedMemory scan_;
+  std::vector<ChildProcess> workers_;
+  uint64_t replaced_ = 0;
+};
+
+}  // namespace manycore::ndt
