@@ -44,6 +44,16 @@ def spinning_thread(executor: Executor) -> Iterator[None]:
     assert not thread.is_alive()
 
 
+def spin(node: Node) -> None:
+    """Spin the node of a peer, which announces it from a callback: "spinning".
+
+    From then on an interruption ends the peer quietly. Before, rclpy may still be making the
+    executor, and reports the end of its context as an error.
+    """
+    rclpy.get_global_executor().create_task(announce, "spinning")
+    rclpy.spin(node)
+
+
 @contextmanager
 def peer_node(name: str = "peer", **options: Any) -> Iterator[Node]:
     """Give a peer process its node; it ends quietly when it is interrupted."""

@@ -123,5 +123,6 @@ def test_server_goes_away(node, start, peer_cluster):
     server = start(example_command("fibonacci_server", *FAST), peer_cluster)
     client = ActionClient(node, Fibonacci, "fibonacci")
     assert client.wait_for_server(PATIENCE_S)
+    result_of(node, send(node, client, 1))  # so it spins
     assert server.stop_node()
     spin_until(node, lambda: not client.server_is_ready())

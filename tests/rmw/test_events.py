@@ -20,7 +20,7 @@ from rclpy.qos import (
     QoSProfile,
     ReliabilityPolicy,
 )
-from ros_support import announce, peer_node, spin_until
+from ros_support import announce, peer_node, spin, spin_until
 from std_msgs.msg import Int32, String
 from support import IS_MANYCORE
 
@@ -107,6 +107,7 @@ def test_matched(node, start_peer, peer_cluster):
     for event in (published[-1], subscribed[-1]):
         assert (event.total_count, event.current_count) == (1, 1)
         assert (event.total_count_change, event.current_count_change) == (1, 1)
+    peer.wait_for("^spinning$")
     assert peer.stop_node()
     spin_until(node, lambda: len(published) == 2 and len(subscribed) == 2)
     for event in (published[-1], subscribed[-1]):
@@ -118,7 +119,7 @@ def match() -> None:
     with peer_node() as node:
         node.create_subscription(String, "to_peer", lambda _: None, 10)
         node.create_publisher(String, "from_peer", 10)
-        rclpy.spin(node)
+        spin(node)
 
 
 def test_messages_that_were_overwritten_are_reported_as_lost(node, start_peer, peer_cluster):

@@ -17,7 +17,7 @@ from rclpy.qos import (
     QoSProfile,
     ReliabilityPolicy,
 )
-from ros_support import announce, peer_node, spin_until
+from ros_support import announce, peer_node, spin, spin_until
 from std_msgs.msg import String, UInt8MultiArray
 from support import IS_MANYCORE
 
@@ -37,7 +37,7 @@ def publish_burst(count: int, depth: int, end: bool) -> None:
         if end:
             spin_until(node, end_publisher.get_subscription_count)
             end_publisher.publish(String())
-        rclpy.spin(node)
+        spin(node)
 
 
 def receive_after_burst(node, start_peer, cluster, qos, count):
@@ -204,6 +204,7 @@ def test_a_reader_takes_what_a_publisher_left(node, start_peer, peer_cluster):
     node.create_subscription(String, "numbers", lambda m: received.append(int(m.data)), 10)
     peer = start_peer(publish_burst, 5, 5, False, cluster=peer_cluster)
     peer.wait_for("published")
+    peer.wait_for("^spinning$")
     assert peer.stop_node()
     spin_until(node, lambda: len(received) == 5)
     assert received == [0, 1, 2, 3, 4]

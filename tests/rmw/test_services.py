@@ -3,10 +3,9 @@
 
 from __future__ import annotations
 
-import rclpy
 from rclpy.qos import QoSProfile, qos_profile_system_default
 from rclpy.service_introspection import ServiceIntrospectionState
-from ros_support import announce, peer_node, spin_until
+from ros_support import announce, peer_node, spin, spin_until
 from service_msgs.msg import ServiceEventInfo
 from std_srvs.srv import SetBool
 from support import PATIENCE_S
@@ -23,8 +22,7 @@ def double(request: BasicTypes.Request, response: BasicTypes.Response) -> BasicT
 def serve() -> None:
     with peer_node("server") as node:
         node.create_service(BasicTypes, "double", double)
-        announce("ready")
-        rclpy.spin(node)
+        spin(node)
 
 
 def ask(name: str, count: int) -> None:
@@ -90,6 +88,7 @@ def test_service_goes_away(node, start_peer, peer_cluster):
     peer = start_peer(serve, cluster=peer_cluster)
     client = node.create_client(BasicTypes, "double")
     assert client.wait_for_service(PATIENCE_S)
+    peer.wait_for("^spinning$")
     assert peer.stop_node()
     spin_until(node, lambda: not client.service_is_ready())
 
@@ -110,6 +109,7 @@ def test_a_new_server_takes_over(node, start_peer, peer_cluster):
         answer = client.call_async(BasicTypes.Request(int64_value=value))
         spin_until(node, answer.done)
         assert answer.result().int64_value == 2 * value
+        peer.wait_for("^spinning$")
         assert peer.stop_node()
         spin_until(node, lambda: not client.service_is_ready())
 
