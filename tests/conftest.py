@@ -20,7 +20,16 @@ from isolation import Isolation
 from peers import PeerServers
 from processes import has_receive_threads
 from scheduling import make_scheduler
-from support import IS_MANYCORE, TESTS, Program, environment, leftovers, unique_platform, wait_until
+from support import (
+    IS_MANYCORE,
+    TESTS,
+    Program,
+    environment,
+    is_installed,
+    leftovers,
+    unique_platform,
+    wait_until,
+)
 
 PEER_SERVERS = pytest.StashKey[PeerServers]()
 StartProgram = Callable[..., Program]
@@ -39,6 +48,12 @@ def pytest_configure(config: pytest.Config) -> None:
         config.stash[PEER_SERVERS] = servers = PeerServers()
         config.add_cleanup(servers.end)
         config.pluginmanager.register(Isolation(servers))
+
+
+def pytest_runtest_setup(item: pytest.Item) -> None:
+    needed = {name for mark in item.iter_markers("needs") for name in mark.args}
+    if missing := [name for name in sorted(needed) if not is_installed(name)]:
+        pytest.fail(f"missing: {', '.join(missing)}; run scripts/setup.sh tests", pytrace=False)
 
 
 @pytest.hookimpl(optionalhook=True)

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import importlib.util
 import itertools
 import json
 import os
@@ -61,6 +62,11 @@ def environment(platform: str, cluster: int = 1, **more: str) -> dict[str, str]:
         "PYTHONUNBUFFERED": "1",
         **more,
     }
+
+
+def is_installed(name: str) -> bool:
+    """Tell whether there is a program or a Python module of this name."""
+    return shutil.which(name) is not None or importlib.util.find_spec(name) is not None
 
 
 def leftovers(platform: str) -> list[Path]:

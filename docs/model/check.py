@@ -9,7 +9,6 @@ Run as `python docs/model/check.py [MODEL..]`. The head of a model lists its con
 from __future__ import annotations
 
 import re
-import shutil
 import subprocess
 import sys
 import tempfile
@@ -52,10 +51,6 @@ class Outcome:
     violation: str  # empty when every property holds
     states: int
     seconds: float
-
-
-def missing_programs() -> list[str]:
-    return [program for program in PROGRAMS if shutil.which(program) is None]
 
 
 def cases() -> list[Case]:

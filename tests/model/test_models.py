@@ -18,12 +18,9 @@ check_models = importlib.util.module_from_spec(spec)
 sys.modules[spec.name] = check_models  # dataclasses look their module up
 spec.loader.exec_module(check_models)
 
-MISSING = check_models.missing_programs()
 CASES = check_models.cases()
 
-pytestmark = pytest.mark.skipif(
-    bool(MISSING), reason=f"not installed: {', '.join(MISSING)} (apt-get install spin gcc)"
-)
+pytestmark = pytest.mark.needs(*check_models.PROGRAMS)
 
 
 @pytest.mark.parametrize("case", [case for case in CASES if not case.bug], ids=lambda c: c.name)

@@ -33,8 +33,8 @@ RESULTS = [
 ]
 
 
+@pytest.mark.needs("matplotlib")
 def test_curves_and_bars_are_drawn(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    pytest.importorskip("matplotlib", reason="needs the extra bench (matplotlib)")
     drawn = []
     figure = load_figure()
     monkeypatch.setattr(figure, "savefig", lambda self, path: drawn.append(self))
@@ -50,8 +50,8 @@ def test_curves_and_bars_are_drawn(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     assert len(bars.patches) == 1
 
 
+@pytest.mark.needs("matplotlib")
 def test_a_picture_is_a_file(tmp_path: Path) -> None:
-    pytest.importorskip("matplotlib", reason="needs the extra bench (matplotlib)")
     plot(RESULTS, tmp_path / "plot.svg")
     assert "<svg" in (tmp_path / "plot.svg").read_text()
 

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import importlib.util
 import zipfile
 from contextlib import suppress
 from pathlib import Path
@@ -23,9 +22,7 @@ from rmw_manycore_py.ndt.recordings.scan_folder import read_scan
 
 pytestmark = pytest.mark.unit
 
-needs_open3d = pytest.mark.skipif(
-    importlib.util.find_spec("open3d") is None, reason="needs the extra ndt (Open3D)"
-)
+needs_open3d = pytest.mark.needs("open3d")
 FORMATS = [
     ".npz",
     ".pcd",
