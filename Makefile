@@ -3,10 +3,12 @@
 # Every target sets up what it needs in .venv first; see `make help`.
 
 VENV := .venv/bin
-NATIVE := build/native
+INSTALLED := build/install
 JOBS ?= $(shell nproc)
 # Tests at a time: most wait most of the time, and each needs memory and a few ROS domains.
 TEST_JOBS ?= $(shell n=$$((2 * $$(nproc))); echo $$((n < 8 ? n : 8)))
+# They test platform, transport and scan matcher, so they need no ROS.
+TESTS_ALONE := -DMANYCORE_BUILD_RMW=OFF -DMANYCORE_BUILD_PYTHON=OFF
 NATIVE_SOURCES := $(shell find CMakeLists.txt cmake startup rmw_manycore \
 	-type f -not -name '*.md')
 
@@ -18,26 +20,26 @@ help:  ## this list
 .venv/installed: pyproject.toml scripts/setup.sh $(NATIVE_SOURCES)
 	scripts/setup.sh
 
-.venv/ndt: .venv/installed
-	scripts/setup.sh extra ndt
+.venv/tests: .venv/installed
+	scripts/setup.sh tests
 
 setup: .venv/installed  ## build, and install this checkout into .venv
 
 demo: setup  ## run talker and listener in two clusters for ten seconds
 	$(VENV)/manycore demo
 
-test: setup .venv/ndt test-native  ## all tests but the long ones
+test: test-native  ## all tests but the long ones
 	$(VENV)/pytest -n $(TEST_JOBS)
 
-stress: setup  ## the long tests: random kills, many nodes
+stress: setup .venv/tests  ## the long tests: random kills, many nodes
 	$(VENV)/pytest -m stress
 
-test-native: setup  ## the C++ tests
-	scripts/native_tests.sh $(NATIVE)
+test-native: setup .venv/tests  ## the C++ tests
+	scripts/native_tests.sh $(INSTALLED)
 
-sanitize: setup  ## the C++ tests with sanitizers: address and undefined behaviour, then threads
-	scripts/native_tests.sh build/asan -DMANYCORE_SANITIZE=address,undefined
-	scripts/native_tests.sh build/tsan -DMANYCORE_SANITIZE=thread
+sanitize: setup .venv/tests  ## the C++ tests with sanitizers: address and undefined, then threads
+	scripts/native_tests.sh build/asan -DMANYCORE_SANITIZE=address,undefined $(TESTS_ALONE)
+	scripts/native_tests.sh build/tsan -DMANYCORE_SANITIZE=thread $(TESTS_ALONE)
 
 bench: setup  ## every bench, briefly; tables, and CSV in build/bench
 	$(VENV)/manycore bench all --quick --output build/bench
@@ -54,7 +56,7 @@ tidy: setup  ## clang-tidy with the checks of .clang-tidy
 	$(VENV)/cmake -S . -B build/tidy -G Ninja -DCMAKE_MAKE_PROGRAM=$(CURDIR)/$(VENV)/ninja \
 	  -DCMAKE_PREFIX_PATH=$(CURDIR)/.venv -DMANYCORE_BUILD_TESTS=ON -DMANYCORE_BUILD_BENCH=ON \
 	  -DCMAKE_EXPORT_COMPILE_COMMANDS=ON >build/tidy.log
-	git ls-files 'rmw_manycore/*.cpp' 'tests/native/*.cpp' ':!*/bench/ndt/peer.cpp' | \
+	git ls-files 'rmw_manycore/*.cpp' 'tests/native/*.cpp' | \
 	  xargs -P $(JOBS) -n 8 $(VENV)/clang-tidy -p build/tidy --quiet 2>build/tidy.log
 
 docs: setup  ## the documentation as HTML in build/docs, links checked

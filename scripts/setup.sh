@@ -5,9 +5,12 @@
 #   scripts/setup.sh                the system's packages (if any is missing), then .venv
 #   scripts/setup.sh system [PKG..] the system's packages only, and PKG too
 #   scripts/setup.sh extra NAME     what an extra of pyproject.toml asks for, into .venv
+#   scripts/setup.sh tests          what the tests need besides
+# It shows how far it is; everything it has to say is in build/setup-*.log.
 set -eu
 cd "$(dirname "$0")/.."
 : "${PYTHON:=python3}"
+BUILD=build/install
 # As newer versions of pip build everything; those of Debian 12 and Python 3.10 complain otherwise.
 export PIP_USE_PEP517=1 PIP_DISABLE_PIP_VERSION_CHECK=1
 
@@ -24,7 +27,7 @@ os.stat(os.path.join(s.get_path("include"), "Python.h"))' 2>/dev/null || echo py
 install_packages() {
   [ $# -gt 0 ] || return 0
   if command -v apt-get >/dev/null && [ "$(id -u)" = 0 ]; then
-    echo "Installing $*" >&2
+    echo "installing Debian packages: $*"
     apt-get update -qq
     DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "$@" >/dev/null
   else
@@ -61,21 +64,51 @@ print("\n".join(extras[sys.argv[1]] if len(sys.argv) > 1 else everything))
 END
 }
 
+# progress NAME WHAT COMMAND.. shows how far a command is.
+progress() {
+  log=build/setup-$1.log
+  shift
+  mkdir -p build
+  .venv/bin/python scripts/progress.py "$log" "$@"
+}
+
+install_requirements() {
+  requirements "$@" >.venv/requirements.txt
+  progress "packages${1:+-$1}" "installing Python packages${1:+ for $1}" \
+    .venv/bin/pip install --requirement .venv/requirements.txt
+}
+
 install_checkout() {
-  [ -x .venv/bin/python ] || "$PYTHON" -m venv .venv
-  requirements >.venv/requirements.txt
-  .venv/bin/pip install --quiet --requirement .venv/requirements.txt
-  .venv/bin/pip install --quiet --no-deps --no-build-isolation --editable .
+  if [ ! -x .venv/bin/python ]; then
+    echo "making .venv with $("$PYTHON" --version)"
+    rm -rf "$BUILD" # it may be for another python
+    "$PYTHON" -m venv .venv
+  fi
+  install_requirements
+  progress build "compiling" .venv/bin/pip install --verbose --no-deps --no-build-isolation \
+    "--config-settings=build-dir=$BUILD" --editable .
   touch .venv/installed
 }
 
 install_extra() {
-  requirements "$1" >.venv/requirements.txt
-  .venv/bin/pip install --quiet --requirement .venv/requirements.txt
+  install_requirements "$1"
   # Open3D's wheel needs libraries of the system that a machine without a display lacks.
   [ "$1" != ndt ] || .venv/bin/python -c 'import open3d' 2>/dev/null ||
     install_packages libusb-1.0-0 libgl1 libegl1 libgomp1 libx11-6
   touch ".venv/$1"
+}
+
+missing_for_tests() {
+  command -v spin >/dev/null || echo spin
+  command -v ip >/dev/null || echo iproute2
+  echo '#include <doctest/doctest.h>' | ${CXX:-c++} -E -x c++ - >/dev/null 2>&1 ||
+    echo doctest-dev
+}
+
+install_for_tests() {
+  install_packages $(missing_for_tests)
+  install_extra ndt
+  touch .venv/tests
 }
 
 if [ "${1:-}" = system ]; then
@@ -83,6 +116,8 @@ if [ "${1:-}" = system ]; then
   install_packages $(missing_packages) "$@"
 elif [ "${1:-}" = extra ]; then
   install_extra "$2"
+elif [ "${1:-}" = tests ]; then
+  install_for_tests
 else
   [ "$PYTHON" = python3 ] || check_python
   install_packages $(missing_packages)
