@@ -14,7 +14,7 @@ import sys
 import time
 from pathlib import Path
 
-NINJA_STEP = re.compile(r"^\s*\[(\d+)/(\d+)\] ")
+NINJA_STEP = re.compile(r"^\s*\[([1-9]\d*)/(\d+)\] ")
 PIP_PACKAGE = re.compile(r"^\s*(?:Collecting|Requirement already satisfied:) ([\w.-]+)")
 PIP_DOWNLOAD = re.compile(r"^\s*Downloading (\S+?)-\d\S* \(([\d.]+ \w+)\)")
 PIP_INSTALL = re.compile(r"^\s*Installing collected packages: (.*)")
