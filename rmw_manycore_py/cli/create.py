@@ -7,13 +7,14 @@ from pathlib import Path
 
 import click
 
-from rmw_manycore_py.cli.common.options import examples, json_option, mapfile_argument
+from rmw_manycore_py.cli.common.mapfile_argument import mapfile_argument
+from rmw_manycore_py.cli.common.options import examples, json_option
 from rmw_manycore_py.cli.common.printing import print_json, print_notices
 from rmw_manycore_py.create import create
 
 
 @click.command("create", epilog=examples("manycore create talker_listener -o generated"))
-@mapfile_argument
+@mapfile_argument()
 @click.option(
     "-o",
     "--output",

@@ -9,7 +9,7 @@ from pathlib import Path
 import click
 
 from rmw_manycore_py.cli.common.duration import duration_option
-from rmw_manycore_py.cli.common.mapfile_name import MapfileName
+from rmw_manycore_py.cli.common.mapfile_argument import mapfile_argument
 from rmw_manycore_py.cli.common.options import examples
 from rmw_manycore_py.cli.common.printing import new_table, print_table
 from rmw_manycore_py.cli.common.run_printer import RunPrinter
@@ -29,7 +29,7 @@ DEFAULT_DURATION_S = 10.0
         "manycore demo --list",
     ),
 )
-@click.argument("mapfile", metavar="[NAME]", type=MapfileName(), default=DEFAULT)
+@mapfile_argument("[NAME]", DEFAULT)
 @duration_option(DEFAULT_DURATION_S)
 @click.option("--list", "as_list", is_flag=True, help="List the installed mapfiles instead.")
 def command(mapfile: Path, duration_s: float, as_list: bool) -> None:

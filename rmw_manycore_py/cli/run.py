@@ -9,7 +9,8 @@ from pathlib import Path
 import click
 
 from rmw_manycore_py.cli.common.duration import duration_option
-from rmw_manycore_py.cli.common.options import examples, mapfile_argument
+from rmw_manycore_py.cli.common.mapfile_argument import mapfile_argument
+from rmw_manycore_py.cli.common.options import examples
 from rmw_manycore_py.cli.common.run_printer import RunPrinter
 from rmw_manycore_py.launch.events import Event
 from rmw_manycore_py.launch.run import Run
@@ -24,7 +25,7 @@ from rmw_manycore_py.mapfile import load_mapfile, resolve
         "manycore run talker_listener --json | jq 'select(.event == \"output\")'",
     ),
 )
-@mapfile_argument
+@mapfile_argument()
 @duration_option()
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object per event.")
 def command(mapfile: Path, duration_s: float | None, as_json: bool) -> None:

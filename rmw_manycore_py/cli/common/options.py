@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import click
 
-from rmw_manycore_py.cli.common.mapfile_name import MapfileName
 from rmw_manycore_py.ros.domain import default_platform
 
 json_option = click.option("--json", "as_json", is_flag=True, help="Print JSON.")
@@ -36,7 +35,6 @@ hidden_option = click.option(
     is_flag=True,
     help="Show names with a part that starts with _ too.",
 )
-mapfile_argument = click.argument("mapfile", type=MapfileName())
 
 
 def examples(*lines: str) -> str:

@@ -7,14 +7,15 @@ from pathlib import Path
 
 import click
 
-from rmw_manycore_py.cli.common.options import examples, json_option, mapfile_argument
+from rmw_manycore_py.cli.common.mapfile_argument import mapfile_argument
+from rmw_manycore_py.cli.common.options import examples, json_option
 from rmw_manycore_py.cli.common.printing import counted, print_json, print_notices
 from rmw_manycore_py.errors import MapfileError
 from rmw_manycore_py.mapfile import load_mapfile, resolve
 
 
 @click.command("check", epilog=examples("manycore map check talker_listener"))
-@mapfile_argument
+@mapfile_argument()
 @json_option
 def command(mapfile: Path, as_json: bool) -> None:
     """Check MAPFILE and everything it refers to; start nothing."""

@@ -8,7 +8,8 @@ from pathlib import Path
 
 import click
 
-from rmw_manycore_py.cli.common.options import examples, json_option, mapfile_argument
+from rmw_manycore_py.cli.common.mapfile_argument import mapfile_argument
+from rmw_manycore_py.cli.common.options import examples, json_option
 from rmw_manycore_py.cli.common.printing import (
     new_table,
     print_json,
@@ -21,7 +22,7 @@ from rmw_manycore_py.mapfile.placing.show import as_data
 
 
 @click.command("show", epilog=examples("manycore map show three_nodes"))
-@mapfile_argument
+@mapfile_argument()
 @json_option
 def command(mapfile: Path, as_json: bool) -> None:
     """Show what MAPFILE places where: nodes, topic table, memory of the clusters."""
