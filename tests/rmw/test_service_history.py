@@ -44,12 +44,12 @@ def lost(role: str) -> int:
     """Return what the tools show of the requests or replies that were lost."""
     from rmw_manycore_py import _transport
 
-    platform = _transport.Platform(os.environ["MANYCORE_PLATFORM"])
-    return sum(
-        endpoint["counters"]["lost"]
-        for endpoint in platform.endpoints()
-        if endpoint["topic"] == "/mirror" and endpoint["role"] == role
-    )
+    with _transport.Platform(os.environ["MANYCORE_PLATFORM"]) as platform:
+        return sum(
+            endpoint.counters.lost
+            for endpoint in platform.endpoints()
+            if endpoint.topic == "/mirror" and endpoint.role == role
+        )
 
 
 @pytest.fixture
