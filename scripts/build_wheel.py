@@ -81,7 +81,7 @@ def repaired(wheel: Path, directory: Path) -> Path:
 def contents(wheel: Path) -> set[str]:
     """Return the names of the files in a wheel."""
     with ZipFile(wheel) as archive:
-        return set(archive.namelist())
+        return {name for name in archive.namelist() if not name.endswith("/")}
 
 
 def check(python: str, wheel: Path, directory: Path) -> None:
