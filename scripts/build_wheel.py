@@ -92,7 +92,7 @@ def check(python: str, wheel: Path, directory: Path) -> None:
     if found := [name for name in COMPILERS if shutil.which(name, path=own["PATH"])]:
         raise SystemExit(f"compilers on PATH: {found}")
     everything = f"{wheel}[examples,bench]"
-    run(programs / "pip", "install", "--quiet", "--only-binary", ":all:", everything, env=own)
+    run(programs / "pip", "install", "--quiet", everything, env=own)
     for words in (
         ["python", "-c", IMPORT_EVERYTHING],
         ["manycore", "demo"],
