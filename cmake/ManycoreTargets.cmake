@@ -25,9 +25,12 @@ set(CMAKE_POSITION_INDEPENDENT_CODE ON)
 # Nothing may name the build machine; a library that needs a path sets its own $ORIGIN.
 set(CMAKE_BUILD_WITH_INSTALL_RPATH ON)
 
-# Paths in messages and in debug information are those of the checkout, on whatever machine.
+# Paths in messages and in debug information are those of the checkout, on whatever machine. ccache
+# may hand the compiler relative paths.
+file(RELATIVE_PATH source_from_build ${CMAKE_BINARY_DIR} ${CMAKE_SOURCE_DIR})
 add_compile_options(
-  -ffile-prefix-map=${CMAKE_BINARY_DIR}=build -ffile-prefix-map=${CMAKE_SOURCE_DIR}/=)
+  -ffile-prefix-map=${CMAKE_BINARY_DIR}=build -ffile-prefix-map=${CMAKE_SOURCE_DIR}/=
+  -ffile-prefix-map=${source_from_build}/=)
 
 add_library(manycore_options INTERFACE)
 target_compile_features(manycore_options INTERFACE cxx_std_17)
