@@ -10,6 +10,7 @@
 
 #include "python/context.hpp"
 #include "python/transport/bindings.hpp"
+#include "python/transport/text.hpp"
 
 namespace nb = nanobind;
 
@@ -64,7 +65,7 @@ void bind_configurator(nb::module_ & module) {
     .def(
       "__init__", &init_topic, nb::arg("name"), nb::kw_only(), nb::arg("id"),
       nb::arg("dsm_size_bytes"), nb::arg("receiver_clusters"))
-    .def_ro("name", &TopicConfiguration::name)
+    .def_prop_ro("name", name<TopicConfiguration>(&TopicConfiguration::name))
     .def_ro("id", &TopicConfiguration::id)
     .def_ro("dsm_size_bytes", &TopicConfiguration::dsm_size_bytes)
     .def_ro("receiver_clusters", &TopicConfiguration::receiver_clusters);

@@ -59,7 +59,8 @@ public:
     std::vector<TopicConfiguration> rows;
     for (uint32_t i = 0; i < registry.header().topic_count; ++i) {
       const TopicEntry & topic = registry.topic(i);
-      rows.push_back({topic.name, topic.topic_id, topic.topic_dsm_size, topic.receiver_clusters});
+      rows.push_back(
+        {text_of(topic.name), topic.topic_id, topic.topic_dsm_size, topic.receiver_clusters});
     }
     return rows;
   }

@@ -11,6 +11,7 @@
 
 #include "python/transport/bindings.hpp"
 #include "python/transport/gid.hpp"
+#include "python/transport/text.hpp"
 #include "python/transport/type_hash.hpp"
 #include "python/transport/words.hpp"
 
@@ -42,7 +43,7 @@ void bind_process_info(nb::module_ & module) {
     .def_ro("cluster", &ProcessRow::cluster)
     .def_prop_ro("core", unless_negative(&ProcessRow::core))
     .def_prop_ro("host_cpu", unless_negative(&ProcessRow::host_cpu))
-    .def_ro("label", &ProcessRow::label)
+    .def_prop_ro("label", name<ProcessRow>(&ProcessRow::label))
     .def_ro("alive", &ProcessRow::alive);
 }
 
@@ -62,9 +63,9 @@ void bind_node_info(nb::module_ & module) {
   nb::class_<NodeInfo>(module, "NodeInfo")
     .def_ro("handle", &NodeInfo::handle)
     .def_ro("process", &NodeInfo::process)
-    .def_ro("name", &NodeInfo::name)
-    .def_ro("namespace", &NodeInfo::ns)
-    .def_ro("enclave", &NodeInfo::enclave);
+    .def_prop_ro("name", name<NodeInfo>(&NodeInfo::name))
+    .def_prop_ro("namespace", name<NodeInfo>(&NodeInfo::ns))
+    .def_prop_ro("enclave", name<NodeInfo>(&NodeInfo::enclave));
 }
 
 void bind_counter_values(nb::module_ & module) {
@@ -81,12 +82,12 @@ void bind_endpoint_info(nb::module_ & module) {
   nb::class_<EndpointRow>(module, "EndpointInfo")
     .def_prop_ro("kind", word<EndpointRow>(&EndpointRow::kind))
     .def_prop_ro("role", word<EndpointRow>(&EndpointRow::role))
-    .def_ro("topic", &EndpointRow::topic)
-    .def_ro("type", &EndpointRow::type)
+    .def_prop_ro("topic", name<EndpointRow>(&EndpointRow::topic))
+    .def_prop_ro("type", name<EndpointRow>(&EndpointRow::type))
     .def_prop_ro("type_hash", [](const EndpointRow & row) { return to_text(row.type_hash); })
     .def_prop_ro("gid", [](const EndpointRow & row) { return to_bytes(row.gid); })
-    .def_ro("node_name", &EndpointRow::node_name)
-    .def_ro("node_namespace", &EndpointRow::node_namespace)
+    .def_prop_ro("node_name", name<EndpointRow>(&EndpointRow::node_name))
+    .def_prop_ro("node_namespace", name<EndpointRow>(&EndpointRow::node_namespace))
     .def_ro("cluster", &EndpointRow::cluster)
     .def_ro("process", &EndpointRow::process)
     .def_ro("qos", &EndpointRow::qos)

@@ -25,8 +25,8 @@ EndpointInfo describe(Registry & registry, const EndpointEntry & entry) {
   info.counters = read_counters(registry, entry);
   info.kind = entry.kind;
   info.role = entry.role;
-  info.topic = entry.topic;
-  info.type = entry.type;
+  info.topic = text_of(entry.topic);
+  info.type = text_of(entry.type);
   info.type_hash.version = entry.type_hash_version;
   std::copy(std::begin(entry.type_hash), std::end(entry.type_hash), info.type_hash.value.begin());
   info.gid = entry.gid;
@@ -51,7 +51,8 @@ std::vector<ProcessInfo> Graph::processes() const {
   for (uint32_t slot = 0; slot < registry_.processes().high_water(); ++slot) {
     if (registry_.processes().is_live(slot)) {
       const ProcessEntry & entry = registry_.processes()[slot];
-      all.push_back({slot, entry.pid, entry.cluster, entry.core, entry.host_cpu, entry.label});
+      all.push_back(
+        {slot, entry.pid, entry.cluster, entry.core, entry.host_cpu, text_of(entry.label)});
     }
   }
   return all;
@@ -79,7 +80,8 @@ std::vector<NodeInfo> Graph::nodes() const {
   for (uint32_t slot = 0; slot < registry_.nodes().high_water(); ++slot) {
     if (registry_.nodes().is_live(slot)) {
       const NodeEntry & entry = registry_.nodes()[slot];
-      all.push_back({slot, entry.process, entry.name, entry.ns, entry.enclave});
+      all.push_back(
+        {slot, entry.process, text_of(entry.name), text_of(entry.ns), text_of(entry.enclave)});
     }
   }
   return all;

@@ -1,6 +1,7 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstring>
 #include <functional>
 #include <string>
 #include <vector>
@@ -134,6 +135,12 @@ uint64_t hash_name(const char * name) noexcept;
 
 /// Copies a name into a fixed field; throws Error{invalid_argument} when it does not fit.
 void store_name(char (&field)[name_bytes], const std::string & name, const char * what);
+
+/// The text in a field; in a damaged registry it may fill the field, without a zero at its end.
+template<size_t size>
+std::string text_of(const char (&field)[size]) {
+  return {field, strnlen(field, size)};
+}
 
 template<typename Entry>
 uint32_t Table<Entry>::take(const char * what) {

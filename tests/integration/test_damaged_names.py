@@ -1,0 +1,74 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Names in a damaged registry are shown as far as they can be read; the tools go on."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+from support import IS_MANYCORE, PLATFORMS, Program, example_command, manycore_command
+
+pytestmark = [
+    pytest.mark.integration,
+    pytest.mark.skipif(not IS_MANYCORE, reason="damages the files of rmw_manycore"),
+]
+
+NAME_BYTES = 256  # of a field in the registry: the name, and zeros
+
+
+@pytest.fixture
+def talker(start) -> Program:
+    program = start(example_command("talker"))
+    program.wait_for("Publishing")
+    return program
+
+
+@pytest.fixture
+def rows(start, platform):
+    """Return a function that runs a verb to its end and returns what it lists."""
+
+    def call(*words: str) -> list[dict]:
+        program = start(manycore_command(*words, "--platform", platform, "--json"))
+        assert program.wait() == 0, program
+        return json.loads(program.output)
+
+    return call
+
+
+def overwrite_name(platform: str, name: bytes, damaged: bytes) -> None:
+    """Put other bytes in the place of each field that holds this name."""
+    with (PLATFORMS / platform / "registry").open("r+b") as file:
+        content = file.read()
+        field = name.ljust(NAME_BYTES, b"\0")
+        place = content.find(field)
+        assert place >= 0
+        while place >= 0:
+            file.seek(place)
+            file.write(damaged.ljust(NAME_BYTES, b"\0"))
+            place = content.find(field, place + NAME_BYTES)
+
+
+def test_a_topic_that_is_no_utf_8(talker, rows, platform):
+    overwrite_name(platform, b"/chatter", b"/ch\xff\xc3tter")
+    names = [row["name"] for row in rows("topic", "list")]
+    assert names == ["/ch\ufffd\ufffdtter", "/parameter_events", "/rosout"]
+
+
+def test_a_topic_that_does_not_end(talker, rows, platform):
+    overwrite_name(platform, b"/chatter", b"\xff" * NAME_BYTES)
+    listed = {row["name"]: row["types"] for row in rows("topic", "list", "-t")}
+    assert listed["\ufffd" * NAME_BYTES] == ["std_msgs/msg/String"]
+    assert listed["/rosout"] == ["rcl_interfaces/msg/Log"]
+
+
+def test_a_node_that_is_no_utf_8(talker, rows, start, platform):
+    start(example_command("listener")).wait_for("I heard")
+    overwrite_name(platform, b"talker", b"\xfe\xfftalker")
+    (state,) = rows("status")
+    nodes = [node for process in state["processes"] for node in process["nodes"]]
+    assert sorted(nodes) == ["/listener", "/\ufffd\ufffdtalker"]
+    assert {row["node"] for row in rows("node", "list")} == {"/listener", "/\ufffd\ufffdtalker"}
+    for words in (("status",), ("topic", "info", "-v", "/chatter"), ("node", "list")):
+        program = start(manycore_command(*words, "--platform", platform))
+        assert program.wait() == 0, program
+        assert "\ufffd\ufffdtalker" in program.output, program
