@@ -1,12 +1,15 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #include "platform/robust_mutex.hpp"
 
+#include <linux/futex.h>
+
 #include <cerrno>
 #include <cstring>
 #include <string>
 
 #include "platform/clock.hpp"
 #include "platform/error.hpp"
+#include "platform/lock_owner.hpp"
 
 #if defined(__has_feature)
 #define MANYCORE_THREAD_SANITIZER __has_feature(thread_sanitizer)
@@ -37,6 +40,12 @@ int lock_until(pthread_mutex_t & mutex, const timespec & until) {
 #endif
 }
 
+/// Thread id of the owner, 0 for none: of a robust mutex that is the kernel's futex word.
+pid_t owner_of(const pthread_mutex_t & mutex) {
+  const int word = __atomic_load_n(&mutex.__data.__lock, __ATOMIC_RELAXED);
+  return static_cast<pid_t>(word & FUTEX_TID_MASK);
+}
+
 }  // namespace
 
 void RobustMutex::initialize() {
@@ -59,9 +68,11 @@ RobustMutex::Outcome RobustMutex::lock(long timeout_ns) {
     case EOWNERDEAD:
       return Outcome::owner_died;
     case ETIMEDOUT:
+      // A caller that did not wait tries again by itself, so it is not told about the owner.
       throw Error(
-        ErrorCode::timeout,
-        "the platform's registry stayed locked; is a process that was joining or leaving stopped?");
+        ErrorCode::timeout, timeout_ns == 0 ? "the platform's registry is locked"
+                                            : "the platform's registry stayed locked: " +
+                                                describe_lock_owner(owner_of(mutex_)));
     default:
       throw Error(
         ErrorCode::corrupt, std::string("the registry's lock is damaged: ") + std::strerror(error));

@@ -13,7 +13,8 @@ public:
 
   /// Once, by the creator of the segment.
   void initialize();
-  /// Throws Error{timeout} after `timeout_ns` and Error{corrupt} on a word that is no mutex.
+  /// Throws Error{timeout} after `timeout_ns`, whose text says what state the owner is in, and
+  /// Error{corrupt} on a word that is no mutex.
   Outcome lock(long timeout_ns);
   void unlock() noexcept;
   /// After owner_died, once the protected state has been repaired.

@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 
 #include <csignal>
+#include <cstring>
 #include <map>
 #include <set>
 
@@ -32,6 +33,14 @@ const Role lock_holder("lock_holder", [](Lines & test, const Arguments & argumen
   }
   test.say("holding");
   raise(SIGSTOP);
+});
+
+/// Holds the registry lock of a platform until it is told to end; runs meanwhile.
+const Role busy_owner("busy_owner", [](Lines & test, const Arguments & arguments) {
+  Registry registry(PlatformPaths::of(arguments.at(0)));
+  const Registry::Lock lock(registry);
+  test.say("holding");
+  test.expect("end");
 });
 
 struct Fixture {
@@ -201,8 +210,52 @@ TEST_CASE("the lock of a stopped owner is waited for, then it is an error that s
   const Refusal refusal =
     refusal_of([&] { const Registry::Lock lock(f.registry, Registry::Lock::short_wait_ns); });
   CHECK(refusal.code == ErrorCode::timeout);
-  CHECK(refusal.says("stopped"));
+  const std::string pid = std::to_string(holder.pid());
+  CHECK_MESSAGE(refusal.says("process " + pid + " ("), refusal.text);
+  CHECK_MESSAGE(refusal.says("is stopped; continue it (kill -CONT " + pid + ")"), refusal.text);
   holder.resume();  // its end gives the lock back
   CHECK(holder.wait() == 0);
   CHECK(f.process->graph().nodes().empty());
+}
+
+TEST_CASE("the lock of an owner that goes on: the error does not call it stopped") {
+  Fixture f;
+  Child owner("busy_owner", {f.platform.name()});
+  owner.expect("holding");
+  const Refusal refusal =
+    refusal_of([&] { const Registry::Lock lock(f.registry, Registry::Lock::short_wait_ns); });
+  CHECK(refusal.code == ErrorCode::timeout);
+  CHECK_MESSAGE(refusal.says("process " + std::to_string(owner.pid())), refusal.text);
+  CHECK_MESSAGE(refusal.says("is not stopped"), refusal.text);
+  owner.say("end");
+  CHECK(owner.wait() == 0);
+}
+
+TEST_CASE("the lock of an owner that does not exist: the error names no process") {
+  Fixture f;
+  const Standstill receive_thread(f.platform, 1);  // it would wait for the lock, too
+  // The first word of the lock is the owner's thread id. No thread has an id this large.
+  RobustMutex & mutex = f.registry.header().mutex;
+  constexpr int32_t no_thread = 0x2fff'ffff;
+  constexpr int32_t unlocked = 0;
+  std::memcpy(&mutex, &no_thread, sizeof no_thread);
+  const Refusal refusal =
+    refusal_of([&] { const Registry::Lock lock(f.registry, Registry::Lock::short_wait_ns); });
+  std::memcpy(&mutex, &unlocked, sizeof unlocked);
+  CHECK(refusal.code == ErrorCode::timeout);
+  CHECK_MESSAGE(refusal.says("does not exist here"), refusal.text);
+  CHECK_MESSAGE(refusal.says("run 'manycore clean'"), refusal.text);
+  CHECK_MESSAGE(!refusal.says("process "), refusal.text);
+}
+
+TEST_CASE("a lock that is only tried says nothing about its owner") {
+  Fixture f;
+  Child owner("busy_owner", {f.platform.name()});
+  owner.expect("holding");
+  const Refusal refusal =
+    refusal_of([&] { const Registry::Lock lock(f.registry, Registry::Lock::no_wait_ns); });
+  CHECK(refusal.code == ErrorCode::timeout);
+  CHECK(refusal.text == "the platform's registry is locked");
+  owner.say("end");
+  CHECK(owner.wait() == 0);
 }

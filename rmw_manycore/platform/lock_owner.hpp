@@ -1,0 +1,14 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <sys/types.h>
+
+#include <string>
+
+namespace manycore {
+
+/// What /proc says about the thread that a lock names as its owner, and what to do about it.
+/// `thread`: 0 for a lock that no thread owns at this moment.
+std::string describe_lock_owner(pid_t thread);
+
+}  // namespace manycore
