@@ -10,6 +10,7 @@ from rmw_manycore_py.cli.common.options import examples, json_option
 from rmw_manycore_py.cli.common.printing import print_json
 from rmw_manycore_py.cli.common.view import platform_names
 from rmw_manycore_py.errors import ManycoreError
+from rmw_manycore_py.ros.domain import checked_platform
 
 
 @click.command("clean", epilog=examples("manycore clean", "manycore clean domain-0"))
@@ -23,7 +24,7 @@ def command(platforms: tuple[str, ...], as_json: bool) -> None:
     removed: list[str] = []
     known = platform_names()
     for name in platforms or known:
-        if name not in known:
+        if checked_platform(name, "PLATFORMS") not in known:
             raise ManycoreError(f"no platform '{name}'")
         try:
             removed += _transport.clean(name)

@@ -9,7 +9,7 @@ import click
 
 from rmw_manycore_py import _transport
 from rmw_manycore_py.cli.common import view
-from rmw_manycore_py.cli.common.options import examples, json_option
+from rmw_manycore_py.cli.common.options import any_platform_option, examples, json_option
 from rmw_manycore_py.cli.common.printing import new_table, print_json, print_table, size_text
 from rmw_manycore_py.cli.common.rows import Row, cluster_row, platform_row, process_row
 from rmw_manycore_py.errors import ManycoreError
@@ -65,7 +65,7 @@ class Unreadable:
 
 
 @click.command("status", epilog=examples("manycore status", "manycore status --platform domain-0"))
-@click.option("--platform", help="Only the platform of this name.")
+@any_platform_option
 @json_option
 def command(platform: str | None, as_json: bool) -> None:
     """Show the platforms of this user: clusters, processes, and messages that were lost."""

@@ -7,6 +7,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
@@ -248,12 +249,40 @@ TEST_CASE("joining and leaving again and again leaves no descriptor open") {
 TEST_CASE("names that are no platform names never become paths") {
   for (const std::string & name :
        {std::string(""), std::string("."), std::string(".."), std::string("a/b"),
-        std::string(".hidden"), std::string("a b"), std::string(65, 'x')}) {
+        std::string(".hidden"), std::string("-x"), std::string("a b"), std::string(65, 'x'),
+        std::string("a\0b", 3), std::string("b\xc3\xbc"), std::string("\xff")}) {
     CAPTURE(name);
     const Refusal refusal = refusal_of([&] { PlatformPaths::of(name); });
     CHECK(refusal.code == ErrorCode::invalid_argument);
     CHECK(refusal.says("no platform name"));
+    CHECK_FALSE(PlatformPaths::is_name(name));
+    CHECK(std::all_of(
+      refusal.text.begin(), refusal.text.end(), [](char c) { return c >= ' ' && c <= '~'; }));
   }
+}
+
+TEST_CASE("no name of a platform collides with a file of its own or of the user's directory") {
+  for (const std::string name : {"lock", "alive", "registry", "cluster-1"}) {
+    CAPTURE(name);
+    Placement placement;
+    placement.platform = name;
+    placement.cluster = 1;
+    const auto process = Process::join(placement);
+    const std::vector<std::string> names = platform_names();
+    CHECK(std::count(names.begin(), names.end(), name) == 1);
+    CHECK(is_alive(PlatformPaths::of(name)));
+  }
+}
+
+TEST_CASE("a directory whose name is no platform name is not listed") {
+  const TestPlatform platform;
+  const auto process = platform.join();
+  const std::string stray = platform.paths().user_directory + "/\xff" + std::to_string(getpid());
+  REQUIRE(mkdir(stray.c_str(), 0700) == 0);
+  for (const std::string & name : platform_names()) {
+    CHECK(PlatformPaths::is_name(name));
+  }
+  rmdir(stray.c_str());
 }
 
 TEST_CASE("variables of the environment are checked, and named when they are wrong") {

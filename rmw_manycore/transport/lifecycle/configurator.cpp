@@ -49,7 +49,7 @@ std::vector<std::string> platform_names() {
     return names;
   }
   while (const dirent * const entry = readdir(handle)) {
-    if (entry->d_type == DT_DIR && entry->d_name[0] != '.') {
+    if (entry->d_type == DT_DIR && PlatformPaths::is_name(entry->d_name)) {
       names.emplace_back(entry->d_name);
     }
   }

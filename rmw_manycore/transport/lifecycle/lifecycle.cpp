@@ -112,7 +112,8 @@ JoinLock::JoinLock(const PlatformPaths & paths) : paths_(paths) {
 }
 
 JoinLock::~JoinLock() {
-  if (entries_of(paths_.user_directory) == std::vector<std::string>{"lock"}) {
+  if (
+    entries_of(paths_.user_directory) == std::vector<std::string>{PlatformPaths::join_lock_name}) {
     unlink(paths_.join_lock().c_str());
     rmdir(paths_.user_directory.c_str());
   }

@@ -17,6 +17,17 @@ uint32_t granule_size(uint64_t smem_bytes) { return smem_bytes <= (64u << 20) ? 
 
 uint64_t map_bytes(uint64_t granules) { return align_up(align_up(granules, 64) / 8, 8); }
 
+/// Letters of ASCII alone, whatever the locale.
+bool is_name_start(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
+}
+
+/// A zero would end the message, and Python takes no message that is not UTF-8.
+std::string printable(std::string text) {
+  std::replace_if(text.begin(), text.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
+  return text;
+}
+
 Error no_room(const Cluster & cluster, uint64_t length, const std::string & advice) {
   return Error(
     ErrorCode::no_space, "cluster " + std::to_string(cluster.id()) + " has no room for " +
@@ -27,15 +38,19 @@ Error no_room(const Cluster & cluster, uint64_t length, const std::string & advi
 
 }  // namespace
 
+bool PlatformPaths::is_name(const std::string & platform) noexcept {
+  return !platform.empty() && platform.size() <= 64 && is_name_start(platform[0]) &&
+         std::all_of(platform.begin(), platform.end(), [](char c) {
+           return is_name_start(c) || c == '-' || c == '.';
+         });
+}
+
 PlatformPaths PlatformPaths::of(const std::string & platform) {
-  const bool valid = !platform.empty() && platform.size() <= 64 && platform[0] != '.' &&
-                     std::all_of(platform.begin(), platform.end(), [](unsigned char c) {
-                       return std::isalnum(c) || c == '-' || c == '_' || c == '.';
-                     });
-  if (!valid) {
+  if (!is_name(platform)) {
     throw Error(
-      ErrorCode::invalid_argument,
-      "'" + platform + "' is no platform name: expected up to 64 letters, digits, '-', '_', '.'");
+      ErrorCode::invalid_argument, "'" + printable(platform) +
+                                     "' is no platform name: expected up to 64 letters, digits, "
+                                     "'_', '.' and '-', the first none of '.' and '-'");
   }
   const std::string user = "/dev/shm/manycore-" + std::to_string(geteuid());
   return {user, user + "/" + platform};

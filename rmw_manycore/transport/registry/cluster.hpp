@@ -16,11 +16,15 @@ namespace manycore {
 
 /// Paths of a platform's files.
 struct PlatformPaths {
+  /// No platform name begins with a dot, so no platform's directory has this name.
+  static constexpr const char * join_lock_name = ".lock";
   std::string user_directory;  ///< /dev/shm/manycore-<uid>
   std::string directory;       ///< .../<platform>
 
+  /// Throws Error{invalid_argument} for what is no platform name.
   static PlatformPaths of(const std::string & platform);
-  std::string join_lock() const { return user_directory + "/lock"; }
+  static bool is_name(const std::string & platform) noexcept;
+  std::string join_lock() const { return user_directory + "/" + join_lock_name; }
   std::string registry() const { return directory + "/registry"; }
   std::string alive() const { return directory + "/alive"; }
   std::string cluster(uint32_t id) const { return directory + "/cluster-" + std::to_string(id); }

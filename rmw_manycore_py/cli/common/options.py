@@ -5,14 +5,23 @@ from __future__ import annotations
 
 import click
 
-from rmw_manycore_py.ros.domain import default_platform
+from rmw_manycore_py.ros.domain import checked_platform, default_platform
+
+
+def _checked(_context: click.Context, _option: click.Parameter, name: str | None) -> str | None:
+    return None if name is None else checked_platform(name, "--platform")
+
 
 json_option = click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 platform_option = click.option(
     "--platform",
     default=default_platform,
+    callback=_checked,
     show_default="$MANYCORE_PLATFORM, or domain-$ROS_DOMAIN_ID",
     help="Name of the platform.",
+)
+any_platform_option = click.option(
+    "--platform", callback=_checked, help="Only the platform of this name."
 )
 values_argument = click.argument("values", default="{}")
 types_option = click.option("-t", "--show-types", is_flag=True, help="Show the types too.")

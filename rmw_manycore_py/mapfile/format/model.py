@@ -19,7 +19,7 @@ from rmw_manycore_py.mapfile.format.values import (
     ServiceType,
     Size,
 )
-from rmw_manycore_py.ros.domain import MAX_DOMAIN
+from rmw_manycore_py.ros.domain import MAX_DOMAIN, PLATFORM_NAME
 
 # Receiver clusters are a mask of 64 bits.
 MAX_CLUSTERS = 64
@@ -46,7 +46,7 @@ NodeName = Annotated[str, StringConstraints(pattern=f"^/?{_PARTS}$", max_length=
 # Whatever rcl may know in a rule, but no spaces or dashes: node:~/topic, rosservice:///ns/{node}.
 RemapRule = Annotated[str, StringConstraints(pattern=r"^[A-Za-z0-9_/~:{}]+$")]
 Namespace = Annotated[str, StringConstraints(pattern=f"^/?({_PARTS})?$")]
-PlatformName = Annotated[str, StringConstraints(pattern=r"^[A-Za-z0-9_][A-Za-z0-9_.-]{0,63}$")]
+PlatformName = Annotated[str, StringConstraints(pattern=PLATFORM_NAME)]
 WaitMode = Literal["block", "adaptive", "spin"]
 
 

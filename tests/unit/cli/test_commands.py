@@ -168,3 +168,16 @@ def test_a_platform_that_is_not_there(words: tuple[str, ...]) -> None:
     result = manycore(*words, "--platform", "no-such-platform")
     assert result.exit_code == 1
     assert result.output.startswith("manycore: no platform 'no-such-platform'")
+
+
+@pytest.mark.parametrize("words", [("topic", "list"), ("status",), ("bridge", "status"), ("top",)])
+def test_a_platform_that_no_platform_can_be(words: tuple[str, ...]) -> None:
+    result = manycore(*words, "--platform", "../lock")
+    assert result.exit_code == 2
+    assert result.output.startswith("manycore: --platform: expected a platform name of")
+
+
+def test_clean_refuses_a_name_that_no_platform_can_have() -> None:
+    result = manycore("clean", "..")
+    assert result.exit_code == 2
+    assert "found '..'" in result.output

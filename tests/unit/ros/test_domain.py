@@ -5,7 +5,9 @@ from __future__ import annotations
 
 import pytest
 
-from rmw_manycore_py.ros.domain import default_platform
+from rmw_manycore_py import _transport
+from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
+from rmw_manycore_py.ros.domain import checked_platform, default_platform
 
 pytestmark = pytest.mark.unit
 
@@ -32,3 +34,46 @@ def test_a_domain_that_rcl_was_given_wins_over_the_environment() -> None:
 def test_a_named_platform_wins_over_every_domain(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("MANYCORE_PLATFORM", "robot")
     assert (default_platform(), default_platform(9)) == ("robot", "robot")
+
+
+NO_NAMES = (
+    "",
+    ".",
+    "..",
+    "a/b",
+    "/",
+    ".lock",
+    "-x",
+    "a b",
+    "x" * 65,
+    "a\0b",
+    "b\u00fc",
+    "\udcff",
+    "x\n",
+)
+
+
+@pytest.mark.parametrize("name", NO_NAMES, ids=ascii)
+def test_a_name_that_no_platform_has_is_refused(name: str) -> None:
+    with pytest.raises(ManycoreError, match="--platform: expected a platform name") as refused:
+        checked_platform(name, "--platform")
+    assert refused.value.exit_status == EXIT_BAD_INPUT
+    assert str(refused.value).isprintable()
+
+
+@pytest.mark.parametrize("name", ["lock", "alive", "domain-0", "_", "x" * 64, "a.b-c"])
+def test_python_and_the_transport_have_the_same_names(name: str) -> None:
+    assert checked_platform(name, "--platform") == name
+    assert _transport.platform_directory(name).endswith(f"/{name}")
+
+
+@pytest.mark.parametrize("name", set(NO_NAMES) - {"\udcff"}, ids=ascii)
+def test_the_transport_refuses_what_python_refuses(name: str) -> None:
+    with pytest.raises(_transport.PlatformError, match="is no platform name"):
+        _transport.platform_directory(name)
+
+
+def test_the_variable_is_checked(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("MANYCORE_PLATFORM", "../elsewhere")
+    with pytest.raises(ManycoreError, match=r"MANYCORE_PLATFORM: .* found '../elsewhere'"):
+        default_platform()
