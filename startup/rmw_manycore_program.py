@@ -59,9 +59,11 @@ def _put_pythonpath_last() -> None:
     entries = os.environ.get("PYTHONPATH", "").split(os.pathsep)
     if entries == [""]:
         return
-    needed = {os.path.dirname(os.path.abspath(file)) for file in (__file__, str(os.__file__))}
-    named = {os.path.abspath(entry) for entry in entries if entry} - needed
-    unwanted = {"", os.path.abspath("")} - needed if "" in entries else set()
+    standard, own = (
+        os.path.dirname(os.path.abspath(str(file))) for file in (os.__file__, __file__)
+    )
+    named = {os.path.abspath(entry) for entry in entries if entry} - {standard}
+    unwanted = {"", os.path.abspath("")} - {standard, own} - named if "" in entries else set()
     last = [path for path in sys.path if path in named]
     sys.path[:] = [path for path in sys.path if path not in named | unwanted] + last
 

@@ -103,6 +103,15 @@ def test_an_installation_that_is_named_in_the_path_stays(prefix: Prefix, own: li
     assert str(prefix.site_packages) in shown["path"]
 
 
+@pytest.mark.parametrize("own", ["module", "executable"], indirect=True)
+def test_it_works_where_no_start_up_hook_is_read(prefix: Prefix, hostile: Path, own: list) -> None:
+    """As in an ordinary ROS 2, where rmw_manycore itself lies on PYTHONPATH."""
+    variables = {"PYTHONPATH": f":{prefix.site_packages}"}
+    shown = prefix.show("-S", *own, directory=hostile, **variables)
+    assert shown["path"][-1] == str(prefix.site_packages)
+    assert not {"", str(hostile)} & set(shown["path"])
+
+
 def test_other_programs_keep_the_rules_of_python(prefix: Prefix, tmp_path: Path) -> None:
     script = tmp_path / "manycore"
     script.write_text(SHOW)
