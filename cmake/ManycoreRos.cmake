@@ -8,6 +8,7 @@ add_library(manycore_ros INTERFACE)
 
 set(ros_packages rmw rcutils rcpputils rosidl_runtime_c rosidl_runtime_cpp
   rosidl_typesupport_interface rosidl_typesupport_fastrtps_c rosidl_typesupport_fastrtps_cpp
+  rosidl_typesupport_introspection_c rosidl_typesupport_introspection_cpp
   rosidl_dynamic_typesupport tracetools)
 set(ros_libraries rmw rcutils rosidl_runtime_c rosidl_typesupport_fastrtps_c
   rosidl_typesupport_fastrtps_cpp rosidl_dynamic_typesupport fastcdr)
@@ -17,7 +18,8 @@ if(DEFINED ENV{AMENT_PREFIX_PATH} AND NOT SKBUILD)
   find_package(fastcdr REQUIRED)
   target_link_libraries(manycore_ros INTERFACE fastcdr)
   foreach(package rmw rcutils rcpputils rosidl_runtime_c rosidl_dynamic_typesupport
-      rosidl_typesupport_fastrtps_c rosidl_typesupport_fastrtps_cpp)
+      rosidl_typesupport_fastrtps_c rosidl_typesupport_fastrtps_cpp
+      rosidl_typesupport_introspection_c rosidl_typesupport_introspection_cpp)
     find_package(${package} REQUIRED)
     target_link_libraries(manycore_ros INTERFACE ${package}::${package})
   endforeach()

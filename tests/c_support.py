@@ -11,6 +11,7 @@ from typing import Any
 from support import RMW
 
 LIBRARIES = Path(sys.prefix, "lib")
+INFO_BYTES = 128  # at least sizeof(rmw_message_info_t)
 
 rmw = ctypes.CDLL(str(LIBRARIES / f"lib{RMW}.so"))
 rcl = ctypes.CDLL(str(LIBRARIES / "librcl.so"))
@@ -35,3 +36,28 @@ def type_support(message_type: Any) -> ctypes.c_void_p:
     if message_type.__class__._TYPE_SUPPORT is None:
         message_type.__class__.__import_type_support__()
     return ctypes.c_void_p(get_pointer(message_type.__class__._TYPE_SUPPORT, None))
+
+
+class _Sequence(ctypes.Structure):
+    """rmw_message_sequence_t, and rmw_message_info_sequence_t."""
+
+    _fields_ = (
+        ("data", ctypes.c_void_p),
+        ("size", ctypes.c_size_t),
+        ("capacity", ctypes.c_size_t),
+        ("allocator", ctypes.c_void_p),
+    )
+
+
+def take_points(subscription: ctypes.c_void_p, capacity: int = 5) -> list[float]:
+    """Take what is there of geometry_msgs/msg/Point in one call; return the first coordinates."""
+    points = [(ctypes.c_double * 3)() for _ in range(capacity)]
+    data = (ctypes.c_void_p * capacity)(*(ctypes.addressof(point) for point in points))
+    info_data = ctypes.create_string_buffer(capacity * INFO_BYTES)
+    messages = _Sequence(ctypes.addressof(data), 0, capacity, None)
+    infos = _Sequence(ctypes.addressof(info_data), 0, capacity, None)
+    count = ctypes.c_size_t()
+    arguments = (ctypes.byref(messages), ctypes.byref(infos), ctypes.byref(count), None)
+    assert rmw.rmw_take_sequence(subscription, ctypes.c_size_t(capacity), *arguments) == 0
+    assert messages.size == infos.size == count.value
+    return [point[0] for point in points[: count.value]]

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import importlib
+import os
 import threading
 import time
 from collections.abc import Callable, Iterator
@@ -74,3 +75,15 @@ def type_of(name: str) -> Any:
     """Return the class of a type, for example "std_msgs/msg/String"."""
     package, kind, type_name = name.split("/")
     return getattr(importlib.import_module(f"{package}.{kind}"), type_name)
+
+
+def lost_messages(topic: str, role: str = "topic") -> int:
+    """Return what the tools show of lost messages, or requests or replies, of this platform."""
+    from rmw_manycore_py import _transport
+
+    with _transport.Platform(os.environ["MANYCORE_PLATFORM"]) as platform:
+        return sum(
+            endpoint.counters.lost
+            for endpoint in platform.endpoints()
+            if (endpoint.topic, endpoint.role) == (topic, role)
+        )

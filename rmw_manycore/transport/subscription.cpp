@@ -33,6 +33,8 @@ Claim::~Claim() {
   }
 }
 
+void Claim::reject() noexcept { subscription_->impl_->count_rejected(size_); }
+
 Subscription::Subscription(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 
 Subscription::~Subscription() { closing::leave(impl_->registry, impl_->slot); }
@@ -40,6 +42,10 @@ Subscription::~Subscription() { closing::leave(impl_->registry, impl_->slot); }
 const Gid & Subscription::gid() const noexcept { return impl_->entry.gid; }
 
 const Qos & Subscription::qos() const noexcept { return impl_->entry.qos; }
+
+const char * Subscription::topic() const noexcept { return impl_->entry.topic; }
+
+const char * Subscription::type() const noexcept { return impl_->entry.type; }
 
 bool Subscription::has_data() const noexcept {
   return !subscriber_queue::empty(impl_->header) ||

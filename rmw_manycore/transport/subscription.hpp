@@ -36,6 +36,9 @@ public:
   size_t size() const noexcept { return size_; }
   const RecordInfo & info() const noexcept { return info_; }
 
+  /// Counts the record as lost instead of taken: its bytes are no message.
+  void reject() noexcept;
+
 private:
   friend class Subscription;
   Claim() = default;
@@ -57,6 +60,8 @@ public:
 
   const Gid & gid() const noexcept;
   const Qos & qos() const noexcept;
+  const char * topic() const noexcept;
+  const char * type() const noexcept;
 
   /// True when claim() is worth calling (it may still find nothing: expired or overwritten).
   bool has_data() const noexcept;
@@ -70,9 +75,9 @@ public:
   /// Notifications that wait to be claimed; some may be stale or doubles.
   uint64_t waiting() const noexcept;
 
-  /// Messages that were published for this subscription and are gone (overwritten before taken), as
-  /// far as known: those of a publisher are counted by the time a later one of its messages is
-  /// taken.
+  /// Messages that were published for this subscription and are gone (overwritten before taken) or
+  /// were rejected, as far as known: those of a publisher are counted by the time a later one of
+  /// its messages is taken.
   uint64_t lost() const noexcept;
 
   MatchedCount matched() const;

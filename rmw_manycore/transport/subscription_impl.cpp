@@ -226,9 +226,14 @@ void Subscription::Impl::sweep() noexcept {
 
 void Subscription::Impl::count_lost_replies(uint64_t count) noexcept {
   if (entry.role == EndpointRole::reply && count != 0) {
-    entry.counters.lost.fetch_add(count, std::memory_order_relaxed);
-    header.lost_beside_dropped.fetch_add(count, std::memory_order_relaxed);
+    count_lost(count);
   }
+}
+
+/// In both of the words of which lost_so_far() takes the larger.
+void Subscription::Impl::count_lost(uint64_t count) noexcept {
+  entry.counters.lost.fetch_add(count, std::memory_order_relaxed);
+  header.lost_beside_dropped.fetch_add(count, std::memory_order_relaxed);
 }
 
 void Subscription::Impl::count_taken(uint64_t bytes) noexcept {
@@ -236,6 +241,13 @@ void Subscription::Impl::count_taken(uint64_t bytes) noexcept {
   counters.messages.store(received, std::memory_order_relaxed);
   counters.bytes.store(
     counters.bytes.load(std::memory_order_relaxed) + bytes, std::memory_order_relaxed);
+}
+
+void Subscription::Impl::count_rejected(uint64_t bytes) noexcept {
+  --received;
+  count_taken(-bytes);
+  count_lost(1);
+  notify_event_watchers(registry, entry.process);
 }
 
 }  // namespace manycore

@@ -40,6 +40,9 @@ struct Subscription::Impl {
   /// clients together, so this subscription counts its own one by one as it misses them.
   void count_lost_replies(uint64_t count) noexcept;
   void count_taken(uint64_t bytes) noexcept;
+  /// What was counted as taken was no message.
+  void count_rejected(uint64_t bytes) noexcept;
+  void count_lost(uint64_t count) noexcept;
   /// A finished topic DSM waits for its last reader only: frees it.
   void sweep() noexcept;
 

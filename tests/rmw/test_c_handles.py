@@ -8,7 +8,7 @@ import struct
 from typing import Any
 
 import pytest
-from c_support import rcl, rcl_handle, rcutils, rmw, rmw_handle
+from c_support import rcl, rcl_handle, rcutils, rmw, rmw_handle, take_points
 from geometry_msgs.msg import Point
 from rclpy.qos import HistoryPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.serialization import serialize_message
@@ -17,18 +17,6 @@ from std_srvs.srv import Trigger
 from support import IS_MANYCORE
 
 POINT_BYTES = 24  # three doubles in memory, and behind four bytes of header in CDR
-INFO_BYTES = 128  # at least sizeof(rmw_message_info_t)
-
-
-class Sequence(ctypes.Structure):
-    """rmw_message_sequence_t, and rmw_message_info_sequence_t."""
-
-    _fields_ = (
-        ("data", ctypes.c_void_p),
-        ("size", ctypes.c_size_t),
-        ("capacity", ctypes.c_size_t),
-        ("allocator", ctypes.c_void_p),
-    )
 
 
 class Allocator(ctypes.Structure):
@@ -102,20 +90,9 @@ def test_take(publisher, subscription):
 
 def test_take_sequence(publisher, subscription):
     publish(publisher, 3)
-    points = [(ctypes.c_double * 3)() for _ in range(5)]
     found: list[float] = []
     while len(found) < 3:
-        data = (ctypes.c_void_p * 5)(*(ctypes.addressof(point) for point in points))
-        messages = Sequence(ctypes.addressof(data), 0, 5, None)
-        infos = Sequence(
-            ctypes.addressof(buffer := ctypes.create_string_buffer(5 * INFO_BYTES)), 0, 5, None
-        )
-        count = ctypes.c_size_t()
-        arguments = (ctypes.byref(messages), ctypes.byref(infos), ctypes.byref(count), None)
-        assert rmw.rmw_take_sequence(subscription, ctypes.c_size_t(5), *arguments) == 0
-        assert messages.size == infos.size == count.value
-        found += [point[0] for point in points[: count.value]]
-        del buffer
+        found += take_points(subscription)
     assert found == [0.0, 1.0, 2.0]
 
 

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterator
 from typing import Any
 
@@ -12,7 +11,7 @@ import rclpy
 from rclpy._rclpy_pybind11 import RCLError
 from rclpy.node import Node
 from rclpy.qos import HistoryPolicy, QoSProfile, ReliabilityPolicy
-from ros_support import peer_node, spin_until
+from ros_support import lost_messages, peer_node, spin_until
 from std_msgs.msg import String
 from support import IS_MANYCORE, PATIENCE_S
 from test_msgs.srv import BasicTypes
@@ -40,18 +39,6 @@ def ask(client: Any, number: int) -> Any:
     return client.call_async(BasicTypes.Request(int64_value=number))
 
 
-def lost(role: str) -> int:
-    """Return what the tools show of the requests or replies that were lost."""
-    from rmw_manycore_py import _transport
-
-    with _transport.Platform(os.environ["MANYCORE_PLATFORM"]) as platform:
-        return sum(
-            endpoint.counters.lost
-            for endpoint in platform.endpoints()
-            if endpoint.topic == "/mirror" and endpoint.role == role
-        )
-
-
 @pytest.fixture
 def other_node(node) -> Iterator[Node]:
     """Yield a second node: one of the two is spun while the other's messages arrive."""
@@ -73,7 +60,7 @@ def test_a_server_keeps_the_last_requests(node, other_node, start_peer, peer_clu
     spin_until(node, lambda: COUNT in server.numbers)  # and nothing came before it
     assert server.numbers == list(range(COUNT - depth, COUNT + 1))
     if IS_MANYCORE:
-        assert lost("request") == COUNT - depth
+        assert lost_messages("/mirror", "request") == COUNT - depth
 
 
 def ask_numbers() -> None:
@@ -104,7 +91,7 @@ def test_a_client_keeps_the_last_replies(node, other_node, depth):
     assert answered == list(range(COUNT - depth, COUNT + 1))
     assert [answers[number].result().int64_value for number in answered] == answered
     if IS_MANYCORE:
-        assert lost("reply") == COUNT - depth
+        assert lost_messages("/mirror", "reply") == COUNT - depth
 
 
 def test_keep_all_displaces_nothing(node, other_node):

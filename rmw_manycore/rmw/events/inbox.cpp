@@ -3,7 +3,36 @@
 
 #include <algorithm>
 
+#include "platform/clock.hpp"
+#include "rcutils/logging_macros.h"
+#include "rmw/common/identifier.hpp"
+
 namespace rmw_manycore {
+
+std::optional<manycore::RecordInfo> Inbox::take(const Cdr & cdr, void * message) {
+  while (auto claim = subscription_->claim()) {
+    try {
+      cdr.deserialize(claim->data(), claim->size(), message);
+      return claim->info();
+    } catch (const std::exception & error) {
+      claim->reject();
+      warn_of_drop(claim->size(), error.what());
+    }
+  }
+  return std::nullopt;
+}
+
+void Inbox::warn_of_drop(size_t size, const char * reason) noexcept {
+  const int64_t now_ns = manycore::monotonic_ns();
+  int64_t next_ns = next_warning_ns_.load(std::memory_order_relaxed);
+  if (
+    now_ns >= next_ns &&
+    next_warning_ns_.compare_exchange_strong(next_ns, now_ns + manycore::ns_per_s)) {
+    RCUTILS_LOG_WARN_NAMED(
+      identifier, "dropped %zu bytes on '%s' that are no %s: %s (%lu messages lost so far)", size,
+      subscription_->topic(), subscription_->type(), reason, subscription_->lost());
+  }
+}
 
 uint64_t Inbox::unread() const {
   if (!subscription_->has_data()) {

@@ -1,10 +1,12 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <atomic>
 #include <memory>
 #include <optional>
 
 #include "rmw/events/callback_thread.hpp"
+#include "rmw/serialization/cdr.hpp"
 #include "transport/subscription.hpp"
 
 namespace rmw_manycore {
@@ -24,13 +26,20 @@ public:
   bool has_data() const noexcept { return subscription_->has_data(); }
 
   std::optional<manycore::Claim> claim() { return subscription_->claim(); }
+  /// Takes the next message that `cdr` can read, straight out of its topic DSM; nothing when there
+  /// is none. What it cannot read is dropped and counted as lost: bytes of the network end no node.
+  std::optional<manycore::RecordInfo> take(const Cdr & cdr, void * message);
 
 private:
+  /// At most once a second.
+  void warn_of_drop(size_t size, const char * reason) noexcept;
+
   /// How many arrivals wait to be claimed. An estimate while others push or claim.
   uint64_t unread() const;
 
   std::unique_ptr<manycore::Subscription> subscription_;
   Callback on_arrival_;
+  std::atomic<int64_t> next_warning_ns_{0};  ///< CLOCK_MONOTONIC
 };
 
 }  // namespace rmw_manycore

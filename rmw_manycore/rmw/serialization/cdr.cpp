@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <string>
+#include <utility>
 
 #include "fastcdr/Cdr.h"
 #include "fastcdr/FastBuffer.h"
@@ -15,7 +16,9 @@ constexpr size_t encapsulation_bytes = 4;
 
 }  // namespace
 
-Cdr::Cdr(const message_type_support_callbacks_t & callbacks) : callbacks_(&callbacks) {
+Cdr::Cdr(
+  const message_type_support_callbacks_t & callbacks, std::shared_ptr<const CdrLengths> lengths)
+: callbacks_(&callbacks), lengths_(std::move(lengths)) {
   char bounds = ROSIDL_TYPESUPPORT_FASTRTPS_UNBOUNDED_TYPE;
   const size_t max_size = callbacks.max_serialized_size(bounds);
   if (bounds == ROSIDL_TYPESUPPORT_FASTRTPS_PLAIN_TYPE) {
@@ -49,6 +52,10 @@ size_t Cdr::serialize(const void * message, uint8_t * data, size_t capacity) con
 }
 
 void Cdr::deserialize(const uint8_t * data, size_t size, void * message) const {
+  if (!lengths_->fit(data, size)) {
+    throw manycore::Error(
+      manycore::ErrorCode::corrupt, "a length in it claims more bytes than are left");
+  }
   // Fast CDR has no buffer of const bytes; it only reads here.
   eprosima::fastcdr::FastBuffer buffer(reinterpret_cast<char *>(const_cast<uint8_t *>(data)), size);
   eprosima::fastcdr::Cdr cdr(buffer, eprosima::fastcdr::Cdr::DEFAULT_ENDIAN);

@@ -3,7 +3,9 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 
+#include "rmw/serialization/cdr_lengths.hpp"
 #include "rosidl_typesupport_fastrtps_cpp/message_type_support.h"
 
 namespace rmw_manycore {
@@ -12,7 +14,8 @@ namespace rmw_manycore {
 /// back. The bytes are those that rmw_fastrtps_cpp writes. Allocates nothing itself. Stateless.
 class Cdr {
 public:
-  explicit Cdr(const message_type_support_callbacks_t & callbacks);
+  Cdr(
+    const message_type_support_callbacks_t & callbacks, std::shared_ptr<const CdrLengths> lengths);
 
   /// An upper bound of what `serialize` writes: the exact size, rounded up for types of fixed size.
   size_t size_bound(const void * message) const;
@@ -29,6 +32,7 @@ public:
 
 private:
   const message_type_support_callbacks_t * callbacks_;
+  std::shared_ptr<const CdrLengths> lengths_;
   size_t fixed_size_bound_ = 0;  ///< of types whose size does not depend on the message; else 0
   size_t plain_bytes_ = 0;
   bool empty_ = false;  ///< has no members: one filler byte stands for it

@@ -69,19 +69,26 @@ MessageType MessageType::of(const rosidl_message_type_support_t * type_support) 
   const auto & callbacks = callbacks_of(find(type_support, get_message_typesupport_handle));
   return {
     ros_name(callbacks.message_namespace_, callbacks.message_name_), hash_of(type_support),
-    Cdr(callbacks)};
+    cdr_of(type_support)};
 }
 
 ServiceType ServiceType::of(const rosidl_service_type_support_t * type_support) {
   const auto & callbacks = *static_cast<const service_type_support_callbacks_t *>(
     find(type_support, get_service_typesupport_handle)->data);
+  const auto cdr = [type_support](
+                     const rosidl_message_type_support_t * members, CdrLengths::Part part) {
+    return Cdr(callbacks_of(members), std::make_shared<CdrLengths>(*type_support, part));
+  };
   return {
     ros_name(callbacks.service_namespace_, callbacks.service_name_), hash_of(type_support),
-    Cdr(callbacks_of(callbacks.request_members_)), Cdr(callbacks_of(callbacks.response_members_))};
+    cdr(callbacks.request_members_, CdrLengths::Part::request),
+    cdr(callbacks.response_members_, CdrLengths::Part::response)};
 }
 
 Cdr cdr_of(const rosidl_message_type_support_t * type_support) {
-  return Cdr(callbacks_of(find(type_support, get_message_typesupport_handle)));
+  return Cdr(
+    callbacks_of(find(type_support, get_message_typesupport_handle)),
+    std::make_shared<CdrLengths>(*type_support));
 }
 
 }  // namespace rmw_manycore

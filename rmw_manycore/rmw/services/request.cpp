@@ -41,9 +41,8 @@ rmw_ret_t rmw_take_request(
   *taken = false;
   return rmw_manycore::guarded([&] {
     auto & serving = rmw_manycore::Service::of(service);
-    if (const auto claim = serving.requests().claim()) {
-      serving.type().request.deserialize(claim->data(), claim->size(), ros_request);
-      *request_header = rmw_manycore::to_service_info(claim->info());
+    if (const auto info = serving.requests().take(serving.type().request, ros_request)) {
+      *request_header = rmw_manycore::to_service_info(*info);
       *taken = true;
     }
     return RMW_RET_OK;

@@ -40,9 +40,8 @@ rmw_ret_t rmw_take_response(
   *taken = false;
   return rmw_manycore::guarded([&] {
     auto & asking = rmw_manycore::Client::of(client);
-    if (const auto claim = asking.replies().claim()) {
-      asking.type().response.deserialize(claim->data(), claim->size(), ros_response);
-      *request_header = rmw_manycore::to_service_info(claim->info());
+    if (const auto info = asking.replies().take(asking.type().response, ros_response)) {
+      *request_header = rmw_manycore::to_service_info(*info);
       *taken = true;
     }
     return RMW_RET_OK;

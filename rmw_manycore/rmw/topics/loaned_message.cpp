@@ -39,19 +39,14 @@ rmw_ret_t take_loaned(
   *taken = false;
   return rmw_manycore::guarded([&] {
     Subscription & subscription = Subscription::of(handle);
-    const std::optional<manycore::Claim> claim = subscription.inbox().claim();
-    if (!claim) {
+    void * const message = subscription.loans().lend();
+    const auto found = subscription.inbox().take(subscription.cdr(), message);
+    if (!found) {
+      subscription.loans().give_back(message);
       return RMW_RET_OK;
     }
-    void * const message = subscription.loans().lend();
-    try {
-      subscription.cdr().deserialize(claim->data(), claim->size(), message);
-    } catch (...) {
-      subscription.loans().give_back(message);
-      throw;
-    }
     if (info != nullptr) {
-      *info = rmw_manycore::to_rmw(claim->info());
+      *info = rmw_manycore::to_rmw(*found);
     }
     *loaned_message = message;
     *taken = true;

@@ -8,17 +8,13 @@
 namespace rmw_manycore {
 namespace {
 
-/// Takes one message straight out of its topic DSM. `info` may be null.
+/// `info` may be null.
 bool take(Subscription & subscription, void * ros_message, rmw_message_info_t * info) {
-  const std::optional<manycore::Claim> claim = subscription.inbox().claim();
-  if (!claim) {
-    return false;
+  const auto taken = subscription.inbox().take(subscription.cdr(), ros_message);
+  if (taken && info != nullptr) {
+    *info = to_rmw(*taken);
   }
-  subscription.cdr().deserialize(claim->data(), claim->size(), ros_message);
-  if (info != nullptr) {
-    *info = to_rmw(claim->info());
-  }
-  return true;
+  return taken.has_value();
 }
 
 }  // namespace

@@ -56,7 +56,7 @@ static_assert(sizeof(NodeEntry) == 784);
 struct EndpointCounters {
   std::atomic<uint64_t> messages;     ///< published or taken
   std::atomic<uint64_t> bytes;        ///< of serialized data
-  std::atomic<uint64_t> lost;         ///< subscription: overwritten before taken
+  std::atomic<uint64_t> lost;         ///< subscription: overwritten before taken, or unreadable
   std::atomic<uint64_t> expired;      ///< subscription: older than its lifespan when its turn came
   std::atomic<uint64_t> refused;      ///< publisher: did not fit
   std::atomic<uint64_t> overwritten;  ///< publisher: recycled while a reader still wanted it

@@ -1,0 +1,45 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <mutex>
+
+#include "rosidl_runtime_c/message_type_support_struct.h"
+#include "rosidl_runtime_c/service_type_support_struct.h"
+
+namespace rmw_manycore {
+
+/// Compares the lengths in a message's CDR with the bytes that are left. The generated type support
+/// resizes a wide string before it reads it, takes one byte per element for enough whatever the
+/// element, and goes on when a nested message has failed: a few bytes from the network could claim
+/// gigabytes. Thread-safe.
+class CdrLengths {
+public:
+  explicit CdrLengths(const rosidl_message_type_support_t & message) noexcept
+  : message_(&message) {}
+
+  enum class Part { request, response };
+  CdrLengths(const rosidl_service_type_support_t & service, Part part) noexcept
+  : service_(&service), part_(part) {}
+
+  /// False when a length claims more than there is. True as well for what cannot be told: types
+  /// without introspection, and encodings that ROS 2 does not write.
+  bool fit(const uint8_t * cdr, size_t size) const;
+
+private:
+  /// At the first message: it loads the introspection library, which a publisher never needs.
+  void find_members() const;
+  template<typename Members, typename ServiceMembers>
+  const Members * find(const char * identifier) const;
+
+  const rosidl_message_type_support_t * message_ = nullptr;
+  const rosidl_service_type_support_t * service_ = nullptr;
+  Part part_ = Part::request;
+
+  mutable std::once_flag looked_;
+  mutable const void * c_members_ = nullptr;  ///< null for types without lengths
+  mutable const void * cpp_members_ = nullptr;
+};
+
+}  // namespace rmw_manycore
