@@ -18,8 +18,9 @@ from forking import fork, preload
 from processes import has_receive_threads
 from support import IS_MANYCORE, wait_until
 
-# The number of the socket on which a server gets its requests, a line of JSON each.
+# The number of the socket on which a server gets its requests, and tells pid and exit status.
 SOCKET_VARIABLE = "MANYCORE_TEST_SOCKET"
+LARGEST_MESSAGE_BYTES = 1 << 16
 
 
 def is_inside() -> bool:
@@ -61,19 +62,12 @@ class ForkServer:
 
 def _serve(fileno: int) -> dict[str, Any] | None:
     """Fork for each request; return it in the child, and nothing in the parent."""
-    with (
-        socket.socket(fileno=fileno) as connection,
-        connection.makefile("r") as requests,
-        connection.makefile("w") as answers,
-    ):
-        for line in requests:
+    with socket.socket(fileno=fileno) as connection:
+        while message := connection.recv(LARGEST_MESSAGE_BYTES):
             if (pid := fork()) == 0:
-                request: dict[str, Any] = json.loads(line)
+                request: dict[str, Any] = json.loads(message)
                 return request
-            _tell(answers, pid=pid)
-            _tell(answers, exit_status=os.waitstatus_to_exitcode(os.waitpid(pid, 0)[1]))
+            connection.send(str(pid).encode())
+            status = os.waitstatus_to_exitcode(os.waitpid(pid, 0)[1])
+            connection.send(str(status).encode())
     return None
-
-
-def _tell(stream: Any, **what: int) -> None:
-    print(json.dumps(what), file=stream, flush=True)

@@ -10,12 +10,11 @@ import socket
 import subprocess
 import sys
 import tempfile
-from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
 import pytest
-from fork_server import SOCKET_VARIABLE
+from fork_server import LARGEST_MESSAGE_BYTES, SOCKET_VARIABLE
 from peers import PEER, PeerServers
 from support import (
     IS_MANYCORE,
@@ -79,7 +78,8 @@ class _Server:
         self._reports = Path(self._directory.name) / "reports"
         tests = [item for item in session.items if item.get_closest_marker(MARKER)]
         files = sorted({str(item.path) for item in tests})
-        connection, remote = socket.socketpair()
+        self._connection, remote = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+        self._connection.settimeout(4 * PATIENCE_S)
         env = {SOCKET_VARIABLE: str(remote.fileno()), "OPENBLAS_NUM_THREADS": "1"}
         with remote, self._output.open("w") as output:
             self._process = subprocess.Popen(
@@ -91,9 +91,6 @@ class _Server:
                 stderr=subprocess.STDOUT,
                 pass_fds=[remote.fileno()],
             )
-        connection.settimeout(4 * PATIENCE_S)
-        self._stream = connection.makefile("rw")
-        connection.close()
 
     def run(self, test: str, platform: str) -> tuple[list[str], str | None]:
         """Return the reports of a test, and what is wrong with the process that it ran in."""
@@ -115,29 +112,32 @@ class _Server:
     def _wait_for(self, request: dict[str, Any]) -> str | None:
         """Wait until the requested test has run; return what is wrong with its process."""
         try:
-            print(json.dumps(request), file=self._stream, flush=True)
-            pid = json.loads(self._stream.readline())["pid"]
+            self._connection.send(json.dumps(request).encode())
+            pid = self._receive()
         except (OSError, ValueError):
             return "the fork server has not started the test"
         try:
-            status = json.loads(self._stream.readline())["exit_status"]
+            return _problem_of(self._receive())
         except TimeoutError:
-            with suppress(ProcessLookupError):
-                os.kill(pid, signal.SIGABRT)  # which prints where its threads are
-            return "the test hangs"
-        except ValueError:
-            return "the fork server has ended"
-        return None if status in TEST_RAN else f"exit status {status} of the test's process"
+            os.kill(pid, signal.SIGABRT)  # which prints where its threads are
+            return f"the test hangs: {_problem_of(self._receive())}"
+
+    def _receive(self) -> int:
+        return int(self._connection.recv(LARGEST_MESSAGE_BYTES))
 
     def end(self) -> None:
         """End the server, once its test has ended."""
-        self._stream.close()
+        self._connection.close()
         try:
             self._process.wait(PATIENCE_S)
         except subprocess.TimeoutExpired:
             self._process.kill()
             self._process.wait()
         self._directory.cleanup()
+
+
+def _problem_of(status: int) -> str | None:
+    return None if status in TEST_RAN else f"exit status {status} of the test's process"
 
 
 def _leftover_problem(platform: str) -> str | None:

@@ -65,11 +65,20 @@ class PeerServer:
             self._peers.add(pid)
             end = os.pidfd_open(pid)
             self._watch(end, partial(self._tell_end, pid, end, connection))
+            self._watch(connection.fileno(), partial(self._abandon, pid, connection))
         return None
+
+    def _abandon(self, pid: int, connection: socket.socket) -> None:
+        """Kill a peer whose test has crashed; a test asks for nothing more on its connection."""
+        if pid in self._peers:
+            self._selector.unregister(connection.fileno())
+            os.kill(pid, signal.SIGKILL)
 
     def _tell_end(self, pid: int, end: int, connection: socket.socket) -> None:
         self._selector.unregister(end)
         os.close(end)
+        with suppress(KeyError):
+            self._selector.unregister(connection.fileno())
         self._peers.remove(pid)
         status = os.waitstatus_to_exitcode(os.waitpid(pid, 0)[1])
         with connection, suppress(BrokenPipeError):
