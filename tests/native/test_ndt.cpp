@@ -12,10 +12,10 @@
 #include <vector>
 
 #include "ndt/common/aligned_floats.hpp"
-#include "ndt/matching/matcher.hpp"
-#include "ndt/optimisation/more_thuente.hpp"
 #include "ndt/map/table.hpp"
+#include "ndt/matching/matcher.hpp"
 #include "ndt/matching/worker_session.hpp"
+#include "ndt/optimisation/more_thuente.hpp"
 
 namespace manycore::ndt {
 namespace {
