@@ -93,12 +93,11 @@ def check(python: str, wheel: Path, directory: Path) -> None:
         raise SystemExit(f"compilers on PATH: {found}")
     everything = f"{wheel}[examples,bench]"
     run(programs / "pip", "install", "--quiet", everything, env=own)
-    for words in (
-        ["python", "-c", IMPORT_EVERYTHING],
-        ["manycore", "demo"],
-        ["manycore", "run", "talker_listener", "--duration", "3"],
-    ):
-        run(programs / words[0], *words[1:], env=own, cwd=directory)
+    print(run(programs / "python", "-c", IMPORT_EVERYTHING, env=own, cwd=directory), end="")
+    for words in (["demo"], ["run", "talker_listener", "--duration", "3"]):
+        output = run(programs / "manycore", *words, env=own, cwd=directory)
+        if "I heard: 'Hello World" not in output:
+            raise SystemExit(f"the listener heard nothing:\n{output}")
 
 
 def environment_with(python: str, directory: Path, *packages: str) -> Path:
@@ -109,10 +108,14 @@ def environment_with(python: str, directory: Path, *packages: str) -> Path:
     return directory / "bin"
 
 
-def run(*command: str | Path, env: dict[str, str] | None = None, cwd: Path | None = None) -> None:
-    """Run a command; where it fails, so does everything."""
-    print("+", *command, flush=True)
-    subprocess.run([str(word) for word in command], env=env, cwd=cwd, check=True)
+def run(*command: str | Path, env: dict[str, str] | None = None, cwd: Path | None = None) -> str:
+    """Return what a command prints; where it fails, print that and end."""
+    words = [str(word) for word in command]
+    print("+", " ".join(words).partition("\n")[0], flush=True)
+    done = subprocess.run(words, env=env, cwd=cwd, capture_output=True, text=True)
+    if done.returncode != 0:
+        raise SystemExit(f"{done.stdout}{done.stderr}\nended with status {done.returncode}")
+    return done.stdout
 
 
 if __name__ == "__main__":
