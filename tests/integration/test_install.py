@@ -126,7 +126,7 @@ def test_fast_dds_is_not_loaded() -> None:
 
 
 @pytest.mark.stress
-@pytest.mark.parametrize("python", other_pythons(), ids=str)
+@pytest.mark.parametrize("python", list(other_pythons()), ids=str)
 def test_another_python_runs_a_mapfile(python: Path, tmp_path: Path, start) -> None:
     installation = Installation(python, build_wheel(python, tmp_path), tmp_path / "venv")
     nodes = start([installation.manycore, "run", MAPFILES / "talker_listener.yaml"])
