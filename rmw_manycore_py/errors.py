@@ -18,9 +18,19 @@ class ManycoreError(Exception):
         self.exit_status = exit_status
 
 
+_MAX_KEY, _MAX_EXPECTED, _MAX_FOUND = 100, 500, 300
+
+
+def shorten(text: str, limit: int | None = None) -> str:
+    """Return a text as a part of one line: control characters escaped, cut where it is long."""
+    kept = text if limit is None else text[: limit + 1]
+    line = "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in kept)
+    return line if limit is None or len(line) <= limit else f"{line[: limit - 3]}..."
+
+
 @dataclass(frozen=True)
 class Problem:
-    """One thing wrong in a file; `line` counts from 1, and 0 means the file as a whole."""
+    """One thing wrong in a file, in one line; `line` counts from 1, 0 means the file as a whole."""
 
     file: Path
     line: int
@@ -28,8 +38,14 @@ class Problem:
     expected: str
     found: str
 
+    def __post_init__(self) -> None:
+        limits = {"key": _MAX_KEY, "expected": _MAX_EXPECTED, "found": _MAX_FOUND}
+        for name, limit in limits.items():
+            object.__setattr__(self, name, shorten(getattr(self, name), limit))
+
     def __str__(self) -> str:
-        place = f"{self.file}:{self.line}" if self.line else f"{self.file}"
+        file = shorten(str(self.file))
+        place = f"{file}:{self.line}" if self.line else file
         key = f" {self.key}:" if self.key else ""
         return f"{place}:{key} expected {self.expected}, found {self.found}"
 

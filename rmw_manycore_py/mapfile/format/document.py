@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
+from collections.abc import Collection
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -11,6 +11,7 @@ from typing import Any
 import yaml
 
 from rmw_manycore_py.errors import MapfileError, Problem
+from rmw_manycore_py.mapfile.format.bounded_yaml import MAX_BYTES, BoundedLoader, BoundError
 
 KeyPath = tuple[Any, ...]
 
@@ -42,43 +43,64 @@ def dotted(path: KeyPath) -> str:
 def read_text(path: Path, problem: Problem | None = None) -> str:
     """Return a file's text; `problem` says who asked for it."""
     try:
-        return path.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
+        with path.open("rb") as file:
+            content = file.read(MAX_BYTES + 1)
+        text = content.decode("utf-8")
+    except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or "bytes that are not UTF-8"
         raise MapfileError(
             problem or Problem(path, 0, "", "a readable text file", reason)
         ) from error
+    if len(content) > MAX_BYTES:
+        raise MapfileError(Problem(path, 0, "", f"at most {MAX_BYTES} bytes", "more"))
+    return text
 
 
 def read_yaml(path: Path, repeated: Collection[str] = ()) -> Document:
-    """Read a YAML file; duplicate keys are errors, all of them reported.
+    """Read a YAML file; see `parse_yaml`."""
+    return parse_yaml(read_text(path), path, repeated)
+
+
+def parse_yaml(text: str, path: Path, repeated: Collection[str] = ()) -> Document:
+    """Read the text of a YAML file; duplicate keys are errors, all of them reported.
 
     Mappings of the top-level keys in `repeated` become lists of pairs, whose keys may be equal.
     """
-    loader = yaml.SafeLoader(read_text(path))
+    loader = None
     try:
+        loader = BoundedLoader(text)
         root = loader.get_single_node()
         reader = _Reader(path, loader, repeated)
         document = Document(path, reader.convert(root, ()) if root else None, reader.lines)
     except yaml.MarkedYAMLError as error:
-        mark = error.problem_mark or error.context_mark
-        line = mark.line + 1 if mark else 0
-        found = str(error.problem or error.context).removeprefix("but ").removeprefix("found ")
-        problem = Problem(path, line, "", "valid YAML", found)
-        raise MapfileError(problem) from error
-    except yaml.YAMLError as error:
-        raise MapfileError(Problem(path, 0, "", "valid YAML", str(error))) from error
+        raise MapfileError(_problem(path, error)) from error
+    except yaml.reader.ReaderError as error:
+        line = text.count("\n", 0, error.position) + 1
+        found = f"'{chr(error.character)}'"
+        raise MapfileError(Problem(path, line, "", "text of printable characters", found)) from error
+    except ValueError as error:  # numbers in escapes and directives
+        line = loader.line + 1 if loader else 0
+        raise MapfileError(Problem(path, line, "", "valid YAML", str(error))) from error
     finally:
-        loader.dispose()
+        if loader:
+            loader.dispose()
     if reader.problems:
         raise MapfileError(*reader.problems)
     return document
 
 
+def _problem(path: Path, error: yaml.MarkedYAMLError, key: str = "") -> Problem:
+    place = error.problem_mark or error.context_mark
+    line = place.line + 1 if place else 0
+    found = str(error.problem or error.context).removeprefix("but ").removeprefix("found ")
+    expected = error.expected if isinstance(error, BoundError) else "valid YAML"
+    return Problem(path, line, key, expected, found)
+
+
 class _Reader:
     """Turns YAML nodes into data, noting lines and duplicate keys."""
 
-    def __init__(self, file: Path, loader: yaml.SafeLoader, repeated: Collection[str]) -> None:
+    def __init__(self, file: Path, loader: BoundedLoader, repeated: Collection[str]) -> None:
         self._file = file
         self._repeated = repeated
         self._loader = loader
@@ -99,19 +121,16 @@ class _Reader:
                 return self._mapping(node, path)
             if isinstance(node, yaml.SequenceNode):
                 return [self.convert(item, (*path, i)) for i, item in enumerate(node.value)]
-            value = self._loader.construct_object(node, deep=True)
-            if isinstance(value, str) and "\0" in value:
-                line, expected = node.start_mark.line + 1, "text without NUL characters"
-                problem = Problem(self._file, line, dotted(path), expected, repr(value))
-                self.problems.append(problem)
-            return value
+            return self._scalar(node, path)
         finally:
             self._open.discard(id(node))
 
     def _mapping(self, node: yaml.MappingNode, path: KeyPath) -> dict[Any, Any]:
         first_lines: dict[Any, int] = {}
-        for key, key_node in self._keys(node):
-            line = key_node.start_mark.line + 1
+        for key_node, _ in node.value:
+            if key_node.tag == "tag:yaml.org,2002:merge":
+                continue
+            key, line = self._key(key_node), key_node.start_mark.line + 1
             if key in first_lines and not _is_none_entry(key, node):
                 found = f"'{key}' again; it is already in line {first_lines[key]}"
                 self.problems.append(
@@ -121,7 +140,7 @@ class _Reader:
         self._loader.flatten_mapping(node)
         data: dict[Any, Any] = {}
         for key_node, value_node in node.value:
-            key = self._loader.construct_object(key_node, deep=True)
+            key = self._key(key_node)
             here = (*path, key)
             self.lines[here] = key_node.start_mark.line + 1
             data[key] = self.convert(value_node, here)
@@ -130,22 +149,26 @@ class _Reader:
     def _pairs(self, node: yaml.MappingNode, path: KeyPath) -> list[tuple[Any, Any]]:
         pairs = []
         for index, (key_node, value_node) in enumerate(node.value):
-            key = self._loader.construct_object(key_node, deep=True)
+            key = self._key(key_node)
             here = (*path, index)
             value_path = (*here, 1)
             self.lines[here] = self.lines[value_path] = key_node.start_mark.line + 1
             pairs.append((key, self.convert(value_node, value_path)))
         return pairs
 
-    def _keys(self, node: yaml.MappingNode) -> Iterator[tuple[Any, yaml.Node]]:
-        for key_node, _ in node.value:
-            if key_node.tag == "tag:yaml.org,2002:merge":
-                continue
-            if not isinstance(key_node, yaml.ScalarNode):
-                raise yaml.MarkedYAMLError(
-                    problem="a key that is not a scalar", problem_mark=key_node.start_mark
-                )
-            yield self._loader.construct_object(key_node, deep=True), key_node
+    def _key(self, node: yaml.Node) -> Any:
+        if not isinstance(node, yaml.ScalarNode):
+            raise yaml.MarkedYAMLError(
+                problem="a key that is not a scalar", problem_mark=node.start_mark
+            )
+        return self._loader.scalar(node)
+
+    def _scalar(self, node: yaml.Node, path: KeyPath) -> Any:
+        try:
+            return self._loader.scalar(node)
+        except BoundError as error:
+            self.problems.append(_problem(self._file, error, dotted(path)))
+            return None
 
 
 def _is_none_entry(key: Any, node: yaml.MappingNode) -> bool:
