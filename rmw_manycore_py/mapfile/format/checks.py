@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator
 
 from rmw_manycore_py.errors import Problem
@@ -91,5 +92,5 @@ def check_files(mapfile: Mapfile) -> Iterator[Problem]:
         named.append((("nodes", name, "script"), node.script))
         named += [(("nodes", name, "param_file"), file) for file in node.param_file]
     for path, file in named:
-        if file is not None and not mapfile.file(file).is_file():
+        if file is not None and not os.path.isfile(mapfile.file(file)):
             yield mapfile.document.problem(path, "an existing file", str(mapfile.file(file)))

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import os
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -23,4 +24,4 @@ class Mapfile:
 
     def file(self, name: str) -> Path:
         """Return a file the mapfile names: relative to the mapfile, `~` expanded."""
-        return (self.path.parent / Path(name).expanduser()).resolve()
+        return Path(os.path.realpath(self.path.parent / os.path.expanduser(name)))

@@ -25,6 +25,8 @@ from rmw_manycore_py.ros.domain import MAX_DOMAIN, PLATFORM_NAME
 MAX_CLUSTERS = 64
 # As many as the registry has places for processes.
 MAX_CORES = 1024
+# Each is a pair of processes.
+MAX_LANES = MAX_CORES // 2
 # A node without topics of its own takes almost the one; a process can map some dozens of the other.
 MIN_SMEM_BYTES = 64 << 10
 MAX_SMEM_BYTES = 1 << 40
@@ -138,7 +140,9 @@ class BridgeSection(Section):
         default=None, description="ROS domain outside; $ROS_DOMAIN_ID is the default"
     )
     prefix: Namespace | None = Field(default=None, description="Namespace of all names outside")
-    lanes: Positive = Field(default=1, description="Pairs of processes")
+    lanes: Annotated[StrictInt, Field(ge=1, le=MAX_LANES)] = Field(
+        default=1, description="Pairs of processes"
+    )
     routes: dict[TopicName, RouteSection] = Field(
         default_factory=dict, description="Topics, services and actions that need more than a type"
     )

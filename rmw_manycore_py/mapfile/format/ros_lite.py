@@ -17,9 +17,13 @@ def from_list(document: Document) -> Document:
     """Return the same nodes as a mapping by name; lines stay those of the list."""
     result = Document(document.file, {"platform": _PLATFORM, "nodes": {}}, {(): 1})
     problems: list[Problem] = []
+    lines: dict[int, dict[KeyPath, int]] = {}
+    for (index, *rest), line in ((path, line) for path, line in document.lines.items() if path):
+        lines.setdefault(index, {})[tuple(rest)] = line
     for index, entry in enumerate(document.data):
         try:
-            _add_entry(document, (index,), entry, result)
+            name = _add_entry(document, (index,), entry, result)
+            result.lines |= {("nodes", name, *rest): n for rest, n in lines[index].items()}
         except MapfileError as error:
             problems += error.problems
     if problems:
@@ -27,7 +31,8 @@ def from_list(document: Document) -> Document:
     return result
 
 
-def _add_entry(document: Document, path: KeyPath, entry: Any, result: Document) -> None:
+def _add_entry(document: Document, path: KeyPath, entry: Any, result: Document) -> str:
+    """Add a node to the result and return its name."""
     if not isinstance(entry, dict) or not isinstance(entry.get("name"), str):
         problem = document.problem(path, "an entry with the key 'name'", describe(entry))
         raise MapfileError(problem)
@@ -36,13 +41,10 @@ def _add_entry(document: Document, path: KeyPath, entry: Any, result: Document) 
     if name in nodes:
         raise MapfileError(document.problem((*path, "name"), "each name once", f"'{name}' again"))
     node = {key: value for key, value in entry.items() if key != "name"}
-    for old, line in document.lines.items():
-        if old[:1] == path:
-            new = ("nodes", name, *old[1:])
-            result.lines[new] = line
     for key in ("publish", "subscribe"):
         node[key] = _join_topics(document, path, node.get(key), node.pop(f"{key}_type", None), key)
     nodes[name] = node
+    return name
 
 
 def _join_topics(
@@ -53,10 +55,12 @@ def _join_topics(
     for name, value in ((key, topics), (f"{key}_type", types)):
         if not isinstance(value, list):
             raise MapfileError(document.problem((*path, name), "a list", describe(value)))
+    seen: set[str] = set()
     for index, topic in enumerate(topics):
-        if not isinstance(topic, str) or topic in topics[:index]:
+        if not isinstance(topic, str) or topic in seen:
             expected = "names of topics, each once"
             raise MapfileError(document.problem((*path, key, index), expected, describe(topic)))
+        seen.add(topic)
     if len(topics) != len(types):
         expected = f"one type for each topic of '{key}', {len(topics)} in all"
         raise MapfileError(document.problem((*path, f"{key}_type"), expected, str(len(types))))

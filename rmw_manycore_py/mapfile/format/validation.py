@@ -4,12 +4,13 @@
 from __future__ import annotations
 
 import difflib
+from collections.abc import Iterator
 from typing import Any
 
 from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails
 
-from rmw_manycore_py.errors import Problem
+from rmw_manycore_py.errors import Problem, shorten
 from rmw_manycore_py.mapfile.format.document import Document, KeyPath
 from rmw_manycore_py.mapfile.format.model import (
     BridgeSection,
@@ -63,7 +64,7 @@ def problems_of(error: ValidationError, document: Document) -> list[Problem]:
 
 def _problem(details: ErrorDetails, document: Document) -> Problem:
     path: KeyPath = details["loc"]
-    if path and path[-1] == "[key]":
+    if _is_of_key(details):
         named = "a node name" if path[:-2] == ("nodes",) else "a topic name"
         expected = f"{named} of letters, digits and '_'"
         if path[-3] == "remappings":
@@ -79,6 +80,12 @@ def _problem(details: ErrorDetails, document: Document) -> Problem:
     if "name" in details.get("ctx", {}):
         path = (*path, *details["ctx"]["name"].split("."))
     return document.problem(path, _expected(details, path), describe(found))
+
+
+def _is_of_key(details: ErrorDetails) -> bool:
+    """Tell what is wrong with a key from what is wrong with the value of a key named [key]."""
+    path = details["loc"]
+    return len(path) > 2 and path[-1] == "[key]" and str(details["input"]) == str(path[-2])
 
 
 def _expected(details: ErrorDetails, path: KeyPath) -> str:
@@ -98,9 +105,37 @@ def describe(value: Any) -> str:
         return "nothing"
     if isinstance(value, bool):
         return str(value).lower()
-    text = repr(value)
-    shown = text if len(text) <= _LONGEST_VALUE else text[: _LONGEST_VALUE - 3] + "..."
+    shown = shorten(_beginning(value), _LONGEST_VALUE)
     return f"{kinds.get(type(value), type(value).__name__ + ' ')}{shown}"
+
+
+def _beginning(value: Any) -> str:
+    """Return as much of a value's repr as is shown; a large value is not written out."""
+    text = ""
+    for piece in _pieces(value):
+        text += piece
+        if len(text) > _LONGEST_VALUE:
+            break
+    return text
+
+
+def _pieces(value: Any) -> Iterator[str]:
+    if isinstance(value, dict):
+        yield "{"
+        for index, (key, item) in enumerate(value.items()):
+            yield ", " if index else ""
+            yield from _pieces(key)
+            yield ": "
+            yield from _pieces(item)
+        yield "}"
+    elif isinstance(value, list):
+        yield "["
+        for index, item in enumerate(value):
+            yield ", " if index else ""
+            yield from _pieces(item)
+        yield "]"
+    else:
+        yield repr(value[: _LONGEST_VALUE + 1] if isinstance(value, (str, bytes)) else value)
 
 
 def _known_keys(path: KeyPath) -> str:

@@ -11,7 +11,7 @@ from pydantic import BeforeValidator, StringConstraints, WithJsonSchema
 from pydantic_core import PydanticCustomError
 
 _UNITS = {"": 1, "B": 1, "KB": 10**3, "MB": 10**6, "KIB": 2**10, "MIB": 2**20, "GIB": 2**30}
-_SIZE = re.compile(r"(\d+)\s*([KMG]?I?B?)", re.IGNORECASE)
+_SIZE = re.compile(r"(\d{1,18})\s*([KMG]?I?B?)", re.IGNORECASE)
 _SCALARS = (bool, int, float, str)
 
 

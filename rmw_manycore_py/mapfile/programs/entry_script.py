@@ -27,7 +27,7 @@ def module_of_script(script: Path) -> str | None:
     try:
         text = script.read_text(encoding="utf-8")
         tree = ast.parse(text)
-    except (SyntaxError, ValueError):
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
         return None
     if loaded := _LOADED.search(text):
         package, name = loaded.groups()

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from rmw_manycore_py.errors import MapfileError, Problem
+from rmw_manycore_py.errors import MapfileError, Problem, what_is_wrong
 from rmw_manycore_py.mapfile.format.document import read_text
 
 _CALLS = {"create_publisher": "publish", "create_subscription": "subscribe"}
@@ -56,9 +56,9 @@ def imported_interfaces(file: Path) -> dict[str, int]:
 def _parse(file: Path) -> ast.Module:
     try:
         return ast.parse(read_text(file), str(file))
-    except (SyntaxError, ValueError) as error:
+    except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
         line = getattr(error, "lineno", None) or 0
-        raise MapfileError(Problem(file, line, "", "valid Python", str(error))) from error
+        raise MapfileError(Problem(file, line, "", "valid Python", what_is_wrong(error))) from error
 
 
 class _Names:
