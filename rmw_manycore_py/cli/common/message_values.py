@@ -4,9 +4,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 from typing import Any
 
-import yaml
 from rosidl_parser.definition import (
     AbstractGenericString,
     AbstractNestedType,
@@ -15,7 +15,8 @@ from rosidl_parser.definition import (
 )
 
 from rmw_manycore_py.cli.common.interface_types import load_type
-from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
+from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError, MapfileError
+from rmw_manycore_py.mapfile.format.document import parse_yaml
 
 # Words in the place of a message that stand for the present time.
 STAMPS = {("std_msgs", "Header"): "auto", ("builtin_interfaces", "Time"): "now"}
@@ -24,9 +25,9 @@ STAMPS = {("std_msgs", "Header"): "auto", ("builtin_interfaces", "Time"): "now"}
 def parse_values(text: str) -> dict[str, Any]:
     """Return the fields in a YAML text; none is written {} or left out."""
     try:
-        values = yaml.safe_load(text) or {}
-    except yaml.YAMLError as error:
-        raise _wrong(f"not YAML: {str(error).replace(chr(10), ' ')}") from error
+        values = parse_yaml(text, Path("values")).data or {}
+    except MapfileError as error:
+        raise _wrong(f"not YAML: {error}") from error
     if not isinstance(values, dict):
         raise _wrong(f"expected fields like '{{data: 1}}', found '{text}'")
     return values

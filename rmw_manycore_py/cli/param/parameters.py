@@ -4,12 +4,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
+from pathlib import Path
 from typing import Any
-
-import yaml
 
 from rmw_manycore_py.cli.common.tool_node import ANSWER_TIMEOUT_S, result_of
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
+from rmw_manycore_py.mapfile.format.document import read_yaml
 
 # By their number in rcl_interfaces/msg/ParameterType: the name, and how a value is introduced.
 TYPES = (
@@ -82,13 +82,12 @@ def parameters_of_file(path: str, node: str) -> list[Any]:
     from rclpy.parameter import parameter_dict_from_yaml_file
 
     try:
-        with open(path) as file:
-            owners = yaml.safe_load(file).keys()
+        owners = read_yaml(Path(path)).data.keys()  # within bounds, which rclpy does not have
         sections = [name for name in ("/**", node, node.removeprefix("/")) if name in owners]
         if not sections:
             raise ValueError(f"there are some for {_list(owners)}")
         return list(parameter_dict_from_yaml_file(path, target_nodes=sections).values())
-    except (AttributeError, RuntimeError, TypeError, ValueError, yaml.YAMLError) as error:
+    except (AttributeError, RuntimeError, TypeError, ValueError) as error:
         raise ManycoreError(f"{path}: no parameters for {node}: {error}", EXIT_BAD_INPUT) from error
 
 

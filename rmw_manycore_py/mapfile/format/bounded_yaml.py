@@ -40,7 +40,7 @@ class BoundedLoader(yaml.SafeLoader):
 
     def compose_node(self, parent: yaml.Node | None, index: int) -> yaml.Node | None:
         """Compose a node and note how many values it holds, and how deep they are."""
-        event: Any = self.peek_event()
+        event: Any = self.peek_event()  # type: ignore[no-untyped-call]
         outer, before = self._deepest, self._values
         self._depth += 1
         self._deepest = self._depth
@@ -61,15 +61,15 @@ class BoundedLoader(yaml.SafeLoader):
     def scalar(self, node: yaml.Node) -> Any:
         """Return the value of a scalar; text that its tag does not allow is a BoundError."""
         kind = node.tag.rpartition(":")[2]
-        refused = BoundError(_SCALARS.get(kind, "a value of its tag"), f"'{node.value}'", mark(node))
-        if kind in _NUMBERS and len(node.value) > _MAX_NUMBER_CHARACTERS:
-            raise refused
         try:
+            if kind in _NUMBERS and len(node.value) > _MAX_NUMBER_CHARACTERS:
+                raise ValueError
             value = self.construct_object(node, deep=True)
+            if isinstance(value, int) and not _MIN_INTEGER <= value <= _MAX_INTEGER:
+                raise ValueError
         except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as error:
-            raise refused from error
-        if isinstance(value, int) and not _MIN_INTEGER <= value <= _MAX_INTEGER:
-            raise refused
+            expected = _SCALARS.get(kind, "a value of its tag")
+            raise BoundError(expected, f"'{node.value}'", node.start_mark) from error
         if isinstance(value, str):
             _check_text(value, node)
         return value
@@ -83,14 +83,8 @@ class BoundedLoader(yaml.SafeLoader):
             raise BoundError(expected, "more", event.start_mark)
 
 
-def mark(node: yaml.Node) -> yaml.Mark:
-    """Return where a node begins."""
-    start: yaml.Mark = node.start_mark
-    return start
-
-
 def _check_text(text: str, node: yaml.Node) -> None:
     if "\0" in text:
-        raise BoundError("text without NUL characters", f"'{text}'", mark(node))
+        raise BoundError("text without NUL characters", f"'{text}'", node.start_mark)
     if not text.isascii() and any("\ud800" <= char <= "\udfff" for char in text):
-        raise BoundError("text without halves of surrogate pairs", f"'{text}'", mark(node))
+        raise BoundError("text without halves of surrogate pairs", f"'{text}'", node.start_mark)

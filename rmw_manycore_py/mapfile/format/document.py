@@ -77,7 +77,8 @@ def parse_yaml(text: str, path: Path, repeated: Collection[str] = ()) -> Documen
     except yaml.reader.ReaderError as error:
         line = text.count("\n", 0, error.position) + 1
         found = f"'{chr(error.character)}'"
-        raise MapfileError(Problem(path, line, "", "text of printable characters", found)) from error
+        expected = "text of printable characters"
+        raise MapfileError(Problem(path, line, "", expected, found)) from error
     except ValueError as error:  # numbers in escapes and directives
         line = loader.line + 1 if loader else 0
         raise MapfileError(Problem(path, line, "", "valid YAML", str(error))) from error

@@ -36,7 +36,7 @@ def _add_entry(document: Document, path: KeyPath, entry: Any, result: Document) 
     if not isinstance(entry, dict) or not isinstance(entry.get("name"), str):
         problem = document.problem(path, "an entry with the key 'name'", describe(entry))
         raise MapfileError(problem)
-    name = entry["name"]
+    name: str = entry["name"]
     nodes = result.data["nodes"]
     if name in nodes:
         raise MapfileError(document.problem((*path, "name"), "each name once", f"'{name}' again"))

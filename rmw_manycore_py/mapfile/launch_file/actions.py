@@ -83,9 +83,9 @@ class Action:
         try:
             if self.condition is None or self.condition.evaluate(context):
                 self.execute(context)
-        except ManycoreError:
+        except (ManycoreError, KeyboardInterrupt):
             raise
-        except Exception as error:  # values of kinds that launch does not expect either
+        except BaseException as error:  # values of kinds that launch does not expect either
             raise failure(context.file, error, self.line) from error
 
     def execute(self, context: LaunchContext) -> None:
@@ -268,6 +268,9 @@ class ExecuteProcess(Action):
     @override
     def execute(self, context: LaunchContext) -> None:
         note_options(context, self.line, self.options)
+        command = tuple(perform(context, word) for word in self.cmd)
+        if not command or not command[0]:
+            raise RefusedError("a program and its arguments", "none")
         context.nodes.append(
             LaunchedNode(
                 file=context.file,
@@ -276,7 +279,7 @@ class ExecuteProcess(Action):
                 namespace="/",
                 package=None,
                 executable=None,
-                command=tuple(perform(context, word) for word in self.cmd),
+                command=command,
                 parameters=(),
                 remappings=(),
                 arguments=(),

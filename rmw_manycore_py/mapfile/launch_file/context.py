@@ -81,6 +81,7 @@ class LaunchContext:
         self.notices: list[str] = []
         self.declared: set[str] = set()
         self.depth = 0
+        self.files = 0
 
     @property
     def launch_configurations(self) -> dict[str, str]:

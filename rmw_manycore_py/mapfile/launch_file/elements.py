@@ -9,6 +9,7 @@ from typing import Any
 from xml.parsers import expat
 
 from rmw_manycore_py.errors import MapfileError, Problem
+from rmw_manycore_py.mapfile.format.bounded_yaml import MAX_DEPTH
 from rmw_manycore_py.mapfile.format.document import Document, KeyPath, read_text, read_yaml
 
 # In YAML these keys hold children; everything else is an attribute.
@@ -68,6 +69,8 @@ def read_xml(path: Path) -> Element:
 
     def start(tag: str, attributes: dict[str, str]) -> None:
         element = Element(path, parser.CurrentLineNumber, tag, attributes)
+        if len(stack) > MAX_DEPTH:
+            raise element.problem(f"at most {MAX_DEPTH} levels of tags", "more")
         stack[-1].children.append(element)
         stack.append(element)
 
@@ -75,7 +78,12 @@ def read_xml(path: Path) -> Element:
         if words.strip():
             raise stack[-1].problem("tags only", repr(words.strip()))
 
+    def entity(name: str, *_declared: Any) -> None:
+        expected = "no declarations of entities"
+        raise MapfileError(Problem(path, parser.CurrentLineNumber, "", expected, f"'{name}'"))
+
     parser.StartElementHandler = start
+    parser.EntityDeclHandler = entity
     parser.EndElementHandler = lambda _tag: stack.pop()
     parser.CharacterDataHandler = characters
     try:

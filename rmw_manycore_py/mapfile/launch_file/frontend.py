@@ -7,6 +7,7 @@ from collections.abc import Callable
 from typing import Any
 
 from rmw_manycore_py.errors import MapfileError
+from rmw_manycore_py.mapfile.format.validation import describe
 from rmw_manycore_py.mapfile.launch_file import actions as a
 from rmw_manycore_py.mapfile.launch_file import ros_actions as r
 from rmw_manycore_py.mapfile.launch_file import text
@@ -60,17 +61,20 @@ def _condition(element: Element) -> a.Condition | None:
 
 
 def _text(value: Any) -> text.Parts | None:
-    if value is None:
-        return None
-    if isinstance(value, bool):
-        value = str(value).lower()
-    return text.parse(str(value))
+    return None if value is None else text.parse(_plain(value))
+
+
+def _plain(value: Any) -> str:
+    """Return an attribute that is no list or mapping as text, as XML has it anyway."""
+    if isinstance(value, (dict, list)):
+        raise RefusedError("a text or a number", describe(value))
+    return str(value).lower() if isinstance(value, bool) else str(value)
 
 
 def _arg(element: Element) -> a.Action:
-    choices = [str(child.require("value")) for child in element.take("choice")]
+    choices = [_plain(child.require("value")) for child in element.take("choice")]
     return a.DeclareLaunchArgument(
-        str(element.require("name")),
+        _plain(element.require("name")),
         default_value=_text(element.get("default")),
         description=element.get("description"),
         choices=choices or None,
@@ -93,7 +97,7 @@ def _node(element: Element) -> a.Action:
 
 
 def _words(line: Any) -> list[text.Parts]:
-    return [] if line is None else text.split_words(text.parse(str(line)))
+    return [] if line is None else text.split_words(text.parse(_plain(line)))
 
 
 def _options(element: Element) -> dict[str, Any]:
@@ -104,7 +108,7 @@ def _options(element: Element) -> dict[str, Any]:
 def _pairs(elements: list[Element], first: str, second: str) -> list[tuple[str, Any]]:
     pairs = []
     for element in elements:
-        pairs.append((str(element.require(first)), _text(element.require(second))))
+        pairs.append((_plain(element.require(first)), _text(element.require(second))))
         element.check_all_used()
     return pairs
 
@@ -115,7 +119,7 @@ def _parameter(element: Element) -> Any:
         allow = _text(element.get("allow_substs"))
         element.check_all_used()
         return ParameterFile(_text(file), allow_substs=allow or False)
-    name = str(element.require("name"))
+    name = _plain(element.require("name"))
     nested = [_parameter(child) for child in element.take("param")]
     if nested:
         element.check_all_used()
@@ -129,8 +133,10 @@ def _parameter_value(element: Element) -> Any:
     value = element.require("value")
     separator, kind = element.get("value-sep"), element.get("type")
     if separator is not None:
-        return [ParameterValue(_text(part.strip())) for part in str(value).split(separator)]
-    if kind is not None and kind not in _TYPES:
+        if _plain(separator) == "":
+            raise element.problem("a separator of values", "an empty text")
+        return [ParameterValue(_text(p.strip())) for p in _plain(value).split(_plain(separator))]
+    if kind is not None and _plain(kind) not in _TYPES:
         raise element.problem(f"one of the types {', '.join(_TYPES)}", f"'{kind}'")
     if isinstance(value, str):
         return ParameterValue(_text(value), value_type=_TYPES[kind] if kind else None)

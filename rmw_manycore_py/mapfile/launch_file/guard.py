@@ -15,9 +15,9 @@ def guarded(path: Path, function: Any, *arguments: Any, **named: Any) -> Any:
     """Call code of a launch file; whatever it raises is an error in that file."""
     try:
         return function(*arguments, **named)
-    except ManycoreError:
+    except (ManycoreError, KeyboardInterrupt):
         raise
-    except (Exception, SystemExit) as error:
+    except BaseException as error:
         raise failure(path, error) from error
 
 
@@ -28,6 +28,14 @@ def failure(path: Path, error: BaseException, near_line: int = 0) -> MapfileErro
     line = lines[-1] if lines else getattr(error, "lineno", None) or near_line
     if isinstance(error, RefusedError):
         return MapfileError(error.at(path, line))
-    reason = error.msg if isinstance(error, SyntaxError) else error
-    found = f"{type(error).__name__}: {reason}"
+    found = f"{type(error).__name__}: {_said(error)}"
     return MapfileError(Problem(path, line, "", "launch code that is understood here", found))
+
+
+def _said(error: BaseException) -> str:
+    if isinstance(error, SyntaxError):
+        return error.msg
+    try:
+        return str(error)
+    except Exception:  # of a class that the launch file defines
+        return "it cannot be written out"

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any
@@ -18,6 +19,7 @@ Frontend = Callable[[Path], LaunchDescription]
 # Suffix of the file name to what reads it; filled by `reader`, which knows all of them.
 FRONTENDS: dict[str, Frontend] = {}
 _DEEPEST_INCLUDE = 50
+_MAX_FILES = 1000
 
 
 class LaunchDescriptionSource:
@@ -46,7 +48,7 @@ class IncludeLaunchDescription(Action):
         source = self.source
         path = source.launch_file_path if isinstance(source, LaunchDescriptionSource) else source
         file = Path(perform(context, path))
-        if not file.is_file():
+        if not os.path.isfile(file):
             raise RefusedError("an existing launch file", str(file))
         for name, value in self.launch_arguments:
             context.launch_configurations[perform(context, name)] = perform(context, value)
@@ -56,8 +58,11 @@ class IncludeLaunchDescription(Action):
 def read_into(context: LaunchContext, file: Path) -> None:
     """Read a launch file and record what it starts."""
     context.depth += 1
+    context.files += 1
     if context.depth > _DEEPEST_INCLUDE:
         raise RefusedError("launch files that do not include themselves", str(file))
+    if context.files > _MAX_FILES:
+        raise RefusedError(f"at most {_MAX_FILES} launch files, each include counted", str(file))
     frontend = next(
         (read for suffix, read in FRONTENDS.items() if file.name.endswith(suffix)), None
     )

@@ -3,17 +3,19 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
-import yaml
-
-from rmw_manycore_py.mapfile.format.document import read_text
+from rmw_manycore_py.errors import MapfileError
+from rmw_manycore_py.mapfile.format.document import parse_yaml, read_yaml
+from rmw_manycore_py.mapfile.format.validation import describe
 from rmw_manycore_py.mapfile.launch_file import text
 from rmw_manycore_py.mapfile.launch_file.context import LaunchContext, ParameterSource, RefusedError
 from rmw_manycore_py.mapfile.launch_file.substitutions import Substitution, is_true, perform
 
+_SCALARS = (bool, int, float, str)
 _TYPES = {bool: "bool", int: "int", float: "float", str: "str"}
 
 
@@ -45,8 +47,8 @@ class ParameterFile:
 
     def evaluate(self, context: LaunchContext, node: str) -> ParameterSource:
         """Return the file, or what it says for `node` where substitutions had to be made."""
-        path = Path(perform(context, self.param_file)).expanduser()
-        if not path.is_file():
+        path = Path(os.path.expanduser(perform(context, self.param_file)))
+        if not os.path.isfile(path):
             raise RefusedError("an existing parameter file", str(path))
         if not is_true(context, self.allow_substs):
             return path
@@ -103,14 +105,20 @@ def _of_one_type(items: list[Any]) -> list[Any]:
 def _typed(words: str) -> Any:
     """Return what YAML makes of a text: that is how ROS 2 launch types substitutions."""
     try:
-        value = yaml.safe_load(words)
-    except yaml.YAMLError:
+        value = parse_yaml(words, Path()).data
+    except MapfileError:
         return words
+    if isinstance(value, list) and not all(isinstance(part, _SCALARS) for part in value):
+        raise RefusedError("a list of bools, numbers or strings", repr(words))
     return value if isinstance(value, (bool, int, float, list)) else words
 
 
 def _expanded(context: LaunchContext, path: Path, node: str) -> dict[str, Any]:
-    data = yaml.safe_load(read_text(path)) or {}
+    document = read_yaml(path)
+    data = document.data or {}
+    if not isinstance(data, Mapping):
+        expected = "node names, each with 'ros__parameters'"
+        raise MapfileError(document.problem((), expected, describe(data)))
     namespace, _, name = node.rpartition("/")
     chosen: dict[str, Any] = {}
     for key in ("/**", f"{namespace}/*", name, f"/{name}", node):

@@ -123,7 +123,9 @@ def read_python(path: Path) -> a.LaunchDescription:
     except KeyError as error:
         expected = "a function generate_launch_description"
         raise MapfileError(Problem(path, 0, "", expected, "none")) from error
-    except (Exception, SystemExit) as error:
+    except KeyboardInterrupt:
+        raise
+    except BaseException as error:
         raise failure(path, error) from error
     description = guarded(path, generate)
     if not isinstance(description, a.LaunchDescription):

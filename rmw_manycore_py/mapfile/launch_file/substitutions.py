@@ -3,19 +3,25 @@
 
 from __future__ import annotations
 
-import importlib
 import os
 import shlex
 import shutil
-import subprocess
 from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any
 
 from typing_extensions import override
 
+from rmw_manycore_py.errors import shorten
+from rmw_manycore_py.mapfile.format.bounded_yaml import MAX_BYTES
+from rmw_manycore_py.mapfile.launch_file import expression
+from rmw_manycore_py.mapfile.launch_file.child import ChildBoundError, run_child
 from rmw_manycore_py.mapfile.launch_file.context import LaunchContext, RefusedError
 from rmw_manycore_py.ros import ament
+
+# Enough of an expression or command to know it by, before what is wrong with it.
+_MAX_QUOTED = 100
+COMMAND_TIMEOUT_S = 60
 
 
 class Substitution:
@@ -33,7 +39,10 @@ def perform(context: LaunchContext, value: Any) -> str:
     if isinstance(value, Substitution):
         return value.perform(context)
     if isinstance(value, Iterable):
-        return "".join(perform(context, part) for part in value)
+        text = "".join(perform(context, part) for part in value)
+        if len(text) > MAX_BYTES:
+            raise RefusedError(f"a text of at most {MAX_BYTES} characters", str(len(text)))
+        return text
     raise RefusedError("a string or a substitution", repr(value))
 
 
@@ -185,11 +194,9 @@ class PythonExpression(Substitution):
         text = perform(context, self.expression)
         names = [perform(context, name) for name in _as_list(self.python_modules)]
         try:
-            modules = {name: importlib.import_module(name) for name in names}
-            # As in ros2 launch, the names of the module math need no prefix.
-            return str(eval(text, {**vars(modules.get("math", os)), **modules}))
-        except Exception as error:
-            raise RefusedError("a Python expression", f"{text!r}: {error}") from error
+            return expression.evaluate(text, names)
+        except ValueError as error:
+            raise RefusedError("a Python expression", f"{_quoted(text)}: {error}") from error
 
 
 class Command(Substitution):
@@ -202,17 +209,15 @@ class Command(Substitution):
     def perform(self, context: LaunchContext) -> str:
         line = perform(context, self.command)
         try:
-            done = subprocess.run(
-                shlex.split(line),
-                env=context.environment,
-                capture_output=True,
-                text=True,
-                check=False,
-            )
+            done = run_child(shlex.split(line) or [""], context.environment, COMMAND_TIMEOUT_S)
         except OSError as error:
-            raise RefusedError("a command that runs", f"{line!r}: {error.strerror}") from error
+            found = f"{_quoted(line)}: {error.strerror}"
+            raise RefusedError("a command that runs", found) from error
+        except (ChildBoundError, ValueError) as error:
+            raise RefusedError("a command that runs", f"{_quoted(line)}: {error}") from error
         if done.returncode != 0 or (done.stderr and perform(context, self.on_stderr) == "fail"):
-            raise RefusedError("a command that succeeds", f"{line!r}: {done.stderr.strip()}")
+            found = f"{_quoted(line)}: {done.stderr.strip()}"
+            raise RefusedError("a command that succeeds", found)
         return done.stdout
 
 
@@ -279,6 +284,10 @@ class IfElseSubstitution(Substitution):
     def perform(self, context: LaunchContext) -> str:
         chosen = self.if_value if is_true(context, self.condition) else self.else_value
         return perform(context, chosen)
+
+
+def _quoted(text: str) -> str:
+    return f"'{shorten(text, _MAX_QUOTED)}'"
 
 
 def _as_list(value: Any) -> list[Any]:

@@ -7,6 +7,7 @@ import shlex
 from collections.abc import Callable
 from typing import Any
 
+from rmw_manycore_py.mapfile.format.bounded_yaml import MAX_DEPTH
 from rmw_manycore_py.mapfile.launch_file import substitutions as s
 from rmw_manycore_py.mapfile.launch_file.context import RefusedError
 
@@ -64,6 +65,7 @@ class _Reader:
     def __init__(self, text: str) -> None:
         self._text = text
         self._at = 0
+        self._depth = 0
 
     def parts(self, ends: Callable[[str], bool]) -> Parts:
         """Read up to the first character for which `ends` holds, outside of substitutions."""
@@ -82,6 +84,9 @@ class _Reader:
         return parts + ([s.TextSubstitution(text=plain)] if plain else [])
 
     def _substitution(self) -> s.Substitution:
+        self._depth += 1
+        if self._depth > MAX_DEPTH:
+            raise RefusedError(f"at most {MAX_DEPTH} levels of substitutions", "more")
         self._at += len("$(")
         start = self._at
         while self._at < len(self._text) and self._text[self._at] not in " \t\n)":
@@ -94,6 +99,7 @@ class _Reader:
         if not fewest <= len(arguments) <= most:
             count = f"{fewest}" if fewest == most else f"{fewest} to {most}"
             raise RefusedError(f"{count} argument(s) of $({name})", str(len(arguments)))
+        self._depth -= 1
         return make(*arguments)
 
     def _arguments(self) -> list[Any]:
