@@ -18,7 +18,7 @@ class ManycoreError(Exception):
         self.exit_status = exit_status
 
 
-_MAX_KEY, _MAX_EXPECTED, _MAX_FOUND = 100, 500, 300
+_MAX_KEY, _MAX_EXPECTED, _MAX_FOUND = 100, 500, 200
 
 
 def shorten(text: str, limit: int | None = None) -> str:

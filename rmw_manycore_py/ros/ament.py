@@ -22,7 +22,7 @@ def find_resource(kind: str, name: str) -> tuple[Path, Path] | None:
     """Return the prefix and the file of an entry of the resource index."""
     for prefix in prefixes():
         entry = prefix / "share/ament_index/resource_index" / kind / name
-        if entry.is_file():
+        if os.path.isfile(entry):
             return prefix, entry
     return None
 

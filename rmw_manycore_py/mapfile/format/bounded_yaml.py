@@ -7,12 +7,15 @@ from typing import Any
 
 import yaml
 
+from rmw_manycore_py.errors import shorten
+
 # A mapfile of 1024 nodes takes about 300 KiB and 40,000 values.
 MAX_BYTES = 1 << 20
 MAX_DEPTH = 50
 MAX_VALUES = 100_000
 # A text of so many characters counts as one more value: an alias repeats it, too.
 _CHARACTERS_OF_A_VALUE = 100
+_MAX_SHOWN = 60
 # More characters than any number of 64 bits or date needs.
 _MAX_NUMBER_CHARACTERS = 400
 _MIN_INTEGER, _MAX_INTEGER = -(1 << 63), (1 << 64) - 1
@@ -69,7 +72,8 @@ class BoundedLoader(yaml.SafeLoader):
                 raise ValueError
         except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as error:
             expected = _SCALARS.get(kind, "a value of its tag")
-            raise BoundError(expected, f"'{node.value}'", node.start_mark) from error
+            found = f"'{shorten(node.value, _MAX_SHOWN)}'"
+            raise BoundError(expected, found, node.start_mark) from error
         if isinstance(value, str):
             _check_text(value, node)
         return value

@@ -79,7 +79,7 @@ def parse_yaml(text: str, path: Path, repeated: Collection[str] = ()) -> Documen
         found = f"'{chr(error.character)}'"
         expected = "text of printable characters"
         raise MapfileError(Problem(path, line, "", expected, found)) from error
-    except ValueError as error:  # numbers in escapes and directives
+    except (ValueError, OverflowError) as error:  # numbers in escapes and directives
         line = loader.line + 1 if loader else 0
         raise MapfileError(Problem(path, line, "", "valid YAML", str(error))) from error
     finally:

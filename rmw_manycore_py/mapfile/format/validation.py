@@ -69,7 +69,7 @@ def _problem(details: ErrorDetails, document: Document) -> Problem:
         expected = f"{named} of letters, digits and '_'"
         if path[-3] == "remappings":
             expected = _PATTERN_OF["remappings"]
-        if details["type"] == "string_too_long":
+        if details["type"] in ("string_too_long", "string_too_short"):
             expected = _expected(details, path)
         return document.problem(path[:-1], expected, f"'{path[-2]}'")
     if details["type"] == "missing":

@@ -129,7 +129,7 @@ def _add_key(document: Document, element: Element, key: str, item: Any, path: Ke
             _element(document, key, child, (*path, i)) for i, child in enumerate(item)
         ]
     else:
-        element.attributes[key] = item
+        element.attributes[str(key)] = item
 
 
 def _add_children(document: Document, element: Element, items: Any, path: KeyPath) -> None:
@@ -139,7 +139,7 @@ def _add_children(document: Document, element: Element, items: Any, path: KeyPat
         if not isinstance(item, dict) or len(item) != 1:
             raise MapfileError(document.problem((*path, index), "one tag", _kind(item)))
         for tag, value in item.items():
-            element.children.append(_element(document, tag, value, (*path, index, tag)))
+            element.children.append(_element(document, str(tag), value, (*path, index, tag)))
 
 
 def _kind(value: Any) -> str:

@@ -28,7 +28,8 @@ def failure(path: Path, error: BaseException, near_line: int = 0) -> MapfileErro
     line = lines[-1] if lines else getattr(error, "lineno", None) or near_line
     if isinstance(error, RefusedError):
         return MapfileError(error.at(path, line))
-    found = f"{type(error).__name__}: {_said(error)}"
+    said = _said(error)
+    found = f"{type(error).__name__}: {said}" if said else type(error).__name__
     return MapfileError(Problem(path, line, "", "launch code that is understood here", found))
 
 

@@ -136,7 +136,7 @@ class ExecutableInPackage(Substitution):
         prefix = FindPackagePrefix(self.package).perform(context)
         name = perform(context, self.executable)
         path = Path(prefix, "lib", perform(context, self.package), name)
-        if not path.is_file():
+        if not os.path.isfile(path):
             raise RefusedError("an executable of the package", str(path))
         return str(path)
 

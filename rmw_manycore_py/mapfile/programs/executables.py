@@ -77,7 +77,7 @@ def find_executable(package: str, executable: str) -> Program | None:
     """Return the program `ros2 run package executable` would start."""
     for prefix in ament.prefixes():
         path = prefix / "lib" / package / executable
-        if path.is_file() and os.access(path, os.X_OK):
+        if os.path.isfile(path) and os.access(path, os.X_OK):
             return _of_file(path)
     return _entry_point(package, executable)
 
@@ -87,7 +87,8 @@ def executables_of(package: str) -> list[str]:
     files = (
         path
         for prefix in ament.prefixes()
-        for path in (prefix / "lib" / package).glob("*")
+        if os.path.isdir(directory := prefix / "lib" / package)
+        for path in directory.glob("*")
         if path.is_file() and os.access(path, os.X_OK) and ".so" not in path.suffixes
     )
     return sorted(
@@ -101,7 +102,7 @@ def find_command(words: Sequence[str], directory: Path) -> Program | None:
     A bare name is looked for beside this interpreter first: `python3` is the one that has ROS,
     whether or not its environment is activated.
     """
-    first = Path(words[0]).expanduser()
+    first = Path(os.path.expanduser(words[0]))
     found = str(directory / first) if len(first.parts) > 1 else words[0]
     own = Path(sys.executable).parent
     path = shutil.which(found, path=f"{own}{os.pathsep}{os.environ.get('PATH', os.defpath)}")
@@ -116,7 +117,7 @@ def unfound_script(words: Sequence[str], directory: Path) -> str | None:
         return None
     if words[1] == "-m" and len(words) > 2 and words[0] == Path(words[0]).name:
         return None if find_module(words[2], directory) else words[2]
-    is_missing = words[1].endswith(".py") and not (directory / words[1]).is_file()
+    is_missing = words[1].endswith(".py") and not os.path.isfile(directory / words[1])
     return words[1] if is_missing else None
 
 
@@ -132,7 +133,7 @@ def _source_of(words: Sequence[str], directory: Path) -> Path | None:
         module = find_module(words[2], directory)
         return module.source if module else None
     file = directory / words[1]
-    return file if file.suffix == ".py" and file.is_file() else None
+    return file if file.suffix == ".py" and os.path.isfile(file) else None
 
 
 def _of_file(path: Path) -> Program:
