@@ -52,10 +52,10 @@ def corpus(directory: Path) -> list[list[Path]]:
     """Copy the files to mutate, with what they refer to; return those of each folder in order."""
     for folder in FOLDERS:
         shutil.copytree(REPOSITORY / folder, directory / folder, dirs_exist_ok=True)
-    return [
-        sorted(file for file in (directory / folder).iterdir() if file.is_file() and reader_of(file))
-        for folder in FOLDERS
+    files = [
+        [directory / folder / f.name for f in (REPOSITORY / folder).iterdir()] for folder in FOLDERS
     ]
+    return [sorted(f for f in folder if f.is_file() and reader_of(f)) for folder in files]
 
 
 def complaint(error: BaseException) -> str | None:

@@ -81,7 +81,9 @@ def parse_yaml(text: str, path: Path, repeated: Collection[str] = ()) -> Documen
         raise MapfileError(Problem(path, line, "", expected, found)) from error
     except (ValueError, OverflowError) as error:  # numbers in escapes and directives
         line = loader.line + 1 if loader else 0
-        raise MapfileError(Problem(path, line, "", "valid YAML", str(error))) from error
+        raise MapfileError(
+            Problem(path, line, "", "valid YAML", "a number that is too large")
+        ) from error
     finally:
         if loader:
             loader.dispose()

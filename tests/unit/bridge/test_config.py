@@ -135,6 +135,10 @@ def test_a_server_is_in_the_first_domain(tmp_path) -> None:
             "1: topics: expected a name and its settings: a mapping, no list",
         ),
         ("[]", "1: expected a mapping, found list []"),
+        ("from_domain: 2024-13-01", "1: from_domain: expected a date, found '2024-13-01'"),
+        ("topics: " + "[" * 1000, "1: expected at most 50 levels of nesting, found more"),
+        ("topics: {[a]: b}", "1: expected valid YAML, found a key that is not a scalar"),
+        ("name: \x1b", r"1: expected text of printable characters, found '\x1b'"),
     ],
 )
 def test_what_is_wrong_is_said_with_its_line(tmp_path, text, message) -> None:

@@ -72,6 +72,7 @@ def test_words_for_the_present_time() -> None:
         (PoseWithCovariance, "covariance: [1, 2]", r"covariance: expected double\[36\]"),
         (String, "hello", "expected fields like"),
         (String, "data: [", "not YAML"),
+        (String, "data: 2024-13-01", "not YAML: values:1: data: expected a date"),
     ],
 )
 def test_what_does_not_fit_is_an_error(message_type, text: str, expected: str) -> None:

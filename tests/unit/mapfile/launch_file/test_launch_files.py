@@ -10,7 +10,13 @@ from types import ModuleType
 
 import pytest
 
-from rmw_manycore_py.mapfile.launch_file import LaunchedNode, LaunchFile, read_launch_file
+from rmw_manycore_py.errors import MapfileError
+from rmw_manycore_py.mapfile.launch_file import (
+    LaunchedNode,
+    LaunchFile,
+    read_launch_file,
+    substitutions,
+)
 
 pytestmark = pytest.mark.unit
 
@@ -306,3 +312,39 @@ launch:
         "y": ["1", "a"],
         "z": [1, 2],
     }
+
+
+def test_files_that_include_others_twice_over_are_bounded(tmp_path: Path, read: Read) -> None:
+    """Each file includes the next twice: 2**40 files in all, and none includes itself."""
+    for number in range(1, 40):
+        include = f'<include file="$(dirname)/{number + 1}.xml"/>'
+        (tmp_path / f"{number}.xml").write_text(f"<launch>{include * 2}</launch>")
+    (tmp_path / "40.xml").write_text("<launch/>")
+    with pytest.raises(MapfileError, match="at most 1000 launch files, each include counted"):
+        read("outer.launch.xml", '<launch><include file="$(dirname)/1.xml"/></launch>')
+
+
+def test_an_expression_may_print_and_import(read: Read) -> None:
+    launch = read(
+        "demo.launch.xml",
+        """<launch><node pkg="p" exec="$(eval 'print(1) or fractions.Fraction(1, 2)' 'fractions')"/>
+        </launch>""",
+    )
+    assert launch.nodes[0].executable == "1/2"
+
+
+def test_a_command_reads_nothing_and_prints_text(tmp_path: Path, read: Read) -> None:
+    launch = read("demo.launch.xml", """<launch><log message="said: $(command 'cat')"/></launch>""")
+    assert launch.notices[0].endswith(": said: ")
+    file = tmp_path / "bytes"
+    file.write_bytes(b"\xff")
+    with pytest.raises(MapfileError, match=r"expected a command that runs, found .*can't decode"):
+        read("demo.launch.xml", f"""<launch><log message="$(command 'cat {file}')"/></launch>""")
+
+
+def test_a_command_that_does_not_end_is_stopped(
+    read: Read, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(substitutions, "COMMAND_TIMEOUT_S", 0.1)
+    with pytest.raises(MapfileError, match=r"found 'sleep 1000': no end after 0.1 s"):
+        read("demo.launch.xml", """<launch><log message="$(command 'sleep 1000')"/></launch>""")
