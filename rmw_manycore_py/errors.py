@@ -8,6 +8,7 @@ from pathlib import Path
 
 EXIT_FAILURE = 1
 EXIT_BAD_INPUT = 2
+EXIT_INTERRUPTED = 130  # as the shell reports a program that SIGINT ended
 
 
 class ManycoreError(Exception):

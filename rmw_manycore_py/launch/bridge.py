@@ -11,6 +11,7 @@ from rmw_manycore_py.launch.processes.program import NodeProgram
 from rmw_manycore_py.launch.runner import Report, Runner
 from rmw_manycore_py.mapfile.placing.placement import Placement
 from rmw_manycore_py.routes import DIRECTIONS, Direction
+from rmw_manycore_py.signals import signal_inbox
 from rmw_manycore_py.topology import Core, usable_cpus
 
 # Where the bridge runs that no mapfile places: cores 1 and 2 are the first that are not reserved.
@@ -41,8 +42,9 @@ def run_bridge(plan: Plan, report: Report) -> int:
         if plan.of(direction, 0)
     ]
     runner = Runner(programs, report)
-    exit_status = runner.run()
-    report(Finished(runner.failed, exit_status))
+    with signal_inbox() as inbox:
+        exit_status = runner.run(inbox)
+        report(Finished(runner.failed, exit_status))
     return exit_status
 
 

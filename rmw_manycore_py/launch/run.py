@@ -11,6 +11,7 @@ from rmw_manycore_py.launch.platform import configured_platform, remaining_users
 from rmw_manycore_py.launch.processes.program import NodeProgram
 from rmw_manycore_py.launch.runner import Report, Runner
 from rmw_manycore_py.mapfile.placing.placement import Placement
+from rmw_manycore_py.signals import SignalInbox, signal_inbox
 from rmw_manycore_py.topology import RECEIVE_THREAD_CORE
 
 RECEIVE_THREAD = "(receive thread)"  # no node can have a name with blanks
@@ -30,6 +31,10 @@ class Run:
 
     def run(self, report: Report, duration_s: float | None = None) -> int:
         """Start all processes, wait until they have ended, and return the exit status."""
+        with signal_inbox() as inbox:
+            return self._run(inbox, report, duration_s)
+
+    def _run(self, inbox: SignalInbox, report: Report, duration_s: float | None) -> int:
         placement = self._placement
         for text in placement.notices:
             report(Notice(text))
@@ -37,7 +42,7 @@ class Run:
             report(_describe(placement, self._bridge))
             nodes = [NodeProgram.of(node) for node in placement.nodes]
             runner = Runner([*self._bridge, *nodes], report)
-            exit_status = runner.run(duration_s)
+            exit_status = runner.run(inbox, duration_s)
         if users := remaining_users(placement.name):
             report(Notice(f"platform {placement.name} stays, for {', '.join(users)}"))
         report(Finished(runner.failed, exit_status))

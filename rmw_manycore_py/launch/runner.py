@@ -22,7 +22,7 @@ from rmw_manycore_py.launch.events import (
 from rmw_manycore_py.launch.processes.node_process import NodeProcess
 from rmw_manycore_py.launch.processes.program import NodeProgram
 from rmw_manycore_py.launch.processes.state import NodeState
-from rmw_manycore_py.signals import SignalInbox, signal_inbox
+from rmw_manycore_py.signals import SignalInbox
 
 Report = Callable[[Event], None]
 Handler = Callable[[], None]
@@ -54,13 +54,16 @@ class Runner:
         """The names of the nodes that failed."""
         return tuple(n.program.name for n in self._nodes if n.state is NodeState.FAILED)
 
-    def run(self, duration_s: float | None = None) -> int:
-        """Run until all nodes are over, or for a time from the start of the last; exit status."""
+    def run(self, inbox: SignalInbox, duration_s: float | None = None) -> int:
+        """Run until all nodes are over, or for a time from the start of the last; exit status.
+
+        A signal that came before the first node ends the run without one.
+        """
         with ExitStack() as stack:
-            inbox = stack.enter_context(signal_inbox())
             stack.callback(self._selector.close)
             stack.callback(self._destroy_all)
             self._watch(inbox, lambda: self._take_signals(inbox))
+            self._take_signals(inbox)
             while not self._is_over():
                 self._start_next(duration_s)
                 self._end_without_nodes()

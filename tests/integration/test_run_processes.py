@@ -19,6 +19,7 @@ from support import PATIENCE_S, Program, peer_command, wait_until
 from rmw_manycore_py.launch.processes.program import NodeProgram
 from rmw_manycore_py.launch.processes.state import STOP_STEPS
 from rmw_manycore_py.launch.runner import Runner
+from rmw_manycore_py.signals import signal_inbox
 from rmw_manycore_py.topology import Core
 
 pytestmark = pytest.mark.integration
@@ -65,7 +66,17 @@ def run_programs(
         for number, (name, command) in enumerate(commands.items(), start=1)
     ]
     runner = Runner(programs, lambda event: print(event.as_json(), flush=True))
-    sys.exit(runner.run(duration_s))
+    with signal_inbox() as inbox:
+        sys.exit(runner.run(inbox, duration_s))
+
+
+def run_interrupted() -> None:
+    """Run in a process of its own: Ctrl-C comes while the platform is configured."""
+    node = NodeProgram("node", ("sleep", "1000"), dict(os.environ), Core(1, 1), CPU)
+    runner = Runner([node], lambda event: print(event.as_json(), flush=True))
+    with signal_inbox() as inbox:
+        os.kill(os.getpid(), signal.SIGINT)
+        sys.exit(runner.run(inbox))
 
 
 class Run:
@@ -207,6 +218,15 @@ def test_a_node_without_handler_that_dies_of_the_interrupt_did_not_fail(
     run.program.signal(signal.SIGINT)
     assert run.program.wait() == 0
     assert (run.event("ended")["state"], run.event("ended")["signal"]) == ("finished", "SIGINT")
+
+
+def test_a_signal_that_comes_before_the_first_node_starts_none() -> None:
+    program = Program(peer_command(run_interrupted), dict(os.environ))
+    assert program.wait() == 0, program
+    assert [json.loads(line) for line in program.lines] == [
+        {"event": "stopping", "reason": "SIGINT"}
+    ]
+    program.kill()
 
 
 def test_the_duration_ends_the_run(start_run: StartRun) -> None:

@@ -14,6 +14,7 @@ from support import Program, peer_command
 
 from rmw_manycore_py.launch import runner
 from rmw_manycore_py.launch.processes.program import NodeProgram
+from rmw_manycore_py.signals import signal_inbox
 from rmw_manycore_py.topology import Core
 
 pytestmark = pytest.mark.integration
@@ -45,7 +46,8 @@ def run_server(source: str, *arguments: str) -> None:
         NodeProgram("node", ("sleep", "1000"), dict(os.environ), Core(1, 2), cpu),
     ]
     started = runner.Runner(programs, lambda event: print(event.as_json(), flush=True))
-    sys.exit(started.run())
+    with signal_inbox() as inbox:
+        sys.exit(started.run(inbox))
 
 
 @pytest.fixture

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import json
+import os
 import re
 import subprocess
 import sys
@@ -185,3 +186,12 @@ def test_a_shell_with_the_exports_uses_rmw_manycore(platform) -> None:
         ["sh", "-c", shell], env=plain, text=True, capture_output=True, check=True
     )
     assert result.stdout.split() == ["rmw_manycore"]
+
+
+def test_ctrl_c_before_a_verb_is_at_work_is_no_failure(start, tmp_path) -> None:
+    config = tmp_path / "bridge.yaml"
+    os.mkfifo(config)  # reading it takes as long as the test wants
+    program = start(manycore_command("bridge", "run", config))
+    with config.open("w"):  # returns once the program has it open
+        assert program.stop() == 130, program
+    assert program.output == ""

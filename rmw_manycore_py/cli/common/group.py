@@ -10,7 +10,7 @@ from typing import Any
 import click
 from typing_extensions import override
 
-from rmw_manycore_py.errors import ManycoreError
+from rmw_manycore_py.errors import EXIT_INTERRUPTED, ManycoreError
 
 
 class LazyGroup(click.Group):
@@ -44,6 +44,8 @@ class LazyGroup(click.Group):
         except ManycoreError as error:
             click.echo(f"manycore: {error}", err=True)
             ctx.exit(error.exit_status)
+        except KeyboardInterrupt:
+            ctx.exit(EXIT_INTERRUPTED)  # click would make a failure of it
 
 
 def _is_installed(place: str) -> bool:

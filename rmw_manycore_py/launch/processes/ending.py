@@ -11,14 +11,20 @@ from dataclasses import dataclass
 from rmw_manycore_py.launch.processes.state import INTERRUPT_GRACE_S, TERMINATE_GRACE_S, NodeState
 
 # How a traceback ends where rclpy has made something else of an interruption, with any RMW:
-# pybind11 where it strikes while an argument is made; rcl where rclpy's own handler of the signal
-# has shut the context down already, between two calls or before the node's `rclpy.shutdown()`.
+# pybind11 where it strikes while an argument is made, or while the module of rclpy is initialised
+# (rpyutils then adds a line of its own); rcl and rclpy where rclpy's own handler of the signal has
+# shut the context down already, between two calls or before the node's `rclpy.shutdown()`.
 _PYBIND11 = re.compile(r"RuntimeError: Unable to convert call argument '\d+' to Python object\b.*")
 _RCL = re.compile(
     r"rclpy\._rclpy_pybind11\.RCLError: .*"
-    r"\b(the given context is not valid|rcl_shutdown already called on the given context)\b.*"
+    r"\b(context is (not valid|invalid)|rcl_shutdown already called on the given context)\b.*"
 )
+_NOT_INITIALIZED = re.compile(r"rclpy\.exceptions\.NotInitializedException: .*")
+_IMPORT = "ImportError: initialization failed"
+_NO_EXTENSION = re.compile(r"The C extension '.*/_rclpy_pybind11\.[^/]+' isn't present .*")
 _RCLPY_FRAME = re.compile(r'\s*File ".*/rclpy/[^"]+", line \d+.*')
+# Where it strikes while the interpreter itself comes up, before any line of the node.
+_NO_INTERPRETER = "Fatal Python error: init_"
 _INTERRUPTIONS = ("KeyboardInterrupt", "rclpy.executors.ExternalShutdownException")
 _STOP_SIGNALS = (signal.SIGINT, signal.SIGTERM)
 _ENDED_ON_REQUEST = {
@@ -63,13 +69,17 @@ def judge(
 def is_rclpys(traceback: Sequence[str]) -> bool:
     """Tell whether these last lines of a node are what rclpy makes of some interruptions."""
     last_line = next(reversed(traceback), "")
-    if _RCL.fullmatch(last_line):
+    if _RCL.fullmatch(last_line) or _NOT_INITIALIZED.fullmatch(last_line):
         return True
+    if _NO_EXTENSION.fullmatch(last_line):
+        return _IMPORT in traceback[-2:]
     in_rclpy = any(_RCLPY_FRAME.fullmatch(line) for line in traceback)
     return in_rclpy and _PYBIND11.fullmatch(last_line) is not None
 
 
 def _was_interrupted(last_lines: Sequence[str]) -> bool:
+    if any(line.startswith(_NO_INTERPRETER) for line in last_lines):
+        return True
     return next(reversed(last_lines), "") in _INTERRUPTIONS or is_rclpys(last_lines)
 
 

@@ -43,6 +43,10 @@ PYBIND11 = (
     "RuntimeError: Unable to convert call argument '0' to Python object (#define "
     "PYBIND11_DETAILED_ERROR_MESSAGES or compile in debug mode for details)"
 )
+NO_EXTENSION = (
+    "The C extension '/x/site-packages/_rclpy_pybind11.cpython-312.so' isn't present on the system."
+    " Please refer to 'https://docs.ros.org/' for possible solutions"
+)
 RCL = "rclpy._rclpy_pybind11.RCLError: failed to "
 
 
@@ -57,6 +61,18 @@ RCL = "rclpy._rclpy_pybind11.RCLError: failed to "
             "called or rcl_shutdown() was called., at wait.c:130"
         ],
         [f"{RCL}shutdown: rcl_shutdown already called on the given context, at init.c:333"],
+        [f"{RCL}create service: rcl node's context is invalid, at /src/rcl/node.c:404"],
+        [f"{RCL}publish: publisher's context is invalid, at /src/rcl/publisher.c:423"],
+        [
+            "rclpy.exceptions.NotInitializedException: "
+            "('rclpy.init() has not been called', 'cannot create node')"
+        ],
+        ["ImportError: initialization failed", NO_EXTENSION],
+        [
+            "Fatal Python error: init_sys_streams: can't initialize sys standard streams",
+            "Python runtime state: core initialized",
+            "TypeError: expected a message argument",
+        ],
     ],
 )
 def test_python_that_an_interruption_ended_was_stopped(last_lines: list[str]) -> None:
@@ -72,6 +88,8 @@ def test_python_that_an_interruption_ended_was_stopped(last_lines: list[str]) ->
         [FRAME, "RuntimeError: Unable to reach the motor"],
         ['  File "/x/motor/driver.py", line 3, in stop', PYBIND11],
         [f"{RCL}publish: the arm is not there"],
+        ["ImportError: libyaml.so: cannot open shared object file", NO_EXTENSION],
+        ["ImportError: initialization failed"],
     ],
 )
 def test_another_error_on_the_way_out_is_a_failure(last_lines: list[str]) -> None:
