@@ -35,6 +35,7 @@ VERBS = {
 @click.group(
     cls=LazyGroup,
     commands_at=VERBS,
+    until_ctrl_c=("run", "demo"),
     context_settings={"help_option_names": ["-h", "--help"]},
     epilog=examples(
         "manycore demo",

@@ -31,6 +31,7 @@ class _BridgeGroup(LazyGroup):
     "bridge",
     cls=_BridgeGroup,
     commands_at=VERBS,
+    until_ctrl_c=("run",),
     epilog=examples("manycore bridge domain_bridge.yaml", "manycore bridge status"),
 )
 def command() -> None:

@@ -16,12 +16,20 @@ from rmw_manycore_py.errors import EXIT_INTERRUPTED, ManycoreError
 class LazyGroup(click.Group):
     """Knows where each of its commands is: "package.module:attribute".
 
-    A command whose module is not installed does not exist.
+    A command whose module is not installed does not exist. Those of `until_ctrl_c` end well by it,
+    also while they are still coming up; the others have not done what they were asked for.
     """
 
-    def __init__(self, *args: Any, commands_at: dict[str, str], **kwargs: Any) -> None:
+    def __init__(
+        self,
+        *args: Any,
+        commands_at: dict[str, str],
+        until_ctrl_c: tuple[str, ...] = (),
+        **kwargs: Any,
+    ) -> None:
         super().__init__(*args, **kwargs)
         self._commands_at = commands_at
+        self._until_ctrl_c = until_ctrl_c
 
     @override
     def list_commands(self, ctx: click.Context) -> list[str]:
@@ -38,14 +46,21 @@ class LazyGroup(click.Group):
         return command
 
     @override
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        ctx.invoked_subcommand = args[0]  # known while its module is imported, too
+        return super().resolve_command(ctx, args)
+
+    @override
     def invoke(self, ctx: click.Context) -> Any:
         try:
             return super().invoke(ctx)
         except ManycoreError as error:
             click.echo(f"manycore: {error}", err=True)
             ctx.exit(error.exit_status)
-        except KeyboardInterrupt:
-            ctx.exit(EXIT_INTERRUPTED)  # click would make a failure of it
+        except KeyboardInterrupt:  # click would make a failure of it
+            ctx.exit(0 if ctx.invoked_subcommand in self._until_ctrl_c else EXIT_INTERRUPTED)
 
 
 def _is_installed(place: str) -> bool:

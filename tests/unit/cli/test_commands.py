@@ -181,3 +181,26 @@ def test_clean_refuses_a_name_that_no_platform_can_have() -> None:
     result = manycore("clean", "..")
     assert result.exit_code == 2
     assert "found '..'" in result.output
+
+
+def interrupt(*_: object) -> None:
+    raise KeyboardInterrupt
+
+
+@pytest.mark.parametrize(
+    ("words", "interrupted", "status"),
+    [
+        (("run", "talker_listener"), "rmw_manycore_py.cli.run.load_mapfile", 0),
+        (("demo",), "rmw_manycore_py.cli.demo.load_mapfile", 0),
+        (("run", "talker_listener"), "importlib.import_module", 0),
+        (("status",), "importlib.import_module", 130),
+        (("status",), "rmw_manycore_py.cli.common.view.platform_names", 130),
+        (("bridge", "status"), "rmw_manycore_py.cli.common.view.platform_names", 130),
+    ],
+)
+def test_ctrl_c_of_a_verb_that_is_coming_up(
+    monkeypatch: pytest.MonkeyPatch, words: tuple[str, ...], interrupted: str, status: int
+) -> None:
+    monkeypatch.setattr(interrupted, interrupt)
+    result = manycore(*words)
+    assert (result.exit_code, result.output) == (status, "")
