@@ -70,8 +70,8 @@ def repaired(wheel: Path, directory: Path) -> Path:
     tools = environment_with(sys.executable, directory / "tools", *TOOLS)
     excluded = [f"--exclude={name}" for name in (*NOT_COPIED, *MESSAGES, *MESSAGES_OF_ROS)]
     path = {**os.environ, "PATH": f"{tools}:{os.environ['PATH']}"}
-    words = ("repair", *excluded, "--wheel-dir", directory, wheel)
-    run(tools / "auditwheel", *words, env=path)
+    auditwheel = tools / "auditwheel"
+    run(auditwheel, "repair", *excluded, "--wheel-dir", directory, wheel, env=path)
     result = next(directory.glob("*.whl"))
     if contents(result) != contents(wheel):
         raise SystemExit(f"auditwheel changed the files: {contents(result) ^ contents(wheel)}")
