@@ -88,7 +88,7 @@ def check(python: str, wheel: Path, directory: Path) -> None:
     """Install the wheel and use it, away from the checkout and without compilers."""
     programs = environment_with(python, directory / "venv")
     own = {name: value for name, value in os.environ.items() if not name.startswith("PYTHON")}
-    own["PATH"] = str(programs)
+    own |= {"PATH": str(programs), "MANYCORE_PLATFORM": f"wheel-{os.getpid()}"}
     if found := [name for name in COMPILERS if shutil.which(name, path=own["PATH"])]:
         raise SystemExit(f"compilers on PATH: {found}")
     everything = f"{wheel}[examples,bench]"
