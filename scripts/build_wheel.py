@@ -31,6 +31,8 @@ MESSAGES_OF_ROS = tuple(
     for package in ("builtin_interfaces", "geometry_msgs", "service_msgs", "std_msgs")
 )
 COMPILERS = ("gcc", "g++", "cc", "c++", "clang", "cmake", "ninja", "make")
+# What leads to modules and libraries of the python that runs this.
+NOT_PASSED_ON = ("PYTHON", "LD_LIBRARY_PATH", "_ROS_WHEELS", "VIRTUAL_ENV")
 IMPORT_EVERYTHING = """
 import importlib, pkgutil, sys
 import rmw_manycore_bridge, rmw_manycore_py
@@ -87,7 +89,7 @@ def contents(wheel: Path) -> set[str]:
 def check(python: str, wheel: Path, directory: Path) -> None:
     """Install the wheel and use it, away from the checkout and without compilers."""
     programs = environment_with(python, directory / "venv")
-    own = {name: value for name, value in os.environ.items() if not name.startswith("PYTHON")}
+    own = {name: value for name, value in os.environ.items() if not name.startswith(NOT_PASSED_ON)}
     own |= {"PATH": str(programs), "MANYCORE_PLATFORM": f"wheel-{os.getpid()}"}
     if found := [name for name in COMPILERS if shutil.which(name, path=own["PATH"])]:
         raise SystemExit(f"compilers on PATH: {found}")

@@ -68,10 +68,25 @@ def substituted_environment(environment: Mapping[str, str], prefix: str) -> dict
 
     An ordinary ROS 2 install selects the middleware by itself: there nothing changes.
     """
+    return _with_libraries(environment, prefix, stand_in_directory(prefix))
+
+
+def plain_environment(environment: Mapping[str, str], prefix: str) -> dict[str, str]:
+    """Return `environment` as a program of the python `prefix` needs it to get Fast DDS.
+
+    It may come from a shell that has the stand-ins, or from a python of another prefix.
+    """
+    return _with_libraries(environment, prefix)
+
+
+def _with_libraries(
+    environment: Mapping[str, str], prefix: str, *before_wheels: str
+) -> dict[str, str]:
     result = dict(environment)
     if needs_stand_ins(prefix):
-        first = [stand_in_directory(prefix), *_wheel_library_directories(prefix)]
-        rest = [path for path in library_path(environment) if path not in first]
+        first = [*before_wheels, *_wheel_library_directories(prefix)]
+        known = {stand_in_directory(prefix), *first}
+        rest = [path for path in library_path(environment) if path not in known]
         result[LIBRARY_PATH] = os.pathsep.join(first + rest)
         result[WHEELS_BOOTSTRAPPED] = "1"
     return result

@@ -89,6 +89,14 @@ def test_a_launcher_saves_the_second_start(prefix: Prefix) -> None:
     assert hook.REPLACED not in "".join(shown["loader"])
 
 
+def test_a_launcher_leads_to_fast_dds_too(prefix: Prefix) -> None:
+    """From a shell of rmw_manycore, and from a python of other wheels."""
+    known = f"/opt/other/lib:{prefix.stand_ins}:{prefix.path}/lib"
+    environment = hook.plain_environment({"LD_LIBRARY_PATH": known}, str(prefix.path))
+    assert environment["LD_LIBRARY_PATH"].split(":") == [*prefix.wheel_libraries, "/opt/other/lib"]
+    assert environment["_ROS_WHEELS_BOOTSTRAP_COMPLETE"] == "1"
+
+
 def test_the_environment_of_an_ordinary_ros_is_not_changed(tmp_path: Path) -> None:
     assert hook.substituted_environment({"A": "b"}, str(tmp_path)) == {"A": "b"}
 

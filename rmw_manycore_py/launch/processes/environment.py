@@ -7,12 +7,7 @@ import os
 import sys
 from collections.abc import Mapping
 
-from rmw_manycore_hook import (
-    LIBRARY_PATH,
-    library_path,
-    stand_in_directory,
-    substituted_environment,
-)
+from rmw_manycore_hook import plain_environment, substituted_environment
 
 IMPLEMENTATION = "rmw_manycore"
 OUTSIDE_IMPLEMENTATION = "rmw_fastrtps_cpp"
@@ -35,9 +30,7 @@ def leave_middleware(implementation: str) -> None:
 def outside_environment(base: Mapping[str, str] = os.environ) -> dict[str, str]:
     """Return `base` as a program needs it to load Fast DDS, even in a shell of rmw_manycore."""
     environment = {**base, "RMW_IMPLEMENTATION": OUTSIDE_IMPLEMENTATION, "PYTHONUNBUFFERED": "1"}
-    stand_ins = stand_in_directory(sys.prefix)
-    paths = [path for path in library_path(base) if path != stand_ins]
-    return {**environment, LIBRARY_PATH: os.pathsep.join(paths)}
+    return plain_environment(environment, sys.prefix)
 
 
 def enter_middleware() -> None:
