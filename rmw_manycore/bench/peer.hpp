@@ -3,10 +3,12 @@
 
 #include <sched.h>
 #include <sys/mman.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <cerrno>
+#include <csignal>
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
@@ -57,12 +59,17 @@ struct alignas(64) Slot {
   }
 };
 
-/// Runs `body` in a child on a CPU; the child ends with it.
+/// Runs `body` in a child on a CPU. The child ends with it, and with its parent, however that dies.
 template<typename Body>
 pid_t fork_on(size_t cpu, Body body) {
+  const pid_t parent = getpid();
   const pid_t child = fork();
   if (child != 0) {
     return child;
+  }
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (getppid() != parent) {  // it died before the call
+    _exit(EXIT_FAILURE);
   }
   pin_to(cpu);
   body();

@@ -20,6 +20,7 @@ from rmw_manycore_program import own_program
 from rmw_manycore_py._transport import Platform, platform_directory
 from rmw_manycore_py.bench.contenders import Middleware, Peer
 from rmw_manycore_py.errors import ManycoreError
+from rmw_manycore_py.parent_death import dies_with_this_process
 
 # How long a process may take in all before a bench gives up on it.
 PATIENCE_S = 300.0
@@ -81,6 +82,7 @@ class Process:
                 stdin=subprocess.PIPE,
                 stdout=subprocess.PIPE,
                 stderr=self._errors,
+                preexec_fn=dies_with_this_process(),
             )
         self._end_of_patience = threading.Timer(PATIENCE_S, self._process.kill)
         self._end_of_patience.start()

@@ -26,7 +26,7 @@ LAYERS = [
     ),
     ("._transport", "._ndt"),
     ("._ndt_bench", ".native_errors", ".qos"),
-    (".figures", ".ros", ".readiness", ".routes", ".signals", ".topology"),
+    (".figures", ".parent_death", ".ros", ".readiness", ".routes", ".signals", ".topology"),
     (".bridge_plan",),
     (".mapfile.format",),
     (".mapfile.launch_file", ".mapfile.programs"),

@@ -16,6 +16,8 @@ from tempfile import TemporaryDirectory
 from rmw_manycore_program import own_program
 from rmw_manycore_py.bench.ndt.world import world
 from rmw_manycore_py.errors import ManycoreError
+from rmw_manycore_py.launch.processes.birth import pinned_to
+from rmw_manycore_py.parent_death import dies_with_this_process
 from rmw_manycore_py.ros.ament import package_share
 
 PCL_PACKAGES = ("pcl_registration", "pcl_registration-1.12", "pcl_registration-1.14")
@@ -69,14 +71,15 @@ def all_peers(
 
 @contextmanager
 def _started(name: str, command: Sequence[str], cpu: int) -> Iterator[Peer]:
-    process = subprocess.Popen(
-        command,
-        stdin=subprocess.PIPE,
-        stdout=subprocess.PIPE,
-        text=True,
-        env={**os.environ, "OMP_NUM_THREADS": "1"},
-        preexec_fn=lambda: os.sched_setaffinity(0, {cpu}),
-    )
+    with pinned_to(cpu):
+        process = subprocess.Popen(
+            command,
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            text=True,
+            env={**os.environ, "OMP_NUM_THREADS": "1"},
+            preexec_fn=dies_with_this_process(),
+        )
     try:
         yield Peer(name, process)
     finally:

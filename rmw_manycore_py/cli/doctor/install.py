@@ -15,6 +15,7 @@ from pathlib import Path
 import rmw_manycore_hook
 from rmw_manycore_program import own_program
 from rmw_manycore_py.cli.doctor.finding import Finding, Verdict, advised, judged
+from rmw_manycore_py.parent_death import dies_with_this_process
 from rmw_manycore_py.ros.ament import prefixes
 
 LEAST_PYTHON = (3, 10)
@@ -92,6 +93,7 @@ def _substitution() -> Finding:
             timeout=START_TIMEOUT_S,
             capture_output=True,
             check=False,
+            preexec_fn=dies_with_this_process(),
         )
     except subprocess.TimeoutExpired:
         return Finding("substitution", Verdict.FAILURE, f"no answer in {START_TIMEOUT_S} s")

@@ -1,18 +1,11 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Where a new process runs and with whom it dies, settled before its first instruction."""
+"""Where a new process runs, settled before its first instruction."""
 
 from __future__ import annotations
 
-import ctypes
 import os
-import signal
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
-
-_PR_SET_PDEATHSIG = 1  # <linux/prctl.h>
-
-# Looked up here, so that nothing has to be loaded between fork and exec.
-_prctl = ctypes.CDLL(None, use_errno=True).prctl
 
 
 @contextmanager
@@ -30,18 +23,3 @@ def pinned_to(host_cpu: int) -> Iterator[None]:
         yield
     finally:
         os.sched_setaffinity(0, before)
-
-
-def dies_with_this_process() -> Callable[[], None]:
-    """Return a `preexec_fn`: the kernel kills the new process when this one dies, however it dies.
-
-    Only for a process with one thread: between fork and exec nothing else can hold a lock then.
-    """
-    parent = os.getpid()
-
-    def before_exec() -> None:
-        _prctl(_PR_SET_PDEATHSIG, signal.SIGKILL, 0, 0, 0)
-        if os.getppid() != parent:  # it died before the call
-            os._exit(1)
-
-    return before_exec

@@ -8,11 +8,12 @@ import signal
 import subprocess
 import time
 
-from rmw_manycore_py.launch.processes.birth import dies_with_this_process, pinned_to
+from rmw_manycore_py.launch.processes.birth import pinned_to
 from rmw_manycore_py.launch.processes.ending import Ending, judge, not_started
 from rmw_manycore_py.launch.processes.output import OutputReader
 from rmw_manycore_py.launch.processes.program import NodeProgram
 from rmw_manycore_py.launch.processes.state import STOP_STEPS, NodeState, check_transition
+from rmw_manycore_py.parent_death import dies_with_this_process
 from rmw_manycore_py.readiness import Readiness
 
 # How long children of a node may go on printing after the node itself has ended.

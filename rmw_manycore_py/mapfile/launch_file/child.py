@@ -13,6 +13,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from rmw_manycore_py.mapfile.format.bounded_yaml import MAX_BYTES
+from rmw_manycore_py.parent_death import dies_with_this_process
 
 _READ_BYTES = 1 << 16
 
@@ -44,6 +45,7 @@ def run_child(
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,
             start_new_session=True,
+            preexec_fn=dies_with_this_process(),
         )
     with child:
         try:
