@@ -59,7 +59,7 @@ tidy: setup  ## clang-tidy with the checks of .clang-tidy
 	$(VENV)/cmake -S . -B build/tidy -G Ninja -DCMAKE_MAKE_PROGRAM=$(CURDIR)/$(VENV)/ninja \
 	  -DCMAKE_PREFIX_PATH=$(CURDIR)/.venv -DMANYCORE_BUILD_TESTS=ON -DMANYCORE_BUILD_BENCH=ON \
 	  -DCMAKE_EXPORT_COMPILE_COMMANDS=ON >build/tidy.log
-	git ls-files 'rmw_manycore/*.cpp' 'tests/native/*.cpp' | \
+	git ls-files 'rmw_manycore/*.cpp' 'tests/native/*.cpp' ':!*/bench/ndt/peer.cpp' | \
 	  xargs -P $(JOBS) -n 8 $(VENV)/clang-tidy -p build/tidy --quiet 2>build/tidy.log
 
 docs: setup  ## the documentation as HTML in build/docs, links checked
