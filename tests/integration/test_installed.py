@@ -145,16 +145,17 @@ def test_the_examples_as_modules(place: Place, start: Start) -> None:
 def test_messages_are_found_where_pythonpath_says(
     installation: Installation, start: Start, tmp_path: Path
 ) -> None:
-    folder = tmp_path / "messages"
-    run(installation.python, "-m", "pip", "install", "--no-deps", "--target", folder, TEST_MSGS)
+    command = [installation.python, "-m", "pip", "install", "--no-deps", "--prefix", tmp_path]
+    run(*command, TEST_MSGS)
+    folder = next(tmp_path.glob("lib/python*/site-packages"))
     (folder / "random.py").write_text("raise SystemError('random of the folder')\n")
-    found = {"PYTHONPATH": str(folder), "LD_LIBRARY_PATH": str(folder / "lib")}
+    libraries = ":".join(map(str, [tmp_path / "lib", *folder.glob("*.libs")]))
+    found = {"PYTHONPATH": str(folder), "LD_LIBRARY_PATH": libraries}
     topic = [installation.manycore, "topic"]
     publish = ["pub", "-r", "10", "/strings", "test_msgs/msg/Strings", "string_value: found"]
     start([*topic, *publish], **found)
-    start([*topic, "echo", "/strings", "test_msgs/msg/Strings"], **found).wait_for(
-        "string_value: found"
-    )
+    echo = start([*topic, "echo", "/strings", "test_msgs/msg/Strings"], **found)
+    echo.wait_for("string_value: found")
 
 
 def test_a_node_keeps_the_rules_of_python(
