@@ -43,6 +43,7 @@ LAYERS = [
     (".bench", ".bench.nodes"),
     (".bench.ndt",),
     (".cli.common", ".cli.topic.meters"),
+    (".cli.doctor.report",),
     (
         *(".cli.action", ".cli.bench", ".cli.bridge", ".cli.doctor", ".cli.interface"),
         *(".cli.lifecycle", ".cli.map", ".cli.ndt", ".cli.node", ".cli.param", ".cli.service"),

@@ -1,0 +1,27 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""`manycore doctor --report`: where the report goes."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from rmw_manycore_py.cli.doctor.report import Section, as_json, as_text, report
+from rmw_manycore_py.errors import ManycoreError
+
+PRINTED = "-"
+
+
+def write_report(target: str, mapfile: str | None, findings: Section) -> None:
+    """Make a report, and write it to a file or print it."""
+    sections = report(findings, mapfile)
+    text = as_json(sections) if Path(target).suffix == ".json" else as_text(sections)
+    if target == PRINTED:
+        click.echo(text, nl=False)
+        return
+    try:
+        Path(target).write_text(text, encoding="utf-8")
+    except OSError as error:
+        raise ManycoreError(f"{target}: cannot be written: {error.strerror}") from error
+    click.echo(f"written to {target}; read it before you pass it on")
