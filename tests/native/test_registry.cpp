@@ -238,10 +238,10 @@ TEST_CASE("the lock of an owner that does not exist: the error names no process"
   RobustMutex & mutex = f.registry.header().mutex;
   constexpr int32_t no_thread = 0x2fff'ffff;
   constexpr int32_t unlocked = 0;
-  std::memcpy(&mutex, &no_thread, sizeof no_thread);
+  std::memcpy(static_cast<void *>(&mutex), &no_thread, sizeof no_thread);
   const Refusal refusal =
     refusal_of([&] { const Registry::Lock lock(f.registry, Registry::Lock::short_wait_ns); });
-  std::memcpy(&mutex, &unlocked, sizeof unlocked);
+  std::memcpy(static_cast<void *>(&mutex), &unlocked, sizeof unlocked);
   CHECK(refusal.code == ErrorCode::timeout);
   CHECK_MESSAGE(refusal.says("does not exist here"), refusal.text);
   CHECK_MESSAGE(refusal.says("run 'manycore clean'"), refusal.text);
