@@ -225,10 +225,7 @@ def test_workers_that_are_killed_are_replaced(stack, start):
 
 
 def test_workers_that_die_again_and_again(stack, start):
-    """Scans, maps and first poses are refused meanwhile, and the node goes on afterwards.
-
-    Each is tried until it is: on a busy machine some workers live long enough.
-    """
+    """Scans, maps and poses are tried until refused: on a busy machine some workers live on."""
     program = start(matcher_command(worker_host_cpus=two_host_cpus()), cluster=2)
     points, scan = street_map(), street_scan()
     stack.wait_for_matcher()

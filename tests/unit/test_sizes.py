@@ -15,7 +15,10 @@ pytestmark = pytest.mark.unit
 ROOT = Path(__file__).parents[2]
 LONGEST_FILE = 400
 LONGEST_FUNCTION = 60
-DIRECTORIES = ("rmw_manycore_py", "bridge", "startup", "cmake", "scripts", "tests", "docs")
+DIRECTORIES = (
+    *("rmw_manycore", "rmw_manycore_py", "bridge", "startup", "cmake", "scripts"),
+    *("tests", "docs"),
+)
 SUFFIXES = {".py", ".cpp", ".hpp", ".c", ".h", ".sh", ".cmake", ".pml"}
 NATIVE_FUNCTION = re.compile(r"^(?! *(?:namespace|class|struct|enum|union|extern)\b)\S.*\{$")
 
