@@ -12,7 +12,7 @@ TESTS_ALONE := -DMANYCORE_BUILD_RMW=OFF -DMANYCORE_BUILD_PYTHON=OFF
 NATIVE_SOURCES := $(shell find CMakeLists.txt cmake startup rmw_manycore \
 	-type f -not -name '*.md')
 
-.PHONY: help setup demo wheel test test-native stress sanitize bench lint tidy docs clean
+.PHONY: help setup demo wheel test test-native stress sanitize fuzz bench lint tidy docs clean
 
 help:  ## this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -40,6 +40,9 @@ test-native: setup .venv/tests  ## the C++ tests
 sanitize: setup .venv/tests  ## the C++ tests with sanitizers: address and undefined, then threads
 	scripts/native_tests.sh build/asan -DMANYCORE_SANITIZE=address,undefined $(TESTS_ALONE)
 	scripts/native_tests.sh build/tsan -DMANYCORE_SANITIZE=thread $(TESTS_ALONE)
+
+fuzz: setup  ## a million mutated messages, with the address sanitizer and beside Fast DDS
+	scripts/fuzz.sh 1000000
 
 wheel: setup  ## a wheel in dist/ for machines without a compiler, tried in an environment without one
 	$(VENV)/python scripts/build_wheel.py

@@ -12,7 +12,8 @@
 namespace rmw_manycore {
 namespace {
 
-constexpr size_t encapsulation_bytes = 4;
+/// Of the second byte of the encapsulation header: XCDR version 2, in whatever form.
+constexpr uint8_t first_of_xcdr2 = 6;
 
 }  // namespace
 
@@ -51,10 +52,21 @@ size_t Cdr::serialize(const void * message, uint8_t * data, size_t capacity) con
   return cdr.get_serialized_data_length();
 }
 
+/// What ROS 2 does not write is not read either: in XCDR2 the C++ type support would resize
+/// sequences of strings by whatever length they have.
+const char * Cdr::why_unreadable(const uint8_t * data, size_t size) const {
+  if (size < encapsulation_bytes) {
+    return "it has no encapsulation header";
+  }
+  if (data[1] >= first_of_xcdr2) {
+    return "it is not XCDR version 1";
+  }
+  return lengths_->fit(data, size) ? nullptr : "a length in it claims more bytes than are left";
+}
+
 void Cdr::deserialize(const uint8_t * data, size_t size, void * message) const {
-  if (!lengths_->fit(data, size)) {
-    throw manycore::Error(
-      manycore::ErrorCode::corrupt, "a length in it claims more bytes than are left");
+  if (const char * const reason = why_unreadable(data, size)) {
+    throw manycore::Error(manycore::ErrorCode::corrupt, reason);
   }
   // Fast CDR has no buffer of const bytes; it only reads here.
   eprosima::fastcdr::FastBuffer buffer(reinterpret_cast<char *>(const_cast<uint8_t *>(data)), size);

@@ -31,6 +31,9 @@ public:
   void deserialize(const uint8_t * data, size_t size, void * message) const;
 
 private:
+  /// Null for what the type support may read.
+  const char * why_unreadable(const uint8_t * data, size_t size) const;
+
   const message_type_support_callbacks_t * callbacks_;
   std::shared_ptr<const CdrLengths> lengths_;
   size_t fixed_size_bound_ = 0;  ///< of types whose size does not depend on the message; else 0

@@ -2,7 +2,6 @@
 #include "rmw/serialization/cdr_lengths.hpp"
 
 #include "rcutils/error_handling.h"
-#include "rmw/serialization/length_walk.hpp"
 #include "rosidl_typesupport_introspection_c/message_introspection.h"
 #include "rosidl_typesupport_introspection_c/service_introspection.h"
 #include "rosidl_typesupport_introspection_cpp/message_introspection.hpp"
@@ -20,41 +19,26 @@ using CServiceMembers = rosidl_typesupport_introspection_c__ServiceMembers;
 using CppMembers = rosidl_typesupport_introspection_cpp::MessageMembers;
 using CppServiceMembers = rosidl_typesupport_introspection_cpp::ServiceMembers;
 
-/// The second byte of the header says how the rest is encoded; the lowest bit is its byte order.
-constexpr size_t encapsulation_bytes = 4;
+/// Of the second byte, which says how the rest is encoded.
 constexpr uint8_t little_endian_bit = 1;
-constexpr uint8_t first_of_xcdr2 = 6;
 constexpr bool is_little_endian = __BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__;
-
-template<typename Members>
-bool walk(const void * members, const uint8_t * cdr, size_t size) {
-  const bool swapped = ((cdr[1] & little_endian_bit) != 0) != is_little_endian;
-  const size_t widest = cdr[1] >= first_of_xcdr2 ? 4 : 8;
-  LengthWalk<Members> walk(cdr + encapsulation_bytes, size - encapsulation_bytes, swapped, widest);
-  return walk.fits(*static_cast<const Members *>(members));
-}
 
 }  // namespace
 
 bool CdrLengths::fit(const uint8_t * cdr, size_t size) const {
-  std::call_once(looked_, [this] { find_members(); });
-  if (size < encapsulation_bytes) {
-    return true;  // Fast CDR says so
-  }
-  if (c_members_ != nullptr) {
-    return walk<CMembers>(c_members_, cdr, size);
-  }
-  // In XCDR2 the C++ type support reads some sequences with a header of their own.
-  const bool is_plain = cdr[1] < first_of_xcdr2;
-  return cpp_members_ == nullptr || !is_plain || walk<CppMembers>(cpp_members_, cdr, size);
+  std::call_once(looked_, [this] { plan_ = make_plan(); });
+  const bool swapped = ((cdr[1] & little_endian_bit) != 0) != is_little_endian;
+  return plan_.fits(cdr + encapsulation_bytes, size - encapsulation_bytes, swapped);
 }
 
-void CdrLengths::find_members() const {
-  const auto * const c = find<CMembers, CServiceMembers>(c_identifier);
-  const auto * const cpp =
-    c == nullptr ? find<CppMembers, CppServiceMembers>(cpp_identifier) : nullptr;
-  c_members_ = c != nullptr && LengthWalk<CMembers>::has_lengths(*c) ? c : nullptr;
-  cpp_members_ = cpp != nullptr && LengthWalk<CppMembers>::has_lengths(*cpp) ? cpp : nullptr;
+LengthPlan CdrLengths::make_plan() const {
+  if (const auto * const members = find<CMembers, CServiceMembers>(c_identifier)) {
+    return LengthPlan::of(*members);
+  }
+  if (const auto * const members = find<CppMembers, CppServiceMembers>(cpp_identifier)) {
+    return LengthPlan::of(*members);
+  }
+  return {};
 }
 
 template<typename Members, typename ServiceMembers>

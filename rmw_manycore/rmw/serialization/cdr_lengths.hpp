@@ -5,10 +5,13 @@
 #include <cstdint>
 #include <mutex>
 
+#include "rmw/serialization/length_plan.hpp"
 #include "rosidl_runtime_c/message_type_support_struct.h"
 #include "rosidl_runtime_c/service_type_support_struct.h"
 
 namespace rmw_manycore {
+
+constexpr size_t encapsulation_bytes = 4;
 
 /// Compares the lengths in a message's CDR with the bytes that are left. The generated type support
 /// resizes a wide string before it reads it, takes one byte per element for enough whatever the
@@ -23,13 +26,14 @@ public:
   CdrLengths(const rosidl_service_type_support_t & service, Part part) noexcept
   : service_(&service), part_(part) {}
 
-  /// False when a length claims more than there is. True as well for what cannot be told: types
-  /// without introspection, and encodings that ROS 2 does not write.
+  /// False when a length claims more than there is. The CDR is version 1, and has its encapsulation
+  /// header.
   bool fit(const uint8_t * cdr, size_t size) const;
 
 private:
-  /// At the first message: it loads the introspection library, which a publisher never needs.
-  void find_members() const;
+  /// At the first message: it loads the introspection library, which a publisher never needs. Of a
+  /// type without introspection nothing is checked.
+  LengthPlan make_plan() const;
   template<typename Members, typename ServiceMembers>
   const Members * find(const char * identifier) const;
 
@@ -38,8 +42,7 @@ private:
   Part part_ = Part::request;
 
   mutable std::once_flag looked_;
-  mutable const void * c_members_ = nullptr;  ///< null for types without lengths
-  mutable const void * cpp_members_ = nullptr;
+  mutable LengthPlan plan_;
 };
 
 }  // namespace rmw_manycore

@@ -1,0 +1,232 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#include "rmw/serialization/length_plan.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <utility>
+
+#include "rosidl_typesupport_introspection_c/field_types.h"
+#include "rosidl_typesupport_introspection_c/message_introspection.h"
+#include "rosidl_typesupport_introspection_cpp/message_introspection.hpp"
+
+namespace rmw_manycore {
+namespace {
+
+constexpr size_t length_bytes = 4;
+constexpr size_t wide_character_bytes = 4;
+
+/// The same numbers in C and in C++; 0 for types that are no primitives, or not defined in CDR.
+constexpr size_t primitive_bytes(uint8_t type_id) noexcept {
+  switch (type_id) {
+    case rosidl_typesupport_introspection_c__ROS_TYPE_CHAR:
+    case rosidl_typesupport_introspection_c__ROS_TYPE_BOOLEAN:
+    case rosidl_typesupport_introspection_c__ROS_TYPE_OCTET:
+    case rosidl_typesupport_introspection_c__ROS_TYPE_UINT8:
+    case rosidl_typesupport_introspection_c__ROS_TYPE_INT8:
+      return 1;
+    case rosidl_typesupport_introspection_c__ROS_TYPE_UINT16:
+    case rosidl_typesupport_introspection_c__ROS_TYPE_INT16:
+      return 2;
+    case rosidl_typesupport_introspection_c__ROS_TYPE_FLOAT:
+    case rosidl_typesupport_introspection_c__ROS_TYPE_UINT32:
+    case rosidl_typesupport_introspection_c__ROS_TYPE_INT32:
+      return 4;
+    case rosidl_typesupport_introspection_c__ROS_TYPE_DOUBLE:
+    case rosidl_typesupport_introspection_c__ROS_TYPE_UINT64:
+    case rosidl_typesupport_introspection_c__ROS_TYPE_INT64:
+      return 8;
+    default:
+      return 0;
+  }
+}
+
+}  // namespace
+
+/// Makes the plan of one type. Ends it where it meets a type whose CDR is not defined (long double,
+/// wide character): what follows cannot be told.
+template<typename Members>
+class LengthPlanner {
+public:
+  LengthPlan plan(const Members & type) {
+    LengthPlan plan;
+    for (uint32_t i = 0; i < type.member_count_ && !is_at_unknown_; ++i) {
+      add(plan, type.members_[i]);
+    }
+    return plan;
+  }
+
+private:
+  using Step = LengthPlan::Step;
+  using Kind = Step::Kind;
+
+  template<typename Member>
+  void add(LengthPlan & plan, const Member & member) {
+    const bool is_sequence =
+      member.is_array_ && (member.array_size_ == 0 || member.is_upper_bound_);
+    const size_t count = member.is_array_ ? member.array_size_ : 1;
+    if (member.type_id_ == rosidl_typesupport_introspection_c__ROS_TYPE_MESSAGE) {
+      const auto & members = *static_cast<const Members *>(member.members_->data);
+      add_messages(plan, LengthPlanner::plan(members), is_sequence, count);
+    } else if (const size_t bytes = primitive_bytes(member.type_id_)) {
+      plan.add({Kind::fixed, is_sequence, count, bytes, bytes, nullptr});
+    } else if (member.type_id_ == rosidl_typesupport_introspection_c__ROS_TYPE_STRING) {
+      plan.add({Kind::string, is_sequence, count, 1, length_bytes, nullptr});
+    } else if (member.type_id_ == rosidl_typesupport_introspection_c__ROS_TYPE_WSTRING) {
+      plan.add({Kind::wide_string, is_sequence, count, 1, length_bytes, nullptr});
+    } else {
+      is_at_unknown_ = true;
+      plan.add({Kind::passed_over, is_sequence, 0, 1, 1, nullptr});
+    }
+  }
+  void add_messages(LengthPlan & plan, LengthPlan part, bool is_sequence, size_t count) {
+    const size_t bytes = std::max<size_t>(part.least_bytes(), 1);
+    if (part.is_one_block()) {
+      plan.add({Kind::fixed, is_sequence, count, part.steps_[0].alignment, bytes, nullptr});
+    } else if (is_sequence || count != 1) {
+      const Kind kind = is_at_unknown_ ? Kind::passed_over : Kind::messages;
+      auto shared = std::make_shared<const LengthPlan>(std::move(part));
+      plan.add({kind, is_sequence, count, 1, bytes, std::move(shared)});
+    } else {
+      for (Step & step : part.steps_) {
+        plan.add(std::move(step));
+      }
+    }
+  }
+
+  bool is_at_unknown_ = false;
+};
+
+template<typename Members>
+LengthPlan LengthPlan::of(const Members & type) {
+  LengthPlan plan = LengthPlanner<Members>().plan(type);
+  plan.end_at_last_length();
+  return plan;
+}
+
+template LengthPlan LengthPlan::of(const rosidl_typesupport_introspection_c__MessageMembers &);
+template LengthPlan LengthPlan::of(const rosidl_typesupport_introspection_cpp::MessageMembers &);
+
+bool LengthPlan::reserves(const Step & step) {
+  return step.is_sequence || step.kind == Step::Kind::wide_string ||
+         (step.part != nullptr && step.part->reserves());
+}
+
+bool LengthPlan::reserves() const {
+  return std::any_of(
+    steps_.begin(), steps_.end(), [](const Step & step) { return reserves(step); });
+}
+
+size_t LengthPlan::least_bytes() const {
+  size_t sum = 0;
+  for (const Step & step : steps_) {
+    sum += step.is_sequence ? length_bytes : step.count * step.bytes;
+  }
+  return sum;
+}
+
+/// Primitives of one size side by side become one block.
+void LengthPlan::add(Step step) {
+  if (step.kind == Step::Kind::fixed && !step.is_sequence) {
+    step.bytes *= std::exchange(step.count, 1);
+    if (!steps_.empty()) {
+      Step & before = steps_.back();
+      const bool is_block = before.kind == Step::Kind::fixed && !before.is_sequence;
+      if (is_block && before.alignment == step.alignment) {
+        before.bytes += step.bytes;
+        return;
+      }
+    }
+  }
+  steps_.push_back(std::move(step));
+}
+
+/// Fast CDR itself looks at the lengths of strings, and at whether there are bytes left.
+void LengthPlan::end_at_last_length() {
+  while (!steps_.empty() && !reserves(steps_.back())) {
+    steps_.pop_back();
+  }
+  if (steps_.empty()) {
+    return;
+  }
+  Step & last = steps_.back();
+  const bool reserves_inside =
+    last.kind == Step::Kind::wide_string || (last.part != nullptr && last.part->reserves());
+  if (!reserves_inside) {
+    last.kind = Step::Kind::passed_over;
+  }
+}
+
+/// Follows a plan along the CDR of one message. Only reads.
+class LengthWalk {
+public:
+  LengthWalk(const uint8_t * data, size_t size, bool swapped) noexcept
+  : data_(data), size_(size), swapped_(swapped) {}
+
+  bool fits(const LengthPlan & plan) noexcept {
+    return std::all_of(plan.steps_.begin(), plan.steps_.end(), [this](const Step & step) {
+      size_t count = step.count;
+      return (!step.is_sequence || (length(count) && count <= left() / step.bytes)) &&
+             elements(step, count);
+    });
+  }
+
+private:
+  using Step = LengthPlan::Step;
+
+  bool elements(const Step & step, size_t count) noexcept {
+    switch (step.kind) {
+      case Step::Kind::fixed:
+        return count == 0 || (align(step.alignment) && skip(count * step.bytes));
+      case Step::Kind::string:
+        return strings(1, count);
+      case Step::Kind::wide_string:
+        return strings(wide_character_bytes, count);
+      case Step::Kind::messages:
+        while (count != 0 && fits(*step.part)) {
+          --count;
+        }
+        return count == 0;
+      case Step::Kind::passed_over:
+        break;
+    }
+    return true;
+  }
+  bool strings(size_t character_bytes, size_t count) noexcept {
+    for (size_t characters = 0; count != 0; --count) {
+      if (!length(characters) || !skip(characters * character_bytes)) {
+        return false;
+      }
+    }
+    return true;
+  }
+
+  size_t left() const noexcept { return size_ - at_; }
+  bool skip(size_t bytes) noexcept {
+    if (bytes > left()) {
+      return false;
+    }
+    at_ += bytes;
+    return true;
+  }
+  bool align(size_t bytes) noexcept { return skip(-at_ & (bytes - 1)); }
+  bool length(size_t & result) noexcept {
+    if (!align(length_bytes) || left() < length_bytes) {
+      return false;
+    }
+    uint32_t value = 0;
+    std::memcpy(&value, data_ + at_, length_bytes);
+    result = swapped_ ? __builtin_bswap32(value) : value;
+    return skip(length_bytes);
+  }
+
+  const uint8_t * data_;
+  size_t size_;
+  size_t at_ = 0;
+  bool swapped_;
+};
+
+bool LengthPlan::fits(const uint8_t * data, size_t size, bool swapped) const {
+  return LengthWalk(data, size, swapped).fits(*this);
+}
+
+}  // namespace rmw_manycore

@@ -1,0 +1,272 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+//
+// fuzz_deserialize SAMPLES [SEED [FIRST]]: deserializes and takes messages that are made up by
+// their types and then damaged. Whatever the bytes are, no take may fail, each message is taken or
+// counted as lost, what was accepted can be serialized, little memory is asked for, and the verdict
+// is that of Fast DDS, but for what that takes half read.
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cinttypes>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+
+#include <sanitizer/asan_interface.h>
+#include <sanitizer/common_interface_defs.h>
+
+#include "allocation_watch.hpp"
+#include "fast_dds.hpp"
+#include "rcutils/allocator.h"
+#include "rmw/error_handling.h"
+#include "ros_platform.hpp"
+#include "sample.hpp"
+
+namespace {
+
+// Fixed and variable sizes, strings of both kinds, sequences bounded or not, nested to any depth.
+constexpr const char * type_names[] = {
+  "std_msgs/msg/String",
+  "std_msgs/msg/Float64MultiArray",
+  "std_msgs/msg/ByteMultiArray",
+  "geometry_msgs/msg/PoseStamped",
+  "geometry_msgs/msg/PoseArray",
+  "geometry_msgs/msg/PolygonStamped",
+  "sensor_msgs/msg/Image",
+  "sensor_msgs/msg/Imu",
+  "sensor_msgs/msg/LaserScan",
+  "sensor_msgs/msg/JointState",
+  "sensor_msgs/msg/CameraInfo",
+  "sensor_msgs/msg/PointCloud2",
+  "sensor_msgs/msg/JoyFeedbackArray",
+  "nav_msgs/msg/Path",
+  "nav_msgs/msg/Odometry",
+  "nav_msgs/msg/OccupancyGrid",
+  "diagnostic_msgs/msg/DiagnosticArray",
+  "trajectory_msgs/msg/MultiDOFJointTrajectory",
+  "visualization_msgs/msg/MarkerArray",
+  "visualization_msgs/msg/InteractiveMarkerUpdate",
+  "test_msgs/msg/Empty",
+  "test_msgs/msg/BasicTypes",
+  "test_msgs/msg/Strings",
+  "test_msgs/msg/WStrings",
+  "test_msgs/msg/Arrays",
+  "test_msgs/msg/BoundedSequences",
+  "test_msgs/msg/UnboundedSequences",
+  "test_msgs/msg/MultiNested",
+};
+
+uint64_t seed = 1;
+uint64_t current = 0;  ///< number of the sample
+
+int report_descriptor = STDERR_FILENO;
+int null_descriptor = STDERR_FILENO;
+
+void set_report_descriptor(int descriptor) {
+  __sanitizer_set_report_fd(reinterpret_cast<void *>(static_cast<intptr_t>(descriptor)));
+}
+
+using Bytes = std::vector<uint8_t>;
+
+rmw_serialized_message_t view_of(const Bytes & cdr) {
+  rmw_serialized_message_t view = rmw_get_zero_initialized_serialized_message();
+  view.buffer = const_cast<uint8_t *>(cdr.data());  // only read
+  view.buffer_length = view.buffer_capacity = cdr.size();
+  return view;
+}
+
+void require(bool holds, const char * what) {
+  if (!holds) {
+    throw std::runtime_error(what);
+  }
+}
+
+/// Into zeros, as padding is not written. `expected_bytes`: more is more than the message needs.
+/// Nothing where the type support refuses: it reads sequences beyond their bounds, but writes none.
+std::optional<Bytes> serialize(
+  const MessageType & type, const void * message, size_t expected_bytes) {
+  constexpr size_t rounding = 8;
+  const size_t capacity = expected_bytes + rounding;
+  rmw_serialized_message_t buffer = rmw_get_zero_initialized_serialized_message();
+  const rcutils_allocator_t allocator = rcutils_get_default_allocator();
+  check(rmw_serialized_message_init(&buffer, capacity, &allocator), "rmw_serialized_message_init");
+  std::memset(buffer.buffer, 0, capacity);
+  const rmw_ret_t code = rmw_serialize(message, type.support(), &buffer);
+  rmw_reset_error();
+  Bytes cdr(buffer.buffer, buffer.buffer + buffer.buffer_length);
+  check(rmw_serialized_message_fini(&buffer), "rmw_serialized_message_fini");
+  return code == RMW_RET_OK ? std::optional(cdr) : std::nullopt;
+}
+
+/// What one element may take in memory for each byte in CDR: a string of C++ has 32 for 4.
+constexpr size_t most_times = 16;
+constexpr size_t most_beside = 4096;
+
+/// Why it is refused; nothing when it is not. Each in memory of its own size: a read behind the end
+/// is seen.
+std::optional<std::string> refusal(const MessageType & type, const Bytes & cdr, void * message) {
+  const rmw_serialized_message_t view = view_of(cdr);
+  allocation_watch::largest();
+  const rmw_ret_t code = rmw_deserialize(&view, type.support(), message);
+  const size_t largest = allocation_watch::largest();
+  require(
+    largest <= most_times * cdr.size() + most_beside, "more memory was asked for than it can need");
+  const std::string reason = rmw_get_error_string().str;
+  rmw_reset_error();
+  return code == RMW_RET_OK ? std::nullopt : std::optional(reason);
+}
+
+/// Without the sanitizer's warnings of memory that Fast DDS asks for in vain.
+bool fast_dds_accepts(const FastDds & fast_dds, const MessageType & type, const Bytes & cdr) {
+  const auto message = type.create();
+  set_report_descriptor(null_descriptor);
+  const bool accepted = fast_dds.accepts(view_of(cdr), *type.support(), message.get());
+  set_report_descriptor(report_descriptor);
+  return accepted;
+}
+
+/// Both mean bytes that no writer of ROS 2 sends. XCDR version 2: Fast DDS never matches its
+/// writers. A length within: the type support ignores that a part has failed, and hands out what it
+/// has.
+bool is_refused_by_us_alone(const std::string & reason) {
+  return reason.find("a length in it claims more bytes than are left") != std::string::npos ||
+         reason.find("it is not XCDR version 1") != std::string::npos;
+}
+
+/// One type in one language.
+class Target {
+public:
+  Target(
+    const Node & node, const FastDds & fast_dds, const std::string & name,
+    MessageType::Language language)
+  : fast_dds_(fast_dds),
+    type_(name, language),
+    topic_(node, (language == MessageType::Language::c ? "/c/" : "/cpp/") + name, type_) {}
+
+  /// A valid message comes back as it was, but for zeros that round its size up.
+  void accept(const Bytes & cdr) const {
+    const auto message = type_.create();
+    require(!refusal(type_, cdr, message.get()), "a valid message is refused");
+    std::optional<Bytes> again = serialize(type_, message.get(), cdr.size());
+    require(again && again->size() >= cdr.size(), "a valid message becomes shorter");
+    again->resize(cdr.size());
+    require(*again == cdr, "a valid message becomes another");
+  }
+  /// Whatever it is.
+  void survive(const Bytes & cdr) {
+    const auto message = type_.create();
+    const std::optional<std::string> reason = refusal(type_, cdr, message.get());
+    if (!reason) {
+      serialize(type_, message.get(), cdr.size());
+    }
+    take(cdr, !reason);
+    compare_with_fast_dds(cdr, reason);
+    (reason ? refused_count : accepted_count)++;
+  }
+
+  static inline uint64_t accepted_count = 0;
+  static inline uint64_t refused_count = 0;
+  static inline uint64_t refused_by_us_alone_count = 0;
+
+private:
+  void take(const Bytes & cdr, bool accepted) {
+    const auto message = type_.create();
+    topic_.publish(cdr);
+    require(topic_.take(message.get()) == accepted, "rmw_take and rmw_deserialize do not agree");
+    lost_ += accepted ? 0 : 1;
+    require(topic_.lost() == lost_, "a message is neither taken nor counted as lost");
+  }
+  void compare_with_fast_dds(const Bytes & cdr, const std::optional<std::string> & reason) const {
+    const bool accepted = fast_dds_accepts(fast_dds_, type_, cdr);
+    if (!reason) {
+      require(accepted, "Fast DDS refuses what is accepted");
+    } else if (accepted) {
+      require(is_refused_by_us_alone(*reason), "Fast DDS accepts what is refused");
+      ++refused_by_us_alone_count;
+    }
+  }
+
+  const FastDds & fast_dds_;
+  MessageType type_;
+  Topic topic_;
+  uint64_t lost_ = 0;
+};
+
+struct Targets {
+  Targets(const Node & node, const FastDds & fast_dds, const std::string & name)
+  : members(members_of(name)),
+    c(node, fast_dds, name, MessageType::Language::c),
+    cpp(node, fast_dds, name, MessageType::Language::cpp) {}
+
+  const Members & members;
+  Target c;
+  Target cpp;
+};
+
+void run_sample(Targets & targets) {
+  Random random(seed * 1'000'003 + current);
+  Sample sample = make_sample(targets.members, random);
+  targets.c.accept(sample.cdr);
+  targets.cpp.accept(sample.cdr);
+  mutate(sample, random);
+  sample.cdr.shrink_to_fit();
+  targets.c.survive(sample.cdr);
+  targets.cpp.survive(sample.cdr);
+}
+
+void say_sample() {
+  std::printf(
+    "at sample %" PRIu64 " of seed %" PRIu64 ", %s\n", current, seed,
+    type_names[current % std::size(type_names)]);
+  std::fflush(stdout);
+}
+
+/// The type supports and the RMW say what they refuse; the sanitizers' reports stay.
+void silence() {
+  report_descriptor = dup(STDERR_FILENO);
+  null_descriptor = open("/dev/null", O_WRONLY);
+  dup2(null_descriptor, STDERR_FILENO);
+  set_report_descriptor(report_descriptor);
+}
+
+void run(uint64_t first, uint64_t samples) {
+  const Node node;
+  const FastDds fast_dds;
+  std::vector<std::unique_ptr<Targets>> targets;
+  for (const char * const name : type_names) {
+    targets.push_back(std::make_unique<Targets>(node, fast_dds, name));
+  }
+  allocation_watch::start();
+  for (current = first; current < first + samples; ++current) {
+    run_sample(*targets[current % targets.size()]);
+  }
+}
+
+}  // namespace
+
+int main(int argc, char ** argv) {
+  if (argc < 2) {
+    std::fprintf(stderr, "usage: fuzz_deserialize SAMPLES [SEED [FIRST]]\n");
+    return 2;
+  }
+  const uint64_t samples = std::strtoull(argv[1], nullptr, 10);
+  seed = argc > 2 ? std::strtoull(argv[2], nullptr, 10) : seed;
+  silence();
+  __sanitizer_set_death_callback(say_sample);
+  try {
+    run(argc > 3 ? std::strtoull(argv[3], nullptr, 10) : 0, samples);
+  } catch (const std::exception & error) {
+    std::printf("%s\n", error.what());
+    say_sample();
+    return 1;
+  }
+  std::printf(
+    "%" PRIu64 " samples of %zu types, seed %" PRIu64 ": %" PRIu64 " accepted and %" PRIu64
+    " refused, %" PRIu64 " of them not by Fast DDS, by C and C++\n",
+    samples, std::size(type_names), seed, Target::accepted_count, Target::refused_count,
+    Target::refused_by_us_alone_count);
+}

@@ -1,0 +1,50 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "message_type.hpp"
+#include "rmw/rmw.h"
+
+/// Throws std::runtime_error with the middleware's own words.
+void check(rmw_ret_t code, const char * what);
+
+/// A node on a platform of this process.
+class Node {
+public:
+  Node();
+  ~Node();
+  Node(const Node &) = delete;
+  Node & operator=(const Node &) = delete;
+
+  rmw_node_t * handle() const noexcept { return node_; }
+
+private:
+  rmw_init_options_t options_;
+  rmw_context_t context_;
+  rmw_node_t * node_;
+};
+
+/// A publisher and a subscription of one topic.
+class Topic {
+public:
+  Topic(const Node & node, const std::string & name, const MessageType & type);
+  ~Topic();
+  Topic(const Topic &) = delete;
+  Topic & operator=(const Topic &) = delete;
+
+  /// Publishes bytes as they are.
+  void publish(const std::vector<uint8_t> & cdr);
+  /// Takes a message; false when there is none. Throws when that is refused.
+  bool take(void * message);
+  /// What the event of lost messages tells.
+  uint64_t lost();
+
+private:
+  const Node & node_;
+  rmw_publisher_t * publisher_;
+  rmw_subscription_t * subscription_;
+  rmw_event_t lost_event_;
+};
