@@ -191,9 +191,9 @@ bool sweep_publisher(Registry & registry, EndpointEntry & entry) {
   return true;
 }
 
-/// True when the publisher behind `source` holds no references into the subscription. The reader was
-/// taken off the reader table when the subscription closed, so the topic DSM may have been freed
-/// since: the publisher's slot says whether its header is still a header, before it is read.
+/// True when the publisher behind `source` holds no references into the subscription. The reader
+/// was taken off the reader table when the subscription closed, so the topic DSM may have been
+/// freed since: the publisher's slot says whether its header is still a header, before it is read.
 bool publisher_is_out(Registry & registry, const SourceEntry & source) {
   const TopicDsmHeader * const dsm = topic_dsm_of(registry, source);
   return dsm == nullptr || dsm->magic.load() != topic_dsm_magic ||
