@@ -12,6 +12,8 @@ from typing import NamedTuple
 
 MIB = 1024 * 1024
 RECEIVE_THREAD_CORE = 0
+# What a process is pinned to: a CPU, several, or None where it may use all.
+HostCpu = int | tuple[int, ...] | None
 # An I/O cluster has no core for the OS tasks of its own: Linux runs on it anyway.
 IO_CLUSTER_CORES = 4
 
@@ -109,6 +111,17 @@ def host_smem_size(clusters: int, shm: Path = Path("/dev/shm")) -> int:
 def usable_cpus() -> tuple[int, ...]:
     """Return the host CPUs this process may run on."""
     return tuple(sorted(os.sched_getaffinity(0)))
+
+
+def as_host_cpu(cpus: tuple[int, ...]) -> HostCpu:
+    """Return what a process is pinned to, given the CPUs; none stand for all."""
+    return cpus[0] if len(cpus) == 1 else cpus or None
+
+
+def host_cpu_text(host_cpu: HostCpu) -> str:
+    """Return how tables show it."""
+    cpus = host_cpu if isinstance(host_cpu, tuple) else (host_cpu,)
+    return "any" if host_cpu is None else ",".join(map(str, cpus))
 
 
 def assign_host_cpus(

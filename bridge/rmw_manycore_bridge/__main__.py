@@ -6,6 +6,7 @@ from __future__ import annotations
 import signal
 import sys
 
+from rmw_manycore_bridge.time_slice import shorten_time_slice
 from rmw_manycore_py.bridge_plan import Plan
 from rmw_manycore_py.routes import DIRECTIONS
 
@@ -14,6 +15,7 @@ def main(arguments: list[str]) -> int:
     """Run one process; `manycore run` and `manycore bridge` start it."""
     # Until the process can end in order it ends quietly, and not in the middle of loading rclpy.
     signal.signal(signal.SIGINT, signal.SIG_DFL)
+    shorten_time_slice()  # before any thread starts, for they inherit it
     from rmw_manycore_bridge.process import BridgeProcess
 
     plan, direction, lane, cluster, core = arguments

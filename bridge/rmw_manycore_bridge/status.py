@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -11,6 +12,7 @@ from rmw_manycore_bridge.counters import FIELDS, CounterFile, is_locked
 from rmw_manycore_bridge.lanes import LaneTable, name_of
 from rmw_manycore_py import _transport
 from rmw_manycore_py.routes import DIRECTIONS, Direction
+from rmw_manycore_py.topology import HostCpu, as_host_cpu
 
 _OF_OWNER = ("state", "latched", "latency_max_ns")
 _INTERNAL = ("latency_ns", "load_ppm", "window_ns", "window_busy_ns")
@@ -57,9 +59,19 @@ def _rows(platform: str) -> Iterator[dict[str, Any]]:
             "process_lane": int(path.name.rpartition("-")[2]),
             "pid": counters.pid,
             "alive": is_locked(path),
+            "host_cpu": _host_cpu(counters.pid),
         }
         for route, row in zip(counters.routes, counters.rows, strict=True):
             yield {**route, **process, **row.as_dict(), "load": row.load}
+
+
+def _host_cpu(pid: int) -> HostCpu:
+    """Return the CPUs a process is pinned to; None where it may use all, or is gone."""
+    try:
+        cpus = os.sched_getaffinity(pid)
+    except ProcessLookupError:
+        return None
+    return as_host_cpu(() if len(cpus) == os.cpu_count() else tuple(sorted(cpus)))
 
 
 def _files(platform: str, pattern: str) -> list[Path]:

@@ -11,6 +11,8 @@ from rmw_manycore_py.cli.common.mapfile_argument import mapfile_argument
 from rmw_manycore_py.cli.common.options import examples, json_option
 from rmw_manycore_py.cli.common.printing import print_json, print_notices
 from rmw_manycore_py.create import create
+from rmw_manycore_py.mapfile import as_data
+from rmw_manycore_py.topology import as_host_cpu, host_cpu_text
 
 
 @click.command("create", epilog=examples("manycore create talker_listener -o generated"))
@@ -35,6 +37,7 @@ def command(mapfile: Path, directory: Path, as_json: bool) -> None:
                 "written_lines": report.written_lines,
                 "generated_lines": report.generated_lines,
                 "delta_loc": report.delta_loc,
+                "bridge": as_data(report.placement)["bridge"],
             }
         )
         return
@@ -42,3 +45,6 @@ def command(mapfile: Path, directory: Path, as_json: bool) -> None:
     for file in report.files:
         click.echo(file)
     click.echo(report.summary)
+    if bridge := report.placement.bridge:
+        cpus = host_cpu_text(as_host_cpu(bridge.host_cpus))
+        click.echo(f"bridge: {len(bridge.routes)} routes, host CPU {cpus}")

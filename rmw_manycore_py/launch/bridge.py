@@ -12,7 +12,7 @@ from rmw_manycore_py.launch.runner import Report, Runner
 from rmw_manycore_py.mapfile.placing.placement import Placement
 from rmw_manycore_py.routes import DIRECTIONS, Direction
 from rmw_manycore_py.signals import signal_inbox
-from rmw_manycore_py.topology import Core, usable_cpus
+from rmw_manycore_py.topology import Core
 
 # Where the bridge runs that no mapfile places: cores 1 and 2 are the first that are not reserved.
 _STANDALONE_CORES = (Core(1, 1), Core(1, 2))
@@ -25,7 +25,7 @@ def bridge_programs(placement: Placement) -> list[NodeProgram]:
         return []
     plan = Plan(placement.name, bridge.routes)
     return [
-        bridge_program(plan, direction, lane, core, placement.host_cpus[core])
+        bridge_program(plan, direction, lane, core, bridge.host_cpus)
         for lane in range(len(bridge.cores))
         for direction in DIRECTIONS
         if lane < plan.lanes(direction)
@@ -35,9 +35,8 @@ def bridge_programs(placement: Placement) -> list[NodeProgram]:
 
 def run_bridge(plan: Plan, report: Report) -> int:
     """Run the bridge of a platform that others have started, until a signal comes."""
-    cpus = usable_cpus()
     programs = [
-        bridge_program(plan, direction, 0, core, cpus[core.core % len(cpus)])
+        bridge_program(plan, direction, 0, core, host_cpus=())
         for direction, core in zip(DIRECTIONS, _STANDALONE_CORES, strict=True)
         if plan.of(direction, 0)
     ]
@@ -49,7 +48,7 @@ def run_bridge(plan: Plan, report: Report) -> int:
 
 
 def bridge_program(
-    plan: Plan, direction: Direction, lane: int, core: Core, host_cpu: int
+    plan: Plan, direction: Direction, lane: int, core: Core, host_cpus: tuple[int, ...]
 ) -> NodeProgram:
     """Return one process of the bridge."""
     words = (plan.to_json(), direction, *map(str, (lane, *core)))
@@ -58,6 +57,6 @@ def bridge_program(
         command=own_program("rmw_manycore_bridge", *words),
         environment=outside_environment(),
         core=core,
-        host_cpu=host_cpu,
+        host_cpus=host_cpus,
         supervised=True,
     )

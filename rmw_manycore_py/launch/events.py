@@ -7,6 +7,8 @@ import json
 import re
 from dataclasses import asdict, dataclass
 
+from rmw_manycore_py.topology import HostCpu
+
 
 @dataclass(frozen=True)
 class Event:
@@ -20,12 +22,12 @@ class Event:
 
 @dataclass(frozen=True)
 class PlacedCore:
-    """A line of the table: who runs on which virtual core, and on which host CPU that is."""
+    """A line of the table: a process's virtual core, and the host CPU or CPUs that it runs on."""
 
     node: str
     cluster: int
     core: int
-    host_cpu: int
+    host_cpu: HostCpu
 
 
 @dataclass(frozen=True)
@@ -55,7 +57,7 @@ class Started(Event):
     pid: int
     cluster: int
     core: int
-    host_cpu: int
+    host_cpu: HostCpu
 
 
 @dataclass(frozen=True)

@@ -9,6 +9,7 @@ import signal
 import socket
 import subprocess
 from contextlib import ExitStack, suppress
+from pathlib import Path
 
 import pytest
 from bridging import OUTSIDE, Bridge
@@ -24,6 +25,10 @@ from support import (
     unique_platform,
     wait_until,
 )
+
+from rmw_manycore_bridge.status import status
+from rmw_manycore_bridge.time_slice import SLICE_NS, time_slice_ns
+from rmw_manycore_py.topology import HostCpu, as_host_cpu
 
 pytestmark = [
     pytest.mark.integration,
@@ -101,19 +106,54 @@ def test_a_bridge_that_never_comes_up_ends_the_run(start, tmp_path) -> None:
     assert "failed to initialize rcl" in end
 
 
+@pytest.mark.parametrize("named", [True, False])
+def test_it_runs_on_the_cpus_of_the_mapfile(start, tmp_path, platform, named) -> None:
+    usable = os.sched_getaffinity(0)
+    cpu = max(usable)
+    mapfile = tmp_path / "map.yaml"
+    mapfile.write_text(
+        f"bridge: {{host_cpu: {cpu if named else 'none'}}}\n"
+        "nodes:\n  endless: {cluster: 1, command: [sleep, '1000'], ros_arguments: false,"
+        " topic_to: {chatter: std_msgs/msg/String}}\n"
+    )
+    run = start(manycore_command("run", mapfile, "--json"))
+    pid = started(run, "(bridge outward)")
+    threads = {int(entry.name) for entry in Path(f"/proc/{pid}/task").iterdir()}
+    cpus = {frozenset(os.sched_getaffinity(thread)) for thread in threads}
+    assert cpus == {frozenset({cpu} if named else usable)}
+    wait_until(lambda: status(platform), "the process counts")
+    assert status(platform)[0]["host_cpu"] == (cpu if named else shown(usable))
+    assert run.stop() == 0
+
+
+def test_its_threads_have_a_short_time_slice(bridge) -> None:
+    if time_slice_ns() == 0:
+        pytest.skip("Linux before 6.12 has no slices that a thread can ask for")
+    (process,) = bridge.run(bridge.route("outward", "/chatter")).values()
+    wait_until(lambda: bridge.row("outward", "/chatter").get("alive"), "it counts")
+    threads = {int(entry.name) for entry in Path(f"/proc/{process.pid}/task").iterdir()}
+    assert len(threads) > 2
+    assert {time_slice_ns(thread) for thread in threads} == {SLICE_NS}
+
+
+def shown(cpus: set[int]) -> HostCpu:
+    """Return how the status shows a process that is not pinned."""
+    return as_host_cpu(() if len(cpus) == os.cpu_count() else tuple(sorted(cpus)))
+
+
 def test_status_shows_the_routes(start, platform) -> None:
     run = start(manycore_command("run", TALKER_LISTENER))
     start(example_command("listener"), **OUTSIDE).wait_for(HEARD)
 
-    def status(*options: str) -> str:
+    def shown_status(*options: str) -> str:
         command = [str(word) for word in manycore_command("bridge", "status", *options)]
         return subprocess.run(
             command, env=environment(platform), text=True, capture_output=True, check=True
         ).stdout
 
-    wait_until(lambda: len(json.loads(status("--json"))) == 2, "both directions count")
-    wait_until(lambda: json.loads(status("--json"))[1]["messages"], "a message has passed")
-    inward, outward = json.loads(status("--json"))
+    wait_until(lambda: len(json.loads(shown_status("--json"))) == 2, "both directions count")
+    wait_until(lambda: json.loads(shown_status("--json"))[1]["messages"], "a message has passed")
+    inward, outward = json.loads(shown_status("--json"))
     assert (inward["direction"], outward["direction"]) == ("inward", "outward")
     assert (outward["inside"], outward["state"], outward["alive"]) == (
         "/chatter",
@@ -121,7 +161,7 @@ def test_status_shows_the_routes(start, platform) -> None:
         True,
     )
     assert 0 < outward["latency_mean_ns"] <= outward["latency_max_ns"]
-    assert "/chatter  ->  /chatter" in status()
+    assert "/chatter  ->  /chatter" in shown_status()
     assert run.stop() == 0
 
 

@@ -62,7 +62,7 @@ def run_programs(
     for state, step in STOP_STEPS.items():
         STOP_STEPS[state] = step._replace(grace_s=grace_s)
     programs = [
-        NodeProgram(name, tuple(command), dict(os.environ), Core(1, number), host_cpu)
+        NodeProgram(name, tuple(command), dict(os.environ), Core(1, number), (host_cpu,))
         for number, (name, command) in enumerate(commands.items(), start=1)
     ]
     runner = Runner(programs, lambda event: print(event.as_json(), flush=True))
@@ -72,7 +72,7 @@ def run_programs(
 
 def run_interrupted() -> None:
     """Run in a process of its own: Ctrl-C comes while the platform is configured."""
-    node = NodeProgram("node", ("sleep", "1000"), dict(os.environ), Core(1, 1), CPU)
+    node = NodeProgram("node", ("sleep", "1000"), dict(os.environ), Core(1, 1), (CPU,))
     runner = Runner([node], lambda event: print(event.as_json(), flush=True))
     with signal_inbox() as inbox:
         os.kill(os.getpid(), signal.SIGINT)

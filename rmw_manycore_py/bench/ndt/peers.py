@@ -71,7 +71,7 @@ def all_peers(
 
 @contextmanager
 def _started(name: str, command: Sequence[str], cpu: int) -> Iterator[Peer]:
-    with pinned_to(cpu):
+    with pinned_to((cpu,)):
         process = subprocess.Popen(
             command,
             stdin=subprocess.PIPE,

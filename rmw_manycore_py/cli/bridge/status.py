@@ -12,6 +12,7 @@ from rmw_manycore_bridge.status import status
 from rmw_manycore_py.cli.common.options import examples, json_option, platform_option
 from rmw_manycore_py.cli.common.printing import new_table, print_json, print_table, size_text
 from rmw_manycore_py.cli.common.view import open_platform
+from rmw_manycore_py.topology import host_cpu_text
 
 _ARROWS = {"inward": "<-", "outward": "->"}
 
@@ -32,14 +33,14 @@ def command(platform: str, as_json: bool) -> None:
 
 
 def _show(rows: list[dict[str, Any]]) -> None:
-    columns = ("inside", "", "outside", "#domain", "#lane", "#load", "state", "#messages")
+    columns = ("inside", "", "outside", "#domain", "#lane", "#CPU", "#load", "state", "#messages")
     table = new_table(*columns, "#size", "#mean", "#max", "kept back")
     for row in rows:
         state = row["state"] if row["alive"] else "process is gone"
         drops = ", ".join(f"{row[name]} {name}" for name in DROPS if row[name])
         table.add_row(
             *(row["inside"], _ARROWS[row["direction"]], row["outside"], str(row["domain"])),
-            *(str(row["lane"]), f"{row['load']:.1%}", state),
+            *(str(row["lane"]), host_cpu_text(row["host_cpu"]), f"{row['load']:.1%}", state),
             *(str(row["messages"]), size_text(row["bytes"])),
             *(_time_text(row["latency_mean_ns"]), _time_text(row["latency_max_ns"])),
             drops or row["reason"],

@@ -21,6 +21,7 @@ from rmw_manycore_py.launch.events import (
     Started,
     Stopping,
 )
+from rmw_manycore_py.topology import host_cpu_text
 
 COLOURS = (
     "cyan",
@@ -62,7 +63,7 @@ class RunPrinter:
         elif isinstance(event, Started):
             self._say(
                 f"{event.node} started: cluster {event.cluster} core {event.core} -> "
-                f"host CPU {event.host_cpu}, pid {event.pid}"
+                f"host CPU {host_cpu_text(event.host_cpu)}, pid {event.pid}"
             )
         elif isinstance(event, Stopping):
             self._say(f"stopping: {event.reason}")
@@ -107,5 +108,5 @@ def _print_platform(event: Platform) -> None:
     )
     table = new_table("node", "#cluster", "#core", "#host CPU")
     for row in event.cores:
-        table.add_row(row.node, str(row.cluster), str(row.core), str(row.host_cpu))
+        table.add_row(row.node, str(row.cluster), str(row.core), host_cpu_text(row.host_cpu))
     print_table(table)

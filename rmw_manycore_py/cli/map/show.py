@@ -19,6 +19,8 @@ from rmw_manycore_py.cli.common.printing import (
 )
 from rmw_manycore_py.mapfile import Placement, load_mapfile, resolve
 from rmw_manycore_py.mapfile.placing.show import as_data
+from rmw_manycore_py.routes import DIRECTIONS
+from rmw_manycore_py.topology import as_host_cpu, host_cpu_text
 
 
 @click.command("show", epilog=examples("manycore map show three_nodes"))
@@ -44,6 +46,11 @@ def _show_nodes(placement: Placement) -> None:
         table.add_row(node.full_name, *place, shlex.join(node.program))
         for core, cpu in node.workers:
             table.add_row("  worker", str(core.cluster), str(core.core), str(cpu), "")
+    if placement.bridge:
+        cpus = host_cpu_text(as_host_cpu(placement.bridge.host_cpus))
+        for lane in placement.bridge.cores:
+            for direction, core in zip(DIRECTIONS, lane, strict=True):
+                table.add_row(f"(bridge {direction})", *map(str, core), cpus, "")
     print_table(table)
 
 

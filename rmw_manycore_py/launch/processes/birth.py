@@ -4,21 +4,23 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from contextlib import contextmanager
 
 
 @contextmanager
-def pinned_to(host_cpu: int) -> Iterator[None]:
-    """Pin the calling thread while it starts a process, which inherits the CPU from it.
+def pinned_to(host_cpus: Collection[int]) -> Iterator[None]:
+    """Pin the calling thread while it starts a process, which inherits the CPUs from it.
 
-    So a node never runs anywhere else, and a CPU that does not exist is an OSError here.
+    So a node never runs anywhere else, and a CPU that does not exist is an OSError here. Without
+    CPUs nothing changes.
     """
     before = os.sched_getaffinity(0)
     try:
-        os.sched_setaffinity(0, {host_cpu})
+        os.sched_setaffinity(0, host_cpus or before)
     except OSError as error:
-        raise OSError(error.errno, f"host CPU {host_cpu} is none this process may use") from error
+        named = " ".join(map(str, host_cpus))
+        raise OSError(error.errno, f"host CPU {named} is none this process may use") from error
     try:
         yield
     finally:

@@ -78,7 +78,7 @@ class NodeProcess:
         if self.program.supervised:
             self._readiness = Readiness()
         try:
-            with pinned_to(self.program.host_cpu):
+            with pinned_to(self.program.host_cpus):
                 self._process = subprocess.Popen(
                     self.program.command,
                     env={**self.program.environment, **self._readiness_variables()},

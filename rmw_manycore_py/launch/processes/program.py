@@ -9,7 +9,7 @@ from pathlib import Path
 
 from rmw_manycore_py.launch.processes.environment import program_environment
 from rmw_manycore_py.mapfile.placing.placement import PlacedNode
-from rmw_manycore_py.topology import Core
+from rmw_manycore_py.topology import Core, HostCpu, as_host_cpu
 
 
 @dataclass(frozen=True)
@@ -24,9 +24,14 @@ class NodeProgram:
     command: tuple[str, ...]
     environment: Mapping[str, str]
     core: Core
-    host_cpu: int
+    host_cpus: tuple[int, ...]  # none: all that the runner may use
     directory: Path | None = None
     supervised: bool = False
+
+    @property
+    def host_cpu(self) -> HostCpu:
+        """The host CPUs as events report them."""
+        return as_host_cpu(self.host_cpus)
 
     @classmethod
     def of(cls, node: PlacedNode) -> NodeProgram:
@@ -36,6 +41,6 @@ class NodeProgram:
             command=tuple(node.argv),
             environment=program_environment(node.env),
             core=node.place,
-            host_cpu=node.host_cpu,
+            host_cpus=(node.host_cpu,),
             directory=node.cwd,
         )

@@ -12,6 +12,7 @@ from rmw_manycore_py.mapfile.format.values import (
     Arguments,
     Command,
     EnvironmentValue,
+    HostCpus,
     InterfaceType,
     MessageType,
     OneOrMore,
@@ -142,6 +143,9 @@ class BridgeSection(Section):
     prefix: Namespace | None = Field(default=None, description="Namespace of all names outside")
     lanes: Annotated[StrictInt, Field(ge=1, le=MAX_LANES)] = Field(
         default=1, description="Pairs of processes"
+    )
+    host_cpu: HostCpus | None = Field(
+        default=None, description="CPUs of the host that its processes run on; all unless named"
     )
     routes: dict[TopicName, RouteSection] = Field(
         default_factory=dict, description="Topics, services and actions that need more than a type"

@@ -70,6 +70,15 @@ def _is_array(value: Any) -> bool:
     return kinds <= set(_SCALARS) and (len(kinds) == 1 or kinds == {int, float})
 
 
+def _host_cpus(value: Any) -> tuple[int, ...]:
+    if value == "none":
+        return ()
+    cpus = value if isinstance(value, list) else [value]
+    if not cpus or not all(type(cpu) is int and cpu >= 0 for cpu in cpus):
+        raise _expected("a CPU of the host, a list of them, or none for all")
+    return tuple(sorted(set(cpus)))
+
+
 def flatten_parameters(value: Any, prefix: str = "") -> dict[str, Any]:
     """Return nested parameters under their dotted names."""
     if not isinstance(value, dict):
@@ -102,6 +111,20 @@ Size = Annotated[
             "anyOf": [
                 {"type": "integer", "minimum": 1},
                 {"type": "string", "pattern": r"^\d+\s*([KkMmGg]?[Ii]?[Bb]?)$"},
+            ]
+        }
+    ),
+]
+_CPU_SCHEMA: dict[str, Any] = {"type": "integer", "minimum": 0}
+HostCpus = Annotated[
+    tuple[int, ...],
+    BeforeValidator(_host_cpus),
+    WithJsonSchema(
+        {
+            "anyOf": [
+                _CPU_SCHEMA,
+                {"type": "array", "items": _CPU_SCHEMA, "minItems": 1},
+                {"const": "none"},
             ]
         }
     ),

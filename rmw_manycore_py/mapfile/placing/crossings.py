@@ -61,7 +61,7 @@ def bridge_placement(
     # With every core taken the bridge shares the last one rather than refuse to run.
     cores = [*free, *[Core(1, first.free[-1])] * 2 * bridge.lanes]
     lanes = tuple((cores[2 * i], cores[2 * i + 1]) for i in range(bridge.lanes))
-    return BridgePlacement(arranged(routes, bridge.lanes), lanes)
+    return BridgePlacement(arranged(routes, bridge.lanes), lanes, bridge.host_cpu or ())
 
 
 def _routes_of(bridge: BridgeSection, node: NodeSection, start: NodeStart) -> Iterator[Route]:

@@ -81,10 +81,14 @@ class ClusterMemory:
 
 @dataclass(frozen=True)
 class BridgePlacement:
-    """What crosses the platform's border, and the inward and outward core of each lane."""
+    """What crosses the platform's border, and the inward and outward core of each lane.
+
+    Without host CPUs its processes run on all that the run may use.
+    """
 
     routes: tuple[Route, ...]
     cores: tuple[tuple[Core, Core], ...]
+    host_cpus: tuple[int, ...] = ()
 
     def core(self, direction: Direction, lane: int) -> Core:
         """Return where a process of the bridge runs."""

@@ -11,7 +11,7 @@ from rmw_manycore_py.mapfile.format.mapfile import Mapfile
 from rmw_manycore_py.mapfile.launch_file import LaunchFile, read_launch_file
 from rmw_manycore_py.mapfile.placing.crossings import bridge_placement
 from rmw_manycore_py.mapfile.placing.imports import check_imports
-from rmw_manycore_py.mapfile.placing.placement import PlacedNode, Placement
+from rmw_manycore_py.mapfile.placing.placement import BridgePlacement, PlacedNode, Placement
 from rmw_manycore_py.mapfile.placing.start import NodeStart, node_start, ros_arguments
 from rmw_manycore_py.mapfile.placing.topics import (
     check_crossing_types,
@@ -44,9 +44,8 @@ def resolve(mapfile: Mapfile) -> Placement:
     workers = worker_cores(mapfile, cores.values())
     of_workers = [core for one in workers.values() for core in one]
     bridge = bridge_placement(mapfile, starts, {*cores.values(), *of_workers})
-    bridge_cores = [core for lane in bridge.cores for core in lane] if bridge else []
     cpus = usable_cpus()
-    host_cpus = _host_cpus(mapfile, [*cores.values(), *of_workers, *bridge_cores], cpus)
+    host_cpus = _host_cpus(mapfile, [*cores.values(), *of_workers], bridge, cpus)
     nodes = tuple(
         _place(mapfile, name, start, cores[name], workers[name], host_cpus)
         for name, start in starts.items()
@@ -136,24 +135,38 @@ def _cores(mapfile: Mapfile) -> dict[str, Core]:
     return cores
 
 
-def _host_cpus(mapfile: Mapfile, used: Sequence[Core], cpus: Sequence[int]) -> dict[Core, int]:
-    """Return the CPU of every used core: nodes, workers, bridge, then receive threads."""
+def _host_cpus(
+    mapfile: Mapfile,
+    used: Sequence[Core],
+    bridge: BridgePlacement | None,
+    cpus: Sequence[int],
+) -> dict[Core, int]:
+    """Return the CPU of every used core: nodes, workers, then receive threads.
+
+    The bridge may run on any CPU, or on those that the mapfile names: its cores have none.
+    """
     fixed: dict[Core, int] = {}
-    problems = []
+    problems: list[Problem] = []
+    usable = f"a CPU this process may use ({', '.join(map(str, cpus))})"
+    for cpu in mapfile.sections.bridge.host_cpu or ():
+        if cpu not in cpus:
+            problems.append(mapfile.document.problem(("bridge", "host_cpu"), usable, str(cpu)))
     for (name, node), core in zip(mapfile.sections.nodes.items(), used, strict=False):
         if node.host_cpu is None:
             continue
         if node.host_cpu not in cpus:
-            expected = f"a CPU this process may use ({', '.join(map(str, cpus))})"
             path = ("nodes", name, "host_cpu")
-            problems.append(mapfile.document.problem(path, expected, str(node.host_cpu)))
+            problems.append(mapfile.document.problem(path, usable, str(node.host_cpu)))
         if node.host_cpu != fixed.setdefault(core, node.host_cpu):
             expected = f"{fixed[core]}, as another node on core {core.core} has it"
             path = ("nodes", name, "host_cpu")
             problems.append(mapfile.document.problem(path, expected, str(node.host_cpu)))
     if problems:
         raise MapfileError(*problems)
-    receivers = [Core(cluster, RECEIVE_THREAD_CORE) for cluster in sorted({c for c, _ in used})]
+    clusters = {core.cluster for core in used}
+    if bridge is not None:
+        clusters |= {core.cluster for lane in bridge.cores for core in lane}
+    receivers = [Core(cluster, RECEIVE_THREAD_CORE) for cluster in sorted(clusters)]
     return assign_host_cpus([*used, *receivers], fixed, cpus)
 
 

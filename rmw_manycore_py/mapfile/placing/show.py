@@ -71,5 +71,6 @@ def _topic(topic: TopicEntry) -> dict[str, Any]:
 def _bridge(bridge: BridgePlacement) -> dict[str, Any]:
     return {
         "cores": [[list(core) for core in lane] for lane in bridge.cores],
+        "host_cpus": list(bridge.host_cpus),
         "routes": [asdict(route) for route in bridge.routes],
     }

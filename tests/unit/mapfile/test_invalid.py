@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 from pathlib import Path
 
@@ -73,4 +74,14 @@ def test_a_host_cpu_that_is_not_usable_is_refused(tmp_path: Path) -> None:
     mapfile = tmp_path / "mapfile.yaml"
     mapfile.write_text("nodes:\n  a: {cluster: 1, module: this, host_cpu: 100000}\n")
     with pytest.raises(MapfileError, match=r"mapfile.yaml:2: nodes.a.host_cpu: expected a CPU"):
+        check(mapfile)
+
+
+def test_a_host_cpu_of_the_bridge_that_is_not_usable_is_refused(tmp_path: Path) -> None:
+    cpu = min(os.sched_getaffinity(0))
+    mapfile = tmp_path / "mapfile.yaml"
+    mapfile.write_text(
+        f"bridge: {{host_cpu: [{cpu}, 100000]}}\nnodes:\n  a: {{cluster: 1, module: this}}\n"
+    )
+    with pytest.raises(MapfileError, match=r"mapfile.yaml:1: bridge.host_cpu: expected a CPU .*"):
         check(mapfile)

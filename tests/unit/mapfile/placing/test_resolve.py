@@ -27,6 +27,7 @@ class Talker(Node):
 LISTENER = TALKER.replace("create_publisher", "create_subscription")
 
 Check = Callable[[str], Placement]
+CPU = min(os.sched_getaffinity(0))
 
 
 @pytest.fixture
@@ -155,6 +156,37 @@ def test_the_bridge_takes_cores_that_no_node_uses(resolved: Check) -> None:
         "/a/chatter": ("outward", "std_msgs/msg/String"),
     }
     assert bridge.cores == ((Core(1, 1), Core(1, 3)),)
+
+
+@pytest.mark.parametrize(
+    ("written", "found"),
+    [
+        ("{}", ()),
+        ("{host_cpu: none}", ()),
+        (f"{{host_cpu: {CPU}}}", (CPU,)),
+        (f"{{host_cpu: [{CPU}, {CPU}]}}", (CPU,)),
+    ],
+)
+def test_the_bridge_runs_on_the_cpus_that_are_named(resolved: Check, written, found) -> None:
+    bridge = resolved(
+        f"bridge: {written}\n"
+        "nodes:\n"
+        "  talker: {cluster: 1, script: talker.py, topic_to: {chatter: std_msgs/msg/String}}\n"
+    ).bridge
+    assert bridge is not None
+    assert bridge.host_cpus == found
+
+
+def test_the_bridge_takes_no_cpu_from_nodes(resolved: Check) -> None:
+    placement = resolved(
+        "nodes:\n"
+        "  talker: {cluster: 1, script: talker.py, topic_to: {chatter: std_msgs/msg/String}}\n"
+        "  listener: {cluster: 2, script: listener.py}\n"
+    )
+    assert placement.bridge is not None
+    cores_of_bridge = {core for lane in placement.bridge.cores for core in lane}
+    assert not cores_of_bridge & set(placement.host_cpus)
+    assert {core for core in placement.host_cpus if core.core == 0} == {Core(1, 0), Core(2, 0)}
 
 
 def test_parameters_have_a_route_by_the_name_of_their_node(resolved: Check) -> None:
