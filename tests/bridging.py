@@ -42,11 +42,11 @@ class Bridge:
         plan = Plan(self.platform, arranged(routes, lanes))
         return [self.run_one(plan, way, lane) for lane in range(lanes)]
 
-    def run_one(self, plan: Plan, way: Direction, lane: int = 0) -> Program:
+    def run_one(self, plan: Plan, way: Direction, lane: int = 0, **env: str) -> Program:
         """Start one process."""
         words = [plan.to_json(), way, str(lane), "1", str(2 + DIRECTIONS.index(way))]
         command = [sys.executable, "-m", "rmw_manycore_bridge", *words]
-        return self._start(command, **OUTSIDE)
+        return self._start(command, **OUTSIDE, **env)
 
     def inside(self, function: Callable[..., None], *arguments: Any, **env: str) -> Program:
         """Start a peer on the platform."""

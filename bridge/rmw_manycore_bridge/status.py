@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from rmw_manycore_bridge.counters import FIELDS, CounterFile, is_locked
+from rmw_manycore_bridge.datagrams import receive_buffer_errors, socket_drops
 from rmw_manycore_bridge.lanes import LaneTable, name_of
 from rmw_manycore_py import _transport
 from rmw_manycore_py.routes import DIRECTIONS, Direction
@@ -60,6 +61,8 @@ def _rows(platform: str) -> Iterator[dict[str, Any]]:
             "pid": counters.pid,
             "alive": is_locked(path),
             "host_cpu": _host_cpu(counters.pid),
+            "socket_drops": socket_drops(counters.pid),
+            "receive_buffer_errors": receive_buffer_errors(counters.pid),
         }
         for route, row in zip(counters.routes, counters.rows, strict=True):
             yield {**route, **process, **row.as_dict(), "load": row.load}

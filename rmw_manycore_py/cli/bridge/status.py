@@ -46,6 +46,17 @@ def _show(rows: list[dict[str, Any]]) -> None:
             drops or row["reason"],
         )
     print_table(table)
+    click.echo(_datagrams_text(rows))
+
+
+def _datagrams_text(rows: list[dict[str, Any]]) -> str:
+    """Say what full receive buffers cost: each process counts once, and each host."""
+    own = {row["pid"]: row["socket_drops"] for row in rows if row["socket_drops"] is not None}
+    errors = max((row["receive_buffer_errors"] or 0 for row in rows), default=0)
+    return (
+        f"UDP datagrams dropped at full receive buffers: {sum(own.values())} of the bridge, "
+        f"{errors} of all programs here"
+    )
 
 
 def _time_text(ns: int | None) -> str:
