@@ -1,11 +1,11 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Puts librmw_manycore.so in the place of Fast DDS when python starts.
+"""Gives python processes the middleware that RMW_IMPLEMENTATION names, when they start.
 
 In the ROS 2 wheels librcl.so is linked to librmw_fastrtps_cpp.so by name. The dynamic loader reads
 its search path once, at program start, so the only way in is a process whose LD_LIBRARY_PATH names
-our stand-ins first. `rmw_manycore.pth` calls `substitute()` in every python process that has
-RMW_IMPLEMENTATION=rmw_manycore; a launcher calls `substituted_environment()` instead and saves the
-second start. See docs/design/substitution.md.
+our stand-ins first. `rmw_manycore.pth` calls `select()` in every python process that has
+RMW_IMPLEMENTATION=rmw_manycore or the stand-ins; a launcher calls `substituted_environment()`
+instead and saves the second start. See docs/design/substitution.md.
 
 Imports nothing but os and sys: this runs before everything else.
 """
@@ -19,12 +19,17 @@ TYPE_CHECKING = False  # as typing has it, without importing typing
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+IMPLEMENTATION = "rmw_manycore"
 LIBRARY_PATH = "LD_LIBRARY_PATH"
+STAND_INS = "/lib/rmw_manycore/standin"
+REPLACED_LIBRARY = "librmw_fastrtps_cpp.so"
 # The wheels' own start-up hook does the same trick without keeping an order; this tells it not to.
 WHEELS_BOOTSTRAPPED = "_ROS_WHEELS_BOOTSTRAP_COMPLETE"
 # Holds the id of the process that replaced itself, so that it cannot do so a second time, and the
 # names of the variables that are for this process only.
 REPLACED = "_RMW_MANYCORE_REPLACED"
+# What REPLACED says to the children of such a process: they inherit all but those variables.
+PARENT = "parent"
 # By default glibc gives the memory of each large message back and gets it again, page by page, for
 # the next; rclpy takes each message into fresh memory.
 MALLOC_TUNING = {"MALLOC_TRIM_THRESHOLD_": str(1 << 30), "MALLOC_MMAP_THRESHOLD_": str(1 << 30)}
@@ -34,8 +39,8 @@ MALLOC_TUNING = {"MALLOC_TRIM_THRESHOLD_": str(1 << 30), "MALLOC_MMAP_THRESHOLD_
 _ran = False
 
 
-def substitute() -> None:
-    """Restart this process with the stand-ins in front, unless it already has them."""
+def select() -> None:
+    """Restart this process if its libraries are not those of RMW_IMPLEMENTATION."""
     global _ran
     if _ran:
         return
@@ -44,10 +49,17 @@ def substitute() -> None:
     replaced = replacer == str(os.getpid())
     for name in own_variables if replaced else ():
         os.environ.pop(name, None)  # read by the loader and by glibc before python started
+    if os.environ.get("RMW_IMPLEMENTATION") == IMPLEMENTATION:
+        _substitute(replaced, is_child=replacer == PARENT)
+    elif needs_stand_ins(sys.prefix) and _finds_stand_in() and _is_python_program():
+        _restart(plain_environment(os.environ, sys.prefix))
+
+
+def _substitute(replaced: bool, is_child: bool) -> None:
     stand_ins = stand_in_directory(sys.prefix)
-    if library_path(os.environ)[:1] == [stand_ins]:
-        rest = [path for path in library_path(os.environ) if path != stand_ins]
-        os.environ[LIBRARY_PATH] = os.pathsep.join(rest)  # child processes start afresh
+    if library_path(os.environ)[:1] == [stand_ins] and not is_child:
+        if replaced:
+            os.environ[REPLACED] = PARENT
     elif not (needs_stand_ins(sys.prefix) and _is_python_program()):
         return
     elif replaced:
@@ -58,9 +70,12 @@ def substitute() -> None:
     else:
         environment = substituted_environment(os.environ, sys.prefix)
         tuning = {k: v for k, v in MALLOC_TUNING.items() if k not in environment}
-        environment.update(tuning)
         environment[REPLACED] = " ".join([str(os.getpid()), *tuning])
-        os.execve(sys.executable, [sys.executable, *sys.orig_argv[1:]], environment)
+        _restart({**environment, **tuning})
+
+
+def _restart(environment: dict[str, str]) -> None:
+    os.execve(sys.executable, [sys.executable, *sys.orig_argv[1:]], environment)
 
 
 def substituted_environment(environment: Mapping[str, str], prefix: str) -> dict[str, str]:
@@ -82,7 +97,7 @@ def plain_environment(environment: Mapping[str, str], prefix: str) -> dict[str, 
 def _with_libraries(
     environment: Mapping[str, str], prefix: str, *before_wheels: str
 ) -> dict[str, str]:
-    result = dict(environment)
+    result = {name: value for name, value in environment.items() if name != REPLACED}
     if needs_stand_ins(prefix):
         first = [*before_wheels, *_wheel_library_directories(prefix)]
         known = {stand_in_directory(prefix), *first}
@@ -94,14 +109,14 @@ def _with_libraries(
 
 def needs_stand_ins(prefix: str) -> bool:
     """Tell whether `prefix` holds the ROS 2 wheels, with the middleware fixed at link time."""
-    return os.path.exists(f"{prefix}/lib/librmw_fastrtps_cpp.so") and os.path.isdir(
+    return os.path.exists(f"{prefix}/lib/{REPLACED_LIBRARY}") and os.path.isdir(
         stand_in_directory(prefix)
     )
 
 
 def stand_in_directory(prefix: str) -> str:
     """Return where the libraries lie that bear the names of Fast DDS's."""
-    return f"{prefix}/lib/rmw_manycore/standin"
+    return prefix + STAND_INS
 
 
 def library_path(environment: Mapping[str, str]) -> list[str]:
@@ -117,6 +132,13 @@ def _wheel_library_directories(prefix: str) -> list[str]:
         if name.startswith("ros_") and name.endswith(".libs")
     )
     return [f"{prefix}/lib", *(f"{site_packages}/{name}" for name in bundled)]
+
+
+def _finds_stand_in() -> bool:
+    """Tell whether the loader finds a stand-in, of whatever prefix, before the library itself."""
+    path = library_path(os.environ)
+    found = (entry for entry in path if os.path.exists(f"{entry}/{REPLACED_LIBRARY}"))
+    return next(found, "").rstrip("/").endswith(STAND_INS)
 
 
 def _is_python_program() -> bool:

@@ -32,7 +32,8 @@ class Prefix:
             shutil.copy(Path(hook.__file__).parent / name, self.site_packages)
         self.stand_ins.mkdir(parents=True)
         (self.site_packages / "ros_rcl.libs").mkdir()
-        (path / "lib/librmw_fastrtps_cpp.so").touch()
+        for directory in (path / "lib", self.stand_ins):
+            (directory / "librmw_fastrtps_cpp.so").touch()
 
     def run(
         self, *arguments: str | Path, directory: Path | None = None, **variables: str

@@ -16,6 +16,7 @@ from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import IO, Any
 
+from rmw_manycore_hook import plain_environment
 from rmw_manycore_program import own_program
 from rmw_manycore_py._transport import Platform, platform_directory
 from rmw_manycore_py.bench.contenders import Middleware, Peer
@@ -199,7 +200,7 @@ class Session:
     def _environment(self, party: int) -> dict[str, str]:
         middleware = self.middleware
         result = {
-            **os.environ,
+            **plain_environment(os.environ, sys.prefix),
             **middleware.variables,
             "MANYCORE_PLATFORM": self.platform,
             "MANYCORE_CLUSTER": str(middleware.cluster_of(party)),
@@ -224,7 +225,7 @@ def library_path(middleware: Middleware) -> list[str]:
     """Return the directories that give a program this middleware under the name it asks for."""
     prefix = Path(sys.prefix)
     libraries = [prefix / "lib", *sorted(prefix.glob("lib/python*/site-packages/ros_*.libs"))]
-    given = os.environ.get("LD_LIBRARY_PATH", "").split(os.pathsep)
+    given = plain_environment(os.environ, sys.prefix).get("LD_LIBRARY_PATH", "").split(os.pathsep)
     standin = [native_directory() / "standin"] if middleware.is_manycore else []
     return [str(path) for path in [*standin, *libraries, *given] if str(path)]
 

@@ -14,6 +14,12 @@ import rmw_manycore_hook as hook
 
 pytestmark = pytest.mark.unit
 
+# How a program goes over into python with the code in its arguments.
+STARTS = (
+    "subprocess.run([sys.executable, '-c', *sys.argv[1:]], check=True)",
+    "os.execv(sys.executable, [sys.executable, '-c', *sys.argv[1:]])",
+)
+
 
 @pytest.fixture(scope="module")
 def prefix(tmp_path_factory: pytest.TempPathFactory) -> Prefix:
@@ -34,30 +40,50 @@ def test_the_loader_sees_the_stand_ins_first(prefix: Prefix) -> None:
     assert shown["environ"]["_ROS_WHEELS_BOOTSTRAP_COMPLETE"] == "1"
 
 
-def test_child_processes_start_clean(prefix: Prefix) -> None:
-    environ = prefix.show()["environ"]
-    assert environ["LD_LIBRARY_PATH"].split(":") == prefix.wheel_libraries
-    assert not [name for name in environ if "MANYCORE" in name]
+def test_child_processes_inherit_the_stand_ins(prefix: Prefix) -> None:
+    path = prefix.show(LD_LIBRARY_PATH="/opt/mine")["environ"]["LD_LIBRARY_PATH"].split(":")
+    assert path == [str(prefix.stand_ins), *prefix.wheel_libraries, "/opt/mine"]
 
 
-def test_a_child_that_selects_another_middleware_gets_it(prefix: Prefix) -> None:
-    child = (
-        "import os, sys; os.environ['RMW_IMPLEMENTATION'] = 'rmw_fastrtps_cpp'; "
-        f"os.execv(sys.executable, [sys.executable, '-c', {SHOW!r}])"
-    )
-    assert loader_path(prefix.show("-c", child)) == prefix.wheel_libraries
-
-
-def test_a_python_child_is_substituted_again(prefix: Prefix) -> None:
-    child = f"import subprocess, sys; subprocess.run([sys.executable, '-c', {SHOW!r}], check=True)"
-    assert loader_path(prefix.show("-c", child))[0] == str(prefix.stand_ins)
-
-
-def test_stand_ins_behind_other_directories_do_not_count(prefix: Prefix) -> None:
-    behind = f"{prefix.path}/lib:{prefix.stand_ins}"
-    shown = prefix.show(LD_LIBRARY_PATH=behind)
-    assert loader_path(shown) == [str(prefix.stand_ins), *prefix.wheel_libraries]
+@pytest.mark.parametrize("selection", ["['RMW_IMPLEMENTATION'] = 'other'", ".clear()"])
+@pytest.mark.parametrize("call", STARTS)
+def test_a_child_that_selects_another_middleware_gets_it(
+    prefix: Prefix, call: str, selection: str
+) -> None:
+    path = "os.environ['LD_LIBRARY_PATH']"
+    child = f"path = {path}; os.environ{selection}; {path} = path; {call}"
+    shown = prefix.show("-c", f"import os, subprocess, sys; {child}", SHOW)
+    assert loader_path(shown) == prefix.wheel_libraries
     assert shown["environ"]["LD_LIBRARY_PATH"].split(":") == prefix.wheel_libraries
+
+
+@pytest.mark.parametrize("call", STARTS)
+def test_a_python_child_is_as_its_parent(prefix: Prefix, call: str) -> None:
+    shown = prefix.show("-c", f"import os, subprocess, sys; {call}", SHOW)
+    assert loader_path(shown) == [str(prefix.stand_ins), *prefix.wheel_libraries]
+    assert set(hook.MALLOC_TUNING) <= {entry.split("=")[0] for entry in shown["loader"]}
+    assert not set(hook.MALLOC_TUNING) & set(shown["environ"])
+
+
+def test_a_child_without_the_search_path_gets_it_anew(prefix: Prefix) -> None:
+    child = f"import os, subprocess, sys; del os.environ['LD_LIBRARY_PATH']; {STARTS[0]}"
+    assert loader_path(prefix.show("-c", child, SHOW))[0] == str(prefix.stand_ins)
+
+
+@pytest.mark.parametrize("spelling", ["{0}", "{0}/", "{0}:{1}", "/opt/mine:{0}:{1}"])
+def test_stand_ins_of_the_shell_are_for_rmw_manycore_only(prefix: Prefix, spelling: str) -> None:
+    path = spelling.format(prefix.stand_ins, f"{prefix.path}/lib")
+    for other in ("rmw_fastrtps_cpp", ""):
+        shown = prefix.show(RMW_IMPLEMENTATION=other, LD_LIBRARY_PATH=path)
+        assert loader_path(shown)[:2] == prefix.wheel_libraries
+        assert hook.REPLACED not in shown["environ"]
+    assert loader_path(prefix.show(LD_LIBRARY_PATH=path))[0] == str(prefix.stand_ins)
+
+
+def test_stand_ins_behind_the_library_itself_do_no_harm(prefix: Prefix) -> None:
+    path = f"{prefix.path}/lib:{prefix.stand_ins}"
+    shown = prefix.show(RMW_IMPLEMENTATION="rmw_fastrtps_cpp", LD_LIBRARY_PATH=path)
+    assert loader_path(shown) == path.split(":")
 
 
 @pytest.mark.parametrize("other", ["rmw_fastrtps_cpp", "rmw_manycore_cpp", ""])
@@ -95,6 +121,15 @@ def test_a_launcher_leads_to_fast_dds_too(prefix: Prefix) -> None:
     environment = hook.plain_environment({"LD_LIBRARY_PATH": known}, str(prefix.path))
     assert environment["LD_LIBRARY_PATH"].split(":") == [*prefix.wheel_libraries, "/opt/other/lib"]
     assert environment["_ROS_WHEELS_BOOTSTRAP_COMPLETE"] == "1"
+
+
+def test_a_launcher_in_a_substituted_shell_leaves_settings_to_its_nodes(prefix: Prefix) -> None:
+    """A node of `manycore run` with `malloc_tuning: false` is not restarted with it."""
+    variables = {"RMW_IMPLEMENTATION": "rmw_manycore", hook.REPLACED: hook.PARENT}
+    environment = hook.substituted_environment(variables, str(prefix.path))
+    del environment["RMW_IMPLEMENTATION"]
+    loader = "".join(prefix.show(**environment)["loader"])
+    assert "MALLOC" not in loader
 
 
 def test_the_environment_of_an_ordinary_ros_is_not_changed(tmp_path: Path) -> None:

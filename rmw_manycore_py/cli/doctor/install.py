@@ -84,7 +84,8 @@ def _hook() -> Finding:
 
 def _substitution() -> Finding:
     """Start rclpy as a user would, with the variable alone."""
-    environment = {**os.environ, "RMW_IMPLEMENTATION": "rmw_manycore"}
+    variables = {**os.environ, "RMW_IMPLEMENTATION": "rmw_manycore"}
+    environment = rmw_manycore_hook.plain_environment(variables, sys.prefix)
     try:
         result = subprocess.run(
             own_program("rmw_manycore_py.cli.doctor.probe"),

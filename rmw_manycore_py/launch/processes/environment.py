@@ -22,9 +22,10 @@ def program_environment(
 
 
 def leave_middleware(implementation: str) -> None:
-    """Restart this program with another middleware; the hook has restored the search path."""
+    """Restart this program with another middleware."""
     environment = {**os.environ, "RMW_IMPLEMENTATION": implementation}
-    os.execve(sys.executable, [sys.executable, *sys.orig_argv[1:]], environment)
+    command = [sys.executable, *sys.orig_argv[1:]]
+    os.execve(sys.executable, command, plain_environment(environment, sys.prefix))
 
 
 def outside_environment(base: Mapping[str, str] = os.environ) -> dict[str, str]:
