@@ -10,6 +10,7 @@
 
 #include "platform/clock.hpp"
 #include "platform/error.hpp"
+#include "platform/lock_owner.hpp"
 
 namespace manycore {
 namespace {
@@ -115,9 +116,8 @@ std::optional<FileLock> FileLock::acquire(const std::string & path, int timeout_
       }
       if (monotonic_ns() > deadline) {
         throw Error(
-          ErrorCode::timeout, path + " has been locked by another process for " +
-                                std::to_string(timeout_ms) +
-                                " ms; is one that was joining stopped?");
+          ErrorCode::timeout, path + " has been locked for " + std::to_string(timeout_ms) +
+                                " ms: " + describe_flock_owner(fd.get()));
       }
       const timespec pause = to_timespec(200'000);
       nanosleep(&pause, nullptr);

@@ -1,8 +1,13 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #include "platform/lock_owner.hpp"
 
+#include <sys/stat.h>
+#include <sys/sysmacros.h>
+
+#include <cstdio>
 #include <fstream>
 #include <optional>
+#include <sstream>
 
 namespace manycore {
 namespace {
@@ -32,6 +37,28 @@ std::optional<ThreadStatus> status_of(pid_t thread) {
   return status.process.empty() ? std::nullopt : std::optional<ThreadStatus>(status);
 }
 
+/// How /proc/locks names a file: "fe:00:2149051".
+std::string name_in_locks(const struct stat & file) {
+  char device[32];
+  std::snprintf(device, sizeof device, "%02x:%02x:", major(file.st_dev), minor(file.st_dev));
+  return device + std::to_string(file.st_ino);
+}
+
+/// Process that holds flock() on a file. Empty when none does, or one of another pid namespace.
+std::optional<pid_t> flock_owner_of(const std::string & file) {
+  std::ifstream locks("/proc/locks");
+  for (std::string line; std::getline(locks, line);) {
+    std::istringstream words(line);  // "2: FLOCK  ADVISORY  WRITE 6936 fe:00:2149051 0 EOF"
+    std::string number, kind, is_advisory, access, name;
+    pid_t process = 0;
+    words >> number >> kind >> is_advisory >> access >> process >> name;
+    if (words && kind == "FLOCK" && name == file) {
+      return process;
+    }
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 std::string describe_lock_owner(pid_t thread) {
@@ -52,6 +79,15 @@ std::string describe_lock_owner(pid_t thread) {
     return holds + "stopped by a debugger; continue it or end it";
   }
   return holds + "not stopped (state " + owner->state + "); try again, or end it if it hangs";
+}
+
+std::string describe_flock_owner(int fd) {
+  struct stat file {};
+  const bool is_open = fstat(fd, &file) == 0;
+  const auto owner = is_open ? flock_owner_of(name_in_locks(file)) : std::nullopt;
+  return owner ? describe_lock_owner(*owner)
+               : "its owner is not visible here: it has just released it, or runs in another "
+                 "container; try again";
 }
 
 }  // namespace manycore

@@ -11,4 +11,7 @@ namespace manycore {
 /// `thread`: 0 for a lock that no thread owns at this moment.
 std::string describe_lock_owner(pid_t thread);
 
+/// The same of an open file that another process has locked with flock().
+std::string describe_flock_owner(int fd);
+
 }  // namespace manycore

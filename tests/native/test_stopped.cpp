@@ -5,11 +5,15 @@
 // and what each side then has.
 #include <doctest/doctest.h>
 
+#include <unistd.h>
+
 #include <csignal>
+#include <string>
 
 #include "messages.hpp"
 #include "node_role.hpp"
 #include "patience.hpp"
+#include "platform/byte_lock.hpp"
 #include "transport/lifecycle/configurator.hpp"
 
 using namespace manycore;
@@ -23,6 +27,13 @@ const Role lock_holder("lock_holder", [](Lines & test, const Arguments & argumen
   const Registry::Lock lock(registry);
   test.say("locked");
   raise(SIGSTOP);
+});
+
+/// Stands still, or goes on, while it holds a lock file, as a process that joins a platform does.
+const Role file_lock_holder("file_lock_holder", [](Lines & test, const Arguments & arguments) {
+  const auto lock = FileLock::acquire(arguments.at(0), 0);
+  test.say("locked");
+  test.hear();
 });
 
 struct Fixture {
@@ -158,4 +169,23 @@ TEST_CASE("stopped while it holds the registry lock: publishers whose topic DSM 
   CHECK(f.inspection.generations_of(*publisher) == 2);
   node.tell("publish 2001 2100 100");
   take_all(*near);
+}
+
+TEST_CASE("the owner of a lock file is named, and stopped only if it is") {
+  const std::string path = "/dev/shm/manycore-lock-of-test-" + std::to_string(getpid());
+  Child holder("file_lock_holder", {path});
+  holder.expect("locked");
+  const std::string owner = "process " + std::to_string(holder.pid()) + " (";
+  const auto refused = [&] { return refusal_of([&] { FileLock::acquire(path, 1); }); };
+  Refusal refusal = refused();
+  CHECK(refusal.code == ErrorCode::timeout);
+  CHECK_MESSAGE(refusal.says("has been locked for 1 ms: " + owner), refusal.text);
+  CHECK_MESSAGE(refusal.says("is not stopped"), refusal.text);
+  holder.stop();
+  refusal = refused();
+  CHECK_MESSAGE(refusal.says(owner), refusal.text);
+  CHECK_MESSAGE(refusal.says("is stopped; continue it"), refusal.text);
+  holder.kill();
+  CHECK(FileLock::acquire(path, 1));
+  unlink(path.c_str());
 }
