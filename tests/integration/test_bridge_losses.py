@@ -9,7 +9,7 @@ import re
 import signal
 import socket
 import subprocess
-from contextlib import ExitStack
+from contextlib import ExitStack, suppress
 from pathlib import Path
 
 import pytest
@@ -101,9 +101,18 @@ def test_datagrams_that_a_stopped_bridge_drops_are_in_its_status(bridge) -> None
     process.signal(signal.SIGCONT)
 
 
+def sockets_of(pid: int) -> dict[int, str]:
+    """Return the sockets of a process by their descriptors there."""
+    found = {}
+    for entry in os.scandir(f"/proc/{pid}/fd"):
+        with suppress(FileNotFoundError):  # closed meanwhile
+            found[int(entry.name)] = os.readlink(entry.path)
+    return {fd: link for fd, link in found.items() if link.startswith("socket:")}
+
+
 def ports_of(pid: int) -> set[int]:
     """Return the ports of a process's UDP sockets."""
-    links = [os.readlink(entry) for entry in os.scandir(f"/proc/{pid}/fd")]
+    links = sockets_of(pid).values()
     with open(f"/proc/{pid}/net/udp") as file:
         rows = [line.split() for line in file.readlines()[1:]]
     return {int(row[1].rpartition(":")[2], 16) for row in rows if f"socket:[{row[9]}]" in links}
@@ -137,10 +146,8 @@ def test_without_a_profile_a_buffer_is_the_kernel_s_default(bridge) -> None:
 def buffers_of(pid: int) -> set[int]:
     """Return the receive buffers of a process's UDP sockets, in bytes."""
     process, found = os.pidfd_open(pid), set()
-    for entry in os.scandir(f"/proc/{pid}/fd"):
-        if not os.readlink(entry).startswith("socket:"):
-            continue
-        fd = ctypes.CDLL(None).syscall(_SYS_PIDFD_GETFD, process, int(entry.name), 0)
+    for number in sockets_of(pid):
+        fd = ctypes.CDLL(None).syscall(_SYS_PIDFD_GETFD, process, number, 0)
         if fd < 0:
             continue
         with socket.socket(fileno=fd) as copy:
