@@ -6,6 +6,7 @@
 
 #include "platform/error.hpp"
 #include "rcutils/error_handling.h"
+#include "rmw/serialization/known_lengths.hpp"
 #include "rosidl_typesupport_fastrtps_c/identifier.h"
 #include "rosidl_typesupport_fastrtps_cpp/identifier.hpp"
 #include "rosidl_typesupport_fastrtps_cpp/service_type_support.h"
@@ -86,9 +87,8 @@ ServiceType ServiceType::of(const rosidl_service_type_support_t * type_support) 
 }
 
 Cdr cdr_of(const rosidl_message_type_support_t * type_support) {
-  return Cdr(
-    callbacks_of(find(type_support, get_message_typesupport_handle)),
-    std::make_shared<CdrLengths>(*type_support));
+  const auto & callbacks = callbacks_of(find(type_support, get_message_typesupport_handle));
+  return Cdr(callbacks, lengths_of(*type_support, callbacks));
 }
 
 }  // namespace rmw_manycore

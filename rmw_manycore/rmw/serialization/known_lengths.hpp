@@ -1,0 +1,16 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+
+#include "rmw/serialization/cdr_lengths.hpp"
+#include "rosidl_typesupport_fastrtps_cpp/message_type_support.h"
+
+namespace rmw_manycore {
+
+/// The lengths of a type, which its entities and calls of rmw_deserialize share: finding them out
+/// takes longer than reading a small message. Thread safe.
+std::shared_ptr<const CdrLengths> lengths_of(
+  const rosidl_message_type_support_t & type, const message_type_support_callbacks_t & callbacks);
+
+}  // namespace rmw_manycore
