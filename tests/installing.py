@@ -5,13 +5,17 @@ from __future__ import annotations
 
 import os
 import shlex
+import shutil
 import subprocess
+import sys
 from pathlib import Path
 
 from support import REPOSITORY
 
 INSTALL_TIMEOUT_S = 1800
+BUILD = REPOSITORY / "build/install"  # where setting up this checkout compiled it
 READ_ONLY = "mount --bind {0} {0} && mount -o remount,bind,ro {0} && "
+COPY = "mount --bind {copy} {build} && "
 
 
 def run(*command: str | Path, **more: object) -> str:
@@ -32,13 +36,35 @@ def build_wheel(python: Path, directory: Path) -> Path:
 
     Everything temporary lies below `directory`: in a wheel its name would tell where it was built.
     """
+    script = READ_ONLY.format(shlex.quote(str(REPOSITORY))) if can_mount() else ""
+    return _wheel(python, directory, script)
+
+
+def pack_wheel(directory: Path) -> Path:
+    """Return the wheel of the running python, without compiling again what setting up compiled.
+
+    Works in a copy of what was compiled, which lies over the original for this build alone: objects
+    know the directory that they were made in.
+    """
+    python = Path(sys.executable)
+    if not BUILD.is_dir() or not can_mount():
+        return build_wheel(python, directory)
+    copy = directory / "build"
+    shutil.copytree(BUILD, copy, symlinks=True)
+    script = READ_ONLY.format(shlex.quote(str(REPOSITORY)))
+    script += COPY.format(copy=shlex.quote(str(copy)), build=shlex.quote(str(BUILD)))
+    return _wheel(
+        python, directory, script, "--no-build-isolation", f"--config-settings=build-dir={BUILD}"
+    )
+
+
+def _wheel(python: Path, directory: Path, mounts: str, *options: str) -> Path:
     temporary = directory / "temporary"
     temporary.mkdir()
-    command = [python, "-m", "pip", "wheel", "--no-deps", "-w", directory, REPOSITORY]
-    script = READ_ONLY.format(shlex.quote(str(REPOSITORY))) if can_mount() else ""
-    isolated = ["unshare", "--mount"] if script else []
+    command = [python, "-m", "pip", "wheel", "--no-deps", *options, "-w", directory, REPOSITORY]
+    isolated = ["unshare", "--mount"] if mounts else []
     words = shlex.join(map(str, command))
-    run(*isolated, "sh", "-c", script + words, env={**os.environ, "TMPDIR": str(temporary)})
+    run(*isolated, "sh", "-c", mounts + words, env={**os.environ, "TMPDIR": str(temporary)})
     return next(directory.glob("*.whl"))
 
 

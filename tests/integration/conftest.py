@@ -8,13 +8,13 @@ from pathlib import Path
 
 import pytest
 from bridging import Bridge
-from installing import Installation, build_wheel
+from installing import Installation, pack_wheel
 
 
 @pytest.fixture(scope="session")
 def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The wheel of this checkout for this python: a full compilation."""
-    return build_wheel(Path(sys.executable), tmp_path_factory.mktemp("wheel"))
+    """The wheel of this checkout for this python."""
+    return pack_wheel(tmp_path_factory.mktemp("wheel"))
 
 
 @pytest.fixture(scope="session")
