@@ -26,6 +26,13 @@ class Plan:
 
     def topics(self, direction: Direction) -> tuple[Route, ...]:
         """Return the topics of all lanes; they may move from one to another."""
+        return tuple(r for r in self._topics(direction) if not r.is_pattern)
+
+    def patterns(self, direction: Direction) -> tuple[Route, ...]:
+        """Return what stands for several topics; those stay in the lane of their pattern."""
+        return tuple(r for r in self._topics(direction) if r.is_pattern)
+
+    def _topics(self, direction: Direction) -> tuple[Route, ...]:
         return tuple(r for r in self.routes if (r.kind, r.direction) == ("topic", direction))
 
     def to_json(self) -> str:

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any, Literal
 
 from rmw_manycore_py.qos import Policies
+from rmw_manycore_py.ros.patterns import is_pattern, matches
 
 # The directions of the paper: topic_in and service_in are inward, topic_to and service_to outward.
 Direction = Literal["inward", "outward"]
@@ -26,6 +27,7 @@ class Route:
     its own messages have to be told from others. An `eager` one listens as soon as somebody
     publishes: what an action says first must not wait for a listener.
     `node` is the full name outside of the node whose service it is, where tools ask for it.
+    The names of a pattern's topics differ by the `prefix` that they have outside.
     """
 
     kind: Literal["topic", "service"]
@@ -42,6 +44,12 @@ class Route:
     eager: bool = False
     lane: int = 0
     node: str | None = None
+    prefix: str = ""
+
+    @property
+    def is_pattern(self) -> bool:
+        """Whether it stands for all topics whose names fit."""
+        return is_pattern(self.inside)
 
 
 def action_routes(action: Route) -> Iterator[Route]:
@@ -101,6 +109,11 @@ def arranged(routes: Iterable[Route], lanes: int) -> tuple[Route, ...]:
     for route in unique:
         back = "outward" if route.direction == "inward" else "inward"
         mirrored = (route.inside, back) in ways or ((route.outside, route.domain), back) in ways
+        mirrored = mirrored or any(
+            matches(other.inside, route.inside)
+            for other in unique
+            if other.is_pattern and other.direction == back
+        )
         lane = numbers[route.direction] % lanes
         if route.node is not None:
             lane = of_nodes.setdefault(route.node, lane)

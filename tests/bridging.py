@@ -28,9 +28,13 @@ class Bridge:
 
     def route(self, direction: Direction, name: str, type_name: str = STRING, **more: Any) -> Route:
         """Return a route that has one name on both sides."""
-        kind: Any = "topic" if "/msg/" in type_name else "service"
+        kind: Any = "topic" if not type_name or "/msg/" in type_name else "service"
         settings = {"inside": name, "outside": name, "domain": self.domain, **more}
         return Route(kind=kind, direction=direction, type=type_name, **settings)
+
+    def pattern(self, direction: Direction, name: str, **more: Any) -> Route:
+        """Return a route for all topics that fit a pattern."""
+        return self.route(direction, name, "", **more)
 
     def run(self, *routes: Route) -> dict[str, Program]:
         """Start the processes that the routes need; return them by direction."""

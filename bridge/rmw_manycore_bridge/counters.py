@@ -63,6 +63,19 @@ def status_path(platform: str, direction: str, lane: int) -> Path:
     return Path(_transport.platform_directory(platform)) / f"bridge-{direction}-{lane}"
 
 
+def pattern_status_path(platform: str, route: Route, index: int, slot: int) -> Path:
+    """Return where a bridge process counts a topic that fits a pattern, the index-th one."""
+    path = status_path(platform, route.direction, route.lane)
+    return path.with_name(f"{path.name}-{index}-{slot}")
+
+
+def remove_pattern_files(platform: str, direction: str, lane: int) -> None:
+    """Remove what a process before this one counted of topics that fit patterns."""
+    path = status_path(platform, direction, lane)
+    for file in path.parent.glob(f"{path.name}-*"):
+        file.unlink(missing_ok=True)
+
+
 class Row:
     """The counters of one route."""
 

@@ -30,6 +30,7 @@ class Inside(Loop):
         cluster, core_number = core
         self.process = _transport.Process(plan.platform, cluster, core_number, name)
         self.process.watch_graph()
+        self._view = _transport.Platform(plan.platform)
         self.readers: list[InsideReader] = []
         self._changed = changed
         self._generation = self.process.graph_generation()
@@ -42,6 +43,14 @@ class Inside(Loop):
         """Return the subscriptions of a topic that are not the bridge's."""
         return self._endpoints(topic, "topic", "subscription")
 
+    def published(self, wanted: Callable[[str], bool]) -> dict[str, frozenset[str]]:
+        """Return the types of publishers that are not the bridge's, by the topic's name."""
+        found: dict[str, set[str]] = {}
+        for endpoint in self._view.endpoints():
+            if _is_of_others(endpoint, "topic", "publisher") and wanted(endpoint.topic):
+                found.setdefault(endpoint.topic, set()).add(endpoint.type)
+        return {name: frozenset(types) for name, types in found.items()}
+
     def servers(self, service: str) -> list[EndpointInfo]:
         """Return the servers of a service that are not the bridge's."""
         return self._endpoints(service, "request", "subscription")
@@ -50,8 +59,7 @@ class Inside(Loop):
         return [
             endpoint
             for endpoint in self.process.endpoints_of(name)
-            if (endpoint.role, endpoint.kind) == (role, kind)
-            and not endpoint.node_name.startswith(NODE_PREFIX)
+            if _is_of_others(endpoint, role, kind)
         ]
 
     def wake(self) -> None:
@@ -76,4 +84,10 @@ class Inside(Loop):
     def close(self) -> None:
         """Leave the platform, once the movers have ended their endpoints."""
         self.readers.clear()
+        self._view.close()
         self.process.close()
+
+
+def _is_of_others(endpoint: EndpointInfo, role: EndpointRole, kind: EndpointKind) -> bool:
+    of_bridge = endpoint.node_name.startswith(NODE_PREFIX)
+    return (endpoint.role, endpoint.kind) == (role, kind) and not of_bridge

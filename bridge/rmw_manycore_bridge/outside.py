@@ -17,6 +17,8 @@ from rmw_manycore_bridge.loop import Loop
 
 _GRAPH, _WAKE = 0, 1  # places of the guard conditions in the wait set
 _NS_PER_S = 1e9
+# DDS announces an endpoint before ROS says whose it is (rmw_dds_common).
+_UNKNOWN_NODE = "_NODE_NAME_UNKNOWN_"
 
 
 class OutsideReader(Protocol):
@@ -32,9 +34,16 @@ class OutsideReader(Protocol):
 class Outside(Loop):
     """Waits for messages and for changes of the domain's graph."""
 
-    def __init__(self, domain: int, name: str, changed: Callable[[], None]) -> None:
+    def __init__(
+        self,
+        domain: int,
+        name: str,
+        changed: Callable[[], None],
+        is_own: Callable[[bytes], bool],
+    ) -> None:
         super().__init__(f"domain {domain}")
         self.domain = domain
+        self._is_own = is_own
         self.context = rclpy.Context()
         rclpy.init(
             args=[],
@@ -57,6 +66,12 @@ class Outside(Loop):
         """Return the subscriptions of a topic that are not this bridge's."""
         return self._others(self.node.get_subscriptions_info_by_topic(topic))
 
+    def published(self, wanted: Callable[[str], bool]) -> dict[str, frozenset[str]]:
+        """Return the types of publishers that are not this bridge's, by the topic's name."""
+        names = [name for name, _ in self.node.get_topic_names_and_types() if wanted(name)]
+        found = {name: frozenset(p.topic_type for p in self.publishers(name)) for name in names}
+        return {name: types for name, types in found.items() if types}
+
     def server_types(self, service: str) -> list[str]:
         """Return the types of a service's servers that are not this bridge's.
 
@@ -72,8 +87,14 @@ class Outside(Loop):
         return [
             e
             for e in endpoints
-            if e.node_name.rpartition("_")[0] != own and full_name_of(e) not in self._stand_ins
+            if e.node_name.rpartition("_")[0] != own
+            and full_name_of(e) not in self._stand_ins
+            and not self._is_own_newcomer(e)
         ]
+
+    def _is_own_newcomer(self, endpoint: Any) -> bool:
+        """Tell whether an endpoint whose node is not known yet is a publisher of this bridge."""
+        return endpoint.node_name == _UNKNOWN_NODE and self._is_own(bytes(endpoint.endpoint_gid))
 
     def enter_node(self, full_name: str | None) -> Node:
         """Return a node of that name for one more service of it; without a name the bridge's own.

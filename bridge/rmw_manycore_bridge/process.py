@@ -12,12 +12,14 @@ import sys
 from collections.abc import Iterable
 from functools import partial
 
-from rmw_manycore_bridge.counters import CounterFile, status_path
+from rmw_manycore_bridge.counters import CounterFile, remove_pattern_files, status_path
 from rmw_manycore_bridge.inside import NODE_PREFIX, Inside
 from rmw_manycore_bridge.lane import Lanes
 from rmw_manycore_bridge.loop import Loop, Mover
 from rmw_manycore_bridge.network import has_interface
 from rmw_manycore_bridge.outside import Outside
+from rmw_manycore_bridge.pattern import Pattern
+from rmw_manycore_bridge.place import Place
 from rmw_manycore_bridge.service_inward import InwardService
 from rmw_manycore_bridge.service_outward import OutwardService
 from rmw_manycore_bridge.sides import OwnPublishers, Sides
@@ -38,20 +40,23 @@ class BridgeProcess:
 
     def __init__(self, plan: Plan, direction: Direction, lane: int, core: tuple[int, int]) -> None:
         services = [route for route in plan.of(direction, lane) if route.kind == "service"]
-        routes = [*plan.topics(direction), *services]
+        patterns = [route for route in plan.of(direction, lane) if route.is_pattern]
+        routes = [*plan.topics(direction), *services, *patterns]
         name = f"{node_stem(plan.platform)}_{direction}{lane or ''}"
+        self._plan = plan
         self._failed = os.eventfd(0)  # readable once a thread has failed
         self._inside = Inside(
             plan, core, f"{NODE_PREFIX}{direction}{lane or ''}", self._graphs_changed
         )
+        remove_pattern_files(plan.platform, direction, lane)
         counters = CounterFile.create(status_path(plan.platform, direction, lane), routes)
+        own = OwnPublishers(plan.platform)
         self._outsides = {
-            domain: Outside(domain, name, self._graphs_changed)
+            domain: Outside(domain, name, self._graphs_changed, own.is_noted)
             for domain in sorted({route.domain for route in routes})
         }
         self._loops: list[Loop] = [self._inside, *self._outsides.values()]
         self._lanes = Lanes(plan, direction, lane)
-        own = OwnPublishers(plan.platform)
         for index, (route, row) in enumerate(zip(routes, counters.rows, strict=True)):
             outside = self._outsides[route.domain]
             self._add(Sides(route, row, self._inside, outside, own), index)
@@ -71,10 +76,15 @@ class BridgeProcess:
         if sides.route.kind == "service":
             service = InwardService(sides) if inward else OutwardService(sides)
             return service, sides.outside
-        place = self._lanes.place(index)
-        if inward:
-            return InwardTopic(sides, place), sides.outside
-        return OutwardTopic(sides, place), self._inside
+        source: Outside | Inside = sides.outside if inward else self._inside
+        make = InwardTopic if inward else OutwardTopic
+        if sides.route.is_pattern:
+            lane = sides.route.lane
+            return (
+                Pattern(self._plan, sides, source, lambda one: make(one, Place(lane=lane))),
+                source,
+            )
+        return make(sides, self._lanes.place(index)), source
 
     def _graphs_changed(self) -> None:
         for loop in self._loops:

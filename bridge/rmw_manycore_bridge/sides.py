@@ -25,10 +25,11 @@ class OwnPublishers:
         """Tell whether a message with that gid came out of this bridge."""
         known = self._known.get(gid)
         if known is None:
-            known = self._known[gid] = self._look_up(gid)
+            known = self._known[gid] = self.is_noted(gid)
         return known
 
-    def _look_up(self, gid: bytes) -> bool:
+    def is_noted(self, gid: bytes) -> bool:
+        """Tell whether a process has noted a publisher by now; it may do so later."""
         files = (CounterFile.open(path) for path in self._directory.glob("bridge-*"))
         return any(row.has_gid(gid) for file in files if file for row in file.rows)
 
@@ -42,6 +43,7 @@ class Sides:
     inside: Inside
     outside: Outside
     own: OwnPublishers
+    file: CounterFile | None = None  # of the row, where it has one of its own
 
     def fail(self, reason: str) -> None:
         """Say once that the route cannot work, and why."""

@@ -17,6 +17,7 @@ from rmw_manycore_py.topology import HostCpu, as_host_cpu
 
 _OF_OWNER = ("state", "latched", "latency_max_ns")
 _INTERNAL = ("latency_ns", "load_ppm", "window_ns", "window_busy_ns")
+_DASHES = 2  # in bridge-<direction>-<lane>
 _Key = tuple[str, str, str, str, int]
 
 
@@ -44,9 +45,11 @@ def topic_loads(platform: str, direction: Direction) -> dict[int, list[tuple[flo
     """Return by lane, for each topic, its share of a CPU and whether it may move."""
     found = {}
     for path in _files(platform, f"bridge-{direction}-*"):
+        if path.name.count("-") > _DASHES:  # a topic of a pattern does not move
+            continue
         counters = CounterFile.open(path)
         if counters is not None and is_locked(path):
-            lane = int(path.name.rpartition("-")[2])
+            lane = _lane_of(path)
             found[lane] = [(row.load, not row.is_latched) for row in counters.rows]
     return found
 
@@ -57,7 +60,7 @@ def _rows(platform: str) -> Iterator[dict[str, Any]]:
         if counters is None:
             continue
         process = {
-            "process_lane": int(path.name.rpartition("-")[2]),
+            "process_lane": _lane_of(path),
             "pid": counters.pid,
             "alive": is_locked(path),
             "host_cpu": _host_cpu(counters.pid),
@@ -66,6 +69,10 @@ def _rows(platform: str) -> Iterator[dict[str, Any]]:
         }
         for route, row in zip(counters.routes, counters.rows, strict=True):
             yield {**route, **process, **row.as_dict(), "load": row.load}
+
+
+def _lane_of(path: Path) -> int:
+    return int(path.name.split("-")[_DASHES])
 
 
 def _host_cpu(pid: int) -> HostCpu:

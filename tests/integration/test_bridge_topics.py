@@ -6,11 +6,11 @@ from __future__ import annotations
 import re
 import signal
 import time
-from typing import Any
 
 import pytest
 from bridging import OUTSIDE
 from ros_support import announce, peer_node, spin_until, type_of
+from speakers import hear, qos, say
 from support import (
     IS_MANYCORE,
     MAPFILES,
@@ -32,35 +32,6 @@ DEEP = {"depth": 1000}  # more than is said while a test is patient
 HEARD = "I heard: 'Hello World"
 
 
-def qos(words: dict[str, Any]) -> Any:
-    """Return a profile of names of policies, as JSON can carry them."""
-    from rclpy.duration import Duration
-    from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
-
-    durability = DurabilityPolicy[words.get("durability", "volatile").upper()]
-    reliability = ReliabilityPolicy[words.get("reliability", "reliable").upper()]
-    times = {key: Duration(nanoseconds=words[key]) for key in ("deadline",) if key in words}
-    depth = words.get("depth", 10)
-    return QoSProfile(depth=depth, durability=durability, reliability=reliability, **times)
-
-
-def say(topic: str, words: dict[str, Any], period_s: float | None, *texts: str) -> None:
-    """Publish texts at once, and, where there is a period, the time for ever, once a period."""
-    with peer_node("speaker") as node:
-        publisher = node.create_publisher(type_of("std_msgs/msg/String"), topic, qos(words))
-        message = type_of("std_msgs/msg/String")
-        for text in texts:
-            publisher.publish(message(data=text))
-        if period_s:
-
-            def say_time() -> None:
-                publisher.publish(message(data=f"again {time.time_ns()}"))
-
-            node.create_timer(period_s, say_time)
-        announce("said")
-        spin_until(node, lambda: False, 1e6)
-
-
 def say_much_and_leave(topic: str, count: int) -> None:
     """Publish all the time; when told so, publish so many numbers at once and end."""
     from rclpy.duration import Duration
@@ -77,18 +48,6 @@ def say_much_and_leave(topic: str, count: int) -> None:
             publisher.publish(message(data=str(number)))
         publisher.wait_for_all_acked(Duration(seconds=PATIENCE_S))  # the bridge has them
     announce("left")
-
-
-def hear(topic: str, words: dict[str, Any]) -> None:
-    """Print what is heard, and its source timestamp."""
-    with peer_node("hearer") as node:
-
-        def heard(message: Any, info: Any) -> None:
-            announce(f"heard {message.data} {info['source_timestamp']}")
-
-        node.create_subscription(type_of("std_msgs/msg/String"), topic, heard, qos(words))
-        announce("listening")
-        spin_until(node, lambda: False, 1e6)
 
 
 def show_publishers(topic: str) -> None:

@@ -5,7 +5,15 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, StrictBool, StrictInt, StringConstraints
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    ConfigDict,
+    Field,
+    StrictBool,
+    StrictInt,
+    StringConstraints,
+)
 
 from rmw_manycore_py.mapfile.format.values import (
     ActionType,
@@ -19,8 +27,10 @@ from rmw_manycore_py.mapfile.format.values import (
     Parameters,
     ServiceType,
     Size,
+    refusal,
 )
 from rmw_manycore_py.ros.domain import MAX_DOMAIN, PLATFORM_NAME
+from rmw_manycore_py.ros.patterns import is_pattern
 
 # Receiver clusters are a mask of 64 bits.
 MAX_CLUSTERS = 64
@@ -44,6 +54,14 @@ Text = Annotated[str, StringConstraints(min_length=1)]
 _PART = "[A-Za-z_][A-Za-z0-9_]*"
 _PARTS = f"{_PART}(/{_PART})*"
 TopicName = Annotated[str, StringConstraints(pattern=f"^~?/?{_PARTS}$", max_length=MAX_TOPIC_NAME)]
+# Of a bridge's topics: with `*` for a part of a name, `**` for parts.
+_PATTERN_PART = r"(\*\*|[A-Za-z_*][A-Za-z0-9_*]*)"
+TopicPattern = Annotated[
+    str,
+    StringConstraints(
+        pattern=f"^~?/?{_PATTERN_PART}(/{_PATTERN_PART})*$", max_length=MAX_TOPIC_NAME
+    ),
+]
 OutsideName = Annotated[str, StringConstraints(pattern=f"^/?{_PARTS}$", max_length=MAX_TOPIC_NAME)]
 NodeName = Annotated[str, StringConstraints(pattern=f"^/?{_PARTS}$", max_length=MAX_NODE_NAME)]
 # Whatever rcl may know in a rule, but no spaces or dashes: node:~/topic, rosservice:///ns/{node}.
@@ -147,9 +165,22 @@ class BridgeSection(Section):
     host_cpu: HostCpus | None = Field(
         default=None, description="CPUs of the host that its processes run on; all unless named"
     )
-    routes: dict[TopicName, RouteSection] = Field(
+    routes: dict[TopicPattern, RouteSection] = Field(
         default_factory=dict, description="Topics, services and actions that need more than a type"
     )
+
+
+def _check_crossings(types: dict[str, str | None]) -> dict[str, str | None]:
+    """Take no type for a pattern, for the graph has it; ask for one otherwise."""
+    for name, type_name in types.items():
+        if is_pattern(name) == (type_name is not None):
+            expected = "no type: each topic that fits has its own" if type_name else _A_TYPE
+            raise refusal(expected, found=type_name, name=name)
+    return types
+
+
+_A_TYPE = "a type such as std_msgs/msg/String or std_srvs/srv/SetBool"
+Crossings = Annotated[dict[TopicPattern, InterfaceType | None], AfterValidator(_check_crossings)]
 
 
 class NodeSection(Section):
@@ -188,10 +219,10 @@ class NodeSection(Section):
     subscribe: dict[TopicName, MessageType] = Field(
         default_factory=dict, description="Topics subscribed, where the source does not show them"
     )
-    topic_in: dict[TopicName, InterfaceType] = Field(
+    topic_in: Crossings = Field(
         default_factory=dict, description="Topics and services received from outside"
     )
-    topic_to: dict[TopicName, InterfaceType] = Field(
+    topic_to: Crossings = Field(
         default_factory=dict, description="Topics and services sent outside"
     )
     service_in: dict[TopicName, ServiceType] = Field(

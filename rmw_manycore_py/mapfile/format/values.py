@@ -15,7 +15,8 @@ _SIZE = re.compile(r"(\d{1,18})\s*([KMG]?I?B?)", re.IGNORECASE)
 _SCALARS = (bool, int, float, str)
 
 
-def _expected(text: str, **found: Any) -> PydanticCustomError:
+def refusal(text: str, **found: Any) -> PydanticCustomError:
+    """Return an error that says what was expected, for pydantic."""
     return PydanticCustomError("expected", "{expected}", {"expected": text, **found})
 
 
@@ -25,7 +26,7 @@ def _size(value: Any) -> int:
     match = _SIZE.fullmatch(value.strip()) if isinstance(value, str) else None
     unit = _UNITS.get(match[2].upper()) if match else None
     if match is None or unit is None or int(match[1]) == 0:
-        raise _expected("a positive number of bytes, or one with a unit such as 64KiB or 4MiB")
+        raise refusal("a positive number of bytes, or one with a unit such as 64KiB or 4MiB")
     return int(match[1]) * unit
 
 
@@ -33,7 +34,7 @@ def _environment_value(value: Any) -> str:
     if isinstance(value, bool):
         return "true" if value else "false"
     if not isinstance(value, (str, int, float)):
-        raise _expected("a string or a number")
+        raise refusal("a string or a number")
     return str(value)
 
 
@@ -42,23 +43,23 @@ def _arguments(value: Any) -> tuple[str, ...]:
         try:
             return tuple(shlex.split(value))
         except ValueError as error:
-            raise _expected("words as typed in a shell, each quotation closed") from error
+            raise refusal("words as typed in a shell, each quotation closed") from error
     if isinstance(value, (list, tuple)):
         return tuple(_environment_value(item) for item in value)
-    raise _expected("a list of strings, or one string as typed in a shell")
+    raise refusal("a list of strings, or one string as typed in a shell")
 
 
 def _command(value: Any) -> tuple[str, ...]:
     words = _arguments(value)
     if not words or not words[0]:
-        raise _expected("a program and its arguments")
+        raise refusal("a program and its arguments")
     return words
 
 
 def _one_or_more(value: Any) -> tuple[str, ...]:
     names = (value,) if isinstance(value, str) else value
     if not isinstance(names, (list, tuple)) or not all(isinstance(n, str) and n for n in names):
-        raise _expected("a file name or a list of file names")
+        raise refusal("a file name or a list of file names")
     return tuple(names)
 
 
@@ -75,20 +76,18 @@ def _host_cpus(value: Any) -> tuple[int, ...]:
         return ()
     cpus = value if isinstance(value, list) else [value]
     if not cpus or not all(type(cpu) is int and cpu >= 0 for cpu in cpus):
-        raise _expected("a CPU of the host, a list of them, or none for all")
+        raise refusal("a CPU of the host, a list of them, or none for all")
     return tuple(sorted(set(cpus)))
 
 
 def flatten_parameters(value: Any, prefix: str = "") -> dict[str, Any]:
     """Return nested parameters under their dotted names."""
     if not isinstance(value, dict):
-        raise _expected("a mapping from parameter names to values")
+        raise refusal("a mapping from parameter names to values")
     flat: dict[str, Any] = {}
     for name, item in value.items():
         if not isinstance(name, str):
-            raise _expected(
-                "parameter names, in quotes where YAML reads something else", found=name
-            )
+            raise refusal("parameter names, in quotes where YAML reads something else", found=name)
         if isinstance(item, dict):
             flat |= flatten_parameters(item, f"{prefix}{name}.")
         elif isinstance(item, _SCALARS):
@@ -98,7 +97,7 @@ def flatten_parameters(value: Any, prefix: str = "") -> dict[str, Any]:
             flat[f"{prefix}{name}"] = [float(p) for p in item] if has_floats else list(item)
         else:
             expected = "a bool, a number, a string or a non-empty list of one of these"
-            raise _expected(expected, found=item, name=f"{prefix}{name}")
+            raise refusal(expected, found=item, name=f"{prefix}{name}")
     return flat
 
 

@@ -17,6 +17,7 @@ from rmw_manycore_py.mapfile.placing.placement import BridgePlacement
 from rmw_manycore_py.qos import Policies
 from rmw_manycore_py.ros.domain import ros_domain
 from rmw_manycore_py.ros.names import expand, resolve_topic
+from rmw_manycore_py.ros.patterns import is_pattern
 from rmw_manycore_py.routes import (
     REQUEST_TIMEOUT_S,
     Direction,
@@ -74,21 +75,25 @@ def _routes_of(bridge: BridgeSection, node: NodeSection, start: NodeStart) -> It
         yield from parameter_routes(_route(bridge, start.full_name, "", "inward"))
 
 
-def _route(bridge: BridgeSection, inside: str, type_name: str, direction: Direction) -> Route:
+def _route(
+    bridge: BridgeSection, inside: str, type_name: str | None, direction: Direction
+) -> Route:
     section = _section_of(bridge, inside)
     domain = section.domain if section.domain is not None else bridge.domain
-    outside = section.name or f"{(bridge.prefix or '').rstrip('/')}{inside}"
+    prefix = expand((bridge.prefix or "").rstrip("/"), "/") if bridge.prefix else ""
+    outside = section.name or f"{prefix}{inside}"
     return Route(
-        kind="topic" if "/msg/" in type_name else "service",
+        kind="topic" if type_name is None or "/msg/" in type_name else "service",
         direction=direction,
         inside=inside,
         outside=expand(outside, "/"),
-        type=type_name,
+        type=type_name or "",
         domain=ros_domain() if domain is None else domain,
         qos=overrides(section.qos),
         max_hz=section.max_hz,
         max_size=section.max_size,
         timeout_s=section.timeout or REQUEST_TIMEOUT_S,
+        prefix=prefix if is_pattern(inside) else "",
     )
 
 
@@ -111,7 +116,12 @@ def _check_routes(mapfile: Mapfile, routes: list[Route]) -> None:
             problems.append(mapfile.document.problem(path, expected, f"'{name}'"))
             continue
         for key in sorted(section.model_fields_set):
-            if (kind := ONLY_OF.get(key, next(iter(kinds)))) not in kinds:
+            if key == "name" and is_pattern(name):
+                expected = "no name: topics of a pattern keep theirs, behind the bridge's prefix"
+                problems.append(
+                    mapfile.document.problem((*path, key), expected, f"'{section.name}'")
+                )
+            elif (kind := ONLY_OF.get(key, next(iter(kinds)))) not in kinds:
                 expected = f"a key of a {next(iter(kinds))}"
                 found = f"'{key}', which is for a {kind}"
                 problems.append(mapfile.document.problem((*path, key), expected, found))

@@ -50,7 +50,8 @@ def check_types(mapfile: Mapfile, topics: Iterable[TopicEntry]) -> Iterator[Prob
     for node, section in sections.nodes.items():
         for key in ("publish", "subscribe", *CROSSINGS):
             for name, type_name in getattr(section, key).items():
-                yield from _check_installed(mapfile, ("nodes", node, key, name), type_name)
+                if type_name is not None:  # a pattern has none
+                    yield from _check_installed(mapfile, ("nodes", node, key, name), type_name)
     for entry in topics:
         used = [(node, node.publish[entry.name]) for node in entry.publishers]
         used += [(node, node.subscribe[entry.name]) for node in entry.subscribers]
@@ -68,6 +69,8 @@ def check_crossing_types(
     for node, section in mapfile.sections.nodes.items():
         for key in CROSSINGS:
             for name, type_name in getattr(section, key).items():
+                if type_name is None:
+                    continue
                 full = resolve_topic(name, starts[node].full_name, starts[node].remappings)
                 kind = type_name.split("/")[1]
                 expected = known.setdefault((kind, full), type_name)

@@ -1,0 +1,154 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""A route for all topics whose names fit a pattern: each gets a route of its own."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Protocol
+
+from rmw_manycore_bridge.counters import CounterFile, pattern_status_path
+from rmw_manycore_bridge.loop import Mover
+from rmw_manycore_bridge.sides import Sides
+from rmw_manycore_py.bridge_plan import Plan
+from rmw_manycore_py.ros.patterns import matches
+from rmw_manycore_py.routes import Route
+
+MAX_TOPICS = 512  # of one pattern: each is a file, and endpoints on both sides
+
+Types = frozenset[str]
+
+
+class Source(Protocol):
+    """The side that a pattern's topics are published on."""
+
+    def published(self, wanted: Callable[[str], bool]) -> Mapping[str, Types]:
+        """Return the types that others than the bridge publish, by the name of the topic."""
+
+
+@dataclass
+class _Member:
+    """A topic that fits, at work unless its route cannot be."""
+
+    types: Types
+    slot: int
+    sides: Sides
+    mover: Mover | None
+
+
+class Pattern(Mover):
+    """Works in the thread that the messages of its topics come to."""
+
+    def __init__(
+        self, plan: Plan, sides: Sides, source: Source, make: Callable[[Sides], Mover]
+    ) -> None:
+        super().__init__(sides.fail)
+        self._plan, self._sides = plan, sides
+        self._source, self._make = source, make
+        self._members: dict[str, _Member] = {}
+        self._is_full = False
+        route = sides.route
+        inward = route.direction == "inward"
+        self._pattern = route.outside if inward else route.inside
+        # A topic with a route of its own crosses by that, one that fits two patterns by the first.
+        beside = [other for other in plan.topics(route.direction) if other.domain == route.domain]
+        self._taken = {other.outside if inward else other.inside for other in beside}
+        patterns = plan.patterns(route.direction)
+        earlier = [p for p in patterns[: patterns.index(route)] if p.domain == route.domain]
+        self._before = [p.outside if inward else p.inside for p in earlier]
+
+    @property
+    def due_s(self) -> float:  # type: ignore[override]
+        """When the first of the topics has something to do."""
+        return min((m.due_s for m in self._movers()), default=float("inf"))
+
+    def reconcile(self) -> None:
+        """Begin topics that appeared, end those whose type is another one, look at the others."""
+        found = self._source.published(self._is_wanted)
+        for name, types in found.items():
+            member = self._members.get(name)
+            if member is not None and member.types != types:
+                self._end(name)
+            if name not in self._members and self._has_room(found):
+                self._members[name] = self._begin(name, types)
+        for mover in self._movers():
+            mover.try_to_reconcile()
+        state = "forwarding" if any(name in found for name in self._members) else "waiting"
+        self._sides.row.set_state(state, f"topics: {len(found)}")
+
+    def expire(self, now_s: float) -> None:
+        """Let the topics that are due do what they have to."""
+        for mover in self._movers():
+            if mover.due_s <= now_s:
+                mover.expire(now_s)
+
+    def close(self) -> None:
+        """End all topics; their counters stay."""
+        for mover in self._movers():
+            mover.close()
+
+    def _movers(self) -> list[Mover]:
+        return [m.mover for m in self._members.values() if m.mover is not None]
+
+    def _is_wanted(self, name: str) -> bool:
+        if name in self._taken or any(matches(pattern, name) for pattern in self._before):
+            return False
+        return matches(self._pattern, name)
+
+    def _has_room(self, found: Mapping[str, Types]) -> bool:
+        """Make room where every place is taken: a topic that nobody publishes any more goes."""
+        if len(self._members) < MAX_TOPICS:
+            return True
+        gone = next((name for name in self._members if name not in found), None)
+        if gone is not None:
+            self._end(gone)
+            return True
+        if not self._is_full:
+            self._is_full = True
+            self._sides.say(f"more than {MAX_TOPICS} topics fit; the others do not cross")
+        return False
+
+    def _begin(self, name: str, types: Types) -> _Member:
+        slot = self._free_slot()
+        sides = self._sides_of(self._route(name, types), slot)
+        member = _Member(types, slot, sides, None)
+        if len(types) > 1:
+            sides.fail(f"has several types, so none crosses: {', '.join(sorted(types))}")
+            return member
+        try:
+            member.mover = self._make(sides)
+        except ImportError as error:
+            sides.fail(str(error))
+        except Exception as error:  # whatever is wrong with one topic: the others work
+            sides.fail(f"{type(error).__name__}: {error}")
+        return member
+
+    def _end(self, name: str) -> None:
+        member = self._members.pop(name)
+        if member.mover is not None:
+            member.mover.close()
+        self._path(member.slot).unlink(missing_ok=True)
+
+    def _route(self, name: str, types: Types) -> Route:
+        route = self._sides.route
+        if route.direction == "inward":
+            names = {"inside": name.removeprefix(route.prefix), "outside": name}
+        else:
+            names = {"inside": name, "outside": f"{route.prefix}{name}"}
+        # The other direction may find the same name; only messages tell whose they are.
+        return replace(route, **names, type=min(types), mirrored=True)  # type: ignore[arg-type]
+
+    def _sides_of(self, route: Route, slot: int) -> Sides:
+        file = CounterFile.create(self._path(slot), [route])
+        (row,) = file.rows
+        return replace(self._sides, route=route, row=row, file=file)
+
+    def _free_slot(self) -> int:
+        taken = {member.slot for member in self._members.values()}
+        return next(slot for slot in range(len(taken) + 1) if slot not in taken)
+
+    def _path(self, slot: int) -> Path:
+        route = self._sides.route
+        index = self._plan.patterns(route.direction).index(route)
+        return pattern_status_path(self._plan.platform, route, index, slot)
