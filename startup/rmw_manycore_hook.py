@@ -7,11 +7,12 @@ our stand-ins first. `rmw_manycore.pth` calls `select()` in every python process
 RMW_IMPLEMENTATION=rmw_manycore or the stand-ins; a launcher calls `substituted_environment()`
 instead and saves the second start. See docs/design/substitution.md.
 
-Imports nothing but os and sys: this runs before everything else.
+Imports nothing that python has not imported by then: this runs before everything else.
 """
 
 from __future__ import annotations
 
+import _signal  # type: ignore[import-not-found]  # what signal is made of, without enum
 import os
 import sys
 
@@ -52,7 +53,7 @@ def select() -> None:
     if os.environ.get("RMW_IMPLEMENTATION") == IMPLEMENTATION:
         _substitute(replaced, is_child=replacer == PARENT)
     elif needs_stand_ins(sys.prefix) and _finds_stand_in() and _is_python_program():
-        _restart(plain_environment(os.environ, sys.prefix))
+        restart(plain_environment(os.environ, sys.prefix))
 
 
 def _substitute(replaced: bool, is_child: bool) -> None:
@@ -71,11 +72,29 @@ def _substitute(replaced: bool, is_child: bool) -> None:
         environment = substituted_environment(os.environ, sys.prefix)
         tuning = {k: v for k, v in MALLOC_TUNING.items() if k not in environment}
         environment[REPLACED] = " ".join([str(os.getpid()), *tuning])
-        _restart({**environment, **tuning})
+        restart({**environment, **tuning})
 
 
-def _restart(environment: dict[str, str]) -> None:
+def restart(environment: Mapping[str, str]) -> None:
+    """Start this python anew, with the same arguments."""
+    end_on_interrupt()
     os.execve(sys.executable, [sys.executable, *sys.orig_argv[1:]], environment)
+
+
+def end_on_interrupt() -> None:
+    """Let SIGINT end this process, where it would raise KeyboardInterrupt.
+
+    Python notes a signal and acts on it later: never, if `os.execve()` comes first or if some
+    import takes the exception for a failure of its own.
+    """
+    if _signal.getsignal(_signal.SIGINT) is _signal.default_int_handler:
+        _signal.signal(_signal.SIGINT, _signal.SIG_DFL)
+
+
+def raise_on_interrupt() -> None:
+    """Undo `end_on_interrupt()`."""
+    if _signal.getsignal(_signal.SIGINT) == _signal.SIG_DFL:
+        _signal.signal(_signal.SIGINT, _signal.default_int_handler)
 
 
 def substituted_environment(environment: Mapping[str, str], prefix: str) -> dict[str, str]:

@@ -4,14 +4,16 @@
 A file in the working directory that is named like a module must not take the module's place:
 `manycore run` is started wherever the user's files are. So none of our own programs imports from
 the working directory or from the directory of its script, and for all of them PYTHONPATH comes
-after the standard library and the installed packages. Nodes keep the rules of Python.
-See docs/design/substitution.md.
+after the standard library and the installed packages. While they load, SIGINT ends them without
+a traceback. Nodes keep the rules of Python. See docs/design/substitution.md.
 
-Imports nothing but os and sys until the path of imports is in order.
+Imports nothing but the start-up hook, os and sys until the path of imports is in order.
 """
 
 import os
 import sys
+
+from rmw_manycore_hook import end_on_interrupt, raise_on_interrupt
 
 COMMAND = "manycore"
 
@@ -22,7 +24,7 @@ def own_program(module: str, *arguments: str) -> tuple[str, ...]:
 
 
 def manycore() -> None:
-    """Be the command `manycore`."""
+    """Be the command `manycore`; what catches KeyboardInterrupt calls `raise_on_interrupt()`."""
     isolate_imports()
     import importlib
 
@@ -30,7 +32,11 @@ def manycore() -> None:
 
 
 def isolate_imports() -> None:
-    """Put the path of imports in order; for the first lines of a script."""
+    """Put the path of imports in order; for the first lines of a script.
+
+    The script calls `raise_on_interrupt()` when it has imported what it needs.
+    """
+    end_on_interrupt()
     script = sys.argv[0]
     directories = [os.path.dirname(path(script)) for path in (os.path.abspath, os.path.realpath)]
     if sys.path[0] in directories:
@@ -41,6 +47,7 @@ def isolate_imports() -> None:
 def isolate_own_program() -> None:
     """Put the path in order before other start-up hooks import anything; no-op for nodes."""
     if _is_own(os.path.realpath(sys.argv[0])):
+        end_on_interrupt()
         _put_pythonpath_last()
 
 
@@ -73,6 +80,7 @@ def _run_module() -> None:
     import runpy
 
     del sys.argv[0]
+    raise_on_interrupt()
     runpy.run_module(sys.argv[0], run_name="__main__", alter_sys=True)
 
 

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import json
+import signal
 import subprocess
 from pathlib import Path
 
@@ -189,6 +190,28 @@ def test_a_lost_library_path_is_told_and_not_retried(prefix: Prefix) -> None:
     )
     assert done.stdout == "1\n"
     assert "LD_LIBRARY_PATH was lost" in done.stderr
+
+
+def test_no_interruption_is_lost_between_two_starts(prefix: Prefix) -> None:
+    """Python would note one that comes in `os.execve()`, and be gone before it acts on it."""
+    exec_and_interruption = "os.execve = lambda *_: signal.raise_signal(signal.SIGINT)"
+    code = f"import os, signal, rmw_manycore_hook as hook; {exec_and_interruption}; "
+    done = prefix.run("-c", code + "hook.restart({}); print('went on')")
+    assert (done.returncode, done.stdout, done.stderr) == (-signal.SIGINT, "", "")
+
+
+def test_an_ignored_interruption_stays_ignored(prefix: Prefix) -> None:
+    """As in background jobs of a shell."""
+    code = "import signal; print(signal.getsignal(signal.SIGINT) == signal.SIG_IGN)"
+    script = f"trap '' INT; exec {prefix.python} -c '{code}'"
+    done = subprocess.run(
+        ["bash", "-c", script],
+        env={"PATH": "/usr/bin:/bin", "RMW_IMPLEMENTATION": "rmw_manycore"},
+        capture_output=True,
+        text=True,
+        timeout=30,
+    )
+    assert (done.stdout, done.stderr) == ("True\n", "")
 
 
 def test_the_hook_comes_before_that_of_the_wheels() -> None:

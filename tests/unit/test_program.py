@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import signal
 from pathlib import Path
 
 import pytest
@@ -24,21 +25,36 @@ if __name__ == '__main__':
 CMAKE_SCRIPT = """import rmw_manycore_program
 rmw_manycore_program.isolate_imports()
 from shown import main
+rmw_manycore_program.raise_on_interrupt()
 main()
 """
+CLI = """import rmw_manycore_program
+import shown
+def main():
+    rmw_manycore_program.raise_on_interrupt()
+    shown.main()
+"""
+# Interrupts the process once the start-up hooks have run, or when it imports what it needs, or
+# when it is at work; and says if the process went on.
+INTERRUPTED = "__import__('os').environ.get('INTERRUPTED')"
+INTERRUPT = "__import__('os').kill(__import__('os').getpid(), __import__('signal').SIGINT)"
+STAGES = ("start", "imports", "work")
 
 
 @pytest.fixture(scope="module")
 def prefix(tmp_path_factory: pytest.TempPathFactory) -> Prefix:
     """An installation, with a start-up hook of others that imports something."""
     prefix = Prefix(tmp_path_factory.mktemp("prefix"))
-    (prefix.site_packages / "ros_wheels_bootstrapper.pth").write_text("import pathlib, enum\n")
-    main = "def main():\n" + "".join(f"    {line}\n" for line in SHOW_IMPORTS.splitlines())
+    start, imports, work = (f"{INTERRUPTED} == '{stage}' and {INTERRUPT}" for stage in STAGES)
+    hook = f"import pathlib, enum; {start}\n"
+    (prefix.site_packages / "ros_wheels_bootstrapper.pth").write_text(hook)
+    body = [work, *SHOW_IMPORTS.splitlines()]
+    main = f"{imports}\ndef main():\n" + "".join(f"    {line}\n" for line in body)
     (prefix.site_packages / "shown.py").write_text(f"{main}if __name__ == '__main__': main()\n")
     cli = prefix.site_packages / "rmw_manycore_py" / "cli.py"
     cli.parent.mkdir()
     (cli.parent / "__init__.py").touch()
-    cli.write_text("from shown import main\n")
+    cli.write_text(CLI)
     (prefix.path / "bin/manycore").write_text(PIP_SCRIPT)
     (prefix.path / "lib/rmw_manycore/talker").write_text(CMAKE_SCRIPT)
     return prefix
@@ -101,6 +117,34 @@ def test_an_installation_that_is_named_in_the_path_stays(prefix: Prefix, own: li
     variables = {"PYTHONPATH": f":{prefix.site_packages}"}
     shown = prefix.show(*own, directory=prefix.site_packages, **variables)
     assert str(prefix.site_packages) in shown["path"]
+
+
+@pytest.mark.parametrize("rmw", ["rmw_manycore", "rmw_fastrtps_cpp"])
+def test_an_interruption_while_python_loads_ends_them_quietly(
+    prefix: Prefix, own: list, rmw: str
+) -> None:
+    done = prefix.run(*own, INTERRUPTED="start", RMW_IMPLEMENTATION=rmw)
+    assert (done.returncode, done.stdout, done.stderr) == (-signal.SIGINT, "", "")
+
+
+@pytest.mark.parametrize("own", ["manycore", "executable"], indirect=True)
+def test_an_interruption_of_their_imports_ends_them_quietly(prefix: Prefix, own: list) -> None:
+    done = prefix.run(*own, INTERRUPTED="imports")
+    assert (done.returncode, done.stdout, done.stderr) == (-signal.SIGINT, "", "")
+
+
+def test_an_interruption_of_their_work_is_theirs(prefix: Prefix, own: list) -> None:
+    done = prefix.run(*own, INTERRUPTED="work")
+    assert "KeyboardInterrupt" in done.stderr
+
+
+def test_other_programs_are_interrupted_by_the_rules_of_python(
+    prefix: Prefix, tmp_path: Path
+) -> None:
+    script = tmp_path / "manycore"
+    script.write_text(f"import shown\n{INTERRUPT}\n")
+    for stage in ("start", "imports", "own line"):
+        assert "KeyboardInterrupt" in prefix.run(script, INTERRUPTED=stage).stderr
 
 
 @pytest.mark.parametrize("own", ["module", "executable"], indirect=True)

@@ -16,14 +16,8 @@ ROOTS = (REPOSITORY, REPOSITORY / "bridge", REPOSITORY / "startup")
 
 # Lowest first; packages of one layer do not see each other. A leading dot: in rmw_manycore_py.
 LAYERS = [
-    (
-        "rmw_manycore_hook",
-        "rmw_manycore_program",
-        "rmw_manycore_py",
-        ".errors",
-        ".examples",
-        ".words",
-    ),
+    ("rmw_manycore_hook",),
+    ("rmw_manycore_program", "rmw_manycore_py", ".errors", ".examples", ".words"),
     ("._transport", "._ndt"),
     ("._ndt_bench", ".native_errors", ".qos"),
     (".figures", ".parent_death", ".ros", ".readiness", ".signals", ".topology"),

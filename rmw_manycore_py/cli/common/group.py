@@ -10,6 +10,7 @@ from typing import Any
 import click
 from typing_extensions import override
 
+from rmw_manycore_hook import raise_on_interrupt
 from rmw_manycore_py.errors import EXIT_INTERRUPTED, ManycoreError
 
 
@@ -55,6 +56,7 @@ class LazyGroup(click.Group):
     @override
     def invoke(self, ctx: click.Context) -> Any:
         try:
+            raise_on_interrupt()
             return super().invoke(ctx)
         except ManycoreError as error:
             click.echo(f"manycore: {error}", err=True)

@@ -4,12 +4,12 @@
 from __future__ import annotations
 
 import os
-import sys
 import time
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from typing import Any
 
+from rmw_manycore_hook import restart
 from rmw_manycore_py.cli.common.interface_types import load_type
 from rmw_manycore_py.cli.topic.qos_options import QosOptions
 from rmw_manycore_py.errors import ManycoreError
@@ -79,7 +79,7 @@ class OutsideListener:
 def _leave_middleware() -> None:
     """Restart this program with Fast DDS loaded, unless it has been told to use that."""
     if os.environ.get("RMW_IMPLEMENTATION") != OUTSIDE_IMPLEMENTATION:
-        os.execve(sys.executable, [sys.executable, *sys.orig_argv[1:]], outside_environment())
+        restart(outside_environment())
 
 
 def _type_of(topic: str, publishers: Sequence[Any]) -> str:

@@ -7,7 +7,7 @@ import os
 import sys
 from collections.abc import Mapping
 
-from rmw_manycore_hook import plain_environment, substituted_environment
+from rmw_manycore_hook import plain_environment, restart, substituted_environment
 
 IMPLEMENTATION = "rmw_manycore"
 OUTSIDE_IMPLEMENTATION = "rmw_fastrtps_cpp"
@@ -24,8 +24,7 @@ def program_environment(
 def leave_middleware(implementation: str) -> None:
     """Restart this program with another middleware."""
     environment = {**os.environ, "RMW_IMPLEMENTATION": implementation}
-    command = [sys.executable, *sys.orig_argv[1:]]
-    os.execve(sys.executable, command, plain_environment(environment, sys.prefix))
+    restart(plain_environment(environment, sys.prefix))
 
 
 def outside_environment(base: Mapping[str, str] = os.environ) -> dict[str, str]:
@@ -37,4 +36,4 @@ def outside_environment(base: Mapping[str, str] = os.environ) -> dict[str, str]:
 def enter_middleware() -> None:
     """Restart this program with rmw_manycore loaded, unless the start-up hook has done so."""
     if os.environ.get("RMW_IMPLEMENTATION") != IMPLEMENTATION:
-        os.execve(sys.executable, [sys.executable, *sys.orig_argv[1:]], program_environment({}))
+        restart(program_environment({}))
