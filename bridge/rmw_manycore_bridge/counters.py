@@ -11,8 +11,9 @@ import fcntl
 import json
 import mmap
 import os
+import struct
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -20,7 +21,7 @@ from typing import Any
 from rmw_manycore_py import _transport
 from rmw_manycore_py.routes import Route
 
-_MAGIC = b"MCBRIDG1"
+_MAGIC = b"MCBRIDG2"
 _HEADER_BYTES = 24  # magic, process id, bytes of the routes' JSON
 # Of 64 bits each. `latency_ns` is a sum over all messages: from source timestamp to passing on.
 # `busy_ns` is CPU time spent on a topic, `load_ppm` its share of a CPU in the last window that
@@ -35,6 +36,7 @@ FIELDS = (
     "own",
     "timed_out",
     "unanswered",
+    "repeated",
     "latency_ns",
     "latency_max_ns",
     "state",
@@ -44,8 +46,10 @@ FIELDS = (
     "window_ns",
     "window_busy_ns",
 )
-DROPS = ("lost", "too_fast", "too_large", "refused", "timed_out", "unanswered")
+DROPS = ("lost", "too_fast", "too_large", "refused", "timed_out", "unanswered", "repeated")
 STATES = ("waiting", "ready", "forwarding", "failed")
+RouteKey = tuple[str, str, str, int]
+LastNumbers = dict[bytes, int]  # of messages, by publisher
 _INDEX = {name: index for index, name in enumerate(FIELDS)}
 _LATENCY, _LATENCY_MAX, _STATE = _INDEX["latency_ns"], _INDEX["latency_max_ns"], _INDEX["state"]
 _BUSY, _LOAD = _INDEX["busy_ns"], _INDEX["load_ppm"]
@@ -53,9 +57,13 @@ _WINDOW, _WINDOW_BUSY = _INDEX["window_ns"], _INDEX["window_busy_ns"]
 _WINDOW_NS = 1_000_000_000
 _GIDS = 4  # a message of a publisher before the last may still be on its way
 _GID_BYTES = 16
+# The publishers whose messages were passed on last, each with the number of its last message.
+_SOURCES = 16
+_SOURCE = struct.Struct(f"{_GID_BYTES}sQ")
 _REASON_BYTES = 248
 _WORDS = len(FIELDS)
-_ROW_BYTES = 8 * _WORDS + 8 + _GIDS * _GID_BYTES + _REASON_BYTES
+_SOURCES_AT = 8 * _WORDS + 8 + _GIDS * _GID_BYTES
+_ROW_BYTES = _SOURCES_AT + _SOURCES * _SOURCE.size + _REASON_BYTES
 
 
 def status_path(platform: str, direction: str, lane: int) -> Path:
@@ -69,11 +77,17 @@ def pattern_status_path(platform: str, route: Route, index: int, slot: int) -> P
     return path.with_name(f"{path.name}-{index}-{slot}")
 
 
-def remove_pattern_files(platform: str, direction: str, lane: int) -> None:
-    """Remove what a process before this one counted of topics that fit patterns."""
+def take_pattern_files(platform: str, direction: str, lane: int) -> dict[RouteKey, LastNumbers]:
+    """Remove the files of a process before this one for topics of patterns.
+
+    Return what it had passed on last, by route.
+    """
     path = status_path(platform, direction, lane)
+    found: dict[RouteKey, LastNumbers] = {}
     for file in path.parent.glob(f"{path.name}-*"):
+        found |= _last_numbers(file)
         file.unlink(missing_ok=True)
+    return found
 
 
 class Row:
@@ -83,6 +97,8 @@ class Row:
         self._memory = memory
         self._words = memory[: 8 * _WORDS].cast("Q")
         self._gid_count = memory[8 * _WORDS : 8 * _WORDS + 8].cast("Q")
+        self._places: dict[bytes, int] = {}  # of publishers
+        self.last_passed: LastNumbers = {}  # by this process, or one before it
 
     def passed(self, size: int, latency_ns: int) -> None:
         """Count a message that was passed on."""
@@ -142,6 +158,29 @@ class Row:
         gids = bytes(self._memory[start : start + _GIDS * _GID_BYTES])
         return any(gids[i : i + _GID_BYTES] == gid for i in range(0, len(gids), _GID_BYTES))
 
+    def note_last(self, publisher: bytes, number: int) -> None:
+        """Note a message before it is passed on, for the process after this one."""
+        if number <= self.last_passed.get(publisher, -1):  # latched, and passed on once more
+            return
+        place = self._places.get(publisher)
+        if place is None:
+            place = self._places[publisher] = (
+                _SOURCES_AT + len(self._places) % _SOURCES * _SOURCE.size
+            )
+        _SOURCE.pack_into(self._memory, place, publisher, number)
+        self.last_passed[publisher] = number
+
+    def inherit(self, numbers: LastNumbers) -> None:
+        """Take what a process before this one has passed on last."""
+        for publisher, number in numbers.items():
+            self.note_last(publisher, number)
+
+    @property
+    def last_numbers(self) -> LastNumbers:
+        """The numbers of the messages that were passed on last, by publisher."""
+        entries = _SOURCE.iter_unpack(self._memory[_SOURCES_AT:-_REASON_BYTES])
+        return {publisher: number for publisher, number in entries if any(publisher)}
+
     def as_dict(self) -> dict[str, Any]:
         """Return all fields by name."""
         row: dict[str, Any] = dict(zip(FIELDS, self._words, strict=True))
@@ -171,6 +210,7 @@ class CounterFile:
         text = json.dumps([asdict(route) for route in routes]).encode()
         header = _MAGIC + os.getpid().to_bytes(8, "little") + len(text).to_bytes(8, "little")
         start = _rows_start(len(text))
+        before = _last_numbers(path)
         fresh = path.with_name(f".{path.name}")
         file = fresh.open("wb+")
         fresh.chmod(0o600)
@@ -178,7 +218,10 @@ class CounterFile:
         file.write((header + text).ljust(start + len(routes) * _ROW_BYTES, b"\0"))
         file.flush()
         fresh.rename(path)
-        return cls(file, mmap.mmap(file.fileno(), 0))
+        counters = cls(file, mmap.mmap(file.fileno(), 0))
+        for route, row in zip(counters.routes, counters.rows, strict=True):
+            row.inherit(before.get(key_of(route), {}))
+        return counters
 
     @classmethod
     def open(cls, path: Path) -> CounterFile | None:
@@ -189,6 +232,25 @@ class CounterFile:
         except (OSError, ValueError):
             return None
         return cls(None, memory) if memory[:8] == _MAGIC else None
+
+    def close(self) -> None:
+        """Give up the lock; the memory goes with the last row."""
+        if self._file is not None:
+            self._file.close()
+
+
+def _last_numbers(path: Path) -> dict[RouteKey, LastNumbers]:
+    """Return what a process before has passed on last, by route."""
+    found = CounterFile.open(path)
+    if found is None:
+        return {}
+    rows = zip(found.routes, found.rows, strict=True)
+    return {key_of(route): row.last_numbers for route, row in rows}
+
+
+def key_of(route: Mapping[str, Any]) -> RouteKey:
+    """Return what tells a route of a process from the others, given its fields."""
+    return (route["kind"], route["inside"], route["outside"], route["domain"])
 
 
 def _rows_start(text_bytes: int) -> int:

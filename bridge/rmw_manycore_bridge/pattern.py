@@ -4,11 +4,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Protocol
 
-from rmw_manycore_bridge.counters import CounterFile, pattern_status_path
+from rmw_manycore_bridge.counters import (
+    CounterFile,
+    LastNumbers,
+    RouteKey,
+    key_of,
+    pattern_status_path,
+)
 from rmw_manycore_bridge.loop import Mover
 from rmw_manycore_bridge.sides import Sides
 from rmw_manycore_py.bridge_plan import Plan
@@ -41,10 +47,15 @@ class Pattern(Mover):
     """Works in the thread that the messages of its topics come to."""
 
     def __init__(
-        self, plan: Plan, sides: Sides, source: Source, make: Callable[[Sides], Mover]
+        self,
+        plan: Plan,
+        sides: Sides,
+        source: Source,
+        make: Callable[[Sides], Mover],
+        before: Mapping[RouteKey, LastNumbers],  # passed on by a process that was killed
     ) -> None:
         super().__init__(sides.fail)
-        self._plan, self._sides = plan, sides
+        self._plan, self._sides, self._passed_before = plan, sides, before
         self._source, self._make = source, make
         self._members: dict[str, _Member] = {}
         self._is_full = False
@@ -129,6 +140,8 @@ class Pattern(Mover):
         if member.mover is not None:
             member.mover.close()
         self._path(member.slot).unlink(missing_ok=True)
+        if member.sides.file is not None:
+            member.sides.file.close()
 
     def _route(self, name: str, types: Types) -> Route:
         route = self._sides.route
@@ -142,6 +155,7 @@ class Pattern(Mover):
     def _sides_of(self, route: Route, slot: int) -> Sides:
         file = CounterFile.create(self._path(slot), [route])
         (row,) = file.rows
+        row.inherit(self._passed_before.get(key_of(asdict(route)), {}))
         return replace(self._sides, route=route, row=row, file=file)
 
     def _free_slot(self) -> int:

@@ -12,7 +12,7 @@ import sys
 from collections.abc import Iterable
 from functools import partial
 
-from rmw_manycore_bridge.counters import CounterFile, remove_pattern_files, status_path
+from rmw_manycore_bridge.counters import CounterFile, status_path, take_pattern_files
 from rmw_manycore_bridge.inside import NODE_PREFIX, Inside
 from rmw_manycore_bridge.lane import Lanes
 from rmw_manycore_bridge.loop import Loop, Mover
@@ -48,7 +48,7 @@ class BridgeProcess:
         self._inside = Inside(
             plan, core, f"{NODE_PREFIX}{direction}{lane or ''}", self._graphs_changed
         )
-        remove_pattern_files(plan.platform, direction, lane)
+        self._before = take_pattern_files(plan.platform, direction, lane)
         counters = CounterFile.create(status_path(plan.platform, direction, lane), routes)
         own = OwnPublishers(plan.platform)
         self._outsides = {
@@ -79,11 +79,11 @@ class BridgeProcess:
         source: Outside | Inside = sides.outside if inward else self._inside
         make = InwardTopic if inward else OutwardTopic
         if sides.route.is_pattern:
-            lane = sides.route.lane
-            return (
-                Pattern(self._plan, sides, source, lambda one: make(one, Place(lane=lane))),
-                source,
-            )
+            return Pattern(
+                *(self._plan, sides, source),
+                lambda one: make(one, Place(lane=one.route.lane)),
+                self._before,
+            ), source
         return make(sides, self._lanes.place(index)), source
 
     def _graphs_changed(self) -> None:

@@ -133,9 +133,21 @@ class Topic(Mover):
         elif place.role == "heir":
             data = ctypes.string_at(address, size)
             place.hold(Held(publisher, number, data, sent_ns))
-        elif not place.repeats(publisher, number):
+        elif not place.repeats(publisher, number) and not self._drops_repeated(publisher, number):
             self._note(publisher, number)
             self._pass_on(address, size, sent_ns)
+
+    def _drops_repeated(self, publisher: bytes, number: int) -> bool:
+        """Count a message that has been passed on, maybe by a killed process; tell whether to drop.
+
+        A new subscription gets what is latched once more, and late subscribers need it from the new
+        publisher.
+        """
+        row = self._sides.row
+        if number > row.last_passed.get(publisher, -1):
+            return False
+        row.add("repeated")
+        return self._offer is None or self._offer.durability != "transient_local"
 
     def _pass_on_held(self, held: Held) -> None:
         address = ctypes.cast(ctypes.c_char_p(held.data), ctypes.c_void_p).value or 0
@@ -145,6 +157,7 @@ class Topic(Mover):
     def _note(self, publisher: bytes, number: int) -> None:
         self.count_gap(publisher, number)
         self._place.passed(publisher, number)
+        self._sides.row.note_last(publisher, number)
 
     def _pass_on(self, address: int, size: int, sent_ns: int) -> None:
         row = self._sides.row
