@@ -8,7 +8,7 @@ JOBS ?= $(shell nproc)
 # Tests at a time: most wait most of the time, and each needs memory and a few ROS domains.
 TEST_JOBS ?= $(shell n=$$((2 * $$(nproc))); echo $$((n < 8 ? n : 8)))
 # They test platform, transport and scan matcher, so they need no ROS.
-TESTS_ALONE := -DMANYCORE_BUILD_RMW=OFF -DMANYCORE_BUILD_PYTHON=OFF
+TESTS_ALONE := -DMANYCORE_BUILD_RMW=OFF -DMANYCORE_BUILD_PYTHON=OFF -DMANYCORE_BUILD_FUZZ=OFF
 NATIVE_SOURCES := $(shell find CMakeLists.txt cmake startup rmw_manycore \
 	-type f -not -name '*.md')
 
