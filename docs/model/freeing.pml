@@ -6,7 +6,7 @@
  * Follows closing.cpp (close_subscription, sweep_subscription), TopicDsmWriter::enter and ::leave,
  * ReceiveThread::forward. The publisher pushes through its private reader list, the receive thread
  * reads the table each time. The publisher may be killed at any step, and is then reaped; the
- * receive thread too, and is then replaced.
+ * receive thread too, and is then replaced if its cluster has a process left, else not.
  *
  * BUG 1: freed without grace
  * BUG 2: publisher: no fence between phase and the look at match_generation
@@ -17,6 +17,8 @@
  * BUG 7: reaper does not end the phase of a killed publisher
  * BUG 8: a new receive thread does not end the phase of its predecessor
  * BUG 9: publisher's phase even before its last push
+ * BUG 10: a receive thread that nobody replaces is waited for
+ * BUG 11: a receive thread counts as dead once its lifeline ends, not once it has stopped
  */
 #define GENERATION 0      /* match_generation */
 #define ACTIVE 1          /* of the reader table's entry */
@@ -33,6 +35,7 @@
 bool freed;
 bool kill_publisher, kill_receiver;
 bool publisher_ended, receiver_ended;
+bool receiver_lives = true;    /* its lifeline is held */
 
 /* Phases count up in C++; here they go between 0 and 1. */
 inline enter(p) {
@@ -122,15 +125,32 @@ proctype Reaper() {
 
 proctype Successor() {
   if
-  :: kill_receiver = true;
-     receiver_ended && settled(RECEIVER);
-#if BUG != 8
-     memory[PHASE(RECEIVER)] = 0;
+  ::
+#if BUG == 11
+     receiver_lives = false;
 #endif
-     kill_receiver = false;
-     run ReceiveThread()
+     kill_receiver = true;
+     receiver_ended && settled(RECEIVER);
+     receiver_lives = false;
+     if
+     :: receiver_lives = true;
+#if BUG != 8
+        memory[PHASE(RECEIVER)] = 0;
+#endif
+        kill_receiver = false;
+        run ReceiveThread()
+     :: skip               /* the cluster has no process left */
+     fi
   :: skip
   fi
+}
+
+inline wait_for_receive_thread() {
+#if BUG == 10
+  load(CLOSER, PHASE(RECEIVER)) == 0
+#else
+  load(CLOSER, PHASE(RECEIVER)) == 0 || !receiver_lives
+#endif
 }
 
 inline take_off() {
@@ -146,12 +166,12 @@ inline take_off() {
 proctype Closer() {
 #if BUG == 5
   load(CLOSER, PHASE(PUBLISHER)) == 0;
-  load(CLOSER, PHASE(RECEIVER)) == 0;
+  wait_for_receive_thread();
   take_off();
 #else
   take_off();
 #if BUG != 1
-  load(CLOSER, PHASE(RECEIVER)) == 0;
+  wait_for_receive_thread();
   load(CLOSER, PHASE(PUBLISHER)) == 0;
 #endif
 #endif

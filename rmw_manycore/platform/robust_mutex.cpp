@@ -40,9 +40,10 @@ int lock_until(pthread_mutex_t & mutex, const timespec & until) {
 #endif
 }
 
-/// Thread id of the owner, 0 for none: of a robust mutex that is the kernel's futex word.
+/// Thread id of the owner, 0 for none or a dead one: of a robust mutex that is the kernel's futex
+/// word, from which the kernel takes the thread when it ends.
 pid_t owner_of(const pthread_mutex_t & mutex) {
-  const int word = __atomic_load_n(&mutex.__data.__lock, __ATOMIC_RELAXED);
+  const int word = __atomic_load_n(&mutex.__data.__lock, __ATOMIC_ACQUIRE);
   return static_cast<pid_t>(word & FUTEX_TID_MASK);
 }
 
@@ -78,6 +79,8 @@ RobustMutex::Outcome RobustMutex::lock(long timeout_ns) {
         ErrorCode::corrupt, std::string("the registry's lock is damaged: ") + std::strerror(error));
   }
 }
+
+bool RobustMutex::is_locked() const noexcept { return owner_of(mutex_) != 0; }
 
 void RobustMutex::unlock() noexcept { pthread_mutex_unlock(&mutex_); }
 

@@ -5,8 +5,8 @@
 
 namespace manycore {
 
-/// A mutex in shared memory whose next owner learns that the last one died holding it. Lives in a
-/// registry header; never taken on the data path.
+/// A mutex in shared memory whose next owner learns that the last one died holding it. Never taken
+/// on the data path.
 class RobustMutex {
 public:
   enum class Outcome { locked, owner_died };
@@ -17,6 +17,8 @@ public:
   /// Error{corrupt} on a word that is no mutex.
   Outcome lock(long timeout_ns);
   void unlock() noexcept;
+  /// True while the thread that locked it lives. Any thread may ask.
+  bool is_locked() const noexcept;
   /// After owner_died, once the protected state has been repaired.
   void mark_consistent() noexcept;
 

@@ -151,6 +151,7 @@ struct Process::Impl {
   PlatformPaths paths;
   std::unique_ptr<Registry> registry;
   uint32_t slot = nothing;
+  std::optional<HeldLifeline> lifeline;
   std::unique_ptr<Waiter> waiter;
   std::unique_ptr<Graph> graph;
   std::unique_ptr<ReceiveThreadWatcher> watcher;
@@ -193,7 +194,7 @@ void Process::Impl::attach() {
   if (!cluster.send(message)) {
     cluster.header().pipe_overflow.store(1, std::memory_order_seq_cst);
   }
-  if (!alive_locks(paths).is_held(receive_thread_byte + placement.cluster)) {
+  if (!registry->lifelines().is_held(receive_thread_line + placement.cluster)) {
     tell_other_reapers(*registry, placement.cluster);
   }
 }
@@ -202,7 +203,8 @@ uint32_t Process::Impl::take_process_slot() {
   Table<ProcessEntry> & processes = registry->processes();
   const uint32_t taken = processes.take("processes");
   ProcessEntry & entry = processes[taken];
-  if (!alive_locks(paths).try_lock(taken)) {
+  lifeline = registry->lifelines().try_hold(taken);
+  if (!lifeline) {
     throw Error(ErrorCode::corrupt, "process slot is in use; run 'manycore clean'");
   }
   entry.pid = getpid();
@@ -240,7 +242,7 @@ void Process::Impl::leave() {
     discharge(*registry, slot);
     registry->processes().give_back(slot);
   }
-  alive_locks(paths).unlock(slot);
+  lifeline.reset();
   if (!is_in_use(*registry)) {
     remove_platform(paths);
   }

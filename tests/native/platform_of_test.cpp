@@ -134,7 +134,7 @@ pid_t TestPlatform::receive_thread(uint32_t cluster, pid_t not_this) const {
   wait_until("a receive thread in cluster " + std::to_string(cluster), [&] {
     pid = registry.clusters().at(cluster).header().receive_thread_pid.load();
     return pid != 0 && pid != not_this && is_running(pid) && !is_starting(pid) &&
-           alive_locks(paths()).is_held(receive_thread_byte + cluster);
+           registry.lifelines().is_held(receive_thread_line + cluster);
   });
   return pid;
 }

@@ -132,6 +132,27 @@ TEST_CASE(
   CHECK(f.inspection.live_endpoints() == 1);
 }
 
+TEST_CASE(
+  "a receive thread killed in its phase, with the last node of its cluster: others go on freeing") {
+  Fixture f;
+  {
+    Node last(f.platform, 2);
+    const pid_t other = f.platform.stop_receive_thread(2);
+    f.inspection.registry().clusters().at(2).header().phase.fetch_or(1);  // as in forward()
+    last.stop();  // or else it starts another one
+    kill(other, SIGKILL);
+    wait_until("it is killed", [&] { return !is_running(other); });
+  }
+  f.wait_until_alone();
+  const uint64_t used = f.inspection.used_bytes();
+  for (int i = 0; i < 100; ++i) {
+    f.process->create_publisher(on_topic("/x", keep_last(10)));
+    f.process->create_subscription(on_topic("/x", keep_last(10)));
+  }
+  CHECK(f.inspection.closing_endpoints() == 0);
+  CHECK(f.inspection.used_bytes() == used);
+}
+
 TEST_CASE("memory that a killed process had charged is given back") {
   Fixture f;
   const ClusterHeader & cluster = f.inspection.registry().clusters().at(1).header();

@@ -30,7 +30,7 @@ public:
   }
 
   std::vector<ProcessRow> processes() const {
-    const ByteLocks & alive = alive_locks(view().registry.paths());
+    const Lifelines & alive = view().registry.lifelines();
     std::vector<ProcessRow> rows;
     for (const ProcessInfo & process : view().graph.processes()) {
       rows.push_back({process, alive.is_held(process.slot)});
@@ -39,10 +39,10 @@ public:
   }
 
   std::vector<ClusterRow> clusters() const {
-    const ByteLocks & alive = alive_locks(view().registry.paths());
+    const Lifelines & alive = view().registry.lifelines();
     std::vector<ClusterRow> rows;
     for (const ClusterInfo & cluster : view().graph.clusters()) {
-      rows.push_back({cluster, alive.is_held(receive_thread_byte + cluster.id)});
+      rows.push_back({cluster, alive.is_held(receive_thread_line + cluster.id)});
     }
     return rows;
   }

@@ -30,6 +30,11 @@ struct Slot {
   uint32_t incarnation;  ///< raised at each use
 };
 
+/// Lifelines of the `alive` file, after those of the process slots.
+constexpr uint32_t receive_thread_line = process_capacity;  ///< + cluster, from 1
+constexpr uint32_t configurator_line = receive_thread_line + max_clusters + 1;
+constexpr uint32_t lifeline_count = configurator_line + 1;
+
 struct ProcessEntry {
   Slot slot;
   pid_t pid;

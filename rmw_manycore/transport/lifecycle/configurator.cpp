@@ -22,13 +22,13 @@ Configurator::Configurator(
                                      "(platform: name in the mapfile)");
   }
   ensure_platform(paths_, profile, topics);
-  alive_locks(paths_).try_lock(configurator_byte);
+  lifeline_ = Lifelines::open(paths_.alive()).try_hold(configurator_line);
 }
 
 Configurator::~Configurator() {
   try {
     const JoinLock lock(paths_);
-    alive_locks(paths_).unlock(configurator_byte);
+    lifeline_.reset();
     Registry registry(paths_);
     if (!is_in_use(registry)) {
       remove_platform(paths_);

@@ -22,6 +22,7 @@ public:
 
 private:
   PlatformPaths paths_;
+  std::optional<HeldLifeline> lifeline_;
 };
 
 /// Names of this user's platforms, dead or alive.

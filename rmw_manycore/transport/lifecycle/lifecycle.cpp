@@ -10,9 +10,6 @@
 #include <cerrno>
 #include <climits>
 #include <cstdlib>
-#include <iterator>
-#include <map>
-#include <mutex>
 
 #include "platform/os_process.hpp"
 #include "transport/matching/closing.hpp"
@@ -119,24 +116,6 @@ JoinLock::~JoinLock() {
   }
 }
 
-ByteLocks alive_locks(const PlatformPaths & paths) {
-  static std::mutex mutex;
-  // Kept, since closing any descriptor of the file would drop this process's locks.
-  static auto & opened = *new std::multimap<std::string, ByteLocks>();
-  const std::lock_guard<std::mutex> guard(mutex);
-  const auto range = opened.equal_range(paths.alive());
-  for (auto i = range.first; i != range.second; ++i) {
-    if (i->second.is_current()) {
-      return i->second;
-    }
-  }
-  // Files of platforms that are gone go, unless this process has locks to lose there.
-  for (auto i = opened.begin(); i != opened.end();) {
-    i = i->second.is_current() || i->second.holds_any() ? std::next(i) : opened.erase(i);
-  }
-  return opened.emplace(paths.alive(), ByteLocks::open(paths.alive()))->second;
-}
-
 Profile host_profile() {
   constexpr uint64_t mebibyte = 1u << 20;
   Profile profile{};
@@ -153,7 +132,7 @@ Profile host_profile() {
 }
 
 bool is_alive(const PlatformPaths & paths) {
-  return exists(paths.alive()) && alive_locks(paths).is_any_held();
+  return exists(paths.alive()) && Lifelines::open(paths.alive()).is_any_held();
 }
 
 void ensure_platform(
@@ -165,7 +144,7 @@ void ensure_platform(
   if (!exists(paths.directory)) {
     make_private_directory(paths.directory);
     try {
-      ByteLocks::create(paths.alive());
+      Lifelines::create(paths.alive(), lifeline_count);
       Registry::create(paths, profile, topics);
     } catch (...) {
       remove_platform(paths);
@@ -175,8 +154,8 @@ void ensure_platform(
 }
 
 bool is_in_use(Registry & registry) {
-  const ByteLocks & alive = alive_locks(registry.paths());
-  if (alive.is_held(configurator_byte)) {
+  const Lifelines & alive = registry.lifelines();
+  if (alive.is_held(configurator_line)) {
     return true;
   }
   for (uint32_t slot = 0; slot < registry.processes().high_water(); ++slot) {
@@ -211,7 +190,7 @@ std::vector<std::string> remove_platform(const PlatformPaths & paths) {
 }
 
 uint32_t reap_dead(Registry & registry) {
-  const ByteLocks & alive = alive_locks(registry.paths());
+  const Lifelines & alive = registry.lifelines();
   uint32_t dead = 0;
   for (uint32_t slot = 0; slot < registry.processes().high_water(); ++slot) {
     if (registry.processes().is_live(slot) && !alive.is_held(slot)) {
@@ -238,7 +217,9 @@ void tell_other_reapers(Registry & registry, uint32_t own) {
 
 void ensure_receive_thread(const PlatformPaths & paths, uint32_t cluster) {
   const JoinLock lock(paths);  // one starter at a time
-  if (!exists(paths.alive()) || alive_locks(paths).is_held(receive_thread_byte + cluster)) {
+  if (
+    !exists(paths.alive()) ||
+    Lifelines::open(paths.alive()).is_held(receive_thread_line + cluster)) {
     return;
   }
   const std::string program = receive_thread_program();

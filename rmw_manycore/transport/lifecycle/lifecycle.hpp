@@ -5,14 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "platform/byte_lock.hpp"
+#include "platform/file_lock.hpp"
+#include "platform/lifeline.hpp"
 #include "transport/registry/registry.hpp"
 
 namespace manycore {
-
-/// Bytes of the `alive` file beyond the process slots.
-constexpr uint32_t receive_thread_byte = 65536;  ///< + cluster
-constexpr uint32_t configurator_byte = 131072;   ///< who configured the platform and keeps it
 
 /// Serialises joining and leaving of all platforms of this user, while alive. The user directory
 /// comes with its first holder and goes with the last one that leaves no platform in it.
@@ -28,9 +25,6 @@ private:
   PlatformPaths paths_;
   std::optional<FileLock> lock_;
 };
-
-/// The byte locks of a platform. One descriptor per process and file: see ByteLocks.
-ByteLocks alive_locks(const PlatformPaths & paths);
 
 /// Sizes for a platform that nobody configured: Coolidge's shape, SMEM from this machine's
 /// /dev/shm.

@@ -18,6 +18,7 @@ namespace {
 
 constexpr int for_ever_ms = -1;
 constexpr int retry_ms = 1000;
+constexpr int foreign_ms = 500;
 constexpr uint64_t look_again_key = 0;  ///< no process has pid 0
 
 /// True while the platform's directory still holds this registry, and not a later one of the same
@@ -85,14 +86,20 @@ Reaper::~Reaper() {
 
 void Reaper::look_again() noexcept { eventfd_write(event_.get(), 1); }
 
-void Reaper::watch(pid_t pid) {
-  if (pid <= 0 || pid == getpid() || watched_.count(pid) != 0) {
+/// Of an end in another PID namespace no descriptor tells, so those are looked at again and again.
+void Reaper::watch(uint32_t line) {
+  const ProcessIdentity holder = registry_.lifelines().holder(line);
+  if (holder.pid <= 0 || holder.pid == getpid() || watched_.count(holder.pid) != 0) {
     return;
   }
-  FileDescriptor pidfd = open_pidfd(pid);
+  if (!holder.is_of_this_pid_namespace()) {
+    watches_foreign_ = true;
+    return;
+  }
+  FileDescriptor pidfd = open_pidfd(holder.pid);
   if (pidfd) {
-    add_to_poll(poll_.get(), pidfd.get(), static_cast<uint64_t>(pid));
-    watched_.emplace(pid, std::move(pidfd));
+    add_to_poll(poll_.get(), pidfd.get(), static_cast<uint64_t>(holder.pid));
+    watched_.emplace(holder.pid, std::move(pidfd));
   }
 }
 
@@ -103,22 +110,22 @@ bool Reaper::is_ours(uint32_t cluster) const {
   if (cluster == cluster_) {
     return true;
   }
-  const Cluster * const other = registry_.clusters().find(cluster);
-  return other == nullptr || watched_.count(other->header().receive_thread_pid.load()) == 0 ||
-         !alive_locks(registry_.paths()).is_held(receive_thread_byte + cluster);
+  const Lifelines & lifelines = registry_.lifelines();
+  const uint32_t line = receive_thread_line + cluster;
+  return watched_.count(lifelines.holder(line).pid) == 0 || !lifelines.is_held(line);
 }
 
 bool Reaper::watch_new() {
+  watches_foreign_ = false;
   const uint64_t present = registry_.header().clusters_present.load();
   for (uint32_t id = 1; id <= max_clusters; ++id) {
-    if ((present >> (id - 1) & 1) != 0 && id != cluster_ && registry_.clusters().find(id)) {
-      watch(registry_.clusters().at(id).header().receive_thread_pid.load());
+    if ((present >> (id - 1) & 1) != 0 && id != cluster_) {
+      watch(receive_thread_line + id);
     }
   }
   for (uint32_t slot = 0; slot < registry_.processes().high_water(); ++slot) {
-    const ProcessEntry & process = registry_.processes()[slot];
-    if (registry_.processes().is_live(slot) && is_ours(process.cluster)) {
-      watch(process.pid);
+    if (registry_.processes().is_live(slot) && is_ours(registry_.processes()[slot].cluster)) {
+      watch(slot);
     }
   }
   return bury();  // who died before it was watched
@@ -153,6 +160,13 @@ bool Reaper::wait_for_end(int timeout_ms) {
   return somebody_ended;
 }
 
+int Reaper::patience_ms() const noexcept {
+  if (watches_foreign_) {
+    return foreign_ms;
+  }
+  return is_closing_ ? retry_ms : for_ever_ms;
+}
+
 void Reaper::run() noexcept {
   bool somebody_ended = true;  // perhaps all who were there when this receive thread was started
   while (running_) {
@@ -161,7 +175,7 @@ void Reaper::run() noexcept {
       if (somebody_ended) {
         exit_if_unused(registry_);
       }
-      somebody_ended = wait_for_end(is_closing_ ? retry_ms : for_ever_ms);
+      somebody_ended = wait_for_end(patience_ms());
     } catch (const std::exception &) {
       // A lock that stayed taken or a damaged entry.
       somebody_ended = wait_for_end(retry_ms) || somebody_ended;

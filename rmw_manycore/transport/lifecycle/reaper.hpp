@@ -30,7 +30,8 @@ private:
   bool watch_new();
   bool bury();
   bool is_ours(uint32_t cluster) const;
-  void watch(pid_t pid);
+  void watch(uint32_t line);
+  int patience_ms() const noexcept;
   /// True when one of those watched has ended; false when there is another reason to look, or none.
   bool wait_for_end(int timeout_ms);
 
@@ -39,6 +40,7 @@ private:
   FileDescriptor poll_;   ///< epoll
   FileDescriptor event_;  ///< eventfd: look again
   std::map<pid_t, FileDescriptor> watched_;
+  bool watches_foreign_ = false;
   bool is_closing_ = false;  ///< something could not be freed yet, and nobody tells when it can be
   std::atomic<bool> running_{true};
   std::thread thread_;

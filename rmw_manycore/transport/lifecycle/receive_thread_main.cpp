@@ -21,7 +21,9 @@ void serve(const std::string & platform, uint32_t id, Daemon & daemon) {
   const PlatformPaths paths = PlatformPaths::of(platform);
   Registry registry(paths);
   Cluster & cluster = registry.clusters().at(id);
-  if (!alive_locks(paths).try_lock(receive_thread_byte + id)) {
+  const std::optional<HeldLifeline> lifeline =
+    registry.lifelines().try_hold(receive_thread_line + id);
+  if (!lifeline) {
     daemon.ready();  // another one was faster
     return;
   }

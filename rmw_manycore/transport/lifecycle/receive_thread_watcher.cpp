@@ -16,6 +16,7 @@ namespace {
 constexpr int retry_ms = 1000;  ///< after a start that failed
 constexpr int settle_ms = 1;    ///< while another process is starting it
 constexpr int for_ever_ms = -1;
+constexpr int foreign_ms = 500;  ///< no pidfd tells of an end in another PID namespace
 
 }  // namespace
 
@@ -43,11 +44,15 @@ bool ReceiveThreadWatcher::stopped_within(int timeout_ms, int other_fd) const no
 
 bool ReceiveThreadWatcher::watch_once() {
   ensure_receive_thread(registry_.paths(), cluster_);
-  const ByteLocks & alive = alive_locks(registry_.paths());
-  const pid_t pid = registry_.clusters().at(cluster_).header().receive_thread_pid.load();
-  const FileDescriptor pidfd = pid > 0 ? open_pidfd(pid) : FileDescriptor();
-  // The lock proves that the pid, read before, is still the receive thread's.
-  if (!pidfd || !alive.is_held(receive_thread_byte + cluster_)) {
+  const Lifelines & lifelines = registry_.lifelines();
+  const uint32_t line = receive_thread_line + cluster_;
+  const ProcessIdentity receive_thread = lifelines.holder(line);
+  if (!receive_thread.is_of_this_pid_namespace()) {
+    return !stopped_within(lifelines.is_held(line) ? foreign_ms : settle_ms, -1);
+  }
+  const FileDescriptor pidfd = open_pidfd(receive_thread.pid);
+  // The lifeline proves that the pid, read before, is still the receive thread's.
+  if (!pidfd || !lifelines.is_held(line)) {
     return !stopped_within(settle_ms, -1);
   }
   return !stopped_within(for_ever_ms, pidfd.get());

@@ -103,7 +103,8 @@ void close_publisher(Registry & registry, EndpointEntry & entry, bool died) {
   dsm->orphan.store(1, std::memory_order_seq_cst);
 }
 
-/// True when the cluster's receive thread follows no references that it loaded before now.
+/// True when no receive thread follows references that it loaded before now. The dead follow none:
+/// one that was killed in its phase has a successor only if its cluster has a process.
 bool receive_threads_are_out(Registry & registry) {
   const uint64_t present = registry.header().clusters_present.load();
   for (uint32_t id = 1; id <= max_clusters; ++id) {
@@ -111,7 +112,9 @@ bool receive_threads_are_out(Registry & registry) {
       continue;
     }
     Cluster * const cluster = registry.clusters().find(id);
-    if (cluster != nullptr && cluster->header().phase.load(std::memory_order_seq_cst) % 2 != 0) {
+    const bool in_phase =
+      cluster != nullptr && cluster->header().phase.load(std::memory_order_seq_cst) % 2 != 0;
+    if (in_phase && registry.lifelines().is_held(receive_thread_line + id)) {
       return false;
     }
   }

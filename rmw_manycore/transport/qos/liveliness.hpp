@@ -7,7 +7,7 @@ namespace manycore {
 
 /// Who of a subscription's publishers is alive now. Any thread, without the registry lock.
 ///
-/// AUTOMATIC publishers live as long as their process, which its byte lock proves; MANUAL_BY_TOPIC
+/// AUTOMATIC publishers live as long as their process, which its lifeline proves; MANUAL_BY_TOPIC
 /// ones for the subscription's lease after each assertion, and count as neither before the first. A
 /// publisher whose process died is not alive, until another one takes its place (see
 /// docs/design/qos_timing.md).

@@ -82,6 +82,7 @@ void Registry::create(
 Registry::Registry(const PlatformPaths & paths)
 : paths_(paths),
   memory_(open_registry(paths)),
+  lifelines_(Lifelines::open(paths.alive())),
   processes_(memory_, header().processes, process_table_offset, process_capacity),
   nodes_(memory_, header().nodes, node_table_offset, node_capacity),
   endpoints_(memory_, header().endpoints, endpoint_table_offset, endpoint_capacity),

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "platform/error.hpp"
+#include "platform/lifeline.hpp"
 #include "platform/shared_memory.hpp"
 #include "transport/layout/registry_layout.hpp"
 #include "transport/registry/cluster.hpp"
@@ -99,6 +100,7 @@ public:
   Table<NodeEntry> & nodes() noexcept { return nodes_; }
   Table<EndpointEntry> & endpoints() noexcept { return endpoints_; }
   Clusters & clusters() noexcept { return clusters_; }
+  const Lifelines & lifelines() const noexcept { return lifelines_; }
   const PlatformPaths & paths() const noexcept { return paths_; }
   uint64_t nonce() const noexcept { return header().segment.platform_nonce; }
 
@@ -124,6 +126,7 @@ private:
 
   PlatformPaths paths_;
   SharedMemory memory_;
+  Lifelines lifelines_;
   Table<ProcessEntry> processes_;
   Table<NodeEntry> nodes_;
   Table<EndpointEntry> endpoints_;

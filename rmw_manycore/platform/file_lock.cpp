@@ -1,0 +1,63 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#include "platform/file_lock.hpp"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+
+#include <cerrno>
+#include <ctime>
+
+#include "platform/clock.hpp"
+#include "platform/error.hpp"
+#include "platform/lock_owner.hpp"
+
+namespace manycore {
+namespace {
+
+bool same_file(int fd, const std::string & path) {
+  struct stat opened {};
+  struct stat named {};
+  return fstat(fd, &opened) == 0 && stat(path.c_str(), &named) == 0 &&
+         opened.st_ino == named.st_ino && opened.st_dev == named.st_dev;
+}
+
+}  // namespace
+
+FileLock::~FileLock() {
+  if (fd_) {
+    flock(fd_.get(), LOCK_UN);
+  }
+}
+
+std::optional<FileLock> FileLock::acquire(const std::string & path, int timeout_ms) {
+  const int64_t deadline = monotonic_ns() + int64_t{timeout_ms} * 1'000'000;
+  while (true) {
+    FileDescriptor fd(::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600));
+    if (!fd && errno == ENOENT) {
+      return std::nullopt;
+    }
+    if (!fd) {
+      throw_errno("cannot open " + path);
+    }
+    // Joining holds the lock for well under a millisecond, so a short pause between tries is
+    // enough.
+    while (flock(fd.get(), LOCK_EX | LOCK_NB) != 0) {
+      if (errno != EWOULDBLOCK && errno != EINTR) {
+        throw_errno("cannot lock " + path);
+      }
+      if (monotonic_ns() > deadline) {
+        throw Error(
+          ErrorCode::timeout, path + " has been locked for " + std::to_string(timeout_ms) +
+                                " ms: " + describe_flock_owner(fd.get()));
+      }
+      const timespec pause = to_timespec(200'000);
+      nanosleep(&pause, nullptr);
+    }
+    if (same_file(fd.get(), path)) {
+      return FileLock(std::move(fd));
+    }
+  }
+}
+
+}  // namespace manycore

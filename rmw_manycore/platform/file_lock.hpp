@@ -1,0 +1,28 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "platform/file_descriptor.hpp"
+
+namespace manycore {
+
+/// Exclusive lock of a whole file (flock), held while alive. The file may be unlinked by its
+/// holder; acquiring checks that the locked file is still the one at `path`.
+class FileLock {
+public:
+  /// Waits at most `timeout_ms`; throws Error{timeout} naming the file. Empty when the file's
+  /// directory is missing (its last user has just removed it).
+  static std::optional<FileLock> acquire(const std::string & path, int timeout_ms);
+  FileLock(FileLock &&) = default;
+  FileLock & operator=(FileLock &&) = default;
+  /// Unlocks before it closes: a child that was forked meanwhile has the same lock.
+  ~FileLock();
+
+private:
+  explicit FileLock(FileDescriptor fd) : fd_(std::move(fd)) {}
+  FileDescriptor fd_;
+};
+
+}  // namespace manycore

@@ -1,0 +1,214 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#include "platform/lifeline.hpp"
+
+#include <pthread.h>
+#include <unistd.h>
+
+#include <condition_variable>
+#include <future>
+#include <mutex>
+#include <thread>
+
+#include "platform/blocked_signals.hpp"
+#include "platform/clock.hpp"
+#include "platform/error.hpp"
+
+namespace manycore {
+namespace {
+
+constexpr uint64_t lifelines_magic = 0x4d43'4c49'4645'4c4e;  // "MCLIFELN"
+constexpr long no_wait_ns = 0;
+
+/// False when another thread has it.
+bool try_lock(RobustMutex & mutex) {
+  try {
+    if (mutex.lock(no_wait_ns) == RobustMutex::Outcome::owner_died) {
+      mutex.mark_consistent();
+    }
+    return true;
+  } catch (const Error & error) {
+    if (error.code() == ErrorCode::timeout) {
+      return false;
+    }
+    throw;
+  }
+}
+
+/// Threads of a killed process end one by one, in no order, and this one's held the line: others
+/// may still run on their CPUs. They need no more than an interrupt to stop. A process that became
+/// another program (exec) goes on under its pid, so the wait is bounded.
+void wait_for_stragglers(const ProcessIdentity & dying) {
+  constexpr int enough_ms = 10;
+  try {
+    dying.wait_for_end(enough_ms);
+  } catch (const Error &) {
+    const timespec pause =
+      to_timespec(enough_ms * ns_per_s / 1000);  // no descriptor left to wait on
+    nanosleep(&pause, nullptr);
+  }
+}
+
+}  // namespace
+
+/// First line of the file; the same in every version, so that each can tell whether another's
+/// platform lives. `magic` is written last.
+struct Lifelines::Header {
+  std::atomic<uint64_t> magic;
+  uint32_t count;
+  char reserved[52];
+};
+
+/// The thread never unlocks: ending is what lets go, here as for the killed.
+struct HeldLifeline::Holder {
+  explicit Holder(std::shared_ptr<SharedMemory> memory_, Lifeline & line_)
+  : memory(std::move(memory_)), line(line_) {}
+
+  void hold();
+  void let_go();
+
+  std::shared_ptr<SharedMemory> memory;
+  Lifeline & line;
+  pid_t process = getpid();
+  std::promise<bool> is_held;
+  std::mutex mutex;
+  std::condition_variable changed;
+  bool ends = false;
+  std::thread thread;
+};
+
+void HeldLifeline::Holder::hold() {
+  pthread_setname_np(pthread_self(), "manycore_life");
+  try {
+    const bool held = try_lock(line.mutex);
+    if (held) {
+      const ProcessIdentity own = ProcessIdentity::own();
+      line.start_time = own.start_time;
+      line.pid_namespace = own.pid_namespace;
+      line.pid = own.pid;
+    }
+    is_held.set_value(held);
+    if (!held) {
+      return;
+    }
+  } catch (...) {
+    is_held.set_exception(std::current_exception());
+    return;
+  }
+  std::unique_lock<std::mutex> lock(mutex);
+  changed.wait(lock, [this] { return ends; });
+}
+
+void HeldLifeline::Holder::let_go() {
+  {
+    const std::lock_guard<std::mutex> lock(mutex);
+    ends = true;
+  }
+  changed.notify_one();
+  thread.join();
+}
+
+HeldLifeline::HeldLifeline(std::unique_ptr<Holder> holder) : holder_(std::move(holder)) {}
+
+HeldLifeline::HeldLifeline(HeldLifeline &&) noexcept = default;
+
+HeldLifeline & HeldLifeline::operator=(HeldLifeline && other) noexcept {
+  std::swap(holder_, other.holder_);
+  return *this;
+}
+
+HeldLifeline::~HeldLifeline() {
+  if (!holder_) {
+    return;
+  }
+  if (holder_->process != getpid()) {
+    holder_.release();  // the thread is the parent's, and what it locks cannot be destroyed here
+    return;
+  }
+  holder_->line.pid = 0;  // this process lives on, without the line
+  holder_->let_go();
+}
+
+void Lifelines::create(const std::string & path, uint32_t count) {
+  const uint64_t bytes = sizeof(Header) + uint64_t{count} * sizeof(Lifeline);
+  const SharedMemory memory = SharedMemory::create(path, bytes);
+  memory.reserve(0, bytes);
+  for (uint32_t line = 0; line < count; ++line) {
+    memory.at<Lifeline>(sizeof(Header) + uint64_t{line} * sizeof(Lifeline)).mutex.initialize();
+  }
+  auto & header = memory.at<Header>(0);
+  header.count = count;
+  header.magic.store(lifelines_magic, std::memory_order_release);
+}
+
+Lifelines::Lifelines(SharedMemory memory)
+: memory_(std::make_shared<SharedMemory>(std::move(memory))) {}
+
+Lifelines Lifelines::open(const std::string & path) {
+  static_assert(sizeof(Header) == sizeof(Lifeline));
+  Lifelines lifelines(SharedMemory::open(path, sizeof(Header)));
+  const Header & header = lifelines.memory_->at<Header>(0);
+  if (
+    header.magic.load(std::memory_order_acquire) != lifelines_magic ||
+    header.count > lifelines.memory_->size() / sizeof(Lifeline) - 1) {
+    throw Error(
+      ErrorCode::corrupt, path +
+                            " is damaged, or of another version of rmw_manycore; stop the "
+                            "platform's nodes and run 'manycore clean'");
+  }
+  return lifelines;
+}
+
+std::optional<HeldLifeline> Lifelines::try_hold(uint32_t line) const {
+  auto holder = std::make_unique<HeldLifeline::Holder>(memory_, at(line));
+  {
+    const BlockedSignals blocked;
+    holder->thread = std::thread([&holder = *holder] { holder.hold(); });
+  }
+  try {
+    if (holder->is_held.get_future().get()) {
+      return HeldLifeline(std::move(holder));
+    }
+  } catch (...) {
+    holder->thread.join();
+    throw;
+  }
+  holder->thread.join();
+  return std::nullopt;
+}
+
+bool Lifelines::is_held(uint32_t line) const {
+  const Lifeline & lifeline = at(line);
+  if (lifeline.mutex.is_locked()) {
+    return true;
+  }
+  const ProcessIdentity last = holder(line);
+  if (last.pid != 0 && last.is_of_this_pid_namespace()) {
+    wait_for_stragglers(last);
+  }
+  return false;
+}
+
+bool Lifelines::is_any_held() const {
+  for (uint32_t line = 0; line < count(); ++line) {
+    if (is_held(line)) {
+      return true;
+    }
+  }
+  return false;
+}
+
+ProcessIdentity Lifelines::holder(uint32_t line) const {
+  const Lifeline & lifeline = at(line);
+  return {lifeline.pid.load(), lifeline.start_time.load(), lifeline.pid_namespace.load()};
+}
+
+uint32_t Lifelines::count() const noexcept { return memory_->at<Header>(0).count; }
+
+Lifeline & Lifelines::at(uint32_t line) const {
+  if (line >= count()) {
+    throw Error(ErrorCode::corrupt, "there is no lifeline " + std::to_string(line));
+  }
+  return memory_->at<Lifeline>(sizeof(Header) + uint64_t{line} * sizeof(Lifeline));
+}
+
+}  // namespace manycore

@@ -1,0 +1,187 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+//
+// Proof of life: what a held lifeline outlasts, and what ends it.
+#include <doctest/doctest.h>
+
+#include <poll.h>
+#include <sched.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdlib>
+
+#include "child.hpp"
+#include "node_role.hpp"
+#include "patience.hpp"
+#include "platform/error.hpp"
+#include "platform/lifeline.hpp"
+#include "platform/os_process.hpp"
+
+using namespace manycore;
+
+namespace {
+
+constexpr uint32_t line = 2;
+
+/// A file of four lifelines.
+struct File {
+  File() {
+    close(mkstemp(path.data()));
+    unlink(path.c_str());
+    Lifelines::create(path, 4);
+  }
+  ~File() { unlink(path.c_str()); }
+
+  std::string path = "/dev/shm/manycore-lifelines-XXXXXX";
+};
+
+/// Holds a line until it is told what to do.
+const Role holder("holder", [](Lines & test, const Arguments & arguments) {
+  auto lifeline = Lifelines::open(arguments.at(0)).try_hold(line);
+  if (!lifeline) {
+    throw std::runtime_error("it is held by another process");
+  }
+  test.say("holds");
+  const std::string order = test.hear();
+  if (order == "close all descriptors") {
+    for (int fd = STDERR_FILENO; fd < 1024; ++fd) {
+      close(fd);
+    }
+    test.say("closed");
+    test.hear();
+  } else if (order == "fork") {
+    const pid_t child = fork();
+    if (child == 0) {
+      lifeline.reset();
+      test.say("forked");
+      pollfd test_ended{STDIN_FILENO, 0, 0};
+      poll(&test_ended, 1, -1);
+      _exit(0);
+    }
+    test.hear();
+    _exit(0);  // its child goes on
+  } else if (order == "execute") {
+    execl("/bin/sleep", "sleep", "1000", nullptr);
+  }
+});
+
+/// Plays a role as the first process of a PID namespace, as programs in containers are.
+const Role contained("contained", [](Lines & test, const Arguments & arguments) {
+  if (unshare(CLONE_NEWPID) != 0 && unshare(CLONE_NEWUSER | CLONE_NEWPID) != 0) {
+    throw_errno("cannot make a PID namespace");
+  }
+  const pid_t inner = fork();
+  if (inner == 0) {
+    execl(
+      "/proc/self/exe", "contained", "--role", arguments.at(0).c_str(), arguments.at(1).c_str(),
+      nullptr);
+  }
+  test.say("contains");
+  waitpid(inner, nullptr, 0);
+});
+
+}  // namespace
+
+TEST_CASE("a line is held from one moment to the other, also in one's own process") {
+  const File file;
+  const Lifelines here = Lifelines::open(file.path);
+  const Lifelines again = Lifelines::open(file.path);
+  CHECK_FALSE(again.is_any_held());
+  {
+    const auto held = here.try_hold(line);
+    REQUIRE(held);
+    CHECK(again.is_held(line));
+    CHECK_FALSE(again.is_held(line + 1));
+    CHECK(again.is_any_held());
+    CHECK(again.holder(line).pid == getpid());
+    CHECK_FALSE(again.try_hold(line));
+  }
+  CHECK_FALSE(again.is_any_held());
+  CHECK(again.try_hold(line));
+}
+
+TEST_CASE("a killed process holds nothing; another one may have the line") {
+  const File file;
+  const Lifelines lifelines = Lifelines::open(file.path);
+  for (int i = 0; i < 20; ++i) {
+    Child child("holder", {file.path});
+    child.expect("holds");
+    CHECK(lifelines.is_held(line));
+    child.kill();
+    CHECK_FALSE(lifelines.is_held(line));
+  }
+  CHECK(lifelines.try_hold(line));
+}
+
+TEST_CASE("a stopped process lives") {
+  const File file;
+  Child child("holder", {file.path});
+  child.expect("holds");
+  child.stop();
+  CHECK(Lifelines::open(file.path).is_held(line));
+}
+
+TEST_CASE("closing every descriptor, as daemons do, ends nothing") {
+  const File file;
+  Child child("holder", {file.path});
+  child.expect("holds");
+  child.say("close all descriptors");
+  child.expect("closed");
+  CHECK(Lifelines::open(file.path).is_held(line));
+}
+
+TEST_CASE("a child of fork() holds nothing: the line ends with the parent") {
+  const File file;
+  const Lifelines lifelines = Lifelines::open(file.path);
+  Child child("holder", {file.path});
+  child.expect("holds");
+  child.say("fork");
+  child.expect("forked");
+  CHECK(lifelines.is_held(line));  // the child let its copy go
+  child.say("end");
+  CHECK(child.wait() == 0);
+  CHECK_FALSE(lifelines.is_held(line));
+}
+
+TEST_CASE("another program in the place of the holder holds nothing") {
+  const File file;
+  const Lifelines lifelines = Lifelines::open(file.path);
+  Child child("holder", {file.path});
+  child.expect("holds");
+  child.say("execute");
+  wait_until("it is another program", [&] { return !lifelines.is_held(line); });
+  CHECK(is_running(child.pid()));
+}
+
+TEST_CASE("lines are seen across PID namespaces") {
+  const File file;
+  const Lifelines lifelines = Lifelines::open(file.path);
+  Child child("contained", {"holder", file.path});
+  const std::string first = child.hear();  // both say something
+  CHECK(first + child.hear() == (first == "holds" ? "holdscontains" : "containsholds"));
+  CHECK(lifelines.is_held(line));
+  CHECK(lifelines.holder(line).pid == 1);
+  CHECK_FALSE(lifelines.holder(line).is_of_this_pid_namespace());
+  child.kill();
+  wait_until("the other namespace has ended", [&] { return !lifelines.is_held(line); });
+  CHECK(lifelines.try_hold(line));
+}
+
+TEST_CASE("lines are seen from inside another PID namespace") {
+  const File file;
+  const auto held = Lifelines::open(file.path).try_hold(line);
+  Child child("contained", {"holder", file.path});
+  const std::string first = child.hear();
+  const std::string second = child.hear();
+  CHECK((first + second).find("error: it is held by another process") != std::string::npos);
+}
+
+TEST_CASE("a file that is none of lifelines is refused") {
+  const File file;
+  SUBCASE("empty") { REQUIRE(truncate(file.path.c_str(), 0) == 0); }
+  SUBCASE("without its mark") { SharedMemory::open(file.path, 8).at<uint64_t>(0) = 1; }
+  SUBCASE("cut off") { REQUIRE(truncate(file.path.c_str(), 128) == 0); }
+  const Refusal refusal = refusal_of([&] { Lifelines::open(file.path); });
+  CHECK(refusal.code == ErrorCode::corrupt);
+  CHECK(refusal.says("manycore clean"));
+}
