@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cstdlib>
 #include <cstring>
 #include <map>
@@ -18,6 +19,7 @@
 #include "transport/matching/matching.hpp"
 #include "transport/publisher_impl.hpp"
 #include "transport/qos/manual_liveliness.hpp"
+#include "transport/registry/membership.hpp"
 #include "transport/registry/smem_charge.hpp"
 #include "transport/subscription_impl.hpp"
 
@@ -137,9 +139,9 @@ struct Process::Impl {
   explicit Impl(const Placement & placement_);
   ~Impl();
 
-  struct Joined {};
+  struct JoinOnly {};
   /// Joins, no more: the first half of what the other constructor does.
-  Impl(const Placement & placement_, Joined);
+  Impl(const Placement & placement_, JoinOnly);
 
   uint32_t take_process_slot();
   uint32_t fill_endpoint(const EndpointSpec & spec, EndpointKind kind);
@@ -152,12 +154,13 @@ struct Process::Impl {
   std::unique_ptr<Registry> registry;
   uint32_t slot = nothing;
   std::optional<HeldLifeline> lifeline;
+  std::optional<Membership> membership;
   std::unique_ptr<Waiter> waiter;
   std::unique_ptr<Graph> graph;
   std::unique_ptr<ReceiveThreadWatcher> watcher;
 };
 
-Process::Impl::Impl(const Placement & placement_, Joined)
+Process::Impl::Impl(const Placement & placement_, JoinOnly)
 : placement(placement_), paths(PlatformPaths::of(placement_.platform)) {
   {
     const JoinLock join_lock(paths);
@@ -178,7 +181,7 @@ Process::Impl::Impl(const Placement & placement_, Joined)
 }
 
 /// Delegates, so that ~Impl() leaves again when the rest fails.
-Process::Impl::Impl(const Placement & placement_) : Impl(placement_, Joined{}) {
+Process::Impl::Impl(const Placement & placement_) : Impl(placement_, JoinOnly{}) {
   waiter = std::make_unique<Waiter>(registry->processes()[slot].wake, placement.wait_mode);
   graph = std::make_unique<Graph>(*registry);
   attach();
@@ -218,10 +221,15 @@ uint32_t Process::Impl::take_process_slot() {
   entry.wake.graph_watchers.store(0);
   entry.wake.event_watchers.store(0);
   processes.publish(taken);
+  membership.emplace(entry.slot);
   return taken;
 }
 
 Process::Impl::~Impl() {
+  if (membership->is_inherited()) {
+    watcher.release();  // its thread is the parent's
+    return;
+  }
   watcher.reset();
   try {
     leave();
@@ -287,6 +295,7 @@ uint32_t Process::Impl::fill_endpoint(const EndpointSpec & spec, EndpointKind ki
 
 uint32_t Process::Impl::add_endpoint(const EndpointSpec & spec, EndpointKind kind) {
   check_qos(spec);
+  membership->require();
   const Registry::Lock lock(*registry);
   closing::sweep(*registry);
   const uint32_t taken = fill_endpoint(spec, kind);
@@ -315,15 +324,39 @@ uint32_t Process::Impl::add_endpoint(const EndpointSpec & spec, EndpointKind kin
   return taken;
 }
 
+namespace {
+
+/// What this process has joined. A child of fork() begins anew, with a mutex that nobody holds.
+struct Joined {
+  static Joined & by_this_process();
+
+  ForkSide side;
+  std::mutex mutex;
+  std::map<std::string, std::weak_ptr<Process>> processes;
+};
+
+Joined & Joined::by_this_process() {
+  static std::atomic<Joined *> current{nullptr};
+  Joined * known = current.load();
+  if (known == nullptr || known->side.is_inherited()) {
+    auto fresh = std::make_unique<Joined>();
+    if (current.compare_exchange_strong(known, fresh.get())) {
+      known = fresh.release();
+    }
+  }
+  return *known;
+}
+
+}  // namespace
+
 Process::Process(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 
 Process::~Process() = default;
 
 std::shared_ptr<Process> Process::join(const Placement & placement) {
-  static std::mutex mutex;
-  static std::map<std::string, std::weak_ptr<Process>> joined;
-  const std::lock_guard<std::mutex> guard(mutex);
-  std::weak_ptr<Process> & known = joined[placement.platform];
+  Joined & joined = Joined::by_this_process();
+  const std::lock_guard<std::mutex> guard(joined.mutex);
+  std::weak_ptr<Process> & known = joined.processes[placement.platform];
   if (std::shared_ptr<Process> process = known.lock()) {
     return process;
   }
@@ -334,6 +367,7 @@ std::shared_ptr<Process> Process::join(const Placement & placement) {
 
 uint32_t Process::add_node(
   const std::string & name, const std::string & ns, const std::string & enclave) {
+  impl_->membership->require();
   Registry & registry = *impl_->registry;
   uint32_t taken = nothing;
   {
@@ -356,6 +390,9 @@ uint32_t Process::add_node(
 }
 
 void Process::remove_node(uint32_t node) noexcept {
+  if (!impl_->membership->holds()) {
+    return;
+  }
   try {
     const Registry::Lock lock(*impl_->registry);
     impl_->registry->nodes().give_back(node);
@@ -377,6 +414,10 @@ std::unique_ptr<Subscription> Process::create_subscription(const EndpointSpec & 
   return std::make_unique<Subscription>(
     std::make_unique<Subscription::Impl>(*impl_->registry, slot));
 }
+
+bool Process::is_inherited() const noexcept { return impl_->membership->is_inherited(); }
+
+void Process::require_membership() const { impl_->membership->require(); }
 
 Waiter & Process::waiter() noexcept { return *impl_->waiter; }
 Graph & Process::graph() noexcept { return *impl_->graph; }

@@ -46,6 +46,11 @@ public:
   std::unique_ptr<Publisher> create_publisher(const EndpointSpec & spec);
   std::unique_ptr<Subscription> create_subscription(const EndpointSpec & spec);
 
+  /// True in a child of fork(): what belongs to this membership fails there, or does nothing.
+  bool is_inherited() const noexcept;
+  /// Throws Error{system} in a child of fork(), and once this process was taken for dead.
+  void require_membership() const;
+
   Waiter & waiter() noexcept;
   Graph & graph() noexcept;
   const Placement & placement() const noexcept;

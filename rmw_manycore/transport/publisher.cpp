@@ -16,7 +16,7 @@ Draft::Draft(Draft && other) noexcept
   capacity_(other.capacity_) {}
 
 Draft::~Draft() {
-  if (publisher_ == nullptr) {
+  if (publisher_ == nullptr || publisher_->impl_->membership.is_inherited()) {
     return;
   }
   Publisher::Impl & impl = *publisher_->impl_;
@@ -27,7 +27,11 @@ Draft::~Draft() {
 
 Publisher::Publisher(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 
-Publisher::~Publisher() { closing::leave(impl_->registry, impl_->slot); }
+Publisher::~Publisher() {
+  if (impl_->membership.holds()) {
+    closing::leave(impl_->registry, impl_->slot);
+  }
+}
 
 const Gid & Publisher::gid() const noexcept { return impl_->entry.gid; }
 
@@ -35,6 +39,7 @@ const Qos & Publisher::qos() const noexcept { return impl_->entry.qos; }
 
 Draft Publisher::draft(size_t size_bytes) {
   Impl & impl = *impl_;
+  impl.membership.require();
   std::unique_lock<std::mutex> lock(impl.mutex);
   impl.writer.enter();
   try {
@@ -92,6 +97,7 @@ TimedCount Publisher::liveliness_lost() const noexcept {
 }
 
 void Publisher::assert_liveliness() {
+  impl_->membership.require();
   if (impl_->is_manual() && impl_->liveliness.assert_now()) {
     impl_->tell_event_watchers();
     notify_event_watchers(impl_->registry, impl_->entry.process);

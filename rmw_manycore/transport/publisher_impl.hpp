@@ -6,6 +6,7 @@
 #include "transport/layout/deadline_clock.hpp"
 #include "transport/publisher.hpp"
 #include "transport/qos/manual_liveliness.hpp"
+#include "transport/registry/membership.hpp"
 #include "transport/topic_dsm/topic_dsm_writer.hpp"
 
 namespace manycore {
@@ -15,6 +16,7 @@ struct Publisher::Impl {
   : registry(registry_),
     slot(slot_),
     entry(registry_.endpoints()[slot_]),
+    membership(entry.slot),
     cluster(registry_.clusters().at(entry.cluster)),
     writer(registry_, cluster, entry),
     liveliness(entry.asserted_ns, entry.qos.liveliness_lease_ns) {
@@ -32,6 +34,7 @@ struct Publisher::Impl {
   Registry & registry;
   uint32_t slot;
   EndpointEntry & entry;
+  Membership membership;
   Cluster & cluster;
   std::mutex mutex;  ///< held from draft() to publish()
   TopicDsmWriter writer;

@@ -22,7 +22,7 @@ Claim::Claim(Claim && other) noexcept
 
 /// Step 3 of Fig. 4, end: release.
 Claim::~Claim() {
-  if (subscription_ == nullptr) {
+  if (subscription_ == nullptr || subscription_->impl_->membership.is_inherited()) {
     return;
   }
   Subscription::Impl & impl = *subscription_->impl_;
@@ -37,7 +37,11 @@ void Claim::reject() noexcept { subscription_->impl_->count_rejected(size_); }
 
 Subscription::Subscription(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 
-Subscription::~Subscription() { closing::leave(impl_->registry, impl_->slot); }
+Subscription::~Subscription() {
+  if (impl_->membership.holds()) {
+    closing::leave(impl_->registry, impl_->slot);
+  }
+}
 
 const Gid & Subscription::gid() const noexcept { return impl_->entry.gid; }
 
@@ -55,6 +59,7 @@ bool Subscription::has_data() const noexcept {
 
 std::optional<Claim> Subscription::claim() {
   Impl & impl = *impl_;
+  impl.membership.require();
   std::unique_lock<std::mutex> lock(impl.mutex);
   while (const auto candidate = impl.next()) {
     TopicDsmReader::View view;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "transport/queue/subscriber_queue.hpp"
+#include "transport/registry/membership.hpp"
 #include "transport/subscription.hpp"
 #include "transport/topic_dsm/topic_dsm_reader.hpp"
 
@@ -49,6 +50,7 @@ struct Subscription::Impl {
   Registry & registry;
   uint32_t slot;
   EndpointEntry & entry;
+  Membership membership;
   Cluster & cluster;
   SubscriptionHeader & header;
   std::mutex mutex;  ///< held while a claim lives

@@ -13,7 +13,7 @@
 #include "messages.hpp"
 #include "node_role.hpp"
 #include "patience.hpp"
-#include "platform/byte_lock.hpp"
+#include "platform/file_lock.hpp"
 #include "transport/lifecycle/configurator.hpp"
 
 using namespace manycore;

@@ -19,7 +19,9 @@ GuardCondition::GuardCondition(rmw_context_t & context, Source source)
 
 void GuardCondition::trigger() noexcept {
   triggered_.store(true, std::memory_order_release);
-  process_->waiter().notify();
+  if (!process_->is_inherited()) {
+    process_->waiter().notify();
+  }
 }
 
 bool GuardCondition::ready() const noexcept {

@@ -85,7 +85,9 @@ rmw_ret_t rmw_shutdown(rmw_context_t * context) {
 
   // Implementation
   *context->impl->is_shutdown = true;
-  context->impl->process->waiter().notify();
+  if (!context->impl->process->is_inherited()) {
+    context->impl->process->waiter().notify();
+  }
   context->impl->callback_thread.stop();
   return RMW_RET_OK;
 }
@@ -107,7 +109,9 @@ rmw_ret_t rmw_context_fini(rmw_context_t * context) {
 
   // Implementation
   const rmw_ret_t result = rmw_init_options_fini(&context->options);
-  delete context->impl;
+  if (!context->impl->process->is_inherited()) {
+    delete context->impl;
+  }  // else threads of the parent stand behind it, which nothing here can join
   *context = rmw_get_zero_initialized_context();
   return result;
 }

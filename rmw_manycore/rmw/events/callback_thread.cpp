@@ -27,6 +27,9 @@ void CallbackThread::remove(Callback & callback) noexcept {
 }
 
 void CallbackThread::stop() noexcept {
+  if (side_.is_inherited()) {
+    return;
+  }
   {
     const std::lock_guard lock(mutex_);
     stopping_ = true;
@@ -100,6 +103,9 @@ void Callback::report_now() {
 }
 
 void Callback::clear() noexcept {
+  if (thread_.side_.is_inherited()) {
+    return;
+  }
   const std::lock_guard lock(thread_.mutex_);
   function_ = nullptr;
   thread_.remove(*this);

@@ -9,6 +9,7 @@
 #include <thread>
 #include <vector>
 
+#include "platform/fork_side.hpp"
 #include "rmw/event_callback_type.h"
 #include "transport/layout/qos.hpp"
 #include "transport/waiting/waiter.hpp"
@@ -39,6 +40,8 @@ private:
   std::optional<int64_t> next_due_ns() const;
 
   manycore::Waiter & waiter_;
+  /// In a child of fork() there is no thread, and the mutex may be locked for ever.
+  const manycore::ForkSide side_;
   /// Held while a callback runs, so that none runs after it was taken away; recursive, because a
   /// callback may set or clear callbacks.
   std::recursive_mutex mutex_;

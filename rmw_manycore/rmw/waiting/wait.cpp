@@ -72,6 +72,8 @@ rmw_ret_t rmw_wait(
 
   // Implementation
   return rmw_manycore::guarded([&] {
+    const auto & sleeper = *static_cast<const rmw_manycore::WaitSet *>(wait_set->data);
+    sleeper.require_membership();
     rmw_manycore::Waited waited{
       {subscriptions ? subscriptions->subscribers : nullptr,
        subscriptions ? subscriptions->subscriber_count : 0},
@@ -83,9 +85,8 @@ rmw_ret_t rmw_wait(
     const bool poll = wait_timeout != nullptr && rmw_time_total_nsec(*wait_timeout) == 0;
     auto ended = poll ? rmw_manycore::Ended::by_timeout : rmw_manycore::Ended::woken;
     if (!poll && !waited.any_ready()) {
-      ended = rmw_manycore::sleep_until_ready(
-        *static_cast<const rmw_manycore::WaitSet *>(wait_set->data), waited,
-        rmw_manycore::deadline_of(wait_timeout));
+      ended =
+        rmw_manycore::sleep_until_ready(sleeper, waited, rmw_manycore::deadline_of(wait_timeout));
     }
     const bool some_ready = waited.keep_ready();
     return some_ready || ended == rmw_manycore::Ended::woken ? RMW_RET_OK : RMW_RET_TIMEOUT;

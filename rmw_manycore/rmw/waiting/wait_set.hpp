@@ -19,6 +19,8 @@ public:
   rmw_wait_set_t handle{};
 
   manycore::Waiter & waiter() const noexcept { return process_->waiter(); }
+  /// Throws manycore::Error where nothing would ever wake it.
+  void require_membership() const { process_->require_membership(); }
   bool is_shutdown() const noexcept { return *is_shutdown_; }
 
 private:

@@ -26,8 +26,8 @@ enum class SlotState : uint32_t { free, live, closing };
 /// First member of every table entry.
 struct Slot {
   std::atomic<SlotState> state;
-  uint32_t next_free;    ///< while free
-  uint32_t incarnation;  ///< raised at each use
+  uint32_t next_free;                 ///< while free
+  std::atomic<uint32_t> incarnation;  ///< raised at each use
 };
 
 /// Lifelines of the `alive` file, after those of the process slots.

@@ -26,6 +26,9 @@ Configurator::Configurator(
 }
 
 Configurator::~Configurator() {
+  if (side_.is_inherited()) {
+    return;
+  }
   try {
     const JoinLock lock(paths_);
     lifeline_.reset();

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "platform/fork_side.hpp"
 #include "transport/lifecycle/lifecycle.hpp"
 
 namespace manycore {
@@ -21,6 +22,7 @@ public:
   Configurator & operator=(const Configurator &) = delete;
 
 private:
+  ForkSide side_;
   PlatformPaths paths_;
   std::optional<HeldLifeline> lifeline_;
 };
