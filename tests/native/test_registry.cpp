@@ -140,6 +140,24 @@ TEST_CASE("the topic table is found by name") {
   CHECK(registry.find_topic("/c") == nullptr);
 }
 
+TEST_CASE("the topic table holds as many topics as it says, and refuses more") {
+  for (const bool fits : {true, false}) {
+    CAPTURE(fits);
+    TestPlatform platform;
+    std::vector<TopicConfiguration> topics;
+    for (uint32_t id = 0; id < topic_capacity + (fits ? 0 : 1); ++id) {
+      topics.push_back({"/topic_" + std::to_string(id), id, 4096, 0});
+    }
+    const Refusal refusal = refusal_of([&] {
+      const Configurator configurator(platform.name(), host_profile(), topics);
+      const auto process = platform.join();
+      process->create_publisher(on_topic("/topic_4095", keep_last(1)));
+    });
+    CHECK(refusal.says(fits ? "" : "room for 4096"));
+    CHECK(refusal.code.has_value() != fits);
+  }
+}
+
 TEST_CASE("killed while it holds the lock: the next owner repairs what was half changed") {
   // One state in which the owner may die. All instructions of a change: test_killed.
   Fixture f;

@@ -188,12 +188,25 @@ TEST_CASE("a message beyond topic_dsm_size is refused with the size it needs") {
 }
 
 TEST_CASE("a message beyond the cluster's SMEM is refused, and the next one is not") {
-  Fixture f;
-  const auto publisher = f.publisher("/huge", keep_last(10));
-  const Refusal refusal = refusal_of([&] { publisher->draft(host_profile().smem_bytes); });
+  TestPlatform platform;
+  Profile profile = host_profile();
+  profile.smem_bytes = 8 << 20;
+  const Configurator configurator(platform.name(), profile, {});
+  const auto process = platform.join();
+  const auto publisher = process->create_publisher(on_topic("/huge", keep_last(10)));
+  const Refusal refusal = refusal_of([&] { publisher->draft(profile.smem_bytes); });
   CHECK(refusal.code == ErrorCode::too_large);
   CHECK(refusal.says("SMEM"));
   CHECK(publish(*publisher, 1) == 1);
+}
+
+TEST_CASE("a message of more than 4 GiB is refused, not cut") {
+  Fixture f;
+  const auto publisher = f.process->create_publisher(on_topic("/x", keep_last(1)));
+  const Refusal refusal = refusal_of([&] { publisher->draft((size_t{1} << 32) + 8); });
+  CHECK(refusal.code == ErrorCode::too_large);
+  CHECK(refusal.says("larger than 4 GiB"));
+  publish(*publisher, 1);
 }
 
 TEST_CASE("a claimed record stays as it is while the publisher goes round and round") {

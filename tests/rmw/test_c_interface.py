@@ -143,3 +143,14 @@ def test_profiles_are_compatible_as_with_fast_dds():
     ours = verdicts("librmw_manycore.so")
     assert ours.count("\n") > 20_000
     assert ours == verdicts("librmw_fastrtps_cpp.so")
+
+
+def test_the_library_stays_when_it_is_unloaded() -> None:
+    """Its threads may be running."""
+    script = (
+        "import _ctypes, ctypes, sys; library = ctypes.CDLL(sys.argv[1]); "
+        "_ctypes.dlclose(library._handle); "
+        "print('librmw_manycore.so' in open('/proc/self/maps').read())"
+    )
+    command = [sys.executable, "-c", script, str(LIBRARIES / "librmw_manycore.so")]
+    assert subprocess.check_output(command, text=True).strip() == "True"

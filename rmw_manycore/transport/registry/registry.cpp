@@ -1,6 +1,7 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #include "transport/registry/registry.hpp"
 
+#include <algorithm>
 #include <random>
 
 #include "platform/error.hpp"
@@ -55,6 +56,12 @@ void store_name(char (&field)[name_bytes], const std::string & name, const char 
 void Registry::create(
   const PlatformPaths & paths, const Profile & profile,
   const std::vector<TopicConfiguration> & topics) {
+  if (topics.size() > topic_capacity) {
+    throw Error(
+      ErrorCode::invalid_argument, "the mapfile configures " + std::to_string(topics.size()) +
+                                     " topics; the platform's topic table has room for " +
+                                     std::to_string(topic_capacity));
+  }
   SharedMemory memory = SharedMemory::create(paths.registry(), registry_bytes);
   memory.reserve(0, process_table_offset);
   auto & header = memory.at<RegistryHeader>(0);
@@ -67,7 +74,7 @@ void Registry::create(
   for (uint32_t & bucket : header.topic_buckets) {
     bucket = nothing;
   }
-  memory.reserve(topic_table_offset, (topics.size() + 1) * sizeof(TopicEntry));
+  memory.reserve(topic_table_offset, std::max<size_t>(topics.size(), 1) * sizeof(TopicEntry));
   for (size_t i = 0; i < topics.size(); ++i) {
     auto & entry = memory.at<TopicEntry>(topic_table_offset + i * sizeof(TopicEntry));
     store_name(entry.name, topics[i].name, "topic");

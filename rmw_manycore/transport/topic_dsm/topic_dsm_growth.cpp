@@ -127,6 +127,13 @@ bool TopicDsmWriter::grow_to_hold_more(uint64_t need_bytes) {
 }
 
 void TopicDsmWriter::require_data_bytes(uint64_t need_bytes) {
+  if (need_bytes > UINT32_MAX) {  // of RecordDescriptor::size_bytes
+    endpoint_.counters.refused.fetch_add(1, std::memory_order_relaxed);
+    throw Error(
+      ErrorCode::too_large, "a message of " + std::to_string(need_bytes) + " bytes on '" +
+                              endpoint_.topic +
+                              "' is larger than 4 GiB, the most that a record holds");
+  }
   if (need_bytes <= current_.data_bytes) {
     return;
   }
