@@ -4,6 +4,8 @@
 #include <fcntl.h>
 #include <sched.h>
 #include <spawn.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
 #include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -111,6 +113,27 @@ int spawn_daemon(const std::vector<std::string> & arguments) {
   return WIFEXITED(status) ? WEXITSTATUS(status) : 1;
 }
 
+namespace {
+
+/// What a daemon would have of the program that happened to start it, and keep for good. What needs
+/// privileges stays as it is.
+void shed_inherited_attributes() noexcept {
+  const int moved = chdir("/");
+  static_cast<void>(moved);
+  umask(077);
+  const sched_param normal{};
+  sched_setscheduler(0, SCHED_OTHER, &normal);
+  setpriority(PRIO_PROCESS, 0, 0);
+  for (const auto resource : {RLIMIT_CPU, RLIMIT_FSIZE, RLIMIT_DATA, RLIMIT_AS, RLIMIT_NOFILE}) {
+    rlimit limit{};
+    getrlimit(resource, &limit);
+    limit.rlim_cur = limit.rlim_max;
+    setrlimit(resource, &limit);
+  }
+}
+
+}  // namespace
+
 Daemon Daemon::detach() {
   int ends[2];
   if (pipe2(ends, O_CLOEXEC) != 0) {
@@ -136,6 +159,7 @@ Daemon Daemon::detach() {
   // milliseconds on a loaded CPU.
   setpgid(0, 0);
   signal(SIGHUP, SIG_IGN);
+  shed_inherited_attributes();
   return Daemon(std::move(writer));
 }
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "platform/error.hpp"
 #include "platform/file_descriptor.hpp"
 
 /// Lines of text in both directions between a test and a process that it started.
@@ -40,6 +41,13 @@ public:
   /// Plays the role that this program was started for; false when it was started to run its tests.
   static bool play(int argc, char ** argv, int & status);
 };
+
+/// For a role, which is no test: throws errno's text, which the test then hears.
+inline void require(bool done) {
+  if (!done) {
+    manycore::throw_errno("a role cannot be played");
+  }
+}
 
 /// A process in one of this program's roles: real, so that it can be stopped and killed.
 class Child {

@@ -4,6 +4,8 @@
 // kills at one moment of importance; test_killed goes through the moments in between.
 #include <doctest/doctest.h>
 
+#include <sys/resource.h>
+
 #include <csignal>
 
 #include "messages.hpp"
@@ -42,6 +44,17 @@ const Role interrupted_publisher("interrupted", [](Lines & test, const Arguments
   }
   test.say("interrupted");  // nothing is announced
   raise(SIGSTOP);
+});
+
+/// A member whose receive thread has hardly more descriptors than it needs.
+const Role limited("limited", [](Lines & test, const Arguments & arguments) {
+  const rlimit few{16, 16};
+  require(setrlimit(RLIMIT_NOFILE, &few) == 0);
+  Placement placement;
+  placement.platform = arguments.at(0);
+  const auto process = Process::join(placement);
+  test.say("joined");
+  test.hear();
 });
 
 struct Fixture {
@@ -151,6 +164,21 @@ TEST_CASE(
   }
   CHECK(f.inspection.closing_endpoints() == 0);
   CHECK(f.inspection.used_bytes() == used);
+}
+
+TEST_CASE("a reaper without descriptors left buries all the same") {
+  TestPlatform platform;
+  Child first("limited", {platform.name()});
+  first.expect("joined");
+  platform.receive_thread(1);
+  Inspection inspection(platform);
+  std::vector<Node> nodes;
+  for (int i = 0; i < 10; ++i) {  // more than the receive thread can watch
+    nodes.emplace_back(platform, 1);
+  }
+  CHECK(inspection.live_processes() == 11);
+  nodes.clear();
+  wait_until("all are buried", [&] { return inspection.live_processes() == 1; });
 }
 
 TEST_CASE("memory that a killed process had charged is given back") {

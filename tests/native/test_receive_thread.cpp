@@ -6,7 +6,9 @@
 #include <doctest/doctest.h>
 
 #include <fcntl.h>
+#include <sched.h>
 #include <sys/ioctl.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <csignal>
@@ -55,6 +57,24 @@ struct Fixture {
   Node subscriber{platform, 2};
   Inspection inspection{platform};
 };
+
+const Role niced("niced", [](Lines & test, const Arguments & arguments) {
+  const sched_param none{};
+  require(sched_setscheduler(0, SCHED_BATCH, &none) == 0);
+  if (geteuid() == 0) {  // others cannot take it back
+    require(setpriority(PRIO_PROCESS, 0, 5) == 0);
+  }
+  require(chdir("/dev/shm") == 0);
+  rlimit files{};
+  getrlimit(RLIMIT_NOFILE, &files);
+  files.rlim_cur = 64;
+  require(setrlimit(RLIMIT_NOFILE, &files) == 0);
+  Placement placement;
+  placement.platform = arguments.at(0);
+  const auto process = Process::join(placement);
+  test.say("joined");
+  test.hear();
+});
 
 /// Opens a pipe as a stranger would.
 FileDescriptor open_pipe(const std::string & path) {
@@ -123,6 +143,23 @@ TEST_CASE("killed again and again under load: replaced, and nothing is lost") {
   }
   f.publish_numbers(number + 1, number + 10);
   f.expect(1, number + 10);
+}
+
+TEST_CASE("what its first node was started with does not stay with it") {
+  TestPlatform platform;
+  Child node("niced", {platform.name()});
+  node.expect("joined");
+  const pid_t receive_thread = platform.receive_thread(1);
+  CHECK(
+    getpriority(PRIO_PROCESS, static_cast<id_t>(receive_thread)) == getpriority(PRIO_PROCESS, 0));
+  CHECK(sched_getscheduler(receive_thread) == SCHED_OTHER);
+  char directory[64] = {};
+  const std::string link = "/proc/" + std::to_string(receive_thread) + "/cwd";
+  REQUIRE(readlink(link.c_str(), directory, sizeof directory) > 0);
+  CHECK(std::string(directory) == "/");
+  rlimit files{};
+  REQUIRE(prlimit(receive_thread, RLIMIT_NOFILE, nullptr, &files) == 0);
+  CHECK(files.rlim_cur == files.rlim_max);
 }
 
 TEST_CASE("killed with messages in hand: its successor has the subscriptions look for themselves") {

@@ -18,7 +18,7 @@ namespace {
 
 constexpr int for_ever_ms = -1;
 constexpr int retry_ms = 1000;
-constexpr int foreign_ms = 500;
+constexpr int unwatched_ms = 500;
 constexpr uint64_t look_again_key = 0;  ///< no process has pid 0
 
 /// True while the platform's directory still holds this registry, and not a later one of the same
@@ -86,20 +86,27 @@ Reaper::~Reaper() {
 
 void Reaper::look_again() noexcept { eventfd_write(event_.get(), 1); }
 
-/// Of an end in another PID namespace no descriptor tells, so those are looked at again and again.
 void Reaper::watch(uint32_t line) {
   const ProcessIdentity holder = registry_.lifelines().holder(line);
   if (holder.pid <= 0 || holder.pid == getpid() || watched_.count(holder.pid) != 0) {
     return;
   }
-  if (!holder.is_of_this_pid_namespace()) {
-    watches_foreign_ = true;
-    return;
+  if (!holder.is_of_this_pid_namespace() || !watch_end_of(holder.pid)) {
+    some_unwatched_ = some_unwatched_ || registry_.lifelines().is_held(line);
   }
-  FileDescriptor pidfd = open_pidfd(holder.pid);
-  if (pidfd) {
-    add_to_poll(poll_.get(), pidfd.get(), static_cast<uint64_t>(holder.pid));
-    watched_.emplace(holder.pid, std::move(pidfd));
+}
+
+bool Reaper::watch_end_of(pid_t pid) {
+  try {
+    FileDescriptor pidfd = open_pidfd(pid);
+    if (!pidfd) {
+      return true;
+    }
+    add_to_poll(poll_.get(), pidfd.get(), static_cast<uint64_t>(pid));
+    watched_.emplace(pid, std::move(pidfd));
+    return true;
+  } catch (const Error &) {
+    return false;
   }
 }
 
@@ -116,7 +123,7 @@ bool Reaper::is_ours(uint32_t cluster) const {
 }
 
 bool Reaper::watch_new() {
-  watches_foreign_ = false;
+  some_unwatched_ = false;
   const uint64_t present = registry_.header().clusters_present.load();
   for (uint32_t id = 1; id <= max_clusters; ++id) {
     if ((present >> (id - 1) & 1) != 0 && id != cluster_) {
@@ -161,8 +168,8 @@ bool Reaper::wait_for_end(int timeout_ms) {
 }
 
 int Reaper::patience_ms() const noexcept {
-  if (watches_foreign_) {
-    return foreign_ms;
+  if (some_unwatched_) {
+    return unwatched_ms;
   }
   return is_closing_ ? retry_ms : for_ever_ms;
 }

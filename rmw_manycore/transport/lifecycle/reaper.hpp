@@ -31,6 +31,8 @@ private:
   bool bury();
   bool is_ours(uint32_t cluster) const;
   void watch(uint32_t line);
+  /// False when no descriptor is left.
+  bool watch_end_of(pid_t pid);
   int patience_ms() const noexcept;
   /// True when one of those watched has ended; false when there is another reason to look, or none.
   bool wait_for_end(int timeout_ms);
@@ -40,7 +42,7 @@ private:
   FileDescriptor poll_;   ///< epoll
   FileDescriptor event_;  ///< eventfd: look again
   std::map<pid_t, FileDescriptor> watched_;
-  bool watches_foreign_ = false;
+  bool some_unwatched_ = false;  ///< in other PID namespaces, or no descriptor was left
   bool is_closing_ = false;  ///< something could not be freed yet, and nobody tells when it can be
   std::atomic<bool> running_{true};
   std::thread thread_;
