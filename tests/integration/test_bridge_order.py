@@ -69,7 +69,7 @@ def sides(bridge, direction):
 
 
 def routes(bridge, direction, by_pattern):
-    name = "/numbe*" if by_pattern else "/numbers"
+    name = "/num*" if by_pattern else "/numbers"
     return bridge.pattern(direction, name) if by_pattern else bridge.route(direction, name)
 
 
