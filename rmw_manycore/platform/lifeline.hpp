@@ -53,6 +53,8 @@ public:
   /// last of its threads has stopped, a moment after the one that held the line.
   bool is_held(uint32_t line) const;
   bool is_any_held() const;
+  /// As SharedMemory::is_file().
+  bool is_file(const std::string & path) const noexcept { return memory_->is_file(path); }
   /// Who holds the line, or held it last.
   ProcessIdentity holder(uint32_t line) const;
 

@@ -32,6 +32,10 @@ SharedMemory::SharedMemory(FileDescriptor fd, const std::string & path, size_t s
   // A core dump of one node must not contain the whole platform.
   madvise(mapped, size_bytes, MADV_DONTDUMP);
   data_ = static_cast<std::byte *>(mapped);
+  struct stat status {};
+  fstat(fd_.get(), &status);
+  device_ = status.st_dev;
+  inode_ = status.st_ino;
 }
 
 SharedMemory::SharedMemory(SharedMemory && other) noexcept { *this = std::move(other); }
@@ -41,6 +45,8 @@ SharedMemory & SharedMemory::operator=(SharedMemory && other) noexcept {
   std::swap(path_, other.path_);
   std::swap(data_, other.data_);
   std::swap(size_, other.size_);
+  std::swap(device_, other.device_);
+  std::swap(inode_, other.inode_);
   return *this;
 }
 
@@ -101,6 +107,14 @@ SharedMemory SharedMemory::anonymous(const std::string & label, size_t size_byte
   SharedMemory memory(std::move(fd), label, size_bytes);
   memory.reserve(0, size_bytes);
   return memory;
+}
+
+bool SharedMemory::is_file(const std::string & path) const noexcept {
+  struct stat status {};
+  if (stat(path.c_str(), &status) != 0) {
+    return errno != ENOENT && errno != ENOTDIR;  // what cannot be looked at may be there
+  }
+  return status.st_dev == device_ && status.st_ino == inode_;
 }
 
 std::string SharedMemory::shared_path() const {

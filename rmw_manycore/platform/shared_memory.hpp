@@ -1,6 +1,8 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <sys/types.h>
+
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -31,6 +33,8 @@ public:
 
   std::byte * data() const noexcept { return data_; }
   size_t size() const noexcept { return size_; }
+  /// False once its file was removed or replaced. Needs no descriptor.
+  bool is_file(const std::string & path) const noexcept;
   /// Where another process of this user finds the same memory while this one lives.
   std::string shared_path() const;
   explicit operator bool() const noexcept { return data_ != nullptr; }
@@ -56,6 +60,8 @@ private:
   std::string path_;
   std::byte * data_ = nullptr;
   size_t size_ = 0;
+  dev_t device_ = 0;  ///< with inode_: which file it is
+  ino_t inode_ = 0;
 };
 
 }  // namespace manycore

@@ -5,14 +5,12 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cstdlib>
 #include <cstring>
 #include <map>
 #include <mutex>
 
 #include "platform/cpu.hpp"
 #include "platform/error.hpp"
-#include "platform/os_process.hpp"
 #include "transport/lifecycle/lifecycle.hpp"
 #include "transport/lifecycle/receive_thread_watcher.hpp"
 #include "transport/matching/closing.hpp"
@@ -25,41 +23,6 @@
 
 namespace manycore {
 namespace {
-
-[[noreturn]] void bad_variable(const char * name, const char * value, const char * expected) {
-  throw Error(
-    ErrorCode::invalid_argument,
-    std::string(name) + "='" + value + "' is not valid: expected " + expected);
-}
-
-std::optional<uint32_t> number_from(const char * name, uint32_t least, uint32_t most) {
-  const char * const text = std::getenv(name);
-  if (text == nullptr || *text == 0) {
-    return std::nullopt;
-  }
-  char * end = nullptr;
-  const unsigned long value = std::strtoul(text, &end, 10);
-  if (*end != 0 || text[0] == '-' || value < least || value > most) {
-    bad_variable(
-      name, text,
-      ("a whole number from " + std::to_string(least) + " to " + std::to_string(most)).c_str());
-  }
-  return static_cast<uint32_t>(value);
-}
-
-WaitMode wait_mode_from_environment() {
-  const char * const text = std::getenv("MANYCORE_WAIT");
-  if (text == nullptr || *text == 0 || std::strcmp(text, "block") == 0) {
-    return WaitMode::block;
-  }
-  if (std::strcmp(text, "adaptive") == 0) {
-    return WaitMode::adaptive;
-  }
-  if (std::strcmp(text, "spin") == 0) {
-    return WaitMode::spin;
-  }
-  bad_variable("MANYCORE_WAIT", text, "block, adaptive or spin");
-}
 
 void check_placement(const Placement & placement, const Profile & profile) {
   if (placement.cluster == 0 || placement.cluster > profile.clusters) {
@@ -122,18 +85,6 @@ void check_qos(const EndpointSpec & spec) {
 }
 
 }  // namespace
-
-Placement Placement::from_environment(size_t domain_id) {
-  Placement placement;
-  const char * const platform = std::getenv("MANYCORE_PLATFORM");
-  placement.platform =
-    platform != nullptr && *platform != 0 ? platform : "domain-" + std::to_string(domain_id);
-  placement.cluster = number_from("MANYCORE_CLUSTER", 1, max_clusters).value_or(1);
-  placement.core = number_from("MANYCORE_CORE", 0, 1023);
-  placement.wait_mode = wait_mode_from_environment();
-  placement.label = program_name();
-  return placement;
-}
 
 struct Process::Impl {
   explicit Impl(const Placement & placement_);
@@ -251,7 +202,8 @@ void Process::Impl::leave() {
     registry->processes().give_back(slot);
   }
   lifeline.reset();
-  if (!is_in_use(*registry)) {
+  // The name may be a later platform's, if the files of this one were removed.
+  if (registry->is_current() && !is_in_use(*registry)) {
     remove_platform(paths);
   }
 }

@@ -21,16 +21,6 @@ constexpr int retry_ms = 1000;
 constexpr int unwatched_ms = 500;
 constexpr uint64_t look_again_key = 0;  ///< no process has pid 0
 
-/// True while the platform's directory still holds this registry, and not a later one of the same
-/// name.
-bool is_current(Registry & registry) {
-  try {
-    return Registry(registry.paths()).nonce() == registry.nonce();
-  } catch (const Error &) {
-    return false;
-  }
-}
-
 void add_to_poll(int poll, int fd, uint64_t key) {
   epoll_event event{};
   event.events = EPOLLIN;
@@ -43,7 +33,7 @@ void add_to_poll(int poll, int fd, uint64_t key) {
 /// Removes the platform if nobody uses it; true when this receive thread has nothing left to serve.
 bool end_if_unused(Registry & registry) {
   const JoinLock lock(registry.paths());
-  if (!is_current(registry)) {
+  if (!registry.is_current()) {
     return true;
   }
   if (is_in_use(registry)) {

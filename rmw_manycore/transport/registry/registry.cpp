@@ -1,7 +1,10 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #include "transport/registry/registry.hpp"
 
+#include <unistd.h>
+
 #include <algorithm>
+#include <cerrno>
 #include <random>
 
 #include "platform/error.hpp"
@@ -31,6 +34,10 @@ SharedMemory open_registry(const PlatformPaths & paths) {
     throw Error(ErrorCode::corrupt, damaged);
   }
   return memory;
+}
+
+bool is_gone(const std::string & path) {
+  return access(path.c_str(), F_OK) != 0 && (errno == ENOENT || errno == ENOTDIR);
 }
 
 }  // namespace
@@ -94,6 +101,17 @@ Registry::Registry(const PlatformPaths & paths)
   nodes_(memory_, header().nodes, node_table_offset, node_capacity),
   endpoints_(memory_, header().endpoints, endpoint_table_offset, endpoint_capacity),
   clusters_(paths, nonce()) {}
+
+bool Registry::is_current() const noexcept {
+  const uint64_t present = header().clusters_present.load();
+  for (uint32_t id = 1; id <= max_clusters; ++id) {
+    const bool is_needed = (present >> (id - 1) & 1) != 0;
+    if (is_needed && (is_gone(paths_.cluster(id)) || is_gone(paths_.pipe(id)))) {
+      return false;
+    }
+  }
+  return memory_.is_file(paths_.registry()) && lifelines_.is_file(paths_.alive());
+}
 
 Registry::Lock::Lock(Registry & registry, long wait_ns) : registry_(registry) {
   RobustMutex & mutex = registry.header().mutex;

@@ -102,6 +102,9 @@ public:
   Clusters & clusters() noexcept { return clusters_; }
   const Lifelines & lifelines() const noexcept { return lifelines_; }
   const PlatformPaths & paths() const noexcept { return paths_; }
+  /// True while the platform's directory still holds what is mapped here, and not a later platform
+  /// of the same name.
+  bool is_current() const noexcept;
   uint64_t nonce() const noexcept { return header().segment.platform_nonce; }
 
   TopicEntry & topic(uint32_t index) const noexcept {
