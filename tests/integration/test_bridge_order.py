@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 from ros_support import announce, peer_node, spin_until, type_of
 from speakers import qos
-from support import IS_MANYCORE, wait_until
+from support import IS_MANYCORE, PATIENCE_S, wait_until
 
 from rmw_manycore_bridge.counters import CounterFile, status_path
 from rmw_manycore_py import _transport
@@ -27,6 +27,8 @@ EMPTY_STRING = bytes([0, 1, 0, 0, 1, 0, 0, 0, 0])  # in CDR
 DEPTH = 10
 PASSED = 5  # with one more, fewer than are kept for the bridge
 KILLS = 3
+# A publisher outside may go on writing to the place of a killed process until its lease is over.
+LEASES_S = 4 * PATIENCE_S
 LATCHED = {"durability": "transient_local", "depth": DEPTH}
 
 
@@ -83,7 +85,7 @@ def test_a_killed_bridge_does_not_go_back(bridge, direction) -> None:
         process = bridge.run(bridge.route(direction, "/numbers"))[direction]
         viewer.skip_output()
         for _ in range(random.randrange(1, 200)):
-            viewer.wait_for("^heard")
+            viewer.wait_for("^heard", LEASES_S)
         os.kill(process.pid, signal.SIGKILL)
         process.wait()
     numbers = heard(viewer)
