@@ -28,6 +28,7 @@ set(CMAKE_BUILD_WITH_INSTALL_RPATH ON)
 # Paths in messages and in debug information are those of the checkout, on whatever machine. ccache
 # may hand the compiler relative paths.
 file(RELATIVE_PATH source_from_build ${CMAKE_BINARY_DIR} ${CMAKE_SOURCE_DIR})
+string(REGEX REPLACE "/+$" "" source_from_build "${source_from_build}")
 add_compile_options(
   -ffile-prefix-map=${CMAKE_BINARY_DIR}=build -ffile-prefix-map=${CMAKE_SOURCE_DIR}/=
   -ffile-prefix-map=${source_from_build}/=)

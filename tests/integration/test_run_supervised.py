@@ -40,10 +40,10 @@ def run_server(source: str, *arguments: str) -> None:
     """Run in a process of its own: a runner over a supervised server, and a node."""
     runner.RESTART_PAUSE_S = 0.01
     server = (sys.executable, "-c", source, *arguments)
-    cpu = min(os.sched_getaffinity(0))
+    cpus = (min(os.sched_getaffinity(0)),)
     programs = [
-        NodeProgram("server", server, dict(os.environ), Core(1, 1), cpu, supervised=True),
-        NodeProgram("node", ("sleep", "1000"), dict(os.environ), Core(1, 2), cpu),
+        NodeProgram("server", server, dict(os.environ), Core(1, 1), cpus, supervised=True),
+        NodeProgram("node", ("sleep", "1000"), dict(os.environ), Core(1, 2), cpus),
     ]
     started = runner.Runner(programs, lambda event: print(event.as_json(), flush=True))
     with signal_inbox() as inbox:

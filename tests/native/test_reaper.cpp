@@ -12,6 +12,7 @@
 #include "node_role.hpp"
 #include "patience.hpp"
 #include "platform/clock.hpp"
+#include "transport/lifecycle/configurator.hpp"
 #include "transport/lifecycle/lifecycle.hpp"
 #include "transport/registry/smem_charge.hpp"
 #include "transport/topic_dsm/topic_dsm_writer.hpp"
@@ -44,6 +45,12 @@ const Role interrupted_publisher("interrupted", [](Lines & test, const Arguments
   }
   test.say("interrupted");  // nothing is announced
   raise(SIGSTOP);
+});
+
+const Role configurator("configurator", [](Lines & test, const Arguments & arguments) {
+  const Configurator keeps(arguments.at(0), host_profile(), {});
+  test.say("configured");
+  test.hear();
 });
 
 /// A member whose receive thread has hardly more descriptors than it needs.
@@ -164,6 +171,21 @@ TEST_CASE(
   }
   CHECK(f.inspection.closing_endpoints() == 0);
   CHECK(f.inspection.used_bytes() == used);
+}
+
+TEST_CASE("a configurator killed after the last process: the platform goes") {
+  TestPlatform platform;
+  Child configurator("configurator", {platform.name()});
+  configurator.expect("configured");
+  {
+    Node node(platform, 1);
+    platform.receive_thread(1);
+  }
+  Inspection inspection(platform);
+  wait_until("the node is buried", [&] { return inspection.live_processes() == 0; });
+  CHECK(platform.exists());
+  configurator.kill();
+  wait_until("the platform is gone", [&] { return !platform.exists(); });
 }
 
 TEST_CASE("a reaper without descriptors left buries all the same") {

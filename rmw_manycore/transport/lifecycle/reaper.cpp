@@ -125,6 +125,10 @@ bool Reaper::watch_new() {
       watch(slot);
     }
   }
+  // It keeps the platform without a process in it, and may be killed as the last one.
+  if (registry_.lifelines().is_held(configurator_line)) {
+    watch(configurator_line);
+  }
   return bury();  // who died before it was watched
 }
 
