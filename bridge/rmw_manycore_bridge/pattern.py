@@ -108,7 +108,7 @@ class Pattern(Mover):
         return matches(self._pattern, name)
 
     def _has_room(self, found: Mapping[str, Types]) -> bool:
-        """Make room where every place is taken: a topic that nobody publishes any more goes."""
+        """Make room where every place is taken: a topic without publishers goes."""
         if len(self._members) < MAX_TOPICS:
             return True
         gone = next((name for name in self._members if name not in found), None)

@@ -17,7 +17,7 @@
  * BUG 7: reaper does not end the phase of a killed publisher
  * BUG 8: a new receive thread does not end the phase of its predecessor
  * BUG 9: publisher's phase even before its last push
- * BUG 10: a receive thread that nobody replaces is waited for
+ * BUG 10: a receive thread without a successor is waited for
  * BUG 11: a receive thread counts as dead once its lifeline ends, not once it has stopped
  */
 #define GENERATION 0      /* match_generation */

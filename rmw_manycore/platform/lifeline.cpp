@@ -2,7 +2,6 @@
 #include "platform/lifeline.hpp"
 
 #include <pthread.h>
-#include <unistd.h>
 
 #include <condition_variable>
 #include <future>
@@ -12,6 +11,7 @@
 #include "platform/blocked_signals.hpp"
 #include "platform/clock.hpp"
 #include "platform/error.hpp"
+#include "platform/fork_side.hpp"
 
 namespace manycore {
 namespace {
@@ -68,7 +68,7 @@ struct HeldLifeline::Holder {
 
   std::shared_ptr<SharedMemory> memory;
   Lifeline & line;
-  pid_t process = getpid();
+  ForkSide side;
   std::promise<bool> is_held;
   std::mutex mutex;
   std::condition_variable changed;
@@ -120,7 +120,7 @@ HeldLifeline::~HeldLifeline() {
   if (!holder_) {
     return;
   }
-  if (holder_->process != getpid()) {
+  if (holder_->side.is_inherited()) {
     holder_.release();  // the thread is the parent's, and what it locks cannot be destroyed here
     return;
   }

@@ -38,8 +38,8 @@ private:
   std::unique_ptr<Holder> holder_;
 };
 
-/// A file of lifelines: proof that those who hold a line live. It needs no descriptor that stays
-/// open, is not inherited by fork(), holds across PID namespaces and within one process.
+/// A file of lifelines: proof that the processes which hold a line live. It needs no descriptor
+/// that stays open, is not inherited by fork(), holds across PID namespaces and within one process.
 class Lifelines {
 public:
   static void create(const std::string & path, uint32_t count);
@@ -55,7 +55,7 @@ public:
   bool is_any_held() const;
   /// As SharedMemory::is_file().
   bool is_file(const std::string & path) const noexcept { return memory_->is_file(path); }
-  /// Who holds the line, or held it last.
+  /// The process that holds the line, or held it last.
   ProcessIdentity holder(uint32_t line) const;
 
 private:

@@ -278,7 +278,7 @@ uint32_t Process::Impl::add_endpoint(const EndpointSpec & spec, EndpointKind kin
 
 namespace {
 
-/// What this process has joined. A child of fork() begins anew, with a mutex that nobody holds.
+/// What this process has joined. A child of fork() begins anew, with a mutex that no thread holds.
 struct Joined {
   static Joined & by_this_process();
 

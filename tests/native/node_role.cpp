@@ -207,3 +207,11 @@ const Role node("node", [](Lines & test, const Arguments & arguments) {
 });
 
 }  // namespace
+
+void join_and_stay(Lines & test, const std::string & platform) {
+  Placement placement;
+  placement.platform = platform;
+  const auto process = Process::join(placement);
+  test.say("joined");
+  test.hear();
+}

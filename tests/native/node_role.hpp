@@ -4,6 +4,9 @@
 #include "child.hpp"
 #include "platform_of_test.hpp"
 
+/// For roles: joins, says so, and stays until it is told anything.
+void join_and_stay(Lines & test, const std::string & platform);
+
 /// A node in a process of its own that does what it is told:
 ///   publisher TOPIC QOS           -> ok     one publisher ..
 ///   subscription TOPIC QOS        -> ok     .. and one subscription at a time

@@ -57,11 +57,7 @@ const Role configurator("configurator", [](Lines & test, const Arguments & argum
 const Role limited("limited", [](Lines & test, const Arguments & arguments) {
   const rlimit few{16, 16};
   require(setrlimit(RLIMIT_NOFILE, &few) == 0);
-  Placement placement;
-  placement.platform = arguments.at(0);
-  const auto process = Process::join(placement);
-  test.say("joined");
-  test.hear();
+  join_and_stay(test, arguments.at(0));
 });
 
 struct Fixture {

@@ -69,11 +69,7 @@ const Role niced("niced", [](Lines & test, const Arguments & arguments) {
   getrlimit(RLIMIT_NOFILE, &files);
   files.rlim_cur = 64;
   require(setrlimit(RLIMIT_NOFILE, &files) == 0);
-  Placement placement;
-  placement.platform = arguments.at(0);
-  const auto process = Process::join(placement);
-  test.say("joined");
-  test.hear();
+  join_and_stay(test, arguments.at(0));
 });
 
 /// Opens a pipe as a stranger would.
