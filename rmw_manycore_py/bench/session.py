@@ -187,8 +187,9 @@ class Session:
         with Platform(self.platform) as platform:
             while time.monotonic() < deadline:
                 clusters = platform.clusters()
-                if all(cluster.alive for cluster in clusters):
-                    return [cluster.receive_thread_pid for cluster in clusters]
+                pids = [cluster.receive_thread_pid for cluster in clusters if cluster.alive]
+                if len(pids) == len(clusters) and all(pids):  # it lives before it says its pid
+                    return pids
                 time.sleep(0.01)
         raise ManycoreError(f"{self.platform}: a receive thread does not start")
 
