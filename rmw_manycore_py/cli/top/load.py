@@ -28,7 +28,9 @@ class Sample:
 def take_sample(platform: _transport.Platform) -> Sample:
     """Look at a platform once."""
     processes = [process for process in platform.processes() if process.alive]
-    threads = [c.receive_thread_pid for c in platform.clusters() if c.alive]
+    threads = [
+        c.receive_thread_pid for c in platform.clusters() if c.alive and c.receive_thread_pid
+    ]
     cpu_s = {pid: _cpu_time_s(pid) for pid in (*(p.pid for p in processes), *threads)}
     return Sample(time.monotonic(), processes, platform.endpoints(), cpu_s)
 
