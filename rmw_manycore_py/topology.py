@@ -108,6 +108,11 @@ def host_smem_size(clusters: int, shm: Path = Path("/dev/shm")) -> int:
     return max(share // MIB, 1) * MIB
 
 
+def room_for_topic_dsms(smem_size: int) -> int:
+    """Return what topic DSMs may have of a cluster's memory: a part is for control blocks."""
+    return smem_size - min(smem_size // 8, 8 * MIB)
+
+
 def usable_cpus() -> tuple[int, ...]:
     """Return the host CPUs this process may run on."""
     return tuple(sorted(os.sched_getaffinity(0)))

@@ -121,6 +121,12 @@ std::string SharedMemory::shared_path() const {
   return "/proc/" + std::to_string(getpid()) + "/fd/" + std::to_string(fd_.get());
 }
 
+FileSystemRoom SharedMemory::file_system_room() const noexcept {
+  struct statvfs fs {};
+  fstatvfs(fd_.get(), &fs);
+  return {uint64_t{fs.f_bavail} * fs.f_frsize, uint64_t{fs.f_blocks} * fs.f_frsize};
+}
+
 void SharedMemory::reserve(uint64_t offset, uint64_t length) const {
   const uint64_t first = page_floor(offset);
   const uint64_t bytes = page_ceil(offset + length) - first;
@@ -131,13 +137,11 @@ void SharedMemory::reserve(uint64_t offset, uint64_t length) const {
   if (error == 0) {
     return;
   }
-  struct statvfs fs {};
-  fstatvfs(fd_.get(), &fs);
+  const FileSystemRoom room = file_system_room();
   throw Error(
     ErrorCode::no_space,
     "no room for " + std::to_string(bytes) + " bytes in " + path_ + ": " +
-      std::to_string(fs.f_bavail * fs.f_frsize) + " of " +
-      std::to_string(fs.f_blocks * fs.f_frsize) +
+      std::to_string(room.free_bytes) + " of " + std::to_string(room.total_bytes) +
       " bytes are free; enlarge /dev/shm (mount -o remount,size=...) or lower topic_dsm_size");
 }
 

@@ -11,6 +11,12 @@
 
 namespace manycore {
 
+/// Of a file system, as far as its ordinary users may fill it.
+struct FileSystemRoom {
+  uint64_t free_bytes = 0;
+  uint64_t total_bytes = 0;
+};
+
 /// A shared mapping of one file in /dev/shm. The file is sparse: only reserved ranges hold memory,
 /// so a small /dev/shm shows at reserve() and never as SIGBUS.
 class SharedMemory {
@@ -44,6 +50,8 @@ public:
     return *reinterpret_cast<T *>(data_ + offset);
   }
 
+  /// Of the file system that its file is in.
+  FileSystemRoom file_system_room() const noexcept;
   /// Backs [offset, offset + length) with memory; throws Error{no_space} naming the size needed.
   void reserve(uint64_t offset, uint64_t length) const;
   /// Maps the pages of a reserved range into this process, so that first use does not fault.

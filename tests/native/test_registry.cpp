@@ -189,21 +189,21 @@ TEST_CASE("memory outside the segment counts as SMEM, up to what there is") {
   Registry & registry = f.inspection.registry();
   const Cluster & cluster = registry.clusters().at(1);
   const uint64_t used = cluster.used_bytes();
+  const uint64_t most = cluster.size() - used - control_reserve_bytes(cluster.size());
   charge_smem(registry, getpid(), 1000);
   CHECK(cluster.used_bytes() == used + 1000);
-  const Refusal refusal =
-    refusal_of([&] { charge_smem(registry, getpid(), cluster.size() - used + 1); });
+  const Refusal refusal = refusal_of([&] { charge_smem(registry, getpid(), most + 1); });
   CHECK(refusal.code == ErrorCode::no_space);
   CHECK(refusal.says("raise smem_size"));
   CHECK(cluster.used_bytes() == used + 1000);
   SUBCASE("what is charged cannot be allocated") {
-    charge_smem(registry, getpid(), cluster.size() - used - 100);
-    CHECK(f.process->graph().clusters().at(0).charged_bytes == cluster.size() - used - 100);
-    const Refusal full =
-      refusal_of([&] { f.process->create_publisher(on_topic("/x", keep_last(10))); });
-    CHECK(full.code == ErrorCode::no_space);
+    charge_smem(registry, getpid(), most - 100'000);
+    CHECK(f.process->graph().clusters().at(0).charged_bytes == most - 100'000);
+    const auto publisher = f.process->create_publisher(on_topic("/x", keep_last(10)));
+    const Refusal full = refusal_of([&] { publish(*publisher, 1, 100'000); });
+    CHECK(full.says("has no room for"));
     charge_smem(registry, getpid(), 0);
-    CHECK_NOTHROW(f.process->create_publisher(on_topic("/x", keep_last(10))));
+    CHECK_NOTHROW(publish(*publisher, 1, 100'000));
   }
   SUBCASE("a repair finds it again") {
     Child holder("lock_holder", {f.platform.name()});

@@ -22,6 +22,13 @@ struct ClusterHeader {
 };
 static_assert(sizeof(ClusterHeader) == 192);
 
+/// What messages leave of a cluster's SMEM, and of the file system its segment is in: the control
+/// blocks of nodes that come later go there, so a full cluster still takes nodes.
+constexpr uint64_t control_reserve_bytes(uint64_t total_bytes) {
+  constexpr uint64_t most = 8 << 20;
+  return total_bytes / 8 < most ? total_bytes / 8 : most;
+}
+
 /// The bit map of used granules follows the header. It is derived state.
 constexpr uint64_t granule_map_offset = 256;
 

@@ -28,12 +28,25 @@ std::string printable(std::string text) {
   return text;
 }
 
-Error no_room(const Cluster & cluster, uint64_t length, const std::string & advice) {
+constexpr const char * topic_dsm_advice =
+  "lower topic_dsm_size or depth, or move nodes to another cluster";
+
+std::string fill_level(const Cluster & cluster) {
+  return std::to_string(cluster.used_bytes()) + " of its " + std::to_string(cluster.size()) +
+         " bytes of SMEM are used";
+}
+
+Error no_room(const Cluster & cluster, uint64_t length, const std::string & why_and_advice) {
   return Error(
     ErrorCode::no_space, "cluster " + std::to_string(cluster.id()) + " has no room for " +
-                           std::to_string(length) +
-                           " bytes: " + std::to_string(cluster.used_bytes()) + " of its " +
-                           std::to_string(cluster.size()) + " bytes of SMEM are used; " + advice);
+                           std::to_string(length) + " bytes: " + why_and_advice);
+}
+
+Error no_message_room(const Cluster & cluster, uint64_t length, const std::string & advice) {
+  return no_room(
+    cluster, length,
+    fill_level(cluster) + ", and " + std::to_string(control_reserve_bytes(cluster.size())) +
+      " are kept for nodes, publishers and subscriptions to come; " + advice);
 }
 
 }  // namespace
@@ -140,13 +153,31 @@ void Cluster::require_sound_map() const {
   }
 }
 
+void Cluster::require_message_room(uint64_t length) const {
+  const uint64_t bytes = granules_of(length) * header().granule_bytes;
+  if (!has_room(bytes + control_reserve_bytes(size()))) {
+    throw no_message_room(*this, length, topic_dsm_advice);
+  }
+  const FileSystemRoom host = memory_.file_system_room();
+  const bool is_limited = host.total_bytes != 0;  // a tmpfs with size=0 is not
+  if (is_limited && host.free_bytes < bytes + control_reserve_bytes(host.total_bytes)) {
+    throw no_room(
+      *this, length,
+      std::to_string(host.free_bytes) + " of the " + std::to_string(host.total_bytes) +
+        " bytes of /dev/shm are free, and " +
+        std::to_string(control_reserve_bytes(host.total_bytes)) +
+        " are kept for nodes, publishers and subscriptions to come; enlarge /dev/shm (mount -o "
+        "remount,size=...) or lower topic_dsm_size");
+  }
+}
+
 uint64_t Cluster::allocate(uint64_t length) {
   require_sound_map();
   ClusterHeader & head = header();
   const uint64_t count = granules_of(length);
   const uint64_t first = find_run(count);
   if (first == head.granule_count || !has_room(count * head.granule_bytes)) {
-    throw no_room(*this, length, "lower topic_dsm_size or depth, or move nodes to another cluster");
+    throw no_room(*this, length, fill_level(*this) + "; " + topic_dsm_advice);
   }
   const uint64_t offset = first * head.granule_bytes;
   memory_.reserve(offset, count * head.granule_bytes);
@@ -173,9 +204,9 @@ bool Cluster::has_room(uint64_t length) const noexcept {
 }
 
 void Cluster::charge(uint64_t before, uint64_t after) {
-  if (after > before && !has_room(after - before)) {
+  if (after > before && !has_room(after - before + control_reserve_bytes(size()))) {
     const char * const advice = "raise smem_size in the mapfile, or move nodes to another cluster";
-    throw no_room(*this, after - before, advice);
+    throw no_message_room(*this, after - before, advice);
   }
   header().charged_bytes.fetch_add(after - before, std::memory_order_relaxed);
 }

@@ -5,8 +5,7 @@ namespace manycore {
 
 void Generation::allocate(
   Cluster & cluster, GenerationEntry & entry, uint64_t data_bytes, uint64_t count, uint64_t first) {
-  const uint64_t descriptor_bytes = count * sizeof(RecordDescriptor);
-  const uint64_t offset = cluster.allocate(descriptor_bytes + data_bytes);
+  const uint64_t offset = cluster.allocate(extent_bytes(data_bytes, count));
   // A reader may still be looking here for a number of a generation that was given back; it looks
   // at that generation's entry again before it believes what it finds.
   auto * const descriptors = cluster.find<RecordDescriptor>(offset);

@@ -30,6 +30,9 @@ struct Generation {
     return descriptors[number & (count - 1)];
   }
 
+  static constexpr uint64_t extent_bytes(uint64_t data_bytes, uint64_t count) {
+    return count * sizeof(RecordDescriptor) + data_bytes;
+  }
   /// Allocates a generation and makes it visible to readers; the caller holds the registry lock.
   /// Throws Error{no_space}.
   static void allocate(

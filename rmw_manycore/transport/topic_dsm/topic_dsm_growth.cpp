@@ -61,6 +61,7 @@ void TopicDsmWriter::allocate_generation(
   registry_answers_ = false;
   const Registry::Lock lock(registry_, wait_ns);
   registry_answers_ = true;
+  cluster_.require_message_room(Generation::extent_bytes(data_bytes, descriptor_count));
   Generation::allocate(cluster_, entry, data_bytes, descriptor_count, next_number_);
 }
 
@@ -126,6 +127,19 @@ bool TopicDsmWriter::grow_to_hold_more(uint64_t need_bytes) {
     std::clamp(power_of_two_at_least(records), current_.count, most_descriptors()));
 }
 
+/// Room for two such messages; where there is none, for one.
+bool TopicDsmWriter::add_generation_for(uint64_t need_bytes) {
+  try {
+    const uint64_t wish = std::min(need_bytes * 2, std::max(need_bytes, data_limit()));
+    return add_generation(wish, current_.count);
+  } catch (const Error & error) {
+    if (error.code() != ErrorCode::no_space) {
+      throw;
+    }
+  }
+  return add_generation(need_bytes, current_.count);
+}
+
 void TopicDsmWriter::require_data_bytes(uint64_t need_bytes) {
   if (need_bytes > UINT32_MAX) {  // of RecordDescriptor::size_bytes
     endpoint_.counters.refused.fetch_add(1, std::memory_order_relaxed);
@@ -139,17 +153,15 @@ void TopicDsmWriter::require_data_bytes(uint64_t need_bytes) {
   }
   const std::string size = std::to_string(need_bytes);
   try {
-    const uint64_t wish = std::min(need_bytes * 2, std::max(need_bytes, data_limit()));
-    if (add_generation(wish, current_.count)) {
+    if (add_generation_for(need_bytes)) {
       return;
     }
   } catch (const Error & error) {
-    if (error.code() == ErrorCode::timeout) {
-      endpoint_.counters.refused.fetch_add(1, std::memory_order_relaxed);
-      throw Error(
-        ErrorCode::timeout, "a message of " + size + " bytes on '" + endpoint_.topic +
-                              "' needs a larger topic DSM, but " + error.what());
-    }
+    endpoint_.counters.refused.fetch_add(1, std::memory_order_relaxed);
+    throw Error(
+      error.code() == ErrorCode::no_space ? ErrorCode::too_large : error.code(),
+      "a message of " + size + " bytes on '" + endpoint_.topic +
+        "' needs a larger topic DSM, but " + error.what());
   }
   endpoint_.counters.refused.fetch_add(1, std::memory_order_relaxed);
   if (endpoint_.topic_dsm_size != 0) {

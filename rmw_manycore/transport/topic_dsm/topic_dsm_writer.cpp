@@ -44,8 +44,11 @@ TopicDsmHeader & TopicDsmWriter::create(Registry & registry, uint32_t endpoint_s
     const uint64_t data_bytes = endpoint.topic_dsm_size == 0
                                   ? first_data_bytes
                                   : align_up(endpoint.topic_dsm_size, record_alignment);
-    Generation::allocate(
-      cluster, dsm.generations[0], data_bytes, initial_descriptor_count(endpoint), 1);
+    const uint64_t descriptor_count = initial_descriptor_count(endpoint);
+    if (endpoint.topic_dsm_size != 0) {
+      cluster.require_message_room(Generation::extent_bytes(data_bytes, descriptor_count));
+    }
+    Generation::allocate(cluster, dsm.generations[0], data_bytes, descriptor_count, 1);
   } catch (...) {
     cluster.free(cluster.ref_of(&dsm).offset(), sizeof dsm);
     throw;

@@ -63,6 +63,7 @@ private:
   /// As grow(), but throws what keeps it from growing as far as it may:
   /// Error{no_space|corrupt|timeout}.
   bool add_generation(uint64_t data_bytes, uint64_t descriptor_count);
+  bool add_generation_for(uint64_t need_bytes);
   void allocate_generation(GenerationEntry & entry, uint64_t data_bytes, uint64_t descriptor_count);
   void require_data_bytes(uint64_t need_bytes);
   void wait_for_progress(uint64_t number);

@@ -11,6 +11,7 @@ from rmw_manycore_py.mapfile.placing.crossings import CROSSINGS
 from rmw_manycore_py.mapfile.placing.placement import ClusterMemory, PlacedNode, TopicEntry
 from rmw_manycore_py.ros import ament
 from rmw_manycore_py.ros.names import expand, resolve_topic
+from rmw_manycore_py.topology import room_for_topic_dsms
 
 if TYPE_CHECKING:
     from rmw_manycore_py.mapfile.format.mapfile import Mapfile
@@ -104,19 +105,17 @@ def memory_of_clusters(mapfile: Mapfile, topics: Sequence[TopicEntry]) -> tuple[
 
 def check_memory(mapfile: Mapfile, memory: Iterable[ClusterMemory]) -> Iterator[Problem]:
     """Yield topics that fit no cluster, or clusters that are too small for all their topics."""
-    smem_size = mapfile.topology.smem_size
+    most = room_for_topic_dsms(mapfile.topology.smem_size)
     for name, topic in mapfile.sections.topics.items():
-        if topic.topic_dsm_size is not None and topic.topic_dsm_size > smem_size:
+        if topic.topic_dsm_size is not None and topic.topic_dsm_size > most:
             path = ("topics", name, "topic_dsm_size")
-            expected = f"at most {smem_size}, the local memory of a cluster"
+            expected = f"at most {most}, what topic DSMs may have of a cluster's local memory"
             yield mapfile.document.problem(path, expected, str(topic.topic_dsm_size))
             return
     for cluster in memory:
-        if cluster.used > cluster.smem_size:
+        if cluster.used > most:
             largest = max(cluster.topic_dsms, key=lambda name: cluster.topic_dsms[name])
-            expected = (
-                f"at most {cluster.smem_size} bytes of topic DSMs in cluster {cluster.cluster}"
-            )
+            expected = f"at most {most} bytes of topic DSMs in cluster {cluster.cluster}"
             sizes = ", ".join(f"{name} {size}" for name, size in cluster.topic_dsms.items())
             path = ("topics", _as_written(mapfile, largest), "topic_dsm_size")
             yield mapfile.document.problem(path, expected, f"{cluster.used} ({sizes})")
