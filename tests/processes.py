@@ -40,13 +40,18 @@ def kill(pid: int) -> None:
         os.kill(pid, signal.SIGKILL)
 
 
+def stop_all(platform: str) -> None:
+    """Stop all processes of a platform: they live, and notice nothing."""
+    wait_until(lambda: has_receive_threads(platform), "no receive thread is on its way")
+    wait_until(lambda: _stop_all(platform), f"all processes of {platform} are stopped")
+
+
 def kill_all(platform: str) -> None:
     """Kill all processes of a platform as if at once: none lives to see another one die.
 
     Else a receive thread might clean up after the others, or be started again, before its turn.
     """
-    wait_until(lambda: has_receive_threads(platform), "no receive thread is on its way")
-    wait_until(lambda: _stop_all(platform), f"all processes of {platform} are stopped")
+    stop_all(platform)
     for pid in processes_of(platform):
         kill(pid)
     wait_until(lambda: not processes_of(platform), f"all processes of {platform} are gone")

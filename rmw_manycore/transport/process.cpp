@@ -172,7 +172,7 @@ uint32_t Process::Impl::take_process_slot() {
   entry.wake.graph_watchers.store(0);
   entry.wake.event_watchers.store(0);
   processes.publish(taken);
-  membership.emplace(entry.slot);
+  membership.emplace(*registry, entry.slot);
   return taken;
 }
 
@@ -366,6 +366,8 @@ std::unique_ptr<Subscription> Process::create_subscription(const EndpointSpec & 
   return std::make_unique<Subscription>(
     std::make_unique<Subscription::Impl>(*impl_->registry, slot));
 }
+
+bool Process::is_cut_off() const noexcept { return impl_->membership->is_cut_off(); }
 
 bool Process::is_inherited() const noexcept { return impl_->membership->is_inherited(); }
 

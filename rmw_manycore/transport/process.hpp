@@ -48,7 +48,10 @@ public:
 
   /// True in a child of fork(): what belongs to this membership fails there, or does nothing.
   bool is_inherited() const noexcept;
-  /// Throws Error{system} in a child of fork(), and once this process was taken for dead.
+  /// True once the platform's files were removed from outside.
+  bool is_cut_off() const noexcept;
+  /// Throws Error{system} in a child of fork(), and once this process was taken for dead or cut
+  /// off.
   void require_membership() const;
 
   Waiter & waiter() noexcept;

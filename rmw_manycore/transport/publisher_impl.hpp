@@ -16,7 +16,7 @@ struct Publisher::Impl {
   : registry(registry_),
     slot(slot_),
     entry(registry_.endpoints()[slot_]),
-    membership(entry.slot),
+    membership(registry_, entry.slot),
     cluster(registry_.clusters().at(entry.cluster)),
     writer(registry_, cluster, entry),
     liveliness(entry.asserted_ns, entry.qos.liveliness_lease_ns) {

@@ -48,7 +48,7 @@ Subscription::Impl::Impl(Registry & registry_, uint32_t slot_)
 : registry(registry_),
   slot(slot_),
   entry(registry_.endpoints()[slot_]),
-  membership(entry.slot),
+  membership(registry_, entry.slot),
   cluster(registry_.clusters().at(entry.cluster)),
   header(*cluster.find<SubscriptionHeader>(entry.block.offset())) {}
 

@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
-from processes import kill_all
+from processes import kill_all, stop_all
 from support import IS_MANYCORE, PLATFORMS, Program, example_command
 
 pytestmark = [
@@ -39,12 +39,22 @@ DAMAGES: dict[str, Damage] = {
 
 
 @pytest.fixture
-def directory(start, platform) -> Iterator[Path]:
+def running(start, platform) -> Iterator[Path]:
     """Yield the directory of a platform on which a talker runs in cluster 1."""
     start(example_command("talker")).wait_for("Publishing")
     yield PLATFORMS / platform
     kill_all(platform)
     shutil.rmtree(PLATFORMS / platform, ignore_errors=True)
+
+
+@pytest.fixture
+def directory(running, platform) -> Path:
+    """Return the directory of a platform whose members live but stand still.
+
+    Running they would notice that another file has taken the place of one that they use.
+    """
+    stop_all(platform)
+    return running
 
 
 def damage_file(path: Path, damage: Damage) -> None:
@@ -124,11 +134,11 @@ def test_pipe_that_is_none(start, directory, kind):
     assert_refuses(start(example_command("listener")), directory)
 
 
-def test_garbage_in_a_pipe(start, directory):
+def test_garbage_in_a_pipe(start, running):
     """The receive thread throws away what is no eMCOS message, and goes on with the next one."""
     listener = start(example_command("listener"), cluster=2)
     listener.wait_for("I heard")
-    pipe = os.open(directory / "cluster-2.pipe", os.O_WRONLY)
+    pipe = os.open(running / "cluster-2.pipe", os.O_WRONLY)
     for size_bytes in (1, 7, 64, 100, 4096):
         os.write(pipe, RANDOM.randbytes(size_bytes))
     os.close(pipe)

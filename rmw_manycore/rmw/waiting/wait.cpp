@@ -51,7 +51,7 @@ Ended sleep_until_ready(
     // the wait at once.
     sleep.read_epochs();
     const std::optional<int64_t> until_ns = with_due_events(waited, deadline_ns);
-    if (wait_set.is_shutdown() || waited.any_ready()) {
+    if (wait_set.is_shutdown() || wait_set.is_cut_off() || waited.any_ready()) {
       return Ended::woken;
     }
     if (!sleep.until(until_ns) && until_ns == deadline_ns) {

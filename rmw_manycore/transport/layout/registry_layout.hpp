@@ -132,6 +132,8 @@ struct RegistryHeader {
   uint32_t topic_count;
   uint32_t closing_count;                  ///< endpoints in SlotState::closing (derived)
   std::atomic<uint64_t> clusters_present;  ///< bit c - 1: cluster c has a segment
+  std::atomic<uint32_t> removed;           ///< the files are gone: no process can join
+  uint32_t reserved;
   uint32_t topic_buckets[topic_bucket_count];
 };
 

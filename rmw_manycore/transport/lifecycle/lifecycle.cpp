@@ -189,6 +189,15 @@ std::vector<std::string> remove_platform(const PlatformPaths & paths) {
   return removed;
 }
 
+void note_removal(Registry & registry) noexcept {
+  registry.header().removed.store(1, std::memory_order_seq_cst);
+  for (uint32_t slot = 0; slot < registry.processes().high_water(); ++slot) {
+    if (registry.processes().is_live(slot)) {
+      registry.processes()[slot].wake.notify();
+    }
+  }
+}
+
 uint32_t reap_dead(Registry & registry) {
   const Lifelines & alive = registry.lifelines();
   uint32_t dead = 0;

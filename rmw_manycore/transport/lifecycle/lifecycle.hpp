@@ -47,6 +47,9 @@ bool is_alive(const PlatformPaths & paths);
 /// paths.
 std::vector<std::string> remove_platform(const PlatformPaths & paths);
 
+/// Tells all members that the files are gone, and wakes them to notice.
+void note_removal(Registry & registry) noexcept;
+
 /// Under the registry lock: closes what dead processes left behind, and frees what could not be
 /// freed before. Returns the number of the dead.
 uint32_t reap_dead(Registry & registry);

@@ -4,6 +4,7 @@
 #include <pthread.h>
 #include <sys/epoll.h>
 #include <sys/eventfd.h>
+#include <sys/inotify.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -20,6 +21,7 @@ constexpr int for_ever_ms = -1;
 constexpr int retry_ms = 1000;
 constexpr int unwatched_ms = 500;
 constexpr uint64_t look_again_key = 0;  ///< no process has pid 0
+constexpr uint64_t files_key = UINT64_MAX;
 
 void add_to_poll(int poll, int fd, uint64_t key) {
   epoll_event event{};
@@ -30,10 +32,26 @@ void add_to_poll(int poll, int fd, uint64_t key) {
   }
 }
 
+/// A descriptor that tells when files of a directory go; empty when there are too many such
+/// already.
+FileDescriptor watch_files_of(const std::string & directory) {
+  FileDescriptor files(inotify_init1(IN_CLOEXEC | IN_NONBLOCK));
+  constexpr uint32_t gone = IN_DELETE | IN_MOVED_FROM | IN_DELETE_SELF | IN_MOVE_SELF;
+  return files && inotify_add_watch(files.get(), directory.c_str(), gone) >= 0 ? std::move(files)
+                                                                               : FileDescriptor();
+}
+
+void drain(const FileDescriptor & descriptor) {
+  char skipped[4096];
+  while (read(descriptor.get(), skipped, sizeof skipped) > 0) {
+  }
+}
+
 /// Removes the platform if nobody uses it; true when this receive thread has nothing left to serve.
 bool end_if_unused(Registry & registry) {
   const JoinLock lock(registry.paths());
   if (!registry.is_current()) {
+    note_removal(registry);
     return true;
   }
   if (is_in_use(registry)) {
@@ -59,11 +77,15 @@ Reaper::Reaper(Registry & registry, uint32_t cluster)
 : registry_(registry),
   cluster_(cluster),
   poll_(epoll_create1(EPOLL_CLOEXEC)),
-  event_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
+  event_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)),
+  files_(watch_files_of(registry.paths().directory)) {
   if (!poll_ || !event_) {
     throw_errno("cannot create the reaper's descriptors");
   }
   add_to_poll(poll_.get(), event_.get(), look_again_key);
+  if (files_) {
+    add_to_poll(poll_.get(), files_.get(), files_key);
+  }
   thread_ = std::thread([this] { run(); });
   pthread_setname_np(thread_.native_handle(), "manycore_reaper");
 }
@@ -153,6 +175,9 @@ bool Reaper::wait_for_end(int timeout_ms) {
     if (events[i].data.u64 == look_again_key) {
       eventfd_t ignored = 0;
       eventfd_read(event_.get(), &ignored);
+    } else if (events[i].data.u64 == files_key) {
+      drain(files_);
+      somebody_ended = true;  // with its files, the platform
     } else {
       watched_.erase(static_cast<pid_t>(events[i].data.u64));
       somebody_ended = true;
@@ -162,7 +187,7 @@ bool Reaper::wait_for_end(int timeout_ms) {
 }
 
 int Reaper::patience_ms() const noexcept {
-  if (some_unwatched_) {
+  if (some_unwatched_ || !files_) {
     return unwatched_ms;
   }
   return is_closing_ ? retry_ms : for_ever_ms;
@@ -173,7 +198,7 @@ void Reaper::run() noexcept {
   while (running_) {
     try {
       somebody_ended = watch_new() || somebody_ended;
-      if (somebody_ended) {
+      if (somebody_ended || !files_) {
         exit_if_unused(registry_);
       }
       somebody_ended = wait_for_end(patience_ms());

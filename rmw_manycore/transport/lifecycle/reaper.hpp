@@ -41,6 +41,7 @@ private:
   uint32_t cluster_;
   FileDescriptor poll_;   ///< epoll
   FileDescriptor event_;  ///< eventfd: look again
+  FileDescriptor files_;  ///< inotify: files of the platform are gone
   std::map<pid_t, FileDescriptor> watched_;
   bool some_unwatched_ = false;  ///< in other PID namespaces, or no descriptor was left
   bool is_closing_ = false;  ///< something could not be freed yet, and nobody tells when it can be

@@ -42,7 +42,25 @@ bool ReceiveThreadWatcher::stopped_within(int timeout_ms, int other_fd) const no
   return (fds[0].revents & POLLIN) != 0;
 }
 
+/// The receive thread ends when the files go; if it was killed before, this thread notices.
+bool ReceiveThreadWatcher::is_cut_off() {
+  if (registry_.is_current()) {
+    return false;
+  }
+  note_removal(registry_);
+  const std::string & directory = registry_.paths().directory;
+  std::fprintf(
+    stderr,
+    "[rmw_manycore] %s was removed while this process used it (systemd-logind does so at logout, "
+    "if RemoveIPC is on: see 'manycore doctor'); start this process again\n",
+    directory.c_str());
+  return true;
+}
+
 bool ReceiveThreadWatcher::watch_once() {
+  if (is_cut_off()) {
+    return false;
+  }
   ensure_receive_thread(registry_.paths(), cluster_);
   const Lifelines & lifelines = registry_.lifelines();
   const uint32_t line = receive_thread_line + cluster_;

@@ -19,8 +19,9 @@ public:
 
 private:
   void run() noexcept;
-  /// False when the watcher was told to stop.
+  /// False when the watcher was told to stop, or has nothing left to watch.
   bool watch_once();
+  bool is_cut_off();
   bool stopped_within(int timeout_ms, int other_fd) const noexcept;
 
   Registry & registry_;

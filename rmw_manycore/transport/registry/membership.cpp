@@ -6,13 +6,22 @@
 namespace manycore {
 
 void Membership::refuse() const {
+  if (is_inherited()) {
+    throw Error(
+      ErrorCode::system,
+      "this context, node, publisher, subscription, service or client belongs to the parent of "
+      "this process and cannot be used after fork(); initialize a new context in the child");
+  }
+  if (is_cut_off()) {
+    throw Error(
+      ErrorCode::system,
+      "the platform's files were removed while it ran (systemd-logind does so at logout, if "
+      "RemoveIPC is on: see 'manycore doctor'); start this process again");
+  }
   throw Error(
     ErrorCode::system,
-    is_inherited()
-      ? "this context, node, publisher, subscription, service or client belongs to the parent of "
-        "this process and cannot be used after fork(); initialize a new context in the child"
-      : "this process is no member of its platform any more: it was removed as dead, or the "
-        "platform's memory is damaged; start it again");
+    "this process is no member of its platform any more: it was removed as dead, or the "
+    "platform's memory is damaged; start it again");
 }
 
 }  // namespace manycore

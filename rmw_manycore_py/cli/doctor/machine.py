@@ -14,6 +14,7 @@ import posix_ipc
 
 from rmw_manycore_py.cli.common.printing import size_text
 from rmw_manycore_py.cli.doctor.finding import Finding, Verdict, advised, judged
+from rmw_manycore_py.cli.doctor.logout import check_logout
 
 SHARED_MEMORY = Path("/dev/shm")
 # Two clusters of Coolidge with the registry; the smallest that the examples run in.
@@ -31,6 +32,7 @@ def check_machine() -> Iterator[Finding]:
     yield _cpus()
     yield _pidfd()
     yield _futex()
+    yield check_logout()
     yield _stale_platforms()
 
 

@@ -1,0 +1,30 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""A platform whose files are removed while it runs, as systemd-logind does at a logout."""
+
+from __future__ import annotations
+
+import shutil
+import sys
+
+import pytest
+from support import PLATFORMS, wait_until
+
+pytestmark = pytest.mark.integration
+EXAMPLES = "rmw_manycore_py.examples"
+NAMES = ("talker", "listener")
+
+
+def test_nodes_end_and_say_why_and_new_ones_meet(start, platform):
+    talker, listener = (
+        [sys.executable, "-m", f"rmw_manycore_py.examples.{name}"]
+        for name in ("talker", "listener")
+    )
+    old = [start(talker), start(listener, 2)]
+    old[1].wait_for("I heard")
+    shutil.rmtree(PLATFORMS / platform)
+    for program in old:
+        assert program.wait() != 0, program
+        assert "start this process again" in program.output
+    wait_until(lambda: not (PLATFORMS / platform).exists(), "the old ones leave nothing")
+    start(talker)
+    start(listener, 2).wait_for("I heard")
