@@ -102,10 +102,15 @@ def profile(
 
 
 def host_smem_size(clusters: int, shm: Path = Path("/dev/shm")) -> int:
-    """Return half of the machine's shared memory, divided among the clusters, in whole MiB."""
+    """Return the local memory of each cluster of this machine, in whole MiB."""
     status = os.statvfs(shm)
-    share = status.f_blocks * status.f_frsize // 2 // clusters
-    return max(share // MIB, 1) * MIB
+    return share_of_memory(status.f_blocks * status.f_frsize, clusters)
+
+
+def share_of_memory(shared: int, clusters: int) -> int:
+    """Return an equal share of half; where that is little, clusters may take what others leave."""
+    common = min(shared // 4 * 3, 1024 * MIB) if shared else 1024 * MIB  # 0: no limit
+    return max(shared // 2 // clusters, common, MIB) // MIB * MIB
 
 
 def room_for_topic_dsms(smem_size: int) -> int:

@@ -89,6 +89,65 @@ def test_a_message_that_needs_more(start_small):
     assert_says_the_size(start_small(16, [sys.executable, "-c", PUBLISH_LARGE]))
 
 
+IMAGES = """
+import subprocess, sys
+from array import array
+import rclpy
+from sensor_msgs.msg import Image
+from std_msgs.msg import UInt32
+
+WIDTH, HEIGHT, COUNT = 1920, 1080, 20
+rclpy.init()
+
+def image_of(number):
+    pixels = array("B", bytes([number]) * (WIDTH * HEIGHT * 3))
+    return Image(width=WIDTH, height=HEIGHT, encoding="rgb8", data=pixels)
+
+def subscriber():
+    node = rclpy.create_node("subscriber")
+    seen = node.create_publisher(UInt32, "seen", 10)
+    def see(image):
+        assert image == image_of(image.data[0])
+        seen.publish(UInt32(data=image.data[0]))
+    node.create_subscription(Image, "image", see, 10)
+    rclpy.spin(node)
+
+def publisher():
+    node = rclpy.create_node("publisher")
+    images, answers = node.create_publisher(Image, "image", 10), []
+    node.create_subscription(UInt32, "seen", lambda answer: answers.append(answer.data), 10)
+    reader = subprocess.Popen([sys.executable, "-c", sys.argv[1], sys.argv[1], "subscriber"])
+    try:
+        publish_all(node, images, answers)
+    finally:
+        reader.terminate()
+        reader.wait()
+    print("all images arrived")
+
+def publish_all(node, images, answers):
+    while images.get_subscription_count() == 0 or node.count_publishers("seen") == 0:
+        rclpy.spin_once(node, timeout_sec=0.01)
+    for number in range(1, COUNT + 1):  # one by one: each arrives
+        images.publish(image_of(number))
+        while answers[-1:] != [number]:
+            rclpy.spin_once(node)
+    assert answers == list(range(1, COUNT + 1)), answers
+    for number in range(1, COUNT + 1):  # faster than the subscriber: the newest arrives
+        images.publish(image_of(100 + number))
+    while answers[-1] != 100 + COUNT:
+        rclpy.spin_once(node)
+
+subscriber() if sys.argv[2:] else publisher()
+"""
+
+
+def test_images_of_1080p(start_small):
+    """What a container has by default carries a raw image and the history of its topic."""
+    publisher = start_small(64, [sys.executable, "-c", IMAGES, IMAGES])
+    assert publisher.wait() == 0, publisher
+    assert "all images arrived" in publisher.output, publisher
+
+
 def test_hardly_any_room(start_small):
     # Some is left for the tracing library in the wheels of ROS, which dies without its page.
     fill = 'head -c 16300K /dev/zero > /dev/shm/full; exec "$@"'

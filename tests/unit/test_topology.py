@@ -5,7 +5,7 @@ import os
 
 import pytest
 
-from rmw_manycore_py.topology import MIB, Core, assign_host_cpus, host_smem_size, profile
+from rmw_manycore_py.topology import MIB, Core, assign_host_cpus, host_smem_size, profile, share_of_memory
 
 pytestmark = pytest.mark.unit
 
@@ -29,11 +29,16 @@ def test_first_and_last_core_are_reserved_and_of_io_clusters_the_first() -> None
     assert bostan.clusters[16].reserved == {0}
 
 
-def test_the_host_gives_half_of_its_shared_memory() -> None:
+def test_the_host_gives_of_its_shared_memory() -> None:
     status = os.statvfs("/dev/shm")
-    share = status.f_blocks * status.f_frsize // 2 // 5
-    assert host_smem_size(5) == max(share // MIB, 1) * MIB
-    assert host_smem_size(5) % MIB == 0
+    assert host_smem_size(5) == share_of_memory(status.f_blocks * status.f_frsize, 5)
+
+
+@pytest.mark.parametrize(
+    ("shared_mib", "smem_mib"), [(0, 1024), (1, 1), (64, 48), (2048, 1024), (24 * 1024, 2457)]
+)
+def test_clusters_share_what_is_little(shared_mib: int, smem_mib: int) -> None:
+    assert share_of_memory(shared_mib * MIB, 5) == smem_mib * MIB
 
 
 def test_used_cores_spread_over_the_cpus_in_order() -> None:

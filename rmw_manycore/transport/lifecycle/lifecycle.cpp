@@ -7,6 +7,7 @@
 #include <sys/statvfs.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <climits>
 #include <cstdlib>
@@ -116,15 +117,23 @@ JoinLock::~JoinLock() {
   }
 }
 
-Profile host_profile() {
+/// SMEM of each cluster, in whole MiB, of a machine with so much shared memory (0 = no limit): an
+/// equal share of half of it. Where that is little, clusters may take what others leave.
+uint64_t host_smem_bytes(uint64_t shared_bytes, uint32_t clusters) {
   constexpr uint64_t mebibyte = 1u << 20;
+  constexpr uint64_t useful = 1024 * mebibyte;
+  const uint64_t share = shared_bytes / 2 / clusters;
+  const uint64_t common = shared_bytes == 0 ? useful : std::min(shared_bytes / 4 * 3, useful);
+  return std::max({share, common, mebibyte}) / mebibyte * mebibyte;
+}
+
+Profile host_profile() {
   Profile profile{};
   profile.clusters = 5;
   profile.cores_per_cluster = 16;
   struct statvfs fs {};
   statvfs("/dev/shm", &fs);
-  const uint64_t share = uint64_t{fs.f_blocks} * fs.f_frsize / 2 / profile.clusters;
-  profile.smem_bytes = share < mebibyte ? mebibyte : share / mebibyte * mebibyte;
+  profile.smem_bytes = host_smem_bytes(uint64_t{fs.f_blocks} * fs.f_frsize, profile.clusters);
   for (int32_t & cpu : profile.host_cpu_of_receive_thread) {
     cpu = -1;
   }

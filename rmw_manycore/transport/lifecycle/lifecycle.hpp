@@ -26,6 +26,8 @@ private:
   std::optional<FileLock> lock_;
 };
 
+uint64_t host_smem_bytes(uint64_t shared_bytes, uint32_t clusters);
+
 /// Sizes for a platform that nobody configured: Coolidge's shape, SMEM from this machine's
 /// /dev/shm.
 Profile host_profile();
