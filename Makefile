@@ -12,7 +12,7 @@ TESTS_ALONE := -DMANYCORE_BUILD_RMW=OFF -DMANYCORE_BUILD_PYTHON=OFF -DMANYCORE_B
 NATIVE_SOURCES := $(shell find CMakeLists.txt cmake startup rmw_manycore \
 	-type f -not -name '*.md')
 
-.PHONY: help setup demo wheel test test-native stress sanitize fuzz bench lint tidy docs clean
+.PHONY: help setup demo wheel test test-native stress soak sanitize fuzz bench lint tidy docs clean
 
 help:  ## this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -33,6 +33,10 @@ test: test-native  ## all tests but the long ones
 
 stress: setup .venv/tests  ## the long tests: random kills, many nodes
 	$(VENV)/pytest -m stress
+
+HOURS ?= 1
+soak: setup .venv/tests  ## HOURS=1 of churn, growth and kills: what is held must stay flat
+	$(VENV)/python tests/soak/soak.py --hours $(HOURS) --output build/soak
 
 test-native: setup .venv/tests  ## the C++ tests
 	scripts/native_tests.sh $(INSTALLED)

@@ -9,17 +9,16 @@ from __future__ import annotations
 
 import os
 import random
-import re
 import time
 
 import pytest
-from load import breed, check_steadily, publish_steadily
+from load import breed
 from processes import kill, processes_of, receive_threads_of
 from running_time import RunningTime
+from steady_load import RECOVERY_S, Load
 from support import (
     IS_MANYCORE,
     KILLS,
-    Program,
     example_command,
     leftovers,
     peer_command,
@@ -30,51 +29,6 @@ SEED = int(os.environ.get("MANYCORE_TEST_SEED", str(random.randrange(1 << 32))))
 LONGEST_LIFE_S = 0.2  # of a victim: joining takes some milliseconds, and may itself be hit
 JOINING_S = 0.03  # about what it takes from the fork to the first message
 CLUSTERS = 2
-RECOVERY_S = 1.0  # what is promised: the others go on, and what the dead held is free again
-
-
-class Load:
-    """A publisher and two subscriptions that must not notice anything, in two clusters."""
-
-    def __init__(self, start, running_time: RunningTime) -> None:
-        self._running_time = running_time
-        self.publisher = start(peer_command(publish_steadily, 50.0))
-        self.checkers: list[Program] = []
-        writer = None
-        for cluster in (1, 2):
-            # The publisher waits for the first subscription before it says who it is.
-            writer = writer or self.publisher.pid
-            checker = start(peer_command(check_steadily, writer), cluster)
-            checker.wait_for("checking")
-            self.checkers.append(checker)
-        self.publisher.wait_for(f"publishing as {writer}")
-
-    def counts(self) -> list[tuple[int, int]]:
-        """Return how many messages each subscription heard, and how many it misses."""
-        for checker in self.checkers:
-            checker.say("how many?")
-        matches = [checker.wait_for(r"heard (\d+), missing (\d+)") for checker in self.checkers]
-        return [(int(match.group(1)), int(match.group(2))) for match in matches]
-
-    def wait_until_it_goes_on(self) -> None:
-        """Wait for ten more messages at each subscription."""
-        before = self.counts()
-
-        def all_have_more() -> bool:
-            pairs = zip(self.counts(), before, strict=True)
-            return all(now[0] >= then[0] + 10 for now, then in pairs)
-
-        wait_until(all_have_more, "everybody hears the publisher again")
-
-    def assert_unharmed(self) -> None:
-        for program in (self.publisher, *self.checkers):
-            assert program.is_running(), program
-            assert "torn" not in program.output, program
-            assert "wrong order" not in program.output, program
-            for gap in re.finditer(r"heard nothing from (\d+) to (\d+)", program.output):
-                counted_s = self._running_time.between_s(int(gap[1]), int(gap[2]))
-                assert counted_s <= RECOVERY_S, program
-        assert [missing for _, missing in self.counts()] == [0, 0]
 
 
 class Graves:

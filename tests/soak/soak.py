@@ -1,0 +1,213 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""A platform under churn, growth and random kills, for hours: what it holds must stay flat.
+
+Some nodes stay and check that they notice nothing. Others come, publish more and more, get stuck,
+leave or are killed; so are receive threads. Once a minute all of them are gone, and what is then
+held is compared over time.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import random
+import signal
+import sys
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parents[1]))
+
+from peers import PeerServers
+from processes import has_receive_threads, kill, processes_of, receive_threads_of
+from running_time import RunningTime
+from steady_load import Load
+from support import Program, environment, leftovers, peer_command, unique_platform, wait_until
+
+from rmw_manycore_py._transport import Platform
+from soak.actors import ACTORS, breed_actors, publish_bursts
+from soak.growth import Record, grown
+from soak.holdings import Holdings, look
+
+CLUSTERS = 2
+CROWD = 8  # nodes at a time beside those that stay
+ROUND_S = 60.0
+LOOK_S = 5.0
+BIRTH_S = 0.1
+BURST_S = 10.0
+RECEIVE_THREAD_LIFE_S = 20.0
+LEAVING = 0.3  # share of the nodes that end by themselves; the others are killed
+STOPPED = 0.1  # share of the killed that hang for a while before
+
+
+class Soak:
+    """The platform, the nodes that stay and those that come and go."""
+
+    def __init__(self, start: Callable[..., Program], platform: str, clock: RunningTime) -> None:
+        self._platform = platform
+        self._load = Load(start, clock)
+        self._bursts = start(peer_command(publish_bursts), 2)
+        self._bursts.wait_for("bursting")
+        self._nursery = start(peer_command(breed_actors))
+        self._nursery.wait_for("ready")
+        self._alive: list[int] = []
+        self._leaving: list[int] = []
+        self.lives = 0
+        self.kills = 0
+        self.killed_receive_threads = 0
+
+    @property
+    def lasting(self) -> list[int]:
+        stay = (self._load.publisher, *self._load.checkers, self._bursts)
+        return [program.pid for program in stay]
+
+    def churn(self, look_at: Callable[[], None]) -> None:
+        """Let nodes come and go for a round."""
+        end_s = time.monotonic() + ROUND_S
+        next_s = dict.fromkeys((look_at, self._burst, self._kill_a_receive_thread), 0.0)
+        every_s = {
+            look_at: LOOK_S,
+            self._burst: BURST_S,
+            self._kill_a_receive_thread: RECEIVE_THREAD_LIFE_S,
+        }
+        while (now_s := time.monotonic()) < end_s:
+            for action, due_s in next_s.items():
+                if due_s <= now_s:
+                    action()
+                    next_s[action] = now_s + every_s[action]
+            self._bear()
+            while len(self._alive) > CROWD:
+                self._end(self._alive.pop(random.randrange(len(self._alive))))
+            time.sleep(random.uniform(0, 2 * BIRTH_S))
+
+    def rest(self) -> Holdings:
+        """End all that came, and return what is held once only those that stay are left."""
+        # Python ignores an interruption that meets a destructor, so leaving nodes are killed, too.
+        for pid in (*self._alive, *self._leaving):
+            self._kill(pid)
+        self._alive.clear()
+        self._leaving.clear()
+        self._load.assert_unharmed()
+        self._load.wait_until_it_goes_on()
+        wait_until(lambda: has_receive_threads(self._platform), "each cluster has a receive thread")
+        try:
+            wait_until(self._is_at_rest, "only the nodes that stay are left")
+        except AssertionError:
+            raise AssertionError(self._left()) from None
+        self._load.assert_unharmed()
+        assert "torn" not in self._nursery.output, self._nursery
+        return look(self._platform, self.lasting)
+
+    def _is_at_rest(self) -> bool:
+        held = look(self._platform, self.lasting)
+        return held.process_slots == held.nodes == len(self.lasting)
+
+    def _left(self) -> str:
+        with Platform(self._platform) as seen:
+            nodes = [f"{node.namespace}{node.name} ({node.process})" for node in seen.nodes()]
+            processes = [
+                f"{process.slot}: {process.pid} {'alive' if process.alive else 'dead'}"
+                for process in seen.processes()
+            ]
+        return f"more than {self.lasting} are left: {nodes}, {processes}\n{self._nursery}"
+
+    def _bear(self) -> None:
+        kind = random.choice(list(ACTORS))
+        self._nursery.say(f"{kind} {random.randint(1, CLUSTERS)}")
+        self._alive.append(int(self._nursery.wait_for(r"born (\d+)").group(1)))
+        self.lives += 1
+
+    def _end(self, pid: int) -> None:
+        if random.random() < LEAVING:
+            with suppress(ProcessLookupError):
+                os.kill(pid, signal.SIGINT)
+            self._leaving.append(pid)
+            return
+        if random.random() < STOPPED:
+            with suppress(ProcessLookupError):
+                os.kill(pid, signal.SIGSTOP)
+            time.sleep(BIRTH_S)  # a while in which it hangs
+        self._kill(pid)
+
+    def _kill(self, pid: int) -> None:
+        with suppress(ProcessLookupError):
+            os.kill(pid, signal.SIGKILL)
+            self.kills += 1
+
+    def _burst(self) -> None:
+        self._bursts.say("burst")
+
+    def _kill_a_receive_thread(self) -> None:
+        if threads := receive_threads_of(self._platform):
+            kill(random.choice(threads))
+            self.killed_receive_threads += 1
+
+
+@contextmanager
+def programs_on(platform: str) -> Iterator[Callable[..., Program]]:
+    """Yield a function that starts programs on a platform; they end with this block."""
+    programs: list[Program] = []
+    servers = PeerServers()
+
+    def start(command: list[str], cluster: int = 1) -> Program:
+        env = environment(platform, cluster)
+        servers.serve(command, env)
+        programs.append(Program(command, env))
+        return programs[-1]
+
+    try:
+        yield start
+    finally:
+        for program in programs:
+            program.kill()
+        for pid in processes_of(platform):
+            kill(pid)
+        servers.end()
+
+
+def soak(hours: float, record: Record) -> None:
+    """Soak a platform of its own, and write what it holds into the record."""
+    platform = unique_platform()
+    clock = RunningTime()
+    start_s = time.monotonic()
+    with programs_on(platform) as start:
+        soaked = Soak(start, platform, clock)
+
+        def note(at_rest: bool, holdings: Holdings) -> None:
+            record.add(time.monotonic() - start_s, at_rest, holdings)
+
+        while time.monotonic() - start_s < hours * 3600:
+            soaked.churn(lambda: note(False, look(platform, soaked.lasting)))
+            rest = soaked.rest()
+            note(True, rest)
+            print(
+                f"{(time.monotonic() - start_s) / 60:6.1f} min: {soaked.lives} lives, "
+                f"{soaked.kills} kills, {soaked.killed_receive_threads} of receive threads; {rest}",
+                flush=True,
+            )
+    clock.stop()
+    wait_until(lambda: not leftovers(platform), f"{platform} leaves nothing in /dev/shm")
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--hours", type=float, default=1.0)
+    parser.add_argument("--output", type=Path, default=Path("build/soak"))
+    parser.add_argument("--seed", type=int, default=random.randrange(1 << 32))
+    options = parser.parse_args()
+    random.seed(options.seed)
+    print(f"seed {options.seed}", flush=True)
+    record = Record(options.output)
+    try:
+        soak(options.hours, record)
+    finally:
+        print(f"see {record.draw()}")
+    found = grown(record.rests())
+    print("\n".join(found) or "nothing grew")
+    return 1 if found else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,56 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Nodes that go on while others die, and check that they notice nothing."""
+
+from __future__ import annotations
+
+import re
+
+from load import check_steadily, publish_steadily
+from running_time import RunningTime
+from support import Program, peer_command, wait_until
+
+RECOVERY_S = 1.0  # what is promised: the others go on, and what the dead held is free again
+
+
+class Load:
+    """A publisher and two subscriptions that must not notice anything, in two clusters."""
+
+    def __init__(self, start, running_time: RunningTime) -> None:
+        self._running_time = running_time
+        self.publisher = start(peer_command(publish_steadily, 50.0))
+        self.checkers: list[Program] = []
+        writer = None
+        for cluster in (1, 2):
+            # The publisher waits for the first subscription before it says who it is.
+            writer = writer or self.publisher.pid
+            checker = start(peer_command(check_steadily, writer), cluster)
+            checker.wait_for("checking")
+            self.checkers.append(checker)
+        self.publisher.wait_for(f"publishing as {writer}")
+
+    def counts(self) -> list[tuple[int, int]]:
+        """Return how many messages each subscription heard, and how many it misses."""
+        for checker in self.checkers:
+            checker.say("how many?")
+        matches = [checker.wait_for(r"heard (\d+), missing (\d+)") for checker in self.checkers]
+        return [(int(match.group(1)), int(match.group(2))) for match in matches]
+
+    def wait_until_it_goes_on(self) -> None:
+        """Wait for ten more messages at each subscription."""
+        before = self.counts()
+
+        def all_have_more() -> bool:
+            pairs = zip(self.counts(), before, strict=True)
+            return all(now[0] >= then[0] + 10 for now, then in pairs)
+
+        wait_until(all_have_more, "everybody hears the publisher again")
+
+    def assert_unharmed(self) -> None:
+        for program in (self.publisher, *self.checkers):
+            assert program.is_running(), program
+            assert "torn" not in program.output, program
+            assert "wrong order" not in program.output, program
+            for gap in re.finditer(r"heard nothing from (\d+) to (\d+)", program.output):
+                counted_s = self._running_time.between_s(int(gap[1]), int(gap[2]))
+                assert counted_s <= RECOVERY_S, program
+        assert [missing for _, missing in self.counts()] == [0, 0]
