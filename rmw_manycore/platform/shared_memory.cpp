@@ -7,6 +7,7 @@
 #include <sys/statvfs.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <utility>
 
@@ -16,6 +17,7 @@ namespace manycore {
 namespace {
 
 constexpr uint64_t page = 4096;
+constexpr uint64_t step_bytes = 4 << 20;  ///< about 3 ms to back
 
 uint64_t page_floor(uint64_t x) { return x & ~(page - 1); }
 uint64_t page_ceil(uint64_t x) { return page_floor(x + page - 1); }
@@ -127,22 +129,41 @@ FileSystemRoom SharedMemory::file_system_room() const noexcept {
   return {uint64_t{fs.f_bavail} * fs.f_frsize, uint64_t{fs.f_blocks} * fs.f_frsize};
 }
 
-void SharedMemory::reserve(uint64_t offset, uint64_t length) const {
-  const uint64_t first = page_floor(offset);
-  const uint64_t bytes = page_ceil(offset + length) - first;
+int SharedMemory::try_reserve(uint64_t first, uint64_t bytes) const noexcept {
   int error = 0;
   do {
     error = posix_fallocate(fd_.get(), static_cast<off_t>(first), static_cast<off_t>(bytes));
   } while (error == EINTR);
-  if (error == 0) {
-    return;
-  }
+  return error;
+}
+
+void SharedMemory::throw_no_space(uint64_t bytes) const {
   const FileSystemRoom room = file_system_room();
   throw Error(
     ErrorCode::no_space,
     "no room for " + std::to_string(bytes) + " bytes in " + path_ + ": " +
       std::to_string(room.free_bytes) + " of " + std::to_string(room.total_bytes) +
       " bytes are free; enlarge /dev/shm (mount -o remount,size=...) or lower topic_dsm_size");
+}
+
+void SharedMemory::reserve(uint64_t offset, uint64_t length) const {
+  const uint64_t first = page_floor(offset);
+  const uint64_t bytes = page_ceil(offset + length) - first;
+  if (try_reserve(first, bytes) != 0) {
+    throw_no_space(bytes);
+  }
+}
+
+void SharedMemory::reserve_and_populate(uint64_t offset, uint64_t length) const {
+  const uint64_t first = page_floor(offset);
+  const uint64_t end = page_ceil(offset + length);
+  for (uint64_t step = first; step < end; step += step_bytes) {
+    const uint64_t bytes = std::min(step_bytes, end - step);
+    if (try_reserve(step, bytes) != 0) {
+      throw_no_space(end - first);
+    }
+    populate(step, bytes);
+  }
 }
 
 void SharedMemory::populate(uint64_t offset, uint64_t length) const noexcept {

@@ -54,6 +54,9 @@ public:
   FileSystemRoom file_system_room() const noexcept;
   /// Backs [offset, offset + length) with memory; throws Error{no_space} naming the size needed.
   void reserve(uint64_t offset, uint64_t length) const;
+  /// reserve() and populate() in steps. The kernel locks the file for one step at a time, so that
+  /// others can back their memory meanwhile. What was backed before an Error stays backed.
+  void reserve_and_populate(uint64_t offset, uint64_t length) const;
   /// Maps the pages of a reserved range into this process, so that first use does not fault.
   void populate(uint64_t offset, uint64_t length) const noexcept;
   /// Gives the whole pages inside the range back to the system; they read as zero afterwards.
@@ -63,6 +66,9 @@ private:
   static SharedMemory open(const std::string & path, size_t least_size_bytes, int flags);
   SharedMemory(FileDescriptor fd, const std::string & path, size_t size_bytes);
   void unmap() noexcept;
+  /// An errno.
+  int try_reserve(uint64_t first, uint64_t bytes) const noexcept;
+  [[noreturn]] void throw_no_space(uint64_t bytes) const;
 
   FileDescriptor fd_;
   std::string path_;

@@ -24,11 +24,12 @@ struct alignas(64) RecordDescriptor {
 };
 static_assert(sizeof(RecordDescriptor) == 64);
 
-/// One allocation of descriptors followed by data. `first` = number of its first record; 0 =
-/// unused.
+/// One allocation of descriptors followed by data.
 struct GenerationEntry {
-  std::atomic<uint64_t> first;
-  std::atomic<uint64_t> offset;            ///< of descriptors, in the publisher's cluster segment
+  std::atomic<uint64_t> first;  ///< number of its first record; 0 = readers may not look into it
+  /// Of descriptors, in the publisher's cluster segment; 0 = it holds no memory. Changed under the
+  /// registry lock.
+  std::atomic<uint64_t> offset;
   std::atomic<uint32_t> descriptor_count;  ///< power of two
   std::atomic<uint32_t> reserved;
   std::atomic<uint64_t> data_bytes;

@@ -4,6 +4,7 @@
 #include "transport/qos/liveliness.hpp"
 #include "transport/queue/source_table.hpp"
 #include "transport/registry/endpoint_blocks.hpp"
+#include "transport/topic_dsm/generation.hpp"
 #include "transport/topic_dsm/reader_table.hpp"
 
 namespace manycore::closing {
@@ -165,8 +166,8 @@ void free_chain(Cluster & cluster, const std::atomic<uint64_t> & first) {
 
 void free_topic_dsm(Cluster & cluster, TopicDsmHeader & dsm) {
   for (GenerationEntry & generation : dsm.generations) {
-    if (generation.first.load() != 0) {
-      cluster.free(generation.offset.load(), generation.extent_bytes());
+    if (generation.offset.load() != 0) {
+      Generation::free(cluster, generation);
     }
   }
   free_chain<ReaderBlock>(cluster, dsm.next_reader_block);

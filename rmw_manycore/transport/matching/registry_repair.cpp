@@ -22,7 +22,7 @@ void Registry::mark_blocks_of(EndpointEntry & entry) noexcept {
     }
     cluster->mark_allocated(entry.block.offset(), sizeof(TopicDsmHeader));
     for (GenerationEntry & generation : dsm->generations) {
-      if (generation.first.load() != 0) {
+      if (generation.offset.load() != 0) {
         cluster->mark_allocated(generation.offset.load(), generation.extent_bytes());
       }
     }

@@ -12,8 +12,10 @@
 namespace manycore {
 namespace {
 
+constexpr uint32_t page_bytes = 4096;
+
 /// Small SMEMs are cut finely, large ones by the page.
-uint32_t granule_size(uint64_t smem_bytes) { return smem_bytes <= (64u << 20) ? 1024 : 4096; }
+uint32_t granule_size(uint64_t smem_bytes) { return smem_bytes <= (64u << 20) ? 1024 : page_bytes; }
 
 uint64_t map_bytes(uint64_t granules) { return align_up(align_up(granules, 64) / 8, 8); }
 
@@ -172,6 +174,17 @@ void Cluster::require_message_room(uint64_t length) const {
 }
 
 uint64_t Cluster::allocate(uint64_t length) {
+  const uint64_t offset = reserve(length);
+  try {
+    back(offset, length);
+  } catch (...) {
+    free(offset, length);
+    throw;
+  }
+  return offset;
+}
+
+uint64_t Cluster::reserve(uint64_t length) {
   require_sound_map();
   ClusterHeader & head = header();
   const uint64_t count = granules_of(length);
@@ -180,11 +193,20 @@ uint64_t Cluster::allocate(uint64_t length) {
     throw no_room(*this, length, fill_level(*this) + "; " + topic_dsm_advice);
   }
   const uint64_t offset = first * head.granule_bytes;
-  memory_.reserve(offset, count * head.granule_bytes);
-  memory_.populate(offset, count * head.granule_bytes);
+  const uint64_t bytes = count * head.granule_bytes;
+  if (head.granule_bytes < page_bytes) {
+    // Pages that neighbours share are backed and touched under the lock: a fallocate() that fails
+    // takes back all untouched pages of its range, and so a neighbour's.
+    memory_.reserve_and_populate(offset, 1);
+    memory_.reserve_and_populate(offset + bytes - 1, 1);
+  }
   set_granules(first, count, true);
-  head.used_bytes.fetch_add(count * head.granule_bytes, std::memory_order_relaxed);
+  head.used_bytes.fetch_add(bytes, std::memory_order_relaxed);
   return offset;
+}
+
+void Cluster::back(uint64_t offset, uint64_t length) const {
+  memory_.reserve_and_populate(offset, granules_of(length) * header().granule_bytes);
 }
 
 void Cluster::free(uint64_t offset, uint64_t length) noexcept {

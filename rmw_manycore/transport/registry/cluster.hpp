@@ -61,6 +61,12 @@ public:
   /// Allocation of SMEM, resident but not cleared; the caller holds the registry lock. Throws
   /// Error{no_space|corrupt}.
   uint64_t allocate(uint64_t length);
+  /// The two halves of allocate(). Takes SMEM that nothing may touch yet; the caller holds the
+  /// registry lock. Throws Error{no_space|corrupt}.
+  uint64_t reserve(uint64_t length);
+  /// Makes reserved SMEM resident; needs no lock, and takes as long as the memory is large. Throws
+  /// Error{no_space}.
+  void back(uint64_t offset, uint64_t length) const;
   template<typename T>
   T & allocate_cleared(uint64_t length = sizeof(T)) {
     const uint64_t offset = allocate(length);

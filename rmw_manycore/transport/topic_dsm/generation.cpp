@@ -3,19 +3,27 @@
 
 namespace manycore {
 
-void Generation::allocate(
-  Cluster & cluster, GenerationEntry & entry, uint64_t data_bytes, uint64_t count, uint64_t first) {
-  const uint64_t offset = cluster.allocate(extent_bytes(data_bytes, count));
-  // A reader may still be looking here for a number of a generation that was given back; it looks
-  // at that generation's entry again before it believes what it finds.
-  auto * const descriptors = cluster.find<RecordDescriptor>(offset);
-  for (uint64_t i = 0; i < count; ++i) {
-    descriptors[i].number.store(no_record, std::memory_order_relaxed);
-  }
-  entry.offset.store(offset, std::memory_order_relaxed);
+/// `offset` last: a repairer of the registry goes by it, and then needs the size.
+void Generation::reserve(
+  Cluster & cluster, GenerationEntry & entry, uint64_t data_bytes, uint64_t count) {
+  const uint64_t offset = cluster.reserve(extent_bytes(data_bytes, count));
   entry.descriptor_count.store(static_cast<uint32_t>(count), std::memory_order_relaxed);
   entry.data_bytes.store(data_bytes, std::memory_order_relaxed);
+  entry.offset.store(offset, std::memory_order_release);
+}
+
+void Generation::open(const Cluster & cluster, GenerationEntry & entry, uint64_t first) {
+  cluster.back(entry.offset.load(std::memory_order_relaxed), entry.extent_bytes());
+  const Generation generation = view(cluster, entry);
+  for (uint64_t i = 0; i < generation.count; ++i) {
+    generation.descriptors[i].number.store(no_record, std::memory_order_relaxed);
+  }
   entry.first.store(first, std::memory_order_release);
+}
+
+void Generation::free(Cluster & cluster, GenerationEntry & entry) noexcept {
+  cluster.free(entry.offset.load(std::memory_order_relaxed), entry.extent_bytes());
+  entry.offset.store(0, std::memory_order_release);
 }
 
 Generation Generation::view(const Cluster & cluster, GenerationEntry & entry) noexcept {

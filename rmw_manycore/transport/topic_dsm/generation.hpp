@@ -33,11 +33,14 @@ struct Generation {
   static constexpr uint64_t extent_bytes(uint64_t data_bytes, uint64_t count) {
     return count * sizeof(RecordDescriptor) + data_bytes;
   }
-  /// Allocates a generation and makes it visible to readers; the caller holds the registry lock.
-  /// Throws Error{no_space}.
-  static void allocate(
-    Cluster & cluster, GenerationEntry & entry, uint64_t data_bytes, uint64_t count,
-    uint64_t first);
+  /// Takes SMEM for a generation; the caller holds the registry lock. Throws
+  /// Error{no_space|corrupt}.
+  static void reserve(
+    Cluster & cluster, GenerationEntry & entry, uint64_t data_bytes, uint64_t count);
+  /// Backs it with memory, then shows it to readers; needs no lock. Throws Error{no_space}.
+  static void open(const Cluster & cluster, GenerationEntry & entry, uint64_t first);
+  /// Gives the SMEM back; the caller holds the registry lock.
+  static void free(Cluster & cluster, GenerationEntry & entry) noexcept;
   static Generation view(const Cluster & cluster, GenerationEntry & entry) noexcept;
 };
 

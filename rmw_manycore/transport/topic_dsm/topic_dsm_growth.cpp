@@ -10,6 +10,9 @@ namespace manycore {
 namespace {
 
 constexpr uint64_t descriptor_limit = 1 << 16;
+constexpr uint64_t many_bytes = 16 << 20;
+
+uint64_t half_as_much_again(uint64_t bytes) { return align_up(bytes * 3 / 2, record_alignment); }
 
 }  // namespace
 
@@ -29,18 +32,18 @@ bool TopicDsmWriter::drain(const Generation & old) {
   return !wanted && !readers_.is_any_pinned(old.first, current_.first - 1);
 }
 
-void TopicDsmWriter::free_old_generations() noexcept {
+void TopicDsmWriter::free_old_generations(long wait_ns) noexcept {
   try {
     for (size_t i = 0; i < old_.size();) {
       if (!drain(old_[i])) {
         ++i;
         continue;
       }
-      const Registry::Lock lock(registry_, Registry::Lock::no_wait_ns);
+      const Registry::Lock lock(registry_, wait_ns);
       // Cleared before it is given back: a reader that meets foreign bytes in it finds the entry
       // changed.
       old_[i].entry->first.store(0, std::memory_order_seq_cst);
-      cluster_.free(old_[i].entry->offset.load(), old_[i].entry->extent_bytes());
+      Generation::free(cluster_, *old_[i].entry);
       old_.erase(old_.begin() + static_cast<ptrdiff_t>(i));
     }
   } catch (const Error &) {
@@ -54,7 +57,7 @@ uint64_t TopicDsmWriter::data_limit() const noexcept {
 
 /// The lock is waited for once: whoever stands still holding it must not hold up each record, nor
 /// each publish. From then on growing only tries, until the lock is to be had.
-void TopicDsmWriter::allocate_generation(
+void TopicDsmWriter::reserve_generation(
   GenerationEntry & entry, uint64_t data_bytes, uint64_t descriptor_count) {
   const long wait_ns =
     registry_answers_ ? Registry::Lock::short_wait_ns : Registry::Lock::no_wait_ns;
@@ -62,7 +65,22 @@ void TopicDsmWriter::allocate_generation(
   const Registry::Lock lock(registry_, wait_ns);
   registry_answers_ = true;
   cluster_.require_message_room(Generation::extent_bytes(data_bytes, descriptor_count));
-  Generation::allocate(cluster_, entry, data_bytes, descriptor_count, next_number_);
+  Generation::reserve(cluster_, entry, data_bytes, descriptor_count);
+}
+
+/// Without the lock, which others want meanwhile. The entry holds the reservation, for a reaper to
+/// undo.
+void TopicDsmWriter::open_generation(GenerationEntry & entry) {
+  try {
+    Generation::open(cluster_, entry, next_number_);
+  } catch (const Error &) {
+    Generation unopened = Generation::view(cluster_, entry);
+    unopened.count = 0;
+    unopened.first = next_number_;
+    old_.push_back(unopened);
+    free_old_generations(Registry::Lock::short_wait_ns);
+    throw;
+  }
 }
 
 bool TopicDsmWriter::grow(uint64_t data_bytes, uint64_t descriptor_count) {
@@ -82,14 +100,15 @@ bool TopicDsmWriter::add_generation(uint64_t data_bytes, uint64_t descriptor_cou
   }
   GenerationEntry * const free_entry = std::find_if(
     std::begin(dsm_.generations), std::end(dsm_.generations),
-    [](const GenerationEntry & entry) { return entry.first.load() == 0; });
+    [](const GenerationEntry & entry) { return entry.offset.load() == 0; });
   if (free_entry == std::end(dsm_.generations)) {
     return false;
   }
   if (next_number_ == current_.first) {
     ++next_number_;  // a reader tells generations apart by their first numbers
   }
-  allocate_generation(*free_entry, data_bytes, descriptor_count);
+  reserve_generation(*free_entry, data_bytes, descriptor_count);
+  open_generation(*free_entry);
   old_.push_back(current_);
   current_ = Generation::view(cluster_, *free_entry);
   blocks_.clear();
@@ -114,24 +133,28 @@ uint64_t TopicDsmWriter::deepest_history() const noexcept {
 }
 
 /// Four times the records, descriptors and bytes alike, but no more than are ever wanted: few
-/// generations, since the old ones stay while their records are wanted. Half as many bytes more at
-/// least: records of mixed sizes leave gaps.
+/// generations, since the old ones stay while their records are wanted. Twice the records where
+/// they are many bytes. Half as many bytes more at least: records of mixed sizes leave gaps.
 bool TopicDsmWriter::grow_to_hold_more(uint64_t need_bytes) {
-  const uint64_t held = std::max<uint64_t>(blocks_.size(), 2);
-  const uint64_t records = std::max(held + 2, std::min(held * 4, deepest_history() + 2));
+  const uint64_t held = std::max<uint64_t>(blocks_.size(), 1);
   const uint64_t bytes_per_record = std::max(need_bytes, blocks_.bytes() / held);
-  const uint64_t bytes =
-    align_up(std::max(records * bytes_per_record, current_.data_bytes * 3 / 2), record_alignment);
+  const uint64_t factor = held * bytes_per_record < many_bytes ? 4 : 2;
+  const uint64_t records =
+    std::max(held + factor / 2, std::min(held * factor, deepest_history() + 2));
+  const uint64_t bytes = std::max(
+    align_up(records * bytes_per_record, record_alignment),
+    half_as_much_again(current_.data_bytes));
   return grow(
     std::min(bytes, std::max(data_limit(), current_.data_bytes)),
     std::clamp(power_of_two_at_least(records), current_.count, most_descriptors()));
 }
 
-/// Room for two such messages; where there is none, for one.
+/// Room for such a message, and where there is any for half as much again as there was: messages
+/// that become larger bit by bit would else each add a generation.
 bool TopicDsmWriter::add_generation_for(uint64_t need_bytes) {
   try {
-    const uint64_t wish = std::min(need_bytes * 2, std::max(need_bytes, data_limit()));
-    return add_generation(wish, current_.count);
+    const uint64_t more = std::min(half_as_much_again(current_.data_bytes), data_limit());
+    return add_generation(std::max(need_bytes, more), current_.count);
   } catch (const Error & error) {
     if (error.code() != ErrorCode::no_space) {
       throw;

@@ -48,8 +48,12 @@ TopicDsmHeader & TopicDsmWriter::create(Registry & registry, uint32_t endpoint_s
     if (endpoint.topic_dsm_size != 0) {
       cluster.require_message_room(Generation::extent_bytes(data_bytes, descriptor_count));
     }
-    Generation::allocate(cluster, dsm.generations[0], data_bytes, descriptor_count, 1);
+    Generation::reserve(cluster, dsm.generations[0], data_bytes, descriptor_count);
+    Generation::open(cluster, dsm.generations[0], 1);
   } catch (...) {
+    if (dsm.generations[0].offset.load() != 0) {
+      Generation::free(cluster, dsm.generations[0]);
+    }
     cluster.free(cluster.ref_of(&dsm).offset(), sizeof dsm);
     throw;
   }
@@ -264,7 +268,7 @@ TopicDsmWriter::Room TopicDsmWriter::find_room(uint64_t size_bytes) {
   blocked_until_ns_ = 0;
   readers_.require_all(endpoint_.topic);
   if (!old_.empty()) {
-    free_old_generations();
+    free_old_generations(Registry::Lock::no_wait_ns);
   }
   take_back_free_records();
   require_data_bytes(need);

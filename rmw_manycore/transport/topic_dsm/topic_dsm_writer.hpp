@@ -51,7 +51,7 @@ private:
   TakeBack take_back(uint64_t number, bool force);
   void take_back_free_records();
   bool drain(const Generation & old);
-  void free_old_generations() noexcept;
+  void free_old_generations(long wait_ns) noexcept;
   /// Makes place where a wanted record stands: grows, waits (RELIABLE + KEEP_ALL) or overwrites.
   void make_place(uint64_t number, uint64_t need_bytes);
   void claim_descriptor(uint64_t need_bytes);
@@ -64,7 +64,8 @@ private:
   /// Error{no_space|corrupt|timeout}.
   bool add_generation(uint64_t data_bytes, uint64_t descriptor_count);
   bool add_generation_for(uint64_t need_bytes);
-  void allocate_generation(GenerationEntry & entry, uint64_t data_bytes, uint64_t descriptor_count);
+  void reserve_generation(GenerationEntry & entry, uint64_t data_bytes, uint64_t descriptor_count);
+  void open_generation(GenerationEntry & entry);
   void require_data_bytes(uint64_t need_bytes);
   void wait_for_progress(uint64_t number);
   uint64_t data_limit() const noexcept;
