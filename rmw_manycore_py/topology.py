@@ -10,6 +10,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
 
+from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
+
 MIB = 1024 * 1024
 RECEIVE_THREAD_CORE = 0
 # What a process is pinned to: a CPU, several, or None where it may use all.
@@ -101,9 +103,26 @@ def profile(
     return Topology(name, tuple(Cluster(i, n, smem) for i, n in enumerate(cores, start=1)))
 
 
-def host_smem_size(clusters: int, shm: Path = Path("/dev/shm")) -> int:
+def platforms_directory() -> Path:
+    """Return where this user's platforms lie, as UserDirectory does in rmw_manycore/platform."""
+    return Path(os.environ.get("MANYCORE_DIRECTORY") or f"/dev/shm/manycore-{os.geteuid()}")
+
+
+def shared_memory_place() -> Path:
+    """Return a directory on the file system that platforms lie in.
+
+    :raises ManycoreError: when MANYCORE_DIRECTORY is not there.
+    """
+    chosen = os.environ.get("MANYCORE_DIRECTORY")
+    if chosen and not Path(chosen).is_dir():
+        message = f"MANYCORE_DIRECTORY='{chosen}' is no directory: mkdir -m 700 {chosen}"
+        raise ManycoreError(message, EXIT_BAD_INPUT)
+    return Path(chosen or "/dev/shm")
+
+
+def host_smem_size(clusters: int) -> int:
     """Return the local memory of each cluster of this machine, in whole MiB."""
-    status = os.statvfs(shm)
+    status = os.statvfs(shared_memory_place())
     return share_of_memory(status.f_blocks * status.f_frsize, clusters)
 
 

@@ -143,7 +143,8 @@ void SharedMemory::throw_no_space(uint64_t bytes) const {
     ErrorCode::no_space,
     "no room for " + std::to_string(bytes) + " bytes in " + path_ + ": " +
       std::to_string(room.free_bytes) + " of " + std::to_string(room.total_bytes) +
-      " bytes are free; enlarge /dev/shm (mount -o remount,size=...) or lower topic_dsm_size");
+      " bytes are free; enlarge its file system (mount -o remount,size=...) or lower "
+      "topic_dsm_size");
 }
 
 void SharedMemory::reserve(uint64_t offset, uint64_t length) const {

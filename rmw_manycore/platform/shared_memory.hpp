@@ -38,6 +38,7 @@ public:
   static SharedMemory attach(const std::string & shared_path);
 
   std::byte * data() const noexcept { return data_; }
+  const std::string & path() const noexcept { return path_; }
   size_t size() const noexcept { return size_; }
   /// False once its file was removed or replaced. Needs no descriptor.
   bool is_file(const std::string & path) const noexcept;

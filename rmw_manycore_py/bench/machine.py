@@ -8,6 +8,8 @@ import platform
 from importlib import metadata
 from pathlib import Path
 
+from rmw_manycore_py.topology import shared_memory_place
+
 PACKAGES = ("rmw-manycore", "ros-rclpy", "ros-rmw-fastrtps-cpp", "ros-fastrtps")
 
 
@@ -17,7 +19,7 @@ def machine_header() -> dict[str, str]:
         "processor": _processor(),
         "usable CPUs": ", ".join(str(cpu) for cpu in sorted(os.sched_getaffinity(0))),
         "memory": f"{os.sysconf('SC_PAGE_SIZE') * os.sysconf('SC_PHYS_PAGES') / 2**30:.1f} GiB",
-        "shared memory": f"{_shared_memory_bytes() / 2**30:.1f} GiB in /dev/shm",
+        "shared memory": f"{_shared_memory_bytes() / 2**30:.1f} GiB in {shared_memory_place()}",
         "kernel": platform.release(),
         "python": platform.python_version(),
         "load before": f"{os.getloadavg()[0]:.2f}",
@@ -33,7 +35,7 @@ def _processor() -> str:
 
 
 def _shared_memory_bytes() -> int:
-    status = os.statvfs("/dev/shm")
+    status = os.statvfs(shared_memory_place())
     return status.f_blocks * status.f_frsize
 
 

@@ -10,6 +10,7 @@ from rmw_manycore_py.bench.contenders import FAST_DDS, INSIDE, MIB, Middleware
 from rmw_manycore_py.bench.question import Question, Run
 from rmw_manycore_py.bench.session import Process, Session
 from rmw_manycore_py.bench.summary import Result
+from rmw_manycore_py.topology import platforms_directory
 
 NODES = 8
 NAME = "memory"
@@ -87,10 +88,11 @@ def _stop_nodes(nodes: list[Process]) -> None:
 def private_bytes(pid: int) -> int:
     """Return the memory that only this process has, without shared memory it alone touched."""
     total = 0
+    shared = ("/dev/shm/", f"{platforms_directory()}/")  # Fast DDS and rmw_manycore
     counts = False
     for line in Path(f"/proc/{pid}/smaps").read_text().splitlines():
         if re.match(r"[0-9a-f]+-[0-9a-f]+ ", line):
-            counts = "/dev/shm/" not in line
+            counts = not any(place in line for place in shared)
         elif counts and line.startswith("Private_"):
             total += int(line.split()[1]) * KIB
     return total

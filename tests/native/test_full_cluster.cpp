@@ -120,7 +120,7 @@ TEST_CASE("a cluster that is full because its file system is takes nodes as well
     FullCluster full(64 * mebibyte, {});
     const Refusal refusal = full.fill();
     CHECK(refusal.code == ErrorCode::too_large);
-    CHECK_MESSAGE(refusal.says("bytes of /dev/shm are free"), refusal.text);
+    CHECK_MESSAGE(refusal.says("'s file system are free"), refusal.text);
     check_latecomer(full.platform);
   }
   REQUIRE(mount("tmpfs", "/dev/shm", "tmpfs", MS_REMOUNT, "size=50%") == 0);

@@ -192,15 +192,6 @@ TEST_CASE("a configurator keeps the platform while no node is there, also in its
   CHECK_FALSE(platform.exists());
 }
 
-TEST_CASE("each cluster of the host has a share; where that is little, what others leave") {
-  constexpr uint64_t mebibyte = 1 << 20;
-  const uint64_t of_mebibytes[][2] = {{0, 1024}, {1, 1}, {64, 48}, {2048, 1024}, {24 * 1024, 2457}};
-  for (const auto & [shared, smem] : of_mebibytes) {
-    CAPTURE(shared);
-    CHECK(host_smem_bytes(shared * mebibyte, 5) == smem * mebibyte);
-  }
-}
-
 TEST_CASE("a platform outlives its configurator while a node is there") {
   TestPlatform platform;
   auto configurator = std::make_unique<Configurator>(

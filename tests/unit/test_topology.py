@@ -5,7 +5,14 @@ import os
 
 import pytest
 
-from rmw_manycore_py.topology import MIB, Core, assign_host_cpus, host_smem_size, profile, share_of_memory
+from rmw_manycore_py.topology import (
+    MIB,
+    Core,
+    assign_host_cpus,
+    host_smem_size,
+    profile,
+    share_of_memory,
+)
 
 pytestmark = pytest.mark.unit
 

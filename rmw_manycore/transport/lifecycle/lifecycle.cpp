@@ -13,6 +13,7 @@
 #include <cstdlib>
 
 #include "platform/os_process.hpp"
+#include "platform/user_directory.hpp"
 #include "transport/matching/closing.hpp"
 #include "transport/registry/smem_charge.hpp"
 
@@ -104,7 +105,9 @@ void reap(Registry & registry, uint32_t process) {
 
 JoinLock::JoinLock(const PlatformPaths & paths) : paths_(paths) {
   while (!lock_) {
-    make_private_directory(paths.user_directory);
+    if (!paths.is_chosen) {
+      make_private_directory(paths.user_directory);
+    }
     lock_ = FileLock::acquire(paths.join_lock(), join_timeout_ms);
   }
 }
@@ -113,7 +116,9 @@ JoinLock::~JoinLock() {
   if (
     entries_of(paths_.user_directory) == std::vector<std::string>{PlatformPaths::join_lock_name}) {
     unlink(paths_.join_lock().c_str());
-    rmdir(paths_.user_directory.c_str());
+    if (!paths_.is_chosen) {
+      rmdir(paths_.user_directory.c_str());
+    }
   }
 }
 
@@ -132,7 +137,7 @@ Profile host_profile() {
   profile.clusters = 5;
   profile.cores_per_cluster = 16;
   struct statvfs fs {};
-  statvfs("/dev/shm", &fs);
+  statvfs(UserDirectory::from_environment().place().c_str(), &fs);
   profile.smem_bytes = host_smem_bytes(uint64_t{fs.f_blocks} * fs.f_frsize, profile.clusters);
   for (int32_t & cpu : profile.host_cpu_of_receive_thread) {
     cpu = -1;
@@ -153,6 +158,9 @@ void ensure_platform(
   if (!exists(paths.directory)) {
     make_private_directory(paths.directory);
     try {
+      if (paths.is_chosen) {
+        require_file_system_features(paths.directory);
+      }
       Lifelines::create(paths.alive(), lifeline_count);
       Registry::create(paths, profile, topics);
     } catch (...) {

@@ -12,7 +12,8 @@
 namespace manycore {
 
 /// Serialises joining and leaving of all platforms of this user, while alive. The user directory
-/// comes with its first holder and goes with the last one that leaves no platform in it.
+/// comes with its first holder and goes with the last one that leaves no platform in it, unless it
+/// is a chosen one.
 class JoinLock {
 public:
   /// Throws Error{permission} when the user directory is not private.
@@ -28,8 +29,8 @@ private:
 
 uint64_t host_smem_bytes(uint64_t shared_bytes, uint32_t clusters);
 
-/// Sizes for a platform that nobody configured: Coolidge's shape, SMEM from this machine's
-/// /dev/shm.
+/// Sizes for a platform that nobody configured: Coolidge's shape, SMEM from what the file
+/// system of the user directory holds.
 Profile host_profile();
 
 /// Brings the platform's directory and registry up where they are missing, and wipes what a dead

@@ -1,12 +1,11 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #include "transport/registry/cluster.hpp"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <utility>
 
 #include "platform/error.hpp"
+#include "platform/user_directory.hpp"
 #include "transport/layout/registry_layout.hpp"
 
 namespace manycore {
@@ -67,8 +66,8 @@ PlatformPaths PlatformPaths::of(const std::string & platform) {
                                      "' is no platform name: expected up to 64 letters, digits, "
                                      "'_', '.' and '-', the first none of '.' and '-'");
   }
-  const std::string user = "/dev/shm/manycore-" + std::to_string(geteuid());
-  return {user, user + "/" + platform};
+  const UserDirectory user = UserDirectory::from_environment();
+  return {user.path, user.path + "/" + platform, user.is_chosen};
 }
 
 void Cluster::create(
@@ -166,9 +165,9 @@ void Cluster::require_message_room(uint64_t length) const {
     throw no_room(
       *this, length,
       std::to_string(host.free_bytes) + " of the " + std::to_string(host.total_bytes) +
-        " bytes of /dev/shm are free, and " +
+        " bytes of " + memory_.path() + "'s file system are free, and " +
         std::to_string(control_reserve_bytes(host.total_bytes)) +
-        " are kept for nodes, publishers and subscriptions to come; enlarge /dev/shm (mount -o "
+        " are kept for nodes, publishers and subscriptions to come; enlarge it (mount -o "
         "remount,size=...) or lower topic_dsm_size");
   }
 }

@@ -18,10 +18,12 @@ namespace manycore {
 struct PlatformPaths {
   /// No platform name begins with a dot, so no platform's directory has this name.
   static constexpr const char * join_lock_name = ".lock";
-  std::string user_directory;  ///< /dev/shm/manycore-<uid>
+  std::string user_directory;  ///< /dev/shm/manycore-<uid>, or MANYCORE_DIRECTORY
   std::string directory;       ///< .../<platform>
+  bool is_chosen = false;      ///< the user directory is MANYCORE_DIRECTORY
 
-  /// Throws Error{invalid_argument} for what is no platform name.
+  /// Throws Error{invalid_argument} for what is no platform name, and what
+  /// UserDirectory::from_environment() throws.
   static PlatformPaths of(const std::string & platform);
   static bool is_name(const std::string & platform) noexcept;
   std::string join_lock() const { return user_directory + "/" + join_lock_name; }

@@ -8,15 +8,15 @@ import os
 import platform
 import stat
 from collections.abc import Iterator
-from pathlib import Path
 
 import posix_ipc
 
 from rmw_manycore_py.cli.common.printing import size_text
 from rmw_manycore_py.cli.doctor.finding import Finding, Verdict, advised, judged
 from rmw_manycore_py.cli.doctor.logout import check_logout
+from rmw_manycore_py.errors import ManycoreError
+from rmw_manycore_py.topology import platforms_directory, shared_memory_place
 
-SHARED_MEMORY = Path("/dev/shm")
 # Two clusters of Coolidge with the registry; the smallest that the examples run in.
 USEFUL_SHARED_MEMORY_BYTES = 64 << 20
 USEFUL_CPUS = 2
@@ -26,9 +26,13 @@ _SYS_FUTEX = {"x86_64": 202, "aarch64": 98}
 
 def check_machine() -> Iterator[Finding]:
     """Yield what the transport needs of the system."""
-    yield _shared_memory_size()
+    try:
+        yield _shared_memory_size()
+    except ManycoreError as error:
+        yield Finding("platform directory", Verdict.FAILURE, str(error))
+    else:
+        yield _user_directory()
     yield _posix_shared_memory()
-    yield _user_directory()
     yield _cpus()
     yield _pidfd()
     yield _futex()
@@ -37,13 +41,14 @@ def check_machine() -> Iterator[Finding]:
 
 
 def _shared_memory_size() -> Finding:
-    status = os.statvfs(SHARED_MEMORY)
+    place = shared_memory_place()
+    status = os.statvfs(place)
     size, free = status.f_blocks * status.f_frsize, status.f_bavail * status.f_frsize
     advice = (
-        "mount -o remount,size=1G /dev/shm (a container: --shm-size=1g), or remove what fills it"
+        f"mount -o remount,size=1G {place} (a container: --shm-size=1g), or remove what fills it"
     )
     found = f"{size_text(free)} free of {size_text(size)}"
-    return advised("/dev/shm", free >= USEFUL_SHARED_MEMORY_BYTES, found, advice)
+    return advised(str(place), free >= USEFUL_SHARED_MEMORY_BYTES, found, advice)
 
 
 def _posix_shared_memory() -> Finding:
@@ -60,7 +65,7 @@ def _posix_shared_memory() -> Finding:
 
 
 def _user_directory() -> Finding:
-    path = SHARED_MEMORY / f"manycore-{os.getuid()}"
+    path = platforms_directory()
     try:
         status = path.lstat()
     except FileNotFoundError:

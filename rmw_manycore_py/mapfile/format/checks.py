@@ -13,7 +13,10 @@ from rmw_manycore_py.mapfile.format.model import NodeSection
 from rmw_manycore_py.topology import Core
 
 # These follow from the placement; a node that is told otherwise would be somewhere else.
-PLACE_VARIABLES = ("MANYCORE_PLATFORM", "MANYCORE_CLUSTER", "MANYCORE_CORE")
+PLACE_VARIABLES = (
+    *("MANYCORE_DIRECTORY", "MANYCORE_PLATFORM"),
+    *("MANYCORE_CLUSTER", "MANYCORE_CORE"),
+)
 WAYS_TO_START = ("module", "script", "executable", "command")
 
 
@@ -80,7 +83,7 @@ def check_environment(mapfile: Mapfile) -> Iterator[Problem]:
     for name, node in mapfile.sections.nodes.items():
         for variable in PLACE_VARIABLES:
             if variable in node.env:
-                expected = "no variable that platform, cluster and core already say"
+                expected = "no variable that says where the platform or the node is"
                 path = ("nodes", name, "env", variable)
                 yield mapfile.document.problem(path, expected, f"'{variable}'")
 

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from rmw_manycore_py.cli.common.printing import size_text
+from rmw_manycore_py.topology import shared_memory_place
 
 _CGROUP = Path("/sys/fs/cgroup")
 
@@ -24,7 +25,7 @@ def machine() -> dict[str, Any]:
         "load": [round(load, 2) for load in os.getloadavg()],
         "memory": _value_in(Path("/proc/meminfo"), "MemTotal", ":"),
         "memory available": _value_in(Path("/proc/meminfo"), "MemAvailable", ":"),
-        "/dev/shm": _shared_memory(),
+        "shared memory": _shared_memory(),
         "cgroup": {name: _text(_CGROUP / name) for name in ("cpu.max", "memory.max", "pids.max")},
     }
 
@@ -45,6 +46,6 @@ def _text(file: Path) -> str:
 
 
 def _shared_memory() -> str:
-    status = os.statvfs("/dev/shm")
+    status = os.statvfs(shared_memory_place())
     size, free = (n * status.f_frsize for n in (status.f_blocks, status.f_bavail))
     return f"{size_text(free)} free of {size_text(size)}"

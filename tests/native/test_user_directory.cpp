@@ -1,0 +1,148 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+//
+// The directory that platforms lie in: another one by MANYCORE_DIRECTORY, and what its file system
+// gives to a cluster.
+#include <doctest/doctest.h>
+
+#include <sys/mount.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+
+#include "messages.hpp"
+#include "node_role.hpp"
+#include "private_shm.hpp"
+#include "transport/lifecycle/configurator.hpp"
+#include "transport/lifecycle/lifecycle.hpp"
+
+using namespace manycore;
+
+namespace {
+
+constexpr const char * variable = "MANYCORE_DIRECTORY";
+
+/// A private directory that this program and its children use while this lives.
+class Chosen {
+public:
+  Chosen() {
+    REQUIRE(mkdtemp(&path_[0]) != nullptr);
+    setenv(variable, path_.c_str(), 1);
+  }
+  ~Chosen() {
+    unsetenv(variable);
+    std::filesystem::remove_all(path_);
+  }
+  const std::string & path() const noexcept { return path_; }
+
+private:
+  std::string path_ = "/dev/shm/chosen-XXXXXX";
+};
+
+/// As Chosen, with a file system of its own mounted on it.
+class ChosenMount : public Chosen {
+public:
+  explicit ChosenMount(const char * type, const char * options = "mode=700") {
+    REQUIRE(mount("none", path().c_str(), type, 0, options) == 0);
+    chmod(path().c_str(), 0700);
+  }
+  ~ChosenMount() { umount2(path().c_str(), MNT_DETACH); }
+};
+
+void check_refused(const std::string & what, ErrorCode code) {
+  Placement placement;
+  placement.platform = "refused";
+  const Refusal refusal = refusal_of([&] { Process::join(placement); });
+  CHECK(refusal.code == code);
+  CHECK_MESSAGE(refusal.says(variable), refusal.text);
+  CHECK_MESSAGE(refusal.says(what), refusal.text);
+  CHECK(refusal.text.find('\n') == std::string::npos);
+}
+
+}  // namespace
+
+TEST_CASE("a platform lies in the chosen directory, its children find it there, and it stays") {
+  const Chosen chosen;
+  {
+    TestPlatform platform;
+    const auto process = platform.join();
+    const auto publisher = process->create_publisher(on_topic("/x", keep_last(10)));
+    Node node(platform, 2);
+    node.tell("subscription /x 10");
+    publish(*publisher, 1);
+    node.tell("take 1 1 1");
+    platform.receive_thread(2);
+    CHECK(platform.paths().directory == chosen.path() + "/" + platform.name());
+    CHECK(access((chosen.path() + "/" + platform.name() + "/registry").c_str(), F_OK) == 0);
+    CHECK(platform_names() == std::vector<std::string>{platform.name()});
+  }
+  CHECK(std::filesystem::is_empty(chosen.path()));
+}
+
+TEST_CASE("a slash at the end of the chosen directory is no part of its name") {
+  const Chosen chosen;
+  setenv(variable, (chosen.path() + "//").c_str(), 1);
+  CHECK(PlatformPaths::of("a").registry() == chosen.path() + "/a/registry");
+}
+
+TEST_CASE("a chosen directory that will not do is refused, in one line that says what to do") {
+  const Chosen chosen;
+  const std::string path = chosen.path();
+  SUBCASE("not there") {
+    setenv(variable, (path + "/no").c_str(), 1);
+    check_refused("mkdir -m 700 " + path + "/no", ErrorCode::invalid_argument);
+    CHECK(refusal_of([] { platform_names(); }).says("mkdir -m 700"));
+  }
+  SUBCASE("not absolute") {
+    setenv(variable, "chosen", 1);
+    check_refused("is no absolute path", ErrorCode::invalid_argument);
+  }
+  SUBCASE("a file") {
+    setenv(variable, "/etc/passwd", 1);
+    check_refused("is no directory", ErrorCode::invalid_argument);
+  }
+  SUBCASE("open to others") {
+    chmod(path.c_str(), 0750);
+    check_refused("(mode 750): chmod 700 " + path, ErrorCode::permission);
+  }
+  SUBCASE("another user's") {
+    if (geteuid() == 0) {
+      CHECK(chown(path.c_str(), 12345, 12345) == 0);
+      check_refused("belongs to user 12345; choose", ErrorCode::permission);
+    }
+  }
+}
+
+TEST_CASE("a chosen directory whose file system will not do is refused") {
+  if (!has_private_shm()) {
+    return;  // nothing can be mounted
+  }
+  SUBCASE("read-only") {
+    const ChosenMount chosen("tmpfs");
+    CHECK(mount(nullptr, chosen.path().c_str(), nullptr, MS_REMOUNT | MS_RDONLY, nullptr) == 0);
+    check_refused("cannot be written to", ErrorCode::permission);
+  }
+  SUBCASE("a file system that gives no memory back") {
+    const ChosenMount chosen("ramfs");
+    check_refused("cannot reserve memory (fallocate)", ErrorCode::unsupported);
+    CHECK(std::filesystem::is_empty(chosen.path()));
+  }
+}
+
+TEST_CASE("clusters of the host get of the file system of the chosen directory") {
+  if (!has_private_shm()) {
+    return;  // nothing can be mounted
+  }
+  const ChosenMount chosen("tmpfs", "mode=700,size=64m");
+  CHECK(host_profile().smem_bytes == 48 << 20);
+}
+
+TEST_CASE("each cluster of the host has a share; where that is little, what others leave") {
+  constexpr uint64_t mebibyte = 1 << 20;
+  const uint64_t of_mebibytes[][2] = {{0, 1024}, {1, 1}, {64, 48}, {2048, 1024}, {24 * 1024, 2457}};
+  for (const auto & [shared, smem] : of_mebibytes) {
+    CAPTURE(shared);
+    CHECK(host_smem_bytes(shared * mebibyte, 5) == smem * mebibyte);
+  }
+}
