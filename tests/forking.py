@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import ctypes
 import functools
+import gc
 import importlib
 import os
 import re
@@ -28,13 +29,19 @@ SIGSET_BYTES = 128
 
 
 def preload() -> None:
-    """Load what the children would load, each by itself."""
+    """Load what the children would load, each by itself.
+
+    What is loaded is frozen: a child that looks for garbage, as pytest does after each test and
+    python at its end, would write into all of it, and get a copy of each page.
+    """
     for name in MODULES:
         importlib.import_module(name)
     for name in MESSAGES:
         for message in vars(importlib.import_module(name)).values():
             if isinstance(message, type):
                 check_for_type_support(message)
+    gc.collect()
+    gc.freeze()
 
 
 def fork() -> int:

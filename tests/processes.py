@@ -13,25 +13,30 @@ from support import PLATFORMS, entries, wait_until
 TICKS_PER_S = os.sysconf("SC_CLK_TCK")
 
 
-def processes_of(platform: str) -> dict[int, str]:
-    """Return pid and program of every process that has the platform mapped or open."""
+def processes_of(platform: str, program: str = "") -> dict[int, str]:
+    """Return pid and program of every process that has the platform mapped or open.
+
+    Only of programs with `program` in their path: a look at all files of all processes takes long.
+    """
     directory = f"{PLATFORMS / platform}/"
     return {
-        int(process.name): _program(process)
+        int(process.name): path
         for process in Path("/proc").iterdir()
-        if process.name.isdigit() and _uses(process, directory)
+        if process.name.isdigit()
+        and program in (path := _program(process))
+        and _uses(process, directory)
     }
 
 
 def receive_threads_of(platform: str) -> list[int]:
     """Return the pids of the platform's receive threads."""
-    return [pid for pid, program in processes_of(platform).items() if "receive_thread" in program]
+    return list(processes_of(platform, "receive_thread"))
 
 
 def has_receive_threads(platform: str) -> bool:
     """Tell whether every cluster that somebody joined has its receive thread."""
     clusters = entries(PLATFORMS / platform, "cluster-*.pipe")
-    return len(receive_threads_of(platform)) >= len(clusters)
+    return not clusters or len(receive_threads_of(platform)) >= len(clusters)
 
 
 def kill(pid: int) -> None:
