@@ -48,9 +48,10 @@ class Lidar:
 def _nearest_hits(street: Street, origin: Matrix, rays: Matrix, range_m: float) -> Matrix:
     """Return the distance (R,) along each ray to the first surface; infinity without one."""
     nearest = _ground(origin, rays)
+    rays_by_axis = np.ascontiguousarray(rays.T)
     near_box = _is_near(origin, street.lower[:, 0], street.upper[:, 0], range_m)
     for lower, upper in zip(street.lower[near_box], street.upper[near_box], strict=True):
-        np.minimum(nearest, _box(origin, rays, lower, upper), out=nearest)
+        np.minimum(nearest, _box(origin, rays_by_axis, lower, upper), out=nearest)
     near_upright = _is_near(origin, street.centres[:, 0], street.centres[:, 0], range_m)
     for index in np.flatnonzero(near_upright):
         centre, radius, height = street.centres[index], street.radii[index], street.heights[index]
@@ -71,12 +72,12 @@ def _ground(origin: Matrix, rays: Matrix) -> Matrix:
     return np.where(rays[:, 2] < 0.0, distance, np.inf)
 
 
-def _box(origin: Matrix, rays: Matrix, lower: Matrix, upper: Matrix) -> Matrix:
-    """Intersect rays with one box: the slab method."""
+def _box(origin: Matrix, rays_by_axis: Matrix, lower: Matrix, upper: Matrix) -> Matrix:
+    """Intersect rays (3, R) with one box: the slab method."""
     with np.errstate(divide="ignore", invalid="ignore"):
-        first, second = (lower - origin) / rays, (upper - origin) / rays
-    enter = np.minimum(first, second).max(axis=1)
-    leave = np.maximum(first, second).min(axis=1)
+        first, second = ((side - origin)[:, None] / rays_by_axis for side in (lower, upper))
+    enter = np.minimum(first, second).max(axis=0)
+    leave = np.maximum(first, second).min(axis=0)
     return np.where((enter <= leave) & (enter > 0.0), enter, np.inf)
 
 
