@@ -159,6 +159,10 @@ void Cluster::require_message_room(uint64_t length) const {
   if (!has_room(bytes + control_reserve_bytes(size()))) {
     throw no_message_room(*this, length, topic_dsm_advice);
   }
+}
+
+void Cluster::require_file_system_room(uint64_t length) const {
+  const uint64_t bytes = granules_of(length) * header().granule_bytes;
   const FileSystemRoom host = memory_.file_system_room();
   const bool is_limited = host.total_bytes != 0;  // a tmpfs with size=0 is not
   if (is_limited && host.free_bytes < bytes + control_reserve_bytes(host.total_bytes)) {

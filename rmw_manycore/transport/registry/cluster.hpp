@@ -57,9 +57,11 @@ public:
     return offset % alignof(T) == 0 && contains(offset, length) ? &memory_.at<T>(offset) : nullptr;
   }
 
-  /// Throws Error{no_space} unless `length` bytes of messages leave the control reserves, of SMEM
-  /// and of file system. The caller holds the registry lock and allocates next.
+  /// Throws Error{no_space} unless `length` bytes of messages leave the SMEM's control reserve; the
+  /// caller holds the registry lock.
   void require_message_room(uint64_t length) const;
+  /// The same of the file system, before memory is backed.
+  void require_file_system_room(uint64_t length) const;
   /// Allocation of SMEM, resident but not cleared; the caller holds the registry lock. Throws
   /// Error{no_space|corrupt}.
   uint64_t allocate(uint64_t length);

@@ -72,6 +72,7 @@ void TopicDsmWriter::reserve_generation(
 /// undo.
 void TopicDsmWriter::open_generation(GenerationEntry & entry) {
   try {
+    cluster_.require_file_system_room(entry.extent_bytes());
     Generation::open(cluster_, entry, next_number_);
   } catch (const Error &) {
     Generation unopened = Generation::view(cluster_, entry);

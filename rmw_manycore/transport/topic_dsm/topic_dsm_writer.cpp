@@ -46,7 +46,9 @@ TopicDsmHeader & TopicDsmWriter::create(Registry & registry, uint32_t endpoint_s
                                   : align_up(endpoint.topic_dsm_size, record_alignment);
     const uint64_t descriptor_count = initial_descriptor_count(endpoint);
     if (endpoint.topic_dsm_size != 0) {
-      cluster.require_message_room(Generation::extent_bytes(data_bytes, descriptor_count));
+      const uint64_t extent = Generation::extent_bytes(data_bytes, descriptor_count);
+      cluster.require_message_room(extent);
+      cluster.require_file_system_room(extent);
     }
     Generation::reserve(cluster, dsm.generations[0], data_bytes, descriptor_count);
     Generation::open(cluster, dsm.generations[0], 1);
