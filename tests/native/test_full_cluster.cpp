@@ -4,9 +4,11 @@
 #include <doctest/doctest.h>
 
 #include <sys/mount.h>
+#include <sys/statvfs.h>
 
 #include "messages.hpp"
 #include "node_role.hpp"
+#include "patience.hpp"
 #include "private_shm.hpp"
 #include "transport/lifecycle/configurator.hpp"
 
@@ -115,6 +117,11 @@ TEST_CASE("a cluster that is full because its file system is takes nodes as well
   if (!has_private_shm()) {
     return;  // the machine's /dev/shm is not to be filled
   }
+  // The kernel frees the files of a platform a moment after the last process of it is gone.
+  wait_until("earlier platforms are out of memory", [] {
+    struct statvfs fs {};
+    return statvfs("/dev/shm", &fs) == 0 && fs.f_bfree == fs.f_blocks;
+  });
   REQUIRE(mount("tmpfs", "/dev/shm", "tmpfs", MS_REMOUNT, "size=16m") == 0);
   {
     FullCluster full(64 * mebibyte, {});
