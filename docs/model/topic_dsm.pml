@@ -2,9 +2,10 @@
  *
  * Question: is the topic DSM of a gone publisher freed only when nobody can look into it any more,
  * and does a reader that wakes up late spoil nothing of the next match, which may be given the same
- * source entry and the same memory?
+ * source entry and the same memory? Is what the reader never takes counted as lost once, by it or
+ * by the sweeper?
  *
- * Follows closing.cpp (sweep_publisher, revoke), matching.cpp (join), TopicDsmReader (claim,
+ * Follows closing.cpp (sweep_publisher, revoke), count_undelivered, matching.cpp (join), TopicDsmReader (claim,
  * release) and ReceiveThread::forward. The subscription holds a hint of the first publisher whose
  * record is gone already. A sweep that finds the topic DSM in use gives up, and is done again
  * later.
@@ -18,6 +19,8 @@
  * BUG 7: receive thread: no fence between phase and the look at magic
  * BUG 8: freed while the receive thread is in its phase
  * BUG 9: incarnation raised after the source is opened again
+ * BUG 10: sweeper counts what is lost before it looks at reading
+ * BUG 11: sweeper counts what is lost before the source is revoked
  */
 #define STATE 0           /* of the source */
 #define INCARNATION 1
@@ -25,7 +28,8 @@
 #define TAKEN 3
 #define MAGIC 4           /* of the topic DSM */
 #define PHASE 5           /* of the receive thread */
-#define WORDS 6
+#define ACCOUNTED 6       /* of the source */
+#define WORDS 7
 #define PROCESSES 3
 #define READER 0
 #define RECEIVER 1
@@ -39,6 +43,7 @@
 
 #include "tso.pml"
 
+byte lost;                /* for the property: messages of the first publisher */
 byte owner = 1;           /* of the topic DSM's memory: first publisher, nobody (0), second one */
 
 /* Any read or write in the memory of the topic DSM of publisher `whose`. */
@@ -72,6 +77,8 @@ proctype Reader() {
   if
   :: may_look ->
      touch(1);                                         /* number, descriptor, bytes */
+     lost = lost + NUMBER - load(READER, ACCOUNTED);
+     store_release(READER, ACCOUNTED, NUMBER);
      release(1)
   :: !may_look ->
 #if BUG == 5
@@ -95,15 +102,29 @@ proctype ReceiveThread() {
   store_release(RECEIVER, PHASE, 0)
 }
 
+inline count_undelivered() {
+  lost = lost + NUMBER - load(SWEEPER, ACCOUNTED);
+  store_release(SWEEPER, ACCOUNTED, NUMBER)
+}
+
 inline revoke() {
+#if BUG == 11
+  count_undelivered();
+#endif
 #if BUG == 3
   load(SWEEPER, READING) == 0;
   store_seq_cst(SWEEPER, STATE, revoked);
 #else
   store_seq_cst(SWEEPER, STATE, revoked);
+#if BUG == 10
+  count_undelivered();
+#endif
 #if BUG != 2
   load(SWEEPER, READING) == 0;
 #endif
+#endif
+#if BUG != 10 && BUG != 11
+  count_undelivered();
 #endif
   store_release(SWEEPER, STATE, free_source)
 }
@@ -123,6 +144,7 @@ inline join_second_publisher() {
   store_release(SWEEPER, INCARNATION, 2);
 #endif
   store_release(SWEEPER, TAKEN, 0);
+  store_release(SWEEPER, ACCOUNTED, 0);
   store_seq_cst(SWEEPER, STATE, active);
 #if BUG == 9
   store_release(SWEEPER, INCARNATION, 2);
@@ -146,5 +168,7 @@ init {
     run Reader(); run ReceiveThread(); run Sweeper()
   };
   _nr_pr == 4 && settled(READER) && settled(RECEIVER) && settled(SWEEPER);
-  assert(memory[TAKEN] == 0 && memory[READING] == 0)   /* the second match begins where it should */
+  /* The second match begins where it should. */
+  assert(memory[TAKEN] == 0 && memory[ACCOUNTED] == 0 && memory[READING] == 0);
+  assert(lost == NUMBER)
 }

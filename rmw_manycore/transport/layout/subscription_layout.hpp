@@ -21,7 +21,10 @@ struct alignas(64) SourceEntry {
   std::atomic<uint64_t> taken;    ///< all records up to this number are done for this reader
   std::atomic<uint64_t> reading;  ///< record being read: the claim; no_record or every_record else
   std::atomic<uint64_t> reader;   ///< SegmentRef of the ReaderEntry
-  std::atomic<uint64_t> joined_after;  ///< messages published before the match
+  /// Messages of the publisher that were published before the match, taken, expired or counted as
+  /// lost: all up to this publication sequence number. The subscriber's under its claim; the
+  /// sweeper's once the source is revoked and nothing is claimed.
+  std::atomic<uint64_t> accounted;
   std::atomic<uint64_t>
     displaced;  ///< newest hint that was displaced, as in its queue slot; 0 = none
 };

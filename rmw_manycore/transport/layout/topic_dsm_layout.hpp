@@ -18,7 +18,7 @@ struct alignas(64) RecordDescriptor {
   uint64_t offset;               ///< of the CDR bytes, in the publisher's cluster segment
   uint32_t size_bytes;
   uint32_t reserved;
-  int64_t source_timestamp_ns;
+  std::atomic<int64_t> source_timestamp_ns;  ///< sweepers look at it without a claim
   uint64_t publication_sequence_number;
   Correlation correlation;
 };

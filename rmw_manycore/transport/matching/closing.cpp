@@ -1,6 +1,9 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #include "transport/matching/closing.hpp"
 
+#include <optional>
+
+#include "transport/matching/undelivered.hpp"
 #include "transport/qos/liveliness.hpp"
 #include "transport/queue/source_table.hpp"
 #include "transport/registry/endpoint_blocks.hpp"
@@ -40,33 +43,18 @@ void close_subscription(Registry & registry, EndpointEntry & entry) {
   });
 }
 
-/// A record that `reader` may still want, in any generation.
-bool undelivered(
-  const Cluster & cluster, TopicDsmHeader & dsm, const SourceEntry & source, const Gid & reader) {
-  const uint64_t taken = source.taken.load(std::memory_order_acquire);
-  if (taken >= dsm.last.load(std::memory_order_acquire)) {
-    return false;
+/// Nothing when the entry leads nowhere.
+std::optional<OrphanReader> follow(
+  Registry & registry, const Cluster & cluster, TopicDsmHeader & dsm, const ReaderEntry & reader) {
+  auto * const source = registry.clusters().find<SourceEntry>(SegmentRef{reader.source.load()});
+  auto * const header =
+    registry.clusters().find<SubscriptionHeader>(SegmentRef{reader.subscription.load()});
+  const uint32_t slot = reader.endpoint.load();
+  if (source == nullptr || header == nullptr || slot >= registry.endpoints().high_water()) {
+    return std::nullopt;
   }
-  const auto role = static_cast<EndpointRole>(dsm.role);
-  const uint32_t incarnation = source.incarnation.load(std::memory_order_relaxed);
-  for (GenerationEntry & generation : dsm.generations) {
-    const uint32_t count = generation.descriptor_count.load();
-    auto * const descriptors = cluster.find<RecordDescriptor>(
-      generation.offset.load(), uint64_t{count} * sizeof(RecordDescriptor));
-    if (generation.first.load() == 0 || descriptors == nullptr) {
-      continue;
-    }
-    for (uint32_t i = 0; i < count; ++i) {
-      const uint64_t number = descriptors[i].number.load(std::memory_order_acquire);
-      const bool its_own =
-        role != EndpointRole::reply || (descriptors[i].correlation.client == reader &&
-                                        !Displaced::covers(source.displaced, incarnation, number));
-      if (number > taken && its_own) {
-        return true;
-      }
-    }
-  }
-  return false;
+  return OrphanReader{
+    cluster, dsm, *header, *source, registry.endpoints()[slot], slot, reader.source_index.load()};
 }
 
 /// Hints of its last records may never have been pushed (`died`), or may have been displaced:
@@ -84,21 +72,19 @@ void close_publisher(Registry & registry, EndpointEntry & entry, bool died) {
   if (dsm->orphan.load() != 0) {
     return;
   }
-  for_each_reader(*cluster, *dsm, [&](ReaderEntry & reader) {
-    const uint32_t slot = reader.endpoint.load();
-    auto * const source = registry.clusters().find<SourceEntry>(SegmentRef{reader.source.load()});
-    auto * const header =
-      registry.clusters().find<SubscriptionHeader>(SegmentRef{reader.subscription.load()});
-    if (!registry.endpoints().is_live(slot) || source == nullptr || header == nullptr) {
+  for_each_reader(*cluster, *dsm, [&](ReaderEntry & entry_of_reader) {
+    const std::optional<OrphanReader> reader = follow(registry, *cluster, *dsm, entry_of_reader);
+    if (!reader || !registry.endpoints().is_live(reader->endpoint_slot)) {
       return;
     }
+    EndpointEntry & subscription = registry.endpoints()[reader->endpoint_slot];
     if (died) {
-      note_death(entry, registry.endpoints()[slot]);
+      note_death(entry, subscription);
     }
-    count_unmatched(registry, registry.endpoints()[slot]);
-    if (undelivered(*cluster, *dsm, *source, registry.endpoints()[slot].gid)) {
-      header->resync.store(1, std::memory_order_seq_cst);
-      notify_process(registry, registry.endpoints()[slot].process);
+    count_unmatched(registry, subscription);
+    if (has_undelivered(*reader)) {
+      reader->subscription.resync.store(1, std::memory_order_seq_cst);
+      notify_process(registry, subscription.process);
     }
   });
   dsm->orphan.store(1, std::memory_order_seq_cst);
@@ -122,29 +108,23 @@ bool receive_threads_are_out(Registry & registry) {
   return true;
 }
 
-/// Takes the topic DSM away from a reader that is done with it; false while it is not.
-bool revoke(
-  Registry & registry, const Cluster & cluster, TopicDsmHeader & dsm, ReaderEntry & reader) {
-  auto * const source = registry.clusters().find<SourceEntry>(SegmentRef{reader.source.load()});
-  auto * const header =
-    registry.clusters().find<SubscriptionHeader>(SegmentRef{reader.subscription.load()});
-  const uint32_t slot = reader.endpoint.load();
-  if (source == nullptr || header == nullptr || slot >= registry.endpoints().high_water()) {
-    return true;
-  }
-  if (source->state.load() == SourceState::active) {
-    if (undelivered(cluster, dsm, *source, registry.endpoints()[slot].gid)) {
+/// Takes the topic DSM away from a reader that is done with it, or wants newer messages of others
+/// instead; false while it is not done.
+bool revoke(Registry & registry, WantedSources & wanted, const OrphanReader & reader) {
+  SourceEntry & source = reader.source;
+  if (source.state.load() == SourceState::active) {
+    if (wanted.contain(reader)) {
       return false;
     }
     // Dekker with the claim: the reader stores `reading` before it looks at the state.
-    source->state.store(SourceState::revoked, std::memory_order_seq_cst);
+    source.state.store(SourceState::revoked, std::memory_order_seq_cst);
   }
-  if (source->reading.load(std::memory_order_seq_cst) != no_record) {
+  if (source.reading.load(std::memory_order_seq_cst) != no_record) {
     return false;
   }
-  source->state.store(SourceState::free, std::memory_order_release);
-  header->source_generation.fetch_add(1, std::memory_order_release);
-  reader.active.store(0, std::memory_order_release);
+  count_undelivered(registry, reader);
+  source.state.store(SourceState::free, std::memory_order_release);
+  reader.subscription.source_generation.fetch_add(1, std::memory_order_release);
   return true;
 }
 
@@ -174,15 +154,23 @@ void free_topic_dsm(Cluster & cluster, TopicDsmHeader & dsm) {
   cluster.free(cluster.ref_of(&dsm).offset(), sizeof dsm);
 }
 
-bool sweep_publisher(Registry & registry, EndpointEntry & entry) {
+bool sweep_publisher(Registry & registry, WantedSources & wanted, EndpointEntry & entry) {
   Cluster * const cluster = registry.clusters().find(entry.block.cluster());
   auto * const dsm = registry.clusters().find<TopicDsmHeader>(entry.block);
   if (cluster == nullptr || dsm == nullptr) {
     return true;
   }
   bool all_revoked = true;
-  for_each_reader(*cluster, *dsm, [&](ReaderEntry & reader) {
-    all_revoked = revoke(registry, *cluster, *dsm, reader) && all_revoked;
+  for_each_reader(*cluster, *dsm, [&](ReaderEntry & entry_of_reader) {
+    const std::optional<OrphanReader> reader = follow(registry, *cluster, *dsm, entry_of_reader);
+    if (!reader) {
+      return;
+    }
+    if (revoke(registry, wanted, *reader)) {
+      entry_of_reader.active.store(0, std::memory_order_release);
+    } else {
+      all_revoked = false;
+    }
   });
   if (!all_revoked) {
     return false;
@@ -243,14 +231,16 @@ void close(Registry & registry, uint32_t endpoint, bool died) {
 
 void sweep(Registry & registry) {
   RegistryHeader & header = registry.header();
+  WantedSources wanted(registry);
   for (uint32_t slot = 0; header.closing_count != 0 && slot < registry.endpoints().high_water();
        ++slot) {
     EndpointEntry & entry = registry.endpoints()[slot];
     if (entry.slot.state.load() != SlotState::closing) {
       continue;
     }
-    const bool swept = entry.kind == EndpointKind::publisher ? sweep_publisher(registry, entry)
-                                                             : sweep_subscription(registry, entry);
+    const bool swept = entry.kind == EndpointKind::publisher
+                         ? sweep_publisher(registry, wanted, entry)
+                         : sweep_subscription(registry, entry);
     if (swept) {
       entry.block = SegmentRef{};
       registry.endpoints().give_back(slot);

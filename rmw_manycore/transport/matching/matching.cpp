@@ -109,7 +109,7 @@ void join(Registry & registry, const Pair & pair) {
   const LastPublished published = last_published(*dsm);
   const uint64_t taken = history ? 0 : published.number;
   source.taken.store(taken, std::memory_order_relaxed);
-  source.joined_after.store(published.sequence, std::memory_order_relaxed);
+  source.accounted.store(published.sequence, std::memory_order_relaxed);
   source.displaced.store(0, std::memory_order_relaxed);
   source.reader.store(publisher_cluster.ref_of(&reader).word, std::memory_order_relaxed);
   source.state.store(SourceState::joining, std::memory_order_release);

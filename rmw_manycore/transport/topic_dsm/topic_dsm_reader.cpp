@@ -2,7 +2,6 @@
 #include "transport/topic_dsm/topic_dsm_reader.hpp"
 
 #include <algorithm>
-#include <utility>
 
 #include "platform/clock.hpp"
 #include "transport/queue/displaced.hpp"
@@ -32,7 +31,6 @@ TopicDsmReader::TopicDsmReader(
   index_(index),
   incarnation_(source.incarnation.load(std::memory_order_relaxed)),
   noted_(source.taken.load(std::memory_order_relaxed)),
-  accounted_(source.joined_after.load(std::memory_order_relaxed)),
   subscription_(&subscription) {
   const SegmentRef ref{source.topic_dsm.load(std::memory_order_relaxed)};
   cluster_ = registry.clusters().find(ref.cluster());
@@ -83,7 +81,8 @@ bool TopicDsmReader::is_for_us(const RecordDescriptor & record) const noexcept {
 /// The shorter of the publisher's lifespan and the subscription's counts.
 bool TopicDsmReader::is_expired(const RecordDescriptor & record) const noexcept {
   const int64_t lifespan_ns = std::min(dsm_->lifespan_ns, subscription_->qos.lifespan_ns);
-  return lifespan_ns != infinite_ns && realtime_ns() - record.source_timestamp_ns > lifespan_ns;
+  return lifespan_ns != infinite_ns &&
+         realtime_ns() - record.source_timestamp_ns.load(std::memory_order_relaxed) > lifespan_ns;
 }
 
 bool TopicDsmReader::may_look() const noexcept {
@@ -132,7 +131,7 @@ TopicDsmReader::ClaimResult TopicDsmReader::look_at(uint64_t number, View & view
     return ClaimResult::not_ours;
   }
   count_missing(record.publication_sequence_number - 1);
-  accounted_ = std::max(accounted_, record.publication_sequence_number);
+  account_for(record.publication_sequence_number);
   if (is_expired(record)) {
     return ClaimResult::expired;
   }
@@ -155,7 +154,9 @@ bool TopicDsmReader::release(uint64_t number) noexcept {
   const bool finished = is_finished();
   if (finished) {  // the last look at it
     const LastPublished published = last_published(*dsm_);
-    count_missing(published.exact ? published.sequence : accounted_);
+    if (published.exact) {
+      count_missing(published.sequence);
+    }
   }
   // seq_cst: revoke() stores the state before it looks at `reading`.
   source_->reading.store(no_record, std::memory_order_seq_cst);
@@ -200,7 +201,9 @@ void TopicDsmReader::scan(
     const bool live = descriptors[i].number.load(std::memory_order_seq_cst) == number &&
                       generation.first.load(std::memory_order_acquire) == first;
     if (live && is_for_us(descriptors[i])) {
-      out.push_back({descriptors[i].source_timestamp_ns, number, index_, incarnation_});
+      out.push_back(
+        {descriptors[i].source_timestamp_ns.load(std::memory_order_relaxed), number, index_,
+         incarnation_});
     }
   }
 }
@@ -221,10 +224,19 @@ void TopicDsmReader::list_waiting(std::vector<Waiting> & out) noexcept {
 
 /// Sequence numbers count the replies to all clients: see Subscription::Impl::count_lost_replies().
 void TopicDsmReader::count_missing(uint64_t last_sequence) noexcept {
-  const uint64_t before = std::exchange(accounted_, std::max(accounted_, last_sequence));
-  if (accounted_ > before && static_cast<EndpointRole>(dsm_->role) != EndpointRole::reply) {
-    subscription_->counters.lost.fetch_add(accounted_ - before, std::memory_order_relaxed);
+  const uint64_t missing = account_for(last_sequence);
+  if (missing != 0 && static_cast<EndpointRole>(dsm_->role) != EndpointRole::reply) {
+    subscription_->counters.lost.fetch_add(missing, std::memory_order_relaxed);
   }
+}
+
+uint64_t TopicDsmReader::account_for(uint64_t last_sequence) noexcept {
+  const uint64_t before = source_->accounted.load(std::memory_order_relaxed);
+  if (last_sequence <= before) {
+    return 0;
+  }
+  source_->accounted.store(last_sequence, std::memory_order_relaxed);
+  return last_sequence - before;
 }
 
 bool TopicDsmReader::settle() noexcept {

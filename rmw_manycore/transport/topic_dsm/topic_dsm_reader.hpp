@@ -79,6 +79,8 @@ private:
   /// Counts messages up to this publication sequence number as lost where they are not accounted
   /// for.
   void count_missing(uint64_t last_sequence) noexcept;
+  /// Raises SourceEntry::accounted; by how much.
+  uint64_t account_for(uint64_t last_sequence) noexcept;
   /// The publisher is gone and everything it left has been taken.
   bool is_finished() const noexcept;
   void tell_waiting_publisher() noexcept;
@@ -89,8 +91,6 @@ private:
   uint32_t index_;
   uint32_t incarnation_;
   uint64_t noted_ = 0;
-  uint64_t accounted_;  ///< publication sequence number up to which messages are taken, expired or
-                        ///< counted as lost
   EndpointEntry * subscription_;
 };
 

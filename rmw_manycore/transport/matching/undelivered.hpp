@@ -1,0 +1,48 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <set>
+
+#include "transport/layout/subscription_layout.hpp"
+#include "transport/layout/topic_dsm_layout.hpp"
+#include "transport/registry/registry.hpp"
+
+namespace manycore::closing {
+
+/// A reader of a topic DSM whose publisher is gone.
+struct OrphanReader {
+  const Cluster & cluster;  ///< of the topic DSM
+  TopicDsmHeader & dsm;
+  SubscriptionHeader & subscription;
+  SourceEntry & source;
+  const EndpointEntry & endpoint;  ///< of the subscription
+  uint32_t endpoint_slot;
+  uint32_t source_index;
+};
+
+/// A record that the reader has not taken, in any generation; of replies, its own whose hint was
+/// not displaced.
+bool has_undelivered(const OrphanReader & reader);
+
+/// The sources from which each subscription is still to get messages. KEEP_LAST: those that hold
+/// any of its newest `depth` records, over all its sources, as a resync would cut them. Looks into
+/// a subscription's sources once while it lives; needs the registry lock all the time, under which
+/// no publisher frees a generation.
+class WantedSources {
+public:
+  explicit WantedSources(Registry & registry) noexcept : registry_(registry) {}
+
+  bool contain(const OrphanReader & reader);
+
+private:
+  std::set<uint32_t> newest_of(SubscriptionHeader & subscription, uint32_t subscription_cluster);
+
+  Registry & registry_;
+  std::map<uint32_t, std::set<uint32_t>> by_subscription_;  ///< source indices
+};
+
+/// Counts what the reader has not taken as lost; nothing of the topic DSM may be claimed any more.
+void count_undelivered(Registry & registry, const OrphanReader & reader);
+
+}  // namespace manycore::closing

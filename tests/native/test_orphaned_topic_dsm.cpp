@@ -1,0 +1,167 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+//
+// Topic DSMs whose publishers are gone: subscriptions keep of them what their history holds, over
+// all their sources, and count the rest as lost.
+#include <doctest/doctest.h>
+
+#include <numeric>
+
+#include "messages.hpp"
+#include "node_role.hpp"
+#include "patience.hpp"
+#include "transport/lifecycle/configurator.hpp"
+
+using namespace manycore;
+
+namespace {
+
+constexpr uint64_t mebibyte = 1 << 20;
+
+Profile profile_of(uint64_t smem_bytes) {
+  Profile profile = host_profile();
+  profile.smem_bytes = smem_bytes;
+  return profile;
+}
+
+struct Fixture {
+  std::unique_ptr<Publisher> publisher(const Qos & qos = keep_last(10)) {
+    return process->create_publisher(on_topic("/driver", qos));
+  }
+  std::unique_ptr<Subscription> subscription(const Qos & qos) {
+    return process->create_subscription(on_topic("/driver", qos));
+  }
+  /// Publishes `count` messages with the next numbers, and goes.
+  void drive(uint64_t count, size_t size_bytes = 1000) {
+    const auto driver = publisher();
+    for (uint64_t i = 0; i < count; ++i) {
+      publish(*driver, ++published, size_bytes);
+    }
+  }
+  /// What cannot be freed yet is looked at whenever the graph changes.
+  void sweep() { process->create_publisher(on_topic("/another", keep_last(1))); }
+
+  TestPlatform platform;
+  Configurator configurator{platform.name(), profile_of(32 * mebibyte), {}};
+  std::shared_ptr<Process> process = platform.join();
+  Inspection inspection{platform};
+  uint64_t published = 0;
+};
+
+}  // namespace
+
+TEST_CASE(
+  "a driver that comes and goes beside a subscription that takes nothing: none is refused") {
+  Fixture f;
+  const auto stuck = f.subscription(keep_last(10));
+  f.drive(20, 100'000);
+  const uint64_t used = f.inspection.used_bytes();
+  for (int i = 0; i < 200; ++i) {
+    f.drive(20, 100'000);
+    CHECK(f.inspection.closing_endpoints() == 1);
+  }
+  CHECK(f.inspection.used_bytes() == used);
+  CHECK(take_all(*stuck) == numbers(f.published - 9, f.published));
+  CHECK(stuck->lost() == f.published - 10);
+  f.sweep();
+  CHECK(f.inspection.closing_endpoints() == 0);
+}
+
+TEST_CASE("a driver that is killed again and again leaves the newest messages, and nothing else") {
+  Fixture f;
+  const auto stuck = f.subscription(keep_last(10));
+  for (int i = 0; i < 20; ++i) {
+    Node driver(f.platform, 1);
+    driver.tell("publisher /driver 10");
+    driver.tell(
+      "publish " + std::to_string(15 * i + 1) + " " + std::to_string(15 * i + 15) + " 100");
+    driver.kill();
+    wait_until("the dead driver is buried", [&] { return f.inspection.live_processes() == 1; });
+  }
+  f.inspection.wait_for_reaper();
+  CHECK(f.inspection.closing_endpoints() == 1);
+  CHECK(take_all(*stuck) == numbers(291, 300));
+  CHECK(stuck->lost() == 290);
+}
+
+TEST_CASE("the newest messages may be of many publishers") {
+  Fixture f;
+  const auto stuck = f.subscription(keep_last(10));
+  for (int i = 0; i < 50; ++i) {
+    f.drive(1);
+  }
+  CHECK(f.inspection.closing_endpoints() == 10);
+  CHECK(take_all(*stuck) == numbers(41, 50));
+  CHECK(stuck->lost() == 40);
+  f.sweep();
+  CHECK(f.inspection.closing_endpoints() == 0);
+}
+
+TEST_CASE("newer messages of a publisher that lives count as well") {
+  Fixture f;
+  const auto stuck = f.subscription(keep_last(10));
+  f.drive(10);
+  const auto publisher = f.publisher();
+  for (int i = 0; i < 9; ++i) {
+    publish(*publisher, ++f.published);
+  }
+  f.sweep();
+  CHECK(f.inspection.closing_endpoints() == 1);
+  publish(*publisher, ++f.published);
+  f.sweep();
+  CHECK(f.inspection.closing_endpoints() == 0);
+  CHECK(take_all(*stuck) == numbers(11, 20));
+  CHECK(stuck->lost() == 10);
+}
+
+TEST_CASE("each subscription keeps what its own history holds") {
+  Fixture f;
+  const auto shallow = f.subscription(keep_last(2));
+  const auto deep = f.subscription(keep_last(25));
+  const auto all = f.subscription(keep_all());
+  const auto quick = f.subscription(keep_last(1));
+  for (int i = 0; i < 6; ++i) {
+    f.drive(10);
+    CHECK(take_all(*quick) == numbers(f.published, f.published));
+  }
+  CHECK(f.inspection.closing_endpoints() == 6);
+  CHECK(take_all(*all) == numbers(1, 60));
+  f.sweep();
+  CHECK(f.inspection.closing_endpoints() == 3);
+  CHECK(take_all(*deep) == numbers(36, 60));
+  CHECK(take_all(*shallow) == numbers(59, 60));
+  CHECK(all->lost() == 0);
+  CHECK(deep->lost() == 35);
+  CHECK(shallow->lost() == 58);
+  CHECK(quick->lost() == 54);
+}
+
+TEST_CASE("a message that is being read when newer ones push it out stays whole until released") {
+  Fixture f;
+  const auto stuck = f.subscription(keep_last(2));
+  f.drive(2, 5000);
+  {
+    const std::optional<Claim> claim = stuck->claim();
+    REQUIRE(claim);
+    for (int i = 0; i < 50; ++i) {
+      f.drive(2, 5000);
+    }
+    CHECK(f.inspection.closing_endpoints() == 2);
+    CHECK(Payload::read(claim->data(), claim->size()).number == 1);
+  }
+  CHECK(take_all(*stuck) == numbers(101, 102));
+  CHECK(stuck->lost() == 99);
+  f.sweep();
+  CHECK(f.inspection.closing_endpoints() == 0);
+}
+
+TEST_CASE("messages that were noted for later and are pushed out then are counted once") {
+  Fixture f;
+  const auto slow = f.subscription(keep_last(4));
+  f.drive(4);
+  CHECK(take(*slow)->number == 1);  // the others are in its backlog
+  f.drive(2);
+  CHECK(take(*slow)->number == 3);
+  f.drive(4);
+  CHECK(take_all(*slow) == numbers(7, 10));
+  CHECK(slow->lost() == 4);
+}
