@@ -6,7 +6,9 @@
  * Follows closing.cpp (close_subscription, sweep_subscription), TopicDsmWriter::enter and ::leave,
  * ReceiveThread::forward. The publisher pushes through its private reader list, the receive thread
  * reads the table each time. The publisher may be killed at any step, and is then reaped; the
- * receive thread too, and is then replaced if its cluster has a process left, else not.
+ * receive thread too, and is then replaced if its cluster has a process left, else not. The process
+ * that closes the subscription may be killed at any step as well; then the next owner of the
+ * registry lock goes on.
  *
  * BUG 1: freed without grace
  * BUG 2: publisher: no fence between phase and the look at match_generation
@@ -19,6 +21,7 @@
  * BUG 9: publisher's phase even before its last push
  * BUG 10: a receive thread without a successor is waited for
  * BUG 11: a receive thread counts as dead once its lifeline ends, not once it has stopped
+ * BUG 12: what a killed closer left half closed is freed as if it were closed
  */
 #define GENERATION 0      /* match_generation */
 #define ACTIVE 1          /* of the reader table's entry */
@@ -33,8 +36,8 @@
 #include "tso.pml"
 
 bool freed;
-bool kill_publisher, kill_receiver;
-bool publisher_ended, receiver_ended;
+bool kill_publisher, kill_receiver, kill_closer;
+bool publisher_ended, receiver_ended, closer_ended;
 bool receiver_lives = true;    /* its lifeline is held */
 
 /* Phases count up in C++; here they go between 0 and 1. */
@@ -162,20 +165,38 @@ inline take_off() {
 #endif
 }
 
-/* With the registry lock held; it tries again whenever the lock is next taken. */
-proctype Closer() {
-#if BUG == 5
-  load(CLOSER, PHASE(PUBLISHER)) == 0;
-  wait_for_receive_thread();
-  take_off();
-#else
-  take_off();
-#if BUG != 1
+inline free_when_out() {
+#if BUG != 1 && BUG != 5
   wait_for_receive_thread();
   load(CLOSER, PHASE(PUBLISHER)) == 0;
-#endif
 #endif
   freed = true
+}
+
+/* With the registry lock held; it tries again whenever the lock is next taken. */
+proctype Closer() {
+  {
+#if BUG == 5
+    load(CLOSER, PHASE(PUBLISHER)) == 0;
+    wait_for_receive_thread();
+#endif
+    take_off();
+    free_when_out()
+  } unless { kill_closer };
+  closer_ended = true
+}
+
+/* Kills the closer, or not, and goes on in its place: it closes once more. */
+proctype NextCloser() {
+  if
+  :: kill_closer = true;
+     closer_ended && settled(CLOSER);
+#if BUG != 12
+     take_off();
+#endif
+     free_when_out()
+  :: skip
+  fi
 }
 
 /* A phase that stays odd for ever keeps Closer from its end: spin reports an invalid end state. */
@@ -183,6 +204,6 @@ init {
   atomic {
     memory[ACTIVE] = 1;
     run StoreBuffer(PUBLISHER); run StoreBuffer(RECEIVER); run StoreBuffer(CLOSER);
-    run Publisher(); run ReceiveThread(); run Reaper(); run Successor(); run Closer()
+    run Publisher(); run ReceiveThread(); run Reaper(); run Successor(); run Closer(); run NextCloser()
   }
 }

@@ -14,6 +14,7 @@
 #include "patience.hpp"
 #include "transport/layout/topic_dsm_layout.hpp"
 #include "transport/lifecycle/lifecycle.hpp"
+#include "transport/topic_dsm/reader_table.hpp"
 
 using namespace manycore;
 
@@ -195,6 +196,15 @@ uint32_t Inspection::generations_of(const Publisher & publisher) {
   for (const GenerationEntry & generation : dsm->generations) {
     count += generation.first.load() != 0 ? 1 : 0;
   }
+  return count;
+}
+
+uint32_t Inspection::readers_of(const Publisher & publisher) {
+  const SegmentRef block = registry_.endpoints()[slot_of(publisher.gid())].block;
+  uint32_t count = 0;
+  for_each_reader(
+    registry_.clusters().at(block.cluster()), *registry_.clusters().find<TopicDsmHeader>(block),
+    [&](ReaderEntry &) { ++count; });
   return count;
 }
 

@@ -60,6 +60,8 @@ public:
   uint32_t slot_of(const manycore::Gid & gid);
   /// Allocations of a publisher's topic DSM that are in use.
   uint32_t generations_of(const manycore::Publisher & publisher);
+  /// Readers on a publisher's reader table.
+  uint32_t readers_of(const manycore::Publisher & publisher);
   manycore::SubscriptionHeader & header_of(const manycore::Subscription & subscription);
   /// Endpoints that are gone, and whose memory is not free yet.
   uint32_t closing_endpoints() { return registry_.header().closing_count; }

@@ -14,6 +14,7 @@
 #include "platform/clock.hpp"
 #include "transport/lifecycle/configurator.hpp"
 #include "transport/lifecycle/lifecycle.hpp"
+#include "transport/queue/source_table.hpp"
 #include "transport/registry/smem_charge.hpp"
 #include "transport/topic_dsm/topic_dsm_writer.hpp"
 
@@ -44,6 +45,25 @@ const Role interrupted_publisher("interrupted", [](Lines & test, const Arguments
     }
   }
   test.say("interrupted");  // nothing is announced
+  raise(SIGSTOP);
+});
+
+/// Closes a subscription of the dead as far as its first source, which it has not yet taken off its
+/// publisher's reader table; stays so until it is killed.
+const Role half_reaper("half_reaper", [](Lines & test, const Arguments & arguments) {
+  Registry registry(PlatformPaths::of(arguments.at(0)));
+  const auto slot = static_cast<uint32_t>(std::stoul(arguments.at(1)));
+  const Registry::Lock lock(registry);
+  EndpointEntry & entry = registry.endpoints()[slot];
+  entry.slot.state.store(SlotState::closing);
+  registry.unlink_endpoint(slot);
+  ++registry.header().closing_count;
+  auto & header = *registry.clusters().find<SubscriptionHeader>(entry.block);
+  visit_source_table(registry.clusters().at(1), header, [](SourceEntry & source, uint32_t) {
+    source.state.store(SourceState::revoked);
+    return true;
+  });
+  test.say("half way");
   raise(SIGSTOP);
 });
 
@@ -96,6 +116,32 @@ TEST_CASE("a subscriber killed while it holds a claim: its publisher goes on, it
   }
   CHECK(f.inspection.generations_of(*publisher) == 1);
   publisher.reset();
+  CHECK(f.inspection.used_bytes() == used);
+}
+
+TEST_CASE("a reaper killed while it closes a subscription: nothing is freed that publishers know") {
+  Fixture f;
+  const auto first = f.process->create_publisher(on_topic("/x", keep_last(10)));
+  const auto second = f.process->create_publisher(on_topic("/x", keep_last(10)));
+  const uint64_t used = f.inspection.used_bytes();
+  {
+    Node subscriber(f.platform, 1);
+    subscriber.tell("subscription /x 10");
+    const std::string slot = std::to_string(f.inspection.registry().endpoints().high_water() - 1);
+    const Standstill no_reaper(f.platform, 1);
+    subscriber.kill();
+    Child reaper("half_reaper", {f.platform.name(), slot});
+    reaper.expect("half way");
+    reaper.kill();
+    f.process->create_publisher(on_topic("/y", keep_last(10)));  // sweeps
+    CHECK(f.inspection.closing_endpoints() == 1);
+    publish(*first, 1);
+    publish(*second, 1);
+  }
+  f.wait_until_alone();
+  CHECK(f.inspection.closing_endpoints() == 0);
+  CHECK(f.inspection.readers_of(*first) == 0);
+  CHECK(f.inspection.readers_of(*second) == 0);
   CHECK(f.inspection.used_bytes() == used);
 }
 

@@ -89,14 +89,14 @@ class Soak:
             self._kill(pid)
         self._alive.clear()
         self._leaving.clear()
-        self._load.assert_unharmed()
+        self._load.assert_nothing_lost()
         self._load.wait_until_it_goes_on()
         wait_until(lambda: has_receive_threads(self._platform), "each cluster has a receive thread")
         try:
             wait_until(self._is_at_rest, "only the nodes that stay are left")
         except AssertionError:
             raise AssertionError(self._left()) from None
-        self._load.assert_unharmed()
+        self._load.assert_nothing_lost()
         assert "torn" not in self._nursery.output, self._nursery
         return look(self._platform, self.lasting)
 

@@ -20,6 +20,8 @@ void count_unmatched(Registry & registry, EndpointEntry & entry) {
   notify_event_watchers(registry, entry.process);
 }
 
+/// Once more, if the process that did this before died half way: then some of its sources are
+/// `revoked`, and their readers may still be on the reader tables.
 void close_subscription(Registry & registry, EndpointEntry & entry) {
   Cluster * const cluster = registry.clusters().find(entry.block.cluster());
   auto * const header = registry.clusters().find<SubscriptionHeader>(entry.block);
@@ -28,7 +30,7 @@ void close_subscription(Registry & registry, EndpointEntry & entry) {
   }
   visit_source_table(*cluster, *header, [&](SourceEntry & source, uint32_t) {
     const SourceState state = source.state.load();
-    if (state != SourceState::active && state != SourceState::joining) {
+    if (state == SourceState::free) {
       return false;
     }
     const uint32_t publisher = source.topic_dsm_endpoint.load();
@@ -192,6 +194,13 @@ bool publisher_is_out(Registry & registry, const SourceEntry & source) {
          dsm->phase.load(std::memory_order_seq_cst) % 2 == 0;
 }
 
+/// A member that died and is not reaped yet. What it was closing, and what a killed reaper was
+/// closing of it, may be half closed: publishers may still know of its subscriptions.
+bool awaits_reaper(Registry & registry, const EndpointEntry & entry) {
+  return registry.processes().is_live(entry.process) &&
+         !registry.lifelines().is_held(entry.process);
+}
+
 bool sweep_subscription(Registry & registry, EndpointEntry & entry) {
   Cluster * const cluster = registry.clusters().find(entry.block.cluster());
   auto * const header = registry.clusters().find<SubscriptionHeader>(entry.block);
@@ -235,7 +244,7 @@ void sweep(Registry & registry) {
   for (uint32_t slot = 0; header.closing_count != 0 && slot < registry.endpoints().high_water();
        ++slot) {
     EndpointEntry & entry = registry.endpoints()[slot];
-    if (entry.slot.state.load() != SlotState::closing) {
+    if (entry.slot.state.load() != SlotState::closing || awaits_reaper(registry, entry)) {
       continue;
     }
     const bool swept = entry.kind == EndpointKind::publisher

@@ -185,7 +185,9 @@ void undo_half_matches_of(Registry & registry, EndpointEntry & entry) {
   visit_source_table(*cluster, *header, [&](SourceEntry & source, uint32_t) {
     if (source.state.load() == SourceState::joining) {
       detach_reader(registry, source);
-      source.state.store(SourceState::free, std::memory_order_seq_cst);
+      // Not `free`: the publisher may have seen the reader, so this entry has to answer for the
+      // publisher's phase when the subscription is freed.
+      source.state.store(SourceState::revoked, std::memory_order_seq_cst);
     }
     return false;
   });

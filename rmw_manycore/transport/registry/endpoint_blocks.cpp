@@ -51,7 +51,9 @@ TopicDsmHeader * topic_dsm_of(Registry & registry, const SourceEntry & source) {
 void detach_reader(Registry & registry, SourceEntry & source) {
   TopicDsmHeader * const dsm = topic_dsm_of(registry, source);
   auto * const reader = registry.clusters().find<ReaderEntry>(SegmentRef{source.reader.load()});
-  if (dsm == nullptr || reader == nullptr) {
+  const bool is_its_own = reader != nullptr && registry.clusters().find<SourceEntry>(
+                                                 SegmentRef{reader->source.load()}) == &source;
+  if (dsm == nullptr || !is_its_own) {
     return;
   }
   reader->active.store(0, std::memory_order_release);
