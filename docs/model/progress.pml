@@ -3,7 +3,7 @@
  * Question: does a RELIABLE + KEEP_ALL publisher that waits for room wake when its reader has taken
  * the record, or is closed?
  *
- * Follows TopicDsmWriter::wait_for_progress, TopicDsmReader::release and closing.cpp
+ * Follows TopicDsmWriter::wait_for_progress, Source::release and closing.cpp
  * (close_subscription). The time limit of the wait is left out: a publisher that needs it shows as
  * an invalid end state.
  *

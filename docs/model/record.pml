@@ -5,7 +5,7 @@
  * in the end?
  *
  * Follows TopicDsmWriter (take_back, claim_descriptor, try_place, commit) on a ring that may not
- * grow, and TopicDsmReader (claim, release, scan). All messages are of one size, so the data area
+ * grow, and Source (claim, release, scan). All messages are of one size, so the data area
  * is BLOCKS places that the cursor passes in turn. A hint names any record that the reader has not
  * noted: they come late, twice or never. A stopped reader is one that spin lets take no more steps;
  * reader 0 may be killed at any step, and is then reaped.
@@ -63,7 +63,7 @@ byte finished[READERS];   /* what the reader has read or given up; for the prope
 byte gone;                /* readers that left for good: ended, or dead and reaped */
 bool killed, dead;
 
-/* TopicDsmReader */
+/* Source */
 
 inline choose_hint() {
   atomic {

@@ -15,11 +15,12 @@
 #include "transport/lifecycle/receive_thread_watcher.hpp"
 #include "transport/matching/closing.hpp"
 #include "transport/matching/matching.hpp"
-#include "transport/publisher_impl.hpp"
+#include "transport/publisher/publisher_impl.hpp"
 #include "transport/qos/manual_liveliness.hpp"
 #include "transport/registry/membership.hpp"
 #include "transport/registry/smem_charge.hpp"
-#include "transport/subscription_impl.hpp"
+#include "transport/subscription/subscription_block.hpp"
+#include "transport/subscription/subscription_impl.hpp"
 
 namespace manycore {
 namespace {
@@ -257,7 +258,7 @@ uint32_t Process::Impl::add_endpoint(const EndpointSpec & spec, EndpointKind kin
     const void * const block =
       kind == EndpointKind::publisher
         ? static_cast<void *>(&TopicDsmWriter::create(*registry, taken))
-        : static_cast<void *>(&Subscription::Impl::create(*registry, taken));
+        : static_cast<void *>(&subscription_block::create(*registry, taken));
     entry.block = cluster.ref_of(block);
   } catch (...) {
     registry->endpoints().give_back(taken);

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "transport/layout/endpoint.hpp"
-#include "transport/publisher.hpp"
+#include "transport/publisher/publisher.hpp"
 #include "transport/registry/graph.hpp"
-#include "transport/subscription.hpp"
+#include "transport/subscription/subscription.hpp"
 #include "transport/waiting/waiter.hpp"
 
 namespace manycore {

@@ -7,7 +7,7 @@
 
 #include "rmw/events/callback_thread.hpp"
 #include "rmw/serialization/cdr.hpp"
-#include "transport/subscription.hpp"
+#include "transport/subscription/subscription.hpp"
 
 namespace rmw_manycore {
 

@@ -8,7 +8,7 @@
 #include "rmw/events/inbox.hpp"
 #include "rmw/serialization/type_support.hpp"
 #include "rmw/types.h"
-#include "transport/publisher.hpp"
+#include "transport/publisher/publisher.hpp"
 
 namespace rmw_manycore {
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "rmw/types.h"
-#include "transport/subscription.hpp"
+#include "transport/subscription/subscription.hpp"
 
 namespace rmw_manycore {
 

@@ -44,7 +44,7 @@ bool is_newer(const Waiting & a, const Waiting & b) {
          std::tie(b.source_timestamp_ns, b.source, b.number);
 }
 
-/// In the order of TopicDsmReader::list_waiting(): no timestamp before an earlier record's.
+/// In the order of Source::list_waiting(): no timestamp before an earlier record's.
 void list_waiting(
   const Cluster & cluster, TopicDsmHeader & dsm, const SourceEntry & source, uint32_t index,
   std::vector<Waiting> & out) {

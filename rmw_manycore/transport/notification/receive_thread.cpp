@@ -2,6 +2,7 @@
 #include "transport/notification/receive_thread.hpp"
 
 #include "transport/queue/source_table.hpp"
+#include "transport/registry/odd_phase.hpp"
 #include "transport/topic_dsm/reader_table.hpp"
 
 namespace manycore {
@@ -68,8 +69,7 @@ void ReceiveThread::run(const ProcessesChanged & on_change) {
 
 /// Step 2 of Fig. 4: receive thread -> queue -> wake.
 void ReceiveThread::forward(const EmcosMessage & message) noexcept {
-  std::atomic<uint64_t> & phase = cluster_.header().phase;
-  phase.store(phase.load(std::memory_order_relaxed) | 1, std::memory_order_seq_cst);
+  const OddPhase phase(cluster_.header().phase);
   Cluster * const source = registry_.clusters().find(message.topic_dsm.cluster());
   TopicDsmHeader * const dsm =
     source == nullptr ? nullptr : source->find<TopicDsmHeader>(message.topic_dsm.offset());
@@ -81,7 +81,6 @@ void ReceiveThread::forward(const EmcosMessage & message) noexcept {
     while (!push_to_readers(*source, *dsm, message)) {
     }
   }
-  phase.store(phase.load(std::memory_order_relaxed) + 1, std::memory_order_release);
 }
 
 /// False when the reader table changed meanwhile: an entry may then have been read half old, half

@@ -6,6 +6,7 @@
 #include "platform/clock.hpp"
 #include "platform/error.hpp"
 #include "transport/queue/displaced.hpp"
+#include "transport/registry/odd_phase.hpp"
 
 namespace manycore {
 namespace {
@@ -73,13 +74,11 @@ TopicDsmWriter::TopicDsmWriter(Registry & registry, Cluster & cluster, EndpointE
   pinned_in_slot_(current_.count, no_record) {}
 
 void TopicDsmWriter::enter() noexcept {
-  dsm_.phase.store(dsm_.phase.load(std::memory_order_relaxed) | 1, std::memory_order_seq_cst);
+  OddPhase::begin(dsm_.phase);
   readers_.refresh();
 }
 
-void TopicDsmWriter::leave() noexcept {
-  dsm_.phase.store(dsm_.phase.load(std::memory_order_relaxed) + 1, std::memory_order_release);
-}
+void TopicDsmWriter::leave() noexcept { OddPhase::end(dsm_.phase); }
 
 /// Among the last `depth` messages, the one about to be written included. Record numbers do not
 /// tell: some are skipped.

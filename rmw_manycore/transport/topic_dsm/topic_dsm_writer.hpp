@@ -10,7 +10,7 @@
 namespace manycore {
 
 /// The writing side of one topic DSM: finds room, makes records, takes them back. One thread at a
-/// time (the publisher's mutex). See docs/design/topic_dsm.md, Publish.
+/// time (see Writing). See docs/design/topic_dsm.md, Publish.
 class TopicDsmWriter {
 public:
   struct Room {
@@ -23,7 +23,7 @@ public:
   /// Allocates header and first generation; the caller holds the registry lock.
   static TopicDsmHeader & create(Registry & registry, uint32_t endpoint_slot);
 
-  /// From here to leave(), references to readers may be followed.
+  /// From here to leave(), references to readers may be followed: for Writing.
   void enter() noexcept;
   void leave() noexcept;
 

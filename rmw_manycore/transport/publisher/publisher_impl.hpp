@@ -4,7 +4,7 @@
 #include <mutex>
 
 #include "transport/layout/deadline_clock.hpp"
-#include "transport/publisher.hpp"
+#include "transport/publisher/publisher.hpp"
 #include "transport/qos/manual_liveliness.hpp"
 #include "transport/registry/membership.hpp"
 #include "transport/topic_dsm/topic_dsm_writer.hpp"
@@ -28,6 +28,8 @@ struct Publisher::Impl {
     return entry.qos.liveliness == Liveliness::manual_by_topic &&
            entry.qos.liveliness_lease_ns != infinite_ns;
   }
+  /// This thread's turn; waits for that of another one.
+  Writing write() { return Writing(mutex, writer, membership); }
   /// Wakes the processes of the readers that wait for events.
   void tell_event_watchers();
 
@@ -36,7 +38,7 @@ struct Publisher::Impl {
   EndpointEntry & entry;
   Membership membership;
   Cluster & cluster;
-  std::mutex mutex;  ///< held from draft() to publish()
+  std::mutex mutex;  ///< of Writing
   TopicDsmWriter writer;
   uint64_t published = 0;
   DeadlineClock deadline;

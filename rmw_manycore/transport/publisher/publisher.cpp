@@ -1,29 +1,14 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-#include "transport/publisher.hpp"
+#include "transport/publisher/publisher.hpp"
 
 #include <utility>
 
 #include "transport/matching/closing.hpp"
 #include "transport/notification/notifier.hpp"
-#include "transport/publisher_impl.hpp"
+#include "transport/publisher/publisher_impl.hpp"
 #include "transport/registry/endpoint_blocks.hpp"
 
 namespace manycore {
-
-Draft::Draft(Draft && other) noexcept
-: publisher_(std::exchange(other.publisher_, nullptr)),
-  data_(other.data_),
-  capacity_(other.capacity_) {}
-
-Draft::~Draft() {
-  if (publisher_ == nullptr || publisher_->impl_->membership.is_inherited()) {
-    return;
-  }
-  Publisher::Impl & impl = *publisher_->impl_;
-  impl.writer.abandon_room();
-  impl.writer.leave();
-  impl.mutex.unlock();
-}
 
 Publisher::Publisher(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 
@@ -40,23 +25,13 @@ const Qos & Publisher::qos() const noexcept { return impl_->entry.qos; }
 Draft Publisher::draft(size_t size_bytes) {
   Impl & impl = *impl_;
   impl.membership.require();
-  std::unique_lock<std::mutex> lock(impl.mutex);
-  impl.writer.enter();
-  try {
-    const TopicDsmWriter::Room room = impl.writer.find_room(size_bytes);
-    lock.release();
-    return Draft(*this, room.data, room.capacity_bytes);
-  } catch (...) {
-    impl.writer.leave();
-    throw;
-  }
+  return Draft(impl.write(), impl.writer, size_bytes);
 }
 
 uint64_t Publisher::publish(
   Draft && draft, size_t size_bytes, int64_t source_timestamp_ns, const Correlation & correlation) {
   Impl & impl = *impl_;
-  const std::unique_lock<std::mutex> lock(impl.mutex, std::adopt_lock);
-  draft.publisher_ = nullptr;
+  const Writing writing = std::move(draft.writing_);
   const uint64_t sequence_number = ++impl.published;
   // Before the message, which tells readers to look.
   const bool started = impl.has_deadline() && impl.deadline.touch(impl.entry.qos.deadline_ns);
@@ -71,7 +46,6 @@ uint64_t Publisher::publish(
     impl.registry, impl.cluster, impl.writer.readers(),
     {impl.entry.block, impl.slot, impl.entry.slot.incarnation, number,
      targeted ? &correlation.client : nullptr});
-  impl.writer.leave();
   EndpointCounters & counters = impl.entry.counters;
   counters.messages.store(sequence_number, std::memory_order_relaxed);
   counters.bytes.store(
@@ -105,14 +79,12 @@ void Publisher::assert_liveliness() {
 }
 
 void Publisher::Impl::tell_event_watchers() {
-  const std::lock_guard<std::mutex> lock(mutex);
-  writer.enter();
+  const Writing writing = write();
   for (const Reader & reader : writer.readers().readers()) {
     if (reader.wake->event_watchers.load(std::memory_order_seq_cst) != 0) {
       reader.wake->notify();
     }
   }
-  writer.leave();
 }
 
 }  // namespace manycore

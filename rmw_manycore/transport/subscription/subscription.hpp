@@ -1,54 +1,14 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
 
 #include "transport/layout/endpoint.hpp"
+#include "transport/subscription/claim.hpp"
 
 namespace manycore {
-
-class Subscription;
-class TopicDsmReader;
-
-/// Metadata of a claimed record.
-struct RecordInfo {
-  int64_t source_timestamp_ns = 0;    ///< CLOCK_REALTIME at publish
-  int64_t received_timestamp_ns = 0;  ///< CLOCK_REALTIME at claim
-  uint64_t publication_sequence_number = 0;
-  uint64_t reception_sequence_number = 0;
-  Gid publisher{};
-  Correlation correlation;
-  bool from_this_process = false;
-};
-
-/// A record that this subscription is reading: claim, deserialize, release (by destruction).
-/// The publisher cannot recycle it meanwhile. Holds the subscription's mutex; stays in one thread.
-class Claim {
-public:
-  Claim(Claim && other) noexcept;
-  Claim & operator=(Claim &&) = delete;
-  ~Claim();
-
-  const uint8_t * data() const noexcept { return data_; }
-  size_t size() const noexcept { return size_; }
-  const RecordInfo & info() const noexcept { return info_; }
-
-  /// Counts the record as lost instead of taken: its bytes are no message.
-  void reject() noexcept;
-
-private:
-  friend class Subscription;
-  Claim() = default;
-  Subscription * subscription_ = nullptr;
-  TopicDsmReader * reader_ = nullptr;
-  uint64_t number_ = 0;
-  const uint8_t * data_ = nullptr;
-  size_t size_ = 0;
-  RecordInfo info_;
-};
 
 /// The reading role: one subscriber queue (capacity = depth) over any number of topic DSMs.
 /// Thread-safe.

@@ -1,5 +1,5 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-#include "transport/topic_dsm/topic_dsm_reader.hpp"
+#include "transport/topic_dsm/source.hpp"
 
 #include <algorithm>
 
@@ -12,8 +12,8 @@ namespace {
 
 /// By number; and no timestamp before an earlier record's, so that merging sources keeps each one's
 /// order even where the clock was set back.
-void order(std::vector<TopicDsmReader::Waiting> & all, ptrdiff_t begin) {
-  using Waiting = TopicDsmReader::Waiting;
+void order(std::vector<Source::Waiting> & all, ptrdiff_t begin) {
+  using Waiting = Source::Waiting;
   std::sort(all.begin() + begin, all.end(), [](const Waiting & a, const Waiting & b) {
     return a.number < b.number;
   });
@@ -25,24 +25,24 @@ void order(std::vector<TopicDsmReader::Waiting> & all, ptrdiff_t begin) {
 
 }  // namespace
 
-TopicDsmReader::TopicDsmReader(
-  Registry & registry, SourceEntry & source, uint32_t index, EndpointEntry & subscription)
-: source_(&source),
+Source::Source(
+  Registry & registry, SourceEntry & entry, uint32_t index, EndpointEntry & subscription)
+: entry_(&entry),
   index_(index),
-  incarnation_(source.incarnation.load(std::memory_order_relaxed)),
-  noted_(source.taken.load(std::memory_order_relaxed)),
+  incarnation_(entry.incarnation.load(std::memory_order_relaxed)),
+  noted_(entry.taken.load(std::memory_order_relaxed)),
   subscription_(&subscription) {
-  const SegmentRef ref{source.topic_dsm.load(std::memory_order_relaxed)};
+  const SegmentRef ref{entry.topic_dsm.load(std::memory_order_relaxed)};
   cluster_ = registry.clusters().find(ref.cluster());
   dsm_ = registry.clusters().find<TopicDsmHeader>(ref);
 }
 
-bool TopicDsmReader::is_given_up(uint64_t number) const noexcept {
+bool Source::is_given_up(uint64_t number) const noexcept {
   return subscription_->role == EndpointRole::reply &&
-         Displaced::covers(source_->displaced, incarnation_, number);
+         Displaced::covers(entry_->displaced, incarnation_, number);
 }
 
-uint64_t TopicDsmReader::full_number(uint64_t low_bits) const noexcept {
+uint64_t Source::full_number(uint64_t low_bits) const noexcept {
   constexpr uint64_t period = uint64_t{1} << 28;
   // The latest published with these low bits: what a queue holds is younger than a period, however
   // long nothing was taken. Where nothing was published with them it wraps to more than `last`.
@@ -50,7 +50,7 @@ uint64_t TopicDsmReader::full_number(uint64_t low_bits) const noexcept {
   return latest - ((latest - low_bits) & (period - 1));
 }
 
-const GenerationEntry * TopicDsmReader::generation_of(uint64_t number) const noexcept {
+const GenerationEntry * Source::generation_of(uint64_t number) const noexcept {
   const GenerationEntry * best = nullptr;
   uint64_t best_first = 0;
   for (const GenerationEntry & generation : dsm_->generations) {
@@ -63,8 +63,7 @@ const GenerationEntry * TopicDsmReader::generation_of(uint64_t number) const noe
   return best;
 }
 
-RecordDescriptor * TopicDsmReader::descriptors_of(
-  const GenerationEntry & generation) const noexcept {
+RecordDescriptor * Source::descriptors_of(const GenerationEntry & generation) const noexcept {
   const uint64_t count = generation.descriptor_count.load(std::memory_order_relaxed);
   if (count == 0 || (count & (count - 1)) != 0) {
     return nullptr;
@@ -73,31 +72,31 @@ RecordDescriptor * TopicDsmReader::descriptors_of(
     generation.offset.load(std::memory_order_relaxed), count * sizeof(RecordDescriptor));
 }
 
-bool TopicDsmReader::is_for_us(const RecordDescriptor & record) const noexcept {
+bool Source::is_for_us(const RecordDescriptor & record) const noexcept {
   return static_cast<EndpointRole>(dsm_->role) != EndpointRole::reply ||
          record.correlation.client == subscription_->gid;
 }
 
 /// The shorter of the publisher's lifespan and the subscription's counts.
-bool TopicDsmReader::is_expired(const RecordDescriptor & record) const noexcept {
+bool Source::is_expired(const RecordDescriptor & record) const noexcept {
   const int64_t lifespan_ns = std::min(dsm_->lifespan_ns, subscription_->qos.lifespan_ns);
   return lifespan_ns != infinite_ns &&
          realtime_ns() - record.source_timestamp_ns.load(std::memory_order_relaxed) > lifespan_ns;
 }
 
-bool TopicDsmReader::may_look() const noexcept {
-  return source_->state.load(std::memory_order_seq_cst) == SourceState::active &&
-         source_->incarnation.load(std::memory_order_seq_cst) == incarnation_;
+bool Source::may_look() const noexcept {
+  return entry_->state.load(std::memory_order_seq_cst) == SourceState::active &&
+         entry_->incarnation.load(std::memory_order_seq_cst) == incarnation_;
 }
 
 /// Dekker with take_back(): `reading` is stored before `number` is loaded, both seq_cst, so either
 /// the publisher sees the claim and leaves the bytes alone, or the number is gone here. The same
 /// with revoke() and the source's state: nothing of the topic DSM is touched unless the state was
 /// still `active` after the store.
-TopicDsmReader::ClaimResult TopicDsmReader::claim(uint64_t number, View & view) noexcept {
-  source_->reading.store(number, std::memory_order_seq_cst);
+Source::ClaimResult Source::claim(uint64_t number, View & view) noexcept {
+  entry_->reading.store(number, std::memory_order_seq_cst);
   if (!may_look()) {
-    source_->reading.store(no_record, std::memory_order_release);
+    entry_->reading.store(no_record, std::memory_order_release);
     return ClaimResult::not_ours;
   }
   const ClaimResult result = look_at(number, view);
@@ -107,7 +106,7 @@ TopicDsmReader::ClaimResult TopicDsmReader::claim(uint64_t number, View & view) 
   return result;
 }
 
-TopicDsmReader::ClaimResult TopicDsmReader::look_at(uint64_t number, View & view) noexcept {
+Source::ClaimResult Source::look_at(uint64_t number, View & view) noexcept {
   const GenerationEntry * const generation = generation_of(number);
   RecordDescriptor * const descriptors =
     generation == nullptr ? nullptr : descriptors_of(*generation);
@@ -143,9 +142,9 @@ TopicDsmReader::ClaimResult TopicDsmReader::look_at(uint64_t number, View & view
 /// `reading` last: once it is empty the topic DSM may be freed. The publisher waits for `taken`
 /// only, so it is told in time (seq_cst: it raises `writer_waits` before it looks at `taken` once
 /// more).
-bool TopicDsmReader::release(uint64_t number) noexcept {
-  if (number > source_->taken.load(std::memory_order_relaxed)) {
-    source_->taken.store(number, std::memory_order_seq_cst);
+bool Source::release(uint64_t number) noexcept {
+  if (number > entry_->taken.load(std::memory_order_relaxed)) {
+    entry_->taken.store(number, std::memory_order_seq_cst);
   }
   if (number > noted_) {
     noted_ = number;
@@ -159,34 +158,32 @@ bool TopicDsmReader::release(uint64_t number) noexcept {
     }
   }
   // seq_cst: revoke() stores the state before it looks at `reading`.
-  source_->reading.store(no_record, std::memory_order_seq_cst);
-  return finished || source_->state.load(std::memory_order_seq_cst) == SourceState::revoked;
+  entry_->reading.store(no_record, std::memory_order_seq_cst);
+  return finished || entry_->state.load(std::memory_order_seq_cst) == SourceState::revoked;
 }
 
-void TopicDsmReader::skip(uint64_t number) noexcept {
-  source_->reading.store(every_record, std::memory_order_seq_cst);
+void Source::skip(uint64_t number) noexcept {
+  entry_->reading.store(every_record, std::memory_order_seq_cst);
   if (may_look()) {
     release(number);
   }
-  source_->reading.store(no_record, std::memory_order_release);
+  entry_->reading.store(no_record, std::memory_order_release);
 }
 
-void TopicDsmReader::tell_waiting_publisher() noexcept {
+void Source::tell_waiting_publisher() noexcept {
   if (dsm_->writer_waits.load(std::memory_order_seq_cst) != 0) {
     dsm_->progress.fetch_add(1, std::memory_order_seq_cst);
     futex_wake_all(dsm_->progress);
   }
 }
 
-uint64_t TopicDsmReader::last() const noexcept {
-  return dsm_->last.load(std::memory_order_seq_cst);
-}
+uint64_t Source::last() const noexcept { return dsm_->last.load(std::memory_order_seq_cst); }
 
 /// Holds one record after the other, so that a scan that is stopped costs one record like any
 /// claim. The generation is held all the time: each value of `reading` is inside it.
-void TopicDsmReader::scan(
+void Source::scan(
   const GenerationEntry & generation, uint64_t last, std::vector<Waiting> & out) noexcept {
-  source_->reading.store(every_record, std::memory_order_seq_cst);
+  entry_->reading.store(every_record, std::memory_order_seq_cst);
   const uint64_t first = generation.first.load(std::memory_order_seq_cst);
   RecordDescriptor * const descriptors = first == 0 ? nullptr : descriptors_of(generation);
   const uint32_t count = generation.descriptor_count.load(std::memory_order_relaxed);
@@ -195,7 +192,7 @@ void TopicDsmReader::scan(
     if (number <= noted_ || number > last || is_given_up(number)) {
       continue;
     }
-    source_->reading.store(number, std::memory_order_seq_cst);
+    entry_->reading.store(number, std::memory_order_seq_cst);
     // As in look_at(): the generation may have been given back before the first store of `reading`
     // was seen.
     const bool live = descriptors[i].number.load(std::memory_order_seq_cst) == number &&
@@ -208,9 +205,9 @@ void TopicDsmReader::scan(
   }
 }
 
-void TopicDsmReader::list_waiting(std::vector<Waiting> & out) noexcept {
+void Source::list_waiting(std::vector<Waiting> & out) noexcept {
   const auto own_part = static_cast<ptrdiff_t>(out.size());
-  source_->reading.store(every_record, std::memory_order_seq_cst);
+  entry_->reading.store(every_record, std::memory_order_seq_cst);
   if (may_look()) {
     const uint64_t last = dsm_->last.load(std::memory_order_seq_cst);
     for (const GenerationEntry & generation : dsm_->generations) {
@@ -218,33 +215,33 @@ void TopicDsmReader::list_waiting(std::vector<Waiting> & out) noexcept {
     }
     noted_ = std::max(noted_, last);
   }
-  source_->reading.store(no_record, std::memory_order_release);
+  entry_->reading.store(no_record, std::memory_order_release);
   order(out, own_part);
 }
 
-/// Sequence numbers count the replies to all clients: see Subscription::Impl::count_lost_replies().
-void TopicDsmReader::count_missing(uint64_t last_sequence) noexcept {
+/// Sequence numbers count the replies to all clients: see ReceptionCounts::count_lost_replies().
+void Source::count_missing(uint64_t last_sequence) noexcept {
   const uint64_t missing = account_for(last_sequence);
   if (missing != 0 && static_cast<EndpointRole>(dsm_->role) != EndpointRole::reply) {
     subscription_->counters.lost.fetch_add(missing, std::memory_order_relaxed);
   }
 }
 
-uint64_t TopicDsmReader::account_for(uint64_t last_sequence) noexcept {
-  const uint64_t before = source_->accounted.load(std::memory_order_relaxed);
+uint64_t Source::account_for(uint64_t last_sequence) noexcept {
+  const uint64_t before = entry_->accounted.load(std::memory_order_relaxed);
   if (last_sequence <= before) {
     return 0;
   }
-  source_->accounted.store(last_sequence, std::memory_order_relaxed);
+  entry_->accounted.store(last_sequence, std::memory_order_relaxed);
   return last_sequence - before;
 }
 
-bool TopicDsmReader::settle() noexcept {
+bool Source::settle() noexcept {
   bool settled = false;
-  source_->reading.store(every_record, std::memory_order_seq_cst);
+  entry_->reading.store(every_record, std::memory_order_seq_cst);
   if (may_look()) {
     const LastPublished published = last_published(*dsm_);
-    const std::optional<uint64_t> displaced = Displaced::read(source_->displaced, incarnation_);
+    const std::optional<uint64_t> displaced = Displaced::read(entry_->displaced, incarnation_);
     const uint64_t known = displaced ? std::max(noted_, full_number(*displaced)) : noted_;
     settled = published.exact && published.number <= known;
     if (settled) {
@@ -254,13 +251,13 @@ bool TopicDsmReader::settle() noexcept {
           .number);  // what was counted as lost may not be found by a later look at the topic DSM
     }
   }
-  source_->reading.store(no_record, std::memory_order_release);
+  entry_->reading.store(no_record, std::memory_order_release);
   return settled;
 }
 
-bool TopicDsmReader::is_finished() const noexcept {
+bool Source::is_finished() const noexcept {
   return dsm_->orphan.load(std::memory_order_acquire) != 0 &&
-         source_->taken.load(std::memory_order_relaxed) >=
+         entry_->taken.load(std::memory_order_relaxed) >=
            dsm_->last.load(std::memory_order_acquire);
 }
 

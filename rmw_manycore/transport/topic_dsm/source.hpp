@@ -9,20 +9,19 @@
 
 namespace manycore {
 
-/// The reading side of one topic DSM, for one subscription. One thread at a time (the
-/// subscription's mutex). See docs/design/topic_dsm.md, Take.
-class TopicDsmReader {
+/// A topic DSM as one subscription sees it: finds, claims and releases records. One thread at a
+/// time (the subscription's mutex). See docs/design/topic_dsm.md, Take.
+class Source {
 public:
   /// Nullptr-like (operator bool) when the source leads nowhere.
   /// `subscription` has the gid, and the count of lost messages.
-  TopicDsmReader(
-    Registry & registry, SourceEntry & source, uint32_t index, EndpointEntry & subscription);
+  Source(Registry & registry, SourceEntry & entry, uint32_t index, EndpointEntry & subscription);
 
   explicit operator bool() const noexcept { return dsm_ != nullptr; }
   uint32_t index() const noexcept { return index_; }
   uint32_t incarnation() const noexcept { return incarnation_; }
-  bool is_same_source(const SourceEntry & source) const noexcept {
-    return &source == source_ && source.incarnation.load() == incarnation_;
+  bool is(const SourceEntry & entry) const noexcept {
+    return &entry == entry_ && entry.incarnation.load() == incarnation_;
   }
 
   /// Highest record number that needs no further look: taken, or in the backlog.
@@ -46,7 +45,7 @@ public:
   bool release(uint64_t number) noexcept;
   /// The same without a claim.
   void skip(uint64_t number) noexcept;
-  uint64_t taken() const noexcept { return source_->taken.load(std::memory_order_relaxed); }
+  uint64_t taken() const noexcept { return entry_->taken.load(std::memory_order_relaxed); }
   /// Highest record number published.
   uint64_t last() const noexcept;
 
@@ -87,7 +86,7 @@ private:
 
   Cluster * cluster_ = nullptr;
   TopicDsmHeader * dsm_ = nullptr;
-  SourceEntry * source_;
+  SourceEntry * entry_;
   uint32_t index_;
   uint32_t incarnation_;
   uint64_t noted_ = 0;

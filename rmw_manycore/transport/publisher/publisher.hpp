@@ -6,30 +6,9 @@
 #include <memory>
 
 #include "transport/layout/endpoint.hpp"
+#include "transport/publisher/draft.hpp"
 
 namespace manycore {
-
-class Publisher;
-
-/// Room for one message in the topic DSM, between serialization and publication. Holds the
-/// publisher's mutex; dropped without `publish`, nothing was sent. Stays in one thread.
-class Draft {
-public:
-  Draft(Draft && other) noexcept;
-  Draft & operator=(Draft &&) = delete;
-  ~Draft();
-
-  uint8_t * data() const noexcept { return data_; }
-  size_t capacity() const noexcept { return capacity_; }
-
-private:
-  friend class Publisher;
-  Draft(Publisher & publisher, uint8_t * data, size_t capacity) noexcept
-  : publisher_(&publisher), data_(data), capacity_(capacity) {}
-  Publisher * publisher_;
-  uint8_t * data_;
-  size_t capacity_;
-};
 
 /// The writing role of one topic DSM. Thread-safe. Destroying it leaves what its readers have not
 /// yet taken in place until they have.
@@ -64,7 +43,6 @@ public:
   TimedCount liveliness_lost() const noexcept;
 
 private:
-  friend class Draft;
   std::unique_ptr<Impl> impl_;
 };
 

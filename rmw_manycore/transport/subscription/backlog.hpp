@@ -1,0 +1,39 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <deque>
+#include <vector>
+
+#include "transport/topic_dsm/source.hpp"
+
+namespace manycore {
+
+/// Records that a resync found, oldest first; they are taken before those of the queue. One thread
+/// at a time (the subscription's mutex), but for size().
+class Backlog {
+public:
+  bool empty() const noexcept { return records_.empty(); }
+  /// From any thread: the queue's state is asked without the mutex.
+  size_t size() const noexcept { return size_.load(std::memory_order_acquire); }
+
+  void append(const std::vector<Source::Waiting> & records) {
+    records_.insert(records_.end(), records.begin(), records.end());
+    note_size();
+  }
+  Source::Waiting pop_oldest() {
+    const Source::Waiting oldest = records_.front();
+    records_.pop_front();
+    note_size();
+    return oldest;
+  }
+
+private:
+  void note_size() noexcept { size_.store(records_.size(), std::memory_order_release); }
+
+  std::deque<Source::Waiting> records_;
+  std::atomic<size_t> size_{0};
+};
+
+}  // namespace manycore

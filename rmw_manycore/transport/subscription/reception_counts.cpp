@@ -1,0 +1,65 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#include "transport/subscription/reception_counts.hpp"
+
+#include <algorithm>
+
+#include "transport/registry/endpoint_blocks.hpp"
+
+namespace manycore {
+
+void ReceptionCounts::store_taken(uint64_t bytes) noexcept {
+  EndpointCounters & counters = entry_.counters;
+  counters.messages.store(received_, std::memory_order_relaxed);
+  counters.bytes.store(
+    counters.bytes.load(std::memory_order_relaxed) + bytes, std::memory_order_relaxed);
+}
+
+uint64_t ReceptionCounts::count_taken(uint64_t bytes) noexcept {
+  ++received_;
+  store_taken(bytes);
+  return received_;
+}
+
+void ReceptionCounts::count_rejected(uint64_t bytes) noexcept {
+  --received_;
+  store_taken(-bytes);
+  count_lost(1);
+}
+
+void ReceptionCounts::count_expired() noexcept {
+  entry_.counters.expired.fetch_add(1, std::memory_order_relaxed);
+}
+
+void ReceptionCounts::count_lost_replies(uint64_t count) noexcept {
+  if (entry_.role == EndpointRole::reply && count != 0) {
+    count_lost(count);
+  }
+}
+
+/// In both of the words of which lost_so_far() takes the larger.
+void ReceptionCounts::count_lost(uint64_t count) noexcept {
+  entry_.counters.lost.fetch_add(count, std::memory_order_relaxed);
+  header_.lost_beside_dropped.fetch_add(count, std::memory_order_relaxed);
+}
+
+bool ReceptionCounts::needs_settling() const noexcept {
+  return entry_.role != EndpointRole::reply &&
+         (unsettled_ || header_.dropped.load(std::memory_order_relaxed) != settled_dropped_);
+}
+
+void ReceptionCounts::note_settled(uint64_t dropped) noexcept {
+  unsettled_ = false;
+  settled_dropped_ = dropped;
+  header_.lost_beside_dropped.store(
+    entry_.counters.lost.load(std::memory_order_relaxed) - dropped, std::memory_order_relaxed);
+}
+
+uint64_t ReceptionCounts::lost() const noexcept {
+  const uint64_t now = lost_so_far(entry_, header_);
+  uint64_t reported = reported_lost_.load(std::memory_order_relaxed);
+  while (reported < now && !reported_lost_.compare_exchange_weak(reported, now)) {
+  }
+  return std::max(reported, now);
+}
+
+}  // namespace manycore

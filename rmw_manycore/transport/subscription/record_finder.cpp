@@ -1,0 +1,166 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#include "transport/subscription/record_finder.hpp"
+
+#include <algorithm>
+
+#include "transport/registry/endpoint_blocks.hpp"
+
+namespace manycore {
+
+RecordFinder::RecordFinder(
+  Registry & registry, Cluster & cluster, SubscriptionHeader & header, EndpointEntry & entry,
+  ReceptionCounts & counts) noexcept
+: registry_(registry),
+  header_(header),
+  entry_(entry),
+  counts_(counts),
+  sources_(registry, cluster, header, entry) {}
+
+bool RecordFinder::has_some() const noexcept {
+  return !subscriber_queue::empty(header_) || backlog_.size() != 0 || has_to_resync();
+}
+
+bool RecordFinder::has_to_resync() const noexcept {
+  return header_.resync.load(std::memory_order_acquire) != 0;
+}
+
+uint64_t RecordFinder::waiting() const noexcept {
+  return subscriber_queue::size(header_) + backlog_.size();
+}
+
+uint64_t RecordFinder::arrivals() const noexcept {
+  const uint64_t pushed =
+    header_.tail.load(std::memory_order_acquire) - (uint64_t{1} << header_.slot_count_log2);
+  return pushed + arrivals_by_resync_.load(std::memory_order_relaxed);
+}
+
+std::optional<RecordFinder::Candidate> RecordFinder::next() {
+  while (true) {
+    resync_if_asked();
+    if (header_.keep_all == 0 && !backlog_.empty() && waiting() > header_.depth) {
+      resync();  // newer messages displace those of the backlog
+    }
+    if (const std::optional<Candidate> candidate = next_of_backlog()) {
+      return candidate;
+    }
+    const std::optional<Hint> hint = subscriber_queue::pop(header_);
+    if (!hint) {
+      settle();
+      return std::nullopt;
+    }
+    if (sources_.renew()) {
+      // A hint of a new source may overtake the matcher's resync, and with it the source's history.
+      // Looking into all sources finds what the hint announced as well.
+      resync(hint);
+    } else if (const std::optional<Candidate> candidate = candidate_of(*hint)) {
+      return candidate;
+    }
+  }
+}
+
+std::optional<RecordFinder::Candidate> RecordFinder::next_of_backlog() {
+  while (!backlog_.empty()) {
+    const Source::Waiting oldest = backlog_.pop_oldest();
+    Source * const source = sources_.find(oldest.source, oldest.incarnation);
+    if (source != nullptr && oldest.number > source->taken()) {
+      return Candidate{source, oldest.number};
+    }
+  }
+  return std::nullopt;
+}
+
+std::optional<RecordFinder::Candidate> RecordFinder::candidate_of(const Hint & hint) noexcept {
+  Source * const source = sources_.find(hint.source, hint.source_incarnation);
+  if (source == nullptr) {
+    return std::nullopt;  // its topic DSM is gone
+  }
+  const uint64_t number = source->full_number(hint.number);
+  if (number <= source->noted() || number > source->last() || source->is_given_up(number)) {
+    return std::nullopt;  // a double, or not of this source
+  }
+  return Candidate{source, number};
+}
+
+void RecordFinder::resync_if_asked() {
+  if (
+    header_.resync.load(std::memory_order_relaxed) != 0 &&
+    header_.resync.exchange(0, std::memory_order_seq_cst) != 0) {
+    resync();
+  }
+}
+
+/// Hints may be missing: forget those that are there and look into every topic DSM instead.
+void RecordFinder::resync(std::optional<Hint> popped) {
+  sources_.renew();
+  drain_queue(popped);
+  found_.clear();
+  for (Source & source : sources_) {
+    source.list_waiting(found_);
+  }
+  std::stable_sort(found_.begin(), found_.end(), [](const auto & a, const auto & b) {
+    return a.source_timestamp_ns < b.source_timestamp_ns;
+  });
+  backlog_.append(found_);
+  // Stale hints do not make up for others: a listener that was told of them finds fewer messages,
+  // never more.
+  const uint64_t announced = count_announced(found_);
+  counts_.count_lost_replies(announced_.size() - announced);
+  counts_.suspect_losses();
+  if (found_.size() > announced) {
+    arrivals_by_resync_.fetch_add(found_.size() - announced, std::memory_order_relaxed);
+    header_.note_arrival();
+  }
+  drop_beyond_depth();
+  if (!backlog_.empty()) {
+    // A thread that looked while the hints were gone and the backlog was not there yet may be about
+    // to sleep.
+    notify_process(registry_, entry_.process);
+  }
+}
+
+void RecordFinder::drain_queue(std::optional<Hint> popped) {
+  announced_.clear();
+  for (; popped || (popped = subscriber_queue::pop(header_)); popped.reset()) {
+    if (const std::optional<Candidate> candidate = candidate_of(*popped)) {
+      announced_.emplace_back(candidate->source->index(), candidate->number);
+    }
+  }
+  std::sort(announced_.begin(), announced_.end());
+  announced_.erase(std::unique(announced_.begin(), announced_.end()), announced_.end());
+}
+
+/// How many of these records the drained hints named.
+uint64_t RecordFinder::count_announced(const std::vector<Source::Waiting> & found) const {
+  return static_cast<uint64_t>(
+    std::count_if(found.begin(), found.end(), [&](const Source::Waiting & waiting) {
+      return std::binary_search(
+        announced_.begin(), announced_.end(), std::pair(waiting.source, waiting.number));
+    }));
+}
+
+void RecordFinder::drop_beyond_depth() {
+  while (header_.keep_all == 0 && backlog_.size() > header_.depth) {
+    const Source::Waiting oldest = backlog_.pop_oldest();
+    if (Source * const source = sources_.find(oldest.source, oldest.incarnation)) {
+      source->skip(oldest.number);
+    }
+    counts_.count_lost_replies(1);
+  }
+}
+
+void RecordFinder::settle() noexcept {
+  if (!counts_.needs_settling()) {
+    return;
+  }
+  // Before the sources are asked: what is displaced meanwhile is for the next time.
+  const uint64_t dropped = header_.dropped.load(std::memory_order_relaxed);
+  bool all = true;
+  for (Source & source : sources_) {
+    all = source.settle() && all;
+  }
+  if (all) {
+    counts_.note_settled(dropped);
+  }
+}
+
+}  // namespace manycore

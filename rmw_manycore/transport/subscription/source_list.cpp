@@ -1,0 +1,44 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#include "transport/subscription/source_list.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "transport/queue/source_table.hpp"
+
+namespace manycore {
+
+bool SourceList::renew() {
+  const uint64_t generation = header_.source_generation.load(std::memory_order_acquire);
+  if (generation == seen_generation_) {
+    return false;
+  }
+  seen_generation_ = generation;
+  bool has_new = false;
+  std::vector<Source> renewed;
+  visit_source_table(cluster_, header_, [&](SourceEntry & entry, uint32_t index) {
+    if (entry.state.load(std::memory_order_acquire) != SourceState::active) {
+      return false;
+    }
+    const auto known = std::find_if(
+      sources_.begin(), sources_.end(), [&](const Source & source) { return source.is(entry); });
+    Source source = known != sources_.end() ? *known : Source(registry_, entry, index, entry_);
+    if (source) {
+      has_new = has_new || known == sources_.end();
+      renewed.push_back(source);
+    }
+    return false;
+  });
+  sources_ = std::move(renewed);
+  return has_new;
+}
+
+Source * SourceList::find(uint32_t index, uint32_t incarnation) noexcept {
+  const uint32_t low_bits = incarnation & Hint::incarnation_mask;
+  const auto found = std::find_if(sources_.begin(), sources_.end(), [&](const Source & source) {
+    return source.index() == index && (source.incarnation() & Hint::incarnation_mask) == low_bits;
+  });
+  return found == sources_.end() ? nullptr : &*found;
+}
+
+}  // namespace manycore

@@ -1,0 +1,38 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "transport/registry/registry.hpp"
+#include "transport/topic_dsm/source.hpp"
+
+namespace manycore {
+
+/// The sources of one subscription, as its source table has them. One thread at a time (the
+/// subscription's mutex).
+class SourceList {
+public:
+  SourceList(
+    Registry & registry, Cluster & cluster, SubscriptionHeader & header,
+    EndpointEntry & entry) noexcept
+  : registry_(registry), cluster_(cluster), header_(header), entry_(entry) {}
+
+  /// Follows the source table; true when it has a source that was not known yet.
+  bool renew();
+  /// nullptr when the source is gone.
+  Source * find(uint32_t index, uint32_t incarnation) noexcept;
+
+  std::vector<Source>::iterator begin() noexcept { return sources_.begin(); }
+  std::vector<Source>::iterator end() noexcept { return sources_.end(); }
+
+private:
+  Registry & registry_;
+  Cluster & cluster_;
+  SubscriptionHeader & header_;
+  EndpointEntry & entry_;
+  std::vector<Source> sources_;
+  uint64_t seen_generation_ = 0;
+};
+
+}  // namespace manycore

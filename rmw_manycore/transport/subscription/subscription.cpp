@@ -1,0 +1,108 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#include "transport/subscription/subscription.hpp"
+
+#include <utility>
+
+#include "platform/clock.hpp"
+#include "transport/matching/closing.hpp"
+#include "transport/qos/liveliness.hpp"
+#include "transport/registry/endpoint_blocks.hpp"
+#include "transport/subscription/subscription_impl.hpp"
+
+namespace manycore {
+
+Subscription::Subscription(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+
+Subscription::~Subscription() {
+  if (impl_->membership.holds()) {
+    closing::leave(impl_->registry, impl_->slot);
+  }
+}
+
+const Gid & Subscription::gid() const noexcept { return impl_->entry.gid; }
+
+const Qos & Subscription::qos() const noexcept { return impl_->entry.qos; }
+
+const char * Subscription::topic() const noexcept { return impl_->entry.topic; }
+
+const char * Subscription::type() const noexcept { return impl_->entry.type; }
+
+bool Subscription::has_data() const noexcept { return impl_->finder.has_some(); }
+
+std::optional<Claim> Subscription::claim() {
+  Impl & impl = *impl_;
+  impl.membership.require();
+  std::unique_lock<std::mutex> lock(impl.mutex);
+  while (const auto candidate = impl.finder.next()) {
+    Source & source = *candidate->source;
+    Source::View view;
+    switch (source.claim(candidate->number, view)) {
+      case Source::ClaimResult::gone:
+        impl.counts.suspect_losses();
+        impl.counts.count_lost_replies(1);
+        continue;
+      case Source::ClaimResult::expired:
+        impl.counts.count_expired();
+        continue;
+      case Source::ClaimResult::not_ours:
+        continue;
+      case Source::ClaimResult::claimed:
+        break;
+    }
+    Claim claim(*this, std::move(lock), source, candidate->number);
+    claim.data_ = view.data;
+    claim.size_ = view.record->size_bytes;
+    claim.info_.source_timestamp_ns =
+      view.record->source_timestamp_ns.load(std::memory_order_relaxed);
+    claim.info_.received_timestamp_ns = realtime_ns();
+    claim.info_.publication_sequence_number = view.record->publication_sequence_number;
+    claim.info_.reception_sequence_number = impl.counts.count_taken(claim.size_);
+    claim.info_.publisher = source.publisher();
+    claim.info_.correlation = view.record->correlation;
+    claim.info_.from_this_process = source.publisher_process() == impl.entry.process;
+    return claim;
+  }
+  return std::nullopt;
+}
+
+uint64_t Subscription::arrivals() const noexcept {
+  Impl & impl = *impl_;
+  if (impl.finder.has_to_resync()) {
+    const std::lock_guard<std::mutex> lock(impl.mutex);
+    impl.finder.resync_if_asked();
+  }
+  return impl.finder.arrivals();
+}
+
+uint64_t Subscription::waiting() const noexcept { return impl_->finder.waiting(); }
+
+uint64_t Subscription::lost() const noexcept { return impl_->counts.lost(); }
+
+MatchedCount Subscription::matched() const { return matched_of(impl_->entry); }
+
+IncompatibleCount Subscription::incompatible() const { return incompatible_of(impl_->entry); }
+
+uint64_t Subscription::incompatible_types() const noexcept {
+  return impl_->entry.incompatible_types.load();
+}
+
+TimedCount Subscription::deadline_missed() const noexcept {
+  const SubscriptionHeader & header = impl_->header;
+  return header.has_deadline != 0 ? header.deadline.missed(header.deadline_ns) : TimedCount{};
+}
+
+LivelinessCount Subscription::liveliness() const {
+  return liveliness_of(impl_->registry, impl_->entry);
+}
+
+void Subscription::Impl::sweep() noexcept {
+  try {
+    const Registry::Lock lock(registry, Registry::Lock::no_wait_ns);
+    closing::sweep(registry);
+  } catch (const std::exception &) {
+    // Another process holds the registry, and a take does not wait for it: the next change of the
+    // graph sweeps.
+  }
+}
+
+}  // namespace manycore
