@@ -26,7 +26,7 @@ NATIVE_BELOW = {
 FOLDERS = {
     "transport": [
         *("layout", "registry", "queue", "topic_dsm", "qos", "matching", "notification"),
-        *("lifecycle", "waiting"),
+        *("lifecycle", "waiting", "publisher", "subscription"),
     ],
     "rmw": [
         *("common", "serialization", "events", "context", "qos", "graph", "topics", "services"),
