@@ -125,6 +125,7 @@ struct RegistryHeader {
   SegmentHeader segment;
   Profile profile;
   RobustMutex mutex;
+  std::atomic<uint64_t> changes;  ///< raised when the lock is taken and given back: odd between
   std::atomic<uint64_t> graph_generation;
   TableHead processes;
   TableHead nodes;

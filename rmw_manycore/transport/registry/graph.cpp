@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "transport/registry/endpoint_blocks.hpp"
+#include "transport/registry/snapshot.hpp"
 
 namespace manycore {
 namespace {
@@ -39,6 +40,32 @@ EndpointInfo describe(Registry & registry, const EndpointEntry & entry) {
   return info;
 }
 
+std::vector<EndpointInfo> all_endpoints(Registry & registry) {
+  return list_live<EndpointInfo>(registry.endpoints(), [&](uint32_t, const EndpointEntry & entry) {
+    return describe(registry, entry);
+  });
+}
+
+std::vector<EndpointInfo> chained_endpoints(Registry & registry, const std::string & topic) {
+  std::vector<EndpointInfo> all;
+  registry.for_each_of_topic(topic.c_str(), [&](uint32_t slot, EndpointEntry &) {
+    append_live(registry.endpoints(), slot, all, [&](uint32_t, const EndpointEntry & entry) {
+      return describe(registry, entry);
+    });
+  });
+  return all;
+}
+
+/// Without the chain of the topic's bucket, which a change takes apart.
+std::vector<EndpointInfo> search_endpoints(Registry & registry, const std::string & topic) {
+  std::vector<EndpointInfo> all = all_endpoints(registry);
+  all.erase(
+    std::remove_if(
+      all.begin(), all.end(), [&](const EndpointInfo & info) { return info.topic != topic; }),
+    all.end());
+  return all;
+}
+
 }  // namespace
 
 uint64_t Graph::generation() const noexcept {
@@ -46,16 +73,12 @@ uint64_t Graph::generation() const noexcept {
 }
 
 std::vector<ProcessInfo> Graph::processes() const {
-  const Registry::Lock lock(registry_);
-  std::vector<ProcessInfo> all;
-  for (uint32_t slot = 0; slot < registry_.processes().high_water(); ++slot) {
-    if (registry_.processes().is_live(slot)) {
-      const ProcessEntry & entry = registry_.processes()[slot];
-      all.push_back(
-        {slot, entry.pid, entry.cluster, entry.core, entry.host_cpu, text_of(entry.label)});
-    }
-  }
-  return all;
+  return read_between_changes(registry_, [&](bool) {
+    return list_live<ProcessInfo>(
+      registry_.processes(), [](uint32_t slot, const ProcessEntry & entry) -> ProcessInfo {
+        return {slot, entry.pid, entry.cluster, entry.core, entry.host_cpu, text_of(entry.label)};
+      });
+  });
 }
 
 std::vector<ClusterInfo> Graph::clusters() const {
@@ -75,36 +98,22 @@ std::vector<ClusterInfo> Graph::clusters() const {
 }
 
 std::vector<NodeInfo> Graph::nodes() const {
-  const Registry::Lock lock(registry_);
-  std::vector<NodeInfo> all;
-  for (uint32_t slot = 0; slot < registry_.nodes().high_water(); ++slot) {
-    if (registry_.nodes().is_live(slot)) {
-      const NodeEntry & entry = registry_.nodes()[slot];
-      all.push_back(
-        {slot, entry.process, text_of(entry.name), text_of(entry.ns), text_of(entry.enclave)});
-    }
-  }
-  return all;
+  return read_between_changes(registry_, [&](bool) {
+    return list_live<
+      NodeInfo>(registry_.nodes(), [](uint32_t slot, const NodeEntry & entry) -> NodeInfo {
+      return {slot, entry.process, text_of(entry.name), text_of(entry.ns), text_of(entry.enclave)};
+    });
+  });
 }
 
 std::vector<EndpointInfo> Graph::endpoints() const {
-  const Registry::Lock lock(registry_);
-  std::vector<EndpointInfo> all;
-  for (uint32_t slot = 0; slot < registry_.endpoints().high_water(); ++slot) {
-    if (registry_.endpoints().is_live(slot)) {
-      all.push_back(describe(registry_, registry_.endpoints()[slot]));
-    }
-  }
-  return all;
+  return read_between_changes(registry_, [&](bool) { return all_endpoints(registry_); });
 }
 
 std::vector<EndpointInfo> Graph::endpoints_of(const std::string & topic) const {
-  const Registry::Lock lock(registry_);
-  std::vector<EndpointInfo> all;
-  registry_.for_each_of_topic(topic.c_str(), [&](uint32_t, EndpointEntry & entry) {
-    all.push_back(describe(registry_, entry));
+  return read_between_changes(registry_, [&](bool is_changing) {
+    return is_changing ? search_endpoints(registry_, topic) : chained_endpoints(registry_, topic);
   });
-  return all;
 }
 
 }  // namespace manycore

@@ -64,7 +64,8 @@ struct EndpointInfo {
   CounterValues counters;
 };
 
-/// Consistent snapshots of who is on the platform. Any thread; never on the data path.
+/// Consistent snapshots of who is on the platform, without the registry lock. Any thread; never on
+/// the data path.
 class Graph {
 public:
   explicit Graph(Registry & registry) noexcept : registry_(registry) {}

@@ -114,14 +114,23 @@ bool Registry::is_current() const noexcept {
 }
 
 Registry::Lock::Lock(Registry & registry, long wait_ns) : registry_(registry) {
-  RobustMutex & mutex = registry.header().mutex;
-  if (mutex.lock(wait_ns) == RobustMutex::Outcome::owner_died) {
+  RegistryHeader & header = registry.header();
+  const RobustMutex::Outcome outcome = header.mutex.lock(wait_ns);
+  header.changes.store(header.changes.load(std::memory_order_relaxed) | 1);
+  // A reader that sees any of the changes to come sees this, too.
+  std::atomic_thread_fence(std::memory_order_release);
+  if (outcome == RobustMutex::Outcome::owner_died) {
     registry.repair();
-    mutex.mark_consistent();
+    header.mutex.mark_consistent();
   }
 }
 
-Registry::Lock::~Lock() { registry_.header().mutex.unlock(); }
+Registry::Lock::~Lock() {
+  RegistryHeader & header = registry_.header();
+  header.changes.store(
+    (header.changes.load(std::memory_order_relaxed) | 1) + 1, std::memory_order_release);
+  header.mutex.unlock();
+}
 
 const TopicEntry * Registry::find_topic(const std::string & name) const noexcept {
   const uint64_t hash = hash_name(name.c_str());

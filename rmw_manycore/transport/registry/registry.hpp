@@ -54,6 +54,12 @@ public:
   }
 
 private:
+  /// A reader that sees anything of what is filled in from now on sees this incarnation, too.
+  void begin_use(uint32_t slot, uint32_t incarnation) const noexcept {
+    (*this)[slot].slot.incarnation.store(incarnation, std::memory_order_relaxed);
+    std::atomic_thread_fence(std::memory_order_release);
+  }
+
   SharedMemory & memory_;
   TableHead & head_;
   uint64_t offset_;
@@ -153,7 +159,7 @@ uint32_t Table<Entry>::take(const char * what) {
   if (head_.first_free != 0) {
     const uint32_t slot = head_.first_free - 1;
     head_.first_free = (*this)[slot].slot.next_free;
-    ++(*this)[slot].slot.incarnation;
+    begin_use(slot, (*this)[slot].slot.incarnation.load(std::memory_order_relaxed) + 1);
     return slot;
   }
   const uint32_t slot = head_.high_water.load(std::memory_order_relaxed);
@@ -164,7 +170,7 @@ uint32_t Table<Entry>::take(const char * what) {
   }
   memory_.reserve(offset_ + uint64_t{slot} * sizeof(Entry), sizeof(Entry));
   head_.high_water.store(slot + 1, std::memory_order_release);
-  (*this)[slot].slot.incarnation = 1;
+  begin_use(slot, 1);
   return slot;
 }
 

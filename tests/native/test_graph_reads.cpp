@@ -1,0 +1,172 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+//
+// The graph is read without the registry lock: a reader holds up no change, and a change that
+// stands still holds up no reader; what is read is whole.
+#include <doctest/doctest.h>
+
+#include <csignal>
+#include <thread>
+
+#include "messages.hpp"
+#include "node_role.hpp"
+#include "patience.hpp"
+#include "transport/registry/snapshot.hpp"
+
+using namespace manycore;
+
+namespace {
+
+/// Reads the graph without end, and answers what it hears.
+const Role reader("reader", [](Lines & test, const Arguments & arguments) {
+  Registry registry(PlatformPaths::of(arguments.at(0)));
+  Graph graph(registry);
+  test.say("reading");
+  while (true) {
+    for (int i = 0; i < 10; ++i) {
+      graph.endpoints();
+    }
+    if (test.has_news()) {
+      test.say(test.hear());
+    }
+  }
+});
+
+/// Stands still while it holds the registry lock, with a topic's chain taken apart.
+const Role changer("changer", [](Lines & test, const Arguments & arguments) {
+  Registry registry(PlatformPaths::of(arguments.at(0)));
+  const Registry::Lock lock(registry);
+  registry.unlink_endpoint(0);
+  test.say("changing");
+  raise(SIGSTOP);
+});
+
+/// A name as long as there can be, of one letter.
+std::string long_name(char letter) { return "/" + std::string(200, letter); }
+
+bool is_whole(const std::string & text) {
+  return text == long_name(text.at(1)) && text.size() == 201;
+}
+
+EndpointSpec endpoint_of(char letter) {
+  EndpointSpec spec = on_topic(long_name(letter), keep_last(1));
+  spec.type = long_name(letter);
+  return spec;
+}
+
+}  // namespace
+
+TEST_CASE("a reader that stands still in the middle of a read holds up no create") {
+  TestPlatform platform;
+  const auto process = platform.join();
+  std::vector<std::unique_ptr<Publisher>> publishers;
+  for (int i = 0; i < 200; ++i) {  // a read takes some time
+    publishers.push_back(process->create_publisher(on_topic("/x", keep_last(1))));
+  }
+  Child child("reader", {platform.name()});
+  child.expect("reading");
+  for (int round = 0; round < 30; ++round) {
+    CAPTURE(round);
+    child.say("on its way");
+    child.expect("on its way");
+    const int64_t moment = monotonic_ns() + round * 7'000;  // a different one each time
+    while (monotonic_ns() < moment) {
+    }
+    child.stop();
+    const Refusal refusal =
+      refusal_of([&] { process->create_publisher(on_topic("/y", keep_last(1))); });
+    CHECK_MESSAGE(!refusal.code, refusal.text);
+    child.resume();
+  }
+}
+
+TEST_CASE("a change that stands still holds up no reader: entries are found without its chains") {
+  TestPlatform platform;
+  const auto process = platform.join();
+  const auto publisher = process->create_publisher(on_topic("/x", keep_last(1)));
+  process->add_node("node", "/", "/");
+  Child child("changer", {platform.name()});
+  child.expect("changing");
+  child.wait_until_stopped();
+  CHECK(process->graph().endpoints_of("/x").size() == 1);
+  CHECK(process->graph().endpoints_of("/y").empty());
+  CHECK(process->graph().endpoints().size() == 1);
+  CHECK(process->graph().nodes().size() == 1);
+  CHECK(process->graph().processes().size() == 1);
+  child.kill();
+}
+
+TEST_CASE("entries that are read while they come and go are whole, and none is missing") {
+  // Cannot prove that no moment goes wrong; it meets many of them.
+  TestPlatform platform;
+  const auto process = platform.join();
+  std::atomic<bool> running{true};
+  const auto steady = process->create_publisher(endpoint_of('s'));
+  std::thread churn([&] {
+    for (char letter = 'a'; running; letter = letter == 'z' ? 'a' : static_cast<char>(letter + 1)) {
+      const auto publisher = process->create_publisher(endpoint_of(letter));
+      const uint32_t node =
+        process->add_node(long_name(letter), long_name(letter), long_name(letter));
+      process->remove_node(node);
+    }
+  });
+  size_t torn = 0;
+  size_t missing = 0;
+  for (int round = 0; round < 2'000; ++round) {
+    const std::vector<EndpointInfo> endpoints = process->graph().endpoints();
+    for (const EndpointInfo & info : endpoints) {
+      torn += is_whole(info.topic) && info.topic == info.type ? 0 : 1;
+    }
+    for (const NodeInfo & info : process->graph().nodes()) {
+      torn += is_whole(info.name) && info.ns == info.name && info.enclave == info.name ? 0 : 1;
+    }
+    missing += endpoints.empty() ? 1 : 0;
+    missing += process->graph().endpoints_of(long_name('s')).empty() ? 1 : 0;
+  }
+  running = false;
+  churn.join();
+  CHECK(torn == 0);
+  CHECK(missing == 0);
+}
+
+TEST_CASE("a copy of an entry holds until the slot is closed, or used again") {
+  TestPlatform platform;
+  const auto process = platform.join();
+  auto publisher = process->create_publisher(on_topic("/x", keep_last(1)));
+  Registry registry(platform.paths());
+  const EntryCopy<EndpointEntry> of_publisher(registry.endpoints(), 0);
+  CHECK(text_of((*of_publisher).topic) == "/x");
+  CHECK(of_publisher.holds());
+  publisher.reset();
+  CHECK_FALSE(of_publisher.holds());
+  const EntryCopy<EndpointEntry> of_nothing(registry.endpoints(), 0);
+  CHECK_FALSE(of_nothing.holds());
+  publisher = process->create_publisher(on_topic("/y", keep_last(1)));
+  REQUIRE(registry.endpoints().is_live(0));
+  CHECK_FALSE(of_publisher.holds());
+  CHECK_FALSE(of_nothing.holds());
+}
+
+TEST_CASE("what is read beside a change is read again; while changes do not cease, not for ever") {
+  TestPlatform platform;
+  const auto process = platform.join();
+  platform.receive_thread(1);
+  const Standstill receive_thread(platform, 1);  // it changes nothing meanwhile
+  Registry registry(platform.paths());
+  int reads = 0;
+  const auto read = [&](int changes) {
+    return read_between_changes(registry, [&](bool is_changing) {
+      CHECK_FALSE(is_changing);
+      if (++reads <= changes) {
+        const Registry::Lock change(registry);
+      }
+      return reads;
+    });
+  };
+  CHECK(read(0) == 1);
+  reads = 0;
+  CHECK(read(1) == 2);
+  reads = 0;
+  CHECK(read(1000) == 16);
+  const Registry::Lock change(registry);
+  CHECK(read_between_changes(registry, [](bool is_changing) { return is_changing; }));
+}
