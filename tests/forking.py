@@ -17,7 +17,11 @@ from rclpy.type_support import check_for_type_support
 from support import leftovers
 
 # What a node and most tests use, and what rclpy imports only when it makes the first node.
-MODULES = ("numpy", "payload", "rclpy.action", "ros_support", "rosidl_generator_py")
+MODULES = (
+    *("numpy", "payload", "rclpy.action", "ros_support", "rosidl_generator_py"),
+    *("rmw_manycore_py.cli.main", "rich.console", "rich.table", "yaml"),
+    *("rmw_manycore_py.cli.topic.echo", "rmw_manycore_py.ndt.nodes.ndt_scan_matcher"),
+)
 MESSAGES = (
     "rcl_interfaces.msg",
     "rcl_interfaces.srv",

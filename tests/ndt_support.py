@@ -5,11 +5,10 @@ from __future__ import annotations
 
 import os
 import signal
-import sys
 import threading
 import time
 import zipfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
@@ -17,6 +16,7 @@ from typing import Any
 import numpy as np
 import pytest
 from diagnostic_msgs.msg import DiagnosticArray
+from forked import forked_node
 from geometry_msgs.msg import PoseStamped, PoseWithCovarianceStamped
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile
@@ -39,8 +39,14 @@ NEAR = poses.perturbed(TRUTH, 0.3, 0.03, np.random.default_rng(3))
 
 def command(module: str, *parameters: str) -> list[str]:
     """Return the command of a node, with parameters as NAME:=VALUE."""
-    words = [sys.executable, "-m", f"rmw_manycore_py.ndt.nodes.{module}", "--ros-args"]
-    return words + [word for one in parameters for word in ("-p", one)]
+    return forked_node(f"rmw_manycore_py.ndt.nodes.{module}", *ros_arguments(parameters))
+
+
+def ros_arguments(parameters: Sequence[str], remappings: Sequence[str] = ()) -> list[str]:
+    """Return the words of a command line that give a node parameters and names."""
+    options = [("-p", parameter) for parameter in parameters]
+    options += [("-r", remapping) for remapping in remappings]
+    return ["--ros-args", *(word for option in options for word in option)]
 
 
 def matcher_command(**parameters: object) -> list[str]:

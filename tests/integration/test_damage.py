@@ -10,8 +10,9 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
+from forked import forked_example
 from processes import kill_all, stop_all
-from support import IS_MANYCORE, PLATFORMS, Program, example_command
+from support import IS_MANYCORE, PLATFORMS, Program
 
 pytestmark = [
     pytest.mark.integration,
@@ -41,7 +42,7 @@ DAMAGES: dict[str, Damage] = {
 @pytest.fixture
 def running(start, platform) -> Iterator[Path]:
     """Yield the directory of a platform on which a talker runs in cluster 1."""
-    start(example_command("talker")).wait_for("Publishing")
+    start(forked_example("talker")).wait_for("Publishing")
     yield PLATFORMS / platform
     kill_all(platform)
     shutil.rmtree(PLATFORMS / platform, ignore_errors=True)
@@ -79,7 +80,7 @@ def assert_refuses(newcomer: Program, directory: Path) -> None:
 @pytest.mark.parametrize("name", ["registry", "cluster-1"])
 def test_segment(start, directory, name, damage):
     damage_file(directory / name, DAMAGES[damage])
-    assert_refuses(start(example_command("listener")), directory)
+    assert_refuses(start(forked_example("listener")), directory)
 
 
 @pytest.mark.parametrize("seed", SEEDS)
@@ -92,7 +93,7 @@ def test_segment_that_is_random_after_its_header(start, directory, name, seed):
         return head[:HEADER_BYTES] + noise.randbytes(len(head) - HEADER_BYTES), size
 
     damage_file(directory / name, damage)
-    newcomer = start(example_command("listener"))
+    newcomer = start(forked_example("listener"))
     assert newcomer.wait() == 1, newcomer
     assert "RCLError" in newcomer.output, newcomer
 
@@ -105,7 +106,7 @@ def test_segment_of_another_version(start, directory):
         return magic + bytes([version[0] + 1]) + version[1:] + rest, size // 2
 
     damage_file(directory / "registry", damage)
-    newcomer = start(example_command("listener"))
+    newcomer = start(forked_example("listener"))
     assert_refuses(newcomer, directory)
     assert "has layout version" in newcomer.output, newcomer
 
@@ -113,11 +114,11 @@ def test_segment_of_another_version(start, directory):
 def test_segment_of_another_platform(start, directory):
     """A whole and valid registry, but of somebody else."""
     other = f"{directory.name}-other"
-    talker = start(example_command("talker"), MANYCORE_PLATFORM=other)
+    talker = start(forked_example("talker"), MANYCORE_PLATFORM=other)
     talker.wait_for("Publishing")
     shutil.copy(PLATFORMS / other / "registry", directory / "copy")
     (directory / "copy").rename(directory / "registry")
-    assert_refuses(start(example_command("listener")), directory)
+    assert_refuses(start(forked_example("listener")), directory)
     assert talker.stop_node()
 
 
@@ -131,12 +132,12 @@ def test_pipe_that_is_none(start, directory, kind):
         pipe.mkdir()
     else:
         pipe.symlink_to("/dev/zero")
-    assert_refuses(start(example_command("listener")), directory)
+    assert_refuses(start(forked_example("listener")), directory)
 
 
 def test_garbage_in_a_pipe(start, running):
     """The receive thread throws away what is no eMCOS message, and goes on with the next one."""
-    listener = start(example_command("listener"), cluster=2)
+    listener = start(forked_example("listener"), cluster=2)
     listener.wait_for("I heard")
     pipe = os.open(running / "cluster-2.pipe", os.O_WRONLY)
     for size_bytes in (1, 7, 64, 100, 4096):
@@ -150,11 +151,11 @@ def test_garbage_in_a_pipe(start, running):
 @pytest.mark.parametrize("damage", DAMAGES)
 def test_leftovers_of_a_dead_platform(start, platform, damage):
     """Whatever a dead platform left is in nobody's way: the next start clears it up."""
-    talker = start(example_command("talker"))
+    talker = start(forked_example("talker"))
     talker.wait_for("Publishing")
     kill_all(platform)
     for name in ("registry", "cluster-1"):
         damage_file(PLATFORMS / platform / name, DAMAGES[damage])
-    again = start(example_command("talker"))
+    again = start(forked_example("talker"))
     again.wait_for("Publishing")
     assert again.stop_node(), again

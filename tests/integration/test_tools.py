@@ -10,6 +10,7 @@ import subprocess
 import sys
 
 import pytest
+from forked import forked_manycore
 from processes import kill_all
 from support import (
     IS_MANYCORE,
@@ -33,7 +34,7 @@ def manycore(start):
     """Return a function that runs a verb to its end and returns its output."""
 
     def call(*words: str, status: int = 0) -> str:
-        program = start(manycore_command(*words))
+        program = start(forked_manycore(*words))
         assert program.wait() == status, program
         return program.output
 

@@ -9,6 +9,7 @@ import sys
 
 import pytest
 import yaml
+from forked import forked_manycore
 from ros_support import announce, peer_node
 from support import IS_MANYCORE, example_command, manycore_command, peer_command
 
@@ -25,7 +26,7 @@ def manycore(start):
     """Return a function that runs a verb to its end and returns its output."""
 
     def call(*words: str, status: int = 0) -> str:
-        program = start(manycore_command(*words))
+        program = start(forked_manycore(*words))
         assert program.wait() == status, program
         return program.output
 

@@ -6,11 +6,12 @@ from __future__ import annotations
 import pytest
 import rclpy
 from action_msgs.msg import GoalStatus
+from forked import forked_example
 from rclpy.action import ActionClient, ActionServer, CancelResponse, GoalResponse
 from rclpy.node import Node
 from rclpy.task import Future
 from ros_support import peer_node, spin_until
-from support import PATIENCE_S, example_command
+from support import PATIENCE_S
 from test_msgs.action import Fibonacci
 
 FAST = ("--ros-args", "-p", "rate_hz:=50.0")
@@ -19,7 +20,7 @@ FAST = ("--ros-args", "-p", "rate_hz:=50.0")
 @pytest.fixture
 def client(node: Node, start, peer_cluster) -> ActionClient:
     """Start the example server and return a client of it."""
-    start(example_command("fibonacci_server", *FAST), peer_cluster)
+    start(forked_example("fibonacci_server", *FAST), peer_cluster)
     client = ActionClient(node, Fibonacci, "fibonacci")
     assert client.wait_for_server(PATIENCE_S)
     return client
@@ -92,7 +93,7 @@ def test_several_goals_at_once(node, client):
 
 def test_several_clients(node, start, client):
     others = [
-        start(example_command("fibonacci_client", "--ros-args", "-r", f"__node:=client_{n}"), n)
+        start(forked_example("fibonacci_client", "--ros-args", "-r", f"__node:=client_{n}"), n)
         for n in (1, 2)
     ]
     assert len(result_of(node, send(node, client, 6)).result.sequence) == 7
@@ -120,7 +121,7 @@ def reject() -> None:
 
 
 def test_server_goes_away(node, start, peer_cluster):
-    server = start(example_command("fibonacci_server", *FAST), peer_cluster)
+    server = start(forked_example("fibonacci_server", *FAST), peer_cluster)
     client = ActionClient(node, Fibonacci, "fibonacci")
     assert client.wait_for_server(PATIENCE_S)
     result_of(node, send(node, client, 1))  # so it spins

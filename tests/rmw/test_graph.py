@@ -9,13 +9,13 @@ from pathlib import Path
 
 import pytest
 import rclpy
+from forked import forked_example
 from rclpy.duration import Duration, Infinite
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.topic_endpoint_info import TopicEndpointTypeEnum
 from ros_support import peer_node, spin_until
 from std_msgs.msg import String, UInt8MultiArray
 from std_srvs.srv import Trigger
-from support import example_command
 
 QOS = QoSProfile(
     depth=7,
@@ -58,7 +58,7 @@ def test_node_names(node, peer):
 
 
 def test_enclaves(node, start, peer_cluster):
-    start(example_command("talker", "--ros-args", "--enclave", "/robot/arm"), peer_cluster)
+    start(forked_example("talker", "--ros-args", "--enclave", "/robot/arm"), peer_cluster)
     talker = ("talker", "/", "/robot/arm")
     spin_until(node, lambda: talker in node.get_node_names_and_namespaces_with_enclaves())
 

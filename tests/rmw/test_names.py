@@ -7,11 +7,12 @@ import os
 
 import pytest
 import rclpy
+from forked import forked_example
 from rcl_interfaces.msg import Log
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from ros_support import announce, peer_node, spin_until
 from std_msgs.msg import String
-from support import IS_MANYCORE, example_command
+from support import IS_MANYCORE
 
 needs_manycore = pytest.mark.skipif(not IS_MANYCORE, reason="about what only DDS has")
 
@@ -28,7 +29,7 @@ def test_namespace_and_remapping(node, start, peer_cluster):
         "-r",
         "chatter:=/far/away",
     ]
-    start(example_command("talker", *remap, "-p", "rate_hz:=50.0"), peer_cluster)
+    start(forked_example("talker", *remap, "-p", "rate_hz:=50.0"), peer_cluster)
     spin_until(node, lambda: heard)
     spin_until(node, lambda: ("speaker", "/robot") in node.get_node_names_and_namespaces())
 

@@ -9,6 +9,7 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
+from forked import forked_node
 from geometry_msgs.msg import PoseWithCovarianceStamped
 from ndt_support import (
     COVARIANCE,
@@ -17,6 +18,7 @@ from ndt_support import (
     command,
     error_m,
     matcher_command,
+    ros_arguments,
     street_map,
     street_scan,
     write_boastful_npz,
@@ -33,6 +35,7 @@ from rmw_manycore_py.ndt.maps.map_tiles import write_tiles
 from rmw_manycore_py.ndt.messages.conversions import matrix_of, pose_with_covariance
 from rmw_manycore_py.ndt.messages.point_cloud import decode, encode
 
+INITIALIZER = "rmw_manycore_py.ndt.nodes.pose_initializer"
 KEPT = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 
@@ -123,9 +126,12 @@ def unmatched(node, start) -> Stack:
 
 def initializer(*parameters: str) -> list[str]:
     """Return the command of an initializer of the matcher alone."""
+    return forked_node(INITIALIZER, *initializer_arguments(*parameters))
+
+
+def initializer_arguments(*parameters: str) -> list[str]:
     names = ("ndt_align:=ndt_align_srv", "ndt_trigger_node:=trigger_node_srv")
-    remappings = [word for name in names for word in ("-r", name)]
-    return [*command("pose_initializer", "ekf_enabled:=false", *parameters), *remappings]
+    return ros_arguments(["ekf_enabled:=false", *parameters], names)
 
 
 def first_pose(stack: Stack, also: Callable[[], object] = lambda: None) -> np.ndarray:
@@ -188,9 +194,8 @@ def test_a_first_pose_though_the_matcher_was_stopped_over_it(stack, start):
     matcher = start(matcher_command(**few_poses), cluster=2)
     stack.wait_for_matcher()
     stack.publish_map(street_map())
-    name = "rmw_manycore_py.ndt.nodes.pose_initializer"
-    hasty = f"import {name} as node; node.ANSWER_TIMEOUT_S = 5.0; node.main()"
-    program = start([sys.executable, "-c", hasty, *initializer()[3:]])
+    hasty = f"import {INITIALIZER} as node; node.ANSWER_TIMEOUT_S = 5.0; node.main()"
+    program = start([sys.executable, "-c", hasty, *initializer_arguments()])
     program.wait_for("]: UNINITIALIZED")
     matcher.signal(signal.SIGSTOP)
     want_a_pose_of(program, stack)

@@ -5,17 +5,18 @@ from __future__ import annotations
 
 import pytest
 import rclpy
+from forked import forked_example
 from rcl_interfaces.msg import ParameterEvent
 from rclpy.parameter import Parameter
 from rclpy.parameter_client import AsyncParameterClient
 from ros_support import spin_until
-from support import PATIENCE_S, example_command
+from support import PATIENCE_S
 
 
 @pytest.fixture
 def controller(node, start, peer_cluster):
     """Start the example controller and return a client of its parameters."""
-    start(example_command("controller"), peer_cluster).wait_for("gain is")
+    start(forked_example("controller"), peer_cluster).wait_for("gain is")
     client = AsyncParameterClient(node, "controller")
     assert client.wait_for_services(PATIENCE_S)
     return client
@@ -60,14 +61,14 @@ def test_changes_are_announced(node, controller):
 
 
 def test_from_the_command_line(start):
-    program = start(example_command("controller", "--ros-args", "-p", "gain:=4.5"), cluster=2)
+    program = start(forked_example("controller", "--ros-args", "-p", "gain:=4.5"), cluster=2)
     program.wait_for(r"gain is 4\.5")
 
 
 def test_from_a_file(start, tmp_path):
     file = tmp_path / "parameters.yaml"
     file.write_text("controller: {ros__parameters: {gain: 6.5}}\n")
-    program = start(example_command("controller", "--ros-args", "--params-file", str(file)))
+    program = start(forked_example("controller", "--ros-args", "--params-file", str(file)))
     program.wait_for(r"gain is 6\.5")
 
 
