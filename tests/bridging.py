@@ -8,6 +8,7 @@ from collections.abc import Callable
 from typing import Any
 
 from domains import domain_of
+from forked import forked_node
 from support import Program, peer_command
 
 from rmw_manycore_bridge.status import status
@@ -48,9 +49,13 @@ class Bridge:
 
     def run_one(self, plan: Plan, way: Direction, lane: int = 0, **env: str) -> Program:
         """Start one process."""
-        words = [plan.to_json(), way, str(lane), "1", str(2 + DIRECTIONS.index(way))]
-        command = [sys.executable, "-m", "rmw_manycore_bridge", *words]
+        command = forked_node("rmw_manycore_bridge", *_words(plan, way, lane))
         return self._start(command, **OUTSIDE, **env)
+
+    def run_unforked(self, plan: Plan, way: Direction) -> Program:
+        """Start one process in a python of its own: all of its threads are the bridge's."""
+        command = [sys.executable, "-m", "rmw_manycore_bridge", *_words(plan, way, 0)]
+        return self._start(command, **OUTSIDE)
 
     def inside(self, function: Callable[..., None], *arguments: Any, **env: str) -> Program:
         """Start a peer on the platform."""
@@ -65,3 +70,7 @@ class Bridge:
         rows = status(self.platform)
         found = [r for r in rows if (r["direction"], r["inside"]) == (direction, name)]
         return found[0] if found else {}
+
+
+def _words(plan: Plan, way: Direction, lane: int) -> list[str]:
+    return [plan.to_json(), way, str(lane), "1", str(2 + DIRECTIONS.index(way))]

@@ -21,6 +21,7 @@ MODULES = (
     *("numpy", "payload", "rclpy.action", "ros_support", "rosidl_generator_py"),
     *("rmw_manycore_py.cli.main", "rich.console", "rich.table", "yaml"),
     *("rmw_manycore_py.cli.topic.echo", "rmw_manycore_py.ndt.nodes.ndt_scan_matcher"),
+    "rmw_manycore_bridge.process",
 )
 MESSAGES = (
     "rcl_interfaces.msg",

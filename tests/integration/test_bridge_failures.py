@@ -28,6 +28,8 @@ from support import (
 
 from rmw_manycore_bridge.status import status
 from rmw_manycore_bridge.time_slice import SLICE_NS, time_slice_ns
+from rmw_manycore_py.bridge_plan import Plan
+from rmw_manycore_py.routes import arranged
 from rmw_manycore_py.topology import HostCpu, as_host_cpu
 
 pytestmark = [
@@ -129,7 +131,8 @@ def test_it_runs_on_the_cpus_of_the_mapfile(start, tmp_path, platform, named) ->
 def test_its_threads_have_a_short_time_slice(bridge) -> None:
     if time_slice_ns() == 0:
         pytest.skip("Linux before 6.12 has no slices that a thread can ask for")
-    (process,) = bridge.run(bridge.route("outward", "/chatter")).values()
+    plan = Plan(bridge.platform, arranged([bridge.route("outward", "/chatter")], 1))
+    process = bridge.run_unforked(plan, "outward")
     wait_until(lambda: bridge.row("outward", "/chatter").get("alive"), "it counts")
     threads = {int(entry.name) for entry in Path(f"/proc/{process.pid}/task").iterdir()}
     assert len(threads) > 2

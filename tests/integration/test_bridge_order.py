@@ -116,6 +116,7 @@ def test_what_is_latched_comes_again_and_is_counted(bridge, direction, by_patter
     source, target = sides(bridge, direction)
     source(count_up, "/numbers", LATCHED, 0.002, 2 * DEPTH).wait_for("^counted$")
     viewer = target(show_numbers, "/numbers", LATCHED)
+    viewer.wait_for("^listening$")  # late it would hear what the bridge keeps: the last one
     route = routes(bridge, direction, by_pattern)
     first = bridge.run(route)[direction]
     viewer.wait_for(f"^heard {2 * DEPTH}$")
