@@ -18,6 +18,7 @@
  * BUG 6: first stored before the memory is there
  * BUG 7: offset cleared before the memory is given back
  * BUG 8: the reaper does not wait until a killed process takes no more steps
+ * BUG 9: memory given back after the SMEM, without the lock
  */
 #define KILLED 1          /* the publisher that may be */
 #define OTHER 2
@@ -81,7 +82,7 @@ inline open(p) {
     assert(lock != p);
     if
     :: backed = true
-    :: no_space = true                                     /* /dev/shm is full */
+    :: no_space = true; backed = true                    /* a part; then /dev/shm is full */
     fi
   };
   if
@@ -113,9 +114,16 @@ proctype Publisher(byte p) {
        :: no_space && BUG == 5
        :: else ->
           first[p] = false;
+          if
+          :: !no_space && BUG != 9 -> backed = false
+          :: else
+          fi;
           take_lock(p);
           free(p);
-          release_lock()
+          release_lock();
+#if BUG == 9
+          backed = false
+#endif
        fi
     :: used -> release_lock()                            /* refused (no_space) */
     fi

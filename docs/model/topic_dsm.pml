@@ -16,17 +16,19 @@
  * BUG 4: claim does not compare the source's incarnation
  * BUG 5: a claim that was refused advances the cursor
  * BUG 6: reading cleared before the waiting publisher is told
- * BUG 7: receive thread: no fence between phase and the look at magic
+ * BUG 7: receive thread: no fence between phase and the look at the slot
  * BUG 8: freed while the receive thread is in its phase
  * BUG 9: incarnation raised after the source is opened again
  * BUG 10: sweeper counts what is lost before it looks at reading
  * BUG 11: sweeper counts what is lost before the source is revoked
+ * BUG 12: receive thread asks the topic DSM's header whether it is there, not the publisher's slot
+ * BUG 13: reader looks at last for the hint's full number without a claim
  */
 #define STATE 0           /* of the source */
 #define INCARNATION 1
 #define READING 2
 #define TAKEN 3
-#define MAGIC 4           /* of the topic DSM */
+#define SLOT 4            /* of the publisher whose memory may be followed; 0 = freeing */
 #define PHASE 5           /* of the receive thread */
 #define ACCOUNTED 6       /* of the source */
 #define WORDS 7
@@ -39,6 +41,7 @@
 #define active 1
 #define revoked 2
 
+#define every_record 255
 #define NUMBER 9          /* of the stale hint; the next publisher begins with lower ones */
 
 #include "tso.pml"
@@ -62,9 +65,23 @@ inline release(whose) {
 #endif
 }
 
+inline look_at_last() {
+#if BUG != 13
+  store_seq_cst(READER, READING, every_record);
+#endif
+  if
+  :: load(READER, STATE) == active && load(READER, INCARNATION) == 1 || BUG == 13 -> touch(1)
+  :: else
+  fi;
+#if BUG != 13
+  store_release(READER, READING, 0)
+#endif
+}
+
 /* It found the source of the first publisher and is about to claim. */
 proctype Reader() {
   bool may_look;
+  look_at_last();
 #if BUG == 1
   store_release(READER, READING, NUMBER);
 #else
@@ -95,8 +112,11 @@ proctype ReceiveThread() {
 #else
   store_seq_cst(RECEIVER, PHASE, 1);
 #endif
+#if BUG == 12
+  touch(1);
+#endif
   if
-  :: load(RECEIVER, MAGIC) == 1 -> touch(1)             /* and the header's endpoint */
+  :: load(RECEIVER, SLOT) == 1 -> touch(1)              /* the header, the reader table */
   :: else
   fi;
   store_release(RECEIVER, PHASE, 0)
@@ -130,7 +150,7 @@ inline revoke() {
 }
 
 inline free_topic_dsm() {
-  store_seq_cst(SWEEPER, MAGIC, 0);
+  store_seq_cst(SWEEPER, SLOT, 0);
 #if BUG != 8
   load(SWEEPER, PHASE) == 0;
 #endif
@@ -139,7 +159,7 @@ inline free_topic_dsm() {
 
 inline join_second_publisher() {
   owner = 2;
-  store_seq_cst(SWEEPER, MAGIC, 2);
+  store_seq_cst(SWEEPER, SLOT, 2);
 #if BUG != 9
   store_release(SWEEPER, INCARNATION, 2);
 #endif
@@ -163,7 +183,7 @@ init {
   atomic {
     memory[STATE] = active;
     memory[INCARNATION] = 1;
-    memory[MAGIC] = 1;
+    memory[SLOT] = 1;
     run StoreBuffer(READER); run StoreBuffer(RECEIVER); run StoreBuffer(SWEEPER);
     run Reader(); run ReceiveThread(); run Sweeper()
   };

@@ -19,9 +19,14 @@ constexpr uint32_t nothing = UINT32_MAX;  ///< no slot
 
 constexpr size_t name_bytes = 256;  ///< ROS names are at most 255 characters
 
-/// free -> live -> closing -> free; closing only for endpoints (see docs/design/topic_dsm.md,
-/// Freeing).
-enum class SlotState : uint32_t { free, live, closing };
+/// free -> live -> closing -> freeing -> free; closing and freeing only for endpoints (see
+/// docs/design/topic_dsm.md, Freeing). From freeing on no reference to its memory may be followed.
+enum class SlotState : uint32_t { free, live, closing, freeing };
+
+/// True while references to an endpoint's memory may be followed.
+constexpr bool has_memory(SlotState state) {
+  return state == SlotState::live || state == SlotState::closing;
+}
 
 /// First member of every table entry.
 struct Slot {
@@ -131,7 +136,7 @@ struct RegistryHeader {
   TableHead nodes;
   TableHead endpoints;
   uint32_t topic_count;
-  uint32_t closing_count;                  ///< endpoints in SlotState::closing (derived)
+  uint32_t closing_count;                  ///< endpoints closing or freeing (derived)
   std::atomic<uint64_t> clusters_present;  ///< bit c - 1: cluster c has a segment
   std::atomic<uint32_t> removed;           ///< the files are gone: no process can join
   uint32_t reserved;

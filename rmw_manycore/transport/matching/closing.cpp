@@ -2,6 +2,7 @@
 #include "transport/matching/closing.hpp"
 
 #include <optional>
+#include <utility>
 
 #include "transport/matching/undelivered.hpp"
 #include "transport/qos/liveliness.hpp"
@@ -177,10 +178,12 @@ bool sweep_publisher(Registry & registry, WantedSources & wanted, EndpointEntry 
   if (!all_revoked) {
     return false;
   }
-  dsm->magic.store(0, std::memory_order_seq_cst);  // receive threads turn away from here on
+  // Dekker with the receive threads: each stores its phase before it looks at the state.
+  entry.slot.state.store(SlotState::freeing, std::memory_order_seq_cst);
   if (!receive_threads_are_out(registry)) {
     return false;
   }
+  entry.block = SegmentRef{};  // should this process die, no repairer looks into what is given back
   free_topic_dsm(*cluster, *dsm);
   return true;
 }
@@ -216,10 +219,10 @@ bool sweep_subscription(Registry & registry, EndpointEntry & entry) {
     return false;
   }
   header->magic.store(0);
+  const uint64_t offset = std::exchange(entry.block, SegmentRef{}).offset();
   free_chain<SourceBlock>(*cluster, header->first_source_block);
   cluster->free(
-    entry.block.offset(),
-    sizeof(SubscriptionHeader) + (uint64_t{8} << (header->slot_count_log2 & 31)));
+    offset, sizeof(SubscriptionHeader) + (uint64_t{8} << (header->slot_count_log2 & 31)));
   return true;
 }
 
@@ -227,7 +230,8 @@ bool sweep_subscription(Registry & registry, EndpointEntry & entry) {
 
 void close(Registry & registry, uint32_t endpoint, bool died) {
   EndpointEntry & entry = registry.endpoints()[endpoint];
-  if (entry.slot.state.exchange(SlotState::closing) == SlotState::live) {
+  if (entry.slot.state.load() == SlotState::live) {
+    entry.slot.state.store(SlotState::closing);
     registry.unlink_endpoint(endpoint);
     ++registry.header().closing_count;
   }
@@ -244,14 +248,15 @@ void sweep(Registry & registry) {
   for (uint32_t slot = 0; header.closing_count != 0 && slot < registry.endpoints().high_water();
        ++slot) {
     EndpointEntry & entry = registry.endpoints()[slot];
-    if (entry.slot.state.load() != SlotState::closing || awaits_reaper(registry, entry)) {
+    const SlotState state = entry.slot.state.load();
+    const bool is_going = state == SlotState::closing || state == SlotState::freeing;
+    if (!is_going || awaits_reaper(registry, entry)) {
       continue;
     }
     const bool swept = entry.kind == EndpointKind::publisher
                          ? sweep_publisher(registry, wanted, entry)
                          : sweep_subscription(registry, entry);
     if (swept) {
-      entry.block = SegmentRef{};
       registry.endpoints().give_back(slot);
       --header.closing_count;
     }

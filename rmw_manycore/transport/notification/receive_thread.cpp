@@ -67,14 +67,25 @@ void ReceiveThread::run(const ProcessesChanged & on_change) {
   }
 }
 
+/// The publisher's slot says so: the topic DSM may be gone, and what it says with it. Dekker with
+/// the sweeper: the phase is stored before.
+bool ReceiveThread::is_there(const EmcosMessage & message) const noexcept {
+  if (message.endpoint >= registry_.endpoints().high_water()) {
+    return false;
+  }
+  const Slot & publisher = registry_.endpoints()[message.endpoint].slot;
+  return has_memory(publisher.state.load(std::memory_order_seq_cst)) &&
+         publisher.incarnation.load(std::memory_order_seq_cst) == message.incarnation;
+}
+
 /// Step 2 of Fig. 4: receive thread -> queue -> wake.
 void ReceiveThread::forward(const EmcosMessage & message) noexcept {
   const OddPhase phase(cluster_.header().phase);
   Cluster * const source = registry_.clusters().find(message.topic_dsm.cluster());
   TopicDsmHeader * const dsm =
     source == nullptr ? nullptr : source->find<TopicDsmHeader>(message.topic_dsm.offset());
-  const bool current = dsm != nullptr &&
-                       dsm->magic.load(std::memory_order_seq_cst) == topic_dsm_magic &&
+  const bool current = dsm != nullptr && is_there(message) &&
+                       dsm->magic.load(std::memory_order_relaxed) == topic_dsm_magic &&
                        dsm->endpoint.load(std::memory_order_relaxed) == message.endpoint &&
                        dsm->incarnation.load(std::memory_order_relaxed) == message.incarnation;
   if (current) {

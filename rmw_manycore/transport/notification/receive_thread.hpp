@@ -31,6 +31,8 @@ private:
   /// False for a message of no known kind.
   bool handle(const EmcosMessage & message, const ProcessesChanged & on_change);
   void forward(const EmcosMessage & message) noexcept;
+  /// Its publisher still has its topic DSM.
+  bool is_there(const EmcosMessage & message) const noexcept;
   bool push_to_readers(
     const Cluster & source, TopicDsmHeader & dsm, const EmcosMessage & message) noexcept;
   void push(SegmentRef subscription, const Hint & hint) noexcept;

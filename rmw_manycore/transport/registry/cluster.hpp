@@ -77,6 +77,9 @@ public:
     std::memset(&memory_.at<std::byte>(offset), 0, length);
     return memory_.at<T>(offset);
   }
+  /// Gives memory behind allocated SMEM back to the system, as far as it is whole pages; needs no
+  /// lock. Nothing may touch it until it is allocated anew.
+  void release(uint64_t offset, uint64_t length) const noexcept { memory_.release(offset, length); }
   SegmentRef ref_of(const void * object) const noexcept {
     return SegmentRef::make(
       id_, static_cast<uint64_t>(static_cast<const std::byte *>(object) - memory_.data()));

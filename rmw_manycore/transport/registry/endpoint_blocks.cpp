@@ -42,7 +42,7 @@ TopicDsmHeader * topic_dsm_of(Registry & registry, const SourceEntry & source) {
     return nullptr;
   }
   const Slot & publisher = registry.endpoints()[slot].slot;
-  const bool there = publisher.state.load() != SlotState::free &&
+  const bool there = has_memory(publisher.state.load()) &&
                      publisher.incarnation == source.topic_dsm_incarnation.load();
   return there ? registry.clusters().find<TopicDsmHeader>(SegmentRef{source.topic_dsm.load()})
                : nullptr;
@@ -51,10 +51,11 @@ TopicDsmHeader * topic_dsm_of(Registry & registry, const SourceEntry & source) {
 void detach_reader(Registry & registry, SourceEntry & source) {
   TopicDsmHeader * const dsm = topic_dsm_of(registry, source);
   auto * const reader = registry.clusters().find<ReaderEntry>(SegmentRef{source.reader.load()});
-  const bool is_its_own = reader != nullptr && registry.clusters().find<SourceEntry>(
-                                                 SegmentRef{reader->source.load()}) == &source;
-  if (dsm == nullptr || !is_its_own) {
+  if (dsm == nullptr || reader == nullptr) {
     return;
+  }
+  if (registry.clusters().find<SourceEntry>(SegmentRef{reader->source.load()}) != &source) {
+    return;  // another's by now
   }
   reader->active.store(0, std::memory_order_release);
   dsm->match_generation.fetch_add(1, std::memory_order_seq_cst);

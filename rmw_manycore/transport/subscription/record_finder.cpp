@@ -74,11 +74,11 @@ std::optional<RecordFinder::Candidate> RecordFinder::candidate_of(const Hint & h
   if (source == nullptr) {
     return std::nullopt;  // its topic DSM is gone
   }
-  const uint64_t number = source->full_number(hint.number);
-  if (number <= source->noted() || number > source->last() || source->is_given_up(number)) {
+  const std::optional<uint64_t> number = source->published_number(hint.number);
+  if (!number || *number <= source->noted() || source->is_given_up(*number)) {
     return std::nullopt;  // a double, or not of this source
   }
-  return Candidate{source, number};
+  return Candidate{source, *number};
 }
 
 void RecordFinder::resync_if_asked() {

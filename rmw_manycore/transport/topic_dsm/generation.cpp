@@ -1,6 +1,8 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #include "transport/topic_dsm/generation.hpp"
 
+#include <algorithm>
+
 namespace manycore {
 
 /// `offset` last: a repairer of the registry goes by it, and then needs the size.
@@ -19,6 +21,15 @@ void Generation::open(const Cluster & cluster, GenerationEntry & entry, uint64_t
     generation.descriptors[i].number.store(no_record, std::memory_order_relaxed);
   }
   entry.first.store(first, std::memory_order_release);
+}
+
+bool Generation::release_some(const Cluster & cluster) noexcept {
+  constexpr uint64_t step_bytes = 4 << 20;
+  const uint64_t all_bytes = entry->extent_bytes();
+  const uint64_t bytes = std::min(step_bytes, all_bytes - released_bytes);
+  cluster.release(entry->offset.load(std::memory_order_relaxed) + released_bytes, bytes);
+  released_bytes += bytes;
+  return released_bytes == all_bytes;
 }
 
 void Generation::free(Cluster & cluster, GenerationEntry & entry) noexcept {

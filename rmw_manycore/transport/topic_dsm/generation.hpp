@@ -7,6 +7,8 @@
 namespace manycore {
 
 constexpr uint64_t record_alignment = 64;
+constexpr uint64_t first_data_bytes = 2048;
+constexpr uint64_t first_descriptor_count = 16;
 
 /// Descriptor counts are powers of two.
 constexpr uint64_t power_of_two_at_least(uint64_t x) {
@@ -24,7 +26,8 @@ struct Generation {
   uint64_t count = 0;        ///< of descriptors
   uint64_t data_offset = 0;  ///< in the cluster segment
   uint64_t data_bytes = 0;
-  uint64_t first = 0;  ///< number of its first record
+  uint64_t first = 0;           ///< number of its first record
+  uint64_t released_bytes = 0;  ///< of an old one: given back to the system
 
   RecordDescriptor & descriptor(uint64_t number) const noexcept {
     return descriptors[number & (count - 1)];
@@ -39,7 +42,9 @@ struct Generation {
     Cluster & cluster, GenerationEntry & entry, uint64_t data_bytes, uint64_t count);
   /// Backs it with memory, then shows it to readers; needs no lock. Throws Error{no_space}.
   static void open(const Cluster & cluster, GenerationEntry & entry, uint64_t first);
-  /// Gives the SMEM back; the caller holds the registry lock.
+  /// A step of giving the memory back to the system, a few ms at most; true when it was the last.
+  bool release_some(const Cluster & cluster) noexcept;
+  /// Gives the SMEM back, and the memory behind it; the caller holds the registry lock.
   static void free(Cluster & cluster, GenerationEntry & entry) noexcept;
   static Generation view(const Cluster & cluster, GenerationEntry & entry) noexcept;
 };

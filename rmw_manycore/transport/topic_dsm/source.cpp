@@ -42,34 +42,52 @@ bool Source::is_given_up(uint64_t number) const noexcept {
          Displaced::covers(entry_->displaced, incarnation_, number);
 }
 
-uint64_t Source::full_number(uint64_t low_bits) const noexcept {
+/// The latest published with these low bits: what a queue holds is younger than a period, however
+/// long nothing was taken. Where nothing was published with them it wraps to more than `latest`.
+uint64_t Source::full_number(uint64_t low_bits, uint64_t latest) noexcept {
   constexpr uint64_t period = uint64_t{1} << 28;
-  // The latest published with these low bits: what a queue holds is younger than a period, however
-  // long nothing was taken. Where nothing was published with them it wraps to more than `last`.
-  const uint64_t latest = last();  // once: it rises meanwhile
   return latest - ((latest - low_bits) & (period - 1));
 }
 
+std::optional<uint64_t> Source::published_number(uint64_t low_bits) noexcept {
+  std::optional<uint64_t> number;
+  entry_->reading.store(every_record, std::memory_order_seq_cst);
+  if (may_look()) {
+    const uint64_t latest = last();  // once: it rises meanwhile
+    number = full_number(low_bits, latest);
+    if (*number > latest) {
+      number.reset();
+    }
+  }
+  entry_->reading.store(no_record, std::memory_order_release);
+  return number;
+}
+
+/// Dekker with retire(): `first` is loaded after `reading` is stored, both seq_cst, so a generation
+/// that holds `number` and is still open here is not given back before the claim ends. One that is
+/// chosen because a younger one was closed meanwhile is protected if it is open after that.
 const GenerationEntry * Source::generation_of(uint64_t number) const noexcept {
   const GenerationEntry * best = nullptr;
   uint64_t best_first = 0;
   for (const GenerationEntry & generation : dsm_->generations) {
-    const uint64_t first = generation.first.load(std::memory_order_acquire);
+    const uint64_t first = generation.first.load(std::memory_order_seq_cst);
     if (first != 0 && first <= number && first > best_first) {
       best = &generation;
       best_first = first;
     }
   }
-  return best;
+  return best != nullptr && best->first.load(std::memory_order_seq_cst) == best_first ? best
+                                                                                      : nullptr;
 }
 
-RecordDescriptor * Source::descriptors_of(const GenerationEntry & generation) const noexcept {
+Source::Descriptors Source::descriptors_of(const GenerationEntry & generation) const noexcept {
   const uint64_t count = generation.descriptor_count.load(std::memory_order_relaxed);
   if (count == 0 || (count & (count - 1)) != 0) {
-    return nullptr;
+    return {};
   }
-  return cluster_->find<RecordDescriptor>(
+  auto * const begin = cluster_->find<RecordDescriptor>(
     generation.offset.load(std::memory_order_relaxed), count * sizeof(RecordDescriptor));
+  return begin == nullptr ? Descriptors{} : Descriptors{begin, count};
 }
 
 bool Source::is_for_us(const RecordDescriptor & record) const noexcept {
@@ -108,21 +126,14 @@ Source::ClaimResult Source::claim(uint64_t number, View & view) noexcept {
 
 Source::ClaimResult Source::look_at(uint64_t number, View & view) noexcept {
   const GenerationEntry * const generation = generation_of(number);
-  RecordDescriptor * const descriptors =
-    generation == nullptr ? nullptr : descriptors_of(*generation);
-  if (descriptors == nullptr) {
+  const Descriptors descriptors =
+    generation == nullptr ? Descriptors{} : descriptors_of(*generation);
+  if (descriptors.count == 0) {
     return ClaimResult::gone;
   }
-  const uint64_t first = generation->first.load(std::memory_order_acquire);
-  const uint32_t count = generation->descriptor_count.load(std::memory_order_relaxed);
-  RecordDescriptor & record = descriptors[number & (count - 1)];
-  if (record.number.load(std::memory_order_seq_cst) != number) {
-    return ClaimResult::gone;
-  }
-  // The generation may have been given back before the claim was seen; its entry then has changed,
-  // or it is empty since before the first look.
+  RecordDescriptor & record = descriptors.begin[number & (descriptors.count - 1)];
   if (
-    first == 0 || generation->first.load(std::memory_order_acquire) != first || first > number ||
+    record.number.load(std::memory_order_seq_cst) != number ||
     !cluster_->contains(record.offset, record.size_bytes)) {
     return ClaimResult::gone;
   }
@@ -184,23 +195,18 @@ uint64_t Source::last() const noexcept { return dsm_->last.load(std::memory_orde
 void Source::scan(
   const GenerationEntry & generation, uint64_t last, std::vector<Waiting> & out) noexcept {
   entry_->reading.store(every_record, std::memory_order_seq_cst);
-  const uint64_t first = generation.first.load(std::memory_order_seq_cst);
-  RecordDescriptor * const descriptors = first == 0 ? nullptr : descriptors_of(generation);
-  const uint32_t count = generation.descriptor_count.load(std::memory_order_relaxed);
-  for (uint32_t i = 0; descriptors != nullptr && i < count; ++i) {
-    const uint64_t number = descriptors[i].number.load(std::memory_order_relaxed);
+  const bool open = generation.first.load(std::memory_order_seq_cst) != 0;
+  const Descriptors descriptors = open ? descriptors_of(generation) : Descriptors{};
+  for (uint64_t i = 0; i < descriptors.count; ++i) {
+    RecordDescriptor & record = descriptors.begin[i];
+    const uint64_t number = record.number.load(std::memory_order_relaxed);
     if (number <= noted_ || number > last || is_given_up(number)) {
       continue;
     }
     entry_->reading.store(number, std::memory_order_seq_cst);
-    // As in look_at(): the generation may have been given back before the first store of `reading`
-    // was seen.
-    const bool live = descriptors[i].number.load(std::memory_order_seq_cst) == number &&
-                      generation.first.load(std::memory_order_acquire) == first;
-    if (live && is_for_us(descriptors[i])) {
+    if (record.number.load(std::memory_order_seq_cst) == number && is_for_us(record)) {
       out.push_back(
-        {descriptors[i].source_timestamp_ns.load(std::memory_order_relaxed), number, index_,
-         incarnation_});
+        {record.source_timestamp_ns.load(std::memory_order_relaxed), number, index_, incarnation_});
     }
   }
 }
@@ -242,7 +248,7 @@ bool Source::settle() noexcept {
   if (may_look()) {
     const LastPublished published = last_published(*dsm_);
     const std::optional<uint64_t> displaced = Displaced::read(entry_->displaced, incarnation_);
-    const uint64_t known = displaced ? std::max(noted_, full_number(*displaced)) : noted_;
+    const uint64_t known = displaced ? std::max(noted_, full_number(*displaced, last())) : noted_;
     settled = published.exact && published.number <= known;
     if (settled) {
       count_missing(published.sequence);

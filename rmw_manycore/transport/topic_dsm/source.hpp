@@ -1,6 +1,7 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "transport/layout/subscription_layout.hpp"
@@ -30,8 +31,9 @@ public:
   /// messages of other roles are counted by their sequence numbers, so those may still be
   /// delivered.
   bool is_given_up(uint64_t number) const noexcept;
-  /// The full number of which a hint carries the low 28 bits.
-  uint64_t full_number(uint64_t low_bits) const noexcept;
+  /// The full number of which a hint carries the low 28 bits; nothing when no such record was
+  /// published, or the topic DSM may be gone.
+  std::optional<uint64_t> published_number(uint64_t low_bits) noexcept;
 
   enum class ClaimResult { claimed, gone, not_ours, expired };
   struct View {
@@ -46,8 +48,6 @@ public:
   /// The same without a claim.
   void skip(uint64_t number) noexcept;
   uint64_t taken() const noexcept { return entry_->taken.load(std::memory_order_relaxed); }
-  /// Highest record number published.
-  uint64_t last() const noexcept;
 
   struct Waiting {
     int64_t source_timestamp_ns;
@@ -66,10 +66,19 @@ public:
   uint32_t publisher_process() const noexcept { return dsm_->process; }
 
 private:
+  /// Of one generation; empty where the entry leads nowhere.
+  struct Descriptors {
+    RecordDescriptor * begin = nullptr;
+    uint64_t count = 0;
+  };
+
+  static uint64_t full_number(uint64_t low_bits, uint64_t latest) noexcept;
+  /// Highest record number published; under a claim.
+  uint64_t last() const noexcept;
   /// The generation that holds `number`, or nullptr.
   const GenerationEntry * generation_of(uint64_t number) const noexcept;
   ClaimResult look_at(uint64_t number, View & view) noexcept;
-  RecordDescriptor * descriptors_of(const GenerationEntry & generation) const noexcept;
+  Descriptors descriptors_of(const GenerationEntry & generation) const noexcept;
   bool is_for_us(const RecordDescriptor & record) const noexcept;
   bool is_expired(const RecordDescriptor & record) const noexcept;
   /// The source is still this one, and open: to be asked after storing `reading`.

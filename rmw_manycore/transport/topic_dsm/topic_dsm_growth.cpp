@@ -11,12 +11,13 @@ namespace {
 
 constexpr uint64_t descriptor_limit = 1 << 16;
 constexpr uint64_t many_bytes = 16 << 20;
+constexpr uint64_t least_worth_bytes = 16 << 10;  ///< a smaller ring does not shrink
 
 uint64_t half_as_much_again(uint64_t bytes) { return align_up(bytes * 3 / 2, record_alignment); }
 
 }  // namespace
 
-/// Takes back what nobody wants in an old generation; true once nothing in it can be read any more.
+/// Takes back what no reader wants in an old generation; true when nothing is left.
 bool TopicDsmWriter::drain(const Generation & old) {
   bool wanted = false;
   for (uint64_t slot = 0; slot < old.count; ++slot) {
@@ -28,26 +29,43 @@ bool TopicDsmWriter::drain(const Generation & old) {
       record.number.store(no_record, std::memory_order_seq_cst);
     }
   }
-  readers_.refresh();
-  return !wanted && !readers_.is_any_pinned(old.first, current_.first - 1);
+  return !wanted;
 }
 
-void TopicDsmWriter::free_old_generations(long wait_ns) noexcept {
+/// Closes an old generation once nothing is left in it; true when no reader looks into it any more.
+/// Under the lock: a sweeper that holds it may look as well.
+bool TopicDsmWriter::retire(const Generation & old) {
+  if (old.entry->first.load(std::memory_order_relaxed) != 0) {
+    if (!drain(old)) {
+      return false;
+    }
+    const Registry::Lock lock(registry_, Registry::Lock::no_wait_ns);
+    // Dekker with the claim: the reader stores `reading` before it loads `first`. A reader that
+    // joined just now counts too, so the list is renewed after the store.
+    old.entry->first.store(0, std::memory_order_seq_cst);
+  }
+  readers_.refresh();
+  // A reader that looks for a record of a younger generation, closed by now, may have come to this
+  // one.
+  return !readers_.is_any_pinned(old.first, current_.first - 1);
+}
+
+/// The memory goes back to the system without the lock, a step at each message, and then the SMEM
+/// to the cluster.
+void TopicDsmWriter::free_old_generations() noexcept {
   try {
     for (size_t i = 0; i < old_.size();) {
-      if (!drain(old_[i])) {
+      Generation & old = old_[i];
+      if (!retire(old) || !old.release_some(cluster_)) {
         ++i;
         continue;
       }
-      const Registry::Lock lock(registry_, wait_ns);
-      // Cleared before it is given back: a reader that meets foreign bytes in it finds the entry
-      // changed.
-      old_[i].entry->first.store(0, std::memory_order_seq_cst);
-      Generation::free(cluster_, *old_[i].entry);
+      const Registry::Lock lock(registry_, Registry::Lock::no_wait_ns);
+      Generation::free(cluster_, *old.entry);
       old_.erase(old_.begin() + static_cast<ptrdiff_t>(i));
     }
   } catch (const Error &) {
-    // The registry is locked by somebody else: the next publish tries again.
+    // Another process holds the registry lock: the next publish tries again.
   }
 }
 
@@ -55,16 +73,20 @@ uint64_t TopicDsmWriter::data_limit() const noexcept {
   return endpoint_.topic_dsm_size != 0 ? current_.data_bytes : cluster_.size() / 2;
 }
 
-/// The lock is waited for once: whoever stands still holding it must not hold up each record, nor
-/// each publish. From then on growing only tries, until the lock is to be had.
+/// To grow it waits for the lock once: a process that stands still holding it must not hold up each
+/// record, nor each publish. From then on growing only tries, until the lock is to be had.
 void TopicDsmWriter::reserve_generation(
   GenerationEntry & entry, uint64_t data_bytes, uint64_t descriptor_count) {
+  const uint64_t extent = Generation::extent_bytes(data_bytes, descriptor_count);
+  const bool grows = extent > current_.entry->extent_bytes();
   const long wait_ns =
-    registry_answers_ ? Registry::Lock::short_wait_ns : Registry::Lock::no_wait_ns;
-  registry_answers_ = false;
+    grows && registry_answers_ ? Registry::Lock::short_wait_ns : Registry::Lock::no_wait_ns;
+  registry_answers_ = registry_answers_ && !grows;
   const Registry::Lock lock(registry_, wait_ns);
   registry_answers_ = true;
-  cluster_.require_message_room(Generation::extent_bytes(data_bytes, descriptor_count));
+  if (grows) {  // a smaller one makes room in the end
+    cluster_.require_message_room(extent);
+  }
   Generation::reserve(cluster_, entry, data_bytes, descriptor_count);
 }
 
@@ -72,15 +94,24 @@ void TopicDsmWriter::reserve_generation(
 /// undo.
 void TopicDsmWriter::open_generation(GenerationEntry & entry) {
   try {
-    cluster_.require_file_system_room(entry.extent_bytes());
+    if (entry.extent_bytes() > current_.entry->extent_bytes()) {
+      cluster_.require_file_system_room(entry.extent_bytes());
+    }
     Generation::open(cluster_, entry, next_number_);
   } catch (const Error &) {
-    Generation unopened = Generation::view(cluster_, entry);
-    unopened.count = 0;
-    unopened.first = next_number_;
-    old_.push_back(unopened);
-    free_old_generations(Registry::Lock::short_wait_ns);
+    free_unopened(entry);
     throw;
+  }
+}
+
+/// Where the lock is not to be had it counts as an old generation, without records.
+void TopicDsmWriter::free_unopened(GenerationEntry & entry) {
+  try {
+    const Registry::Lock lock(registry_, Registry::Lock::short_wait_ns);
+    Generation::free(cluster_, entry);
+  } catch (const Error &) {
+    old_.push_back(Generation::view(cluster_, entry));
+    old_.back().first = next_number_;
   }
 }
 
@@ -96,9 +127,14 @@ bool TopicDsmWriter::add_generation(uint64_t data_bytes, uint64_t descriptor_cou
   const bool larger = data_bytes > current_.data_bytes || descriptor_count > current_.count;
   if (
     endpoint_.topic_dsm_size != 0 || !larger || data_bytes > data_limit() ||
-    descriptor_count > most_descriptors()) {
+    descriptor_count > most_descriptors() || !start_generation(data_bytes, descriptor_count)) {
     return false;
   }
+  demand_.note_grown();
+  return true;
+}
+
+bool TopicDsmWriter::start_generation(uint64_t data_bytes, uint64_t descriptor_count) {
   GenerationEntry * const free_entry = std::find_if(
     std::begin(dsm_.generations), std::end(dsm_.generations),
     [](const GenerationEntry & entry) { return entry.offset.load() == 0; });
@@ -116,6 +152,29 @@ bool TopicDsmWriter::add_generation(uint64_t data_bytes, uint64_t descriptor_cou
   pinned_in_slot_.assign(current_.count, no_record);
   cursor_ = 0;
   return true;
+}
+
+/// Twice of what was used, if that is half of what there is: a ring that is in use as it was for
+/// the last messages neither grows nor shrinks.
+void TopicDsmWriter::shrink(uint64_t need_bytes) noexcept {
+  demand_.note(blocks_.size() + 1, blocks_.bytes() + need_bytes);
+  const uint64_t bytes = std::max(first_data_bytes, 2 * demand_.bytes());
+  const uint64_t records =
+    std::max(first_descriptor_count, power_of_two_at_least(2 * demand_.records()));
+  demand_.start_over();
+  const uint64_t extent = current_.entry->extent_bytes();
+  if (
+    endpoint_.topic_dsm_size != 0 || !old_.empty() || extent < least_worth_bytes ||
+    Generation::extent_bytes(bytes, records) > extent / 2) {
+    return;
+  }
+  try {
+    if (start_generation(bytes, std::min(records, current_.count))) {
+      demand_.note_shrunk();
+    }
+  } catch (const Error &) {
+    // The registry is locked, or there is no room for both: it is tried again.
+  }
 }
 
 uint64_t TopicDsmWriter::most_descriptors() const noexcept {

@@ -11,8 +11,6 @@
 namespace manycore {
 namespace {
 
-constexpr uint64_t first_data_bytes = 2048;
-constexpr uint64_t first_descriptor_count = 16;
 /// What Fast DDS waits for by default (max_blocking_time).
 constexpr int64_t max_blocking_ns = 100'000'000;
 
@@ -271,9 +269,12 @@ TopicDsmWriter::Room TopicDsmWriter::find_room(uint64_t size_bytes) {
   blocked_until_ns_ = 0;
   readers_.require_all(endpoint_.topic);
   if (!old_.empty()) {
-    free_old_generations(Registry::Lock::no_wait_ns);
+    free_old_generations();
   }
   take_back_free_records();
+  if (demand_.is_known()) {
+    shrink(need);
+  }
   require_data_bytes(need);
   claim_descriptor(need);
   if (
@@ -286,6 +287,7 @@ TopicDsmWriter::Room TopicDsmWriter::find_room(uint64_t size_bytes) {
         "' is full of records that are being read; a message of " + std::to_string(size_bytes) +
         " bytes needs a topic_dsm_size of at least " + std::to_string(current_.data_bytes + need));
   }
+  demand_.note(blocks_.size(), blocks_.bytes());
   const Block & block = blocks_.back();
   return {cluster_.find<uint8_t>(current_.data_offset) + block.begin, block.end - block.begin};
 }

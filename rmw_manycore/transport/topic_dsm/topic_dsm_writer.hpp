@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "transport/topic_dsm/block_ring.hpp"
+#include "transport/topic_dsm/demand.hpp"
 #include "transport/topic_dsm/generation.hpp"
 #include "transport/topic_dsm/reader_list.hpp"
 
@@ -51,7 +52,9 @@ private:
   TakeBack take_back(uint64_t number, bool force);
   void take_back_free_records();
   bool drain(const Generation & old);
-  void free_old_generations(long wait_ns) noexcept;
+  bool retire(const Generation & old);
+  void free_old_generations() noexcept;
+  void free_unopened(GenerationEntry & entry);
   /// Makes place where a wanted record stands: grows, waits (RELIABLE + KEEP_ALL) or overwrites.
   void make_place(uint64_t number, uint64_t need_bytes);
   void claim_descriptor(uint64_t need_bytes);
@@ -64,6 +67,10 @@ private:
   /// Error{no_space|corrupt|timeout}.
   bool add_generation(uint64_t data_bytes, uint64_t descriptor_count);
   bool add_generation_for(uint64_t need_bytes);
+  /// False when all entries are in use. Throws as add_generation().
+  bool start_generation(uint64_t data_bytes, uint64_t descriptor_count);
+  /// Goes over to a smaller generation when a quarter of this one was enough for long.
+  void shrink(uint64_t need_bytes) noexcept;
   void reserve_generation(GenerationEntry & entry, uint64_t data_bytes, uint64_t descriptor_count);
   void open_generation(GenerationEntry & entry);
   void require_data_bytes(uint64_t need_bytes);
@@ -78,6 +85,7 @@ private:
   Generation current_;
   std::vector<Generation> old_;
   BlockRing blocks_;
+  Demand demand_;
   std::vector<uint64_t>
     pinned_in_slot_;     ///< by descriptor: number that a reader may still hold, or 0
   uint64_t cursor_ = 0;  ///< next free byte of the data area

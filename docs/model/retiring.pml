@@ -1,0 +1,189 @@
+/* Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+ *
+ * Question: is the memory of an old generation given back only when no reader looks into it, nor
+ * into what comes to lie in the same memory and entry later?
+ *
+ * Follows TopicDsmWriter (add_generation, retire, free_old_generations), Source (claim,
+ * generation_of, scan) and the publisher's ReaderList::refresh. Each generation has an entry and
+ * memory of its own, and one record, whose number is the generation's name. Any reader may have any
+ * number in hand that was published; no reader wants the records of old generations any more, so
+ * the publisher closes them in any order. It waits here for a pinned generation instead of trying
+ * again at its next message. A read in memory that was given back would give it a page again, or
+ * end the reader where /dev/shm is full.
+ *
+ * BUG 1: first cleared after the look at reading
+ * BUG 2: no fence between first and the look at reading (publisher)
+ * BUG 3: no fence between reading and the look at first (reader)
+ * BUG 4: publisher looks for claims on the generation's own records alone
+ * BUG 5: publisher does not see a reader that scans
+ * BUG 6: list of readers renewed before first is cleared, not after
+ * BUG 7: given back before the look at reading
+ * BUG 8: reader does not look again at the entry that it chose
+ */
+#define FIRST(e) (e)      /* of the generation entries */
+#define READING 3
+#define LAST 4
+#define GENERATION 5      /* match_generation */
+#define WORDS 6
+#define PROCESSES 2
+#define PUBLISHER 0
+#define READER 1
+#define ENTRIES 3
+
+#define unused 0
+#define no_record 0
+#define every_record 255
+
+#include "tso.pml"
+
+byte holds[ENTRIES];      /* which generation the memory behind an entry holds; 0 = given back */
+
+/* Any read of descriptors or bytes of the generation that was found in entry e. */
+inline touch(e, generation) {
+  assert(holds[e] == generation)
+}
+
+/* Source */
+
+inline look_at(e) {
+  atomic {
+    seen = load(READER, FIRST(e));
+    if
+    :: seen != unused && seen <= n && seen > best -> best = seen; entry = e
+    :: else
+    fi;
+    seen = 0
+  }
+}
+
+inline claim() {
+#if BUG == 3
+  store_release(READER, READING, n);
+#else
+  store_seq_cst(READER, READING, n);
+#endif
+  look_at(0);
+  look_at(1);
+  look_at(2);
+#if BUG != 8
+  atomic {
+    if
+    :: best != unused && load(READER, FIRST(entry)) != best -> best = unused   /* gone */
+    :: else
+    fi
+  };
+#endif
+  if
+  :: best != unused -> touch(entry, best); touch(entry, best)
+  :: else
+  fi;
+  store_release(READER, READING, no_record);
+  best = 0;
+  entry = 0
+}
+
+inline scan_generation(e) {
+  store_seq_cst(READER, READING, every_record);
+  best = load(READER, FIRST(e));
+  if
+  :: best != unused ->
+     touch(e, best);
+     store_seq_cst(READER, READING, best);
+     touch(e, best)
+  :: else
+  fi;
+  best = 0
+}
+
+inline scan() {
+  scan_generation(0);
+  scan_generation(1);
+  scan_generation(2);
+  store_release(READER, READING, no_record)
+}
+
+/* It joins at any time; its source is active once match_generation is raised. */
+proctype Reader() {
+  byte n, seen, best, entry, claims;
+  d_step { settled(READER) -> memory[GENERATION] = 1 };
+  do
+  :: claims < 2 ->
+     claims++;
+     n = 1;
+     do
+     :: n < load(READER, LAST) -> n++
+     :: break
+     od;
+     claim();
+     n = 0
+  :: claims < 2 -> claims++; scan()
+  :: break
+  od
+}
+
+/* TopicDsmWriter */
+
+inline refresh() {
+  knows_reader = load(PUBLISHER, GENERATION) != 0
+}
+
+inline open(e, n) {
+  holds[e] = n;
+  store_release(PUBLISHER, FIRST(e), n);
+  store_seq_cst(PUBLISHER, LAST, n)
+}
+
+#if BUG == 4
+#define is_in(r, n, current) ((r) == (n))
+#else
+#define is_in(r, n, current) ((r) >= (n) && (r) < (current))
+#endif
+#if BUG == 5
+#define scans(r) false
+#else
+#define scans(r) ((r) == every_record)
+#endif
+#define is_pinned(n, current) \
+  (knows_reader && (is_in(load(PUBLISHER, READING), n, current) || scans(load(PUBLISHER, READING))))
+
+inline retire(e, n, current) {
+#if BUG == 1
+  refresh();
+  !is_pinned(n, current);
+#endif
+#if BUG == 6
+  refresh();
+#endif
+#if BUG == 2
+  store_release(PUBLISHER, FIRST(e), unused);
+#else
+  store_seq_cst(PUBLISHER, FIRST(e), unused);
+#endif
+#if BUG != 6
+  refresh();
+#endif
+#if BUG != 1 && BUG != 7
+  !is_pinned(n, current);
+#endif
+  holds[e] = unused
+}
+
+proctype Publisher() {
+  bool knows_reader;
+  open(1, 2);
+  open(2, 3);
+  if
+  :: retire(0, 1, 3); retire(1, 2, 3); open(0, 4); retire(2, 3, 4)
+  :: retire(1, 2, 3); open(1, 4); retire(0, 1, 4); retire(2, 3, 4)
+  fi
+}
+
+init {
+  atomic {
+    memory[FIRST(0)] = 1;
+    memory[LAST] = 1;
+    holds[0] = 1;
+    run StoreBuffer(PUBLISHER); run StoreBuffer(READER);
+    run Publisher(); run Reader()
+  }
+}
