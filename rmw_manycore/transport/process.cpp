@@ -193,7 +193,7 @@ Process::Impl::~Impl() {
 void Process::Impl::leave() {
   const JoinLock join_lock(paths);
   {
-    const Registry::Lock lock(*registry);
+    const Registry::Lock lock(*registry, registry->parting_wait_ns());
     for (uint32_t node = 0; node < registry->nodes().high_water(); ++node) {
       if (registry->nodes().is_live(node) && registry->nodes()[node].process == slot) {
         registry->nodes().give_back(node);
@@ -347,7 +347,7 @@ void Process::remove_node(uint32_t node) noexcept {
     return;
   }
   try {
-    const Registry::Lock lock(*impl_->registry);
+    const Registry::Lock lock(*impl_->registry, impl_->registry->parting_wait_ns());
     impl_->registry->nodes().give_back(node);
   } catch (const std::exception &) {
     // The registry stayed locked: the node goes with this process.

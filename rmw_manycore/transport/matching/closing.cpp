@@ -265,7 +265,7 @@ void sweep(Registry & registry) {
 
 void leave(Registry & registry, uint32_t endpoint) noexcept {
   try {
-    const Registry::Lock lock(registry);
+    const Registry::Lock lock(registry, registry.parting_wait_ns());
     close(registry, endpoint, false);
     sweep(registry);
   } catch (const std::exception &) {

@@ -73,9 +73,11 @@ inline void initialize(SubscriptionHeader & header) noexcept {
 /// displaces.
 template<typename OnDisplaced>
 void push(SubscriptionHeader & header, const Hint & hint, OnDisplaced on_displaced) noexcept {
+  // Each attempt that fails was overtaken by another pusher; only damage makes so many fail.
+  constexpr int most_attempts = 10'000;
   header.note_arrival();
   const Slots slots(header);
-  while (true) {
+  for (int attempt = 0; attempt < most_attempts; ++attempt) {
     uint64_t tail = header.tail.load(std::memory_order_acquire);
     std::atomic<uint64_t> & slot = slots.at(tail);
     uint64_t word = slot.load(std::memory_order_acquire);
@@ -105,6 +107,7 @@ void push(SubscriptionHeader & header, const Hint & hint, OnDisplaced on_displac
       return;
     }
   }
+  header.resync.store(1, std::memory_order_seq_cst);
 }
 
 /// Step 3: removes the oldest hint. One popper at a time; pushers may displace at the same time.

@@ -115,7 +115,7 @@ bool Registry::is_current() const noexcept {
 
 Registry::Lock::Lock(Registry & registry, long wait_ns) : registry_(registry) {
   RegistryHeader & header = registry.header();
-  const RobustMutex::Outcome outcome = header.mutex.lock(wait_ns);
+  const RobustMutex::Outcome outcome = registry.lock_within(wait_ns);
   header.changes.store(header.changes.load(std::memory_order_relaxed) | 1);
   // A reader that sees any of the changes to come sees this, too.
   std::atomic_thread_fence(std::memory_order_release);
@@ -123,6 +123,21 @@ Registry::Lock::Lock(Registry & registry, long wait_ns) : registry_(registry) {
     registry.repair();
     header.mutex.mark_consistent();
   }
+}
+
+RobustMutex::Outcome Registry::lock_within(long wait_ns) {
+  try {
+    const RobustMutex::Outcome outcome = header().mutex.lock(wait_ns);
+    stayed_locked_ = false;
+    return outcome;
+  } catch (const Error &) {
+    stayed_locked_ = stayed_locked_ || wait_ns >= Lock::usual_wait_ns;
+    throw;
+  }
+}
+
+long Registry::parting_wait_ns() const noexcept {
+  return stayed_locked_ ? Lock::short_wait_ns : Lock::usual_wait_ns;
 }
 
 Registry::Lock::~Lock() {

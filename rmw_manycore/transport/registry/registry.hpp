@@ -101,6 +101,10 @@ public:
     Registry & registry_;
   };
 
+  /// How long to wait for the lock to take something away, of which a process has many at its end:
+  /// short once the lock stayed taken, until it is to be had again.
+  long parting_wait_ns() const noexcept;
+
   RegistryHeader & header() const noexcept { return memory_.at<RegistryHeader>(0); }
   Table<ProcessEntry> & processes() noexcept { return processes_; }
   Table<NodeEntry> & nodes() noexcept { return nodes_; }
@@ -130,6 +134,7 @@ public:
 
 private:
   friend class Lock;
+  RobustMutex::Outcome lock_within(long wait_ns);
   void repair() noexcept;
   void mark_blocks_of(EndpointEntry & entry) noexcept;
 
@@ -140,6 +145,7 @@ private:
   Table<NodeEntry> nodes_;
   Table<EndpointEntry> endpoints_;
   Clusters clusters_;
+  std::atomic<bool> stayed_locked_{false};
 };
 
 /// FNV-1a; a hash of names that is equal in every process.
@@ -156,6 +162,11 @@ std::string text_of(const char (&field)[size]) {
 
 template<typename Entry>
 uint32_t Table<Entry>::take(const char * what) {
+  if (head_.first_free > high_water()) {
+    throw Error(
+      ErrorCode::corrupt, "the platform's table of " + std::string(what) +
+                            " is damaged; stop the nodes, run 'manycore clean'");
+  }
   if (head_.first_free != 0) {
     const uint32_t slot = head_.first_free - 1;
     head_.first_free = (*this)[slot].slot.next_free;

@@ -198,6 +198,10 @@ void TopicDsmWriter::claim_descriptor(uint64_t need_bytes) {
   for (uint64_t skipped = 0; skipped < most_skipped;) {
     RecordDescriptor & record = current_.descriptor(next_number_);
     const uint64_t old = record.number.load(std::memory_order_relaxed);
+    if (old != no_record && &current_.descriptor(old) != &record) {
+      record.number.store(no_record, std::memory_order_seq_cst);  // damaged: never was here
+      continue;
+    }
     if (old != no_record) {
       if (take_back(old, false) == TakeBack::wanted) {
         make_place(old, need_bytes);

@@ -13,21 +13,22 @@ namespace {
 /// Counted as a sleeper of each platform: see WakeWord::notify for why no wake-up is lost.
 class CountedSleeper {
 public:
-  explicit CountedSleeper(const std::vector<WakeWord *> & words) noexcept : words_(words) {
-    for (WakeWord * const word : words_) {
-      word->sleepers.fetch_add(1, std::memory_order_seq_cst);
+  explicit CountedSleeper(const std::vector<std::atomic<uint32_t> *> & counts) noexcept
+  : counts_(counts) {
+    for (std::atomic<uint32_t> * const count : counts_) {
+      count->fetch_add(1, std::memory_order_seq_cst);
     }
   }
   ~CountedSleeper() {
-    for (WakeWord * const word : words_) {
-      word->sleepers.fetch_sub(1, std::memory_order_relaxed);
+    for (std::atomic<uint32_t> * const count : counts_) {
+      count->fetch_sub(1, std::memory_order_relaxed);
     }
   }
   CountedSleeper(const CountedSleeper &) = delete;
   CountedSleeper & operator=(const CountedSleeper &) = delete;
 
 private:
-  const std::vector<WakeWord *> & words_;
+  const std::vector<std::atomic<uint32_t> *> & counts_;
 };
 
 bool any_moved(const std::vector<SeenEpoch> & seen) noexcept {
@@ -39,13 +40,14 @@ bool any_moved(const std::vector<SeenEpoch> & seen) noexcept {
 }  // namespace
 
 bool wait_for_any(const std::vector<SeenEpoch> & seen, std::optional<int64_t> deadline_ns) {
-  std::vector<WakeWord *> words;
+  std::vector<std::atomic<uint32_t> *> counts;
   std::vector<AwaitedWord> awaited;
   for (const SeenEpoch & place : seen) {
-    words.push_back(&place.waiter->word_);
+    counts.push_back(&place.waiter->sleepers_);
+    counts.push_back(&place.waiter->word_.sleepers);
     awaited.emplace_back(place.waiter->word_.epoch, place.epoch);
   }
-  const CountedSleeper sleeper(words);
+  const CountedSleeper sleeper(counts);
   while (!any_moved(seen) && (!deadline_ns || monotonic_ns() < *deadline_ns)) {
     futex_wait_any(awaited, deadline_ns);
   }

@@ -50,11 +50,13 @@ void Waiter::learn(bool served) noexcept {
 }
 
 bool Waiter::sleep(uint32_t seen, std::optional<int64_t> deadline_ns) noexcept {
+  sleepers_.fetch_add(1, std::memory_order_seq_cst);
   word_.sleepers.fetch_add(1, std::memory_order_seq_cst);
   while (epoch() == seen && (!deadline_ns || monotonic_ns() < *deadline_ns)) {
     futex_wait(word_.epoch, seen, deadline_ns);
   }
   word_.sleepers.fetch_sub(1, std::memory_order_relaxed);
+  sleepers_.fetch_sub(1, std::memory_order_relaxed);
   return epoch() != seen;
 }
 
@@ -82,7 +84,14 @@ bool Waiter::wait(uint32_t seen, std::optional<int64_t> deadline_ns) noexcept {
   return woken;
 }
 
-void Waiter::notify() noexcept { word_.notify(); }
+/// Sleepers of this process are counted in its own memory, too: what ends it must wake it, whatever
+/// became of the count in shared memory.
+void Waiter::notify() noexcept {
+  word_.notify();
+  if (sleepers_.load(std::memory_order_seq_cst) != 0) {
+    futex_wake_all(word_.epoch);
+  }
+}
 
 void Waiter::watch_graph() noexcept { word_.graph_watchers.fetch_add(1); }
 void Waiter::unwatch_graph() noexcept { word_.graph_watchers.fetch_sub(1); }

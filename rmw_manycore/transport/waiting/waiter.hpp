@@ -51,6 +51,7 @@ private:
   WakeWord & word_;
   WaitMode mode_;
   std::atomic<uint32_t> spin_score_;
+  std::atomic<uint32_t> sleepers_{0};  ///< threads of this process
 };
 
 }  // namespace manycore
