@@ -40,6 +40,7 @@ class Load:
         before = self.counts()
 
         def all_have_more() -> bool:
+            assert self.publisher.is_running(), self.publisher
             pairs = zip(self.counts(), before, strict=True)
             return all(now[0] >= then[0] + 10 for now, then in pairs)
 

@@ -122,6 +122,7 @@ Process::Impl::Impl(const Placement & placement_, JoinOnly)
       check_placement(placement, registry->header().profile);
       const Registry::Lock lock(*registry);
       ensure_cluster(*registry, placement.cluster);
+      attach();
       slot = take_process_slot();
     } catch (...) {
       if (!is_alive(paths)) {
@@ -136,16 +137,16 @@ Process::Impl::Impl(const Placement & placement_, JoinOnly)
 Process::Impl::Impl(const Placement & placement_) : Impl(placement_, JoinOnly{}) {
   waiter = std::make_unique<Waiter>(registry->processes()[slot].wake, placement.wait_mode);
   graph = std::make_unique<Graph>(*registry);
-  attach();
   watcher = std::make_unique<ReceiveThreadWatcher>(*registry, placement.cluster);
 }
 
-/// Has the reaper watch this process; while its cluster has none, the others'.
+/// Has the reaper look for this process; while its cluster has none, the others'. Before there is
+/// anything to find: a process killed later than that is found, since the reaper looks under the
+/// registry lock, which this process holds.
 void Process::Impl::attach() {
   Cluster & cluster = registry->clusters().at(placement.cluster);
   EmcosMessage message{};
   message.kind = EmcosMessageKind::attach;
-  message.process = slot;
   if (!cluster.send(message)) {
     cluster.header().pipe_overflow.store(1, std::memory_order_seq_cst);
   }

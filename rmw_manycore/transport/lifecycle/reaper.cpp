@@ -134,7 +134,7 @@ bool Reaper::is_ours(uint32_t cluster) const {
   return watched_.count(lifelines.holder(line).pid) == 0 || !lifelines.is_held(line);
 }
 
-bool Reaper::watch_new() {
+void Reaper::watch_members() {
   some_unwatched_ = false;
   const uint64_t present = registry_.header().clusters_present.load();
   for (uint32_t id = 1; id <= max_clusters; ++id) {
@@ -151,13 +151,14 @@ bool Reaper::watch_new() {
   if (registry_.lifelines().is_held(configurator_line)) {
     watch(configurator_line);
   }
-  return bury();  // who died before it was watched
 }
 
-bool Reaper::bury() {
+/// Both under the lock: the members that died before they were watched are found by reap_dead().
+bool Reaper::watch_and_reap() {
   uint32_t dead = 0;
   {
     const Registry::Lock lock(registry_);
+    watch_members();
     dead = reap_dead(registry_);
     is_closing_ = registry_.header().closing_count != 0;
   }
@@ -197,7 +198,7 @@ void Reaper::run() noexcept {
   bool somebody_ended = true;  // perhaps all who were there when this receive thread was started
   while (running_) {
     try {
-      somebody_ended = watch_new() || somebody_ended;
+      somebody_ended = watch_and_reap() || somebody_ended;
       if (somebody_ended || !files_) {
         exit_if_unused(registry_);
       }

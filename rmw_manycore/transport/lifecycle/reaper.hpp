@@ -26,9 +26,9 @@ public:
 
 private:
   void run() noexcept;
-  /// These two: true when somebody was dead.
-  bool watch_new();
-  bool bury();
+  /// True when a member was dead.
+  bool watch_and_reap();
+  void watch_members();
   bool is_ours(uint32_t cluster) const;
   void watch(uint32_t line);
   /// False when no descriptor is left.

@@ -1,0 +1,24 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+#include "child.hpp"
+
+/// For roles: what follows can be stepped through, up to finish_steps().
+void begin_steps();
+void finish_steps();
+
+/// A process whose main thread does one instruction after the other, as far as the test lets it;
+/// its other threads run freely. Its role calls begin_steps() and finish_steps().
+class SteppedChild : public Child {
+public:
+  /// Returns once begin_steps() was reached.
+  SteppedChild(const std::string & role, const Arguments & arguments);
+
+  /// Does so many instructions, or fewer where finish_steps() comes first; how many it did.
+  uint64_t step(uint64_t instructions);
+
+private:
+  bool finished_ = false;
+};

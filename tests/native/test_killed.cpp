@@ -1,0 +1,192 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+//
+// Killed at any instruction: of joining and leaving, of creating and closing endpoints, of publish
+// and take, of reaping others. The test steps a process through one of them, kills it after so many
+// instructions, and finds all that was its own reclaimed and the others unharmed. Only some numbers
+// of instructions are tried, spread over all: MANYCORE_TEST_STEPS says how many.
+#include <doctest/doctest.h>
+
+#include <cstdlib>
+
+#include "messages.hpp"
+#include "node_role.hpp"
+#include "patience.hpp"
+#include "platform_of_test.hpp"
+#include "stepped_child.hpp"
+#include "transport/lifecycle/configurator.hpp"
+#include "transport/lifecycle/lifecycle.hpp"
+
+using namespace manycore;
+
+namespace {
+
+constexpr const char * topic = "/x";
+constexpr size_t large_bytes = 5'000;  // the topic DSM has to grow for it
+
+std::shared_ptr<Process> join(const std::string & platform) {
+  Placement placement;
+  placement.platform = platform;
+  return Process::join(placement);
+}
+
+const Role joins("joins", [](Lines &, const Arguments & arguments) {
+  begin_steps();
+  join(arguments.at(0));
+  finish_steps();
+});
+
+const Role creates("creates", [](Lines &, const Arguments & arguments) {
+  const auto process = join(arguments.at(0));
+  begin_steps();
+  process->remove_node(process->add_node("node", "/", "/"));
+  process->create_publisher(on_topic(topic, transient_local(10)));
+  process->create_subscription(on_topic(topic, transient_local(10)));
+  finish_steps();
+});
+
+const Role publishes("publishes", [](Lines &, const Arguments & arguments) {
+  const auto process = join(arguments.at(0));
+  const auto publisher = process->create_publisher(on_topic(topic, transient_local(2)));
+  begin_steps();
+  publish(*publisher, 1, sizeof(Payload), 2);
+  publish(*publisher, 2, large_bytes, 2);
+  publish(*publisher, 3, sizeof(Payload), 2);
+  finish_steps();
+});
+
+const Role takes("takes", [](Lines &, const Arguments & arguments) {
+  const auto process = join(arguments.at(0));
+  const auto subscription = process->create_subscription(on_topic(topic, transient_local(2)));
+  begin_steps();
+  take_all(*subscription);
+  finish_steps();
+});
+
+/// As a receive thread that clears away what other processes left.
+const Role reaps("reaps", [](Lines &, const Arguments & arguments) {
+  Registry registry(PlatformPaths::of(arguments.at(0)));
+  begin_steps();
+  {
+    const Registry::Lock lock(registry);
+    reap_dead(registry);
+  }
+  finish_steps();
+});
+
+/// Small, so that no part of a change takes many instructions.
+Profile small_profile() {
+  Profile profile = host_profile();
+  profile.smem_bytes = 8 << 20;
+  return profile;
+}
+
+/// A publisher and two subscriptions that have to go on.
+struct Fixture {
+  /// Dead nodes with both kinds of endpoints, which the receive thread cannot have reaped.
+  void leave_dead_nodes() {
+    Node node(platform, 1);
+    node.tell(std::string("publisher ") + topic + " 10");
+    node.tell(std::string("subscription ") + topic + " 10");
+    node.tell("publish 1 3 1000");
+  }
+
+  void wait_until_alone() {
+    wait_until("the dead are gone from the registry", [&] {
+      take_all(*subscription);  // topic DSMs of the dead wait for it
+      take_all(*other);
+      return inspection.live_processes() == 1 && inspection.closing_endpoints() == 0 &&
+             process->graph().nodes().empty();
+    });
+    inspection.wait_for_reaper();
+  }
+
+  /// What others published aside: messages of this fixture arrive, each once.
+  void check_that_it_goes_on() {
+    ++number;
+    publish(*publisher, number);
+    for (Subscription * const each : {subscription.get(), other.get()}) {
+      std::optional<Payload> found;
+      while (const std::optional<Payload> taken = take(*each)) {
+        found = taken->writer == 1 ? taken : found;
+      }
+      REQUIRE(found);
+      CHECK(found->number == number);
+    }
+    CHECK(inspection.live_endpoints() == 3);
+    CHECK(inspection.readers_of(*publisher) == 2);
+    CHECK(publisher->matched().current == 2);
+    CHECK(subscription->matched().current == 1);
+  }
+
+  TestPlatform platform;
+  Configurator configurator{platform.name(), small_profile(), {}};
+  std::shared_ptr<Process> process = platform.join(1);
+  std::unique_ptr<Publisher> publisher =
+    process->create_publisher(on_topic(topic, transient_local(2)));
+  std::unique_ptr<Subscription> subscription =
+    process->create_subscription(on_topic(topic, transient_local(10)));
+  std::unique_ptr<Subscription> other =
+    process->create_subscription(on_topic(topic, transient_local(10)));
+  Inspection inspection{platform};
+  uint64_t number = 0;
+};
+
+uint64_t tries() {
+  const char * const asked = std::getenv("MANYCORE_TEST_STEPS");
+  return asked == nullptr ? 4 : std::stoull(asked);
+}
+
+/// Kills a process in `role` after some instructions; how many they were.
+uint64_t kill_after(Fixture & f, const std::string & role, uint64_t instructions) {
+  const bool reaps = role == "reaps";
+  std::optional<Standstill> no_other_reaper;
+  if (reaps) {
+    no_other_reaper.emplace(f.platform, 1);
+    f.leave_dead_nodes();
+  }
+  SteppedChild child(role, {f.platform.name()});
+  const uint64_t done = child.step(instructions);
+  child.kill();
+  if (reaps) {  // whatever is next to hold the lock meets what was left half done
+    f.process->create_publisher(on_topic("/y", keep_last(1)));
+  }
+  return done;
+}
+
+void check_kills(const std::string & role) {
+  Fixture f;
+  f.platform.receive_thread(1);
+  f.check_that_it_goes_on();
+  const uint64_t all = kill_after(f, role, UINT64_MAX);
+  CHECK(all > 1000);
+  f.wait_until_alone();
+  while (f.number < 2000) {
+    f.check_that_it_goes_on();
+  }
+  const uint64_t used = f.inspection.used_bytes();
+  for (uint64_t i = 1; i <= tries(); ++i) {
+    const uint64_t instructions = all * i / (tries() + 1);
+    CAPTURE(instructions);
+    CAPTURE(all);
+    kill_after(f, role, instructions);
+    f.wait_until_alone();
+    f.check_that_it_goes_on();
+    CHECK(f.inspection.used_bytes() == used);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("killed at any instruction while it joins") { check_kills("joins"); }
+
+TEST_CASE("killed at any instruction while it creates and closes endpoints") {
+  check_kills("creates");
+}
+
+TEST_CASE("killed at any instruction while it publishes") { check_kills("publishes"); }
+
+TEST_CASE("killed at any instruction while it takes messages") { check_kills("takes"); }
+
+TEST_CASE("killed at any instruction while it clears away what other dead left") {
+  check_kills("reaps");
+}
