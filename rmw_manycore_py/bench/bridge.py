@@ -41,7 +41,7 @@ def measure(run: Run) -> list[Result]:
     for size in SIZES:
         results += _measure_size(run, size)
     results += _measure_throughput(run)
-    if run.wants(BRIDGED):
+    if run.wants(f"{IDLE}: {BRIDGED}"):
         results.append(Result(IDLE, BRIDGED, "ms/s", (_idle_ms(run),)))
     return results
 
@@ -125,11 +125,11 @@ def _flood(
     name: str,
 ) -> list[float]:
     sink = hearing.python("sink", 1, *topics, IN_FLIGHT)
-    stretches = run.iterations(STRETCHES)
-    sizes = (PAYLOADS["1 MiB"], IN_FLIGHT, STRETCH, STRETCH, stretches)
+    stretch, stretches = run.iterations(STRETCH), run.iterations(STRETCHES)
+    sizes = (PAYLOADS["1 MiB"], IN_FLIGHT, stretch, stretch, stretches)
     found = sending.python("source", 0, *topics, *sizes).finish()
     lost.setdefault(name, []).append(sink.finish()["lost"])
-    return [STRETCH / sample_ns * 1e9 for sample_ns in found["samples_ns"]]
+    return [stretch / sample_ns * 1e9 for sample_ns in found["samples_ns"]]
 
 
 def _start_bridge(

@@ -38,7 +38,7 @@ class Run:
         return max(int(full * self.share), 4)
 
     def wants(self, name: str) -> bool:
-        """Tell whether a contender takes part."""
+        """Tell whether a contender takes part; QUESTION: CONTENDER tells it from others."""
         return not self.only or any(part in name for part in self.only)
 
     def interleave(
@@ -50,7 +50,9 @@ class Run:
         higher_is_better: bool = False,
     ) -> list[Result]:
         """Let the contenders take turns, so that a disturbance of the machine meets them all."""
-        samples: dict[str, list[float]] = {name: [] for name in contenders if self.wants(name)}
+        samples: dict[str, list[float]] = {
+            name: [] for name in contenders if self.wants(f"{question}: {name}")
+        }
         for turn in range(self.rounds):
             for name, collected in samples.items():
                 self.note(f"{question}, round {turn + 1} of {self.rounds}: {name}")

@@ -14,9 +14,17 @@ from support import PATIENCE_S, PLATFORMS, entries, manycore_command, wait_until
 
 pytestmark = pytest.mark.integration
 
-OWN = ("--only", "(block)")
+
+def only(*parts: str) -> tuple[str, ...]:
+    return tuple(word for part in parts for word in ("--only", part))
+
+
+OWN = only("(block)")
 FAST_DDS_AND_OURS = "Fast DDS + platform"
-OTHERS = ("--only", "futex", "--only", "pipe", "--only", "Fast DDS")
+OTHERS = only("64 B: futex", "64 B: pipe", "64 B: Fast DDS", "8 MiB: Fast DDS")
+RCLPY = only("64 B: manycore run", "8 MiB: manycore run, inside", "1 MiB: manycore inside (block)")
+STARTUP = only("by hand: manycore inside", "set: manycore between")
+BRIDGE = only("trip 64 B", "throughput", "idle")
 
 
 def run_bench(*arguments: str) -> dict[str, Any]:
@@ -46,11 +54,11 @@ def run_bench(*arguments: str) -> dict[str, Any]:
         ("rmw", "round-trip", *OWN),
         ("rmw", "round-trip", *OTHERS),
         ("rmw", "first-message"),
-        ("rclpy", *OWN),
-        ("startup", *OWN),
+        ("rclpy", *RCLPY),
+        ("startup", *STARTUP),
         ("memory", *OWN),
     ],
-    ids=lambda arguments: "-".join(arguments[:2]) + ("-others" if "futex" in arguments else ""),
+    ids=["round-trip", "round-trip-others", "first-message", "rclpy", "startup", "memory"],
 )
 def test_a_bench_measures_every_contender(arguments: tuple[str, ...]) -> None:
     for result in run_bench(*arguments)["results"]:
@@ -104,5 +112,5 @@ def test_a_plot_needs_a_place() -> None:
 
 
 def test_bridge() -> None:
-    report = run_bench("bridge")
+    report = run_bench("bridge", *BRIDGE)
     assert {result["contender"] for result in report["results"]} >= {"bridged", FAST_DDS_AND_OURS}

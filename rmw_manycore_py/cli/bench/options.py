@@ -18,7 +18,7 @@ def bench_options(body: Body) -> Body:
     options = [
         click.option("--quick", is_flag=True, help="One short round: does everything run?"),
         click.option("--rounds", default=DEFAULT_ROUNDS, show_default=True, type=click.IntRange(1)),
-        click.option("--only", multiple=True, help="Only contenders with this in their name."),
+        click.option("--only", multiple=True, help="Only those with this in QUESTION: CONTENDER."),
         click.option("--json", "as_json", is_flag=True, help="Print JSON instead of tables."),
         click.option(
             "-o",

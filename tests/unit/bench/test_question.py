@@ -58,6 +58,13 @@ def test_only_the_chosen_take_part() -> None:
     assert [r.contender for r in run.interleave("q", "us", contenders)] == ["futex", "Fast DDS"]
 
 
+def test_only_some_questions_are_put_to_a_contender() -> None:
+    contenders = {name: counting([], name) for name in ("futex", "Fast DDS")}
+    run = Run(cpus=(0, 1), rounds=1, only=("64 B: fu",))
+    assert [r.contender for r in run.interleave("trip 64 B", "us", contenders)] == ["futex"]
+    assert run.interleave("trip 1 KiB", "us", contenders) == []
+
+
 def test_a_share_of_the_iterations_is_never_none() -> None:
     run = Run(cpus=(0, 1), share=0.05)
     assert [run.iterations(full) for full in (2000, 10)] == [100, 4]
