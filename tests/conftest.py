@@ -40,6 +40,8 @@ def pytest_configure(config: pytest.Config) -> None:
     # would whatever the tests start.
     signal.signal(signal.SIGINT, signal.default_int_handler)
     signal.signal(signal.SIGHUP, signal.SIG_DFL)
+    # Each program that a test starts would compile again all that it imports.
+    os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
     # The wheels of rosidl bring an old parser along, which uses modules that Python gave up.
     config.addinivalue_line("filterwarnings", "ignore:module 'sre_:DeprecationWarning")
     if is_inside():

@@ -78,8 +78,13 @@ class Installation:
     """A virtual environment with the wheel and what it depends on."""
 
     def __init__(self, python: Path, wheel: Path, directory: Path) -> None:
-        run(python, "-m", "venv", directory)
+        run(python, "-m", "venv", "--without-pip", directory)
         self.directory = directory
         self.python = directory / "bin/python"
         self.manycore = directory / "bin/manycore"
-        run(self.python, "-m", "pip", "install", wheel)
+        self.install(wheel)
+
+    def install(self, *words: str | Path) -> None:
+        """Install with the running python's pip, and let Python compile what is imported."""
+        pip = (sys.executable, "-m", "pip", "--python", self.python)
+        run(*pip, "install", "--no-compile", *words)

@@ -10,7 +10,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from installing import Installation, run
+from installing import Installation
 from support import REPOSITORY, Program, environment, wait_until
 
 pytestmark = pytest.mark.integration
@@ -145,8 +145,7 @@ def test_the_examples_as_modules(place: Place, start: Start) -> None:
 def test_messages_are_found_where_pythonpath_says(
     installation: Installation, start: Start, tmp_path: Path
 ) -> None:
-    command = [installation.python, "-m", "pip", "install", "--no-deps", "--prefix", tmp_path]
-    run(*command, TEST_MSGS)
+    installation.install("--no-deps", "--prefix", tmp_path, TEST_MSGS)
     folder = next(tmp_path.glob("lib/python*/site-packages"))
     (folder / "random.py").write_text("raise SystemError('random of the folder')\n")
     libraries = ":".join(map(str, [tmp_path / "lib", *folder.glob("*.libs")]))
