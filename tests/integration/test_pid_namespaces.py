@@ -1,0 +1,91 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Nodes in PID namespaces of their own on one /dev/shm, as containers with `--ipc=host` are."""
+
+from __future__ import annotations
+
+import os
+import time
+from pathlib import Path
+
+import pytest
+from processes import cpu_time_s, kill, receive_threads_of
+from support import IS_MANYCORE, example_command, wait_until
+
+pytestmark = [
+    pytest.mark.integration,
+    pytest.mark.needs("unshare"),
+    pytest.mark.skipif(not IS_MANYCORE, reason="looks at rmw_manycore's members"),
+]
+
+WATCHED_S = 2.0  # how long processes are watched that have nothing to do
+IDLE_CPU_S = 0.1  # of all together; a thread that spins uses twenty times as much
+
+
+def in_namespace(*command: str) -> list[str]:
+    """Return the command that runs another one as the first process of a PID namespace."""
+    user = [] if os.geteuid() == 0 else ["--user", "--map-current-user"]
+    return ["unshare", *user, "--pid", "--fork", "--kill-child", "--mount-proc", *command]
+
+
+def first_process_of(namespace: int) -> int:
+    """Return the pid, as seen from here, of the first process of what `unshare` runs."""
+    children = Path(f"/proc/{namespace}/task/{namespace}/children").read_text().split()
+    return int(children[0])
+
+
+def members(platform: str) -> set[int]:
+    """Return the slots of the members of a platform."""
+    from rmw_manycore_py._transport import Platform
+
+    with Platform(platform) as seen:
+        return {process.slot for process in seen.processes()}
+
+
+@pytest.fixture
+def outside(start):
+    """Return a node in no namespace, whose receive thread outlives those in namespaces."""
+    program = start(example_command("talker", "--ros-args", "-r", "chatter:=unheard"), 3)
+    program.wait_for("Publishing")
+    return program
+
+
+@pytest.fixture
+def talker(start, outside):
+    """Return a talker in a namespace of its own, in cluster 1."""
+    program = start(in_namespace(*example_command("talker")), 1)
+    program.wait_for("Publishing")
+    return program
+
+
+@pytest.mark.parametrize("cluster", [1, 2])
+def test_nodes_of_two_namespaces_talk(platform, start, talker, cluster):
+    listener = start(in_namespace(*example_command("listener")), cluster)
+    listener.wait_for("I heard")
+
+
+@pytest.mark.parametrize("cluster", [1, 2])
+def test_a_node_killed_in_its_namespace_is_reaped(platform, start, talker, cluster):
+    """Where it is in cluster 1 alone, the receive thread that it started dies with it."""
+    listener = start(example_command("listener"), cluster)
+    listener.wait_for("I heard")
+    assert len(members(platform)) == 3
+    kill(first_process_of(talker.pid))
+    wait_until(lambda: len(members(platform)) == 2, "the talker is no member any more")
+    late = start(in_namespace(*example_command("talker")), 1)
+    late.wait_for("Publishing")
+    listener.skip_output()
+    listener.wait_for("I heard")
+
+
+def test_watching_another_namespace_costs_nothing(platform, start, talker):
+    """A pid of another namespace says nothing here; to look at it again and again is no proof."""
+    watcher = start([*in_namespace(*example_command("listener")), "--ros-args", "-r", "chatter:=x"])
+    wait_until(lambda: len(members(platform)) == 3, "all are members")
+    wait_until(lambda: receive_threads_of(platform), "there is a receive thread")
+    kill(first_process_of(talker.pid))
+    wait_until(lambda: len(members(platform)) == 2, "the talker is no member any more")
+    wait_until(lambda: receive_threads_of(platform), "there is a receive thread again")
+    idle = [first_process_of(watcher.pid), *receive_threads_of(platform)]
+    before_s = sum(map(cpu_time_s, idle))
+    time.sleep(WATCHED_S)
+    assert sum(map(cpu_time_s, idle)) - before_s < IDLE_CPU_S
