@@ -99,10 +99,11 @@ std::vector<ClusterInfo> Graph::clusters() const {
 
 std::vector<NodeInfo> Graph::nodes() const {
   return read_between_changes(registry_, [&](bool) {
-    return list_live<
-      NodeInfo>(registry_.nodes(), [](uint32_t slot, const NodeEntry & entry) -> NodeInfo {
-      return {slot, entry.process, text_of(entry.name), text_of(entry.ns), text_of(entry.enclave)};
-    });
+    return list_live<NodeInfo>(
+      registry_.nodes(), [](uint32_t slot, const NodeEntry & entry) -> NodeInfo {
+        return {
+          slot, entry.process, text_of(entry.name), text_of(entry.ns), text_of(entry.enclave)};
+      });
   });
 }
 
