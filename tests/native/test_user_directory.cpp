@@ -140,9 +140,12 @@ TEST_CASE("clusters of the host get of the file system of the chosen directory")
 
 TEST_CASE("each cluster of the host has a share; where that is little, what others leave") {
   constexpr uint64_t mebibyte = 1 << 20;
-  const uint64_t of_mebibytes[][2] = {{0, 1024}, {1, 1}, {64, 48}, {2048, 1024}, {24 * 1024, 2457}};
-  for (const auto & [shared, smem] : of_mebibytes) {
-    CAPTURE(shared);
-    CHECK(host_smem_bytes(shared * mebibyte, 5) == smem * mebibyte);
+  struct Row {
+    uint64_t shared;  // MiB, as the SMEM
+    uint64_t smem;
+  };
+  for (const Row row : {Row{0, 1024}, {1, 1}, {64, 48}, {2048, 1024}, {24 * 1024, 2457}}) {
+    CAPTURE(row.shared);
+    CHECK(host_smem_bytes(row.shared * mebibyte, 5) == row.smem * mebibyte);
   }
 }
