@@ -2,9 +2,9 @@
 //
 // Who is matched with whom, what each side is told, and what is left when they part.
 #include <doctest/doctest.h>
-#include <sys/resource.h>
 
-#include <cstdio>
+#include <filesystem>
+#include <fstream>
 
 #include "messages.hpp"
 #include "node_role.hpp"
@@ -210,19 +210,19 @@ TEST_CASE(
   Node far(f.platform, 2);
   far.tell("subscription /match 10");
   f.platform.receive_thread(2);
-  const std::string path = f.platform.paths().cluster(2);
-  rlimit before{};
-  REQUIRE(getrlimit(RLIMIT_NOFILE, &before) == 0);
-  const rlimit no_descriptors{0, before.rlim_max};
-  REQUIRE(setrlimit(RLIMIT_NOFILE, &no_descriptors) == 0);
+  const std::string path = f.platform.paths().pipe(2);
+  // At no moment is there no file: that would be a platform whose files were removed.
+  std::filesystem::create_hard_link(path, path + ".away");
+  std::ofstream(path + ".no_pipe") << "no pipe";
+  std::filesystem::rename(path + ".no_pipe", path);
   for (int i = 0; i < 2; ++i) {
     const Refusal refusal = refusal_of([&] { publish(*publisher, 1); });
-    CHECK(refusal.code == ErrorCode::system);
+    CHECK(refusal.code == ErrorCode::corrupt);
     CHECK_MESSAGE(refusal.says("publish on '/match'"), refusal.text);
     CHECK_MESSAGE(refusal.says(path), refusal.text);
   }
   CHECK_FALSE(take(*near));
-  REQUIRE(setrlimit(RLIMIT_NOFILE, &before) == 0);
+  std::filesystem::rename(path + ".away", path);
   publish(*publisher, 1);
   far.tell("take 1 1 1");
   CHECK(take_all(*near) == numbers(1, 1));
