@@ -2,7 +2,7 @@
 """A bridge file, in the YAML schema of ros2/domain_bridge, as routes of a platform.
 
 The domain that is the platform's own (`inside`) stands for the platform; the others are real ones.
-Services, actions, rate and size limits go beyond that schema.
+Services, actions, rate and size limits, and patterns of topics go beyond that schema.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any, Literal
 
-from pydantic import Field, StrictBool, ValidationError, field_validator
+from pydantic import Field, StrictBool, ValidationError, field_validator, model_validator
 
 from rmw_manycore_py.errors import MapfileError, Problem
 from rmw_manycore_py.mapfile.format.document import Document, read_yaml
@@ -23,11 +23,13 @@ from rmw_manycore_py.mapfile.format.model import (
     Text,
     Timeout,
     TopicName,
+    TopicPattern,
 )
 from rmw_manycore_py.mapfile.format.validation import describe
 from rmw_manycore_py.mapfile.format.values import ActionType, MessageType, ServiceType, Size
 from rmw_manycore_py.mapfile.placing.crossings import overrides
 from rmw_manycore_py.ros.names import expand
+from rmw_manycore_py.ros.patterns import is_pattern
 from rmw_manycore_py.routes import REQUEST_TIMEOUT_S, Direction, Route, action_routes, arranged
 
 _KINDS = ("topics", "services", "actions")
@@ -48,14 +50,20 @@ class Crossing(Section):
 
 
 class TopicCrossing(Crossing):
-    """A topic, published in `from_domain`."""
+    """A topic, published in `from_domain`, or a pattern for topics of whatever types."""
 
-    type: MessageType
+    type: MessageType | None = None
     qos: QosSection = QosSection()
     bidirectional: StrictBool = False
     reversed: StrictBool = False
     max_hz: Rate | None = None
     max_size: Size | None = None
+
+    @model_validator(mode="before")
+    @classmethod
+    def _no_settings(cls, value: Any) -> Any:
+        """A pattern needs none."""
+        return {} if value is None else value
 
 
 class ServiceCrossing(Crossing):
@@ -79,7 +87,7 @@ class BridgeFile(Section):
     mode: Literal["normal"] = "normal"
     from_domain: Domain | None = None
     to_domain: Domain | None = None
-    topics: tuple[tuple[TopicName, TopicCrossing], ...] = Field(default=())
+    topics: tuple[tuple[TopicPattern, TopicCrossing], ...] = Field(default=())
     services: tuple[tuple[TopicName, ServiceCrossing], ...] = Field(default=())
     actions: tuple[tuple[TopicName, ActionCrossing], ...] = Field(default=())
 
@@ -152,12 +160,26 @@ class _Resolver:
     def _topics(self) -> Iterator[Route]:
         for index, (name, topic) in enumerate(self._sections.topics):
             domains = self._domains("topics", index, topic)
-            if domains is None:
+            if domains is None or not self._is_whole(index, name, topic):
                 continue
             source, target = reversed(domains) if topic.reversed else domains
             yield self._topic(name, topic, source, target)
             if topic.bidirectional:
                 yield self._topic(name, topic, target, source)
+
+    def _is_whole(self, index: int, name: str, topic: TopicCrossing) -> bool:
+        """Tell whether a topic has its type, and a pattern nothing that is for one topic alone."""
+        if not is_pattern(name) and topic.type is None:
+            self._wrong("topics", index, "the key 'type'", "no such key", "type")
+        elif is_pattern(name) and topic.type is not None:
+            expected = "no type: each topic that fits has its own"
+            self._wrong("topics", index, expected, f"'{topic.type}'", "type")
+        elif is_pattern(name) and topic.remap is not None:
+            expected = "no new name: topics of a pattern keep theirs"
+            self._wrong("topics", index, expected, f"'{topic.remap}'", "remap")
+        else:
+            return True
+        return False
 
     def _topic(self, name: str, topic: TopicCrossing, source: int, target: int) -> Route:
         direction: Direction = "outward" if source == self._inside else "inward"
@@ -167,7 +189,7 @@ class _Resolver:
             direction=direction,
             inside=names[0] if direction == "outward" else names[1],
             outside=names[1] if direction == "outward" else names[0],
-            type=topic.type,
+            type=topic.type or "",
             domain=target if direction == "outward" else source,
             qos=overrides(topic.qos),
             max_hz=topic.max_hz,
@@ -217,5 +239,5 @@ class _Resolver:
             return None
         return source, target
 
-    def _wrong(self, kind: str, index: int, expected: str, found: str) -> None:
-        self._problems.append(_named(self._document, (kind, index, 1), expected, found))
+    def _wrong(self, kind: str, index: int, expected: str, found: str, *key: str) -> None:
+        self._problems.append(_named(self._document, (kind, index, 1, *key), expected, found))

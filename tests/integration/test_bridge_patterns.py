@@ -8,6 +8,7 @@ import signal
 
 import pytest
 from bridging import OUTSIDE, STRING, Bridge
+from domains import domain_of
 from ros_support import announce, peer_node, spin_until, type_of
 from speakers import hear, say
 from support import IS_MANYCORE, example_command, manycore_command, wait_until
@@ -188,3 +189,13 @@ def test_a_mapfile_names_a_pattern(start, tmp_path, platform) -> None:
     run = start(manycore_command("run", mapfile))
     start(example_command("listener"), **OUTSIDE).wait_for("I heard: 'Hello World")
     assert run.stop() == 0
+
+
+def test_a_bridge_file_names_a_pattern(start, tmp_path, platform) -> None:
+    domain = domain_of(platform)
+    config = tmp_path / "bridge.yaml"
+    config.write_text(f"from_domain: {domain + 1}\nto_domain: {domain}\ntopics: {{chat*: }}\n")
+    bridge = start(manycore_command("bridge", config, "--inside", str(domain + 1)))
+    start(example_command("talker"))
+    start(example_command("listener"), **OUTSIDE).wait_for("I heard: 'Hello World")
+    assert bridge.stop() == 0

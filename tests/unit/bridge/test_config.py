@@ -76,6 +76,21 @@ def test_an_empty_new_name_is_none(tmp_path) -> None:
     assert ways(routes) == [("outward", "/a", "/a", 3)]
 
 
+def test_a_pattern_has_no_type(tmp_path) -> None:
+    limits = "{bidirectional: true, max_hz: 5}"
+    routes = load(
+        tmp_path,
+        f"from_domain: 2\nto_domain: 3\ntopics:\n  camera/*:\n  /lidar/**: {limits}\n",
+    )
+    assert ways(routes) == [
+        ("outward", "/camera/*", "/camera/*", 3),
+        ("outward", "/lidar/**", "/lidar/**", 3),
+        ("inward", "/lidar/**", "/lidar/**", 3),
+    ]
+    assert all(route.is_pattern and route.type == "" for route in routes)
+    assert [route.max_hz for route in routes] == [None, 5, 5]
+
+
 def test_policies(tmp_path) -> None:
     qos = "{reliability: best_effort, depth: 3, deadline: 5, lifespan: auto, history: keep_last}"
     (route,) = load(
@@ -109,7 +124,16 @@ def test_a_server_is_in_the_first_domain(tmp_path) -> None:
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("topics: {a: {}}", "1: topics.a.type: expected the key 'type', found no such key"),
+        ("from_domain: 2\nto_domain: 3\ntopics: {a: {}}", "3: topics.a.type: expected the key 'type', found no such key"),
+        (
+            "from_domain: 2\nto_domain: 3\ntopics:\n  a*:\n    type: std_msgs/msg/String",
+            "5: topics.a*.type: expected no type: each topic that fits has its own, found "
+            "'std_msgs/msg/String'",
+        ),
+        (
+            "from_domain: 2\nto_domain: 3\ntopics:\n  /a/**: {remap: b}",
+            "4: topics./a/**.remap: expected no new name: topics of a pattern keep theirs",
+        ),
         (
             f"to_domain: 3\ntopics:\n  a: {STRING}",
             "3: topics.a: expected the key 'from_domain' here or at the top, found no such key",
