@@ -62,7 +62,7 @@ class TopicCrossing(Crossing):
     @model_validator(mode="before")
     @classmethod
     def _no_settings(cls, value: Any) -> Any:
-        """A pattern needs none."""
+        """Take nothing for no settings: a pattern needs none."""
         return {} if value is None else value
 
 

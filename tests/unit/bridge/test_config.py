@@ -124,7 +124,10 @@ def test_a_server_is_in_the_first_domain(tmp_path) -> None:
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("from_domain: 2\nto_domain: 3\ntopics: {a: {}}", "3: topics.a.type: expected the key 'type', found no such key"),
+        (
+            "from_domain: 2\nto_domain: 3\ntopics: {a: {}}",
+            "3: topics.a.type: expected the key 'type', found no such key",
+        ),
         (
             "from_domain: 2\nto_domain: 3\ntopics:\n  a*:\n    type: std_msgs/msg/String",
             "5: topics.a*.type: expected no type: each topic that fits has its own, found "
