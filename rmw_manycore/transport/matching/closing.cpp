@@ -113,7 +113,8 @@ bool receive_threads_are_out(Registry & registry) {
 
 /// Takes the topic DSM away from a reader that is done with it, or wants newer messages of others
 /// instead; false while it is not done.
-bool revoke(Registry & registry, WantedSources & wanted, const OrphanReader & reader) {
+bool revoke(
+  Registry & registry, WantedSources & wanted, const OrphanReader & reader, ReaderEntry & entry) {
   SourceEntry & source = reader.source;
   if (source.state.load() == SourceState::active) {
     if (wanted.contain(reader)) {
@@ -126,6 +127,9 @@ bool revoke(Registry & registry, WantedSources & wanted, const OrphanReader & re
     return false;
   }
   count_undelivered(registry, reader);
+  // Off the reader table before the source is free for another match: should this process die in
+  // between, the next sweep must not take that match for this one.
+  entry.active.store(0, std::memory_order_release);
   source.state.store(SourceState::free, std::memory_order_release);
   reader.subscription.source_generation.fetch_add(1, std::memory_order_release);
   return true;
@@ -166,14 +170,7 @@ bool sweep_publisher(Registry & registry, WantedSources & wanted, EndpointEntry 
   bool all_revoked = true;
   for_each_reader(*cluster, *dsm, [&](ReaderEntry & entry_of_reader) {
     const std::optional<OrphanReader> reader = follow(registry, *cluster, *dsm, entry_of_reader);
-    if (!reader) {
-      return;
-    }
-    if (revoke(registry, wanted, *reader)) {
-      entry_of_reader.active.store(0, std::memory_order_release);
-    } else {
-      all_revoked = false;
-    }
+    all_revoked = (!reader || revoke(registry, wanted, *reader, entry_of_reader)) && all_revoked;
   });
   if (!all_revoked) {
     return false;
