@@ -18,10 +18,7 @@ python scripts/progress.py "$build.log" "compiling native tests in $build" \
   cmake --build "$build" -j "$jobs"
 # Instruction by instruction, programs with sanitizers would take minutes; and a sanitizer that
 # reports a crash on damaged memory may hang on that memory itself.
-# Graph reads copy what is being written, and look afterwards whether it held: a race by design,
-# which docs/model/graph.pml checks.
 case "$*" in
-  *SANITIZE=thread*) skipped='^(test_killed|test_damaged_running|test_graph_reads)$' ;;
   *SANITIZE*) skipped='^(test_killed|test_damaged_running)$' ;;
   *) skipped='^$' ;;
 esac

@@ -28,7 +28,7 @@ const Role lock_holder("lock_holder", [](Lines & test, const Arguments & argumen
   registry.nodes().take("nodes");
   registry.clusters().at(1).allocate(1 << 20);
   // .. and chains that lead nowhere.
-  for (uint32_t & bucket : registry.header().topic_buckets) {
+  for (std::atomic<uint32_t> & bucket : registry.header().topic_buckets) {
     bucket = nothing;
   }
   test.say("holding");

@@ -81,7 +81,7 @@ struct EndpointEntry {
   uint32_t process;
   uint32_t node;
   uint32_t cluster;
-  uint32_t next_of_topic;  ///< chain of its topic's bucket
+  std::atomic<uint32_t> next_of_topic;  ///< chain of its topic's bucket
   uint64_t topic_hash;
   SegmentRef block;  ///< publisher: topic DSM header; subscription: subscription header
   Gid gid;
@@ -140,7 +140,7 @@ struct RegistryHeader {
   std::atomic<uint64_t> clusters_present;  ///< bit c - 1: cluster c has a segment
   std::atomic<uint32_t> removed;           ///< the files are gone: no process can join
   uint32_t reserved;
-  uint32_t topic_buckets[topic_bucket_count];
+  std::atomic<uint32_t> topic_buckets[topic_bucket_count];
 };
 
 constexpr uint64_t align_up(uint64_t x, uint64_t alignment) {

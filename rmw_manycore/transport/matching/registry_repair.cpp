@@ -57,8 +57,8 @@ void Registry::repair() noexcept {
   processes_.rebuild_free_list();
   nodes_.rebuild_free_list();
   endpoints_.rebuild_free_list();
-  for (uint32_t & bucket : header().topic_buckets) {
-    bucket = nothing;
+  for (std::atomic<uint32_t> & bucket : header().topic_buckets) {
+    bucket.store(nothing, std::memory_order_relaxed);
   }
   const uint64_t present = header().clusters_present.load();
   for (uint32_t id = 1; id <= max_clusters; ++id) {

@@ -48,7 +48,7 @@ std::vector<EndpointInfo> all_endpoints(Registry & registry) {
 
 std::vector<EndpointInfo> chained_endpoints(Registry & registry, const std::string & topic) {
   std::vector<EndpointInfo> all;
-  registry.for_each_of_topic(topic.c_str(), [&](uint32_t slot, EndpointEntry &) {
+  registry.for_each_of_bucket(topic.c_str(), [&](uint32_t slot) {
     append_live(registry.endpoints(), slot, all, [&](uint32_t, const EndpointEntry & entry) {
       return describe(registry, entry);
     });
@@ -56,13 +56,10 @@ std::vector<EndpointInfo> chained_endpoints(Registry & registry, const std::stri
   return all;
 }
 
-/// Without the chain of the topic's bucket, which a change takes apart.
-std::vector<EndpointInfo> search_endpoints(Registry & registry, const std::string & topic) {
-  std::vector<EndpointInfo> all = all_endpoints(registry);
-  all.erase(
-    std::remove_if(
-      all.begin(), all.end(), [&](const EndpointInfo & info) { return info.topic != topic; }),
-    all.end());
+std::vector<EndpointInfo> of_topic(const std::string & topic, std::vector<EndpointInfo> all) {
+  const auto others = std::remove_if(
+    all.begin(), all.end(), [&](const EndpointInfo & info) { return info.topic != topic; });
+  all.erase(others, all.end());
   return all;
 }
 
@@ -113,7 +110,9 @@ std::vector<EndpointInfo> Graph::endpoints() const {
 
 std::vector<EndpointInfo> Graph::endpoints_of(const std::string & topic) const {
   return read_between_changes(registry_, [&](bool is_changing) {
-    return is_changing ? search_endpoints(registry_, topic) : chained_endpoints(registry_, topic);
+    // A change takes chains apart: then all endpoints are looked at.
+    return of_topic(
+      topic, is_changing ? all_endpoints(registry_) : chained_endpoints(registry_, topic));
   });
 }
 

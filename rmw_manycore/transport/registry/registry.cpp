@@ -78,8 +78,8 @@ void Registry::create(
   header.profile = profile;
   header.mutex.initialize();
   header.topic_count = static_cast<uint32_t>(topics.size());
-  for (uint32_t & bucket : header.topic_buckets) {
-    bucket = nothing;
+  for (std::atomic<uint32_t> & bucket : header.topic_buckets) {
+    bucket.store(nothing, std::memory_order_relaxed);
   }
   memory.reserve(topic_table_offset, std::max<size_t>(topics.size(), 1) * sizeof(TopicEntry));
   for (size_t i = 0; i < topics.size(); ++i) {
@@ -157,38 +157,55 @@ const TopicEntry * Registry::find_topic(const std::string & name) const noexcept
   return nullptr;
 }
 
+std::atomic<uint32_t> & Registry::bucket_of(uint64_t topic_hash) const noexcept {
+  return header().topic_buckets[topic_hash % topic_bucket_count];
+}
+
+// Under the lock nothing else changes a chain; graph reads without it look afterwards whether it
+// held. So no order of loads and stores matters.
+constexpr auto chained = std::memory_order_relaxed;
+
 void Registry::link_endpoint(uint32_t slot) noexcept {
   EndpointEntry & entry = endpoints_[slot];
-  uint32_t & bucket = header().topic_buckets[entry.topic_hash % topic_bucket_count];
-  entry.next_of_topic = bucket;
-  bucket = slot;
+  std::atomic<uint32_t> & bucket = bucket_of(entry.topic_hash);
+  entry.next_of_topic.store(bucket.load(chained), chained);
+  bucket.store(slot, chained);
 }
 
 void Registry::unlink_endpoint(uint32_t slot) noexcept {
   EndpointEntry & entry = endpoints_[slot];
-  uint32_t * link = &header().topic_buckets[entry.topic_hash % topic_bucket_count];
+  std::atomic<uint32_t> * link = &bucket_of(entry.topic_hash);
+  uint32_t linked = link->load(chained);
   // A damaged chain is not followed out of the table, nor round and round.
-  for (uint32_t i = 0; *link != slot && *link < endpoints_.high_water() && i < endpoint_capacity;
+  for (uint32_t i = 0; linked != slot && linked < endpoints_.high_water() && i < endpoint_capacity;
        ++i) {
-    link = &endpoints_[*link].next_of_topic;
+    link = &endpoints_[linked].next_of_topic;
+    linked = link->load(chained);
   }
-  if (*link == slot) {
-    *link = entry.next_of_topic;
+  if (linked == slot) {
+    link->store(entry.next_of_topic.load(chained), chained);
+  }
+}
+
+void Registry::for_each_of_bucket(
+  const char * topic, const std::function<void(uint32_t)> & visit) const {
+  uint32_t slot = bucket_of(hash_name(topic)).load(chained);
+  for (uint32_t i = 0; slot < endpoints_.high_water() && i < endpoint_capacity; ++i) {
+    const uint32_t next = endpoints_[slot].next_of_topic.load(chained);
+    visit(slot);
+    slot = next;
   }
 }
 
 void Registry::for_each_of_topic(
   const char * topic, const std::function<void(uint32_t, EndpointEntry &)> & visit) {
   const uint64_t hash = hash_name(topic);
-  uint32_t slot = header().topic_buckets[hash % topic_bucket_count];
-  for (uint32_t i = 0; slot < endpoints_.high_water() && i < endpoint_capacity; ++i) {
+  for_each_of_bucket(topic, [&](uint32_t slot) {
     EndpointEntry & entry = endpoints_[slot];
-    const uint32_t next = entry.next_of_topic;
     if (entry.topic_hash == hash && std::strcmp(entry.topic, topic) == 0) {
       visit(slot, entry);
     }
-    slot = next;
-  }
+  });
 }
 
 void Registry::graph_changed() noexcept {

@@ -126,14 +126,19 @@ public:
   /// Chains of endpoints by topic; the caller holds the lock.
   void link_endpoint(uint32_t slot) noexcept;
   void unlink_endpoint(uint32_t slot) noexcept;
+  /// Visits the endpoints of a topic; the caller holds the lock.
   void for_each_of_topic(
     const char * topic, const std::function<void(uint32_t, EndpointEntry &)> & visit);
+  /// Visits the slots of a topic's bucket, which it may share with other topics. Without the lock,
+  /// a change may lead to other buckets, but not out of the table.
+  void for_each_of_bucket(const char * topic, const std::function<void(uint32_t)> & visit) const;
 
   /// Raises the graph generation and the epochs of processes that watch it.
   void graph_changed() noexcept;
 
 private:
   friend class Lock;
+  std::atomic<uint32_t> & bucket_of(uint64_t topic_hash) const noexcept;
   RobustMutex::Outcome lock_within(long wait_ns);
   void repair() noexcept;
   void mark_blocks_of(EndpointEntry & entry) noexcept;
