@@ -7,8 +7,9 @@
  * ReceiveThread::forward. The publisher pushes through its private reader list, the receive thread
  * reads the table each time. The publisher may be killed at any step, and is then reaped; the
  * receive thread too, and is then replaced if its cluster has a process left, else not. The process
- * that closes the subscription may be killed at any step as well; then the next owner of the
- * registry lock goes on.
+ * that closes the subscription may be killed at any step as well. Then the next owner of the
+ * registry lock frees what is closed; what is not, the reaper closes, whose owner of the lock may be
+ * a later one.
  *
  * BUG 1: freed without grace
  * BUG 2: publisher: no fence between phase and the look at match_generation
@@ -22,6 +23,7 @@
  * BUG 10: a receive thread without a successor is waited for
  * BUG 11: a receive thread counts as dead once its lifeline ends, not once it has stopped
  * BUG 12: what a killed closer left half closed is freed as if it were closed
+ * BUG 13: closed before the reader is taken off the table
  */
 #define GENERATION 0      /* match_generation */
 #define ACTIVE 1          /* of the reader table's entry */
@@ -35,6 +37,7 @@
 
 #include "tso.pml"
 
+bool closed;               /* the subscription's state; what is not closed is closing */
 bool freed;
 bool kill_publisher, kill_receiver, kill_closer;
 bool publisher_ended, receiver_ended, closer_ended;
@@ -180,21 +183,29 @@ proctype Closer() {
     load(CLOSER, PHASE(PUBLISHER)) == 0;
     wait_for_receive_thread();
 #endif
+#if BUG == 13
+    closed = true;
+#endif
     take_off();
+    closed = true;
     free_when_out()
   } unless { kill_closer };
   closer_ended = true
 }
 
-/* Kills the closer, or not, and goes on in its place: it closes once more. */
-proctype NextCloser() {
+/* Kills the closer, or not. The next owner of the registry lock, which may not know yet that the
+ * closer is dead, and after it the reaper, which closes once more. */
+proctype NextOwners() {
   if
   :: kill_closer = true;
      closer_ended && settled(CLOSER);
-#if BUG != 12
-     take_off();
+     if
+#if BUG == 12
+     :: true -> free_when_out()
 #endif
-     free_when_out()
+     :: closed -> free_when_out()
+     :: else -> take_off(); closed = true; free_when_out()
+     fi
   :: skip
   fi
 }
@@ -204,6 +215,6 @@ init {
   atomic {
     memory[ACTIVE] = 1;
     run StoreBuffer(PUBLISHER); run StoreBuffer(RECEIVER); run StoreBuffer(CLOSER);
-    run Publisher(); run ReceiveThread(); run Reaper(); run Successor(); run Closer(); run NextCloser()
+    run Publisher(); run ReceiveThread(); run Reaper(); run Successor(); run Closer(); run NextOwners()
   }
 }

@@ -200,6 +200,9 @@ void Process::Impl::leave() {
         registry->nodes().give_back(node);
       }
     }
+    // Those whose own closing did not get the lock.
+    closing::close_all_of(*registry, slot, false);
+    closing::sweep(*registry);
     discharge(*registry, slot);
     registry->processes().give_back(slot);
   }

@@ -2,15 +2,32 @@
 #include "stepped_child.hpp"
 
 #include <sys/ptrace.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <csignal>
+#include <fstream>
 #include <stdexcept>
+
+#include "patience.hpp"
 
 namespace {
 
 constexpr int begin_signal = SIGUSR1;
 constexpr int finish_signal = SIGUSR2;
+constexpr int end_signal = SIGPROF;
+
+void end_this_thread(int) { syscall(SYS_exit, 0); }
+
+bool is_main_thread_dead(pid_t pid) {
+  std::ifstream stat("/proc/" + std::to_string(pid) + "/stat");
+  std::string number;
+  std::string name;
+  char state = 0;
+  stat >> number >> name >> state;
+  return state == 'Z';
+}
 
 /// The signal that stopped a traced process.
 int wait_for_stop(pid_t pid) {
@@ -24,6 +41,7 @@ int wait_for_stop(pid_t pid) {
 }  // namespace
 
 void begin_steps() {
+  signal(end_signal, end_this_thread);
   require(ptrace(PTRACE_TRACEME, 0, nullptr, nullptr) == 0);
   raise(begin_signal);
 }
@@ -45,4 +63,9 @@ uint64_t SteppedChild::step(uint64_t instructions) {
     ++done;
   }
   return done;
+}
+
+void SteppedChild::end_main_thread() {
+  ptrace(PTRACE_DETACH, pid(), nullptr, end_signal);
+  wait_until("the main thread has ended", [this] { return is_main_thread_dead(pid()); });
 }

@@ -19,6 +19,10 @@ public:
   /// Does so many instructions, or fewer where finish_steps() comes first; how many it did.
   uint64_t step(uint64_t instructions);
 
+  /// Ends the main thread where it stands, as in a kill that its other threads have not met yet:
+  /// these live on, and steps are over.
+  void end_main_thread();
+
 private:
   bool finished_ = false;
 };

@@ -62,6 +62,14 @@ const Role takes("takes", [](Lines &, const Arguments & arguments) {
   finish_steps();
 });
 
+const Role closes("closes", [](Lines &, const Arguments & arguments) {
+  const auto process = join(arguments.at(0));
+  auto subscription = process->create_subscription(on_topic(topic, transient_local(2)));
+  begin_steps();
+  subscription.reset();
+  finish_steps();
+});
+
 /// As a receive thread that clears away what other processes left.
 const Role reaps("reaps", [](Lines &, const Arguments & arguments) {
   Registry registry(PlatformPaths::of(arguments.at(0)));
@@ -189,4 +197,25 @@ TEST_CASE("killed at any instruction while it takes messages") { check_kills("ta
 
 TEST_CASE("killed at any instruction while it clears away what other dead left") {
   check_kills("reaps");
+}
+
+// The kernel ends the threads of a killed process one after the other. The main thread's end gives
+// the registry lock to the next process while the thread that proves the process's life still lives.
+TEST_CASE("killed thread by thread while it closes: nothing is freed that publishers know") {
+  Fixture f;
+  f.platform.receive_thread(1);
+  f.check_that_it_goes_on();
+  const uint64_t used = f.inspection.used_bytes();
+  SteppedChild child("closes", {f.platform.name()});
+  while (f.inspection.closing_endpoints() == 0) {
+    REQUIRE(child.step(1) == 1);
+  }
+  REQUIRE(f.inspection.readers_of(*f.publisher) == 3);
+  child.end_main_thread();
+  f.process->create_publisher(on_topic("/y", keep_last(1)));  // sweeps
+  CHECK(f.inspection.closing_endpoints() == 1);
+  child.kill();
+  f.wait_until_alone();
+  f.check_that_it_goes_on();
+  CHECK(f.inspection.used_bytes() == used);
 }

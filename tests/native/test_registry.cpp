@@ -10,6 +10,7 @@
 
 #include "child.hpp"
 #include "messages.hpp"
+#include "node_role.hpp"
 #include "patience.hpp"
 #include "platform_of_test.hpp"
 #include "transport/lifecycle/configurator.hpp"
@@ -278,4 +279,22 @@ TEST_CASE("a lock that is only tried says nothing about its owner") {
   CHECK(refusal.text == "the platform's registry is locked");
   owner.say("end");
   CHECK(owner.wait() == 0);
+}
+
+TEST_CASE("an endpoint whose closing did not get the lock goes with its process") {
+  Fixture f;
+  const Node other(f.platform, 1);
+  const uint64_t used = f.inspection.used_bytes();
+  auto publisher = f.process->create_publisher(on_topic("/x", keep_last(1)));
+  {
+    Child owner("busy_owner", {f.platform.name()});
+    owner.expect("holding");
+    publisher.reset();
+    owner.say("end");
+    CHECK(owner.wait() == 0);
+  }
+  CHECK(f.inspection.live_endpoints() == 1);
+  f.process.reset();
+  CHECK(f.inspection.live_endpoints() == 0);
+  CHECK(f.inspection.used_bytes() == used);
 }

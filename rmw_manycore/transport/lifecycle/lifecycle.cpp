@@ -86,12 +86,7 @@ std::string receive_thread_program() {
 }
 
 void reap(Registry & registry, uint32_t process) {
-  for (uint32_t slot = 0; slot < registry.endpoints().high_water(); ++slot) {
-    EndpointEntry & endpoint = registry.endpoints()[slot];
-    if (endpoint.process == process && endpoint.slot.state.load() != SlotState::free) {
-      closing::close(registry, slot, true);
-    }
-  }
+  closing::close_all_of(registry, process, true);
   for (uint32_t slot = 0; slot < registry.nodes().high_water(); ++slot) {
     if (registry.nodes().is_live(slot) && registry.nodes()[slot].process == process) {
       registry.nodes().give_back(slot);

@@ -194,13 +194,6 @@ bool publisher_is_out(Registry & registry, const SourceEntry & source) {
          dsm->phase.load(std::memory_order_seq_cst) % 2 == 0;
 }
 
-/// A member that died and is not reaped yet. What it was closing, and what a killed reaper was
-/// closing of it, may be half closed: publishers may still know of its subscriptions.
-bool awaits_reaper(Registry & registry, const EndpointEntry & entry) {
-  return registry.processes().is_live(entry.process) &&
-         !registry.lifelines().is_held(entry.process);
-}
-
 bool sweep_subscription(Registry & registry, EndpointEntry & entry) {
   Cluster * const cluster = registry.clusters().find(entry.block.cluster());
   auto * const header = registry.clusters().find<SubscriptionHeader>(entry.block);
@@ -237,6 +230,18 @@ void close(Registry & registry, uint32_t endpoint, bool died) {
   } else {
     close_subscription(registry, entry);
   }
+  if (entry.slot.state.load() == SlotState::closing) {
+    entry.slot.state.store(SlotState::closed);
+  }
+}
+
+void close_all_of(Registry & registry, uint32_t process, bool died) {
+  for (uint32_t slot = 0; slot < registry.endpoints().high_water(); ++slot) {
+    const EndpointEntry & entry = registry.endpoints()[slot];
+    if (entry.process == process && entry.slot.state.load() != SlotState::free) {
+      close(registry, slot, died);
+    }
+  }
 }
 
 void sweep(Registry & registry) {
@@ -246,8 +251,7 @@ void sweep(Registry & registry) {
        ++slot) {
     EndpointEntry & entry = registry.endpoints()[slot];
     const SlotState state = entry.slot.state.load();
-    const bool is_going = state == SlotState::closing || state == SlotState::freeing;
-    if (!is_going || awaits_reaper(registry, entry)) {
+    if (state != SlotState::closed && state != SlotState::freeing) {
       continue;
     }
     const bool swept = entry.kind == EndpointKind::publisher

@@ -6,11 +6,12 @@
 namespace manycore::closing {
 
 /// Ends all matches of an endpoint and takes it out of the graph; its memory goes with sweep().
-/// Both need the registry lock and are safe to repeat after their caller died half way. `died`: its
+/// All need the registry lock and are safe to repeat after their caller died half way. `died`: its
 /// process is dead, so hints of its last records may never have been pushed.
 void close(Registry & registry, uint32_t endpoint, bool died);
+void close_all_of(Registry & registry, uint32_t process, bool died);
 
-/// Frees what closing endpoints hold, as far as nobody can be using it any more (see
+/// Frees what closed endpoints hold, as far as nobody can be using it any more (see
 /// docs/design/topic_dsm.md, Freeing).
 void sweep(Registry & registry);
 
