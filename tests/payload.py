@@ -26,5 +26,20 @@ def read_message(message: UInt8MultiArray) -> tuple[int, int]:
     data = bytes(message.data)
     writer, number, checksum = HEADER.unpack_from(data)
     if zlib.crc32(data[HEADER.size :], writer ^ number) != checksum:
-        raise ValueError(f"torn message: writer {writer}, number {number}, {len(data)} bytes")
+        damage = _damage(data[HEADER.size :])
+        raise ValueError(f"torn message: writer {writer}, number {number}, {damage}")
     return writer, number
+
+
+def _damage(body: bytes) -> str:
+    """Say where the body was overwritten, and with what."""
+    start = max(RANDOM_BYTES.find(body[:16]), 0)
+    expected = RANDOM_BYTES[start : start + len(body)]
+    foreign = [
+        i for i, (found, was) in enumerate(zip(body, expected, strict=False)) if found != was
+    ]
+    if not foreign:
+        return f"its header, of {len(body)} bytes"
+    first, last = foreign[0], foreign[-1]
+    dump = body[first : first + 64].hex()
+    return f"{len(foreign)} of {len(body)} bytes, from {first} to {last}: {dump}"

@@ -16,8 +16,9 @@ namespace {
 /// The most an ordinary user may ask for; 16,384 messages of 64 bytes.
 constexpr int pipe_capacity_bytes = 1 << 20;
 
-FileDescriptor open_end(const std::string & path, int flags) {
-  FileDescriptor fd(::open(path.c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW | flags));
+LastingDescriptor open_end(const std::string & path, int more_flags) {
+  const int flags = O_RDWR | O_CLOEXEC | O_NOFOLLOW | more_flags;
+  FileDescriptor fd(::open(path.c_str(), flags));
   if (!fd) {
     throw_errno("cannot open " + path);
   }
@@ -25,7 +26,7 @@ FileDescriptor open_end(const std::string & path, int flags) {
   if (fstat(fd.get(), &status) != 0 || !S_ISFIFO(status.st_mode)) {
     throw Error(ErrorCode::corrupt, path + " is not a pipe; remove it with 'manycore clean'");
   }
-  return fd;
+  return LastingDescriptor(std::move(fd), path, flags);
 }
 
 }  // namespace
@@ -37,8 +38,8 @@ void Pipe::create(const std::string & path) {
 }
 
 Pipe Pipe::open(const std::string & path) {
-  FileDescriptor sender = open_end(path, O_NONBLOCK);
-  FileDescriptor receiver = open_end(path, 0);
+  LastingDescriptor sender = open_end(path, O_NONBLOCK);
+  LastingDescriptor receiver = open_end(path, 0);
   fcntl(sender.get(), F_SETPIPE_SZ, pipe_capacity_bytes);  // best effort: user quota may forbid it
   return Pipe(std::move(sender), std::move(receiver));
 }
@@ -53,7 +54,7 @@ bool Pipe::try_send(const void * message, size_t size_bytes) const noexcept {
 
 void Pipe::send_last(const void * message, size_t size_bytes) const noexcept {
   char unread[4096];  // a page: less may make no room
-  while (!try_send(message, size_bytes)) {
+  while (!try_send(message, size_bytes) && sender_.get() >= 0) {
     const ssize_t taken = ::read(sender_.get(), unread, sizeof unread);
     static_cast<void>(taken);  // none when the receiver was faster
   }

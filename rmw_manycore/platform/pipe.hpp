@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <string>
 
-#include "platform/file_descriptor.hpp"
+#include "platform/lasting_descriptor.hpp"
 
 namespace manycore {
 
@@ -18,7 +18,7 @@ public:
   /// Creates nothing: its directory may be on its way out.
   static Pipe open(const std::string & path);
 
-  /// False when the pipe is full; the sender never waits.
+  /// False when the pipe is full, or out of reach; the sender never waits.
   bool try_send(const void * message, size_t size_bytes) const noexcept;
 
   /// For a message that makes those before it void: where the pipe is full, some of them are taken
@@ -29,12 +29,12 @@ public:
   size_t receive(void * buffer, size_t capacity_bytes) const;
 
 private:
-  explicit Pipe(FileDescriptor sender, FileDescriptor receiver)
+  explicit Pipe(LastingDescriptor sender, LastingDescriptor receiver)
   : sender_(std::move(sender)), receiver_(std::move(receiver)) {}
 
-  FileDescriptor sender_;  ///< O_NONBLOCK
-  FileDescriptor
-    receiver_;  ///< blocking; a description of its own, since O_NONBLOCK belongs to one
+  LastingDescriptor sender_;  ///< O_NONBLOCK
+  /// Blocking; a description of its own, since O_NONBLOCK belongs to one.
+  LastingDescriptor receiver_;
 };
 
 }  // namespace manycore

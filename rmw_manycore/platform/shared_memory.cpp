@@ -24,31 +24,26 @@ uint64_t page_ceil(uint64_t x) { return page_floor(x + page - 1); }
 
 }  // namespace
 
-SharedMemory::SharedMemory(FileDescriptor fd, const std::string & path, size_t size_bytes)
-: fd_(std::move(fd)), path_(path), size_(size_bytes) {
+SharedMemory::SharedMemory(
+  FileDescriptor fd, const std::string & path, size_t size_bytes, int flags)
+: file_(std::move(fd), path, flags), path_(path), size_(size_bytes) {
   void * const mapped =
-    mmap(nullptr, size_bytes, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_NORESERVE, fd_.get(), 0);
+    mmap(nullptr, size_bytes, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_NORESERVE, file_.get(), 0);
   if (mapped == MAP_FAILED) {
     throw_errno("cannot map " + path);
   }
   // A core dump of one node must not contain the whole platform.
   madvise(mapped, size_bytes, MADV_DONTDUMP);
   data_ = static_cast<std::byte *>(mapped);
-  struct stat status {};
-  fstat(fd_.get(), &status);
-  device_ = status.st_dev;
-  inode_ = status.st_ino;
 }
 
 SharedMemory::SharedMemory(SharedMemory && other) noexcept { *this = std::move(other); }
 
 SharedMemory & SharedMemory::operator=(SharedMemory && other) noexcept {
-  std::swap(fd_, other.fd_);
+  std::swap(file_, other.file_);
   std::swap(path_, other.path_);
   std::swap(data_, other.data_);
   std::swap(size_, other.size_);
-  std::swap(device_, other.device_);
-  std::swap(inode_, other.inode_);
   return *this;
 }
 
@@ -68,7 +63,7 @@ SharedMemory SharedMemory::create(const std::string & path, size_t size_bytes) {
   if (ftruncate(fd.get(), static_cast<off_t>(size_bytes)) != 0) {
     throw_errno("cannot size " + path);
   }
-  return SharedMemory(std::move(fd), path, size_bytes);
+  return SharedMemory(std::move(fd), path, size_bytes, O_RDWR | O_CLOEXEC | O_NOFOLLOW);
 }
 
 SharedMemory SharedMemory::open(const std::string & path, size_t least_size_bytes) {
@@ -79,8 +74,9 @@ SharedMemory SharedMemory::attach(const std::string & shared_path) {
   return open(shared_path, 1, 0);  // the path is a link of the kernel's
 }
 
-SharedMemory SharedMemory::open(const std::string & path, size_t least_size_bytes, int flags) {
-  FileDescriptor fd(::open(path.c_str(), O_RDWR | O_CLOEXEC | flags));
+SharedMemory SharedMemory::open(const std::string & path, size_t least_size_bytes, int more_flags) {
+  const int flags = O_RDWR | O_CLOEXEC | more_flags;
+  FileDescriptor fd(::open(path.c_str(), flags));
   if (!fd) {
     throw_errno("cannot open " + path);
   }
@@ -95,7 +91,7 @@ SharedMemory SharedMemory::open(const std::string & path, size_t least_size_byte
                             std::to_string(least_size_bytes) +
                             "); remove it with 'manycore clean'");
   }
-  return SharedMemory(std::move(fd), path, static_cast<size_t>(status.st_size));
+  return SharedMemory(std::move(fd), path, static_cast<size_t>(status.st_size), flags);
 }
 
 SharedMemory SharedMemory::anonymous(const std::string & label, size_t size_bytes) {
@@ -106,33 +102,27 @@ SharedMemory SharedMemory::anonymous(const std::string & label, size_t size_byte
   if (ftruncate(fd.get(), static_cast<off_t>(size_bytes)) != 0) {
     throw_errno("cannot size the shared memory for " + label);
   }
-  SharedMemory memory(std::move(fd), label, size_bytes);
+  SharedMemory memory(std::move(fd), label, size_bytes, O_RDWR | O_CLOEXEC);
   memory.reserve(0, size_bytes);
   return memory;
 }
 
-bool SharedMemory::is_file(const std::string & path) const noexcept {
-  struct stat status {};
-  if (stat(path.c_str(), &status) != 0) {
-    return errno != ENOENT && errno != ENOTDIR;  // what cannot be looked at may be there
-  }
-  return status.st_dev == device_ && status.st_ino == inode_;
-}
-
 std::string SharedMemory::shared_path() const {
-  return "/proc/" + std::to_string(getpid()) + "/fd/" + std::to_string(fd_.get());
+  return "/proc/" + std::to_string(getpid()) + "/fd/" + std::to_string(file_.get());
 }
 
 FileSystemRoom SharedMemory::file_system_room() const noexcept {
   struct statvfs fs {};
-  fstatvfs(fd_.get(), &fs);
+  fstatvfs(file_.get(), &fs);
   return {uint64_t{fs.f_bavail} * fs.f_frsize, uint64_t{fs.f_blocks} * fs.f_frsize};
 }
 
 int SharedMemory::try_reserve(uint64_t first, uint64_t bytes) const noexcept {
-  int error = 0;
+  const int fd = file_.get();
+  int error = fd < 0 ? errno : 0;
   do {
-    error = posix_fallocate(fd_.get(), static_cast<off_t>(first), static_cast<off_t>(bytes));
+    error =
+      fd < 0 ? error : posix_fallocate(fd, static_cast<off_t>(first), static_cast<off_t>(bytes));
   } while (error == EINTR);
   return error;
 }
@@ -177,9 +167,7 @@ void SharedMemory::release(uint64_t offset, uint64_t length) const noexcept {
   const uint64_t first = page_ceil(offset);
   const uint64_t end = page_floor(offset + length);
   if (end > first) {
-    fallocate(
-      fd_.get(), FALLOC_FL_PUNCH_HOLE | FALLOC_FL_KEEP_SIZE, static_cast<off_t>(first),
-      static_cast<off_t>(end - first));
+    madvise(data_ + first, end - first, MADV_REMOVE);
   }
 }
 

@@ -1,13 +1,11 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <sys/types.h>
-
 #include <cstddef>
 #include <cstdint>
 #include <string>
 
-#include "platform/file_descriptor.hpp"
+#include "platform/lasting_descriptor.hpp"
 
 namespace manycore {
 
@@ -41,7 +39,7 @@ public:
   const std::string & path() const noexcept { return path_; }
   size_t size() const noexcept { return size_; }
   /// False once its file was removed or replaced. Needs no descriptor.
-  bool is_file(const std::string & path) const noexcept;
+  bool is_file(const std::string & path) const noexcept { return file_.is_at(path); }
   /// Where another process of this user finds the same memory while this one lives.
   std::string shared_path() const;
   explicit operator bool() const noexcept { return data_ != nullptr; }
@@ -65,18 +63,16 @@ public:
 
 private:
   static SharedMemory open(const std::string & path, size_t least_size_bytes, int flags);
-  SharedMemory(FileDescriptor fd, const std::string & path, size_t size_bytes);
+  SharedMemory(FileDescriptor fd, const std::string & path, size_t size_bytes, int flags);
   void unmap() noexcept;
   /// An errno.
   int try_reserve(uint64_t first, uint64_t bytes) const noexcept;
   [[noreturn]] void throw_no_space(uint64_t bytes) const;
 
-  FileDescriptor fd_;
+  LastingDescriptor file_;
   std::string path_;
   std::byte * data_ = nullptr;
   size_t size_ = 0;
-  dev_t device_ = 0;  ///< with inode_: which file it is
-  ino_t inode_ = 0;
 };
 
 }  // namespace manycore

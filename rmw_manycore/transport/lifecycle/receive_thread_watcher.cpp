@@ -2,11 +2,11 @@
 #include "transport/lifecycle/receive_thread_watcher.hpp"
 
 #include <poll.h>
-#include <sys/eventfd.h>
 
 #include <cstdio>
 
 #include "platform/blocked_signals.hpp"
+#include "platform/lasting_descriptor.hpp"
 #include "platform/os_process.hpp"
 #include "transport/lifecycle/lifecycle.hpp"
 
@@ -18,28 +18,27 @@ constexpr int settle_ms = 1;    ///< while another process is starting it
 constexpr int for_ever_ms = -1;
 constexpr int foreign_ms = 500;  ///< no pidfd tells of an end in another PID namespace
 
+/// Sleeps until the time is over or the descriptor is readable; -1 stands for neither. Only here
+/// the thread may be cancelled: a descriptor to tell it by could be closed by the program.
+void sleep_cancellable(int timeout_ms, int fd = -1) {
+  pollfd readable{fd, POLLIN, 0};
+  pthread_setcancelstate(PTHREAD_CANCEL_ENABLE, nullptr);
+  poll(&readable, 1, timeout_ms);
+  pthread_setcancelstate(PTHREAD_CANCEL_DISABLE, nullptr);
+}
+
 }  // namespace
 
 ReceiveThreadWatcher::ReceiveThreadWatcher(Registry & registry, uint32_t cluster)
-: registry_(registry), cluster_(cluster), stop_(eventfd(0, EFD_CLOEXEC)) {
-  if (!stop_) {
-    throw_errno("cannot create an eventfd");
-  }
+: registry_(registry), cluster_(cluster) {
   const BlockedSignals blocked;
   thread_ = std::thread([this] { run(); });
   pthread_setname_np(thread_.native_handle(), "manycore_watch");
 }
 
 ReceiveThreadWatcher::~ReceiveThreadWatcher() {
-  eventfd_write(stop_.get(), 1);
+  pthread_cancel(thread_.native_handle());
   thread_.join();
-}
-
-bool ReceiveThreadWatcher::stopped_within(int timeout_ms, int other_fd) const noexcept {
-  pollfd fds[2] = {{stop_.get(), POLLIN, 0}, {other_fd, POLLIN, 0}};
-  while (poll(fds, other_fd >= 0 ? 2 : 1, timeout_ms) < 0) {
-  }
-  return (fds[0].revents & POLLIN) != 0;
 }
 
 /// The receive thread ends when the files go; if it was killed before, this thread notices.
@@ -66,17 +65,19 @@ bool ReceiveThreadWatcher::watch_once() {
   const uint32_t line = receive_thread_line + cluster_;
   const ProcessIdentity receive_thread = lifelines.holder(line);
   if (!receive_thread.is_of_this_pid_namespace()) {
-    return !stopped_within(lifelines.is_held(line) ? foreign_ms : settle_ms, -1);
+    sleep_cancellable(lifelines.is_held(line) ? foreign_ms : settle_ms);
+    return true;
   }
-  const FileDescriptor pidfd = open_pidfd(receive_thread.pid);
+  const LastingDescriptor pidfd(open_pidfd(receive_thread.pid));
   // The lifeline proves that the pid, read before, is still the receive thread's.
-  if (!pidfd || !lifelines.is_held(line)) {
-    return !stopped_within(settle_ms, -1);
-  }
-  return !stopped_within(for_ever_ms, pidfd.get());
+  const bool is_watched = lifelines.is_held(line) && pidfd.get() >= 0;
+  sleep_cancellable(is_watched ? for_ever_ms : settle_ms, pidfd.get());
+  return true;
 }
 
-void ReceiveThreadWatcher::run() noexcept {
+/// Not noexcept: being cancelled unwinds the stack.
+void ReceiveThreadWatcher::run() {
+  pthread_setcancelstate(PTHREAD_CANCEL_DISABLE, nullptr);
   bool reported = false;
   bool running = true;
   while (running) {
@@ -87,7 +88,7 @@ void ReceiveThreadWatcher::run() noexcept {
         std::fprintf(stderr, "[rmw_manycore] %s\n", error.what());
       }
       reported = true;
-      running = !stopped_within(retry_ms, -1);
+      sleep_cancellable(retry_ms);
     }
   }
 }

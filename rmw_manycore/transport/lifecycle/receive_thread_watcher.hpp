@@ -3,7 +3,6 @@
 
 #include <thread>
 
-#include "platform/file_descriptor.hpp"
 #include "transport/registry/registry.hpp"
 
 namespace manycore {
@@ -18,15 +17,13 @@ public:
   ReceiveThreadWatcher & operator=(const ReceiveThreadWatcher &) = delete;
 
 private:
-  void run() noexcept;
-  /// False when the watcher was told to stop, or has nothing left to watch.
+  void run();
+  /// False when nothing is left to watch.
   bool watch_once();
   bool is_cut_off();
-  bool stopped_within(int timeout_ms, int other_fd) const noexcept;
 
   Registry & registry_;
   uint32_t cluster_;
-  FileDescriptor stop_;  ///< eventfd
   std::thread thread_;
 };
 

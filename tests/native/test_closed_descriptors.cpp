@@ -1,0 +1,96 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+//
+// Programs that become daemons close all descriptors, those of the platform among them; the numbers
+// are then other files'.
+#include <doctest/doctest.h>
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+#include "child.hpp"
+#include "messages.hpp"
+#include "patience.hpp"
+#include "platform_of_test.hpp"
+
+using namespace manycore;
+
+namespace {
+
+constexpr size_t large_bytes = 1'000'000;  // the topic DSM has to grow for it
+constexpr const char * content = "untouched";
+
+/// True once the watcher of a process sleeps on its receive thread, and opens nothing any more.
+bool watches(pid_t pid) {
+  for (const auto & entry :
+       std::filesystem::directory_iterator("/proc/" + std::to_string(pid) + "/fd")) {
+    std::error_code gone;
+    if (std::filesystem::read_symlink(entry, gone) == "anon_inode:[pidfd]") {
+      return true;
+    }
+  }
+  return false;
+}
+
+/// Closes all descriptors but those to the test, and opens a file under their numbers.
+void take_over_descriptors(const std::string & file) {
+  for (int fd = 3; fd < 256; ++fd) {
+    close(fd);
+  }
+  for (int fd = 3; fd < 64; ++fd) {
+    require(open(file.c_str(), O_RDWR | O_APPEND | O_CLOEXEC) == fd);
+  }
+}
+
+void require_taken_over(const std::string & file) {
+  struct stat expected {};
+  require(stat(file.c_str(), &expected) == 0);
+  for (int fd = 3; fd < 64; ++fd) {
+    struct stat found {};
+    require(fstat(fd, &found) == 0 && found.st_ino == expected.st_ino);
+  }
+}
+
+const Role daemon_publisher("daemon", [](Lines & test, const Arguments & arguments) {
+  Placement placement;
+  placement.platform = arguments.at(0);
+  auto process = Process::join(placement);
+  auto publisher = process->create_publisher(on_topic("/x", keep_last(10)));
+  wait_until("a match", [&] { return publisher->matched().current == 1; });
+  wait_until("its receive thread is watched", [] { return watches(getpid()); });
+  take_over_descriptors(arguments.at(1));
+  publish(*publisher, 1);
+  publish(*publisher, 2, large_bytes);
+  test.say("published");
+  test.expect("close");
+  publisher.reset();
+  process.reset();
+  require_taken_over(arguments.at(1));
+  test.say("closed");
+  test.hear();
+});
+
+}  // namespace
+
+TEST_CASE("a process whose descriptors were closed goes on, and touches no other's file") {
+  const TestPlatform platform;
+  const auto process = platform.join(2);
+  const auto subscription = process->create_subscription(on_topic("/x", keep_last(10)));
+  char file[] = "/tmp/manycore-test-XXXXXX";
+  close(mkstemp(file));
+  std::ofstream(file) << content;
+  {
+    Child daemon("daemon", {platform.name(), file});
+    daemon.expect("published");
+    CHECK(take_next(*process, *subscription).number == 1);
+    CHECK(take_next(*process, *subscription).number == 2);
+    daemon.say("close");
+    daemon.expect("closed");
+  }
+  CHECK(std::filesystem::file_size(file) == std::string(content).size());
+  std::filesystem::remove(file);
+}
