@@ -267,6 +267,15 @@ TEST_CASE("random words in a cluster segment in use: visitors get along or get a
   }
 }
 
+TEST_CASE("a size of the memory map that is damaged later: nodes keep to the size that they found") {
+  const TestPlatform platform;
+  const auto process = platform.join(1);
+  platform.receive_thread(1);
+  Inspection inspection(platform);
+  inspection.registry().clusters().at(1).header().granule_count = UINT32_MAX;
+  CHECK_NOTHROW(process->create_publisher(on_topic("/x", keep_last(1))));
+}
+
 TEST_CASE(
   "a chain of blocks that leads out of its cluster, or in a circle, is freed as far as it goes") {
   for (const std::string end : {"publisher", "subscription"}) {

@@ -90,16 +90,19 @@ void Cluster::create(
 }
 
 Cluster::Cluster(const PlatformPaths & paths, uint32_t id, uint64_t platform_nonce)
-: id_(id), memory_(SharedMemory::open(paths.cluster(id), 4096)), pipe_(Pipe::open(paths.pipe(id))) {
+: id_(id),
+  memory_(SharedMemory::open(paths.cluster(id), 4096)),
+  pipe_(Pipe::open(paths.pipe(id))),
+  granule_bytes_(granule_size(memory_.size())),
+  granule_count_(memory_.size() / granule_bytes_) {
   const ClusterHeader & head = header();
   check_segment(head.segment, cluster_magic, memory_.size(), paths.cluster(id).c_str());
   const std::string advice = "; stop the platform's nodes and run 'manycore clean'";
   if (head.segment.cluster != id || head.segment.platform_nonce != platform_nonce) {
     throw Error(ErrorCode::corrupt, paths.cluster(id) + " belongs to another platform" + advice);
   }
-  const uint32_t granule = granule_size(memory_.size());
-  const bool sound = head.granule_bytes == granule &&
-                     head.granule_count == memory_.size() / granule &&
+  const bool sound = head.granule_bytes == granule_bytes_ &&
+                     head.granule_count == granule_count_ &&
                      head.used_bytes.load(std::memory_order_relaxed) <= memory_.size();
   if (!sound) {
     throw Error(ErrorCode::corrupt, paths.cluster(id) + " has a damaged header" + advice);
@@ -107,7 +110,7 @@ Cluster::Cluster(const PlatformPaths & paths, uint32_t id, uint64_t platform_non
 }
 
 uint64_t Cluster::granules_of(uint64_t length) const noexcept {
-  return (length + header().granule_bytes - 1) / header().granule_bytes;
+  return (length + granule_bytes_ - 1) / granule_bytes_;
 }
 
 bool Cluster::granule_used(uint64_t index) const noexcept {
@@ -124,7 +127,7 @@ void Cluster::set_granules(uint64_t first, uint64_t count, bool used) const noex
 
 /// First fit; returns granule_count when there is no run.
 uint64_t Cluster::find_run(uint64_t count) const noexcept {
-  const uint64_t total = header().granule_count;
+  const uint64_t total = granule_count_;
   uint64_t run = 0;
   for (uint64_t i = 0; i < total; ++i) {
     if (run == 0 && i % 64 == 0 && granule_map()[i / 64] == UINT64_MAX) {
@@ -144,10 +147,10 @@ uint64_t Cluster::find_run(uint64_t count) const noexcept {
 void Cluster::require_sound_map() const {
   const ClusterHeader & head = header();
   uint64_t used = 0;
-  for (uint64_t i = 0; i < map_bytes(head.granule_count) / 8; ++i) {
+  for (uint64_t i = 0; i < map_bytes(granule_count_) / 8; ++i) {
     used += static_cast<uint64_t>(__builtin_popcountll(granule_map()[i]));
   }
-  if (used * head.granule_bytes != head.used_bytes.load(std::memory_order_relaxed)) {
+  if (used * granule_bytes_ != head.used_bytes.load(std::memory_order_relaxed)) {
     throw Error(
       ErrorCode::corrupt, "the memory map of cluster " + std::to_string(id_) +
                             " is damaged; stop the platform's nodes and run 'manycore clean'");
@@ -155,14 +158,14 @@ void Cluster::require_sound_map() const {
 }
 
 void Cluster::require_message_room(uint64_t length) const {
-  const uint64_t bytes = granules_of(length) * header().granule_bytes;
+  const uint64_t bytes = granules_of(length) * granule_bytes_;
   if (!has_room(bytes + control_reserve_bytes(size()))) {
     throw no_message_room(*this, length, topic_dsm_advice);
   }
 }
 
 void Cluster::require_file_system_room(uint64_t length) const {
-  const uint64_t bytes = granules_of(length) * header().granule_bytes;
+  const uint64_t bytes = granules_of(length) * granule_bytes_;
   const FileSystemRoom host = memory_.file_system_room();
   const bool is_limited = host.total_bytes != 0;  // a tmpfs with size=0 is not
   if (is_limited && host.free_bytes < bytes + control_reserve_bytes(host.total_bytes)) {
@@ -192,12 +195,12 @@ uint64_t Cluster::reserve(uint64_t length) {
   ClusterHeader & head = header();
   const uint64_t count = granules_of(length);
   const uint64_t first = find_run(count);
-  if (first == head.granule_count || !has_room(count * head.granule_bytes)) {
+  if (first == granule_count_ || !has_room(count * granule_bytes_)) {
     throw no_room(*this, length, fill_level(*this) + "; " + topic_dsm_advice);
   }
-  const uint64_t offset = first * head.granule_bytes;
-  const uint64_t bytes = count * head.granule_bytes;
-  if (head.granule_bytes < page_bytes) {
+  const uint64_t offset = first * granule_bytes_;
+  const uint64_t bytes = count * granule_bytes_;
+  if (granule_bytes_ < page_bytes) {
     // Pages that neighbours share are backed and touched under the lock: a fallocate() that fails
     // takes back all untouched pages of its range, and so a neighbour's.
     memory_.reserve_and_populate(offset, 1);
@@ -209,18 +212,18 @@ uint64_t Cluster::reserve(uint64_t length) {
 }
 
 void Cluster::back(uint64_t offset, uint64_t length) const {
-  memory_.reserve_and_populate(offset, granules_of(length) * header().granule_bytes);
+  memory_.reserve_and_populate(offset, granules_of(length) * granule_bytes_);
 }
 
 void Cluster::free(uint64_t offset, uint64_t length) noexcept {
   ClusterHeader & head = header();
   const uint64_t count = granules_of(length);
-  if (!contains(offset, count * head.granule_bytes)) {
+  if (!contains(offset, count * granule_bytes_)) {
     return;
   }
-  set_granules(offset / head.granule_bytes, count, false);
-  head.used_bytes.fetch_sub(count * head.granule_bytes, std::memory_order_relaxed);
-  memory_.release(offset, count * head.granule_bytes);
+  set_granules(offset / granule_bytes_, count, false);
+  head.used_bytes.fetch_sub(count * granule_bytes_, std::memory_order_relaxed);
+  memory_.release(offset, count * granule_bytes_);
 }
 
 bool Cluster::has_room(uint64_t length) const noexcept {
@@ -242,21 +245,21 @@ void Cluster::mark_charged(uint64_t length) noexcept {
 
 void Cluster::forget_allocations() noexcept {
   ClusterHeader & head = header();
-  const uint64_t own = granules_of(granule_map_offset + map_bytes(head.granule_count));
-  std::fill_n(granule_map(), map_bytes(head.granule_count) / 8, 0);
+  const uint64_t own = granules_of(granule_map_offset + map_bytes(granule_count_));
+  std::fill_n(granule_map(), map_bytes(granule_count_) / 8, 0);
   set_granules(0, own, true);
-  head.used_bytes.store(own * head.granule_bytes, std::memory_order_relaxed);
+  head.used_bytes.store(own * granule_bytes_, std::memory_order_relaxed);
   head.charged_bytes.store(0, std::memory_order_relaxed);
 }
 
 void Cluster::mark_allocated(uint64_t offset, uint64_t length) noexcept {
   ClusterHeader & head = header();
   const uint64_t count = granules_of(length);
-  if (!contains(offset, count * head.granule_bytes)) {
+  if (!contains(offset, count * granule_bytes_)) {
     return;
   }
-  set_granules(offset / head.granule_bytes, count, true);
-  head.used_bytes.fetch_add(count * head.granule_bytes, std::memory_order_relaxed);
+  set_granules(offset / granule_bytes_, count, true);
+  head.used_bytes.fetch_add(count * granule_bytes_, std::memory_order_relaxed);
 }
 
 Clusters::Clusters(PlatformPaths paths, uint64_t platform_nonce)

@@ -117,6 +117,9 @@ private:
   uint32_t id_;
   SharedMemory memory_;
   Pipe pipe_;
+  // As in the header, which may be damaged later.
+  uint64_t granule_bytes_;
+  uint64_t granule_count_;
 };
 
 /// The clusters that this process has mapped, each on first use. Thread-safe, lock-free once
