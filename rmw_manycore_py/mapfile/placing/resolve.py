@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from rmw_manycore_py.errors import MapfileError, Problem
+from rmw_manycore_py.mapfile.format.checks import PLACE_VARIABLES
 from rmw_manycore_py.mapfile.format.mapfile import Mapfile
 from rmw_manycore_py.mapfile.launch_file import LaunchFile, read_launch_file
 from rmw_manycore_py.mapfile.placing.crossings import bridge_placement
@@ -215,7 +216,9 @@ def _environment(mapfile: Mapfile, name: str, core: Core, start: NodeStart) -> d
     }
     if mapfile.sections.malloc_tuning:
         env["MALLOC_TRIM_THRESHOLD_"] = env["MALLOC_MMAP_THRESHOLD_"] = _MALLOC_THRESHOLD
-    return {**env, **start.env, **place}  # a launch file may set all but the place
+    # A launch file may set all but the place.
+    asked = {name: value for name, value in start.env.items() if name not in PLACE_VARIABLES}
+    return {**env, **asked, **place}
 
 
 def _topics_of(

@@ -217,6 +217,21 @@ def test_the_mapfile_overrules_the_launch_file(resolved: Check, tmp_path: Path) 
     assert node.full_name == "/talker"
 
 
+def test_a_launch_file_sets_any_variable_but_the_place(resolved: Check, tmp_path: Path) -> None:
+    (tmp_path / "demo.launch.xml").write_text(
+        '<launch><set_env name="MANYCORE_DIRECTORY" value="/tmp"/>'
+        '<set_env name="MANYCORE_PLATFORM" value="other"/><set_env name="A" value="1"/>'
+        '<node pkg="p" exec="e" name="talker"/></launch>'
+    )
+    (node,) = resolved(
+        "platform: {name: mine}\nlaunch_path: demo.launch.xml\n"
+        "nodes:\n  talker: {cluster: 1, script: talker.py}\n"
+    ).nodes
+    assert node.env["A"] == "1"
+    assert node.env["MANYCORE_PLATFORM"] == "mine"
+    assert "MANYCORE_DIRECTORY" not in node.env
+
+
 def test_nodes_of_the_launch_file_that_are_not_placed_are_noted(
     resolved: Check, tmp_path: Path
 ) -> None:
