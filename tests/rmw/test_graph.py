@@ -11,6 +11,7 @@ import pytest
 import rclpy
 from forked import forked_example
 from rclpy.duration import Duration, Infinite
+from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.topic_endpoint_info import TopicEndpointTypeEnum
 from ros_support import peer_node, spin_until
@@ -49,6 +50,10 @@ def type_hash(message: str) -> str:
     description = Path(sys.prefix, "share", package, "msg", f"{name}.json")
     hashes = json.loads(description.read_text())["type_hashes"]
     return next(entry["hash_string"] for entry in hashes if entry["type_name"] == message)
+
+
+def services_of(node: Node) -> list[str]:
+    return [name for name, _ in node.get_service_names_and_types()]
 
 
 def test_node_names(node, peer):
@@ -131,6 +136,18 @@ def test_a_node_that_ends_leaves_the_graph(node, peer, how):
     spin_until(node, lambda: node.get_node_names() == ["tester"])
     assert node.count_publishers("/far/chatter") == 0
     assert node.count_services("/far/serve") == 0
+
+
+def be_there_briefly() -> None:
+    """Leave get_type_description behind, which rclpy never destroys."""
+    rclpy.init()
+    rclpy.create_node("brief").destroy_node()
+    rclpy.shutdown()
+
+
+def test_what_a_process_did_not_destroy_leaves_the_graph(node, start_peer, peer_cluster):
+    start_peer(be_there_briefly, cluster=peer_cluster).wait()
+    spin_until(node, lambda: not any("brief" in name for name in services_of(node)))
 
 
 def test_endpoints_come_and_go(node):
