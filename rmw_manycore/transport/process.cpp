@@ -206,6 +206,7 @@ void Process::Impl::leave() {
     discharge(*registry, slot);
     registry->processes().give_back(slot);
   }
+  registry->graph_changed();
   lifeline.reset();
   // The name may be a later platform's, if the files of this one were removed.
   if (registry->is_current() && !is_in_use(*registry)) {

@@ -32,6 +32,7 @@ const char * duration_error(
   return rmw_time_total_nsec(requested) < rmw_time_total_nsec(offered) ? longer : nullptr;
 }
 
+/// In the words of the other middlewares: `ros2 doctor` and its tests look for them.
 std::string errors(const rmw_qos_profile_t & offered, const rmw_qos_profile_t & requested) {
   std::string text;
   const auto add = [&](const char * error) {
@@ -42,25 +43,25 @@ std::string errors(const rmw_qos_profile_t & offered, const rmw_qos_profile_t & 
   if (
     offered.reliability == RMW_QOS_POLICY_RELIABILITY_BEST_EFFORT &&
     requested.reliability == RMW_QOS_POLICY_RELIABILITY_RELIABLE) {
-    add("the publisher is best effort, the subscription reliable");
+    add("Best effort publisher and reliable subscription");
   }
   if (
     offered.durability == RMW_QOS_POLICY_DURABILITY_VOLATILE &&
     requested.durability == RMW_QOS_POLICY_DURABILITY_TRANSIENT_LOCAL) {
-    add("the publisher is volatile, the subscription transient local");
+    add("Volatile publisher and transient local subscription");
   }
   add(duration_error(
-    offered.deadline, requested.deadline, "the subscription has a deadline, the publisher none",
-    "the subscription's deadline is shorter than the publisher's"));
+    offered.deadline, requested.deadline, "Subscription has a deadline, but publisher does not",
+    "Subscription deadline is less than publisher deadline"));
   if (
     offered.liveliness == RMW_QOS_POLICY_LIVELINESS_AUTOMATIC &&
     requested.liveliness == RMW_QOS_POLICY_LIVELINESS_MANUAL_BY_TOPIC) {
-    add("the publisher's liveliness is automatic, the subscription's manual by topic");
+    add("Publisher's liveliness is automatic and subscription's is manual by topic");
   }
   add(duration_error(
     offered.liveliness_lease_duration, requested.liveliness_lease_duration,
-    "the subscription has a liveliness lease duration, the publisher none",
-    "the subscription's liveliness lease duration is shorter than the publisher's"));
+    "Subscription has a liveliness lease duration, but publisher does not",
+    "Subscription liveliness lease duration is less than publisher"));
   return text;
 }
 
@@ -80,8 +81,8 @@ std::string warning(
     const char * const found = to_string(policy);
     return std::string(found != nullptr ? found : "unknown");
   };
-  return std::string("WARNING: the publisher's ") + name + " is " + text(offered) +
-         ", the subscription's " + text(requested) + ";";
+  return std::string("WARNING: Publisher ") + name + " is " + text(offered) +
+         " and subscription " + name + " is " + text(requested) + ";";
 }
 
 std::string warnings(const rmw_qos_profile_t & offered, const rmw_qos_profile_t & requested) {

@@ -10,6 +10,9 @@
 namespace rmw_manycore {
 namespace {
 
+/// RTPS carries whole words, so subscribers of raw messages know them as padded with zeros.
+constexpr size_t word_bytes = 4;
+
 /// `info` may be null.
 bool take_serialized(
   Subscription & subscription, rmw_serialized_message_t & message, rmw_message_info_t * info) {
@@ -17,13 +20,16 @@ bool take_serialized(
   if (!claim) {
     return false;
   }
-  if (message.buffer_capacity < claim->size()) {
-    check(rmw_serialized_message_resize(&message, claim->size()));
+  const size_t size = claim->size();
+  const size_t padded = (size + word_bytes - 1) / word_bytes * word_bytes;
+  if (message.buffer_capacity < padded) {
+    check(rmw_serialized_message_resize(&message, padded));
   }
-  if (claim->size() != 0) {
-    std::memcpy(message.buffer, claim->data(), claim->size());
+  if (size != 0) {
+    std::memcpy(message.buffer, claim->data(), size);
+    std::memset(message.buffer + size, 0, padded - size);
   }
-  message.buffer_length = claim->size();
+  message.buffer_length = padded;
   if (info != nullptr) {
     *info = to_rmw(claim->info());
   }
