@@ -4,6 +4,7 @@
 #include <pthread.h>
 
 #include <condition_variable>
+#include <cstdio>
 #include <future>
 #include <mutex>
 #include <thread>
@@ -35,16 +36,17 @@ bool try_lock(RobustMutex & mutex) {
 }
 
 /// Threads of a killed process end one by one, in no order, and this one's held the line: others
-/// may still run on their CPUs. They need no more than an interrupt to stop. A process that became
-/// another program (exec) goes on under its pid, so the wait is bounded.
+/// may still run on their CPUs. They need no more than an interrupt to stop, or the end of a system
+/// call, of which those that give memory back are made under the registry lock. A process that
+/// became another program (exec) goes on under its pid, so the wait is bounded.
 void wait_for_stragglers(const ProcessIdentity & dying) {
   constexpr int enough_ms = 10;
   try {
     dying.wait_for_end(enough_ms);
   } catch (const Error &) {
-    const timespec pause =
-      to_timespec(enough_ms * ns_per_s / 1000);  // no descriptor left to wait on
-    nanosleep(&pause, nullptr);
+    timespec left = to_timespec(enough_ms * ns_per_s / 1000);  // no descriptor left to wait on
+    while (nanosleep(&left, &left) != 0) {
+    }
   }
 }
 
@@ -128,9 +130,12 @@ HeldLifeline::~HeldLifeline() {
   holder_->let_go();
 }
 
+/// Under another name until it is whole: killed in between, it leaves a directory without
+/// lifelines, which is nobody's.
 void Lifelines::create(const std::string & path, uint32_t count) {
   const uint64_t bytes = sizeof(Header) + uint64_t{count} * sizeof(Lifeline);
-  const SharedMemory memory = SharedMemory::create(path, bytes);
+  const std::string unfinished = path + ".new";
+  const SharedMemory memory = SharedMemory::create(unfinished, bytes);
   memory.reserve(0, bytes);
   for (uint32_t line = 0; line < count; ++line) {
     memory.at<Lifeline>(sizeof(Header) + uint64_t{line} * sizeof(Lifeline)).mutex.initialize();
@@ -138,6 +143,9 @@ void Lifelines::create(const std::string & path, uint32_t count) {
   auto & header = memory.at<Header>(0);
   header.count = count;
   header.magic.store(lifelines_magic, std::memory_order_release);
+  if (rename(unfinished.c_str(), path.c_str()) != 0) {
+    throw_errno("cannot create " + path);
+  }
 }
 
 Lifelines::Lifelines(SharedMemory memory)

@@ -9,6 +9,7 @@
 #include <sstream>
 #include <string>
 
+#include "platform/clock.hpp"
 #include "platform/os_process.hpp"
 
 namespace manycore {
@@ -52,8 +53,12 @@ bool ProcessIdentity::is_of_this_pid_namespace() const {
 void ProcessIdentity::wait_for_end(int timeout_ms) const {
   const FileDescriptor pidfd = open_pidfd(pid);
   if (pidfd && start_time_of(pid) == start_time) {
+    const int64_t deadline_ns = monotonic_ns() + int64_t{timeout_ms} * (ns_per_s / 1000);
     pollfd end{pidfd.get(), POLLIN, 0};
-    poll(&end, 1, timeout_ms);
+    int left_ms = timeout_ms;
+    while (poll(&end, 1, left_ms) < 0 && left_ms > 0) {  // a signal handler ran
+      left_ms = static_cast<int>((deadline_ns - monotonic_ns()) / (ns_per_s / 1000));
+    }
   }
 }
 

@@ -208,10 +208,7 @@ void Process::Impl::leave() {
   }
   registry->graph_changed();
   lifeline.reset();
-  // The name may be a later platform's, if the files of this one were removed.
-  if (registry->is_current() && !is_in_use(*registry)) {
-    remove_platform(paths);
-  }
+  remove_if_unused(*registry);
 }
 
 uint32_t Process::Impl::fill_endpoint(const EndpointSpec & spec, EndpointKind kind) {

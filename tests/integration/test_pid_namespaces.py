@@ -48,12 +48,16 @@ def cpu_used_by(pids: list[int]) -> float:
     return sum(map(cpu_time_s, pids)) - before_s
 
 
-@pytest.fixture
-def outside(start):
+def start_outside(start):
     """Return a node in no namespace, whose receive thread outlives those in namespaces."""
     program = start(example_command("talker", "--ros-args", "-r", "chatter:=unheard"), 3)
     program.wait_for("Publishing")
     return program
+
+
+@pytest.fixture
+def outside(start):
+    return start_outside(start)
 
 
 @pytest.fixture
@@ -82,6 +86,18 @@ def test_a_node_killed_in_its_namespace_is_reaped(platform, start, talker, clust
     late.wait_for("Publishing")
     listener.skip_output()
     listener.wait_for("I heard")
+
+
+def test_a_node_with_the_pid_of_a_watched_one_is_reaped(platform, start):
+    """The first process of each namespace has pid 1, and the first reaper watches its own."""
+    talker = start(in_namespace(*example_command("talker")), 1)
+    talker.wait_for("Publishing")
+    listener = start(in_namespace(*example_command("listener")), 1)
+    listener.wait_for("I heard")
+    assert len(members(platform)) == 2
+    kill(first_process_of(listener.pid))
+    wait_until(lambda: len(members(platform)) == 1, "the listener is no member any more")
+    start_outside(start)  # only now: it would have looked as well
 
 
 def test_watching_another_namespace_costs_nothing(platform, start, talker):

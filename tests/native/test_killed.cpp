@@ -7,6 +7,7 @@
 #include <doctest/doctest.h>
 
 #include <cstdlib>
+#include <filesystem>
 
 #include "messages.hpp"
 #include "node_role.hpp"
@@ -32,6 +33,13 @@ std::shared_ptr<Process> join(const std::string & platform) {
 const Role joins("joins", [](Lines &, const Arguments & arguments) {
   begin_steps();
   join(arguments.at(0));
+  finish_steps();
+});
+
+const Role leaves("leaves", [](Lines &, const Arguments & arguments) {
+  auto process = join(arguments.at(0));
+  begin_steps();
+  process.reset();
   finish_steps();
 });
 
@@ -139,6 +147,11 @@ struct Fixture {
   uint64_t number = 0;
 };
 
+size_t files_in(const std::string & directory) {
+  const std::filesystem::directory_iterator all(directory);
+  return static_cast<size_t>(std::distance(begin(all), end(all)));
+}
+
 uint64_t tries() {
   const char * const asked = std::getenv("MANYCORE_TEST_STEPS");
   return asked == nullptr ? 4 : std::stoull(asked);
@@ -200,7 +213,8 @@ TEST_CASE("killed at any instruction while it clears away what other dead left")
 }
 
 // The kernel ends the threads of a killed process one after the other. The main thread's end gives
-// the registry lock to the next process while the thread that proves the process's life still lives.
+// the registry lock to the next process while the thread that proves the process's life still
+// lives.
 TEST_CASE("killed thread by thread while it closes: nothing is freed that publishers know") {
   Fixture f;
   f.platform.receive_thread(1);
@@ -218,4 +232,41 @@ TEST_CASE("killed thread by thread while it closes: nothing is freed that publis
   f.wait_until_alone();
   f.check_that_it_goes_on();
   CHECK(f.inspection.used_bytes() == used);
+}
+
+TEST_CASE("killed while it brings up a platform: the next process does, and 'clean' works") {
+  const TestPlatform platform;
+  const std::string directory = platform.paths().directory;
+  const auto kill_at = [&](size_t files, uint64_t more) {
+    SteppedChild first("joins", {platform.name()});
+    while (!std::filesystem::exists(directory) || files_in(directory) < files) {
+      REQUIRE(first.step(1) == 1);
+    }
+    first.step(more);
+    first.kill();
+  };
+  for (const size_t files : {1, 2}) {
+    for (const uint64_t more : {0, 200, 2000}) {
+      CAPTURE(files);
+      CAPTURE(more);
+      kill_at(files, more);
+      CHECK_NOTHROW(clean_platform(platform.name()));
+      CHECK_FALSE(platform.exists());
+      kill_at(files, more);
+      CHECK_NOTHROW(platform.join(1));
+    }
+  }
+}
+
+TEST_CASE("killed while it takes a platform away: the receive threads go on with it") {
+  const TestPlatform platform;
+  SteppedChild last("leaves", {platform.name()});
+  platform.receive_thread(1);
+  const std::string directory = platform.paths().directory;
+  const size_t all = files_in(directory);
+  while (files_in(directory) == all) {
+    REQUIRE(last.step(1) == 1);
+  }
+  last.kill();
+  wait_until("the platform is gone", [&] { return !platform.exists(); });
 }

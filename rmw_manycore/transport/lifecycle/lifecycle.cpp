@@ -201,6 +201,16 @@ std::vector<std::string> remove_platform(const PlatformPaths & paths) {
   return removed;
 }
 
+bool remove_if_unused(Registry & registry) {
+  const PlatformPaths & paths = registry.paths();
+  const bool is_other = exists(paths.alive()) && !registry.lifelines().is_file(paths.alive());
+  if (is_other || is_in_use(registry)) {
+    return false;
+  }
+  remove_platform(paths);
+  return true;
+}
+
 void note_removal(Registry & registry) noexcept {
   registry.header().removed.store(1, std::memory_order_seq_cst);
   for (uint32_t slot = 0; slot < registry.processes().high_water(); ++slot) {
@@ -230,8 +240,8 @@ void tell_other_reapers(Registry & registry, uint32_t own) {
   for (uint32_t id = 1; id <= max_clusters; ++id) {
     Cluster * const cluster =
       (present >> (id - 1) & 1) != 0 && id != own ? registry.clusters().find(id) : nullptr;
-    if (cluster != nullptr) {
-      cluster->send(message);
+    if (cluster != nullptr && !cluster->send(message)) {
+      cluster->header().pipe_overflow.store(1, std::memory_order_seq_cst);
     }
   }
 }

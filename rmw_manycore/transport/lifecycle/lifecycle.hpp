@@ -46,6 +46,10 @@ bool is_in_use(Registry & registry);
 /// True when anything of the platform lives, receive threads included.
 bool is_alive(const PlatformPaths & paths);
 
+/// Removes all files of a platform without a process, also what a killed process has left of them;
+/// but not a later platform of its name. False when it is used. The caller holds the JoinLock.
+bool remove_if_unused(Registry & registry);
+
 /// Sends the receive threads home and removes all files. The caller holds the JoinLock. Returns the
 /// paths.
 std::vector<std::string> remove_platform(const PlatformPaths & paths);

@@ -10,6 +10,7 @@
 
 #include <cstdlib>
 #include <mutex>
+#include <utility>
 
 #include "platform/os_process.hpp"
 #include "transport/lifecycle/lifecycle.hpp"
@@ -52,13 +53,10 @@ bool end_if_unused(Registry & registry) {
   const JoinLock lock(registry.paths());
   if (!registry.is_current()) {
     note_removal(registry);
+    remove_if_unused(registry);  // what a process that was killed meanwhile has left of it
     return true;
   }
-  if (is_in_use(registry)) {
-    return false;
-  }
-  remove_platform(registry.paths());
-  return true;
+  return remove_if_unused(registry);
 }
 
 }  // namespace
@@ -100,10 +98,14 @@ void Reaper::look_again() noexcept { eventfd_write(event_.get(), 1); }
 
 void Reaper::watch(uint32_t line) {
   const ProcessIdentity holder = registry_.lifelines().holder(line);
-  if (holder.pid <= 0 || holder.pid == getpid() || watched_.count(holder.pid) != 0) {
+  if (holder.pid <= 0) {
     return;
   }
-  if (!holder.is_of_this_pid_namespace() || !watch_end_of(holder.pid)) {
+  // A pid of another namespace says nothing here, where another process may have it.
+  const bool is_watched =
+    holder.is_of_this_pid_namespace() &&
+    (holder.pid == getpid() || watched_.count(holder.pid) != 0 || watch_end_of(holder.pid));
+  if (!is_watched) {
     some_unwatched_ = some_unwatched_ || registry_.lifelines().is_held(line);
   }
 }
@@ -131,7 +133,9 @@ bool Reaper::is_ours(uint32_t cluster) const {
   }
   const Lifelines & lifelines = registry_.lifelines();
   const uint32_t line = receive_thread_line + cluster;
-  return watched_.count(lifelines.holder(line).pid) == 0 || !lifelines.is_held(line);
+  const ProcessIdentity holder = lifelines.holder(line);
+  return !holder.is_of_this_pid_namespace() || watched_.count(holder.pid) == 0 ||
+         !lifelines.is_held(line);
 }
 
 void Reaper::watch_members() {
@@ -155,6 +159,10 @@ void Reaper::watch_members() {
 
 /// Both under the lock: the members that died before they were watched are found by reap_dead().
 bool Reaper::watch_and_reap() {
+  // What a predecessor reaped may be untold, as is what this one reaps before it fails.
+  if (std::exchange(graph_may_have_changed_, true)) {
+    registry_.graph_changed();
+  }
   uint32_t dead = 0;
   {
     const Registry::Lock lock(registry_);
@@ -165,6 +173,7 @@ bool Reaper::watch_and_reap() {
   if (dead != 0) {
     registry_.graph_changed();
   }
+  graph_may_have_changed_ = false;
   return dead != 0;
 }
 

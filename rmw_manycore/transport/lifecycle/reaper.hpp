@@ -45,6 +45,7 @@ private:
   std::map<pid_t, FileDescriptor> watched_;
   bool some_unwatched_ = false;  ///< in other PID namespaces, or no descriptor was left
   bool is_closing_ = false;  ///< something could not be freed yet, and nobody tells when it can be
+  bool graph_may_have_changed_ = true;
   std::atomic<bool> running_{true};
   std::thread thread_;
 };
