@@ -102,7 +102,7 @@ void join(Registry & registry, const Pair & pair) {
   ReaderEntry & reader = free_reader(publisher_cluster, *dsm);
   const bool history = wants_history(pair.publisher, pair.subscription);
 
-  source.incarnation.fetch_add(1, std::memory_order_relaxed);
+  source.incarnation.fetch_add(1, std::memory_order_release);  // after it was free
   source.topic_dsm.store(pair.publisher.block.word, std::memory_order_relaxed);
   source.topic_dsm_endpoint.store(pair.publisher_slot, std::memory_order_relaxed);
   source.topic_dsm_incarnation.store(pair.publisher.slot.incarnation, std::memory_order_relaxed);

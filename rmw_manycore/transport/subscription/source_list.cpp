@@ -17,12 +17,15 @@ bool SourceList::renew() {
   bool has_new = false;
   std::vector<Source> renewed;
   visit_source_table(cluster_, header_, [&](SourceEntry & entry, uint32_t index) {
+    // Before the state: a use of the entry that begins in between is not this one.
+    const uint32_t incarnation = entry.incarnation.load(std::memory_order_acquire);
     if (entry.state.load(std::memory_order_acquire) != SourceState::active) {
       return false;
     }
     const auto known = std::find_if(
       sources_.begin(), sources_.end(), [&](const Source & source) { return source.is(entry); });
-    Source source = known != sources_.end() ? *known : Source(registry_, entry, index, entry_);
+    Source source =
+      known != sources_.end() ? *known : Source(registry_, entry, {index, incarnation}, entry_);
     if (source) {
       has_new = has_new || known == sources_.end();
       renewed.push_back(source);

@@ -25,11 +25,10 @@ void order(std::vector<Source::Waiting> & all, ptrdiff_t begin) {
 
 }  // namespace
 
-Source::Source(
-  Registry & registry, SourceEntry & entry, uint32_t index, EndpointEntry & subscription)
+Source::Source(Registry & registry, SourceEntry & entry, Use use, EndpointEntry & subscription)
 : entry_(&entry),
-  index_(index),
-  incarnation_(entry.incarnation.load(std::memory_order_relaxed)),
+  index_(use.index),
+  incarnation_(use.incarnation),
   noted_(entry.taken.load(std::memory_order_relaxed)),
   subscription_(&subscription) {
   const SegmentRef ref{entry.topic_dsm.load(std::memory_order_relaxed)};

@@ -14,9 +14,14 @@ namespace manycore {
 /// time (the subscription's mutex). See docs/design/topic_dsm.md, Take.
 class Source {
 public:
+  /// Which use of which entry of the source table.
+  struct Use {
+    uint32_t index;
+    uint32_t incarnation;
+  };
   /// Nullptr-like (operator bool) when the source leads nowhere.
   /// `subscription` has the gid, and the count of lost messages.
-  Source(Registry & registry, SourceEntry & entry, uint32_t index, EndpointEntry & subscription);
+  Source(Registry & registry, SourceEntry & entry, Use use, EndpointEntry & subscription);
 
   explicit operator bool() const noexcept { return dsm_ != nullptr; }
   uint32_t index() const noexcept { return index_; }

@@ -50,17 +50,22 @@ bool TopicDsmWriter::retire(const Generation & old) {
   return !readers_.is_any_pinned(old.first, current_.first - 1);
 }
 
-/// The memory goes back to the system without the lock, a step at each message, and then the SMEM
-/// to the cluster.
+/// The memory goes back to the system a step at each message, and then the SMEM to the cluster.
+/// Under the lock, which a killed process gives back only when its system call has ended: it makes
+/// no hole where the memory is another's by then.
 void TopicDsmWriter::free_old_generations() noexcept {
   try {
     for (size_t i = 0; i < old_.size();) {
       Generation & old = old_[i];
-      if (!retire(old) || !old.release_some(cluster_)) {
+      if (!retire(old)) {
         ++i;
         continue;
       }
       const Registry::Lock lock(registry_, Registry::Lock::no_wait_ns);
+      if (!old.release_some(cluster_)) {
+        ++i;
+        continue;
+      }
       Generation::free(cluster_, *old.entry);
       old_.erase(old_.begin() + static_cast<ptrdiff_t>(i));
     }
