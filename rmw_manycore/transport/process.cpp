@@ -98,6 +98,8 @@ struct Process::Impl {
   uint32_t take_process_slot();
   uint32_t fill_endpoint(const EndpointSpec & spec, EndpointKind kind);
   uint32_t add_endpoint(const EndpointSpec & spec, EndpointKind kind);
+  template<typename Endpoint>
+  std::unique_ptr<Endpoint> handle_of(uint32_t endpoint);
   void attach();
   void leave();
 
@@ -279,6 +281,19 @@ uint32_t Process::Impl::add_endpoint(const EndpointSpec & spec, EndpointKind kin
   return taken;
 }
 
+/// The endpoint goes with its handle, also where there is no memory for one.
+template<typename Endpoint>
+std::unique_ptr<Endpoint> Process::Impl::handle_of(uint32_t endpoint) {
+  registry->graph_changed();
+  try {
+    return std::make_unique<Endpoint>(
+      std::make_unique<typename Endpoint::Impl>(*registry, endpoint));
+  } catch (...) {
+    closing::leave(*registry, endpoint);
+    throw;
+  }
+}
+
 namespace {
 
 /// What this process has joined. A child of fork() begins anew, with a mutex that no thread holds.
@@ -358,16 +373,11 @@ void Process::remove_node(uint32_t node) noexcept {
 }
 
 std::unique_ptr<Publisher> Process::create_publisher(const EndpointSpec & spec) {
-  const uint32_t slot = impl_->add_endpoint(spec, EndpointKind::publisher);
-  impl_->registry->graph_changed();
-  return std::make_unique<Publisher>(std::make_unique<Publisher::Impl>(*impl_->registry, slot));
+  return impl_->handle_of<Publisher>(impl_->add_endpoint(spec, EndpointKind::publisher));
 }
 
 std::unique_ptr<Subscription> Process::create_subscription(const EndpointSpec & spec) {
-  const uint32_t slot = impl_->add_endpoint(spec, EndpointKind::subscription);
-  impl_->registry->graph_changed();
-  return std::make_unique<Subscription>(
-    std::make_unique<Subscription::Impl>(*impl_->registry, slot));
+  return impl_->handle_of<Subscription>(impl_->add_endpoint(spec, EndpointKind::subscription));
 }
 
 bool Process::is_cut_off() const noexcept { return impl_->membership->is_cut_off(); }

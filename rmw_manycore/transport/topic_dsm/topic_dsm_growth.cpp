@@ -2,6 +2,7 @@
 // The part of TopicDsmWriter that adds generations and gives old ones back.
 
 #include <algorithm>
+#include <utility>
 
 #include "platform/error.hpp"
 #include "transport/topic_dsm/topic_dsm_writer.hpp"
@@ -149,12 +150,15 @@ bool TopicDsmWriter::start_generation(uint64_t data_bytes, uint64_t descriptor_c
   if (next_number_ == current_.first) {
     ++next_number_;  // a reader tells generations apart by their first numbers
   }
+  // Without memory for these nothing is begun: readers would look where no record goes.
+  std::vector<uint64_t> pinned(descriptor_count, no_record);
+  old_.reserve(old_.size() + 1);
   reserve_generation(*free_entry, data_bytes, descriptor_count);
   open_generation(*free_entry);
   old_.push_back(current_);
   current_ = Generation::view(cluster_, *free_entry);
   blocks_.clear();
-  pinned_in_slot_.assign(current_.count, no_record);
+  pinned_in_slot_ = std::move(pinned);
   cursor_ = 0;
   return true;
 }
@@ -177,7 +181,7 @@ void TopicDsmWriter::shrink(uint64_t need_bytes) noexcept {
     if (start_generation(bytes, std::min(records, current_.count))) {
       demand_.note_shrunk();
     }
-  } catch (const Error &) {
+  } catch (const std::exception &) {
     // The registry is locked, or there is no room for both: it is tried again.
   }
 }
