@@ -161,7 +161,14 @@ uint32_t Process::Impl::take_process_slot() {
   Table<ProcessEntry> & processes = registry->processes();
   const uint32_t taken = processes.take("processes");
   ProcessEntry & entry = processes[taken];
-  lifeline = registry->lifelines().try_hold(taken);
+  try {
+    lifeline = registry->lifelines().try_hold(taken);
+  } catch (const Error &) {
+    throw;  // the slot's line is damaged: the next process takes another slot
+  } catch (...) {
+    processes.give_back(taken);
+    throw;
+  }
   if (!lifeline) {
     throw Error(ErrorCode::corrupt, "process slot is in use; run 'manycore clean'");
   }
