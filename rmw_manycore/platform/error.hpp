@@ -28,7 +28,7 @@ private:
   ErrorCode code_;
 };
 
-/// Throws Error{system or permission} with errno's text appended.
+/// Throws Error{system or permission} with errno's text and, at a limit, how to raise it.
 [[noreturn]] void throw_errno(const std::string & what);
 
 }  // namespace manycore

@@ -262,6 +262,7 @@ uint32_t Process::Impl::add_endpoint(const EndpointSpec & spec, EndpointKind kin
   membership->require();
   const Registry::Lock lock(*registry);
   closing::sweep(*registry);
+  matching::require_reach(*registry, spec.topic, kind);
   const uint32_t taken = fill_endpoint(spec, kind);
   EndpointEntry & entry = registry->endpoints()[taken];
   try {

@@ -136,6 +136,7 @@ private:
   std::unique_ptr<Publisher> publisher_;
   std::unique_ptr<Subscription> subscription_;
   std::unique_ptr<Claim> claim_;
+  std::unique_ptr<NoDescriptors> no_descriptors_;
 
   const std::map<std::string, std::function<std::string(Words &)>> commands_{
     {"publisher",
@@ -180,6 +181,12 @@ private:
        const uint64_t last = number(words);
        return std::to_string(take_ordered(last, number(words)));
      }},
+    {"look",
+     [this](Words &) {
+       wait_until("a hint", [&] { return subscription_->has_data(); });
+       const std::optional<Payload> found = ::take(*subscription_);
+       return found ? std::to_string(found->number) : "nothing";
+     }},
     {"claim", [this](Words &) { return claim(); }},
     {"release",
      [this](Words &) {
@@ -191,6 +198,17 @@ private:
      [this](Words &) {
        publisher_.reset();
        subscription_.reset();
+       return "ok";
+     }},
+    {"use_up_descriptors",
+     [this](Words &) {
+       wait_until("its receive thread is watched", [] { return watches_receive_thread(getpid()); });
+       no_descriptors_ = std::make_unique<NoDescriptors>();
+       return "ok";
+     }},
+    {"free_descriptors",
+     [this](Words &) {
+       no_descriptors_.reset();
        return "ok";
      }},
     {"leave", [](Words &) { return ""; }},

@@ -15,9 +15,12 @@ void join_and_stay(Lines & test, const std::string & platform);
 ///   publish_endlessly SIZE                  until it is killed; numbers from 1
 ///   take FIRST LAST WRITER        -> ok     these messages, in this order, none else
 ///   take_ordered LAST WRITER      -> COUNT  messages of one writer in order, up to this number
+///   look                          -> NUMBER of what the next hint leads to, or "nothing"
 ///   claim                         -> NUMBER holds the next message ..
 ///   release                       -> ok     .. which is still what it was
 ///   close                         -> ok     publisher and subscription go
+///   use_up_descriptors            -> ok     from now on it can open no file ..
+///   free_descriptors              -> ok     .. and now it can
 ///   leave                                   ends
 /// QOS: keep_all, or a depth, or a depth with "transient_local", "best_effort", "deadline" or
 /// "lease" (of an hour) after a '+'.

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cctype>
 #include <csignal>
+#include <filesystem>
 #include <fstream>
 #include <sstream>
 
@@ -80,6 +81,27 @@ bool is_running(pid_t pid) {
   // A killed process has its locks until the last of its threads is gone.
   return any_thread(pid, [](char state) { return state != 'Z' && state != 'X'; });
 }
+
+bool watches_receive_thread(pid_t pid) {
+  for (const auto & entry :
+       std::filesystem::directory_iterator("/proc/" + std::to_string(pid) + "/fd")) {
+    std::error_code gone;
+    if (std::filesystem::read_symlink(entry, gone) == "anon_inode:[pidfd]") {
+      return true;
+    }
+  }
+  return false;
+}
+
+NoDescriptors::NoDescriptors() {
+  getrlimit(RLIMIT_NOFILE, &before_);
+  const int lowest_unused = dup(STDIN_FILENO);
+  close(lowest_unused);
+  const rlimit none{static_cast<rlim_t>(lowest_unused), before_.rlim_max};
+  setrlimit(RLIMIT_NOFILE, &none);
+}
+
+NoDescriptors::~NoDescriptors() { setrlimit(RLIMIT_NOFILE, &before_); }
 
 void stop_process(pid_t pid) {
   kill(pid, SIGSTOP);

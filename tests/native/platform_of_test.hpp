@@ -1,6 +1,7 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <sys/resource.h>
 #include <sys/types.h>
 
 #include <memory>
@@ -74,6 +75,21 @@ private:
 
 /// Whether a process runs (a zombie does not).
 bool is_running(pid_t pid);
+
+/// True once the watcher of a process sleeps on its receive thread, and opens nothing any more.
+bool watches_receive_thread(pid_t pid);
+
+/// While it lives, this process can open no file.
+class NoDescriptors {
+public:
+  NoDescriptors();
+  ~NoDescriptors();
+  NoDescriptors(const NoDescriptors &) = delete;
+  NoDescriptors & operator=(const NoDescriptors &) = delete;
+
+private:
+  rlimit before_{};
+};
 
 /// SIGSTOP for a process that is no child; returns once all its threads stand still.
 void stop_process(pid_t pid);

@@ -24,18 +24,6 @@ namespace {
 constexpr size_t large_bytes = 1'000'000;  // the topic DSM has to grow for it
 constexpr const char * content = "untouched";
 
-/// True once the watcher of a process sleeps on its receive thread, and opens nothing any more.
-bool watches(pid_t pid) {
-  for (const auto & entry :
-       std::filesystem::directory_iterator("/proc/" + std::to_string(pid) + "/fd")) {
-    std::error_code gone;
-    if (std::filesystem::read_symlink(entry, gone) == "anon_inode:[pidfd]") {
-      return true;
-    }
-  }
-  return false;
-}
-
 /// Closes all descriptors but those to the test, and opens a file under their numbers.
 void take_over_descriptors(const std::string & file) {
   for (int fd = 3; fd < 256; ++fd) {
@@ -61,7 +49,7 @@ const Role daemon_publisher("daemon", [](Lines & test, const Arguments & argumen
   auto process = Process::join(placement);
   auto publisher = process->create_publisher(on_topic("/x", keep_last(10)));
   wait_until("a match", [&] { return publisher->matched().current == 1; });
-  wait_until("its receive thread is watched", [] { return watches(getpid()); });
+  wait_until("its receive thread is watched", [] { return watches_receive_thread(getpid()); });
   take_over_descriptors(arguments.at(1));
   publish(*publisher, 1);
   publish(*publisher, 2, large_bytes);

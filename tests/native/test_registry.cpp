@@ -187,6 +187,35 @@ TEST_CASE("killed while it holds the lock: the next owner repairs what was half 
   CHECK(take_all(*late) == numbers(1, 1));
 }
 
+TEST_CASE("killed while it holds the lock: a process that can map no cluster leaves the repair") {
+  Fixture f;
+  const auto publisher = f.process->create_publisher(on_topic("/repair", keep_last(10)));
+  const auto subscription = f.process->create_subscription(on_topic("/repair", keep_last(10)));
+  const uint64_t used = f.inspection.used_bytes();
+  const Standstill reaper(f.platform, 1);  // it would repair, too
+  Child holder("lock_holder", {f.platform.name()});
+  holder.expect("holding");
+  holder.kill();
+  Registry late(f.platform.paths());
+  for (int i = 0; i < 2; ++i) {  // the second time it is not the next owner
+    const Refusal refusal = refusal_of([&] {
+      const NoDescriptors none;
+      const Registry::Lock lock(late);
+    });
+    CHECK(refusal.code == ErrorCode::system);
+    CHECK_MESSAGE(refusal.says("cluster 1 is out of reach"), refusal.text);
+    CHECK_MESSAGE(refusal.says("ulimit -n"), refusal.text);
+    CHECK(f.inspection.used_bytes() > used);
+    CHECK(f.process->graph().endpoints_of("/repair").size() == 2);  // without the chains
+  }
+  { const Registry::Lock repairs(late); }
+  CHECK(f.inspection.used_bytes() == used);
+  CHECK(f.registry.header().changes.load() % 2 == 0);
+  const auto second = f.process->create_subscription(on_topic("/repair", keep_last(10)));
+  CHECK(second->matched().current == 1);
+  CHECK(f.registry.endpoints().high_water() == 3);
+}
+
 TEST_CASE("memory outside the segment counts as SMEM, up to what there is") {
   Fixture f;
   Registry & registry = f.inspection.registry();

@@ -22,8 +22,9 @@ constexpr size_t name_bytes = 256;  ///< ROS names are at most 255 characters
 /// free -> live -> closing -> freeing -> free; closing and freeing only for endpoints (see
 /// docs/design/topic_dsm.md, Freeing). From freeing on no reference to its memory may be followed.
 /// An endpoint is `closing` until its matches are undone, by its process or by the reaper of that;
-/// should they die half way, the reaper goes on. Only then it is `closed`, and any process that has
-/// the registry lock may free it; a publisher is `freeing` meanwhile.
+/// should they die half way, the reaper goes on, or while the process lives the next sweep. Only
+/// then it is `closed`, and any process that has the registry lock may free it; a publisher is
+/// `freeing` meanwhile.
 enum class SlotState : uint32_t { free, live, closing, closed, freeing };
 
 /// True while references to an endpoint's memory may be followed.
@@ -142,7 +143,7 @@ struct RegistryHeader {
   uint32_t closing_count;                  ///< endpoints closing, closed or freeing (derived)
   std::atomic<uint64_t> clusters_present;  ///< bit c - 1: cluster c has a segment
   std::atomic<uint32_t> removed;           ///< the files are gone: no process can join
-  uint32_t reserved;
+  uint32_t needs_repair;                   ///< an owner of the mutex died; not yet repaired
   std::atomic<uint32_t> topic_buckets[topic_bucket_count];
 };
 

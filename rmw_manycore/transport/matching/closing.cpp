@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "transport/matching/undelivered.hpp"
 #include "transport/qos/liveliness.hpp"
@@ -24,8 +25,8 @@ void count_unmatched(Registry & registry, EndpointEntry & entry) {
 /// Once more, if the process that did this before died half way: then some of its sources are
 /// `revoked`, and their readers may still be on the reader tables.
 void close_subscription(Registry & registry, EndpointEntry & entry) {
-  Cluster * const cluster = registry.clusters().find(entry.block.cluster());
-  auto * const header = registry.clusters().find<SubscriptionHeader>(entry.block);
+  Cluster * const cluster = registry.reach(entry.block.cluster());
+  auto * const header = registry.reach<SubscriptionHeader>(entry.block);
   if (cluster == nullptr || header == nullptr) {
     return;
   }
@@ -46,12 +47,11 @@ void close_subscription(Registry & registry, EndpointEntry & entry) {
   });
 }
 
-/// Nothing when the entry leads nowhere.
+/// Nothing when the entry leads nowhere. Throws OutOfReach.
 std::optional<OrphanReader> follow(
   Registry & registry, const Cluster & cluster, TopicDsmHeader & dsm, const ReaderEntry & reader) {
-  auto * const source = registry.clusters().find<SourceEntry>(SegmentRef{reader.source.load()});
-  auto * const header =
-    registry.clusters().find<SubscriptionHeader>(SegmentRef{reader.subscription.load()});
+  auto * const source = registry.reach<SourceEntry>(SegmentRef{reader.source.load()});
+  auto * const header = registry.reach<SubscriptionHeader>(SegmentRef{reader.subscription.load()});
   const uint32_t slot = reader.endpoint.load();
   if (source == nullptr || header == nullptr || slot >= registry.endpoints().high_water()) {
     return std::nullopt;
@@ -60,12 +60,26 @@ std::optional<OrphanReader> follow(
     cluster, dsm, *header, *source, registry.endpoints()[slot], slot, reader.source_index.load()};
 }
 
+/// All or, when one is out of reach, none: what is counted down for a reader may not be counted
+/// down again.
+std::vector<OrphanReader> live_readers(
+  Registry & registry, const Cluster & cluster, TopicDsmHeader & dsm) {
+  std::vector<OrphanReader> readers;
+  for_each_reader(cluster, dsm, [&](ReaderEntry & entry) {
+    const std::optional<OrphanReader> reader = follow(registry, cluster, dsm, entry);
+    if (reader && registry.endpoints().is_live(reader->endpoint_slot)) {
+      readers.push_back(*reader);
+    }
+  });
+  return readers;
+}
+
 /// Hints of its last records may never have been pushed (`died`), or may have been displaced:
 /// readers that miss something are told to look, so that the topic DSM does not wait for them for
 /// ever.
 void close_publisher(Registry & registry, EndpointEntry & entry, bool died) {
-  Cluster * const cluster = registry.clusters().find(entry.block.cluster());
-  auto * const dsm = registry.clusters().find<TopicDsmHeader>(entry.block);
+  Cluster * const cluster = registry.reach(entry.block.cluster());
+  auto * const dsm = registry.reach<TopicDsmHeader>(entry.block);
   if (cluster == nullptr || dsm == nullptr) {
     return;
   }
@@ -75,36 +89,34 @@ void close_publisher(Registry & registry, EndpointEntry & entry, bool died) {
   if (dsm->orphan.load() != 0) {
     return;
   }
-  for_each_reader(*cluster, *dsm, [&](ReaderEntry & entry_of_reader) {
-    const std::optional<OrphanReader> reader = follow(registry, *cluster, *dsm, entry_of_reader);
-    if (!reader || !registry.endpoints().is_live(reader->endpoint_slot)) {
-      return;
-    }
-    EndpointEntry & subscription = registry.endpoints()[reader->endpoint_slot];
+  for (const OrphanReader & reader : live_readers(registry, *cluster, *dsm)) {
+    EndpointEntry & subscription = registry.endpoints()[reader.endpoint_slot];
     if (died) {
       note_death(entry, subscription);
     }
     count_unmatched(registry, subscription);
-    if (has_undelivered(*reader)) {
-      reader->subscription.resync.store(1, std::memory_order_seq_cst);
+    if (has_undelivered(reader)) {
+      reader.subscription.resync.store(1, std::memory_order_seq_cst);
       notify_process(registry, subscription.process);
     }
-  });
+  }
   dsm->orphan.store(1, std::memory_order_seq_cst);
 }
 
 /// True when no receive thread follows references that it loaded before now. The dead follow none:
-/// one that was killed in its phase has a successor only if its cluster has a process.
+/// one that was killed in its phase has a successor only if its cluster has a process. Throws
+/// OutOfReach when the phase of one that lives is not to be seen.
 bool receive_threads_are_out(Registry & registry) {
   const uint64_t present = registry.header().clusters_present.load();
   for (uint32_t id = 1; id <= max_clusters; ++id) {
     if ((present >> (id - 1) & 1) == 0) {
       continue;
     }
-    Cluster * const cluster = registry.clusters().find(id);
-    const bool in_phase =
-      cluster != nullptr && cluster->header().phase.load(std::memory_order_seq_cst) % 2 != 0;
-    if (in_phase && registry.lifelines().is_held(receive_thread_line + id)) {
+    const Cluster * const cluster = registry.clusters().find(id);
+    const bool may_be_in_phase =
+      cluster == nullptr || cluster->header().phase.load(std::memory_order_seq_cst) % 2 != 0;
+    if (may_be_in_phase && registry.lifelines().is_held(receive_thread_line + id)) {
+      registry.reach(id);
       return false;
     }
   }
@@ -162,8 +174,8 @@ void free_topic_dsm(Cluster & cluster, TopicDsmHeader & dsm) {
 }
 
 bool sweep_publisher(Registry & registry, WantedSources & wanted, EndpointEntry & entry) {
-  Cluster * const cluster = registry.clusters().find(entry.block.cluster());
-  auto * const dsm = registry.clusters().find<TopicDsmHeader>(entry.block);
+  Cluster * const cluster = registry.reach(entry.block.cluster());
+  auto * const dsm = registry.reach<TopicDsmHeader>(entry.block);
   if (cluster == nullptr || dsm == nullptr) {
     return true;
   }
@@ -195,8 +207,8 @@ bool publisher_is_out(Registry & registry, const SourceEntry & source) {
 }
 
 bool sweep_subscription(Registry & registry, EndpointEntry & entry) {
-  Cluster * const cluster = registry.clusters().find(entry.block.cluster());
-  auto * const header = registry.clusters().find<SubscriptionHeader>(entry.block);
+  Cluster * const cluster = registry.reach(entry.block.cluster());
+  auto * const header = registry.reach<SubscriptionHeader>(entry.block);
   if (cluster == nullptr || header == nullptr) {
     return true;
   }
@@ -214,6 +226,19 @@ bool sweep_subscription(Registry & registry, EndpointEntry & entry) {
   cluster->free(
     offset, sizeof(SubscriptionHeader) + (uint64_t{8} << (header->slot_count_log2 & 31)));
   return true;
+}
+
+/// Has the reaper of a process's cluster sweep: it has descriptors of its own.
+void wake_reaper(Registry & registry, uint32_t process) {
+  if (!registry.processes().is_live(process)) {
+    return;  // a damaged entry
+  }
+  const Cluster & cluster = registry.clusters().at(registry.processes()[process].cluster);
+  EmcosMessage message{};
+  message.kind = EmcosMessageKind::attach;
+  if (!cluster.send(message)) {
+    cluster.header().pipe_overflow.store(1, std::memory_order_seq_cst);
+  }
 }
 
 }  // namespace
@@ -236,41 +261,82 @@ void close(Registry & registry, uint32_t endpoint, bool died) {
 }
 
 void close_all_of(Registry & registry, uint32_t process, bool died) {
+  std::optional<OutOfReach> obstacle;
   for (uint32_t slot = 0; slot < registry.endpoints().high_water(); ++slot) {
     const EndpointEntry & entry = registry.endpoints()[slot];
     if (entry.process == process && entry.slot.state.load() != SlotState::free) {
-      close(registry, slot, died);
+      try {
+        close(registry, slot, died);
+      } catch (const OutOfReach & error) {
+        obstacle.emplace(error);
+      }
     }
+  }
+  if (obstacle) {
+    if (!died) {
+      wake_reaper(registry, process);
+    }
+    throw OutOfReach(*obstacle);
   }
 }
 
-void sweep(Registry & registry) {
+namespace {
+
+/// Left by a process that lives, as a cluster was out of its reach; or by one that is dying, thread
+/// by thread. What the dead leave is the reaper's.
+bool is_left_closing(Registry & registry, const EndpointEntry & entry) {
+  return entry.slot.state.load() == SlotState::closing &&
+         registry.processes().is_live(entry.process) && registry.lifelines().is_held(entry.process);
+}
+
+/// True when the endpoint's memory is free. Throws OutOfReach.
+bool sweep_endpoint(Registry & registry, WantedSources & wanted, uint32_t slot) {
+  EndpointEntry & entry = registry.endpoints()[slot];
+  if (is_left_closing(registry, entry)) {
+    close(registry, slot, false);
+  }
+  const SlotState state = entry.slot.state.load();
+  if (state != SlotState::closed && state != SlotState::freeing) {
+    return false;
+  }
+  return entry.kind == EndpointKind::publisher ? sweep_publisher(registry, wanted, entry)
+                                               : sweep_subscription(registry, entry);
+}
+
+}  // namespace
+
+bool sweep(Registry & registry) {
   RegistryHeader & header = registry.header();
+  bool reaches_all = true;
   WantedSources wanted(registry);
   for (uint32_t slot = 0; header.closing_count != 0 && slot < registry.endpoints().high_water();
        ++slot) {
-    EndpointEntry & entry = registry.endpoints()[slot];
-    const SlotState state = entry.slot.state.load();
-    if (state != SlotState::closed && state != SlotState::freeing) {
-      continue;
-    }
-    const bool swept = entry.kind == EndpointKind::publisher
-                         ? sweep_publisher(registry, wanted, entry)
-                         : sweep_subscription(registry, entry);
-    if (swept) {
-      registry.endpoints().give_back(slot);
-      --header.closing_count;
+    try {
+      if (sweep_endpoint(registry, wanted, slot)) {
+        registry.endpoints().give_back(slot);
+        --header.closing_count;
+      }
+    } catch (const OutOfReach &) {
+      reaches_all = false;
     }
   }
+  return reaches_all;
 }
 
 void leave(Registry & registry, uint32_t endpoint) noexcept {
   try {
     const Registry::Lock lock(registry, registry.parting_wait_ns());
-    close(registry, endpoint, false);
-    sweep(registry);
+    const uint32_t process = registry.endpoints()[endpoint].process;
+    try {
+      close(registry, endpoint, false);
+    } catch (const OutOfReach &) {
+      // So it is out of the sweep's reach, too.
+    }
+    if (!sweep(registry)) {
+      wake_reaper(registry, process);
+    }
   } catch (const std::exception &) {
-    // The registry stayed locked: the reaper closes this endpoint when the process ends.
+    // The registry stayed locked: this endpoint is closed when its process leaves or ends.
   }
   registry.graph_changed();
 }

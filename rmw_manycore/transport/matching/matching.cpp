@@ -213,6 +213,14 @@ void count_matches_of(Registry & registry, uint32_t slot, std::vector<uint64_t> 
 
 }  // namespace
 
+void require_reach(Registry & registry, const std::string & topic, EndpointKind kind) {
+  registry.for_each_of_topic(topic.c_str(), [&](uint32_t, EndpointEntry & other) {
+    if (other.kind != kind) {
+      registry.reach(other.cluster);
+    }
+  });
+}
+
 void connect(Registry & registry, uint32_t endpoint) {
   EndpointEntry & own = registry.endpoints()[endpoint];
   registry.for_each_of_topic(own.topic, [&](uint32_t slot, EndpointEntry & other) {

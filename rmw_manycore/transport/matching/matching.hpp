@@ -5,6 +5,10 @@
 
 namespace manycore::matching {
 
+/// Throws OutOfReach while this process cannot map the cluster of an endpoint with which a new one
+/// may be matched: connect() would fail half way. Needs the registry lock.
+void require_reach(Registry & registry, const std::string & topic, EndpointKind kind);
+
 /// Joins a live endpoint with all compatible endpoints of its topic. Needs the registry lock.
 void connect(Registry & registry, uint32_t endpoint);
 

@@ -52,8 +52,12 @@ void Registry::mark_blocks_of(EndpointEntry & entry) noexcept {
 }
 
 /// The last owner of the lock died at some instruction of a change. Primary state is the slots'
-/// states, which change in one store; everything derived from them is built anew.
-void Registry::repair() noexcept {
+/// states, which change in one store; everything derived from them is built anew. All clusters are
+/// mapped before: the map of one that is left out would go on without what was half allocated.
+void Registry::repair() {
+  for (uint32_t id = 1; id <= max_clusters; ++id) {
+    reach(id);
+  }
   processes_.rebuild_free_list();
   nodes_.rebuild_free_list();
   endpoints_.rebuild_free_list();

@@ -44,17 +44,17 @@ TopicDsmHeader * topic_dsm_of(Registry & registry, const SourceEntry & source) {
   const Slot & publisher = registry.endpoints()[slot].slot;
   const bool there = has_memory(publisher.state.load()) &&
                      publisher.incarnation == source.topic_dsm_incarnation.load();
-  return there ? registry.clusters().find<TopicDsmHeader>(SegmentRef{source.topic_dsm.load()})
-               : nullptr;
+  return there ? registry.reach<TopicDsmHeader>(SegmentRef{source.topic_dsm.load()}) : nullptr;
 }
 
 void detach_reader(Registry & registry, SourceEntry & source) {
   TopicDsmHeader * const dsm = topic_dsm_of(registry, source);
-  auto * const reader = registry.clusters().find<ReaderEntry>(SegmentRef{source.reader.load()});
-  if (dsm == nullptr || reader == nullptr) {
+  auto * const reader =
+    dsm == nullptr ? nullptr : registry.reach<ReaderEntry>(SegmentRef{source.reader.load()});
+  if (reader == nullptr) {
     return;
   }
-  if (registry.clusters().find<SourceEntry>(SegmentRef{reader->source.load()}) != &source) {
+  if (registry.reach<SourceEntry>(SegmentRef{reader->source.load()}) != &source) {
     return;  // another's by now
   }
   reader->active.store(0, std::memory_order_release);

@@ -24,10 +24,11 @@ void notify_process(Registry & registry, uint32_t process);
 void notify_event_watchers(Registry & registry, uint32_t process);
 
 /// The topic DSM of a source, or nullptr when its publisher's endpoint is gone and its memory may
-/// be another's.
+/// be another's. Throws OutOfReach.
 TopicDsmHeader * topic_dsm_of(Registry & registry, const SourceEntry & source);
 
-/// Takes the reader of a source off its topic DSM's reader table.
+/// Takes the reader of a source off its topic DSM's reader table. Throws OutOfReach, and then has
+/// changed nothing.
 void detach_reader(Registry & registry, SourceEntry & source);
 
 }  // namespace manycore

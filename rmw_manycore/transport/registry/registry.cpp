@@ -113,6 +113,23 @@ bool Registry::is_current() const noexcept {
   return memory_.is_file(paths_.registry()) && lifelines_.is_file(paths_.alive());
 }
 
+Cluster * Registry::reach(uint32_t cluster) {
+  const bool is_cluster = cluster != 0 && cluster <= max_clusters;
+  if (!is_cluster || (header().clusters_present.load() >> (cluster - 1) & 1) == 0) {
+    return nullptr;
+  }
+  try {
+    return &clusters_.at(cluster);
+  } catch (const Error & error) {
+    if (error.code() == ErrorCode::corrupt) {
+      return nullptr;
+    }
+    throw OutOfReach(
+      error.code(),
+      "cluster " + std::to_string(cluster) + " is out of reach of this process: " + error.what());
+  }
+}
+
 Registry::Lock::Lock(Registry & registry, long wait_ns) : registry_(registry) {
   RegistryHeader & header = registry.header();
   const RobustMutex::Outcome outcome = registry.lock_within(wait_ns);
@@ -120,8 +137,18 @@ Registry::Lock::Lock(Registry & registry, long wait_ns) : registry_(registry) {
   // A reader that sees any of the changes to come sees this, too.
   std::atomic_thread_fence(std::memory_order_release);
   if (outcome == RobustMutex::Outcome::owner_died) {
-    registry.repair();
+    header.needs_repair = 1;  // first: from then on the mutex does not tell
     header.mutex.mark_consistent();
+  }
+  if (header.needs_repair != 0) {
+    try {
+      registry.repair();
+    } catch (...) {
+      // The next owner repairs. Until then `changes` stays odd, so graph reads follow no chains.
+      header.mutex.unlock();
+      throw;
+    }
+    header.needs_repair = 0;
   }
 }
 

@@ -66,6 +66,13 @@ private:
   uint32_t capacity_;
 };
 
+/// A cluster is there, but this process cannot map it now: it has no descriptor left, say. Its
+/// objects are in use all the same, so nothing that depends on them may be taken for done.
+class OutOfReach : public Error {
+public:
+  using Error::Error;
+};
+
 /// One line for the topic table of a new platform.
 struct TopicConfiguration {
   std::string name;
@@ -91,7 +98,8 @@ public:
     static constexpr long short_wait_ns = 100'000'000;  ///< from inside a publish
     static constexpr long no_wait_ns = 0;
 
-    /// Throws Error{timeout} when the lock is not to be had within `wait_ns`.
+    /// Throws Error{timeout} when the lock is not to be had within `wait_ns`; OutOfReach when a
+    /// former owner died and this process cannot map all that is to be repaired.
     explicit Lock(Registry & registry, long wait_ns = usual_wait_ns);
     ~Lock();
     Lock(const Lock &) = delete;
@@ -110,6 +118,15 @@ public:
   Table<NodeEntry> & nodes() noexcept { return nodes_; }
   Table<EndpointEntry> & endpoints() noexcept { return endpoints_; }
   Clusters & clusters() noexcept { return clusters_; }
+  /// A cluster that is present, or nullptr when there is none or its segment is damaged. Unlike
+  /// clusters().find() it throws OutOfReach when the cluster cannot be mapped.
+  Cluster * reach(uint32_t cluster);
+  /// The object behind a reference, or nullptr when it leads nowhere. Throws OutOfReach.
+  template<typename T>
+  T * reach(SegmentRef ref) {
+    Cluster * const cluster = reach(ref.cluster());
+    return cluster == nullptr ? nullptr : cluster->find<T>(ref.offset());
+  }
   const Lifelines & lifelines() const noexcept { return lifelines_; }
   const PlatformPaths & paths() const noexcept { return paths_; }
   /// True while the platform's directory still holds what is mapped here, and not a later platform
@@ -140,7 +157,8 @@ private:
   friend class Lock;
   std::atomic<uint32_t> & bucket_of(uint64_t topic_hash) const noexcept;
   RobustMutex::Outcome lock_within(long wait_ns);
-  void repair() noexcept;
+  /// Throws OutOfReach before it changes anything.
+  void repair();
   void mark_blocks_of(EndpointEntry & entry) noexcept;
 
   PlatformPaths paths_;

@@ -7,6 +7,11 @@
 #include "transport/queue/source_table.hpp"
 
 namespace manycore {
+namespace {
+
+constexpr uint64_t look_again = UINT64_MAX;  ///< no generation
+
+}  // namespace
 
 bool SourceList::renew() {
   const uint64_t generation = header_.source_generation.load(std::memory_order_acquire);
@@ -29,6 +34,8 @@ bool SourceList::renew() {
     if (source) {
       has_new = has_new || known == sources_.end();
       renewed.push_back(source);
+    } else {
+      seen_generation_ = look_again;  // its cluster may be out of reach for now only
     }
     return false;
   });
