@@ -267,7 +267,8 @@ TEST_CASE("random words in a cluster segment in use: visitors get along or get a
   }
 }
 
-TEST_CASE("a size of the memory map that is damaged later: nodes keep to the size that they found") {
+TEST_CASE(
+  "a size of the memory map that is damaged later: nodes keep to the size that they found") {
   const TestPlatform platform;
   const auto process = platform.join(1);
   platform.receive_thread(1);
