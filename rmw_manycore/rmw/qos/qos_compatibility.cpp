@@ -81,8 +81,8 @@ std::string warning(
     const char * const found = to_string(policy);
     return std::string(found != nullptr ? found : "unknown");
   };
-  return std::string("WARNING: Publisher ") + name + " is " + text(offered) +
-         " and subscription " + name + " is " + text(requested) + ";";
+  return std::string("WARNING: Publisher ") + name + " is " + text(offered) + " and subscription " +
+         name + " is " + text(requested) + ";";
 }
 
 std::string warnings(const rmw_qos_profile_t & offered, const rmw_qos_profile_t & requested) {

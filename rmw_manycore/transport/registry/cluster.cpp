@@ -101,8 +101,7 @@ Cluster::Cluster(const PlatformPaths & paths, uint32_t id, uint64_t platform_non
   if (head.segment.cluster != id || head.segment.platform_nonce != platform_nonce) {
     throw Error(ErrorCode::corrupt, paths.cluster(id) + " belongs to another platform" + advice);
   }
-  const bool sound = head.granule_bytes == granule_bytes_ &&
-                     head.granule_count == granule_count_ &&
+  const bool sound = head.granule_bytes == granule_bytes_ && head.granule_count == granule_count_ &&
                      head.used_bytes.load(std::memory_order_relaxed) <= memory_.size();
   if (!sound) {
     throw Error(ErrorCode::corrupt, paths.cluster(id) + " has a damaged header" + advice);
