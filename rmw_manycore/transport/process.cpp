@@ -17,6 +17,7 @@
 #include "transport/matching/matching.hpp"
 #include "transport/publisher/publisher_impl.hpp"
 #include "transport/qos/manual_liveliness.hpp"
+#include "transport/qos/qos_ranges.hpp"
 #include "transport/registry/membership.hpp"
 #include "transport/registry/smem_charge.hpp"
 #include "transport/subscription/subscription_block.hpp"
@@ -61,28 +62,6 @@ Gid make_gid(const Registry & registry, uint32_t slot, uint32_t incarnation) {
   std::memcpy(gid.data() + 8, &slot, 4);
   std::memcpy(gid.data() + 12, &incarnation, 4);
   return gid;
-}
-
-void check_duration(const EndpointSpec & spec, int64_t ns, const char * what) {
-  if (ns <= 0) {
-    throw Error(
-      ErrorCode::invalid_argument, std::string("the ") + what + " of " + std::to_string(ns) +
-                                     " ns for '" + spec.topic +
-                                     "' is out of range: expected more than 0");
-  }
-}
-
-void check_qos(const EndpointSpec & spec) {
-  check_duration(spec, spec.qos.deadline_ns, "deadline");
-  check_duration(spec, spec.qos.lifespan_ns, "lifespan");
-  check_duration(spec, spec.qos.liveliness_lease_ns, "liveliness lease duration");
-  constexpr uint32_t most = 1u << 20;
-  if (spec.qos.depth == 0 || spec.qos.depth > most) {
-    throw Error(
-      ErrorCode::invalid_argument, "history depth " + std::to_string(spec.qos.depth) + " for '" +
-                                     spec.topic + "' is out of range: expected 1 to " +
-                                     std::to_string(most));
-  }
 }
 
 }  // namespace
@@ -258,7 +237,7 @@ uint32_t Process::Impl::fill_endpoint(const EndpointSpec & spec, EndpointKind ki
 }
 
 uint32_t Process::Impl::add_endpoint(const EndpointSpec & spec, EndpointKind kind) {
-  check_qos(spec);
+  check_qos_ranges(spec);
   membership->require();
   const Registry::Lock lock(*registry);
   closing::sweep(*registry);
