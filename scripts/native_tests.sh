@@ -18,10 +18,11 @@ python scripts/progress.py "$build.log" "compiling native tests in $build" \
   cmake --build "$build" -j "$jobs"
 # Instruction by instruction, programs with sanitizers would take minutes; and a sanitizer that
 # reports a crash on damaged memory may hang on that memory itself.
-# Closing a descriptor that another thread uses is a race, which one test is about.
+# Closing a descriptor that another thread uses is a race, which one test is about. The sanitizer of
+# undefined behaviour needs a descriptor to look at an object, and takes one for bad without.
 case "$*" in
   *SANITIZE=thread*) skipped='^(test_killed|test_damaged_running|test_closed_descriptors)$' ;;
-  *SANITIZE*) skipped='^(test_killed|test_damaged_running)$' ;;
+  *SANITIZE*) skipped='^(test_killed|test_damaged_running|test_out_of_reach)$' ;;
   *) skipped='^$' ;;
 esac
 ctest --test-dir "$build" --output-on-failure --no-tests=error -E "$skipped" -j "$jobs"
