@@ -131,7 +131,7 @@ HeldLifeline::~HeldLifeline() {
 }
 
 /// Under another name until it is whole: killed in between, it leaves a directory without
-/// lifelines, which is nobody's.
+/// lifelines, which the next process wipes.
 void Lifelines::create(const std::string & path, uint32_t count) {
   const uint64_t bytes = sizeof(Header) + uint64_t{count} * sizeof(Lifeline);
   const std::string unfinished = path + ".new";

@@ -125,12 +125,7 @@ Process::Impl::Impl(const Placement & placement_) : Impl(placement_, JoinOnly{})
 /// anything to find: a process killed later than that is found, since the reaper looks under the
 /// registry lock, which this process holds.
 void Process::Impl::attach() {
-  Cluster & cluster = registry->clusters().at(placement.cluster);
-  EmcosMessage message{};
-  message.kind = EmcosMessageKind::attach;
-  if (!cluster.send(message)) {
-    cluster.header().pipe_overflow.store(1, std::memory_order_seq_cst);
-  }
+  registry->clusters().at(placement.cluster).wake_reaper();
   if (!registry->lifelines().is_held(receive_thread_line + placement.cluster)) {
     tell_other_reapers(*registry, placement.cluster);
   }

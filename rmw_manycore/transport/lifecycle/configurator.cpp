@@ -33,9 +33,7 @@ Configurator::~Configurator() {
     const JoinLock lock(paths_);
     lifeline_.reset();
     Registry registry(paths_);
-    if (!is_in_use(registry)) {
-      remove_platform(paths_);
-    }
+    remove_if_unused(registry);
   } catch (const std::exception &) {
     // Nodes that are still alive keep the platform; the last one to leave removes it.
   }

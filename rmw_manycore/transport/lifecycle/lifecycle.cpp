@@ -234,14 +234,12 @@ uint32_t reap_dead(Registry & registry) {
 }
 
 void tell_other_reapers(Registry & registry, uint32_t own) {
-  EmcosMessage message{};
-  message.kind = EmcosMessageKind::attach;
   const uint64_t present = registry.header().clusters_present.load();
   for (uint32_t id = 1; id <= max_clusters; ++id) {
     Cluster * const cluster =
       (present >> (id - 1) & 1) != 0 && id != own ? registry.clusters().find(id) : nullptr;
-    if (cluster != nullptr && !cluster->send(message)) {
-      cluster->header().pipe_overflow.store(1, std::memory_order_seq_cst);
+    if (cluster != nullptr) {
+      cluster->wake_reaper();
     }
   }
 }

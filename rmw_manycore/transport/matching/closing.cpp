@@ -233,12 +233,7 @@ void wake_reaper(Registry & registry, uint32_t process) {
   if (!registry.processes().is_live(process)) {
     return;  // a damaged entry
   }
-  const Cluster & cluster = registry.clusters().at(registry.processes()[process].cluster);
-  EmcosMessage message{};
-  message.kind = EmcosMessageKind::attach;
-  if (!cluster.send(message)) {
-    cluster.header().pipe_overflow.store(1, std::memory_order_seq_cst);
-  }
+  registry.clusters().at(registry.processes()[process].cluster).wake_reaper();
 }
 
 }  // namespace

@@ -12,7 +12,7 @@ namespace manycore::closing {
 void close(Registry & registry, uint32_t endpoint, bool died);
 void close_all_of(Registry & registry, uint32_t process, bool died);
 
-/// Frees what closed endpoints hold, as far as nobody can be using it any more (see
+/// Frees what closed endpoints hold, as far as no process can be using it any more (see
 /// docs/design/topic_dsm.md, Freeing), and closes what a living process could not, as a cluster was
 /// out of its reach. False when something is out of this process's reach, and left to others.
 bool sweep(Registry & registry);

@@ -225,6 +225,14 @@ void Cluster::free(uint64_t offset, uint64_t length) noexcept {
   memory_.release(offset, count * granule_bytes_);
 }
 
+void Cluster::wake_reaper() const noexcept {
+  EmcosMessage message{};
+  message.kind = EmcosMessageKind::attach;
+  if (!send(message)) {
+    header().pipe_overflow.store(1, std::memory_order_seq_cst);
+  }
+}
+
 bool Cluster::has_room(uint64_t length) const noexcept {
   const uint64_t used = used_bytes();
   return used <= size() && length <= size() - used;

@@ -102,6 +102,9 @@ public:
   bool send(const EmcosMessage & message) const noexcept {
     return pipe_.try_send(&message, sizeof message);
   }
+  /// Has the receive thread's reaper look at all members, now or, where the pipe is full, once it
+  /// has read what is in there.
+  void wake_reaper() const noexcept;
   const Pipe & pipe() const noexcept { return pipe_; }
 
 private:
