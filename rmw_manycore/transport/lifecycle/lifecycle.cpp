@@ -85,6 +85,21 @@ std::string receive_thread_program() {
     "manycore_receive_thread was not found near " + directory + "; reinstall rmw-manycore");
 }
 
+/// True when some process of the platform lives, or its configurator. The caller holds the
+/// JoinLock.
+bool is_in_use(Registry & registry) {
+  const Lifelines & alive = registry.lifelines();
+  if (alive.is_held(configurator_line)) {
+    return true;
+  }
+  for (uint32_t slot = 0; slot < registry.processes().high_water(); ++slot) {
+    if (registry.processes().is_live(slot) && alive.is_held(slot)) {
+      return true;
+    }
+  }
+  return false;
+}
+
 void reap(Registry & registry, uint32_t process) {
   closing::close_all_of(registry, process, true);
   for (uint32_t slot = 0; slot < registry.nodes().high_water(); ++slot) {
@@ -163,19 +178,6 @@ void ensure_platform(
       throw;
     }
   }
-}
-
-bool is_in_use(Registry & registry) {
-  const Lifelines & alive = registry.lifelines();
-  if (alive.is_held(configurator_line)) {
-    return true;
-  }
-  for (uint32_t slot = 0; slot < registry.processes().high_water(); ++slot) {
-    if (registry.processes().is_live(slot) && alive.is_held(slot)) {
-      return true;
-    }
-  }
-  return false;
 }
 
 std::vector<std::string> remove_platform(const PlatformPaths & paths) {

@@ -39,10 +39,6 @@ void ensure_platform(
   const PlatformPaths & paths, const Profile & profile,
   const std::vector<TopicConfiguration> & topics);
 
-/// True when some process of the platform lives, or its configurator. The caller holds the
-/// JoinLock.
-bool is_in_use(Registry & registry);
-
 /// True when anything of the platform lives, receive threads included.
 bool is_alive(const PlatformPaths & paths);
 
