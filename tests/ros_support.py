@@ -28,8 +28,8 @@ def spin_until(node: Node, condition: Callable[[], Any], timeout_s: float = PATI
 
 
 @contextmanager
-def spinning_thread(executor: Executor) -> Iterator[None]:
-    """Spin an executor in a thread of its own.
+def spinning_thread(executor: Executor) -> Iterator[threading.Thread]:
+    """Spin an executor in a thread of its own, and yield that.
 
     It is asked to end by a future: `Executor.shutdown` takes away what a thread that is about to
     wait still uses.
@@ -39,7 +39,7 @@ def spinning_thread(executor: Executor) -> Iterator[None]:
         target=executor.spin_until_future_complete, args=(enough,), daemon=True
     )
     thread.start()
-    yield
+    yield thread
     enough.set_result(None)
     thread.join(PATIENCE_S)
     assert not thread.is_alive()

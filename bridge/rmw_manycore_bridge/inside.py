@@ -23,7 +23,7 @@ class InsideReader(Protocol):
 
 
 class Inside(Loop):
-    """Sleeps on the process's wake word."""
+    """Sleeps on the process's common wake word."""
 
     def __init__(self, plan: Plan, core: tuple[int, int], name: str, changed: Callable[[], None]):
         super().__init__("inside")

@@ -1,11 +1,11 @@
 /* Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
  *
- * Question: does a process that sleeps for its next notification wake for each one, and is the
+ * Question: does a thread that sleeps for its next notification wake for each one, and is the
  * system call spared while it is awake?
  *
- * Follows WakeWord::notify and Waiter::wait (mode block), with two threads waiting in one process,
- * each for an entity of its own, and one notifier for each entity. Neither the kernel's own fences
- * nor a spurious wake-up are relied on.
+ * Follows WakeWord::notify, Watchers, Waiters::forget_this_thread and Waiter::wait (mode block),
+ * with two threads that share one wake word, each for an entity of its own, and one notifier for
+ * each entity. Neither the kernel's own fences nor a spurious wake-up are relied on.
  *
  * BUG 1: no fence between epoch and the look at sleepers
  * BUG 2: no fence between sleepers and the comparison of the epoch
@@ -16,18 +16,25 @@
  * BUG 7: only one sleeper woken
  * BUG 8: sleeper not taken off the count when it did not sleep
  * BUG 9: system call at each notification
+ * BUG 10: no fence between the hint and the look at its watchers
+ * BUG 11: no fence between the word added to the watchers and the look at the entity
+ * BUG 12: entities looked at before the word is added to their watchers
+ * BUG 13: watchers looked at before the hint is pushed
+ * BUG 14: a thread forgets what another one with the same word waits for
+ * BUG 15: watchers not added again after they were forgotten
  */
 #define EPOCH 0
 #define SLEEPERS 1
 #define HINT(i) (2 + (i))
-#define WORDS 4
+#define WATCHERS(i) (4 + (i))   /* of entity i: whether they hold the word */
+#define WORDS 6
 #define PROCESSES 4
 
 #define NOTIFIER(i) (i)
 #define WAITER(i) (2 + (i))
 #define MESSAGES 2
 /* A counter that is not raised by a locked instruction can count for one process only. */
-#define PAIRS (BUG == 1 || BUG == 2 -> 1 : 2)
+#define PAIRS (BUG == 1 || BUG == 2 || BUG == 10 || BUG == 11 || BUG == 12 || BUG == 13 -> 1 : 2)
 
 #include "tso.pml"
 
@@ -73,17 +80,34 @@ inline notify(p) {
 #endif
 }
 
+inline notify_watchers(p, i) {
+  if
+  :: load(p, WATCHERS(i)) != 0 -> notify(p)
+  :: load(p, WATCHERS(i)) == 0
+  fi
+}
+
 proctype Notifier(byte i) {
   byte counted, message, next;
   do
   :: message < MESSAGES ->
      message++;
 #if BUG == 6
-     notify(NOTIFIER(i));
-     store_release(NOTIFIER(i), HINT(i), message)
-#else
+     notify_watchers(NOTIFIER(i), i);
+     store_seq_cst(NOTIFIER(i), HINT(i), message)
+#elif BUG == 10
      store_release(NOTIFIER(i), HINT(i), message);
-     notify(NOTIFIER(i))
+     notify_watchers(NOTIFIER(i), i)
+#elif BUG == 13
+     if
+     :: load(NOTIFIER(i), WATCHERS(i)) != 0 ->
+        store_seq_cst(NOTIFIER(i), HINT(i), message);
+        notify(NOTIFIER(i))
+     :: load(NOTIFIER(i), WATCHERS(i)) == 0 -> store_seq_cst(NOTIFIER(i), HINT(i), message)
+     fi
+#else
+     store_seq_cst(NOTIFIER(i), HINT(i), message);
+     notify_watchers(NOTIFIER(i), i)
 #endif
   :: message == MESSAGES -> break
   od
@@ -130,12 +154,45 @@ inline sleep(p, i) {
 #endif
 }
 
+inline watch(p, i) {
+  if
+  :: load(p, WATCHERS(i)) == 0 ->
+#if BUG == 11
+     store_release(p, WATCHERS(i), 1)
+#else
+     store_seq_cst(p, WATCHERS(i), 1)
+#endif
+  :: load(p, WATCHERS(i)) != 0
+  fi
+}
+
+/* After a wake-up for nothing. That the word is shared keeps a thread from it; here it forgets its
+ * own entity only, which no other thread waits for. */
+inline forget(p, i) {
+  store_seq_cst(p, WATCHERS(i), 0);
+#if BUG == 14
+  store_seq_cst(p, WATCHERS(1 - (i)), 0);
+#endif
+#if BUG != 15
+  watch(p, i)
+#endif
+}
+
 proctype WaitingThread(byte i) {
   byte seen, taken, next;
   bool slept;
   do
   :: taken < MESSAGES ->
-#if BUG == 4
+#if BUG == 12
+     if
+     :: load(WAITER(i), HINT(i)) == taken ->
+        watch(WAITER(i), i);
+        seen = load(WAITER(i), EPOCH);
+        sleep(WAITER(i), i)
+     :: else -> taken = load(WAITER(i), HINT(i))
+     fi
+#elif BUG == 4
+     watch(WAITER(i), i);
      if
      :: load(WAITER(i), HINT(i)) == taken ->
         seen = load(WAITER(i), EPOCH);
@@ -143,11 +200,19 @@ proctype WaitingThread(byte i) {
      :: else -> taken = load(WAITER(i), HINT(i))
      fi
 #else
-     seen = load(WAITER(i), EPOCH);
-     if
-     :: load(WAITER(i), HINT(i)) == taken -> sleep(WAITER(i), i)
-     :: else -> taken = load(WAITER(i), HINT(i))
-     fi
+     watch(WAITER(i), i);
+     do
+     :: seen = load(WAITER(i), EPOCH);
+        if
+        :: load(WAITER(i), HINT(i)) == taken -> sleep(WAITER(i), i)
+        :: else -> break
+        fi;
+        if
+        :: load(WAITER(i), HINT(i)) == taken -> forget(WAITER(i), i)
+        :: else
+        fi
+     od;
+     taken = load(WAITER(i), HINT(i))
 #endif
   :: taken == MESSAGES -> break
   od

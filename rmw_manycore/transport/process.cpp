@@ -88,7 +88,7 @@ struct Process::Impl {
   uint32_t slot = nothing;
   std::optional<HeldLifeline> lifeline;
   std::optional<Membership> membership;
-  std::unique_ptr<Waiter> waiter;
+  std::unique_ptr<Waiters> waiters;
   std::unique_ptr<Graph> graph;
   std::unique_ptr<ReceiveThreadWatcher> watcher;
 };
@@ -116,7 +116,7 @@ Process::Impl::Impl(const Placement & placement_, JoinOnly)
 
 /// Delegates, so that ~Impl() leaves again when the rest fails.
 Process::Impl::Impl(const Placement & placement_) : Impl(placement_, JoinOnly{}) {
-  waiter = std::make_unique<Waiter>(registry->processes()[slot].wake, placement.wait_mode);
+  waiters = std::make_unique<Waiters>(registry->processes()[slot].wake, placement.wait_mode);
   graph = std::make_unique<Graph>(*registry);
   watcher = std::make_unique<ReceiveThreadWatcher>(*registry, placement.cluster);
 }
@@ -153,9 +153,7 @@ uint32_t Process::Impl::take_process_slot() {
   entry.charged_bytes = 0;
   std::memset(entry.label, 0, sizeof entry.label);
   std::strncpy(entry.label, placement.label.c_str(), sizeof entry.label - 1);
-  entry.wake.sleepers.store(0);
-  entry.wake.graph_watchers.store(0);
-  entry.wake.event_watchers.store(0);
+  entry.wake.reset();
   processes.publish(taken);
   membership.emplace(*registry, entry.slot);
   return taken;
@@ -368,7 +366,7 @@ bool Process::is_inherited() const noexcept { return impl_->membership->is_inher
 
 void Process::require_membership() const { impl_->membership->require(); }
 
-Waiter & Process::waiter() noexcept { return *impl_->waiter; }
+Waiters & Process::waiters() noexcept { return *impl_->waiters; }
 Graph & Process::graph() noexcept { return *impl_->graph; }
 const Placement & Process::placement() const noexcept { return impl_->placement; }
 

@@ -11,7 +11,7 @@
 #include "transport/publisher/publisher.hpp"
 #include "transport/registry/graph.hpp"
 #include "transport/subscription/subscription.hpp"
-#include "transport/waiting/waiter.hpp"
+#include "transport/waiting/waiters.hpp"
 
 namespace manycore {
 
@@ -54,7 +54,7 @@ public:
   /// off.
   void require_membership() const;
 
-  Waiter & waiter() noexcept;
+  Waiters & waiters() noexcept;
   Graph & graph() noexcept;
   const Placement & placement() const noexcept;
 

@@ -58,11 +58,11 @@ std::optional<Payload> take(Subscription & subscription) {
 Payload take_next(Process & process, Subscription & subscription) {
   const int64_t end = monotonic_ns() + patience_s * ns_per_s;
   while (true) {
-    const uint32_t epoch = process.waiter().epoch();
+    const uint32_t epoch = process.waiters().common().epoch();
     if (const std::optional<Payload> payload = take(subscription)) {
       return *payload;
     }
-    if (!process.waiter().wait(epoch, end)) {
+    if (!process.waiters().common().wait(epoch, end)) {
       throw std::runtime_error("no message comes");
     }
   }

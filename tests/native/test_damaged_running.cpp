@@ -49,11 +49,11 @@ const Role busy_node("busy_node", [](Lines & test, const Arguments & arguments) 
       subscriptions.push_back(process->create_subscription(on_topic(topic, qos)));
     }
   }
-  interrupted_waiter = &process->waiter();
+  interrupted_waiter = &process->waiters().common();
   signal(SIGINT, handle_interrupt);
   test.say("at work");
   for (uint64_t number = 1; !interrupted; ++number) {
-    const uint32_t epoch = process->waiter().epoch();
+    const uint32_t epoch = process->waiters().common().epoch();
     for (size_t i = 0; i < publishers.size() && !interrupted; ++i) {
       try {
         if (publishes) {
@@ -66,7 +66,7 @@ const Role busy_node("busy_node", [](Lines & test, const Arguments & arguments) 
       }
     }
     if (!publishes && !interrupted) {
-      process->waiter().wait(epoch, std::nullopt);
+      process->waiters().common().wait(epoch, std::nullopt);
     }
   }
   publishers.clear();

@@ -230,18 +230,18 @@ TEST_CASE(
 
 TEST_CASE("a match wakes the process only while somebody watches events of endpoints") {
   Fixture f;
-  Waiter & waiter = f.process->waiter();
+  Waiter & waiter = f.process->waiters().common();
   const auto publisher = f.publisher(keep_last(10));
   const uint32_t unwatched = waiter.epoch();
   auto subscription = f.subscription(keep_last(10));
   CHECK(waiter.epoch() == unwatched);
-  waiter.watch_endpoint_events();
+  f.process->waiters().event_watchers().add(common_word);
   subscription.reset();
   CHECK(waiter.epoch() != unwatched);
   const uint32_t before = waiter.epoch();
   subscription = f.subscription(keep_last(10));
   CHECK(waiter.epoch() != before);
-  waiter.unwatch_endpoint_events();
+  f.process->waiters().event_watchers().remove(common_word);
 }
 
 TEST_CASE("values without a meaning are refused by name, and leave nothing behind") {

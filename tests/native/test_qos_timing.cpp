@@ -177,23 +177,23 @@ TEST_CASE("an assertion wakes only who watches, and only when it changes somethi
   const auto subscription = f.subscription(qos);
   const auto publisher = f.publisher(qos);
   const auto late = f.publisher(qos);
-  Waiter & waiter = f.process->waiter();
+  Waiter & waiter = f.process->waiters().common();
   const uint32_t unwatched = waiter.epoch();
   publisher->assert_liveliness();
   CHECK(waiter.epoch() == unwatched);
-  waiter.watch_endpoint_events();
+  f.process->waiters().event_watchers().add(common_word);
   late->assert_liveliness();
   const uint32_t woken = waiter.epoch();
   CHECK(woken != unwatched);
   late->assert_liveliness();
   CHECK(waiter.epoch() == woken);
-  waiter.unwatch_endpoint_events();
+  f.process->waiters().event_watchers().remove(common_word);
 }
 
 TEST_CASE("what starts a publisher's clock wakes who slept in its process as nothing was due") {
   Fixture f;
-  Waiter & waiter = f.process->waiter();
-  waiter.watch_endpoint_events();
+  Waiter & waiter = f.process->waiters().common();
+  f.process->waiters().event_watchers().add(common_word);
   const auto changes_epoch = [&](auto && act) {
     const uint32_t epoch = waiter.epoch();
     act();
@@ -210,7 +210,7 @@ TEST_CASE("what starts a publisher's clock wakes who slept in its process as not
     wait_until("the lease runs out", [&] { return publisher->liveliness_lost().total == 1; });
     CHECK(changes_epoch([&] { publish(*publisher, 1); }));
   }
-  waiter.unwatch_endpoint_events();
+  f.process->waiters().event_watchers().remove(common_word);
 }
 
 TEST_CASE("a publisher that was killed is not alive until another one takes its place") {

@@ -55,7 +55,7 @@ uint64_t take_until(
       }
       ++taken;
     }
-    process.waiter().wait(process.waiter().epoch(), monotonic_ns() + 1'000'000);
+    process.waiters().common().wait(process.waiters().common().epoch(), monotonic_ns() + 1'000'000);
   }
   return taken;
 }

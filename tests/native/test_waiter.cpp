@@ -11,7 +11,7 @@
 #include "patience.hpp"
 #include "platform/clock.hpp"
 #include "platform/futex_any.hpp"
-#include "transport/layout/wake_word.hpp"
+#include "transport/layout/wake_words.hpp"
 #include "transport/waiting/joint_wait.hpp"
 #include "transport/waiting/waiter.hpp"
 
@@ -135,20 +135,6 @@ TEST_CASE("no wake-up is lost: many notify one who counts") {
     }
     CHECK_FALSE(missed);
   }
-}
-
-TEST_CASE("watchers are counted") {
-  Side side(WaitMode::block);
-  side.waiter.watch_graph();
-  side.waiter.watch_graph();
-  side.waiter.watch_endpoint_events();
-  CHECK(side.word.graph_watchers == 2);
-  CHECK(side.word.event_watchers == 1);
-  side.waiter.unwatch_graph();
-  side.waiter.unwatch_graph();
-  side.waiter.unwatch_endpoint_events();
-  CHECK(side.word.graph_watchers == 0);
-  CHECK(side.word.event_watchers == 0);
 }
 
 TEST_CASE("a wait on several platforms ends with a notification on any of them") {

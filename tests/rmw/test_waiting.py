@@ -4,10 +4,12 @@
 from __future__ import annotations
 
 import os
+import re
 import threading
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
+from pathlib import Path
 
 import pytest
 import rclpy
@@ -20,7 +22,7 @@ from rclpy.task import Future
 from ros_support import announce, peer_node, spin_until, spinning_thread
 from std_msgs.msg import String
 from std_srvs.srv import Trigger
-from support import IS_MANYCORE, PATIENCE_S
+from support import IS_MANYCORE, PATIENCE_S, wait_until
 
 # The EventsExecutor does not wait: see test_executors.py and test_callbacks.py.
 EXECUTORS = [SingleThreadedExecutor, MultiThreadedExecutor]
@@ -43,6 +45,58 @@ def test_guard_condition_wakes_a_spinning_thread(node):
             triggered.clear()
             guard.trigger()
             assert triggered.wait(PATIENCE_S)
+
+
+def status_of(thread: threading.Thread, key: str) -> str:
+    """Return a line of the kernel's account of a thread of this process."""
+    status = Path(f"/proc/self/task/{thread.native_id}/status").read_text()
+    found = re.search(rf"^{key}:\s+(.*)$", status, re.M)
+    assert found
+    return found.group(1)
+
+
+def slept_times(thread: threading.Thread) -> int:
+    return int(status_of(thread, "voluntary_ctxt_switches"))
+
+
+def is_asleep(thread: threading.Thread) -> bool:
+    """Whether it waits in the middleware, not for the interpreter."""
+    if not status_of(thread, "State").startswith("S"):
+        return False
+    slept = slept_times(thread)
+    sleeping_s = 0.05  # Python asks for the interpreter every 5 ms
+    return not threading.Event().wait(sleeping_s) and slept_times(thread) == slept
+
+
+@pytest.mark.skipif(not IS_MANYCORE, reason="other middlewares have threads of their own")
+def test_a_message_wakes_only_the_thread_that_waits_for_it(node):
+    """Nodes composed in a process, each with an executor in a thread, do not cost each other."""
+    names = [f"composed_{i}" for i in range(8)]
+    heard: dict[str, int] = dict.fromkeys(names, 0)
+    publishers = [node.create_publisher(String, name, 10) for name in names]
+
+    def hear(name: str) -> None:
+        heard[name] += 1
+
+    with ExitStack() as stack:
+        threads = []
+        for name in names:
+            composed = rclpy.create_node(name)
+            stack.callback(composed.destroy_node)
+            composed.create_subscription(String, name, lambda _, name=name: hear(name), 10)
+            executor = SingleThreadedExecutor()
+            executor.add_node(composed)
+            threads.append(stack.enter_context(spinning_thread(executor)))
+        for publisher in publishers:
+            publisher.publish(String())
+        wait_until(lambda: all(heard.values()), "all spin")
+        wait_until(lambda: all(is_asleep(thread) for thread in threads), "all wait")
+        before = [slept_times(thread) for thread in threads]
+        for count in range(2, 20):
+            publishers[0].publish(String())
+            wait_until(lambda count=count: heard[names[0]] == count, "it is heard")
+        assert slept_times(threads[0]) > before[0]
+        assert [slept_times(thread) for thread in threads[1:]] == before[1:]
 
 
 def test_a_trigger_before_the_wait_is_not_lost(node):

@@ -53,8 +53,8 @@ public:
     return with_node_names(member()->graph().endpoints_of(topic), nodes);
   }
   uint64_t graph_generation() const { return member()->graph().generation(); }
-  void watch_graph() { member()->waiter().watch_graph(); }
-  uint32_t epoch() const { return member()->waiter().epoch(); }
+  void watch_graph() { member()->waiters().graph_watchers().add(common_word); }
+  uint32_t epoch() const { return member()->waiters().common().epoch(); }
   bool wait(uint32_t seen, std::optional<double> timeout_s) {
     std::optional<int64_t> deadline_ns;
     if (timeout_s) {
@@ -62,9 +62,9 @@ public:
     }
     const std::shared_ptr<Process> process = member();  // another thread may close this object
     const nb::gil_scoped_release released;
-    return process->waiter().wait(seen, deadline_ns);
+    return process->waiters().common().wait(seen, deadline_ns);
   }
-  void notify() { member()->waiter().notify(); }
+  void notify() { member()->waiters().common().notify(); }
   void close() { process_.reset(); }
 
 private:

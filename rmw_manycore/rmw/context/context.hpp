@@ -11,7 +11,7 @@
 /// What a context owns. rmw fixes the name of the type and its global namespace.
 struct rmw_context_impl_s {
   explicit rmw_context_impl_s(std::shared_ptr<manycore::Process> joined)
-  : process(std::move(joined)), callback_thread(process->waiter()) {}
+  : process(std::move(joined)), callback_thread(process->waiters()) {}
 
   const std::shared_ptr<manycore::Process> process;
   rmw_manycore::CallbackThread callback_thread;

@@ -11,6 +11,7 @@ namespace rmw_manycore {
 GuardCondition::GuardCondition(rmw_context_t & context, Source source)
 : process_(context.impl->process),
   source_(source),
+  watched_(process_->waiters(), watchers_),
   seen_generation_(process_->graph().generation()) {
   handle.implementation_identifier = identifier;
   handle.data = this;
@@ -18,14 +19,14 @@ GuardCondition::GuardCondition(rmw_context_t & context, Source source)
 }
 
 void GuardCondition::trigger() noexcept {
-  triggered_.store(true, std::memory_order_release);
+  triggered_.store(true, std::memory_order_seq_cst);
   if (!process_->is_inherited()) {
-    process_->waiter().notify();
+    process_->waiters().notify(watchers_);
   }
 }
 
 bool GuardCondition::ready() const noexcept {
-  return triggered_.load(std::memory_order_acquire) ||
+  return triggered_.load(std::memory_order_seq_cst) ||
          (source_ == Source::graph &&
           seen_generation_.load(std::memory_order_relaxed) != process_->graph().generation());
 }

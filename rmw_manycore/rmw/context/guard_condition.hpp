@@ -23,8 +23,8 @@ public:
   rmw_guard_condition_t handle{};
 
   Source source() const noexcept { return source_; }
-  /// Where who waits for it sleeps.
-  manycore::Waiter & waiter() const noexcept { return process_->waiter(); }
+  manycore::Waiters & waiters() const noexcept { return process_->waiters(); }
+  manycore::Watchers & watchers() noexcept { return watchers_; }
   void trigger() noexcept;
   bool ready() const noexcept;
   /// As `ready`, and resets: the next wait needs a new trigger or change.
@@ -33,6 +33,8 @@ public:
 private:
   const std::shared_ptr<manycore::Process> process_;
   const Source source_;
+  manycore::Watchers watchers_{};
+  const manycore::Watched watched_;
   std::atomic<bool> triggered_{false};
   std::atomic<uint64_t> seen_generation_;  ///< of the graph, at the last take
 };

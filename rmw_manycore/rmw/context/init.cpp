@@ -86,7 +86,7 @@ rmw_ret_t rmw_shutdown(rmw_context_t * context) {
   // Implementation
   *context->impl->is_shutdown = true;
   if (!context->impl->process->is_inherited()) {
-    context->impl->process->waiter().notify();
+    context->impl->process->waiters().notify_all();
   }
   context->impl->callback_thread.stop();
   return RMW_RET_OK;

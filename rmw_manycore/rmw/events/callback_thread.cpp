@@ -18,7 +18,7 @@ void CallbackThread::add(Callback & callback) {
     thread_ = std::thread([this] { run(); });
   }
   wake_.notify_all();
-  waiter_.notify();  // a sleep that has begun does not know when this one is due
+  wake_sleep();  // one that has begun knows neither its watchers nor when it is due
 }
 
 void CallbackThread::remove(Callback & callback) noexcept {
@@ -34,31 +34,46 @@ void CallbackThread::stop() noexcept {
     const std::lock_guard lock(mutex_);
     stopping_ = true;
     wake_.notify_all();
+    wake_sleep();
   }
-  waiter_.notify();
   if (thread_.joinable()) {
     thread_.join();
   }
 }
 
 void CallbackThread::run() noexcept {
-  waiter_.watch_endpoint_events();
+  manycore::Waiter & waiter = waiters_.of_this_thread();
+  const manycore::WakeMask word = manycore::Waiters::mask_of_this_thread();
   std::unique_lock lock(mutex_);
+  sleeping_ = &waiter;
   while (!stopping_) {
     if (active_.empty()) {
       wake_.wait(lock);
       continue;
     }
-    // Epoch and due time come before the look: what happens or falls due in between ends the wait
-    // at once.
-    const uint32_t epoch = waiter_.epoch();
+    // Watchers, epoch and due time come before the look: what happens or falls due in between ends
+    // the wait at once.
+    watch_all(word);
+    const uint32_t epoch = waiter.epoch();
     const std::optional<int64_t> due_ns = next_due_ns();
     report_all();
     lock.unlock();
-    waiter_.wait(epoch, due_ns);
+    waiter.wait(epoch, due_ns);
     lock.lock();
   }
-  waiter_.unwatch_endpoint_events();
+  sleeping_ = nullptr;
+}
+
+void CallbackThread::wake_sleep() noexcept {
+  if (sleeping_ != nullptr) {
+    sleeping_->notify();
+  }
+}
+
+void CallbackThread::watch_all(manycore::WakeMask word) noexcept {
+  for (Callback * const callback : active_) {
+    callback->watchers_.add(word);
+  }
 }
 
 std::optional<int64_t> CallbackThread::next_due_ns() const {

@@ -12,22 +12,22 @@
 #include "platform/fork_side.hpp"
 #include "rmw/event_callback_type.h"
 #include "transport/layout/qos.hpp"
-#include "transport/waiting/waiter.hpp"
+#include "transport/waiting/waiters.hpp"
 
 namespace rmw_manycore {
 
 class Callback;
 
 /// Calls the "on new message / request / response / event" callbacks of one context. It runs only
-/// once a callback was set, sleeps on the Waiter, and touches nothing else. Thread-safe.
+/// once a callback was set, sleeps on its own wake word, and touches nothing else. Thread-safe.
 class CallbackThread {
 public:
-  explicit CallbackThread(manycore::Waiter & waiter) noexcept : waiter_(waiter) {}
+  explicit CallbackThread(manycore::Waiters & waiters) noexcept : waiters_(waiters) {}
   ~CallbackThread() { stop(); }
   CallbackThread(const CallbackThread &) = delete;
   CallbackThread & operator=(const CallbackThread &) = delete;
 
-  manycore::Waiter & waiter() const noexcept { return waiter_; }
+  manycore::Waiters & waiters() const noexcept { return waiters_; }
   /// After it no callback is called any more. Not from within a callback.
   void stop() noexcept;
 
@@ -37,9 +37,11 @@ private:
   void remove(Callback & callback) noexcept;
   void run() noexcept;
   void report_all() noexcept;
+  void wake_sleep() noexcept;
+  void watch_all(manycore::WakeMask word) noexcept;
   std::optional<int64_t> next_due_ns() const;
 
-  manycore::Waiter & waiter_;
+  manycore::Waiters & waiters_;
   /// In a child of fork() there is no thread, and the mutex may be locked for ever.
   const manycore::ForkSide side_;
   /// Held while a callback runs, so that none runs after it was taken away; recursive, because a
@@ -47,6 +49,7 @@ private:
   std::recursive_mutex mutex_;
   std::condition_variable_any wake_;
   std::vector<Callback *> active_;
+  manycore::Waiter * sleeping_ = nullptr;  ///< the thread's, once it runs
   bool changed_ = false;
   bool stopping_ = false;
   std::thread thread_;
@@ -59,10 +62,14 @@ public:
   using Due = std::function<int64_t()>;
   static int64_t never() noexcept { return manycore::infinite_ns; }
 
-  /// `arrivals` counts since creation; `unread` says how many of them still wait to be taken.
-  /// `next_due_ns` says when time alone may raise `arrivals` (CLOCK_MONOTONIC).
-  Callback(CallbackThread & thread, Count arrivals, Count unread, Due next_due_ns = never)
+  /// `watchers` are those to be woken when `arrivals` rises. `arrivals` counts since creation;
+  /// `unread` says how many of them still wait to be taken. `next_due_ns` says when time alone may
+  /// raise `arrivals` (CLOCK_MONOTONIC).
+  Callback(
+    CallbackThread & thread, manycore::Watchers & watchers, Count arrivals, Count unread,
+    Due next_due_ns = never)
   : thread_(thread),
+    watchers_(watchers),
     arrivals_(std::move(arrivals)),
     unread_(std::move(unread)),
     next_due_ns_(std::move(next_due_ns)) {}
@@ -70,7 +77,6 @@ public:
   Callback(const Callback &) = delete;
   Callback & operator=(const Callback &) = delete;
 
-  manycore::Waiter & waiter() const noexcept { return thread_.waiter(); }
   /// Sets, replaces or (nullptr) clears. What arrived before and is neither reported nor taken is
   /// reported at once, from the calling thread.
   void set(rmw_event_callback_t function, const void * user_data);
@@ -83,6 +89,7 @@ private:
   void report() noexcept;
 
   CallbackThread & thread_;
+  manycore::Watchers & watchers_;
   const Count arrivals_;
   const Count unread_;
   const Due next_due_ns_;

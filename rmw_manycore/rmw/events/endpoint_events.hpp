@@ -22,8 +22,7 @@ public:
   EndpointEvents(const EndpointEvents &) = delete;
   EndpointEvents & operator=(const EndpointEvents &) = delete;
 
-  /// Where who waits for events sleeps.
-  manycore::Waiter & waiter() const noexcept { return thread_.waiter(); }
+  manycore::Waiters & waiters() const noexcept { return thread_.waiters(); }
   bool ready(rmw_event_type_t type) const { return untold(type) != 0; }
   /// When the event may become ready by the passing of time alone (CLOCK_MONOTONIC).
   int64_t next_due_ns(rmw_event_type_t type) const { return counts(type).next_due_ns; }

@@ -16,12 +16,15 @@ class Inbox {
 public:
   Inbox(std::unique_ptr<manycore::Subscription> subscription, CallbackThread & thread)
   : subscription_(std::move(subscription)),
+    watched_(thread.waiters(), subscription_->watchers()),
     on_arrival_(
-      thread, [this] { return subscription_->arrivals(); }, [this] { return unread(); }) {}
+      thread, watched_.watchers(), [this] { return subscription_->arrivals(); },
+      [this] { return unread(); }) {
+    watched_.watchers().words.store(0);  // threads that wait for arrivals add their own
+  }
 
   const manycore::Subscription & transport() const noexcept { return *subscription_; }
-  /// Where who waits for arrivals sleeps.
-  manycore::Waiter & waiter() const noexcept { return on_arrival_.waiter(); }
+  const manycore::Watched & watched() const noexcept { return watched_; }
   Callback & on_arrival() noexcept { return on_arrival_; }
   bool has_data() const noexcept { return subscription_->has_data(); }
 
@@ -38,6 +41,7 @@ private:
   uint64_t unread() const;
 
   std::unique_ptr<manycore::Subscription> subscription_;
+  manycore::Watched watched_;
   Callback on_arrival_;
   std::atomic<int64_t> next_warning_ns_{0};  ///< CLOCK_MONOTONIC
 };

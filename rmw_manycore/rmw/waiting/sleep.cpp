@@ -5,64 +5,52 @@
 
 namespace rmw_manycore {
 
-Sleep::Sleep(manycore::Waiter & own, const Waited & waited)
-: own_(own),
-  graph_(waited.conditions.any([](const GuardCondition & condition) {
-    return condition.source() == GuardCondition::Source::graph;
-  })),
-  events_(waited.events.any([](const rmw_event_t &) { return true; })) {
-  waited.for_each_waiter([this](manycore::Waiter & waiter) { add(waiter); });
-  watch(own_);
-  for (const manycore::SeenEpoch & other : others_) {
-    watch(*other.waiter);
-  }
+Sleep::Sleep(manycore::Waiters & own, const Waited & waited) : own_(own), waited_(waited) {
+  waited.for_each_place([this](const Place & place) { add(place.waiters); });
 }
 
-Sleep::~Sleep() {
-  unwatch(own_);
-  for (const manycore::SeenEpoch & other : others_) {
-    unwatch(*other.waiter);
+/// The thread's word has the same number on each platform.
+void Sleep::watch() noexcept {
+  const manycore::WakeMask word = manycore::Waiters::mask_of_this_thread();
+  waited_.for_each_place([&](const Place & place) { place.watchers.add(word); });
+  waited_.conditions.for_each([&](const GuardCondition & condition) {
+    if (condition.source() == GuardCondition::Source::graph) {
+      condition.waiters().graph_watchers().add(word);
+    }
+  });
+}
+
+void Sleep::watch_afresh() noexcept {
+  own_.forget_this_thread();
+  for (const Other & other : others_) {
+    other.waiters->forget_this_thread();
   }
+  watch();
 }
 
 void Sleep::read_epochs() noexcept {
-  epoch_ = own_.epoch();
-  for (manycore::SeenEpoch & other : others_) {
-    other.epoch = other.waiter->epoch();
+  epoch_ = own_.of_this_thread().epoch();
+  for (Other & other : others_) {
+    other.epoch = other.waiters->of_this_thread().epoch();
   }
 }
 
 bool Sleep::until(std::optional<int64_t> deadline_ns) {
+  manycore::Waiter & own = own_.of_this_thread();
   if (others_.empty()) {
-    return own_.wait(epoch_, deadline_ns);
+    return own.wait(epoch_, deadline_ns);
   }
-  std::vector<manycore::SeenEpoch> all = others_;
-  all.push_back({&own_, epoch_});
+  std::vector<manycore::SeenEpoch> all{{&own, epoch_}};
+  for (const Other & other : others_) {
+    all.push_back({&other.waiters->of_this_thread(), other.epoch});
+  }
   return manycore::wait_for_any(all, deadline_ns);
 }
 
-void Sleep::add(manycore::Waiter & waiter) {
-  const auto is_known = [&](const manycore::SeenEpoch & other) { return other.waiter == &waiter; };
-  if (&waiter != &own_ && std::none_of(others_.begin(), others_.end(), is_known)) {
-    others_.push_back({&waiter, 0});
-  }
-}
-
-void Sleep::watch(manycore::Waiter & waiter) const noexcept {
-  if (graph_) {
-    waiter.watch_graph();
-  }
-  if (events_) {
-    waiter.watch_endpoint_events();
-  }
-}
-
-void Sleep::unwatch(manycore::Waiter & waiter) const noexcept {
-  if (events_) {
-    waiter.unwatch_endpoint_events();
-  }
-  if (graph_) {
-    waiter.unwatch_graph();
+void Sleep::add(manycore::Waiters & waiters) {
+  const auto is_known = [&](const Other & other) { return other.waiters == &waiters; };
+  if (&waiters != &own_ && std::none_of(others_.begin(), others_.end(), is_known)) {
+    others_.push_back({&waiters, 0});
   }
 }
 

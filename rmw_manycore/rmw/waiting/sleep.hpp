@@ -10,31 +10,35 @@
 
 namespace rmw_manycore {
 
-/// Where one call sleeps: on the platform of its wait set, and on those of entities of other
-/// contexts, which few programs have. Changes of graph and events raise an epoch while somebody
-/// watches; so only who waits for them is woken by them.
+/// Where one call sleeps: on its thread's wake word of the platform of its wait set, and on those
+/// of the platforms of entities of other contexts, which few programs have.
 class Sleep {
 public:
-  Sleep(manycore::Waiter & own, const Waited & waited);
-  ~Sleep();
+  Sleep(manycore::Waiters & own, const Waited & waited);
   Sleep(const Sleep &) = delete;
   Sleep & operator=(const Sleep &) = delete;
 
+  /// From here on all that is waited for raises the epochs.
+  void watch() noexcept;
+  /// As watch, and what is not waited for no longer does: after a wake-up for nothing.
+  void watch_afresh() noexcept;
   /// To be called before a look at the entities: what happens from then on ends `until` at once.
   void read_epochs() noexcept;
   /// True when something happened, false at `deadline_ns` (CLOCK_MONOTONIC; unset = no limit).
   bool until(std::optional<int64_t> deadline_ns);
 
 private:
-  void add(manycore::Waiter & waiter);
-  void watch(manycore::Waiter & waiter) const noexcept;
-  void unwatch(manycore::Waiter & waiter) const noexcept;
+  struct Other {
+    manycore::Waiters * waiters;
+    uint32_t epoch;
+  };
 
-  manycore::Waiter & own_;
+  void add(manycore::Waiters & waiters);
+
+  manycore::Waiters & own_;
+  const Waited & waited_;
   uint32_t epoch_ = 0;
-  std::vector<manycore::SeenEpoch> others_;
-  const bool graph_;
-  const bool events_;
+  std::vector<Other> others_;
 };
 
 }  // namespace rmw_manycore

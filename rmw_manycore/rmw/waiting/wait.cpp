@@ -45,7 +45,8 @@ enum class Ended { woken, by_timeout };
 /// down on SIGTERM, and would wait for ever if it came back here in between.
 Ended sleep_until_ready(
   const WaitSet & wait_set, const Waited & waited, std::optional<int64_t> deadline_ns) {
-  Sleep sleep(wait_set.waiter(), waited);
+  Sleep sleep(wait_set.waiters(), waited);
+  sleep.watch();
   while (true) {
     // Epochs and due time are read before the entities: what happens or falls due in between ends
     // the wait at once.
@@ -56,6 +57,9 @@ Ended sleep_until_ready(
     }
     if (!sleep.until(until_ns) && until_ns == deadline_ns) {
       return Ended::by_timeout;
+    }
+    if (!waited.any_ready()) {
+      sleep.watch_afresh();
     }
   }
 }

@@ -18,7 +18,7 @@ public:
 
   rmw_wait_set_t handle{};
 
-  manycore::Waiter & waiter() const noexcept { return process_->waiter(); }
+  manycore::Waiters & waiters() const noexcept { return process_->waiters(); }
   bool is_cut_off() const noexcept { return process_->is_cut_off(); }
   /// Throws manycore::Error where nothing would ever wake it.
   void require_membership() const { process_->require_membership(); }

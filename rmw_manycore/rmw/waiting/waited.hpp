@@ -18,15 +18,23 @@ inline bool is_ready(const rmw_event_t & event) {
   return static_cast<const EndpointEvents *>(event.data)->ready(event.event_type);
 }
 
-/// Where who waits for it sleeps.
-inline manycore::Waiter & waiter_of(Subscription & subscription) {
-  return subscription.inbox().waiter();
+/// Where threads that wait for it sleep, and how it knows of them.
+struct Place {
+  manycore::Waiters & waiters;
+  manycore::Watchers & watchers;
+};
+inline Place place_of(const Inbox & inbox) {
+  return {inbox.watched().waiters(), inbox.watched().watchers()};
 }
-inline manycore::Waiter & waiter_of(Service & service) { return service.requests().waiter(); }
-inline manycore::Waiter & waiter_of(Client & client) { return client.replies().waiter(); }
-inline manycore::Waiter & waiter_of(const GuardCondition & condition) { return condition.waiter(); }
-inline manycore::Waiter & waiter_of(const rmw_event_t & event) {
-  return static_cast<const EndpointEvents *>(event.data)->waiter();
+inline Place place_of(Subscription & subscription) { return place_of(subscription.inbox()); }
+inline Place place_of(Service & service) { return place_of(service.requests()); }
+inline Place place_of(Client & client) { return place_of(client.replies()); }
+inline Place place_of(GuardCondition & condition) {
+  return {condition.waiters(), condition.watchers()};
+}
+inline Place place_of(const rmw_event_t & event) {
+  manycore::Waiters & waiters = static_cast<const EndpointEvents *>(event.data)->waiters();
+  return {waiters, waiters.event_watchers()};
 }
 
 /// As is_ready, at the end of a wait: a guard condition is reset by it.
@@ -107,13 +115,13 @@ struct Waited {
   }
 
   template<typename Visit>
-  void for_each_waiter(Visit && visit) const {
-    const auto visit_waiter = [&](auto & entity) { visit(waiter_of(entity)); };
-    subscriptions.for_each(visit_waiter);
-    conditions.for_each(visit_waiter);
-    services.for_each(visit_waiter);
-    clients.for_each(visit_waiter);
-    events.for_each(visit_waiter);
+  void for_each_place(Visit && visit) const {
+    const auto visit_place = [&](auto & entity) { visit(place_of(entity)); };
+    subscriptions.for_each(visit_place);
+    conditions.for_each(visit_place);
+    services.for_each(visit_place);
+    clients.for_each(visit_place);
+    events.for_each(visit_place);
   }
 
   bool keep_ready() {

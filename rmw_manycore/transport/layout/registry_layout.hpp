@@ -6,7 +6,7 @@
 #include "platform/robust_mutex.hpp"
 #include "transport/layout/endpoint.hpp"
 #include "transport/layout/segment_layout.hpp"
-#include "transport/layout/wake_word.hpp"
+#include "transport/layout/wake_words.hpp"
 
 namespace manycore {
 
@@ -53,9 +53,9 @@ struct ProcessEntry {
   uint32_t reserved;
   uint64_t charged_bytes;  ///< outside the segment, but counted as SMEM
   char label[88];
-  WakeWord wake;
+  WakeWords wake;
 };
-static_assert(sizeof(ProcessEntry) == 192);
+static_assert(sizeof(ProcessEntry) == 704);
 
 struct NodeEntry {
   Slot slot;

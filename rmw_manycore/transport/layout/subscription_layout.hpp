@@ -3,6 +3,7 @@
 
 #include "transport/layout/deadline_clock.hpp"
 #include "transport/layout/segment_layout.hpp"
+#include "transport/layout/wake_words.hpp"
 
 namespace manycore {
 
@@ -63,12 +64,10 @@ struct SubscriptionHeader {
   /// Arrivals, against the requested deadline; untouched without one.
   alignas(64) DeadlineClock deadline;
   int64_t deadline_ns;
+  Watchers watchers;  ///< threads of its process that wait for arrivals
 
-  void note_arrival() noexcept {
-    if (has_deadline != 0) {
-      deadline.touch(deadline_ns);
-    }
-  }
+  /// True when it is the first that counts: before it no deadline was due.
+  bool note_arrival() noexcept { return has_deadline != 0 && deadline.touch(deadline_ns); }
 
   std::atomic<uint64_t> * slots() noexcept {
     return reinterpret_cast<std::atomic<uint64_t> *>(this + 1);

@@ -217,7 +217,7 @@ void note_removal(Registry & registry) noexcept {
   registry.header().removed.store(1, std::memory_order_seq_cst);
   for (uint32_t slot = 0; slot < registry.processes().high_water(); ++slot) {
     if (registry.processes().is_live(slot)) {
-      registry.processes()[slot].wake.notify();
+      registry.processes()[slot].wake.notify_all();
     }
   }
 }

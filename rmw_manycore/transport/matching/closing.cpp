@@ -97,7 +97,7 @@ void close_publisher(Registry & registry, EndpointEntry & entry, bool died) {
     count_unmatched(registry, subscription);
     if (has_undelivered(reader)) {
       reader.subscription.resync.store(1, std::memory_order_seq_cst);
-      notify_process(registry, subscription.process);
+      notify_watchers(registry, reader.subscription);
     }
   }
   dsm->orphan.store(1, std::memory_order_seq_cst);

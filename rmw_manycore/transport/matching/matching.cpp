@@ -131,7 +131,7 @@ void join(Registry & registry, const Pair & pair) {
   // History, or what was published between the first look at `last` and now.
   if (dsm->last.load(std::memory_order_seq_cst) > taken) {
     header->resync.store(1, std::memory_order_seq_cst);
-    notify_process(registry, pair.subscription.process);
+    notify_watchers(registry, *header);
   }
   note_successor(pair.subscription);
   for (EndpointEntry * end : {&pair.publisher, &pair.subscription}) {

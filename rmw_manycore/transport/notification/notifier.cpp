@@ -1,6 +1,8 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #include "transport/notification/notifier.hpp"
 
+#include <utility>
+
 #include "transport/queue/source_table.hpp"
 #include "transport/queue/subscriber_queue.hpp"
 
@@ -15,7 +17,8 @@ bool is_for(const Announcement & announcement, const Reader & reader) noexcept {
 uint64_t push_to_own_cluster(
   const Cluster & own, const ReaderList & list, const Announcement & announcement) noexcept {
   uint64_t others = 0;
-  WakeWord * pending = nullptr;
+  WakeWords * pending = nullptr;  // readers of one process stand together
+  WakeMask words = 0;
   for (const Reader & reader : list.readers()) {
     if (!is_for(announcement, reader)) {
       continue;
@@ -24,16 +27,17 @@ uint64_t push_to_own_cluster(
       others |= uint64_t{1} << (reader.cluster - 1);
       continue;
     }
-    subscriber_queue::push(
+    const bool changes_events = subscriber_queue::push(
       *reader.subscription, {reader.source_index, reader.source_incarnation, announcement.number},
       [&](const Hint & oldest) { note_displaced(own, *reader.subscription, oldest); });
-    if (pending != nullptr && pending != reader.wake) {
-      pending->notify();
+    if (pending != reader.wake && pending != nullptr) {
+      pending->notify(std::exchange(words, 0));
     }
     pending = reader.wake;
+    words |= pending->mask_of(reader.subscription->watchers, changes_events);
   }
   if (pending != nullptr) {
-    pending->notify();
+    pending->notify(words);
   }
   return others;
 }

@@ -8,7 +8,7 @@
 namespace manycore {
 
 ReceiveThread::ReceiveThread(Registry & registry, uint32_t cluster)
-: registry_(registry), cluster_(registry.clusters().at(cluster)) {
+: registry_(registry), cluster_(registry.clusters().at(cluster)), wakes_(registry) {
   cluster_.header().phase.store(0, std::memory_order_seq_cst);  // a dead predecessor's may be odd
 }
 
@@ -91,6 +91,7 @@ void ReceiveThread::forward(const EmcosMessage & message) noexcept {
   if (current) {
     while (!push_to_readers(*source, *dsm, message)) {
     }
+    wakes_.flush();
   }
 }
 
@@ -127,7 +128,7 @@ void ReceiveThread::push(SegmentRef ref, const Hint & hint) noexcept {
     subscription->magic.load(std::memory_order_relaxed) != subscription_magic) {
     return;
   }
-  subscriber_queue::push(*subscription, hint, [&](const Hint & oldest) {
+  const bool changes_events = subscriber_queue::push(*subscription, hint, [&](const Hint & oldest) {
     note_displaced(cluster_, *subscription, oldest);
   });
   ClusterHeader & header = cluster_.header();
@@ -135,7 +136,8 @@ void ReceiveThread::push(SegmentRef ref, const Hint & hint) noexcept {
     header.notifications.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
   const uint32_t process = subscription->process.load(std::memory_order_relaxed);
   if (process < registry_.processes().high_water()) {
-    registry_.processes()[process].wake.notify();
+    const WakeWords & wake = registry_.processes()[process].wake;
+    wakes_.add(process, wake.mask_of(subscription->watchers, changes_events));
   }
 }
 
@@ -152,7 +154,7 @@ void ReceiveThread::wake_who_must_look() noexcept {
   for (uint32_t slot = 0; slot < registry_.processes().high_water(); ++slot) {
     if (
       registry_.processes().is_live(slot) && registry_.processes()[slot].cluster == cluster_.id()) {
-      registry_.processes()[slot].wake.notify();
+      registry_.processes()[slot].wake.notify_all();
     }
   }
 }

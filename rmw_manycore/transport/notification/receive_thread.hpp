@@ -4,6 +4,7 @@
 #include <functional>
 
 #include "transport/layout/topic_dsm_layout.hpp"
+#include "transport/notification/pending_wakes.hpp"
 #include "transport/queue/subscriber_queue.hpp"
 #include "transport/registry/registry.hpp"
 
@@ -41,6 +42,7 @@ private:
 
   Registry & registry_;
   Cluster & cluster_;
+  PendingWakes wakes_;
   EmcosMessage batch_[batch_size];
 };
 

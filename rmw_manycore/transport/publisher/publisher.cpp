@@ -81,9 +81,7 @@ void Publisher::assert_liveliness() {
 void Publisher::Impl::tell_event_watchers() {
   const Writing writing = write();
   for (const Reader & reader : writer.readers().readers()) {
-    if (reader.wake->event_watchers.load(std::memory_order_seq_cst) != 0) {
-      reader.wake->notify();
-    }
+    reader.wake->notify(reader.wake->endpoint_events);
   }
 }
 

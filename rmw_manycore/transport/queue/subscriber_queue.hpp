@@ -70,19 +70,19 @@ inline void initialize(SubscriptionHeader & header) noexcept {
 ///
 /// The exchange on the slot is the push; whoever finds a filled slot at `tail` moves `tail` on, so
 /// a pusher that died in between holds nobody up. `on_displaced(Hint)` is called for each that it
-/// displaces.
+/// displaces. True when those that wait for the subscription's events have to look, too.
 template<typename OnDisplaced>
-void push(SubscriptionHeader & header, const Hint & hint, OnDisplaced on_displaced) noexcept {
+bool push(SubscriptionHeader & header, const Hint & hint, OnDisplaced on_displaced) noexcept {
   // Each attempt that fails was overtaken by another pusher; only damage makes so many fail.
   constexpr int most_attempts = 10'000;
-  header.note_arrival();
+  bool changes_events = header.note_arrival();
   const Slots slots(header);
   for (int attempt = 0; attempt < most_attempts; ++attempt) {
     uint64_t tail = header.tail.load(std::memory_order_acquire);
     std::atomic<uint64_t> & slot = slots.at(tail);
     uint64_t word = slot.load(std::memory_order_acquire);
     if (slots.filled(word, tail)) {
-      header.tail.compare_exchange_strong(tail, tail + 1, std::memory_order_acq_rel);
+      header.tail.compare_exchange_strong(tail, tail + 1, std::memory_order_seq_cst);
       continue;
     }
     uint64_t head = header.head.load(std::memory_order_acquire);
@@ -91,23 +91,25 @@ void push(SubscriptionHeader & header, const Hint & hint, OnDisplaced on_displac
     }
     if (tail - head >= header.depth) {
       if (header.keep_all != 0) {
-        header.resync.store(1, std::memory_order_seq_cst);
-        return;
+        break;
       }
       const uint64_t oldest = slots.at(head).load(std::memory_order_acquire);
       if (header.head.compare_exchange_strong(head, head + 1, std::memory_order_acq_rel)) {
         header.dropped.fetch_add(1, std::memory_order_relaxed);
         on_displaced(decode(oldest));  // what stood there while nobody had moved `head`
+        changes_events = true;
       }
       continue;
     }
+    // seq_cst, as for `tail`: the pusher reads the watchers next (see Watchers).
     if (slot.compare_exchange_strong(
-          word, encode(slots.lap(tail), hint), std::memory_order_acq_rel)) {
-      header.tail.compare_exchange_strong(tail, tail + 1, std::memory_order_acq_rel);
-      return;
+          word, encode(slots.lap(tail), hint), std::memory_order_seq_cst)) {
+      header.tail.compare_exchange_strong(tail, tail + 1, std::memory_order_seq_cst);
+      return changes_events;
     }
   }
   header.resync.store(1, std::memory_order_seq_cst);
+  return changes_events;
 }
 
 /// Step 3: removes the oldest hint. One popper at a time; pushers may displace at the same time.
@@ -139,10 +141,12 @@ inline uint64_t size(SubscriptionHeader & header) noexcept {
   return header.tail.load(std::memory_order_acquire) - head;
 }
 
+/// seq_cst: a thread that finds it empty sleeps, having added itself to the watchers (see
+/// Watchers).
 inline bool empty(SubscriptionHeader & header) noexcept {
   const Slots slots(header);
   const uint64_t head = header.head.load(std::memory_order_acquire);
-  return !slots.filled(slots.at(head).load(std::memory_order_acquire), head) &&
+  return !slots.filled(slots.at(head).load(std::memory_order_seq_cst), head) &&
          header.head.load(std::memory_order_acquire) == head;
 }
 

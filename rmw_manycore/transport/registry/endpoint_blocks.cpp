@@ -22,17 +22,17 @@ uint64_t lost_so_far(const EndpointEntry & entry, const SubscriptionHeader & hea
   return std::max(entry.counters.lost.load(std::memory_order_relaxed), by_drops);
 }
 
-void notify_process(Registry & registry, uint32_t process) {
+void notify_watchers(Registry & registry, const SubscriptionHeader & header) {
+  const uint32_t process = header.process.load(std::memory_order_relaxed);
   if (registry.processes().is_live(process)) {
-    registry.processes()[process].wake.notify();
+    registry.processes()[process].wake.notify(header.watchers);
   }
 }
 
 void notify_event_watchers(Registry & registry, uint32_t process) {
-  if (
-    registry.processes().is_live(process) &&
-    registry.processes()[process].wake.event_watchers.load() != 0) {
-    registry.processes()[process].wake.notify();
+  if (registry.processes().is_live(process)) {
+    WakeWords & wake = registry.processes()[process].wake;
+    wake.notify(wake.endpoint_events);
   }
 }
 

@@ -19,8 +19,8 @@ IncompatibleCount incompatible_of(const EndpointEntry & entry);
 /// looked last, if that is more.
 uint64_t lost_so_far(const EndpointEntry & entry, const SubscriptionHeader & header);
 
-/// Wakes a process, always or only if it watches matched and incompatible-QoS events.
-void notify_process(Registry & registry, uint32_t process);
+/// Wakes the threads that wait for a subscription's messages, or for events of a process.
+void notify_watchers(Registry & registry, const SubscriptionHeader & header);
 void notify_event_watchers(Registry & registry, uint32_t process);
 
 /// The topic DSM of a source, or nullptr when its publisher's endpoint is gone and its memory may

@@ -239,8 +239,8 @@ void Registry::graph_changed() noexcept {
   header().graph_generation.fetch_add(1, std::memory_order_seq_cst);
   for (uint32_t slot = 0; slot < processes_.high_water(); ++slot) {
     ProcessEntry & process = processes_[slot];
-    if (processes_.is_live(slot) && process.wake.graph_watchers.load() != 0) {
-      process.wake.notify();
+    if (processes_.is_live(slot)) {
+      process.wake.notify(process.wake.graph);
     }
   }
 }

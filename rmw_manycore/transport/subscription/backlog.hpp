@@ -16,7 +16,8 @@ class Backlog {
 public:
   bool empty() const noexcept { return records_.empty(); }
   /// From any thread: the queue's state is asked without the mutex.
-  size_t size() const noexcept { return size_.load(std::memory_order_acquire); }
+  /// seq_cst: a thread that finds it empty sleeps (see Watchers).
+  size_t size() const noexcept { return size_.load(std::memory_order_seq_cst); }
 
   void append(const std::vector<Source::Waiting> & records) {
     records_.insert(records_.end(), records.begin(), records.end());
@@ -30,7 +31,7 @@ public:
   }
 
 private:
-  void note_size() noexcept { size_.store(records_.size(), std::memory_order_release); }
+  void note_size() noexcept { size_.store(records_.size(), std::memory_order_seq_cst); }
 
   std::deque<Source::Waiting> records_;
   std::atomic<size_t> size_{0};

@@ -21,7 +21,7 @@ bool RecordFinder::has_some() const noexcept {
 }
 
 bool RecordFinder::has_to_resync() const noexcept {
-  return header_.resync.load(std::memory_order_acquire) != 0;
+  return header_.resync.load(std::memory_order_seq_cst) != 0;
 }
 
 uint64_t RecordFinder::waiting() const noexcept {
@@ -30,7 +30,7 @@ uint64_t RecordFinder::waiting() const noexcept {
 
 uint64_t RecordFinder::arrivals() const noexcept {
   const uint64_t pushed =
-    header_.tail.load(std::memory_order_acquire) - (uint64_t{1} << header_.slot_count_log2);
+    header_.tail.load(std::memory_order_seq_cst) - (uint64_t{1} << header_.slot_count_log2);
   return pushed + arrivals_by_resync_.load(std::memory_order_relaxed);
 }
 
@@ -114,7 +114,7 @@ void RecordFinder::resync(std::optional<Hint> popped) {
   if (!backlog_.empty()) {
     // A thread that looked while the hints were gone and the backlog was not there yet may be about
     // to sleep.
-    notify_process(registry_, entry_.process);
+    notify_watchers(registry_, header_);
   }
 }
 

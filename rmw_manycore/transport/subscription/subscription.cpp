@@ -29,6 +29,8 @@ const char * Subscription::type() const noexcept { return impl_->entry.type; }
 
 bool Subscription::has_data() const noexcept { return impl_->finder.has_some(); }
 
+Watchers & Subscription::watchers() noexcept { return impl_->header.watchers; }
+
 std::optional<Claim> Subscription::claim() {
   Impl & impl = *impl_;
   impl.membership.require();

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "transport/layout/endpoint.hpp"
+#include "transport/layout/wake_words.hpp"
 #include "transport/subscription/claim.hpp"
 
 namespace manycore {
@@ -25,6 +26,9 @@ public:
 
   /// True when claim() is worth calling (it may still find nothing: expired or overwritten).
   bool has_data() const noexcept;
+
+  /// Those that arrivals wake. At first the process's common word.
+  Watchers & watchers() noexcept;
 
   /// Step 3 of Fig. 4: pops the queue and claims the record in its topic DSM.
   std::optional<Claim> claim();

@@ -16,7 +16,7 @@ namespace manycore {
 struct Reader {
   SourceEntry * source = nullptr;
   SubscriptionHeader * subscription = nullptr;
-  WakeWord * wake = nullptr;
+  WakeWords * wake = nullptr;
   uint32_t cluster = 0;
   uint32_t endpoint = 0;
   uint32_t source_index = 0;

@@ -5,7 +5,7 @@
 
 #include "platform/clock.hpp"
 #include "platform/futex_any.hpp"
-#include "transport/layout/wake_word.hpp"
+#include "transport/layout/wake_words.hpp"
 
 namespace manycore {
 namespace {

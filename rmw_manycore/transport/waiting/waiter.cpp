@@ -5,7 +5,7 @@
 
 #include "platform/clock.hpp"
 #include "platform/cpu.hpp"
-#include "transport/layout/wake_word.hpp"
+#include "transport/layout/wake_words.hpp"
 
 namespace manycore {
 namespace {
@@ -92,10 +92,5 @@ void Waiter::notify() noexcept {
     futex_wake_all(word_.epoch);
   }
 }
-
-void Waiter::watch_graph() noexcept { word_.graph_watchers.fetch_add(1); }
-void Waiter::unwatch_graph() noexcept { word_.graph_watchers.fetch_sub(1); }
-void Waiter::watch_endpoint_events() noexcept { word_.event_watchers.fetch_add(1); }
-void Waiter::unwatch_endpoint_events() noexcept { word_.event_watchers.fetch_sub(1); }
 
 }  // namespace manycore

@@ -18,8 +18,9 @@ enum class WaitMode : uint8_t {
   spin,      ///< never sleeps; for cores that belong to one node alone
 };
 
-/// The one place where a process sleeps. Every notification (message, guard condition, graph change
-/// while watched) raises the epoch. Use: read epoch(), look at all entities, then wait(epoch).
+/// Where threads sleep: on one wake word. Every notification (message, guard condition, graph
+/// change while watched) raises the epoch. Use: have the word among the Watchers of all entities,
+/// read epoch(), look at all entities, then wait(epoch).
 class Waiter {
 public:
   Waiter(WakeWord & word, WaitMode mode) noexcept;
@@ -32,15 +33,6 @@ public:
 
   /// Raises the epoch and wakes this process's sleepers (guard conditions).
   void notify() noexcept;
-
-  /// Graph changes raise the epoch only while at least one watcher is counted.
-  void watch_graph() noexcept;
-  void unwatch_graph() noexcept;
-
-  /// Matched and incompatible-QoS changes raise the epoch only while at least one watcher is
-  /// counted.
-  void watch_endpoint_events() noexcept;
-  void unwatch_endpoint_events() noexcept;
 
 private:
   friend bool wait_for_any(const std::vector<SeenEpoch> &, std::optional<int64_t>);

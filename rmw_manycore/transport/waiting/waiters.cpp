@@ -1,0 +1,57 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#include "transport/waiting/waiters.hpp"
+
+#include "transport/waiting/thread_number.hpp"
+
+namespace manycore {
+
+static_assert(thread_numbers + 1 == wake_words_per_process);
+
+Waiters::Waiters(WakeWords & words, WaitMode mode) : words_(words) {
+  for (WakeWord & word : words.words) {
+    waiters_.emplace_back(word, mode);
+  }
+}
+
+uint32_t Waiters::word_of_this_thread() noexcept { return 1 + thread_number(); }
+
+void Waiters::notify(const Watchers & watchers) noexcept {
+  for (WakeMask mask = watchers.read(); mask != 0; mask &= mask - 1) {
+    waiters_[static_cast<size_t>(__builtin_ctzll(mask))].notify();
+  }
+}
+
+void Waiters::notify_all() noexcept {
+  for (Waiter & waiter : waiters_) {
+    waiter.notify();
+  }
+}
+
+/// A word that threads share stays: one of them may wait where another was woken for nothing.
+void Waiters::forget_this_thread() noexcept {
+  if (are_thread_numbers_shared()) {
+    return;
+  }
+  const WakeMask word = mask_of_this_thread();
+  words_.graph.remove(word);
+  words_.endpoint_events.remove(word);
+  const std::lock_guard<std::mutex> lock(mutex_);
+  for (Watchers * const watchers : watched_) {
+    watchers->remove(word);
+  }
+}
+
+Watched::Watched(Waiters & waiters, Watchers & watchers) : waiters_(waiters), watchers_(watchers) {
+  const std::lock_guard<std::mutex> lock(waiters_.mutex_);
+  waiters_.watched_.insert(&watchers_);
+}
+
+Watched::~Watched() {
+  if (waiters_.side_.is_inherited()) {
+    return;
+  }
+  const std::lock_guard<std::mutex> lock(waiters_.mutex_);
+  waiters_.watched_.erase(&watchers_);
+}
+
+}  // namespace manycore

@@ -1,0 +1,212 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+//
+// Which threads of a process a message wakes. An epoch that was not raised wakes nobody, so the
+// tests compare epochs; that a raised one wakes is test_waiter's matter.
+#include <doctest/doctest.h>
+
+#include <future>
+#include <list>
+#include <memory>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "messages.hpp"
+#include "node_role.hpp"
+#include "patience.hpp"
+#include "platform_of_test.hpp"
+#include "transport/waiting/thread_number.hpp"
+
+using namespace manycore;
+
+namespace {
+
+/// A thread that waits for some subscriptions, as rmw_wait has it, and does nothing else.
+class WaitingThread {
+public:
+  WaitingThread(Process & process, const std::vector<Subscription *> & awaited)
+  : thread_([this, &process, awaited] {
+      waiter_ = &process.waiters().of_this_thread();
+      word_ = Waiters::mask_of_this_thread();
+      for (Subscription * const subscription : awaited) {
+        subscription->watchers().add(word_);
+      }
+      started_.set_value();
+      ended_.get_future().wait();
+    }) {
+    started_.get_future().wait();
+    seen_ = waiter_->epoch();
+  }
+  ~WaitingThread() {
+    ended_.set_value();
+    thread_.join();
+  }
+  WaitingThread(const WaitingThread &) = delete;
+  WaitingThread & operator=(const WaitingThread &) = delete;
+
+  WakeMask word() const noexcept { return word_; }
+  /// Since the call before.
+  uint32_t wake_ups() noexcept {
+    const uint32_t epoch = waiter_->epoch();
+    return epoch - std::exchange(seen_, epoch);
+  }
+
+private:
+  Waiter * waiter_ = nullptr;
+  WakeMask word_ = 0;
+  uint32_t seen_ = 0;
+  std::promise<void> started_;
+  std::promise<void> ended_;
+  std::thread thread_;
+};
+
+/// A process with a subscription on each of many topics.
+struct Fixture {
+  explicit Fixture(uint32_t subscriptions_count) {
+    platform.receive_thread(1);  // which has all threads look when it starts
+    for (uint32_t i = 0; i < subscriptions_count; ++i) {
+      subscriptions.push_back(process->create_subscription(on_topic(topic(i), keep_last(10))));
+      subscriptions.back()->watchers().words.store(0);
+    }
+  }
+  static std::string topic(uint32_t i) { return "/wake_" + std::to_string(i); }
+  std::vector<Subscription *> from(uint32_t first, uint32_t count) const {
+    std::vector<Subscription *> some;
+    for (uint32_t i = first; i < first + count; ++i) {
+      some.push_back(subscriptions[i].get());
+    }
+    return some;
+  }
+
+  TestPlatform platform;
+  std::shared_ptr<Process> process = platform.join();
+  std::vector<std::unique_ptr<Subscription>> subscriptions;
+};
+
+std::vector<std::unique_ptr<WaitingThread>> one_thread_each(const Fixture & f) {
+  std::vector<std::unique_ptr<WaitingThread>> threads;
+  for (uint32_t i = 0; i < f.subscriptions.size(); ++i) {
+    threads.push_back(std::make_unique<WaitingThread>(*f.process, f.from(i, 1)));
+  }
+  return threads;
+}
+
+}  // namespace
+
+TEST_CASE("a message wakes the thread that waits for it, and no other one") {
+  Fixture f(32);
+  const auto threads = one_thread_each(f);
+  std::vector<std::unique_ptr<Publisher>> publishers;  // one that ends has its readers look
+  for (uint32_t i = 0; i < threads.size(); ++i) {
+    publishers.push_back(f.process->create_publisher(on_topic(Fixture::topic(i), keep_last(10))));
+    publish(*publishers.back(), 1);
+    for (uint32_t other = 0; other < threads.size(); ++other) {
+      CHECK(threads[other]->wake_ups() == (other == i ? 1 : 0));
+    }
+  }
+}
+
+TEST_CASE("a message from another cluster wakes the thread that waits for it, and no other one") {
+  Fixture f(3);
+  const auto threads = one_thread_each(f);
+  std::list<Node> publishers;
+  for (uint32_t i = 0; i < threads.size(); ++i) {
+    Node & publisher = publishers.emplace_back(f.platform, 2);
+    publisher.tell("publisher " + Fixture::topic(i) + " 10");
+    publisher.tell("publish 1 1 1");
+    wait_until("its arrival", [&] { return f.subscriptions[i]->has_data(); });
+    wait_until("its wake-up", [&] { return threads[i]->wake_ups() == 1; });
+    for (const auto & thread : threads) {
+      CHECK(thread->wake_ups() == 0);
+    }
+  }
+}
+
+TEST_CASE("a message wakes a thread once, however many subscriptions it reaches") {
+  for (const uint32_t publisher_cluster : {1, 2}) {
+    Fixture f(0);
+    for (int i = 0; i < 5; ++i) {
+      f.subscriptions.push_back(f.process->create_subscription(on_topic("/many", keep_last(10))));
+      f.subscriptions.back()->watchers().words.store(0);
+    }
+    WaitingThread thread(*f.process, f.from(0, 5));
+    Node publisher(f.platform, publisher_cluster);
+    publisher.tell("publisher /many 10");
+    publisher.tell("publish 1 1 1");
+    wait_until("a wake-up", [&] { return thread.wake_ups() == 1; });
+    // The receive thread wakes when all five are served; a second time it would have by now.
+    for (const auto & subscription : f.subscriptions) {
+      CHECK(subscription->has_data());
+    }
+    CHECK(thread.wake_ups() == 0);
+  }
+}
+
+TEST_CASE("those that wait for events are woken by the first message and by displaced ones only") {
+  Fixture f(0);
+  Qos qos = keep_last(1);
+  qos.deadline_ns = 3600 * ns_per_s;
+  f.subscriptions.push_back(f.process->create_subscription(on_topic("/timed", qos)));
+  f.subscriptions.back()->watchers().words.store(0);
+  WaitingThread thread(*f.process, {});
+  f.process->waiters().event_watchers().add(thread.word());
+  const auto publisher = f.process->create_publisher(on_topic("/timed", qos));
+  CHECK(thread.wake_ups() != 0);  // a match
+  publish(*publisher, 1);
+  CHECK(thread.wake_ups() != 0);  // from now on a deadline is due
+  CHECK(take(*f.subscriptions[0]));
+  publish(*publisher, 2);
+  CHECK(thread.wake_ups() == 0);
+  publish(*publisher, 3);
+  CHECK(thread.wake_ups() != 0);  // the second was lost
+}
+
+TEST_CASE("what a thread forgets wakes it no more") {
+  Fixture f(2);
+  const Watched first(f.process->waiters(), f.subscriptions[0]->watchers());
+  const Watched second(f.process->waiters(), f.subscriptions[1]->watchers());
+  WaitingThread other(*f.process, f.from(0, 2));
+  Waiter & own = f.process->waiters().of_this_thread();
+  const WakeMask word = Waiters::mask_of_this_thread();
+  for (Watchers * const watchers :
+       {&first.watchers(), &second.watchers(), &f.process->waiters().graph_watchers(),
+        &f.process->waiters().event_watchers()}) {
+    watchers->add(word);
+  }
+  f.process->waiters().forget_this_thread();
+  second.watchers().add(word);
+  const auto unread = f.process->create_publisher(on_topic(Fixture::topic(0), keep_last(10)));
+  const auto awaited = f.process->create_publisher(on_topic(Fixture::topic(1), keep_last(10)));
+  const uint32_t seen = own.epoch();
+  publish(*unread, 1);
+  CHECK(own.epoch() == seen);
+  CHECK(other.wake_ups() == 1);
+  publish(*awaited, 1);
+  CHECK(own.epoch() == seen + 1);
+  CHECK(other.wake_ups() == 1);
+}
+
+TEST_CASE("threads share words once there are more of them, and then nothing is forgotten") {
+  Fixture f(1);
+  const Watched watched(f.process->waiters(), f.subscriptions[0]->watchers());
+  const auto publisher = f.process->create_publisher(on_topic(Fixture::topic(0), keep_last(10)));
+  std::vector<std::unique_ptr<WaitingThread>> threads;
+  WakeMask words = Waiters::mask_of_this_thread();
+  while (!are_thread_numbers_shared()) {
+    threads.push_back(std::make_unique<WaitingThread>(*f.process, f.from(0, 1)));
+    words |= threads.back()->word();
+    REQUIRE(threads.size() <= thread_numbers);
+  }
+  CHECK(threads.size() == thread_numbers);  // this thread has one as well
+  CHECK(words == ~common_word);
+  publish(*publisher, 1);
+  for (const auto & thread : threads) {
+    CHECK(thread->wake_ups() == 1);
+  }
+  f.subscriptions[0]->watchers().add(Waiters::mask_of_this_thread());
+  f.process->waiters().forget_this_thread();
+  CHECK((f.subscriptions[0]->watchers().read() & Waiters::mask_of_this_thread()) != 0);
+  threads.clear();
+  WaitingThread later(*f.process, {});
+  CHECK_FALSE(are_thread_numbers_shared());  // they were given back
+}
