@@ -2,6 +2,7 @@
 #pragma once
 
 #include "transport/layout/deadline_clock.hpp"
+#include "transport/layout/entry_block.hpp"
 #include "transport/layout/segment_layout.hpp"
 #include "transport/layout/wake_words.hpp"
 
@@ -31,14 +32,8 @@ struct alignas(64) SourceEntry {
 };
 static_assert(sizeof(SourceEntry) == 64);
 
-constexpr uint32_t sources_per_block = 15;
-
-struct SourceBlock {
-  std::atomic<uint64_t> next;  ///< offset in the same segment; 0 = last
-  uint64_t reserved[7];
-  SourceEntry entries[sources_per_block];
-};
-static_assert(sizeof(SourceBlock) == 1024);
+using SourceBlock = EntryBlock<SourceEntry>;
+static_assert(sizeof(SourceBlock) == sizeof(SourceEntry));
 
 /// Head of a subscription; the queue's slots follow it.
 struct SubscriptionHeader {
@@ -64,7 +59,8 @@ struct SubscriptionHeader {
   /// Arrivals, against the requested deadline; untouched without one.
   alignas(64) DeadlineClock deadline;
   int64_t deadline_ns;
-  Watchers watchers;  ///< threads of its process that wait for arrivals
+  Watchers watchers;          ///< threads of its process that wait for arrivals
+  uint32_t free_source_from;  ///< no source below this index is free; under the registry lock
 
   /// True when it is the first that counts: before it no deadline was due.
   bool note_arrival() noexcept { return has_deadline != 0 && deadline.touch(deadline_ns); }

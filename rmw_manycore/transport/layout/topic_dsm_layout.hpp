@@ -3,6 +3,7 @@
 
 #include "platform/futex.hpp"
 #include "transport/layout/endpoint.hpp"
+#include "transport/layout/entry_block.hpp"
 #include "transport/layout/segment_layout.hpp"
 
 namespace manycore {
@@ -54,15 +55,9 @@ struct ReaderEntry {
 static_assert(sizeof(ReaderEntry) == 32);
 
 constexpr uint32_t readers_in_header = 17;
-constexpr uint32_t readers_per_block = 31;
 
-/// Continuation of a reader table.
-struct ReaderBlock {
-  std::atomic<uint64_t> next;  ///< offset in the same segment; 0 = last
-  uint64_t reserved[3];
-  ReaderEntry entries[readers_per_block];
-};
-static_assert(sizeof(ReaderBlock) == 1024);
+using ReaderBlock = EntryBlock<ReaderEntry>;
+static_assert(sizeof(ReaderBlock) == sizeof(ReaderEntry));
 
 /// Head of a topic DSM: one writer, many readers.
 struct TopicDsmHeader {
@@ -76,8 +71,8 @@ struct TopicDsmHeader {
   uint8_t transient_local;
   uint8_t role;  ///< EndpointRole
   uint8_t reserved;
-  uint32_t process;  ///< slot of the publisher's process
-  uint32_t reserved2;
+  uint32_t process;           ///< slot of the publisher's process
+  uint32_t free_reader_from;  ///< no reader below this index is free; under the registry lock
   Gid gid;
   std::atomic<uint64_t> next_reader_block;
 

@@ -1,6 +1,7 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #include "transport/matching/closing.hpp"
 
+#include <algorithm>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -141,26 +142,17 @@ bool revoke(
   count_undelivered(registry, reader);
   // Off the reader table before the source is free for another match: should this process die in
   // between, the next sweep must not take that match for this one.
-  entry.active.store(0, std::memory_order_release);
+  free_reader_entry(reader.cluster, reader.dsm, entry);
+  SubscriptionHeader & subscription = reader.subscription;
+  subscription.free_source_from = std::min(subscription.free_source_from, reader.source_index);
   source.state.store(SourceState::free, std::memory_order_release);
-  reader.subscription.source_generation.fetch_add(1, std::memory_order_release);
+  subscription.source_generation.fetch_add(1, std::memory_order_release);
   return true;
 }
 
-/// Frees the blocks of a chain. A damaged chain is not followed out of the cluster, nor round and
-/// round.
-template<typename Block>
-void free_chain(Cluster & cluster, const std::atomic<uint64_t> & first) {
-  uint64_t next = first.load();
-  for (uint32_t i = 0; next != 0 && i < endpoint_capacity; ++i) {
-    const uint64_t offset = next;
-    const auto * const block = cluster.find<Block>(offset);
-    if (block == nullptr) {
-      return;
-    }
-    next = block->next.load();
-    cluster.free(offset, sizeof(Block));
-  }
+template<typename Entry>
+void free_chain(Cluster & cluster, const EntryChain<Entry> & chain) {
+  chain.visit_memory([&](uint64_t offset, uint64_t bytes) { cluster.free(offset, bytes); });
 }
 
 void free_topic_dsm(Cluster & cluster, TopicDsmHeader & dsm) {
@@ -169,7 +161,7 @@ void free_topic_dsm(Cluster & cluster, TopicDsmHeader & dsm) {
       Generation::free(cluster, generation);
     }
   }
-  free_chain<ReaderBlock>(cluster, dsm.next_reader_block);
+  free_chain(cluster, further_readers(cluster, dsm));
   cluster.free(cluster.ref_of(&dsm).offset(), sizeof dsm);
 }
 
@@ -222,7 +214,7 @@ bool sweep_subscription(Registry & registry, EndpointEntry & entry) {
   }
   header->magic.store(0);
   const uint64_t offset = std::exchange(entry.block, SegmentRef{}).offset();
-  free_chain<SourceBlock>(*cluster, header->first_source_block);
+  free_chain(*cluster, source_table(*cluster, *header));
   cluster->free(
     offset, sizeof(SubscriptionHeader) + (uint64_t{8} << (header->slot_count_log2 & 31)));
   return true;

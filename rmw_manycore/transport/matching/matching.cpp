@@ -22,62 +22,39 @@ struct Pair {
   EndpointEntry & subscription;
 };
 
-/// Where the next block of a chain is to be linked; a damaged chain is not followed.
-template<typename Block>
-std::atomic<uint64_t> * end_of_chain(const Cluster & cluster, std::atomic<uint64_t> * end) {
-  for (uint32_t i = 0; end->load() != 0; ++i) {
-    auto * const block = cluster.find<Block>(end->load());
-    if (block == nullptr || i == endpoint_capacity) {
-      throw Error(
-        ErrorCode::corrupt, "cluster " + std::to_string(cluster.id()) +
-                              " is damaged; stop the platform's nodes and run 'manycore clean'");
-    }
-    end = &block->next;
-  }
-  return end;
-}
-
 SourceEntry & free_source(
   Cluster & cluster, SubscriptionHeader & subscription, uint32_t & index_out) {
+  EntryChain<SourceEntry> table = source_table(cluster, subscription);
   SourceEntry * found = nullptr;
-  std::atomic<uint64_t> * end = &subscription.first_source_block;
-  uint32_t count = 0;
-  visit_source_table(cluster, subscription, [&](SourceEntry & entry, uint32_t index) {
-    count = index + 1;
-    if (entry.state.load() != SourceState::free) {
-      return false;
-    }
-    found = &entry;
-    index_out = index;
-    return true;
+  table.visit(subscription.free_source_from, [&](SourceEntry & entry, uint32_t) {
+    found = entry.state.load() == SourceState::free ? &entry : nullptr;
+    return found != nullptr;
   });
-  if (found != nullptr) {
-    return *found;
+  if (found == nullptr) {
+    found = &table.grow(cluster);
   }
-  if (count + sources_per_block > (1u << 14)) {
+  index_out = table.index_of(*found).value_or(Hint::source_limit);
+  if (index_out >= Hint::source_limit) {
     throw Error(ErrorCode::no_space, "a subscription has more than 16,000 publishers");
   }
-  end = end_of_chain<SourceBlock>(cluster, end);
-  SourceBlock & block = cluster.allocate_cleared<SourceBlock>();
-  end->store(cluster.ref_of(&block).offset(), std::memory_order_release);
-  index_out = count;
-  return block.entries[0];
+  subscription.free_source_from = index_out;
+  return *found;
 }
 
 ReaderEntry & free_reader(Cluster & cluster, TopicDsmHeader & dsm) {
   ReaderEntry * found = nullptr;
-  visit_reader_table(cluster, dsm, [&](ReaderEntry & entry) {
-    found = entry.active.load() == 0 ? &entry : nullptr;
-    return found != nullptr;
-  });
-  if (found != nullptr) {
-    return *found;
+  visit_reader_table(
+    cluster, dsm,
+    [&](ReaderEntry & entry) {
+      found = entry.active.load() == 0 ? &entry : nullptr;
+      return found != nullptr;
+    },
+    dsm.free_reader_from);
+  if (found == nullptr) {
+    found = &further_readers(cluster, dsm).grow(cluster);
   }
-  std::atomic<uint64_t> * end = &dsm.next_reader_block;
-  end = end_of_chain<ReaderBlock>(cluster, end);
-  ReaderBlock & block = cluster.allocate_cleared<ReaderBlock>();
-  end->store(cluster.ref_of(&block).offset(), std::memory_order_release);
-  return block.entries[0];
+  dsm.free_reader_from = index_of_reader(cluster, dsm, *found).value_or(0);
+  return *found;
 }
 
 /// What a new match lets the subscription see: nothing published so far, or the history that is

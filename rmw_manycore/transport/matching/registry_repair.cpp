@@ -1,10 +1,10 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 // Rebuilds the registry after the owner of its lock died. Part of Registry, defined up here because
 // matches are derived state, too.
-#include "transport/layout/subscription_layout.hpp"
-#include "transport/layout/topic_dsm_layout.hpp"
 #include "transport/matching/matching.hpp"
+#include "transport/queue/source_table.hpp"
 #include "transport/registry/registry.hpp"
+#include "transport/topic_dsm/reader_table.hpp"
 
 namespace manycore {
 
@@ -13,41 +13,32 @@ void Registry::mark_blocks_of(EndpointEntry & entry) noexcept {
   if (cluster == nullptr || !entry.block) {
     return;
   }
-  uint64_t next = 0;
-  uint64_t block_bytes = 0;
+  const auto mark = [&](uint64_t offset, uint64_t bytes) {
+    cluster->mark_allocated(offset, bytes);
+  };
   if (entry.kind == EndpointKind::publisher) {
     auto * const dsm = cluster->find<TopicDsmHeader>(entry.block.offset());
     if (dsm == nullptr) {
       return;
     }
-    cluster->mark_allocated(entry.block.offset(), sizeof(TopicDsmHeader));
+    mark(entry.block.offset(), sizeof(TopicDsmHeader));
     for (GenerationEntry & generation : dsm->generations) {
       if (generation.offset.load() != 0) {
-        cluster->mark_allocated(generation.offset.load(), generation.extent_bytes());
+        mark(generation.offset.load(), generation.extent_bytes());
       }
     }
-    next = dsm->next_reader_block.load();
-    block_bytes = sizeof(ReaderBlock);
+    further_readers(*cluster, *dsm).visit_memory(mark);
+    dsm->free_reader_from = 0;
   } else {
     auto * const subscription = cluster->find<SubscriptionHeader>(entry.block.offset());
     if (subscription == nullptr) {
       return;
     }
-    cluster->mark_allocated(
+    mark(
       entry.block.offset(),
       sizeof(SubscriptionHeader) + (uint64_t{8} << (subscription->slot_count_log2 & 31)));
-    next = subscription->first_source_block.load();
-    block_bytes = sizeof(SourceBlock);
-  }
-  // Both kinds of continuation blocks start with the offset of the next one. The bound ends a
-  // damaged chain.
-  for (uint32_t i = 0; next != 0 && i < endpoint_capacity; ++i) {
-    auto * const link = cluster->find<std::atomic<uint64_t>>(next, block_bytes);
-    if (link == nullptr) {
-      return;
-    }
-    cluster->mark_allocated(next, block_bytes);
-    next = link->load();
+    source_table(*cluster, *subscription).visit_memory(mark);
+    subscription->free_source_from = 0;
   }
 }
 

@@ -45,6 +45,8 @@ public:
   uint32_t id() const noexcept { return id_; }
   ClusterHeader & header() const noexcept { return memory_.at<ClusterHeader>(0); }
   uint64_t size() const noexcept { return memory_.size(); }
+  /// SMEM is given out in whole granules.
+  uint64_t granule_bytes() const noexcept { return granule_bytes_; }
 
   /// True when [offset, offset + length) is inside the SMEM.
   bool contains(uint64_t offset, uint64_t length) const noexcept {

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "transport/topic_dsm/reader_table.hpp"
+
 namespace manycore {
 
 MatchedCount matched_of(const EndpointEntry & entry) {
@@ -57,7 +59,8 @@ void detach_reader(Registry & registry, SourceEntry & source) {
   if (registry.reach<SourceEntry>(SegmentRef{reader->source.load()}) != &source) {
     return;  // another's by now
   }
-  reader->active.store(0, std::memory_order_release);
+  free_reader_entry(
+    registry.clusters().at(SegmentRef{source.reader.load()}.cluster()), *dsm, *reader);
   dsm->match_generation.fetch_add(1, std::memory_order_seq_cst);
   dsm->progress.fetch_add(1, std::memory_order_seq_cst);
   futex_wake_all(dsm->progress);  // a publisher that waited for this reader need not

@@ -21,18 +21,18 @@ bool SourceList::renew() {
   seen_generation_ = generation;
   bool has_new = false;
   std::vector<Source> renewed;
+  auto known = sources_.begin();  // in the order of their indices, as the table is
   visit_source_table(cluster_, header_, [&](SourceEntry & entry, uint32_t index) {
     // Before the state: a use of the entry that begins in between is not this one.
     const uint32_t incarnation = entry.incarnation.load(std::memory_order_acquire);
     if (entry.state.load(std::memory_order_acquire) != SourceState::active) {
       return false;
     }
-    const auto known = std::find_if(
-      sources_.begin(), sources_.end(), [&](const Source & source) { return source.is(entry); });
-    Source source =
-      known != sources_.end() ? *known : Source(registry_, entry, {index, incarnation}, entry_);
+    known = at_or_after(known, index);
+    const bool is_known = known != sources_.end() && known->is(entry);
+    Source source = is_known ? *known : Source(registry_, entry, {index, incarnation}, entry_);
     if (source) {
-      has_new = has_new || known == sources_.end();
+      has_new = has_new || !is_known;
       renewed.push_back(source);
     } else {
       seen_generation_ = look_again;  // its cluster may be out of reach for now only
@@ -45,10 +45,17 @@ bool SourceList::renew() {
 
 Source * SourceList::find(uint32_t index, uint32_t incarnation) noexcept {
   const uint32_t low_bits = incarnation & Hint::incarnation_mask;
-  const auto found = std::find_if(sources_.begin(), sources_.end(), [&](const Source & source) {
-    return source.index() == index && (source.incarnation() & Hint::incarnation_mask) == low_bits;
+  const auto found = at_or_after(sources_.begin(), index);
+  const bool is_there = found != sources_.end() && found->index() == index &&
+                        (found->incarnation() & Hint::incarnation_mask) == low_bits;
+  return is_there ? &*found : nullptr;
+}
+
+std::vector<Source>::iterator SourceList::at_or_after(
+  std::vector<Source>::iterator from, uint32_t index) noexcept {
+  return std::lower_bound(from, sources_.end(), index, [](const Source & source, uint32_t wanted) {
+    return source.index() < wanted;
   });
-  return found == sources_.end() ? nullptr : &*found;
 }
 
 }  // namespace manycore

@@ -27,6 +27,10 @@ public:
   std::vector<Source>::iterator end() noexcept { return sources_.end(); }
 
 private:
+  /// The first source from there on whose index is at least `index`.
+  std::vector<Source>::iterator at_or_after(
+    std::vector<Source>::iterator from, uint32_t index) noexcept;
+
   Registry & registry_;
   Cluster & cluster_;
   SubscriptionHeader & header_;

@@ -1,33 +1,51 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
+#include <optional>
+
 #include "transport/layout/topic_dsm_layout.hpp"
-#include "transport/registry/cluster.hpp"
+#include "transport/registry/entry_chain.hpp"
 
 namespace manycore {
 
-/// Calls `visit(ReaderEntry &)` for each entry of a topic DSM's reader table, used or not, until it
-/// returns true. Bounded: a damaged chain ends.
+/// Readers that the header has no room for; their indices go on after those in the header.
+inline EntryChain<ReaderEntry> further_readers(
+  const Cluster & cluster, TopicDsmHeader & dsm) noexcept {
+  return {cluster, dsm.next_reader_block};
+}
+
+/// Calls `visit(ReaderEntry &)` for each entry of a topic DSM's reader table from index `from` on,
+/// used or not, until it returns true. Bounded: a damaged chain ends.
 template<typename Visit>
-void visit_reader_table(const Cluster & cluster, TopicDsmHeader & dsm, Visit visit) {
-  for (ReaderEntry & entry : dsm.readers) {
-    if (visit(entry)) {
+void visit_reader_table(
+  const Cluster & cluster, TopicDsmHeader & dsm, Visit visit, uint32_t from = 0) {
+  for (uint32_t i = from; i < readers_in_header; ++i) {
+    if (visit(dsm.readers[i])) {
       return;
     }
   }
-  uint64_t next = dsm.next_reader_block.load(std::memory_order_acquire);
-  for (uint32_t i = 0; next != 0 && i < 1024; ++i) {
-    auto * const block = cluster.find<ReaderBlock>(next);
-    if (block == nullptr) {
-      return;
-    }
-    for (ReaderEntry & entry : block->entries) {
-      if (visit(entry)) {
-        return;
-      }
-    }
-    next = block->next.load(std::memory_order_acquire);
+  further_readers(cluster, dsm)
+    .visit(
+      std::max(from, readers_in_header) - readers_in_header,
+      [&](ReaderEntry & entry, uint32_t) { return visit(entry); });
+}
+
+inline std::optional<uint32_t> index_of_reader(
+  const Cluster & cluster, TopicDsmHeader & dsm, const ReaderEntry & reader) noexcept {
+  if (&reader >= dsm.readers && &reader < dsm.readers + readers_in_header) {
+    return static_cast<uint32_t>(&reader - dsm.readers);
   }
+  const auto index = further_readers(cluster, dsm).index_of(reader);
+  return index ? std::optional(*index + readers_in_header) : std::nullopt;
+}
+
+/// Frees an entry; the caller holds the registry lock.
+inline void free_reader_entry(
+  const Cluster & cluster, TopicDsmHeader & dsm, ReaderEntry & reader) noexcept {
+  const uint32_t index = index_of_reader(cluster, dsm, reader).value_or(0);
+  dsm.free_reader_from = std::min(dsm.free_reader_from, index);
+  reader.active.store(0, std::memory_order_release);
 }
 
 /// As visit_reader_table, active entries only, no early end.
