@@ -1,0 +1,113 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+// What does a message for one thread cost a process in which many wait, each for a topic of its
+// own?
+//
+//   composition role=sink threads=N messages=N
+//   composition role=source threads=N messages=N rate_hz=N
+//
+// The sink counts the times that its threads slept and its CPU time, over all messages but the
+// first, which each thread gets.
+#include <sys/resource.h>
+
+#include <memory>
+#include <thread>
+
+#include "bench/node.hpp"
+#include "bench/program.hpp"
+
+namespace {
+
+using namespace manycore::bench;
+
+std::string topic(size_t thread) { return "/composed_" + std::to_string(thread); }
+
+struct Costs {
+  uint64_t sleeps;
+  uint64_t cpu_ns;
+};
+
+uint64_t nanoseconds(const timeval & time) {
+  return static_cast<uint64_t>(time.tv_sec) * 1'000'000'000 +
+         static_cast<uint64_t>(time.tv_usec) * 1'000;
+}
+
+Costs costs_now() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return {
+    static_cast<uint64_t>(usage.ru_nvcsw),
+    nanoseconds(usage.ru_utime) + nanoseconds(usage.ru_stime)};
+}
+
+void source(const Arguments & arguments) {
+  Node node("source");
+  std::vector<std::unique_ptr<Publisher>> publishers;
+  for (size_t i = 0; i < arguments.number("threads"); ++i) {
+    publishers.push_back(std::make_unique<Publisher>(node, topic(i), reliable_qos(10)));
+    wait_until_matched(*publishers.back(), 1);
+  }
+  Message message;
+  message.data.resize(64);
+  for (const auto & publisher : publishers) {
+    publisher->publish(message);
+  }
+  const std::chrono::nanoseconds period(1'000'000'000 / arguments.number("rate_hz"));
+  auto next = std::chrono::steady_clock::now();
+  for (size_t i = 0; i < arguments.number("messages"); ++i) {
+    std::this_thread::sleep_until(next += period);
+    publishers.front()->publish(message);
+  }
+  for (const auto & publisher : publishers) {
+    stop_subscribers(*publisher);
+  }
+}
+
+/// Takes until the empty message; the first message is not counted.
+void take_all(Node & node, Subscription & subscription, size_t messages, Costs & spent) {
+  WaitSet wait_set(node);
+  Message message;
+  Costs start{};
+  for (size_t taken = 0;; ++taken) {
+    take_next(wait_set, subscription, message);
+    if (message.data.empty()) {
+      return;
+    }
+    if (taken == 0) {
+      continue;
+    }
+    if (taken == 1) {
+      start = costs_now();
+    }
+    if (taken == messages) {
+      const Costs end = costs_now();
+      spent = {end.sleeps - start.sleeps, end.cpu_ns - start.cpu_ns};
+    }
+  }
+}
+
+void sink(const Arguments & arguments) {
+  Node node("sink");
+  const size_t messages = arguments.number("messages");
+  std::vector<std::unique_ptr<Subscription>> subscriptions;
+  std::vector<Costs> spent(arguments.number("threads"));
+  std::vector<std::thread> threads;
+  for (size_t i = 0; i < spent.size(); ++i) {
+    subscriptions.push_back(std::make_unique<Subscription>(node, topic(i), reliable_qos(10)));
+  }
+  announce_ready();
+  for (size_t i = 0; i < spent.size(); ++i) {
+    threads.emplace_back([&, i] { take_all(node, *subscriptions[i], messages, spent[i]); });
+  }
+  for (std::thread & thread : threads) {
+    thread.join();
+  }
+  print_samples({}, {{"sleeps", spent[0].sleeps}, {"cpu_ns", spent[0].cpu_ns}});
+}
+
+}  // namespace
+
+int main(int argc, char ** argv) {
+  return run_program(argc, argv, [](const Arguments & arguments) {
+    arguments.text("role") == "source" ? source(arguments) : sink(arguments);
+  });
+}

@@ -1,0 +1,105 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+// What do many publishers and subscriptions of one topic cost each other?
+//
+//   matches endpoints=N iterations=N measure=create|beside|publish depth=N
+//
+// With `endpoints` of each kind, one process prints how long it takes
+//   create   to create one more subscription,
+//   beside   to create a publisher of another topic, from a second thread, while the first creates
+//            all of them,
+//   publish  to publish; nobody takes, so with a small depth each queue is full.
+#include <atomic>
+#include <memory>
+#include <thread>
+
+#include "bench/node.hpp"
+#include "bench/program.hpp"
+#include "platform/clock.hpp"
+
+namespace {
+
+using namespace manycore::bench;
+using manycore::monotonic_ns;
+
+constexpr const char * topic = "/matched";
+
+template<typename Action>
+int64_t duration_ns(Action action) {
+  const int64_t start = monotonic_ns();
+  action();
+  return monotonic_ns() - start;
+}
+
+struct Endpoints {
+  Endpoints(Node & node, size_t count, size_t depth) {
+    for (size_t i = 0; i < count; ++i) {
+      publishers.push_back(std::make_unique<Publisher>(node, topic, reliable_qos(depth)));
+      subscriptions.push_back(std::make_unique<Subscription>(node, topic, reliable_qos(depth)));
+    }
+    for (const auto & publisher : publishers) {
+      wait_until_matched(*publisher, count);
+    }
+  }
+  std::vector<std::unique_ptr<Publisher>> publishers;
+  std::vector<std::unique_ptr<Subscription>> subscriptions;
+};
+
+std::vector<int64_t> create(Node & node, const Arguments & arguments) {
+  const Endpoints endpoints(node, arguments.number("endpoints"), arguments.number("depth"));
+  std::vector<int64_t> samples_ns;
+  for (size_t i = 0; i < arguments.number("iterations"); ++i) {
+    std::unique_ptr<Subscription> one_more;
+    samples_ns.push_back(duration_ns([&] {
+      one_more =
+        std::make_unique<Subscription>(node, topic, reliable_qos(arguments.number("depth")));
+    }));
+  }
+  return samples_ns;
+}
+
+std::vector<int64_t> beside(Node & node, const Arguments & arguments) {
+  std::vector<int64_t> samples_ns;
+  std::atomic<bool> done{false};
+  std::thread other([&] {
+    while (!done) {
+      std::unique_ptr<Publisher> publisher;
+      samples_ns.push_back(duration_ns(
+        [&] { publisher = std::make_unique<Publisher>(node, "/other", reliable_qos(1)); }));
+    }
+  });
+  {
+    const Endpoints endpoints(node, arguments.number("endpoints"), arguments.number("depth"));
+    done = true;
+    other.join();
+  }
+  return samples_ns;
+}
+
+std::vector<int64_t> publish(Node & node, const Arguments & arguments) {
+  const size_t depth = arguments.number("depth");
+  const Endpoints endpoints(node, arguments.number("endpoints"), depth);
+  Message message;
+  message.data.resize(64);
+  Publisher & last = *endpoints.publishers.back();
+  for (const auto & publisher : endpoints.publishers) {
+    publisher->publish(message);  // with a depth of 1 each queue is full from the first one on
+  }
+  std::vector<int64_t> samples_ns;
+  for (size_t i = 0; i < arguments.number("iterations"); ++i) {
+    samples_ns.push_back(duration_ns([&] { last.publish(message); }));
+  }
+  return samples_ns;
+}
+
+}  // namespace
+
+int main(int argc, char ** argv) {
+  return run_program(argc, argv, [](const Arguments & arguments) {
+    Node node("matches");
+    const std::string & measure = arguments.text("measure");
+    print_samples(
+      measure == "create"   ? create(node, arguments)
+      : measure == "beside" ? beside(node, arguments)
+                            : publish(node, arguments));
+  });
+}
