@@ -2,7 +2,7 @@
 #pragma once
 
 #include "transport/layout/deadline_clock.hpp"
-#include "transport/layout/entry_block.hpp"
+#include "transport/layout/entry_blocks.hpp"
 #include "transport/layout/segment_layout.hpp"
 #include "transport/layout/wake_words.hpp"
 
@@ -32,9 +32,6 @@ struct alignas(64) SourceEntry {
 };
 static_assert(sizeof(SourceEntry) == 64);
 
-using SourceBlock = EntryBlock<SourceEntry>;
-static_assert(sizeof(SourceBlock) == sizeof(SourceEntry));
-
 /// Head of a subscription; the queue's slots follow it.
 struct SubscriptionHeader {
   std::atomic<uint32_t> magic;
@@ -46,8 +43,7 @@ struct SubscriptionHeader {
   uint8_t keep_all;
   uint8_t has_deadline;
   uint8_t reserved[2];
-  std::atomic<uint32_t> resync;  ///< hints may be missing: scan the sources
-  std::atomic<uint64_t> first_source_block;
+  std::atomic<uint32_t> resync;             ///< hints may be missing: scan the sources
   std::atomic<uint64_t> source_generation;  ///< raised whenever the source table changes
   std::atomic<uint64_t> dropped;            ///< hints that pushers displaced
   /// Messages lost minus hints dropped when both were known exactly last: see lost_so_far().
@@ -65,12 +61,14 @@ struct SubscriptionHeader {
   /// True when it is the first that counts: before it no deadline was due.
   bool note_arrival() noexcept { return has_deadline != 0 && deadline.touch(deadline_ns); }
 
+  alignas(64) EntryBlocks sources;
+
   std::atomic<uint64_t> * slots() noexcept {
     return reinterpret_cast<std::atomic<uint64_t> *>(this + 1);
   }
 };
-static_assert(sizeof(SubscriptionHeader) == 256);
-static_assert(offsetof(SubscriptionHeader, lost_beside_dropped) == 56);
+static_assert(sizeof(SubscriptionHeader) == 384);
+static_assert(offsetof(SubscriptionHeader, lost_beside_dropped) == 48);
 
 constexpr uint32_t keep_all_capacity = 1024;  ///< hints; beyond it the subscriber scans its sources
 

@@ -3,7 +3,7 @@
 
 #include "platform/futex.hpp"
 #include "transport/layout/endpoint.hpp"
-#include "transport/layout/entry_block.hpp"
+#include "transport/layout/entry_blocks.hpp"
 #include "transport/layout/segment_layout.hpp"
 
 namespace manycore {
@@ -54,10 +54,7 @@ struct ReaderEntry {
 };
 static_assert(sizeof(ReaderEntry) == 32);
 
-constexpr uint32_t readers_in_header = 17;
-
-using ReaderBlock = EntryBlock<ReaderEntry>;
-static_assert(sizeof(ReaderBlock) == sizeof(ReaderEntry));
+constexpr uint32_t readers_in_header = 14;
 
 /// Head of a topic DSM: one writer, many readers.
 struct TopicDsmHeader {
@@ -74,7 +71,6 @@ struct TopicDsmHeader {
   uint32_t process;           ///< slot of the publisher's process
   uint32_t free_reader_from;  ///< no reader below this index is free; under the registry lock
   Gid gid;
-  std::atomic<uint64_t> next_reader_block;
 
   /// Written by the publisher at each message, read by everybody.
   alignas(64) std::atomic<uint64_t> last;  ///< highest record number published
@@ -90,6 +86,8 @@ struct TopicDsmHeader {
 
   alignas(64) GenerationEntry generations[max_generations];
   ReaderEntry readers[readers_in_header];
+  EntryBlocks further_readers;
+  uint64_t reserved2;
 };
 static_assert(sizeof(TopicDsmHeader) == 1024);
 static_assert(std::is_standard_layout_v<TopicDsmHeader>);

@@ -151,8 +151,8 @@ bool revoke(
 }
 
 template<typename Entry>
-void free_chain(Cluster & cluster, const EntryChain<Entry> & chain) {
-  chain.visit_memory([&](uint64_t offset, uint64_t bytes) { cluster.free(offset, bytes); });
+void free_table(Cluster & cluster, const EntryTable<Entry> & table) {
+  table.visit_memory([&](uint64_t offset, uint64_t bytes) { cluster.free(offset, bytes); });
 }
 
 void free_topic_dsm(Cluster & cluster, TopicDsmHeader & dsm) {
@@ -161,7 +161,7 @@ void free_topic_dsm(Cluster & cluster, TopicDsmHeader & dsm) {
       Generation::free(cluster, generation);
     }
   }
-  free_chain(cluster, further_readers(cluster, dsm));
+  free_table(cluster, further_readers(cluster, dsm));
   cluster.free(cluster.ref_of(&dsm).offset(), sizeof dsm);
 }
 
@@ -214,7 +214,7 @@ bool sweep_subscription(Registry & registry, EndpointEntry & entry) {
   }
   header->magic.store(0);
   const uint64_t offset = std::exchange(entry.block, SegmentRef{}).offset();
-  free_chain(*cluster, source_table(*cluster, *header));
+  free_table(*cluster, source_table(*cluster, *header));
   cluster->free(
     offset, sizeof(SubscriptionHeader) + (uint64_t{8} << (header->slot_count_log2 & 31)));
   return true;

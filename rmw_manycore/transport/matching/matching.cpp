@@ -24,7 +24,7 @@ struct Pair {
 
 SourceEntry & free_source(
   Cluster & cluster, SubscriptionHeader & subscription, uint32_t & index_out) {
-  EntryChain<SourceEntry> table = source_table(cluster, subscription);
+  EntryTable<SourceEntry> table = source_table(cluster, subscription);
   SourceEntry * found = nullptr;
   table.visit(subscription.free_source_from, [&](SourceEntry & entry, uint32_t) {
     found = entry.state.load() == SourceState::free ? &entry : nullptr;

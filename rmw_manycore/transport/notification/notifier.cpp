@@ -13,6 +13,15 @@ bool is_for(const Announcement & announcement, const Reader & reader) noexcept {
   return announcement.target == nullptr || *announcement.target == reader.gid;
 }
 
+/// A displaced hint is most often one of the same publisher, whose source is known.
+void note_displaced(const Cluster & own, const Reader & reader, const Hint & oldest) noexcept {
+  if (oldest.source == reader.source_index) {
+    note_displaced(*reader.source, oldest);
+  } else {
+    note_displaced(own, *reader.subscription, oldest);
+  }
+}
+
 /// Pushes to the own cluster's readers; returns the mask of the other clusters concerned.
 uint64_t push_to_own_cluster(
   const Cluster & own, const ReaderList & list, const Announcement & announcement) noexcept {
@@ -29,7 +38,7 @@ uint64_t push_to_own_cluster(
     }
     const bool changes_events = subscriber_queue::push(
       *reader.subscription, {reader.source_index, reader.source_incarnation, announcement.number},
-      [&](const Hint & oldest) { note_displaced(own, *reader.subscription, oldest); });
+      [&](const Hint & oldest) { note_displaced(own, reader, oldest); });
     if (pending != reader.wake && pending != nullptr) {
       pending->notify(std::exchange(words, 0));
     }

@@ -3,17 +3,17 @@
 
 #include "transport/queue/displaced.hpp"
 #include "transport/queue/subscriber_queue.hpp"
-#include "transport/registry/entry_chain.hpp"
+#include "transport/registry/entry_table.hpp"
 
 namespace manycore {
 
-inline EntryChain<SourceEntry> source_table(
+inline EntryTable<SourceEntry> source_table(
   const Cluster & cluster, SubscriptionHeader & subscription) noexcept {
-  return {cluster, subscription.first_source_block};
+  return {cluster, subscription.sources};
 }
 
 /// Calls `visit(SourceEntry &, index)` for each entry of a subscription's source table, used or
-/// not, until it returns true. Bounded: a damaged chain ends.
+/// not, until it returns true.
 template<typename Visit>
 void visit_source_table(const Cluster & cluster, SubscriptionHeader & subscription, Visit visit) {
   source_table(cluster, subscription).visit(0, visit);
@@ -21,15 +21,16 @@ void visit_source_table(const Cluster & cluster, SubscriptionHeader & subscripti
 
 /// Notes in its source's entry that a hint was displaced, for the subscriber to know that it is not
 /// on its way.
+inline void note_displaced(SourceEntry & source, const Hint & hint) noexcept {
+  const uint32_t incarnation = source.incarnation.load(std::memory_order_relaxed);
+  if ((incarnation & Hint::incarnation_mask) == hint.source_incarnation) {
+    Displaced::raise(source.displaced, hint);
+  }
+}
 inline void note_displaced(
   const Cluster & cluster, SubscriptionHeader & subscription, const Hint & hint) noexcept {
-  SourceEntry * const source = source_table(cluster, subscription).find(hint.source);
-  if (source == nullptr) {
-    return;
-  }
-  const uint32_t incarnation = source->incarnation.load(std::memory_order_relaxed);
-  if ((incarnation & Hint::incarnation_mask) == hint.source_incarnation) {
-    Displaced::raise(source->displaced, hint);
+  if (auto * const source = source_table(cluster, subscription).find(hint.source)) {
+    note_displaced(*source, hint);
   }
 }
 

@@ -12,7 +12,6 @@ RecordFinder::RecordFinder(
   ReceptionCounts & counts) noexcept
 : registry_(registry),
   header_(header),
-  entry_(entry),
   counts_(counts),
   sources_(registry, cluster, header, entry) {}
 

@@ -55,7 +55,6 @@ private:
 
   Registry & registry_;
   SubscriptionHeader & header_;
-  const EndpointEntry & entry_;
   ReceptionCounts & counts_;
   SourceList sources_;
   Backlog backlog_;

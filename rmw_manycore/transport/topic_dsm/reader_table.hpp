@@ -5,18 +5,18 @@
 #include <optional>
 
 #include "transport/layout/topic_dsm_layout.hpp"
-#include "transport/registry/entry_chain.hpp"
+#include "transport/registry/entry_table.hpp"
 
 namespace manycore {
 
 /// Readers that the header has no room for; their indices go on after those in the header.
-inline EntryChain<ReaderEntry> further_readers(
+inline EntryTable<ReaderEntry> further_readers(
   const Cluster & cluster, TopicDsmHeader & dsm) noexcept {
-  return {cluster, dsm.next_reader_block};
+  return {cluster, dsm.further_readers};
 }
 
 /// Calls `visit(ReaderEntry &)` for each entry of a topic DSM's reader table from index `from` on,
-/// used or not, until it returns true. Bounded: a damaged chain ends.
+/// used or not, until it returns true.
 template<typename Visit>
 void visit_reader_table(
   const Cluster & cluster, TopicDsmHeader & dsm, Visit visit, uint32_t from = 0) {

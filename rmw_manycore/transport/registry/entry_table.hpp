@@ -1,0 +1,102 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "platform/error.hpp"
+#include "transport/layout/entry_blocks.hpp"
+#include "transport/registry/cluster.hpp"
+
+namespace manycore {
+
+/// A table of entries in a cluster's SMEM, found through its EntryBlocks. Damaged offsets are not
+/// followed out of the cluster.
+template<typename Entry>
+class EntryTable {
+public:
+  EntryTable(const Cluster & cluster, EntryBlocks & blocks) noexcept
+  : cluster_(cluster), blocks_(blocks) {}
+
+  /// Calls `visit(Entry &, index)` for each entry from `from` on, used or not, until it returns
+  /// true.
+  template<typename Visit>
+  void visit(uint32_t from, Visit visit) const {
+    for (uint32_t block = 0; block < max_entry_blocks; ++block) {
+      Entry * const entries = entries_of(block);
+      if (entries == nullptr) {
+        return;
+      }
+      const uint32_t first = first_index(block);
+      for (uint32_t i = from > first ? from - first : 0; i < capacity(block); ++i) {
+        if (visit(entries[i], first + i)) {
+          return;
+        }
+      }
+    }
+  }
+
+  /// Nullptr where the table is shorter.
+  Entry * find(uint32_t index) const noexcept {
+    const uint32_t block = 31 - static_cast<uint32_t>(__builtin_clz(index / capacity(0) + 1));
+    Entry * const entries = block < max_entry_blocks ? entries_of(block) : nullptr;
+    return entries == nullptr ? nullptr : entries + (index - first_index(block));
+  }
+
+  std::optional<uint32_t> index_of(const Entry & entry) const noexcept {
+    for (uint32_t block = 0; block < max_entry_blocks; ++block) {
+      const Entry * const entries = entries_of(block);
+      if (entries == nullptr) {
+        return std::nullopt;
+      }
+      if (&entry >= entries && &entry < entries + capacity(block)) {
+        return first_index(block) + static_cast<uint32_t>(&entry - entries);
+      }
+    }
+    return std::nullopt;
+  }
+
+  /// Calls `visit(offset, bytes)` for each block; it may be freed thereby.
+  template<typename Visit>
+  void visit_memory(Visit visit) const {
+    for (uint32_t block = 0; block < max_entry_blocks && entries_of(block) != nullptr; ++block) {
+      visit(blocks_.offsets[block].load(), bytes_of(block));
+    }
+  }
+
+  /// Adds a block of cleared entries, and returns the first of them; the caller holds the registry
+  /// lock, and `cluster` is the table's. Throws Error{no_space|corrupt}.
+  Entry & grow(Cluster & cluster) {
+    uint32_t block = 0;
+    while (block < max_entry_blocks && entries_of(block) != nullptr) {
+      ++block;
+    }
+    if (block == max_entry_blocks || blocks_.offsets[block].load() != 0) {
+      throw Error(
+        ErrorCode::corrupt, "cluster " + std::to_string(cluster.id()) +
+                              " is damaged; stop the platform's nodes and run 'manycore clean'");
+    }
+    auto & first = cluster.allocate_cleared<Entry>(bytes_of(block));
+    blocks_.offsets[block].store(cluster.ref_of(&first).offset(), std::memory_order_release);
+    return first;
+  }
+
+private:
+  uint64_t bytes_of(uint32_t block) const noexcept {
+    return entry_block_bytes(block, cluster_.granule_bytes());
+  }
+  uint32_t capacity(uint32_t block) const noexcept {
+    return static_cast<uint32_t>(bytes_of(block) / sizeof(Entry));
+  }
+  uint32_t first_index(uint32_t block) const noexcept { return ((1u << block) - 1) * capacity(0); }
+  /// Nullptr where there is no such block.
+  Entry * entries_of(uint32_t block) const noexcept {
+    const uint64_t offset = blocks_.offsets[block].load(std::memory_order_acquire);
+    return offset == 0 ? nullptr : cluster_.find<Entry>(offset, bytes_of(block));
+  }
+
+  const Cluster & cluster_;
+  EntryBlocks & blocks_;
+};
+
+}  // namespace manycore
