@@ -96,7 +96,10 @@ void sink(const Arguments & arguments) {
   }
   announce_ready();
   for (size_t i = 0; i < spent.size(); ++i) {
-    threads.emplace_back([&, i] { take_all(node, *subscriptions[i], messages, spent[i]); });
+    threads.emplace_back([&, i] {
+      take_all(node, *subscriptions[i], messages, spent[i]);
+      subscriptions[i].reset();  // the source waits for that
+    });
   }
   for (std::thread & thread : threads) {
     thread.join();

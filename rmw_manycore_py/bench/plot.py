@@ -17,7 +17,7 @@ LINEAR_UP_TO = 20
 
 
 def plot(results: Sequence[Result], path: Path) -> None:
-    """Draw a panel per question: curves over the number of cores, or bars side by side."""
+    """Draw a panel per question: curves, or bars side by side."""
     questions = list(dict.fromkeys(r.question for r in results if r.summary.largest > 0))
     rows = math.ceil(len(questions) / COLUMNS)
     figure = load_figure()(figsize=(7 * COLUMNS, 2.8 * rows), layout="constrained")
@@ -47,21 +47,22 @@ def _draw_bars(panel: Any, results: Sequence[Result]) -> None:
 
 
 def _draw_curves(panel: Any, results: Sequence[Result]) -> None:
-    """Draw medians over cores in a band from the 5th to the 95th percentile.
+    """Draw medians over the curve's axis in a band from the 5th to the 95th percentile.
 
     What is on no curve is a curve of its own: a single mark, its spread a line.
     """
+    axis = next(r.curve.axis for r in results if r.curve)
     names = list(dict.fromkeys(r.curve.name if r.curve else r.contender for r in results))
     for name in names:
         found = [r for r in results if name == (r.curve.name if r.curve else r.contender)]
-        found.sort(key=_cores)
-        cores = [_cores(result) for result in found]
+        found.sort(key=_place)
+        places = [_place(result) for result in found]
         low, high = ([_rank(r, share) for r in found] for share in SPREAD)
         medians = [result.summary.median for result in found]
-        (line,) = panel.plot(cores, medians, marker="o", markersize=4, label=name)
-        panel.fill_between(cores, low, high, alpha=0.2, color=line.get_color())
-        panel.vlines(cores, low, high, alpha=0.5, color=line.get_color())
-    panel.set(xlabel="cores", ylabel=results[0].unit, xticks=sorted({_cores(r) for r in results}))
+        (line,) = panel.plot(places, medians, marker="o", markersize=4, label=name)
+        panel.fill_between(places, low, high, alpha=0.2, color=line.get_color())
+        panel.vlines(places, low, high, alpha=0.5, color=line.get_color())
+    panel.set(xlabel=axis, ylabel=results[0].unit, xticks=sorted({_place(r) for r in results}))
     if max(r.summary.median for r in results) > LINEAR_UP_TO * min(
         r.summary.median for r in results
     ):
@@ -71,8 +72,8 @@ def _draw_curves(panel: Any, results: Sequence[Result]) -> None:
     panel.legend(fontsize="small")
 
 
-def _cores(result: Result) -> int:
-    return result.curve.cores if result.curve else 1
+def _place(result: Result) -> int:
+    return result.curve.at if result.curve else 1
 
 
 def _rank(result: Result, share: float) -> float:

@@ -43,10 +43,11 @@ def nearest_rank(ordered: Sequence[float], share: float) -> float:
 
 @dataclass(frozen=True)
 class Curve:
-    """Where a result lies on a curve over the number of cores."""
+    """Where a result lies on a curve over a number of cores, or of something else."""
 
     name: str
-    cores: int
+    at: int
+    axis: str = "cores"
 
 
 @dataclass(frozen=True)

@@ -86,6 +86,18 @@ def test_idle_nodes_do_nothing() -> None:
     assert all_reached(run_bench("idle", "--nodes", "6", "--only", "manycore"))
 
 
+def test_a_message_wakes_one_thread_of_many() -> None:
+    report = run_bench("scale", "--only", "message to one of its threads: manycore")
+    assert all_reached(report)
+
+
+def test_many_matches_are_measured() -> None:
+    rows = run_bench("scale", "--only", "as many publishers: manycore")["results"]
+    assert len({row["question"] for row in rows}) == 3
+    assert {row["axis"] for row in rows} == {"endpoints"}
+    assert all(row["median"] > 0 for row in rows)
+
+
 def test_scan_matching_is_measured_alone_and_split() -> None:
     report = run_bench("ndt", "--only", "rmw_manycore")
     units = {result["unit"] for result in report["results"]}

@@ -9,7 +9,7 @@ from rmw_manycore_py.cli.common.group import LazyGroup
 
 VERBS = {
     verb: f"rmw_manycore_py.cli.bench.{verb}:command"
-    for verb in ("all", "bridge", "idle", "memory", "ndt", "rclpy", "rmw", "startup")
+    for verb in ("all", "bridge", "idle", "memory", "ndt", "rclpy", "rmw", "scale", "startup")
 }
 
 

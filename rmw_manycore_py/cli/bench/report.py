@@ -82,7 +82,8 @@ def _row(result: Result) -> dict[str, Any]:
     names = {"question": result.question, "contender": result.contender, "unit": result.unit}
     curve = {
         "curve": result.curve.name if result.curve else "",
-        "cores": result.curve.cores if result.curve else "",
+        "at": result.curve.at if result.curve else "",
+        "axis": result.curve.axis if result.curve else "",
     }
     spread = {f"p{100 * share:g}": nearest_rank(sorted(result.samples), share) for share in SPREAD}
     return {**names, **curve, **asdict(result.summary), **spread}

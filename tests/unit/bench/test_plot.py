@@ -60,7 +60,7 @@ def test_the_table_has_curve_and_spread(tmp_path: Path) -> None:
     Report({}, {}, RESULTS, []).write(tmp_path)
     with (tmp_path / "results.csv").open() as file:
         rows = list(csv.DictReader(file))
-    assert [(row["curve"], row["cores"]) for row in rows[2:4]] == [("workers", "4"), ("", "")]
+    assert [(row["curve"], row["at"]) for row in rows[2:4]] == [("workers", "4"), ("", "")]
     assert (float(rows[3]["p5"]), float(rows[3]["p95"])) == (200.0, 250.0)
 
 
