@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "transport/matching/detaching.hpp"
 #include "transport/matching/undelivered.hpp"
 #include "transport/qos/liveliness.hpp"
 #include "transport/queue/source_table.hpp"

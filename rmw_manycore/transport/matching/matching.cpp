@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "platform/error.hpp"
+#include "transport/matching/detaching.hpp"
 #include "transport/qos/liveliness.hpp"
 #include "transport/qos/qos_compatibility.hpp"
 #include "transport/queue/source_table.hpp"

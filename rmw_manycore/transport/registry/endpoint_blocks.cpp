@@ -3,8 +3,6 @@
 
 #include <algorithm>
 
-#include "transport/topic_dsm/reader_table.hpp"
-
 namespace manycore {
 
 MatchedCount matched_of(const EndpointEntry & entry) {
@@ -47,23 +45,6 @@ TopicDsmHeader * topic_dsm_of(Registry & registry, const SourceEntry & source) {
   const bool there = has_memory(publisher.state.load()) &&
                      publisher.incarnation == source.topic_dsm_incarnation.load();
   return there ? registry.reach<TopicDsmHeader>(SegmentRef{source.topic_dsm.load()}) : nullptr;
-}
-
-void detach_reader(Registry & registry, SourceEntry & source) {
-  TopicDsmHeader * const dsm = topic_dsm_of(registry, source);
-  auto * const reader =
-    dsm == nullptr ? nullptr : registry.reach<ReaderEntry>(SegmentRef{source.reader.load()});
-  if (reader == nullptr) {
-    return;
-  }
-  if (registry.reach<SourceEntry>(SegmentRef{reader->source.load()}) != &source) {
-    return;  // another's by now
-  }
-  free_reader_entry(
-    registry.clusters().at(SegmentRef{source.reader.load()}.cluster()), *dsm, *reader);
-  dsm->match_generation.fetch_add(1, std::memory_order_seq_cst);
-  dsm->progress.fetch_add(1, std::memory_order_seq_cst);
-  futex_wake_all(dsm->progress);  // a publisher that waited for this reader need not
 }
 
 }  // namespace manycore

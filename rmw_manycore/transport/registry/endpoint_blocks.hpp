@@ -27,8 +27,4 @@ void notify_event_watchers(Registry & registry, uint32_t process);
 /// be another's. Throws OutOfReach.
 TopicDsmHeader * topic_dsm_of(Registry & registry, const SourceEntry & source);
 
-/// Takes the reader of a source off its topic DSM's reader table. Throws OutOfReach, and then has
-/// changed nothing.
-void detach_reader(Registry & registry, SourceEntry & source);
-
 }  // namespace manycore
