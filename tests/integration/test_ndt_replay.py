@@ -7,8 +7,12 @@ waits for the last one, but for the loop that the whole stack closes, which has 
 
 from __future__ import annotations
 
+import csv
 import json
 import os
+import signal
+import sys
+import time
 from pathlib import Path
 from typing import Any
 
@@ -26,6 +30,7 @@ DATA = Path(os.environ.get("MANYCORE_DATA", REPOSITORY.parent / "shared" / "data
 BALM = DATA / "balm_seq177_v0.10.npz"
 needs_data = pytest.mark.skipif(not BALM.exists(), reason=f"no {BALM}; set MANYCORE_DATA")
 LONG_S = 4 * PATIENCE_S
+POSE_TYPE = "geometry_msgs/msg/PoseStamped"
 DEADLINE_MS = str(1e3 * PATIENCE_S)
 
 
@@ -158,6 +163,35 @@ def test_no_scan_is_lost_while_maps_are_swapped(start, platform, tmp_path):
     assert figures["within_share"] == 1.0
     assert matcher.stop() == 0, matcher
     assert matcher.output.count("matching to a map of") >= 4
+
+
+def test_an_inward_bridge_that_stops_for_a_while(start, platform, tmp_path):
+    """At 15 m/s and beside other load, poses are right or missing, and the loop recovers.
+
+    Scans and guesses of 0.7 s reach the matcher at once. How soon it recovers is not tested.
+    """
+    made = start(manycore_command("ndt", "simulate", tmp_path, "--length", "75", "--speed", "15"))
+    assert made.wait(LONG_S) == 0, made
+    run = start(manycore_command("run", MAPFILES / "ndt_offload.yaml", "--json"))
+    inward = json.loads(run.wait_for(r'"started".*\(bridge inward\)').string)["pid"]
+    run.wait_for('"started".*"ndt_scan_matcher"')
+    poses = start(manycore_command("topic", "echo", "/ndt_pose", POSE_TYPE, "--csv"))
+    for _ in range(2):
+        start([sys.executable, "-c", "while True: pass"])
+    rows = tmp_path / "scans.csv"
+    options = ("--csv", rows, "--motion", "reference")
+    replay = start(manycore_command("ndt", "replay", tmp_path / "drive.npz", *options))
+    for _ in range(10):
+        poses.wait_for("^[0-9]")
+    os.kill(inward, signal.SIGSTOP)
+    time.sleep(0.7)  # this is the disturbance, nothing waits for it
+    os.kill(inward, signal.SIGCONT)
+    replay.wait(LONG_S)
+    with rows.open() as file:
+        errors_m = [row["error_m"] for row in csv.DictReader(file)]
+    assert len(errors_m) == 50
+    assert all(float(error) < 0.5 for error in errors_m if error), errors_m
+    assert errors_m[-1], errors_m
 
 
 @needs_data

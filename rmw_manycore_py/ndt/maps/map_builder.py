@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import threading
 import time
 from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
@@ -30,13 +31,17 @@ class BuiltMap:
 
 
 class MapBuilder:
-    """One thread reads points and builds voxels; of what waits, only the newest is done."""
+    """One thread reads points and builds voxels; of what waits, only the newest is done.
+
+    Thread-safe, but for `take`, which belongs to one thread.
+    """
 
     def __init__(self, options: MatcherOptions) -> None:
         self._options = options
         self._executor = ThreadPoolExecutor(max_workers=1, thread_name_prefix="map")
         self._running: Future[BuiltMap] | None = None
         self._waiting: Callable[[], Points | None] | None = None
+        self._lock = threading.Lock()
 
     @property
     def is_idle(self) -> bool:
@@ -45,20 +50,22 @@ class MapBuilder:
 
     def submit(self, read: Callable[[], Points | None]) -> None:
         """Build a map of the points that `read` returns, if it returns some."""
-        if self._running is None:
-            self._running = self._executor.submit(self._build, read)
-        else:
-            self._waiting = read
+        with self._lock:
+            if self._running is None:
+                self._running = self._executor.submit(self._build, read)
+            else:
+                self._waiting = read
 
     def take(self, wait: bool = False) -> BuiltMap | None:
         """Return what is finished, once; with `wait` also what is being built."""
-        if self._running is None or not (wait or self._running.done()):
+        running = self._running
+        if running is None or not (wait or running.done()):
             return None
-        built = self._running.result()
-        self._running = None
-        if self._waiting is not None:
+        built = running.result()
+        with self._lock:
             waiting, self._waiting = self._waiting, None
-            self.submit(waiting)
+            again = waiting and self._executor.submit(self._build, waiting)
+            self._running = again
         return built
 
     def close(self) -> None:

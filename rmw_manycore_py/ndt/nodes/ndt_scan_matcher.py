@@ -7,7 +7,7 @@ import time
 from typing import Any
 
 import numpy as np
-from geometry_msgs.msg import PoseWithCovarianceStamped
+import rclpy
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from sensor_msgs.msg import PointCloud2
@@ -26,7 +26,6 @@ from rmw_manycore_py.ndt.messages.conversions import (
     pose_with_covariance,
     seconds,
 )
-from rmw_manycore_py.ndt.messages.point_cloud import CloudError, decode
 from rmw_manycore_py.ndt.nodes.scan_matcher import judgement
 from rmw_manycore_py.ndt.nodes.scan_matcher.cluster_memory import ClusterMemory
 from rmw_manycore_py.ndt.nodes.scan_matcher.cpu_time import tree_cpu_s
@@ -36,24 +35,30 @@ from rmw_manycore_py.ndt.nodes.scan_matcher.map_supply import MapSupply
 from rmw_manycore_py.ndt.nodes.scan_matcher.markers import PoseMarkers
 from rmw_manycore_py.ndt.nodes.scan_matcher.matcher_options import matcher_options
 from rmw_manycore_py.ndt.nodes.scan_matcher.matchers import make_matcher
+from rmw_manycore_py.ndt.nodes.scan_matcher.matching_thread import MatchingThread
 from rmw_manycore_py.ndt.nodes.scan_matcher.outputs import MatcherOutputs
 from rmw_manycore_py.ndt.nodes.scan_matcher.parameters import MatcherParameters, OwnParameters
-from rmw_manycore_py.ndt.nodes.scan_matcher.pose_buffer import Interpolated, PoseBuffer
+from rmw_manycore_py.ndt.nodes.scan_matcher.pose_buffer import (
+    Interpolated,
+    NoPoseError,
+)
+from rmw_manycore_py.ndt.nodes.scan_matcher.pose_inputs import PoseInputs
+from rmw_manycore_py.ndt.nodes.scan_matcher.rejected import Rejected
+from rmw_manycore_py.ndt.nodes.scan_matcher.scan_inbox import ScanInbox
+from rmw_manycore_py.ndt.nodes.scan_matcher.scan_points import ScanPoints
 from rmw_manycore_py.ndt.nodes.support.declared import declare
 from rmw_manycore_py.ndt.nodes.support.running import run_node
 
 MAP_UPDATE_PERIOD_S = 1.0
-SCAN_DEPTH = 5  # a scan that waits is late, one that is overwritten is lost
-UNLIMITED = 1000.0  # as Autoware has it for regularization poses, in s and m
+SCAN_DEPTH = 5  # what arrives at once is counted where it is skipped, not lost in a queue
 SEED = 0
 
 
-class Rejected(Exception):  # noqa: N818
-    """A scan that gives no pose, and why."""
-
-
 class NdtScanMatcher(Node):
-    """Matches each scan against the map around the vehicle."""
+    """Matches each scan against the map around the vehicle.
+
+    The executor's thread takes guesses, scans and requests; one other thread owns matcher and map.
+    """
 
     def __init__(self) -> None:
         super().__init__("ndt_scan_matcher")
@@ -64,85 +69,74 @@ class NdtScanMatcher(Node):
         self._memory = ClusterMemory(self, self._matcher)
         self._map = MapSupply(options, self._p, self._own, self._match_to)
         self._frames = FrameTree()
-        self._guesses = PoseBuffer(self._p.initial_pose_timeout_s, self._p.initial_pose_distance_m)
-        self._regularization = PoseBuffer(UNLIMITED, UNLIMITED)
+        self._scan_points = ScanPoints(self._p, self._own, self._frames)
         self._is_activated = self._own.activated
         self._scan: Points | None = None
         self._rejected_in_a_row = 0
+        self._skipped = 0
         self._outputs = MatcherOutputs(self, self._p.map_frame, self._p.ndt_base_frame)
         self._markers = PoseMarkers(self, self._p.map_frame)
         self._diagnostics = {
             name: Diagnostics(self, name)
             for name in (
                 "scan_matching_status",
-                "initial_pose_subscriber_status",
-                "regularization_pose_subscriber_status",
                 "map_update_status",
                 "ndt_align_service_status",
                 "trigger_node_service_status",
             )
         }
+        self._poses = PoseInputs(
+            self, self._p, self._own, lambda: self._is_activated, self._on_guess
+        )
+        self._thread = MatchingThread(
+            ScanInbox(self._need_not_wait, self._own.guess_wait_s),
+            self._on_turn_of_scan,
+            self._on_skipped,
+            rclpy.try_shutdown,
+        )
         self._listen()
 
     def _listen(self) -> None:
-        pose = PoseWithCovarianceStamped
         sensor = QoSProfile(depth=SCAN_DEPTH, reliability=ReliabilityPolicy.BEST_EFFORT)
         kept = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-        self.create_subscription(pose, "ekf_pose_with_covariance", self._on_guess, 100)
         self.create_subscription(PointCloud2, "points_raw", self._on_scan, sensor)
         self.create_subscription(PointCloud2, "pointcloud_map", self._map.on_message, kept)
-        if self._p.regularization:
-            self.create_subscription(
-                pose, "regularization_pose_with_covariance", self._on_regularization, 10
-            )
         self._frames.listen(self)
         self.create_service(SetBool, "trigger_node_srv", self._on_trigger)
         self.create_service(AlignService, "ndt_align_srv", self._on_align)
         self.create_timer(MAP_UPDATE_PERIOD_S, self._on_timer)
 
     def destroy_node(self) -> None:
-        """Release map and workers."""
-        self._map.close()
-        self._matcher.close()
-        super().destroy_node()
-
-    def _on_guess(self, message: Any) -> None:
-        report = self._diagnostics["initial_pose_subscriber_status"]
-        report.clear()
-        report.value("topic_time_stamp", seconds(message.header.stamp))
-        report.value("is_activated", self._is_activated)
-        expected = message.header.frame_id == self._p.map_frame
-        if not self._is_activated:
-            report.note("Node is not activated: call trigger_node_srv")
-        else:
-            report.value("is_expected_frame_id", expected)
-            if not expected:
-                report.error(
-                    f"the initial pose is in the frame '{message.header.frame_id}', expected "
-                    f"'{self._p.map_frame}': check the publisher of ekf_pose_with_covariance"
-                )
-            else:
-                self._add_pose(self._guesses, message, report)
-        report.publish(message.header.stamp)
-
-    def _on_regularization(self, message: Any) -> None:
-        report = self._diagnostics["regularization_pose_subscriber_status"]
-        report.clear()
-        report.value("topic_time_stamp", seconds(message.header.stamp))
-        self._add_pose(self._regularization, message, report)
-        report.publish(message.header.stamp)
-
-    def _add_pose(self, buffer: PoseBuffer, message: Any, report: Diagnostics) -> None:
+        """Release map and workers; raises what ended the matching thread, if something did."""
         try:
-            T = matrix_of(message.pose.pose)
-        except PoseError as error:
-            report.error(f"{error}: it is passed over")
-            return
-        buffer.push(seconds(message.header.stamp), T)
-        if buffer is self._guesses:
-            self._map.vehicle_is_at(float(T[0, 3]), float(T[1, 3]))
+            self._thread.close()
+        finally:
+            self._map.close()
+            self._matcher.close()
+            super().destroy_node()
+
+    def _on_guess(self, T_map_base: Matrix) -> None:
+        self._map.vehicle_is_at(float(T_map_base[0, 3]), float(T_map_base[1, 3]))
+        self._thread.guesses_changed()
 
     def _on_scan(self, message: Any) -> None:
+        stamp_s = seconds(message.header.stamp)
+        self._poses.guesses.note_scan(stamp_s)
+        self._thread.put_scan(message, stamp_s)
+
+    def _need_not_wait(self, stamp_s: float) -> bool:
+        return not self._is_activated or self._poses.guesses.is_there(stamp_s)
+
+    def _on_skipped(self, message: Any) -> None:
+        self._skipped += 1
+        report = self._diagnostics["scan_matching_status"]
+        report.clear()
+        report.value("topic_time_stamp", seconds(message.header.stamp))
+        report.value("skipped_scans", self._skipped)
+        report.warn("skipped: a newer scan was there when its turn came")
+        report.publish(message.header.stamp)
+
+    def _on_turn_of_scan(self, message: Any) -> None:
         report = self._diagnostics["scan_matching_status"]
         report.clear()
         try:
@@ -155,6 +149,7 @@ class NdtScanMatcher(Node):
         report.value("skipping_publish_num", self._rejected_in_a_row)
         if self._rejected_in_a_row >= self._p.skipping_publish_num:
             report.note(f"{self._rejected_in_a_row} scans in a row gave no pose")
+        report.value("skipped_scans", self._skipped)
         report.value("cpu_time_s", round(tree_cpu_s(), 2))
         report.publish(message.header.stamp)
 
@@ -162,7 +157,8 @@ class NdtScanMatcher(Node):
         """Go through Autoware's steps; the result is published even if it is not reliable."""
         start = time.perf_counter()
         stamp, stamp_s = message.header.stamp, seconds(message.header.stamp)
-        points = self._points_in_base(message, report)
+        report.value("topic_time_stamp", stamp_s)
+        points = self._scan_points.of(message, self._now_s(), report)
         self._scan = points
         report.value("is_activated", self._is_activated)
         if not self._is_activated:
@@ -175,7 +171,7 @@ class NdtScanMatcher(Node):
         if self._map.is_leaving(float(guess.T[0, 3]), float(guess.T[1, 3])):
             report.note("Lidar has gone out of the map range")
         self._memory.make_room_for_scan(len(points))
-        regularization = self._regularization_at(stamp_s, guess.T, report)
+        regularization = self._poses.regularization_at(stamp_s, guess.T, report)
         alignment = self._matcher.align(points, guess.T, regularization)
         if not np.isfinite(alignment.T_map_sensor).all():
             raise Rejected(f"the alignment has no finite result: {alignment.why}")
@@ -197,75 +193,18 @@ class NdtScanMatcher(Node):
         self._publish_clouds(stamp, points, alignment.T_map_sensor)
         return reliable
 
-    def _points_in_base(self, message: Any, report: Diagnostics) -> Points:
-        """Return the scan in the base frame, checked and at most as large as allowed."""
-        stamp_s = seconds(message.header.stamp)
-        report.value("topic_time_stamp", stamp_s)
-        report.value("sensor_points_size", message.width * message.height)
-        try:
-            points = decode(message)
-        except CloudError as error:
-            raise Rejected(str(error)) from error
-        if len(points) == 0:
-            raise Rejected("Sensor points is empty: it has no point that is finite")
-        delay_s = seconds(self.get_clock().now().to_msg()) - stamp_s
-        report.value("sensor_points_delay_time_sec", round(delay_s, 4))
-        if delay_s > self._p.timeout_s:
-            report.warn(f"sensor points are {delay_s:.2f} s old (tolerance {self._p.timeout_s} s)")
-        elif delay_s < -self._p.timeout_s:
-            report.warn(f"sensor points are of a time {-delay_s:.2f} s ahead: check the clocks")
-        if len(points) > self._own.scan_limit:
-            step = -(-len(points) // self._own.scan_limit)
-            report.warn(
-                f"{len(points)} points are more than sensor_points.limit "
-                f"({self._own.scan_limit}): every {step}th is used; put a filter in front"
-            )
-            points = points[::step]
-        points = self._in_base(points, message.header.frame_id, report)
-        farthest_m = float(np.sqrt(np.square(points, dtype=np.float64).sum(axis=1).max()))
-        report.value("sensor_points_max_distance", round(farthest_m, 3))
-        if farthest_m < self._p.required_distance_m:
-            raise Rejected(
-                f"Max distance of sensor points = {farthest_m:.3f} m < "
-                f"{self._p.required_distance_m} m (sensor_points.required_distance)"
-            )
-        return np.ascontiguousarray(points, np.float32)
-
-    def _in_base(self, points: Points, frame: str, report: Diagnostics) -> Points:
-        if frame == self._p.base_frame:
-            report.value("is_succeed_transform_sensor_points", True)
-            return points
-        try:
-            T_base_sensor = self._frames.lookup(self._p.base_frame, frame)
-        except FrameError as error:
-            report.value("is_succeed_transform_sensor_points", False)
-            what = f"publish TF {frame} to {self._p.base_frame}" if frame else "set its frame_id"
-            raise Rejected(f"{error}. Please {what}") from error
-        report.value("is_succeed_transform_sensor_points", True)
-        return poses.transform(T_base_sensor, points)
-
     def _guess_at(self, stamp_s: float, report: Diagnostics) -> Interpolated:
-        guess = self._guesses.at(stamp_s)
-        report.value("is_succeed_interpolate_initial_pose", guess is not None)
-        if guess is None:
+        try:
+            guess = self._poses.guesses.at(stamp_s)
+        except NoPoseError as why:
+            report.value("is_succeed_interpolate_initial_pose", False)
             raise Rejected(
-                "Couldn't interpolate pose: check that ekf_pose_with_covariance is published, with "
-                "stamps near those of the scans and without jumps"
-            )
-        self._guesses.forget_before(stamp_s)
+                f"Couldn't interpolate pose: {why}. Check that ekf_pose_with_covariance is "
+                "published, with stamps near those of the scans and without jumps"
+            ) from why
+        report.value("is_succeed_interpolate_initial_pose", True)
+        report.value("initial_pose_age", round(guess.age_s, 4))
         return guess
-
-    def _regularization_at(
-        self, stamp_s: float, guess: Matrix, report: Diagnostics
-    ) -> Matrix | None:
-        pose = self._regularization.at(stamp_s) if self._p.regularization else None
-        if pose is None:
-            return None
-        distance_m = poses.distance_m(pose.T, guess)
-        if distance_m > UNLIMITED:  # it would outweigh the scan
-            report.warn(f"the regularization pose is {distance_m:.0f} m from the guess: not used")
-            return None
-        return pose.T
 
     def _publish_clouds(self, stamp: Any, points: Points, T_map_base: Matrix) -> None:
         self._outputs.cloud("points_aligned", stamp, points, T_map_base)
@@ -302,6 +241,9 @@ class NdtScanMatcher(Node):
                 self._outputs.loaded_map(self.get_clock().now().to_msg(), points)
 
     def _on_timer(self) -> None:
+        self._thread.post(self._update_map)
+
+    def _update_map(self) -> None:
         report = self._diagnostics["map_update_status"]
         report.clear()
         now = self.get_clock().now().to_msg()
@@ -319,8 +261,9 @@ class NdtScanMatcher(Node):
         now = self.get_clock().now().to_msg()
         report.value("service_call_time_stamp", seconds(now))
         self._is_activated = bool(request.data)
+        self._thread.guesses_changed()
         if self._is_activated:
-            self._guesses.clear()
+            self._poses.guesses.clear()
         response.success = True
         report.value("is_activated", self._is_activated)
         report.value("is_succeed_service", True)
@@ -328,6 +271,10 @@ class NdtScanMatcher(Node):
         return response
 
     def _on_align(self, request: Any, response: Any) -> Any:
+        self._thread.run(lambda: self._answer_align(request, response))
+        return response
+
+    def _answer_align(self, request: Any, response: Any) -> None:
         report = self._diagnostics["ndt_align_service_status"]
         report.clear()
         now = self.get_clock().now().to_msg()
@@ -339,7 +286,6 @@ class NdtScanMatcher(Node):
             response.success = False
         report.value("is_succeed_service", bool(response.success))
         report.publish(now)
-        return response
 
     def _align(self, guess: Any, response: Any, report: Diagnostics) -> None:
         """Search around a pose for the likeliest one."""
@@ -370,6 +316,9 @@ class NdtScanMatcher(Node):
         response.pose_with_covariance = pose_with_covariance(
             best.alignment.T_map_sensor, covariance, guess.header.stamp, self._p.map_frame
         )
+
+    def _now_s(self) -> float:
+        return seconds(self.get_clock().now().to_msg())
 
     def _best_particle(self, T_map_base: Matrix, covariance: Matrix) -> Particle:
         scan = self._scan

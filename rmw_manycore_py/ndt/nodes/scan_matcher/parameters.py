@@ -6,7 +6,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from rmw_manycore_py.ndt.nodes.support.declared import parameter
-from rmw_manycore_py.words import Search, StepRule, VoxelCovariance
+from rmw_manycore_py.words import Behaviour, Search, StepRule, VoxelCovariance
 
 TRANSFORM_PROBABILITY, NEAREST_VOXEL_LIKELIHOOD = 0, 1
 FIXED_VALUE, LAPLACE_APPROXIMATION, MULTI_NDT, MULTI_NDT_SCORE = range(4)
@@ -106,5 +106,7 @@ class OwnParameters:
     scan_limit: int = parameter("sensor_points.limit", 200_000, least=100, most=10_000_000)
     map_path: str = parameter("map_path", "")
     map_leaf_m: float = parameter("map_leaf_size", 0.0, least=0.0)
+    behaviour: Behaviour = parameter("behaviour", "robust", choices=("robust", "autoware"))
+    guess_wait_s: float = parameter("validation.initial_pose_wait_sec", 0.05, least=0.0, most=10.0)
     activated: bool = parameter("activated", False)
     worker_cpus: tuple[int, ...] = parameter("worker_host_cpus", (), whole=True)

@@ -3,11 +3,14 @@
 
 from __future__ import annotations
 
+import threading
 from collections import deque
 from dataclasses import dataclass
 
 from rmw_manycore_py.ndt.geometry import poses
 from rmw_manycore_py.ndt.geometry.arrays import Matrix
+
+HOLD_S = 0.02  # a pose so old holds where the motion is not known: 0.3 m at 15 m/s
 
 
 @dataclass(frozen=True)
@@ -20,46 +23,126 @@ class StampedPose:
 
 @dataclass(frozen=True)
 class Interpolated:
-    """The pose at a time, and those before and after it that it comes from."""
+    """The pose at a time, and those before and after it that it comes from.
+
+    :param age_s: how much older than the time asked for the newest of them is; 0 between two.
+    """
 
     T: Matrix
     old: StampedPose
     new: StampedPose
+    age_s: float = 0.0
+
+
+class NoPoseError(LookupError):
+    """The poses that arrived do not give the pose at a time; the message says why."""
 
 
 class PoseBuffer:
-    """Needs two poses near a time; after the newest one, the newest holds."""
+    """Keeps the newest poses. Thread-safe.
+
+    :param timeout_s: maximum distance in time between a pose and the time asked for.
+    :param distance_tolerance_m: maximum distance between two poses to interpolate between.
+    """
 
     def __init__(self, timeout_s: float, distance_tolerance_m: float) -> None:
         self._timeout_s = timeout_s
         self._distance_tolerance_m = distance_tolerance_m
         self._poses: deque[StampedPose] = deque(maxlen=1000)
+        self._lock = threading.Lock()
 
     def push(self, stamp_s: float, T: Matrix) -> None:
         """Add a pose; when time jumps back, as in a recording played again, forget all others."""
-        if self._poses and stamp_s < self._poses[-1].stamp_s:
-            self._poses.clear()
-        self._poses.append(StampedPose(stamp_s, T))
+        with self._lock:
+            if self._poses and stamp_s < self._poses[-1].stamp_s:
+                self._poses.clear()
+            self._poses.append(StampedPose(stamp_s, T))
 
     def clear(self) -> None:
         """Forget all poses."""
-        self._poses.clear()
+        with self._lock:
+            self._poses.clear()
 
-    def forget_before(self, stamp_s: float) -> None:
-        """Forget poses that no later time can need."""
-        while len(self._poses) > 2 and self._poses[1].stamp_s <= stamp_s:
-            self._poses.popleft()
+    def forget_before(self, stamp_s: float, kept_s: float = 0.0) -> None:
+        """Forget poses that no later time can need, but for those of the last `kept_s`."""
+        with self._lock:
+            while len(self._poses) > 2 and self._poses[1].stamp_s <= stamp_s - kept_s:
+                self._poses.popleft()
 
-    def at(self, stamp_s: float) -> Interpolated | None:
-        """Return the pose at a time, or None where the poses there are do not tell."""
-        if len(self._poses) < 2 or stamp_s < self._poses[0].stamp_s:
-            return None
-        old = max((p for p in self._poses if p.stamp_s <= stamp_s), key=lambda p: p.stamp_s)
+    def reaches(self, stamp_s: float) -> bool:
+        """Tell whether there is a pose of this time or of a later one."""
+        with self._lock:
+            return bool(self._poses) and self._poses[-1].stamp_s >= stamp_s
+
+    def newest_at(self, stamp_s: float) -> Interpolated | None:
+        """Return the pose at a time as Autoware's node does: after the newest one, it holds.
+
+        None where two poses near the time are missing.
+        """
+        with self._lock:
+            if len(self._poses) < 2 or stamp_s < self._poses[0].stamp_s:
+                return None
+            found = self._between(stamp_s)
+        return None if isinstance(found, str) else found
+
+    def at(self, stamp_s: float, reach_s: float) -> Interpolated:
+        """Return the pose at a time: interpolated, or moved on from the newest one.
+
+        :param reach_s: maximum age of the newest pose; older ones say too little about the time.
+        :raises NoPoseError: when the poses do not give it.
+        """
+        with self._lock:
+            if not self._poses:
+                raise NoPoseError("no pose has arrived")
+            first, newest = self._poses[0], self._poses[-1]
+            if stamp_s < first.stamp_s:
+                raise NoPoseError(f"the oldest pose is {first.stamp_s - stamp_s:.3f} s newer")
+            if stamp_s > newest.stamp_s:
+                return self._moved_on(stamp_s, min(reach_s, self._timeout_s))
+            found = self._between(stamp_s)
+        if isinstance(found, str):
+            raise NoPoseError(found)
+        return found
+
+    def _between(self, stamp_s: float) -> Interpolated | str:
+        """Return the pose between the two around a time, or why there is none."""
+        old = next(p for p in reversed(self._poses) if p.stamp_s <= stamp_s)
         new = next((p for p in self._poses if p.stamp_s > stamp_s), old)
-        if max(stamp_s - old.stamp_s, new.stamp_s - stamp_s) > self._timeout_s:
-            return None
-        if poses.distance_m(old.T, new.T) > self._distance_tolerance_m:
-            return None
-        span_s = new.stamp_s - old.stamp_s
-        share = (stamp_s - old.stamp_s) / span_s if span_s > 0.0 else 0.0
+        if old.stamp_s == stamp_s:
+            return Interpolated(old.T, old, old)
+        gap_s = max(stamp_s - old.stamp_s, new.stamp_s - stamp_s)
+        if gap_s > self._timeout_s:
+            return f"poses around it are {gap_s:.3f} s away, more than {self._timeout_s:g} s"
+        jump_m = poses.distance_m(old.T, new.T)
+        if jump_m > self._distance_tolerance_m:
+            return f"the poses around it are {jump_m:.1f} m apart"
+        if new is old:
+            return Interpolated(old.T, old, old, stamp_s - old.stamp_s)
+        share = (stamp_s - old.stamp_s) / (new.stamp_s - old.stamp_s)
         return Interpolated(poses.interpolate(old.T, new.T, share), old, new)
+
+    def _moved_on(self, stamp_s: float, reach_s: float) -> Interpolated:
+        """Continue the motion up to the newest pose, seen over at least as long a time."""
+        newest = self._poses[-1]
+        age_s = stamp_s - newest.stamp_s
+        if age_s > reach_s:
+            raise NoPoseError(f"the newest pose is {age_s:.3f} s older, more than {reach_s:.3f} s")
+        start_s = newest.stamp_s - age_s
+        before = next((p for p in reversed(self._poses) if p.stamp_s <= start_s), None)
+        if before is None or newest.stamp_s - before.stamp_s > self._timeout_s:
+            if age_s > HOLD_S:
+                raise NoPoseError(
+                    f"the newest pose is {age_s:.3f} s older, and no pose before it tells the "
+                    "motion"
+                )
+            return Interpolated(newest.T, newest, newest, age_s)
+        moved_m = poses.distance_m(before.T, newest.T)
+        if moved_m > self._distance_tolerance_m:
+            raise NoPoseError(f"the newest pose is {moved_m:.1f} m from the one before it")
+        share = age_s / (newest.stamp_s - before.stamp_s)
+        motion = poses.inverse(before.T) @ newest.T
+        T = newest.T @ poses.interpolate(_IDENTITY, motion, share)
+        return Interpolated(T, before, newest, age_s)
+
+
+_IDENTITY: Matrix = poses.from_xyz_rpy((0.0, 0.0, 0.0))

@@ -16,7 +16,6 @@ from rmw_manycore_py.ndt.geometry.poses import from_xyz_rpy, inverse
 from rmw_manycore_py.ndt.messages.conversions import transform_stamped
 from rmw_manycore_py.ndt.nodes.scan_matcher.cpu_time import tree_cpu_s
 from rmw_manycore_py.ndt.nodes.scan_matcher.frame_tree import FrameError, FrameTree
-from rmw_manycore_py.ndt.nodes.scan_matcher.pose_buffer import PoseBuffer
 
 pytestmark = pytest.mark.unit
 
@@ -30,29 +29,6 @@ input()
 
 def at(x: float) -> np.ndarray:
     return from_xyz_rpy((x, 0.0, 0.0))
-
-
-def test_pose_buffer_interpolates_between_two_poses():
-    buffer = PoseBuffer(1.0, 10.0)
-    buffer.push(1.0, at(0.0))
-    assert buffer.at(1.0) is None
-    buffer.push(2.0, at(2.0))
-    assert buffer.at(1.25).T[0, 3] == pytest.approx(0.5)
-    assert buffer.at(2.5).T[0, 3] == pytest.approx(2.0)
-    assert buffer.at(0.9) is None
-    assert buffer.at(3.1) is None
-
-
-def test_pose_buffer_refuses_jumps_and_forgets():
-    buffer = PoseBuffer(1.0, 10.0)
-    for stamp_s, x in ((1.0, 0.0), (1.5, 50.0), (2.0, 51.0)):
-        buffer.push(stamp_s, at(x))
-    assert buffer.at(1.2) is None
-    assert buffer.at(1.7) is not None
-    buffer.forget_before(1.9)
-    assert buffer.at(1.2) is None
-    buffer.push(0.5, at(0.0))
-    assert buffer.at(1.7) is None
 
 
 def tree_of(*chain: tuple[str, str, np.ndarray]) -> FrameTree:

@@ -1,0 +1,108 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""The thread that owns the matcher, so that the executor takes guesses while a scan is matched."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections import deque
+from collections.abc import Callable
+from functools import partial
+from typing import Any
+
+from rmw_manycore_py.ndt.nodes.scan_matcher.scan_inbox import ScanInbox, WaitingScan
+
+Job = Callable[[], None]
+
+
+class MatchingThread:
+    """Matches scans and runs jobs, one at a time; sleeps while there is nothing to do.
+
+    :param inbox: where scans wait.
+    :param match: called with each scan that is taken.
+    :param skip: called with each scan that a newer one has overtaken.
+    :param failed: called when one of them raised; close() raises it again.
+    """
+
+    def __init__(
+        self,
+        inbox: ScanInbox,
+        match: Callable[[Any], None],
+        skip: Callable[[Any], None],
+        failed: Callable[[], None],
+    ) -> None:
+        self._inbox = inbox
+        self._match = match
+        self._skip = skip
+        self._failed = failed
+        self._changed = threading.Condition()
+        self._jobs: deque[Job] = deque()
+        self._closing = False
+        self._failure: BaseException | None = None
+        self._thread = threading.Thread(target=self._run, name="matching")
+        self._thread.start()
+
+    def put_scan(self, message: Any, stamp_s: float) -> None:
+        """Have a scan matched, unless a newer one is ready before its turn. Any thread."""
+        with self._changed:
+            self._inbox.put(message, stamp_s, time.monotonic())
+            self._changed.notify()
+
+    def guesses_changed(self) -> None:
+        """Look again whether a waiting scan has its guess. Any thread."""
+        with self._changed:
+            self._changed.notify()
+
+    def post(self, job: Job) -> None:
+        """Run a job before the next scan. Any thread."""
+        with self._changed:
+            self._jobs.append(job)
+            self._changed.notify()
+
+    def run(self, job: Job) -> None:
+        """Run a job and wait for its end; the job must not raise. Any other thread."""
+        done = threading.Event()
+
+        def run_and_tell() -> None:
+            job()
+            done.set()
+
+        self.post(run_and_tell)
+        while not done.wait(1.0) and self._thread.is_alive():
+            pass
+
+    def close(self) -> None:
+        """End the thread after what it is doing; raises what ended it before."""
+        with self._changed:
+            self._closing = True
+            self._changed.notify()
+        self._thread.join()
+        if self._failure is not None:
+            raise self._failure
+
+    def _run(self) -> None:
+        try:
+            while True:
+                skipped, work = self._next()
+                for scan in skipped:
+                    self._skip(scan.message)
+                if work is None:
+                    return
+                work()
+        except BaseException as error:
+            self._failure = error
+            self._failed()
+
+    def _next(self) -> tuple[list[WaitingScan], Job | None]:
+        """Sleep until there is work; return scans skipped since, and the work, None at the end."""
+        with self._changed:
+            while not self._closing:
+                if self._jobs:
+                    return self._inbox.take_skipped(), self._jobs.popleft()
+                now_s = time.monotonic()
+                scan = self._inbox.take(now_s)
+                if scan is not None:
+                    return self._inbox.take_skipped(), partial(self._match, scan.message)
+                due_s = self._inbox.due_s()
+                self._changed.wait(None if due_s is None else max(due_s - now_s, 0.0))
+            return [], None

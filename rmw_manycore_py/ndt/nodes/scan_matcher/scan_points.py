@@ -1,0 +1,82 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""From a PointCloud2 to the points that are matched: in the base frame, checked, not too many."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from rmw_manycore_py.ndt.geometry import poses
+from rmw_manycore_py.ndt.geometry.arrays import Points
+from rmw_manycore_py.ndt.messages.conversions import seconds
+from rmw_manycore_py.ndt.messages.point_cloud import CloudError, decode
+from rmw_manycore_py.ndt.nodes.scan_matcher.diagnostics import Diagnostics
+from rmw_manycore_py.ndt.nodes.scan_matcher.frame_tree import FrameError, FrameTree
+from rmw_manycore_py.ndt.nodes.scan_matcher.parameters import MatcherParameters, OwnParameters
+from rmw_manycore_py.ndt.nodes.scan_matcher.rejected import Rejected
+
+
+class ScanPoints:
+    """Reads scans."""
+
+    def __init__(
+        self, parameters: MatcherParameters, own: OwnParameters, frames: FrameTree
+    ) -> None:
+        self._p = parameters
+        self._own = own
+        self._frames = frames
+
+    def of(self, message: Any, now_s: float, report: Diagnostics) -> Points:
+        """Return the points (N, 3) of a scan in the base frame.
+
+        :param now_s: the node's clock.
+        :raises Rejected: when the scan cannot be used.
+        """
+        report.value("sensor_points_size", message.width * message.height)
+        try:
+            points = decode(message)
+        except CloudError as error:
+            raise Rejected(str(error)) from error
+        if len(points) == 0:
+            raise Rejected("Sensor points is empty: it has no point that is finite")
+        self._report_delay(now_s - seconds(message.header.stamp), report)
+        points = self._in_base(self._limited(points, report), message.header.frame_id, report)
+        farthest_m = float(np.sqrt(np.square(points, dtype=np.float64).sum(axis=1).max()))
+        report.value("sensor_points_max_distance", round(farthest_m, 3))
+        if farthest_m < self._p.required_distance_m:
+            raise Rejected(
+                f"Max distance of sensor points = {farthest_m:.3f} m < "
+                f"{self._p.required_distance_m} m (sensor_points.required_distance)"
+            )
+        return np.ascontiguousarray(points, np.float32)
+
+    def _report_delay(self, delay_s: float, report: Diagnostics) -> None:
+        report.value("sensor_points_delay_time_sec", round(delay_s, 4))
+        if delay_s > self._p.timeout_s:
+            report.warn(f"sensor points are {delay_s:.2f} s old (tolerance {self._p.timeout_s} s)")
+        elif delay_s < -self._p.timeout_s:
+            report.warn(f"sensor points are of a time {-delay_s:.2f} s ahead: check the clocks")
+
+    def _limited(self, points: Points, report: Diagnostics) -> Points:
+        if len(points) <= self._own.scan_limit:
+            return points
+        step = -(-len(points) // self._own.scan_limit)
+        report.warn(
+            f"{len(points)} points are more than sensor_points.limit "
+            f"({self._own.scan_limit}): every {step}th is used; put a filter in front"
+        )
+        return points[::step]
+
+    def _in_base(self, points: Points, frame: str, report: Diagnostics) -> Points:
+        if frame == self._p.base_frame:
+            report.value("is_succeed_transform_sensor_points", True)
+            return points
+        try:
+            T_base_sensor = self._frames.lookup(self._p.base_frame, frame)
+        except FrameError as error:
+            report.value("is_succeed_transform_sensor_points", False)
+            what = f"publish TF {frame} to {self._p.base_frame}" if frame else "set its frame_id"
+            raise Rejected(f"{error}. Please {what}") from error
+        report.value("is_succeed_transform_sensor_points", True)
+        return poses.transform(T_base_sensor, points)

@@ -1,0 +1,93 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Guesses of `ndt_scan_matcher`: each scan is matched from its own, or from none."""
+
+from __future__ import annotations
+
+import pytest
+from builtin_interfaces.msg import Time
+from diagnostic_msgs.msg import DiagnosticStatus
+from geometry_msgs.msg import PoseWithCovarianceStamped
+from ndt_support import (
+    COVARIANCE,
+    NEAR,
+    TRUTH,
+    error_m,
+    matcher_command,
+    street_map,
+    street_scan,
+)
+from ros_support import spin_until
+from support import PATIENCE_S
+
+from rmw_manycore_py.ndt.geometry.poses import from_xyz_rpy
+from rmw_manycore_py.ndt.messages.conversions import matrix_of, nanoseconds, pose_with_covariance
+from rmw_manycore_py.ndt.messages.point_cloud import encode
+
+
+def stamp_of_ns(time_ns: int) -> Time:
+    return Time(sec=time_ns // 1_000_000_000, nanosec=time_ns % 1_000_000_000)
+
+
+def value_of(report: DiagnosticStatus, key: str) -> str:
+    return {pair.key: pair.value for pair in report.values}[key]
+
+
+def test_no_scan_is_matched_from_the_guess_of_another(stack, start):
+    """Scans and guesses come at once, the scans first, each guess 3 m from the next.
+
+    The newest scan is matched from its own guess, and each other one is answered or reported as
+    skipped.
+    """
+    start(matcher_command(validation__initial_pose_wait_sec=PATIENCE_S / 10), cluster=2)
+    stack.wait_for_matcher()
+    stack.publish_map(street_map())
+    stack.pose_of(street_scan())
+    first = []
+    stack.node.create_subscription(
+        PoseWithCovarianceStamped, "initial_pose_with_covariance", first.append, 10
+    )
+    now_ns = nanoseconds(stack.stamp())
+    stamps_ns = [now_ns + index * 100_000_000 for index in range(4)]
+    for stamp_ns in stamps_ns:
+        stack.scans.publish(encode(street_scan(), stamp_of_ns(stamp_ns), "base_link"))
+    for index, stamp_ns in enumerate(stamps_ns):
+        guess = TRUTH @ from_xyz_rpy((3.0 * (len(stamps_ns) - 1 - index), 0.0, 0.0))
+        stamp = stamp_of_ns(stamp_ns)
+        stack.guesses.publish(pose_with_covariance(guess, COVARIANCE, stamp, "map"))
+    reports = [stack.report_of(stamp_ns) for stamp_ns in stamps_ns]
+    assert "skipped" not in reports[-1].message
+    spin_until(stack.node, lambda: stamps_ns[-1] in stack.poses)
+    assert error_m(stack.poses[stamps_ns[-1]]) < 0.1
+    skipped = sum("skipped: a newer scan" in report.message for report in reports)
+    assert value_of(reports[-1], "skipped_scans") == str(skipped)
+    spin_until(
+        stack.node, lambda: nanoseconds(first[-1].header.stamp) == stamps_ns[-1] if first else False
+    )
+    for message in first:
+        index = stamps_ns.index(nanoseconds(message.header.stamp))
+        expected_m = 3.0 * (len(stamps_ns) - 1 - index)
+        assert error_m(matrix_of(message.pose.pose)) == pytest.approx(expected_m, abs=0.01)
+
+
+def test_a_guess_too_old_for_a_scan_is_refused(matched):
+    matched.pose_of(street_scan())
+    for _ in range(3):  # a period of some milliseconds
+        matched.report_of(matched.send(street_scan()))
+    ahead_ns = nanoseconds(matched.stamp()) + 900_000_000
+    matched.scans.publish(encode(street_scan(), stamp_of_ns(ahead_ns), "base_link"))
+    report = matched.report_of(ahead_ns)
+    assert "Couldn't interpolate pose: the newest pose is" in report.message
+    assert ahead_ns not in matched.poses
+    assert error_m(matched.pose_of(street_scan(), NEAR)) < 0.1
+
+
+def test_as_in_autoware_a_guess_holds_for_a_second(stack, start):
+    start(matcher_command(behaviour="autoware"), cluster=2)
+    stack.wait_for_matcher()
+    stack.publish_map(street_map())
+    stack.pose_of(street_scan())
+    stack.report_of(stack.send(street_scan()))
+    ahead_ns = nanoseconds(stack.stamp()) + 500_000_000
+    stack.scans.publish(encode(street_scan(), stamp_of_ns(ahead_ns), "base_link"))
+    spin_until(stack.node, lambda: ahead_ns in stack.poses)
+    assert error_m(stack.poses[ahead_ns]) < 0.1

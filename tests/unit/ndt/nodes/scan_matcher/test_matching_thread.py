@@ -1,0 +1,153 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Which scan has its turn, and what goes on while it is matched.
+
+The threads are real; that no interleaving of them loses a scan is not proven.
+"""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Iterator
+
+import pytest
+
+from rmw_manycore_py.ndt.nodes.scan_matcher.matching_thread import MatchingThread
+from rmw_manycore_py.ndt.nodes.scan_matcher.scan_inbox import MAX_WAITING, ScanInbox
+
+pytestmark = pytest.mark.unit
+
+PATIENCE_S = 60.0
+LONG_S = 1e9
+
+
+class Known:
+    """The stamps that a guess is known for."""
+
+    def __init__(self, *stamps_s: float) -> None:
+        self.stamps_s = set(stamps_s)
+
+    def __call__(self, stamp_s: float) -> bool:
+        return stamp_s in self.stamps_s
+
+
+def skipped_of(inbox: ScanInbox) -> list[str]:
+    return [scan.message for scan in inbox.take_skipped()]
+
+
+def test_a_scan_waits_for_its_guess_but_not_for_ever():
+    inbox = ScanInbox(Known(), patience_s=0.05)
+    inbox.put("a", 1.0, now_s=10.0)
+    assert inbox.take(10.04) is None
+    assert inbox.due_s() == pytest.approx(10.05)
+    assert inbox.take(10.05).message == "a"
+    assert inbox.due_s() is None
+
+
+def test_a_scan_that_waits_does_not_hold_up_the_next():
+    inbox = ScanInbox(Known(2.0), patience_s=0.05)
+    inbox.put("a", 1.0, now_s=10.0)
+    inbox.put("b", 2.0, now_s=10.01)
+    assert inbox.take(10.01).message == "b"
+    assert skipped_of(inbox) == ["a"]
+    assert inbox.take(11.0) is None
+
+
+def test_the_newest_of_several_is_taken_and_the_others_are_counted():
+    inbox = ScanInbox(Known(1.0, 2.0, 3.0), patience_s=0.05)
+    for stamp_s, name in enumerate("abc", start=1):
+        inbox.put(name, float(stamp_s), now_s=10.0)
+    assert inbox.take(10.0).message == "c"
+    assert skipped_of(inbox) == ["a", "b"]
+    assert skipped_of(inbox) == []
+
+
+def test_a_scan_with_its_guess_goes_before_a_newer_one_without():
+    known = Known(1.0)
+    inbox = ScanInbox(known, patience_s=0.05)
+    inbox.put("a", 1.0, now_s=10.0)
+    inbox.put("b", 2.0, now_s=10.0)
+    assert inbox.take(10.1).message == "a"
+    assert inbox.take(10.1).message == "b"
+    assert skipped_of(inbox) == []
+
+
+def test_no_more_than_a_few_scans_wait():
+    inbox = ScanInbox(Known(), patience_s=LONG_S)
+    for index in range(3 * MAX_WAITING):
+        inbox.put(index, float(index), now_s=0.0)
+    assert skipped_of(inbox) == list(range(2 * MAX_WAITING))
+
+
+class Node:
+    """What a thread calls; matching waits until the test lets it go on."""
+
+    def __init__(self) -> None:
+        self.known = Known()
+        self.matched: list[str] = []
+        self.skipped: list[str] = []
+        self.may_match = threading.Semaphore(0)
+        self.is_matching = threading.Semaphore(0)
+        self.failed = threading.Event()
+        inbox = ScanInbox(self.known, LONG_S)
+        self.thread = MatchingThread(inbox, self.match, self.skipped.append, self.failed.set)
+
+    def match(self, name: str) -> None:
+        self.is_matching.release()
+        assert self.may_match.acquire(timeout=PATIENCE_S)
+        if name == "broken":
+            raise ValueError(name)
+        self.matched.append(name)
+
+    def put(self, name: str, stamp_s: float) -> None:
+        self.known.stamps_s.add(stamp_s)
+        self.thread.put_scan(name, stamp_s)
+
+
+@pytest.fixture
+def node() -> Iterator[Node]:
+    node = Node()
+    yield node
+    for _ in range(10):
+        node.may_match.release()
+    if not node.failed.is_set():
+        node.thread.close()
+
+
+def test_guesses_get_through_while_a_scan_is_matched(node):
+    """The scans that came meanwhile are skipped, but for the newest."""
+    node.put("a", 1.0)
+    assert node.is_matching.acquire(timeout=PATIENCE_S)
+    for stamp_s, name in enumerate("bcd", start=2):
+        node.thread.put_scan(name, float(stamp_s))
+        node.known.stamps_s.add(float(stamp_s))
+        node.thread.guesses_changed()
+    node.may_match.release()
+    assert node.is_matching.acquire(timeout=PATIENCE_S)
+    node.may_match.release()
+    node.thread.run(lambda: None)
+    assert node.matched == ["a", "d"]
+    assert node.skipped == ["b", "c"]
+
+
+def test_a_guess_wakes_the_scan_that_waits_for_it(node):
+    node.thread.put_scan("a", 1.0)
+    node.thread.run(lambda: None)
+    assert node.matched == []
+    node.known.stamps_s.add(1.0)
+    node.thread.guesses_changed()
+    assert node.is_matching.acquire(timeout=PATIENCE_S)
+
+
+def test_jobs_run_between_scans_on_the_thread(node):
+    found = []
+    node.thread.run(lambda: found.append(threading.current_thread().name))
+    assert found == ["matching"]
+
+
+def test_what_ends_the_thread_is_told_and_raised(node):
+    node.put("broken", 1.0)
+    node.may_match.release()
+    assert node.failed.wait(PATIENCE_S)
+    node.thread.run(lambda: None)  # does not wait for a thread that has ended
+    with pytest.raises(ValueError, match="broken"):
+        node.thread.close()
