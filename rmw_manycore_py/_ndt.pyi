@@ -93,18 +93,22 @@ class NewtonResult:
         """The derivatives at this pose."""
 
 class SerialMatcher:
-    """Matches scans (N, 3) [m, sensor frame] on the calling thread."""
+    """Matches scans (N, 3) [m, sensor frame] on the calling thread.
+
+    `maps`: levels of one map, coarsest first; a scan is aligned to each, from where the one before
+    has led. Scores and derivatives are those of the last.
+    """
 
     def __init__(self, options: MatchOptions) -> None: ...
     def align(
         self,
-        map: VoxelMap,
+        maps: list[VoxelMap],
         points: NDArray[np.float32],
         guess: NDArray[np.float64],
         regularization_position_m: tuple[float, float] | None = None,
     ) -> NewtonResult: ...
     def evaluate(
-        self, map: VoxelMap, points: NDArray[np.float32], pose: NDArray[np.float64]
+        self, maps: list[VoxelMap], points: NDArray[np.float32], pose: NDArray[np.float64]
     ) -> Derivatives: ...
 
 class WorkerGroup:
@@ -113,15 +117,15 @@ class WorkerGroup:
     def __init__(self, options: MatchOptions, program: str, host_cpus: list[int]) -> None: ...
     def align(
         self,
-        map: VoxelMap,
+        maps: list[VoxelMap],
         points: NDArray[np.float32],
         guess: NDArray[np.float64],
         regularization_position_m: tuple[float, float] | None = None,
     ) -> NewtonResult: ...
     def evaluate(
-        self, map: VoxelMap, points: NDArray[np.float32], pose: NDArray[np.float64]
+        self, maps: list[VoxelMap], points: NDArray[np.float32], pose: NDArray[np.float64]
     ) -> Derivatives: ...
-    def prepare(self, map: VoxelMap) -> None:
+    def prepare(self, maps: list[VoxelMap]) -> None:
         """Let the workers map it, so that the next alignment need not wait for that."""
 
     def memory_bytes(self, points: int) -> int:

@@ -50,11 +50,11 @@ class ThreadMatcher:
     ) -> None: ...
     def align(
         self,
-        map: VoxelMap,
+        maps: list[VoxelMap],
         points: NDArray[np.float32],
         guess: NDArray[np.float64],
         regularization_position_m: tuple[float, float] | None = None,
     ) -> NewtonResult: ...
     def evaluate(
-        self, map: VoxelMap, points: NDArray[np.float32], pose: NDArray[np.float64]
+        self, maps: list[VoxelMap], points: NDArray[np.float32], pose: NDArray[np.float64]
     ) -> Derivatives: ...

@@ -101,10 +101,14 @@ def test_many_matches_are_measured() -> None:
 def test_scan_matching_is_measured_alone_and_split() -> None:
     report = run_bench("ndt", "--only", "rmw_manycore")
     units = {result["unit"] for result in report["results"]}
-    assert units == {"ns/point", "ms", "x", "%"}
+    assert units == {"ns/point", "ms", "x", "%", "cm"}
     contenders = {result["contender"] for result in report["results"]}
     assert {"rmw_manycore 1 worker", "rmw_manycore alone on 1 CPU"} <= contenders
-    assert all(result["median"] > 0 for result in report["results"])
+    found = [result for result in report["results"] if result["question"].startswith("found from")]
+    assert len(found) == 15
+    home = {r["contender"]: r["mean"] for r in found if r["question"].startswith("found from 0.5")}
+    assert home["rmw_manycore 4 m, 2 m"] == 100.0
+    assert all(result["median"] > 0 for result in report["results"] if result not in found)
 
 
 def test_the_report_is_written(tmp_path: Path) -> None:

@@ -53,23 +53,25 @@ ThreadMatcher::~ThreadMatcher() {
   }
 }
 
-void ThreadMatcher::put(const VoxelMap & map, const float * xyz_m, size_t count) {
+void ThreadMatcher::put(const MapView & map, const float * xyz_m, size_t count) {
   const ScanView scan = lay_out_scan(xyz_m, count, scan_.with_room_for(scan_floats(count)));
   found_.resize(scan.groups * group_points);
-  problem_ = {map.view(), scan, options_, std::nullopt};
+  problem_ = {map, scan, options_, std::nullopt};
 }
 
 NewtonResult ThreadMatcher::align(
-  const VoxelMap & map, const float * xyz_m, size_t count, const Pose6 & guess,
+  const Levels & levels, const float * xyz_m, size_t count, const Pose6 & guess,
   const std::optional<Regularization> & regularization) {
-  put(map, xyz_m, count);
+  const std::vector<MapView> views = views_of(levels);
+  put(views.back(), xyz_m, count);
   problem_.regularization = regularization;
-  return maximise(guess, options_, [&](const Pose6 & pose) { return run_pass(pose); });
+  return descend(
+    views, problem_, guess, [&](const Problem &, const Pose6 & pose) { return run_pass(pose); });
 }
 
 Derivatives ThreadMatcher::evaluate(
-  const VoxelMap & map, const float * xyz_m, size_t count, const Pose6 & pose) {
-  put(map, xyz_m, count);
+  const Levels & levels, const float * xyz_m, size_t count, const Pose6 & pose) {
+  put(views_of(levels).back(), xyz_m, count);
   return run_pass(pose);
 }
 

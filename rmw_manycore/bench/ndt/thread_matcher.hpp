@@ -24,12 +24,13 @@ public:
   ~ThreadMatcher();
 
   NewtonResult align(
-    const VoxelMap & map, const float * xyz_m, size_t count, const Pose6 & guess,
+    const Levels & levels, const float * xyz_m, size_t count, const Pose6 & guess,
     const std::optional<Regularization> & regularization);
-  Derivatives evaluate(const VoxelMap & map, const float * xyz_m, size_t count, const Pose6 & pose);
+  Derivatives evaluate(
+    const Levels & levels, const float * xyz_m, size_t count, const Pose6 & pose);
 
 private:
-  void put(const VoxelMap & map, const float * xyz_m, size_t count);
+  void put(const MapView & map, const float * xyz_m, size_t count);
   Derivatives run_pass(const Pose6 & pose);
   void run(int cpu, bool is_search, size_t index);
   void search(size_t index);

@@ -1,7 +1,61 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #include "ndt/matching/matcher.hpp"
 
+#include <algorithm>
+#include <string>
+
+#include "platform/error.hpp"
+
 namespace manycore::ndt {
+namespace {
+
+/// Steps shorter than this share of a voxel end a level that a finer one follows: the finer one
+/// takes over from anywhere within a voxel.
+constexpr double coarse_epsilon_voxels = 0.025;
+
+MatchOptions options_of(const MatchOptions & options, const MapView & level, bool is_last) {
+  MatchOptions out = options;
+  if (!is_last) {
+    const double epsilon_m = coarse_epsilon_voxels * level.header->voxel_size_m;
+    out.trans_epsilon = std::max(options.trans_epsilon, epsilon_m);
+  }
+  return out;
+}
+
+}  // namespace
+
+NewtonResult descend(
+  const std::vector<MapView> & levels, Problem & problem, const Pose6 & guess,
+  const EvaluateProblem & evaluate) {
+  NewtonResult result{Outcome::no_overlap, 0, guess, {}};
+  uint32_t iterations = 0;
+  for (size_t i = 0; i < levels.size(); ++i) {
+    problem.map = levels[i];
+    const MatchOptions options = options_of(problem.options, levels[i], i + 1 == levels.size());
+    result =
+      maximise(result.pose, options, [&](const Pose6 & pose) { return evaluate(problem, pose); });
+    iterations += result.iterations;
+  }
+  result.iterations = iterations;
+  return result;
+}
+
+void check_levels(const Levels & levels) {
+  if (levels.empty() || levels.size() > max_levels) {
+    throw Error(
+      ErrorCode::invalid_argument, "maps: expected 1 to " + std::to_string(max_levels) +
+                                     " levels, found " + std::to_string(levels.size()));
+  }
+}
+
+std::vector<MapView> views_of(const Levels & levels) {
+  check_levels(levels);
+  std::vector<MapView> out;
+  for (const VoxelMap * level : levels) {
+    out.push_back(level->view());
+  }
+  return out;
+}
 
 TangentSums add_bins(const TangentSums (&bins)[bin_count]) {
   TangentSums total;

@@ -7,9 +7,15 @@
 
 #include "ndt/kernel/pass.hpp"
 #include "ndt/kernel/scan.hpp"
+#include "ndt/map/voxel_map.hpp"
 #include "ndt/optimisation/newton.hpp"
 
 namespace manycore::ndt {
+
+/// Maps of the same points with smaller and smaller voxels; a scan is aligned to each, from where
+/// the one before has led. The last one's alignment counts. Borrowed for the call.
+using Levels = std::vector<const VoxelMap *>;
+constexpr size_t max_levels = 4;
 
 /// What is matched: a scan to a map.
 struct Problem {
@@ -27,6 +33,20 @@ TangentSums add_bins(const TangentSums (&bins)[bin_count]);
 
 /// Derivatives at a pose, from the sums of all bins there.
 Derivatives finish_pass(const Problem & problem, const TangentSums & sums, const Pose6 & pose);
+
+/// Derivatives of a problem at a pose.
+using EvaluateProblem = std::function<Derivatives(const Problem &, const Pose6 &)>;
+
+/// Aligns level by level, coarsest first; problem.map is set to each. The iterations are those of
+/// all levels together.
+NewtonResult descend(
+  const std::vector<MapView> & levels, Problem & problem, const Pose6 & guess,
+  const EvaluateProblem & evaluate);
+
+/// Throws Error{invalid_argument} unless there are 1 to max_levels.
+void check_levels(const Levels & levels);
+
+std::vector<MapView> views_of(const Levels & levels);
 
 /// One core does all bins.
 Derivatives evaluate_alone(const Problem & problem, const Kernel & kernel, const Pose6 & pose);

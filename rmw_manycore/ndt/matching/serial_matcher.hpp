@@ -16,13 +16,14 @@ public:
 
   /// Points x, y, z [m] in the sensor frame, of which the finite ones count.
   NewtonResult align(
-    const VoxelMap & map, const float * xyz_m, size_t count, const Pose6 & guess,
+    const Levels & levels, const float * xyz_m, size_t count, const Pose6 & guess,
     const std::optional<Regularization> & regularization);
-  /// Derivatives at a pose.
-  Derivatives evaluate(const VoxelMap & map, const float * xyz_m, size_t count, const Pose6 & pose);
+  /// Derivatives at a pose, on the last level.
+  Derivatives evaluate(
+    const Levels & levels, const float * xyz_m, size_t count, const Pose6 & pose);
 
 private:
-  Problem problem(const VoxelMap & map, const float * xyz_m, size_t count);
+  Problem problem(const MapView & map, const float * xyz_m, size_t count);
 
   MatchOptions options_;
   Kernel kernel_;

@@ -1,6 +1,7 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #include "ndt/matching/worker.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "platform/clock.hpp"
@@ -53,11 +54,7 @@ bool Worker::all_finished(uint32_t job) const noexcept {
 
 void Worker::attach() {
   const Job & what = session_.what;
-  if (what.map.id != map_id_) {
-    map_.emplace(SharedMemory::attach(what.map.path));
-    map_->memory().populate(0, map_->memory().size());
-    map_id_ = what.map.id;
-  }
+  attach_maps();
   if (what.scan.id != scan_id_) {
     scan_ = SharedMemory::attach(what.scan.path);
     scan_.populate(0, scan_.size());
@@ -65,9 +62,29 @@ void Worker::attach() {
   }
 }
 
+/// Keeps the maps that the last job had too, and lets go of the others.
+void Worker::attach_maps() {
+  const Job & what = session_.what;
+  std::vector<AttachedMap> levels;
+  for (uint32_t i = 0; i < what.levels; ++i) {
+    const SharedPart & part = what.maps[i];
+    const auto kept = std::find_if(
+      maps_.begin(), maps_.end(), [&](const AttachedMap & held) { return held.id == part.id; });
+    if (kept != maps_.end()) {
+      levels.push_back(std::move(*kept));
+      maps_.erase(kept);
+      continue;
+    }
+    levels.push_back({part.id, VoxelMap(SharedMemory::attach(part.path))});
+    const SharedMemory & memory = levels.back().map.memory();
+    memory.populate(0, memory.size());
+  }
+  maps_ = std::move(levels);
+}
+
 void Worker::do_job(uint32_t job) {
   const Job & what = session_.what;
-  if (what.map.id == 0) {
+  if (what.levels == 0) {
     return;  // a first job, only to see whether everybody is there
   }
   attach();
@@ -75,18 +92,24 @@ void Worker::do_job(uint32_t job) {
   job_ = job;
   pass_ = 0;
   waited_ns_ = 0;
-  Problem problem{map_->view(), view_scan(&scan_.at<float>(0), what.points), what.options, {}};
+  std::vector<MapView> levels;
+  for (size_t i = what.first_level; i < maps_.size(); ++i) {
+    levels.push_back(maps_[i].map.view());
+  }
+  Problem problem{
+    levels.back(), view_scan(&scan_.at<float>(0), what.points), what.options, std::nullopt};
   if (what.has_regularization) {
     problem.regularization = what.regularization;
   }
   try {
-    const NewtonResult result = maximise(what.guess, what.options, [&](const Pose6 & pose) {
-      const std::optional<TangentSums> sums = pass(problem, pose);
+    const auto evaluate = [&](const Problem & level, const Pose6 & pose) {
+      const std::optional<TangentSums> sums = pass(level, pose);
       if (!sums) {
         throw Aborted();
       }
-      return finish_pass(problem, *sums, pose);
-    });
+      return finish_pass(level, *sums, pose);
+    };
+    const NewtonResult result = descend(levels, problem, what.guess, evaluate);
     if (index_ == 0) {
       session_.result = result;
     }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "ndt/map/voxel_map.hpp"
 #include "ndt/matching/worker_session.hpp"
@@ -18,8 +19,14 @@ public:
   [[noreturn]] void run();
 
 private:
+  struct AttachedMap {
+    uint64_t id;
+    VoxelMap map;
+  };
+
   bool all_finished(uint32_t job) const noexcept;
   void attach();
+  void attach_maps();
   void do_job(uint32_t job);
   /// The sums of all bins at a pose; empty when the job is aborted.
   std::optional<TangentSums> pass(const Problem & problem, const Pose6 & pose);
@@ -30,8 +37,7 @@ private:
   WorkerLine & own_;
   uint32_t index_;
   Kernel kernel_;
-  std::optional<VoxelMap> map_;
-  uint64_t map_id_ = 0;
+  std::vector<AttachedMap> maps_;  ///< the levels of the last job
   SharedMemory scan_;
   uint64_t scan_id_ = 0;
   uint32_t job_ = 0;

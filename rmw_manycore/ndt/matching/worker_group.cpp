@@ -76,12 +76,22 @@ void WorkerGroup::put_scan(const float * xyz_m, size_t count) {
   session_.what.points = lay_out_scan(xyz_m, count, &scan_.at<float>(0)).points;
 }
 
+void WorkerGroup::put_levels(const Levels & levels, size_t first_level) {
+  check_levels(levels);
+  Job & what = session_.what;
+  what.levels = static_cast<uint32_t>(levels.size());
+  what.first_level = static_cast<uint32_t>(first_level);
+  for (size_t i = 0; i < levels.size(); ++i) {
+    name_part(what.maps[i], levels[i]->header().id, levels[i]->memory());
+  }
+}
+
 NewtonResult WorkerGroup::align(
-  const VoxelMap & map, const float * xyz_m, size_t count, const Pose6 & guess,
+  const Levels & levels, const float * xyz_m, size_t count, const Pose6 & guess,
   const std::optional<Regularization> & regularization) {
   const std::lock_guard lock(busy_);
   Job & what = session_.what;
-  name_part(what.map, map.header().id, map.memory());
+  put_levels(levels, 0);
   put_scan(xyz_m, count);
   what.options = options_;
   what.guess = guess;
@@ -91,10 +101,11 @@ NewtonResult WorkerGroup::align(
 }
 
 Derivatives WorkerGroup::evaluate(
-  const VoxelMap & map, const float * xyz_m, size_t count, const Pose6 & pose) {
+  const Levels & levels, const float * xyz_m, size_t count, const Pose6 & pose) {
   const std::lock_guard lock(busy_);
   Job & what = session_.what;
-  name_part(what.map, map.header().id, map.memory());
+  check_levels(levels);
+  put_levels(levels, levels.size() - 1);
   put_scan(xyz_m, count);
   what.options = options_;
   what.options.max_iterations = 0;
@@ -103,7 +114,7 @@ Derivatives WorkerGroup::evaluate(
   return run_job().at;
 }
 
-void WorkerGroup::prepare(const VoxelMap & map) { evaluate(map, nullptr, 0, Pose6{}); }
+void WorkerGroup::prepare(const Levels & levels) { evaluate(levels, nullptr, 0, Pose6{}); }
 
 std::vector<int> WorkerGroup::pids() const {
   std::vector<int> out;

@@ -22,11 +22,13 @@ public:
     const MatchOptions & options, const std::string & program, const std::vector<int> & host_cpus);
 
   NewtonResult align(
-    const VoxelMap & map, const float * xyz_m, size_t count, const Pose6 & guess,
+    const Levels & levels, const float * xyz_m, size_t count, const Pose6 & guess,
     const std::optional<Regularization> & regularization);
-  Derivatives evaluate(const VoxelMap & map, const float * xyz_m, size_t count, const Pose6 & pose);
-  /// Lets the workers map it, so that the next alignment need not wait for that.
-  void prepare(const VoxelMap & map);
+  /// Derivatives at a pose, on the last level.
+  Derivatives evaluate(
+    const Levels & levels, const float * xyz_m, size_t count, const Pose6 & pose);
+  /// Lets the workers map them, so that the next alignment need not wait for that.
+  void prepare(const Levels & levels);
 
   std::vector<int> pids() const;
   /// Time each worker was busy in the last job.
@@ -36,6 +38,7 @@ public:
   uint64_t memory_bytes(size_t points) const noexcept;
 
 private:
+  void put_levels(const Levels & levels, size_t first_level);
   void put_scan(const float * xyz_m, size_t count);
   NewtonResult run_job();
   bool attempt();

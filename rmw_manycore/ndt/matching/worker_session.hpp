@@ -23,7 +23,9 @@ struct SharedPart {
 
 /// What the workers are to do; written by the coordinator while all of them sleep.
 struct Job {
-  SharedPart map;
+  SharedPart maps[max_levels];  ///< coarsest first; workers keep these attached and no others
+  uint32_t levels;              ///< 0: only to see whether all workers are there
+  uint32_t first_level;         ///< to align on
   SharedPart scan;
   uint64_t points;
   MatchOptions options;

@@ -5,11 +5,12 @@
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
+#include <nanobind/stl/vector.h>
 
 #include <optional>
 #include <utility>
 
-#include "ndt/map/voxel_map.hpp"
+#include "ndt/matching/matcher.hpp"
 #include "ndt/optimisation/newton.hpp"
 #include "python/ndt/arrays.hpp"
 
@@ -24,19 +25,19 @@ public:
   : scale_factor_(options.regularization_scale_factor), matcher_(options, more...) {}
 
   NewtonResult align(
-    const VoxelMap & map, const FloatPoints & points, const PoseMatrix & guess,
+    const Levels & maps, const FloatPoints & points, const PoseMatrix & guess,
     const std::optional<std::pair<double, double>> & position_m) {
     std::optional<Regularization> regularization;
     if (position_m) {
       regularization = Regularization{scale_factor_, position_m->first, position_m->second};
     }
     const nanobind::gil_scoped_release released;
-    return matcher_.align(map, points.data(), points.shape(0), pose_from(guess), regularization);
+    return matcher_.align(maps, points.data(), points.shape(0), pose_from(guess), regularization);
   }
 
-  Derivatives evaluate(const VoxelMap & map, const FloatPoints & points, const PoseMatrix & pose) {
+  Derivatives evaluate(const Levels & maps, const FloatPoints & points, const PoseMatrix & pose) {
     const nanobind::gil_scoped_release released;
-    return matcher_.evaluate(map, points.data(), points.shape(0), pose_from(pose));
+    return matcher_.evaluate(maps, points.data(), points.shape(0), pose_from(pose));
   }
 
   Matcher & matcher() { return matcher_; }
@@ -52,10 +53,10 @@ nanobind::class_<Bound<Matcher>> bind_matcher(nanobind::module_ & module, const 
   using Self = Bound<Matcher>;
   return nanobind::class_<Self>(module, name)
     .def(
-      "align", &Self::align, nanobind::arg("map"), nanobind::arg("points"), nanobind::arg("guess"),
+      "align", &Self::align, nanobind::arg("maps"), nanobind::arg("points"), nanobind::arg("guess"),
       nanobind::arg("regularization_position_m") = nanobind::none())
     .def(
-      "evaluate", &Self::evaluate, nanobind::arg("map"), nanobind::arg("points"),
+      "evaluate", &Self::evaluate, nanobind::arg("maps"), nanobind::arg("points"),
       nanobind::arg("pose"));
 }
 

@@ -17,9 +17,9 @@ namespace {
 
 using Group = Bound<WorkerGroup>;
 
-void prepare(Group & group, const VoxelMap & map) {
+void prepare(Group & group, const Levels & maps) {
   const nb::gil_scoped_release released;
-  group.matcher().prepare(map);
+  group.matcher().prepare(maps);
 }
 
 }  // namespace
@@ -31,7 +31,7 @@ void bind_matchers(nb::module_ & module) {
     .def(
       nb::init<const MatchOptions &, const std::string &, const std::vector<int> &>(),
       nb::arg("options"), nb::arg("program"), nb::arg("host_cpus"))
-    .def("prepare", &prepare, nb::arg("map"))
+    .def("prepare", &prepare, nb::arg("maps"))
     .def(
       "memory_bytes",
       [](Group & group, size_t points) { return group.matcher().memory_bytes(points); },

@@ -10,7 +10,7 @@ from dataclasses import replace
 
 from rmw_manycore_py import _ndt_bench
 from rmw_manycore_py.bench.ndt.apart import Align, apart, matchers_apart
-from rmw_manycore_py.bench.ndt.contenders import VOXEL_SIZE_M, map_for, on_cpu, usable
+from rmw_manycore_py.bench.ndt.contenders import VOXEL_SIZE_M, map_for, on_cpu, one_level, usable
 from rmw_manycore_py.bench.ndt.peers import PYTHON_PEERS, Peer, all_peers
 from rmw_manycore_py.bench.ndt.world import world
 from rmw_manycore_py.bench.question import Measure, Question, Run
@@ -42,7 +42,7 @@ def threads(count: int) -> str:
 
 def measure(run: Run) -> list[Result]:
     """Return milliseconds per alignment from 0.44 m beside the scan's place."""
-    options = MatcherOptions(voxel_size_m=VOXEL_SIZE_M)
+    options = one_level()
     voxel_map = map_for(options)
     cpus = usable()
     often = replace(run, rounds=TURNS * run.rounds)
@@ -112,7 +112,7 @@ def _imbalance(run: Run, options: MatcherOptions) -> list[Result]:
         for scan, pose in zip(world().scans, world().poses, strict=True):
             points = scan_points(scan)
             shares = [
-                profiler.time_shares_ns(voxel_map.native, points, pose, MOST_WORKERS)
+                profiler.time_shares_ns(voxel_map.finest, points, pose, MOST_WORKERS)
                 for _ in range(run.iterations(SHARE_REPEATS))
             ]
             # The fastest of each: what the share itself takes, undisturbed.

@@ -10,10 +10,23 @@ from contextlib import contextmanager
 from rmw_manycore_py import _ndt, _ndt_bench
 from rmw_manycore_py.ndt import MatcherOptions, VoxelMap
 from rmw_manycore_py.ndt.matching.kernel_options import match_options
+from rmw_manycore_py.words import Search, VoxelCovariance
 
 SIMD_VARIABLE = "MANYCORE_NDT_SIMD"
 SIMDS = ("avx512", "avx2", "portable")
 VOXEL_SIZE_M = 2.0
+
+
+def one_level(
+    search: Search = "direct7", covariance: VoxelCovariance = "autoware"
+) -> MatcherOptions:
+    """Return the options of the work that PCL, pclomp and Autoware do for a scan."""
+    return MatcherOptions(
+        voxel_size_m=VOXEL_SIZE_M,
+        coarse_levels=(),
+        search=search,
+        voxel_covariance=covariance,
+    )
 
 
 def usable() -> list[int]:

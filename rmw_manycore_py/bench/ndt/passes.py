@@ -10,6 +10,7 @@ from rmw_manycore_py.bench.ndt.contenders import (
     VOXEL_SIZE_M,
     map_for,
     on_cpu,
+    one_level,
     profiler_of_each_kind,
     usable,
 )
@@ -17,7 +18,7 @@ from rmw_manycore_py.bench.ndt.peers import Peer, all_peers
 from rmw_manycore_py.bench.ndt.world import world
 from rmw_manycore_py.bench.question import Measure, Question, Run
 from rmw_manycore_py.bench.summary import Goal, Result
-from rmw_manycore_py.ndt import MatcherOptions, SerialMatcher
+from rmw_manycore_py.ndt import SerialMatcher
 from rmw_manycore_py.words import Search, VoxelCovariance
 
 PASSES = 20
@@ -64,7 +65,7 @@ def _goals() -> tuple[Goal, ...]:
 def _measure_kind(
     run: Run, search: Search, covariance: VoxelCovariance, peer: Peer | None
 ) -> list[Result]:
-    options = MatcherOptions(voxel_size_m=VOXEL_SIZE_M, search=search, voxel_covariance=covariance)
+    options = one_level(search, covariance)
     voxel_map = map_for(options)
     contenders: dict[str, Measure] = {}
     for simd, profiler in profiler_of_each_kind(options).items():
@@ -73,7 +74,7 @@ def _measure_kind(
             found = []
             for scan, pose in zip(world().scans, world().poses, strict=True):
                 passes = run.iterations(PASSES)
-                times = profiler.time_passes_ns(voxel_map.native, scan, pose, passes)
+                times = profiler.time_passes_ns(voxel_map.finest, scan, pose, passes)
                 found += [time_ns / len(scan) for time_ns in times]
             return found
 
@@ -87,7 +88,7 @@ def _measure_kind(
 
 def _compare(peer: Peer, search: Search, covariance: VoxelCovariance) -> Result:
     """Return by how much the scores of the scans at their poses differ from the peer's."""
-    options = MatcherOptions(voxel_size_m=VOXEL_SIZE_M, search=search, voxel_covariance=covariance)
+    options = one_level(search, covariance)
     found = []
     with SerialMatcher(options) as matcher:
         matcher.set_map(map_for(options))

@@ -15,6 +15,8 @@ from numpy.typing import NDArray
 
 THINNING_M = 0.25
 REACH_M = 1.0
+# Of multi-scale ICP: thinning and reach, the reach of the first as far as guesses are off.
+SCALES_M = ((1.0, 5.0), (0.5, 2.0), (THINNING_M, REACH_M))
 ITERATIONS = 30
 
 Align = Callable[[NDArray[np.float64], NDArray[np.float64]], tuple[int, NDArray[np.float64]]]
@@ -79,6 +81,33 @@ def open3d_aligner(points: Any) -> Align:
             cloud_of(scan), target, REACH_M, guess, plane, criteria
         )
         return ITERATIONS, found.transformation
+
+    return align
+
+
+def open3d_multi_scale_aligner(points: Any) -> Align:
+    """Return point-to-plane ICP on coarser and coarser clouds, the coarsest first."""
+    import open3d
+
+    registration = open3d.pipelines.registration
+    plane = registration.TransformationEstimationPointToPlane()
+    criteria = registration.ICPConvergenceCriteria(max_iteration=ITERATIONS)
+
+    def cloud_of(array: Any, thinning_m: float) -> Any:
+        cloud = open3d.geometry.PointCloud(open3d.utility.Vector3dVector(array))
+        return cloud.voxel_down_sample(thinning_m)
+
+    targets = [cloud_of(points, thinning_m) for thinning_m, _ in SCALES_M]
+    for target in targets:
+        target.estimate_normals()
+
+    def align(scan: Any, guess: Any) -> tuple[int, Any]:
+        pose = guess
+        for target, (thinning_m, reach_m) in zip(targets, SCALES_M, strict=True):
+            source = cloud_of(scan, thinning_m)
+            found = registration.registration_icp(source, target, reach_m, pose, plane, criteria)
+            pose = found.transformation
+        return ITERATIONS, pose
 
     return align
 

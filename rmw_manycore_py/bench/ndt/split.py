@@ -7,7 +7,7 @@ import time
 from dataclasses import replace
 
 from rmw_manycore_py import _ndt_bench
-from rmw_manycore_py.bench.ndt.contenders import VOXEL_SIZE_M, map_for, on_cpu, usable
+from rmw_manycore_py.bench.ndt.contenders import VOXEL_SIZE_M, map_for, on_cpu, one_level, usable
 from rmw_manycore_py.bench.ndt.world import world
 from rmw_manycore_py.bench.question import Measure, Question, Run
 from rmw_manycore_py.bench.summary import Curve, Goal, Result
@@ -27,7 +27,7 @@ REPEATS = 5
 
 def measure(run: Run) -> list[Result]:
     """Return milliseconds per scan for each way to divide the cores, and the profile."""
-    options = MatcherOptions(voxel_size_m=VOXEL_SIZE_M, search="radius")
+    options = one_level("radius")
     return _measure_split(run, options) + _measure_profile(run, options)
 
 
@@ -49,7 +49,7 @@ def _measure_split(run: Run, options: MatcherOptions) -> list[Result]:
             for _ in range(run.iterations(REPEATS)):
                 for scan, guess in zip(world().scans, world().guesses, strict=True):
                     start = time.perf_counter()
-                    matcher.align(voxel_map.native, scan_points(scan), guess)
+                    matcher.align(voxel_map.levels, scan_points(scan), guess)
                     times.append((time.perf_counter() - start) * 1e3)
             return times
 
@@ -76,7 +76,7 @@ def _measure_profile(run: Run, options: MatcherOptions) -> list[Result]:
     with on_cpu(usable()[0]):
         for _ in range(run.iterations(REPEATS)):
             for scan, guess in zip(world().scans, world().guesses, strict=True):
-                times = profiler.profile(voxel_map.native, scan_points(scan), guess)
+                times = profiler.profile(voxel_map.finest, scan_points(scan), guess)
                 for name, share in _shares(times).items():
                     shares.setdefault(name, []).append(100 * share)
     return [

@@ -55,10 +55,15 @@ def _write_points(write: object, points: NDArray[np.float32]) -> None:
 
 
 @cache
-def world() -> World:
-    """Return the recorded drive, or a simulated one where there is no recording."""
+def world(scans: int = SCANS) -> World:
+    """Return the recorded drive, or a simulated one where there is no recording.
+
+    :param scans: how many of those that the map is not made of, at most.
+    """
     recording, name = _recording()
-    odd = np.linspace(1, (len(recording) - 1) // 2 * 2 - 1, SCANS).astype(int) // 2 * 2 + 1
+    last = (len(recording) - 1) // 2 * 2 - 1
+    odd = np.unique(np.linspace(1, last, scans).astype(int) // 2 * 2 + 1)
+    odd = odd[odd < len(recording)]
     poses = recording.poses[odd]
     guesses = poses.copy()
     guesses[:, :3, 3] += GUESS_OFFSET_M

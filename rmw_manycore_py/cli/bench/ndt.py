@@ -8,7 +8,7 @@ from typing import Any
 
 import click
 
-from rmw_manycore_py.bench.ndt import alignments, passes, split
+from rmw_manycore_py.bench.ndt import alignments, basin, passes, split
 from rmw_manycore_py.cli.bench.answer import answer
 from rmw_manycore_py.cli.bench.options import bench_options
 
@@ -21,5 +21,6 @@ from rmw_manycore_py.cli.bench.options import bench_options
 )
 @bench_options
 def command(pclomp: Path | None, **options: Any) -> None:
-    """Scan matching beside PCL, pclomp, small_gicp and Open3D, and over workers."""
-    answer([passes.question(pclomp), alignments.QUESTION, split.QUESTION], **options)
+    """Scan matching beside PCL, pclomp, small_gicp and Open3D, over workers, and from far off."""
+    questions = [passes.question(pclomp), alignments.QUESTION, split.QUESTION, basin.QUESTION]
+    answer(questions, **options)

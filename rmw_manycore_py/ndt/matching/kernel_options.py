@@ -7,10 +7,10 @@ from rmw_manycore_py import _ndt
 from rmw_manycore_py.ndt.matching.options import MatcherOptions
 
 
-def map_options(options: MatcherOptions) -> _ndt.MapOptions:
-    """Return what a map is built with."""
+def map_options(options: MatcherOptions, factor: float = 1.0) -> _ndt.MapOptions:
+    """Return what a map is built with whose voxels are `factor` times as large."""
     return _ndt.MapOptions(
-        voxel_size_m=options.voxel_size_m,
+        voxel_size_m=factor * options.voxel_size_m,
         search=options.search,
         covariance=options.voxel_covariance,
         min_points_per_voxel=options.min_points_per_voxel,

@@ -37,21 +37,21 @@ class NativeMatcher(Protocol):
 
     def align(
         self,
-        map: _ndt.VoxelMap,  # noqa: A002 - named as the binding names it
+        maps: list[_ndt.VoxelMap],
         points: ScanPoints,
         guess: Pose,
         regularization_position_m: Position | None = None,
     ) -> _ndt.NewtonResult:
-        """Align from a guess."""
+        """Align from a guess, to one map after the other."""
         ...
 
     def evaluate(
         self,
-        map: _ndt.VoxelMap,  # noqa: A002
+        maps: list[_ndt.VoxelMap],
         points: ScanPoints,
         pose: Pose,
     ) -> _ndt.Derivatives:
-        """Return score and derivatives at a pose."""
+        """Return score and derivatives at a pose, of the last map."""
         ...
 
 
@@ -86,7 +86,7 @@ class Matcher:
 
     def set_map(self, voxel_map: VoxelMap) -> None:
         """Match to this map from now on."""
-        for name in ("voxel_size_m", "search", "voxel_covariance"):
+        for name in ("voxel_size_m", "coarse_levels", "search", "voxel_covariance"):
             found = getattr(voxel_map.options, name)
             expected = getattr(self.options, name)
             if found != expected:
@@ -143,7 +143,7 @@ class Matcher:
     ) -> Alignment:
         level = levelled(scan, guess)
         with translate_native_errors(CANNOT_WORK):
-            result = self._native.align(voxel_map.native, level.points, level.guess, position)
+            result = self._native.align(voxel_map.levels, level.points, level.guess, position)
         points = result.at.scan_points
         if points == 0:
             return Alignment.refused(guess, "the scan has no finite point", self.options)
@@ -189,7 +189,7 @@ class Matcher:
         if why_no_pose(pose):
             return Score(0.0, 0.0, 0.0, 0)
         with translate_native_errors(CANNOT_WORK):
-            return Score.of(self._native.evaluate(voxel_map.native, scan, pose))
+            return Score.of(self._native.evaluate(voxel_map.levels, scan, pose))
 
     def _require_map(self) -> VoxelMap:
         if self._map is None:

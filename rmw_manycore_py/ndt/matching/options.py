@@ -12,13 +12,19 @@ from rmw_manycore_py.words import Search, StepRule, VoxelCovariance
 
 PoseCovariance = Literal["laplace", "fixed", "multi_ndt", "multi_ndt_score"]
 Offsets = tuple[tuple[float, float], ...]
+MAX_LEVELS = 4  # with the finest one; as the kernel has it
 
 
 @dataclass(frozen=True)
 class MatcherOptions:
     """Options of map and matcher; the defaults are Autoware's where it has them.
 
+    Two differ, for they find home from farther off (docs/design/ndt.md): ``coarse_levels`` and
+    ``voxel_covariance``.
+
     :param voxel_size_m: edge of a voxel; Autoware's and PCL's "resolution".
+    :param coarse_levels: maps that a scan is aligned to first, coarsest first, by how many times as
+        large their voxels are; empty for ``voxel_size_m`` alone, as PCL and Autoware have it.
     :param search: which voxels a point is held against. ``radius``: those whose mean is within one
         voxel size (PCL, Autoware); ``direct7``: its own and those across the six faces;
         ``direct1``: its own.
@@ -47,8 +53,9 @@ class MatcherOptions:
     """
 
     voxel_size_m: float = 2.0
+    coarse_levels: tuple[float, ...] = (2.0,)
     search: Search = "direct7"
-    voxel_covariance: VoxelCovariance = "autoware"
+    voxel_covariance: VoxelCovariance = "pcl"
     min_points_per_voxel: int = 6
     step_rule: StepRule = "trust_region"
     step_size: float = 0.1
@@ -80,6 +87,7 @@ class MatcherOptions:
             self._check_number("fixed_pose_variances", variance, 0, math.inf)
         self._check_number("temperature", self.temperature, 1e-6, 1e6)
         self._check_offsets()
+        self._check_levels()
 
     def _check_words(self) -> None:
         hints = get_type_hints(type(self))
@@ -88,6 +96,16 @@ class MatcherOptions:
             if words and isinstance(words[0], str) and getattr(self, field.name) not in words:
                 found = getattr(self, field.name)
                 raise _error(field.name, f"one of {', '.join(words)}", found)
+
+    def _check_levels(self) -> None:
+        finer = 1.0
+        for factor in reversed(self.coarse_levels):
+            self._check_number("coarse_levels", factor, 1.0, 100)
+            if factor <= finer:
+                raise _error("coarse_levels", "decreasing numbers above 1", self.coarse_levels)
+            finer = factor
+        if len(self.coarse_levels) >= MAX_LEVELS:
+            raise _error("coarse_levels", f"at most {MAX_LEVELS - 1}", self.coarse_levels)
 
     def _check_offsets(self) -> None:
         for offset in self.offsets_m:

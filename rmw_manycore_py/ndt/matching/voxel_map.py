@@ -16,12 +16,14 @@ from rmw_manycore_py.ndt.matching.options import MatcherOptions
 class VoxelMap:
     """The normal distributions of a map; immutable, in memory that workers share.
 
-    A map answers the questions of one search with one voxel size and kind of covariance: those of
-    the options it was built with.
+    A map answers the questions of one search with one series of voxel sizes and one kind of
+    covariance: those of the options it was built with.
+
+    :param levels: coarsest first.
     """
 
-    def __init__(self, native: _ndt.VoxelMap, options: MatcherOptions) -> None:
-        self.native = native
+    def __init__(self, levels: list[_ndt.VoxelMap], options: MatcherOptions) -> None:
+        self.levels = levels
         self.options = options
 
     @classmethod
@@ -32,15 +34,24 @@ class VoxelMap:
         """
         options = options or MatcherOptions()
         with translate_native_errors(exit_status=EXIT_BAD_INPUT):
-            native = _ndt.VoxelMap(map_points(points), map_options(options))
-        return cls(native, options)
+            xyz_m = map_points(points)
+            finest_first = [
+                _ndt.VoxelMap(xyz_m, map_options(options, factor))
+                for factor in (1.0, *reversed(options.coarse_levels))
+            ]
+        return cls(finest_first[::-1], options)
+
+    @property
+    def finest(self) -> _ndt.VoxelMap:
+        """Return the level that scores and results are of."""
+        return self.levels[-1]
 
     @property
     def voxels(self) -> int:
-        """Return the number of voxels with a normal distribution."""
-        return self.native.voxels
+        """Return the number of voxels with a normal distribution, of the finest level."""
+        return self.finest.voxels
 
     @property
     def size_bytes(self) -> int:
-        """Return the memory the map takes."""
-        return self.native.size_bytes
+        """Return the memory that all levels take."""
+        return sum(level.size_bytes for level in self.levels)

@@ -42,7 +42,7 @@ class WorkerMatcher(Matcher):
     def set_map(self, voxel_map: VoxelMap) -> None:
         """Match to this map once all workers have it at hand; if they fail the old one stays."""
         with translate_native_errors(CANNOT_WORK):
-            self._require_group().prepare(voxel_map.native)
+            self._require_group().prepare(voxel_map.levels)
         super().set_map(voxel_map)
 
     def shared_bytes(self, points: int = 0, next_map: VoxelMap | None = None) -> int:

@@ -24,6 +24,8 @@ from rmw_manycore_py.ndt.recordings.recording import Recording
 VOXEL_M = 0.25  # scans are thinned to it, which leaves some ten thousand points
 # From a guess beside the truth an alignment finds back over ten degrees and two metres.
 TURNS_RAD = np.radians(np.arange(-60.0, 61.0, 15.0))
+# What LEAST_LIKELIHOOD was found for; turned guesses take long.
+OPTIONS = MatcherOptions(coarse_levels=(), voxel_covariance="autoware", max_iterations=100)
 # Of right motions 2.8 to 3.4, of wrong ones 1.6 to 2.7 and rarely more (docs/design/ndt_node.md).
 LEAST_LIKELIHOOD = 2.75
 
@@ -39,7 +41,7 @@ def of_scans(drive: Recording, doubt: Callable[[str], None]) -> Iterator[Matrix 
 
     :param doubt: is told why, where the scans do not tell their motion (None).
     """
-    matcher = SerialMatcher(MatcherOptions(max_iterations=100))  # turned guesses take long
+    matcher = SerialMatcher(OPTIONS)
     motion: Matrix = np.eye(4)
     before = _thinned(drive, 0)
     for index in range(1, len(drive)):

@@ -34,7 +34,9 @@ def test_threads_find_what_one_thread_finds(
     cpu = min(os.sched_getaffinity(0))
     threads = _ndt_bench.ThreadMatcher(OPTIONS, [cpu] * derivatives, [cpu] * search)
     alone = _ndt.SerialMatcher(OPTIONS)
-    expected, found = (m.align(voxel_map, SCAN, GUESS) for m in (alone, threads))
+    coarse = _ndt.VoxelMap(map_points(POINTS), map_options(MatcherOptions(), 2.0))
+    levels = [coarse, voxel_map]
+    expected, found = (m.align(levels, SCAN, GUESS) for m in (alone, threads))
     assert (found.outcome, found.iterations) == (expected.outcome, expected.iterations)
     assert found.pose.tolist() == expected.pose.tolist()
     assert found.at.hessian.tolist() == expected.at.hessian.tolist()

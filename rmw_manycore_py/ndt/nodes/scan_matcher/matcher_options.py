@@ -23,12 +23,14 @@ POSE_COVARIANCES: dict[int, PoseCovariance] = {
 
 
 def matcher_options(parameters: MatcherParameters, own: OwnParameters) -> MatcherOptions:
-    """Return the options of matcher and voxel map."""
+    """Return the options of matcher and voxel map; a behaviour fills in what is not chosen."""
+    as_autoware = own.behaviour == "autoware"
     return MatcherOptions(
         voxel_size_m=parameters.resolution_m,
+        coarse_levels=() if as_autoware else own.coarse_levels,
         search=own.search,
-        voxel_covariance=own.voxel_covariance,
-        step_rule=own.step_rule,
+        voxel_covariance=own.voxel_covariance or ("autoware" if as_autoware else "pcl"),
+        step_rule=own.step_rule or ("clamped" if as_autoware else "trust_region"),
         step_size=parameters.step_size,
         trans_epsilon=parameters.trans_epsilon,
         max_iterations=parameters.max_iterations,

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Literal
 
 from rmw_manycore_py.ndt.nodes.support.declared import parameter
 from rmw_manycore_py.words import Behaviour, Search, StepRule, VoxelCovariance
@@ -91,16 +92,20 @@ class MatcherParameters:
     publish_loaded_map: bool = parameter("dynamic_map_loading.publish_loaded_map", False)
 
 
+Unchosen = Literal[""]  # what the behaviour has
+
+
 @dataclass(frozen=True)
 class OwnParameters:
     """What Autoware's node has no parameter for."""
 
     search: Search = parameter("ndt.search", "radius", choices=("radius", "direct7", "direct1"))
-    voxel_covariance: VoxelCovariance = parameter(
-        "ndt.covariance", "autoware", choices=("autoware", "pcl", "pclomp")
+    coarse_levels: tuple[float, ...] = parameter("ndt.coarse_levels", (2.0,))
+    voxel_covariance: VoxelCovariance | Unchosen = parameter(
+        "ndt.covariance", "", choices=("", "autoware", "pcl", "pclomp")
     )
-    step_rule: StepRule = parameter(
-        "ndt.step_rule", "trust_region", choices=("trust_region", "clamped", "more_thuente")
+    step_rule: StepRule | Unchosen = parameter(
+        "ndt.step_rule", "", choices=("", "trust_region", "clamped", "more_thuente")
     )
     outlier_ratio: float = parameter("ndt.outlier_ratio", 0.55, above=0.0, most=0.99)
     scan_limit: int = parameter("sensor_points.limit", 200_000, least=100, most=10_000_000)

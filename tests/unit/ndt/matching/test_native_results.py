@@ -30,11 +30,11 @@ def voxel_map() -> _ndt.VoxelMap:
 
 def test_a_result_holds_pose_outcome_and_derivatives(voxel_map: _ndt.VoxelMap) -> None:
     matcher = _ndt.SerialMatcher(match_options(OPTIONS))
-    result = matcher.align(voxel_map, SCAN, GUESS)
+    result = matcher.align([voxel_map], SCAN, GUESS)
     assert result.outcome == "converged"
     assert 0 < result.iterations < OPTIONS.max_iterations
     assert np.abs(result.pose[:3, 3] - TRUE[:3, 3]).max() < 0.1
-    at = matcher.evaluate(voxel_map, SCAN, result.pose)
+    at = matcher.evaluate([voxel_map], SCAN, result.pose)
     assert result.at.score == pytest.approx(at.score)
     assert (result.at.scan_points, at.scan_points) == (len(SCAN), len(SCAN))
     assert 0 < at.points <= at.pairs
@@ -43,14 +43,14 @@ def test_a_result_holds_pose_outcome_and_derivatives(voxel_map: _ndt.VoxelMap) -
 
 def test_arrays_outlive_the_result_that_they_are_of(voxel_map: _ndt.VoxelMap) -> None:
     matcher = _ndt.SerialMatcher(match_options(OPTIONS))
-    found = matcher.evaluate(voxel_map, SCAN, GUESS)
+    found = matcher.evaluate([voxel_map], SCAN, GUESS)
     gradient, hessian = found.gradient, found.hessian
     expected = gradient.tolist(), hessian.tolist()
     assert (gradient.shape, hessian.shape, hessian.dtype) == ((6,), (6, 6), np.float64)
     assert np.array_equal(hessian, hessian.T)
     del found
     gc.collect()
-    others = [matcher.evaluate(voxel_map, SCAN, TRUE) for _ in range(100)]  # where it was
+    others = [matcher.evaluate([voxel_map], SCAN, TRUE) for _ in range(100)]  # where it was
     assert (gradient.tolist(), hessian.tolist()) == expected
     assert others[0].gradient.tolist() != expected[0]
     with pytest.raises(ValueError, match="read-only"):
@@ -59,7 +59,7 @@ def test_arrays_outlive_the_result_that_they_are_of(voxel_map: _ndt.VoxelMap) ->
 
 def test_a_scan_of_no_points_has_no_overlap(voxel_map: _ndt.VoxelMap) -> None:
     matcher = _ndt.SerialMatcher(match_options(OPTIONS))
-    result = matcher.align(voxel_map, SCAN[:0], GUESS)
+    result = matcher.align([voxel_map], SCAN[:0], GUESS)
     assert (result.outcome, result.at.scan_points, result.at.points) == ("no_overlap", 0, 0)
 
 

@@ -99,7 +99,7 @@ def central(scan: Points, at: tuple[float, ...], size_m: float) -> Points:
 
 @pytest.mark.parametrize("angles", [(0.01, -0.02, 0.3), (0.4, -0.7, 2.5), (-1.2, 0.9, -0.4)])
 def test_gradient_and_hessian_are_those_of_the_score(angles: tuple[float, float, float]) -> None:
-    options = replace(MatcherOptions(), search="direct1")
+    options = replace(MatcherOptions(), search="direct1", voxel_covariance="autoware")
     voxel_map = VoxelMap.from_points(WORLD, options)
     native = _ndt.SerialMatcher(match_options(options))
     true = (*TRUE[:3], *angles)
@@ -107,7 +107,7 @@ def test_gradient_and_hessian_are_those_of_the_score(angles: tuple[float, float,
     scan = scan_points(central(scan_at(WORLD, pose(*true)), at, options.voxel_size_m))
 
     def evaluate(changed: Any) -> _ndt.Derivatives:
-        return native.evaluate(voxel_map.native, scan, pose(*changed))
+        return native.evaluate(voxel_map.levels, scan, pose(*changed))
 
     here = evaluate(at)
     step = 1e-3
@@ -124,7 +124,7 @@ def test_gradient_and_hessian_are_those_of_the_score(angles: tuple[float, float,
 
 
 def test_regularization_pulls_along_the_vehicle_only() -> None:
-    options = MatcherOptions(regularization_scale_factor=0.05)
+    options = MatcherOptions(voxel_covariance="autoware", regularization_scale_factor=0.05)
     true = pose(*TRUE)
     beside = pose(41.0, 3.0, 1.8, 0, 0, 0.3)
     with SerialMatcher(options) as matcher:

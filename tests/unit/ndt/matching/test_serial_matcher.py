@@ -44,6 +44,24 @@ def test_a_scan_finds_its_place(
     assert angle_deg < 0.3
 
 
+def test_a_coarse_level_leads_home_from_far_off() -> None:
+    """From 4 m and 14 degrees, where one level ends elsewhere; from nearby both end alike."""
+    far = TRUE @ pose(4, 0, 0, 0, 0, 0.25)
+    alone, cascade = matcher(coarse_levels=()), matcher()
+    assert errors(alone.align(SCAN, far).T_map_sensor, TRUE)[0] > 0.5
+    found = cascade.align(SCAN, far)
+    assert errors(found.T_map_sensor, TRUE)[0] < 0.06
+    nearby = errors(cascade.align(SCAN, GUESS).T_map_sensor, alone.align(SCAN, GUESS).T_map_sensor)
+    assert nearby[0] < 0.005
+    assert cascade.score(SCAN, TRUE) == alone.score(SCAN, TRUE)
+
+
+def test_a_map_of_other_levels_is_refused() -> None:
+    one_level = MatcherOptions(coarse_levels=())
+    with pytest.raises(ManycoreError, match=r"coarse_levels=\(2.0,\), found \(\)"):
+        SerialMatcher().set_map(VoxelMap.from_points(WORLD, one_level))
+
+
 @pytest.mark.parametrize(
     "angles",
     [(np.pi, 0, 0), (0, np.pi, 0.4), (0, np.pi / 2, 0), (0.3, -np.pi / 2, 0), (1.5, 1.4, -2)],
@@ -149,6 +167,9 @@ def test_a_map_of_other_options_is_refused() -> None:
         ("max_iterations", 0),
         ("step_size", "large"),
         ("trans_epsilon", 5.0),
+        ("coarse_levels", (1.0,)),
+        ("coarse_levels", (2.0, 3.0)),
+        ("coarse_levels", (5.0, 4.0, 3.0, 2.0)),
     ],
 )
 def test_options_out_of_range_are_refused(name: str, value: Any) -> None:
