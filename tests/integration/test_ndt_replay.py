@@ -191,7 +191,7 @@ def test_an_inward_bridge_that_stops_for_a_while(start, platform, tmp_path):
         errors_m = [row["error_m"] for row in csv.DictReader(file)]
     assert len(errors_m) == 50
     assert all(float(error) < 0.5 for error in errors_m if error), errors_m
-    assert errors_m[-1], errors_m
+    assert any(errors_m[-5:]), errors_m
 
 
 @needs_data

@@ -92,6 +92,7 @@ class NdtScanMatcher(Node):
             ScanInbox(self._need_not_wait, self._own.guess_wait_s),
             self._on_turn_of_scan,
             self._on_skipped,
+            lambda: not self.context.ok(),
             rclpy.try_shutdown,
         )
         self._listen()

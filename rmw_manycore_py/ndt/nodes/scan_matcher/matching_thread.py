@@ -21,6 +21,8 @@ class MatchingThread:
     :param inbox: where scans wait.
     :param match: called with each scan that is taken.
     :param skip: called with each scan that a newer one has overtaken.
+    :param is_over: tells whether the node's context was shut down: nothing can be published then,
+        and what raises for that reason ends the thread quietly.
     :param failed: called when one of them raised; close() raises it again.
     """
 
@@ -29,11 +31,13 @@ class MatchingThread:
         inbox: ScanInbox,
         match: Callable[[Any], None],
         skip: Callable[[Any], None],
+        is_over: Callable[[], bool],
         failed: Callable[[], None],
     ) -> None:
         self._inbox = inbox
         self._match = match
         self._skip = skip
+        self._is_over = is_over
         self._failed = failed
         self._changed = threading.Condition()
         self._jobs: deque[Job] = deque()
@@ -90,8 +94,9 @@ class MatchingThread:
                     return
                 work()
         except BaseException as error:
-            self._failure = error
-            self._failed()
+            if not self._is_over():
+                self._failure = error
+                self._failed()
 
     def _next(self) -> tuple[list[WaitingScan], Job | None]:
         """Sleep until there is work; return scans skipped since, and the work, None at the end."""

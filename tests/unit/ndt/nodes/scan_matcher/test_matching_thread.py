@@ -87,9 +87,15 @@ class Node:
         self.skipped: list[str] = []
         self.may_match = threading.Semaphore(0)
         self.is_matching = threading.Semaphore(0)
+        self.is_over = False
         self.failed = threading.Event()
-        inbox = ScanInbox(self.known, LONG_S)
-        self.thread = MatchingThread(inbox, self.match, self.skipped.append, self.failed.set)
+        self.thread = MatchingThread(
+            ScanInbox(self.known, LONG_S),
+            self.match,
+            self.skipped.append,
+            lambda: self.is_over,
+            self.failed.set,
+        )
 
     def match(self, name: str) -> None:
         self.is_matching.release()
@@ -142,6 +148,16 @@ def test_jobs_run_between_scans_on_the_thread(node):
     found = []
     node.thread.run(lambda: found.append(threading.current_thread().name))
     assert found == ["matching"]
+
+
+def test_what_raises_after_the_end_of_the_context_is_no_failure(node):
+    """Ctrl-C shuts the context down while a scan is matched: its pose cannot be published."""
+    node.is_over = True
+    node.put("broken", 1.0)
+    node.may_match.release()
+    assert node.is_matching.acquire(timeout=PATIENCE_S)
+    node.thread.close()
+    assert not node.failed.is_set()
 
 
 def test_what_ends_the_thread_is_told_and_raised(node):
