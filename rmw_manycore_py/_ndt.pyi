@@ -19,7 +19,9 @@ class MapOptions:
         search: Search,
         covariance: VoxelCovariance,
         min_points_per_voxel: int,
-    ) -> None: ...
+        widening_m: float,
+    ) -> None:
+        """Take them; the square of `widening_m` is added to the variances of every voxel."""
 
 class MatchOptions:
     """What scans are matched with; :class:`MatcherOptions` describes each and has the defaults."""

@@ -33,6 +33,7 @@ struct MapOptions {
   Search search;
   VoxelCovariance covariance;
   uint32_t min_points_per_voxel;
+  double widening_m;  ///< its square is added to the variances of every voxel
 };
 
 struct MatchOptions {

@@ -63,7 +63,7 @@ std::vector<PlacedVoxel> voxels_of(
     if (scatter.count < options.min_points_per_voxel) {
       continue;
     }
-    if (const auto inverse = inverse_covariance(scatter, options.covariance)) {
+    if (const auto inverse = inverse_covariance(scatter, options)) {
       const Cell cell = grid.cell_of(points[order[begin].second].data());
       voxels.push_back({cell, line_of(grid, scatter, *inverse)});
     }

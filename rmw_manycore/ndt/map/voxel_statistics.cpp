@@ -8,7 +8,8 @@ namespace {
 
 constexpr double least_eigenvalue_ratio = 0.01;
 
-Matrix3 covariance(const Scatter & scatter, VoxelCovariance kind) {
+Matrix3 covariance(const Scatter & scatter, const MapOptions & options) {
+  const VoxelCovariance kind = options.covariance;
   const double n = scatter.count;
   const double start = kind == VoxelCovariance::pcl ? 0.0 : 1.0;
   const double factor = kind == VoxelCovariance::pclomp ? (n - 1) / (n * n) : 1 / (n - 1);
@@ -18,6 +19,7 @@ Matrix3 covariance(const Scatter & scatter, VoxelCovariance kind) {
     for (double & element : out[i]) {
       element *= factor;
     }
+    out[i][i] += options.widening_m * options.widening_m;
   }
   return out;
 }
@@ -38,8 +40,8 @@ void Scatter::add(const Vector3 & point) {
   }
 }
 
-std::optional<Matrix3> inverse_covariance(const Scatter & scatter, VoxelCovariance kind) {
-  const Eigen<3> eigen = symmetric_eigen(covariance(scatter, kind));
+std::optional<Matrix3> inverse_covariance(const Scatter & scatter, const MapOptions & options) {
+  const Eigen<3> eigen = symmetric_eigen(covariance(scatter, options));
   const double largest = *std::max_element(eigen.values.begin(), eigen.values.end());
   if (!(largest > 0) || !std::isfinite(1 / (least_eigenvalue_ratio * largest))) {
     return std::nullopt;

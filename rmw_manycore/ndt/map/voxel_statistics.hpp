@@ -19,6 +19,6 @@ struct Scatter {
 
 /// The inverse covariance of a voxel; eigenvalues below 1/100 of the largest are raised to that
 /// (eq. 6.11). Empty when the covariance is not one, as with all points in one place.
-std::optional<Matrix3> inverse_covariance(const Scatter & scatter, VoxelCovariance kind);
+std::optional<Matrix3> inverse_covariance(const Scatter & scatter, const MapOptions & options);
 
 }  // namespace manycore::ndt

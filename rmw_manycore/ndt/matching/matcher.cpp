@@ -41,10 +41,12 @@ NewtonResult descend(
 }
 
 void check_levels(const Levels & levels) {
-  if (levels.empty() || levels.size() > max_levels) {
+  const bool has_null = std::find(levels.begin(), levels.end(), nullptr) != levels.end();
+  if (levels.empty() || levels.size() > max_levels || has_null) {
     throw Error(
       ErrorCode::invalid_argument, "maps: expected 1 to " + std::to_string(max_levels) +
-                                     " levels, found " + std::to_string(levels.size()));
+                                     " levels, none of them null, found " +
+                                     std::to_string(levels.size()));
   }
 }
 

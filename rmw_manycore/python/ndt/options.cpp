@@ -16,10 +16,10 @@ using manycore::python::from_word;
 
 void init_map_options(
   MapOptions * options, double voxel_size_m, const std::string & search,
-  const std::string & covariance, uint32_t min_points_per_voxel) {
+  const std::string & covariance, uint32_t min_points_per_voxel, double widening_m) {
   new (options) MapOptions{
     voxel_size_m, from_word<Search>(search), from_word<VoxelCovariance>(covariance),
-    min_points_per_voxel};
+    min_points_per_voxel, widening_m};
 }
 
 void init_match_options(
@@ -36,7 +36,7 @@ void bind_options(nb::module_ & module) {
   nb::class_<MapOptions>(module, "MapOptions")
     .def(
       "__init__", &init_map_options, nb::kw_only(), nb::arg("voxel_size_m"), nb::arg("search"),
-      nb::arg("covariance"), nb::arg("min_points_per_voxel"));
+      nb::arg("covariance"), nb::arg("min_points_per_voxel"), nb::arg("widening_m"));
   nb::class_<MatchOptions>(module, "MatchOptions")
     .def(
       "__init__", &init_match_options, nb::kw_only(), nb::arg("step_rule"),

@@ -9,7 +9,7 @@ from rmw_manycore_py import _ndt
 from rmw_manycore_py.errors import EXIT_BAD_INPUT
 from rmw_manycore_py.native_errors import translate_native_errors
 from rmw_manycore_py.ndt.geometry.arrays import map_points
-from rmw_manycore_py.ndt.matching.kernel_options import map_options
+from rmw_manycore_py.ndt.matching.kernel_options import coarse_options, map_options
 from rmw_manycore_py.ndt.matching.options import MatcherOptions
 
 
@@ -35,11 +35,12 @@ class VoxelMap:
         options = options or MatcherOptions()
         with translate_native_errors(exit_status=EXIT_BAD_INPUT):
             xyz_m = map_points(points)
-            finest_first = [
-                _ndt.VoxelMap(xyz_m, map_options(options, factor))
-                for factor in (1.0, *reversed(options.coarse_levels))
+            finest = _ndt.VoxelMap(xyz_m, map_options(options))
+            coarse = [
+                _ndt.VoxelMap(xyz_m, coarse_options(options, factor))
+                for factor in options.coarse_levels
             ]
-        return cls(finest_first[::-1], options)
+        return cls([*coarse, finest], options)
 
     @property
     def finest(self) -> _ndt.VoxelMap:

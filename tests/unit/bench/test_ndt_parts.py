@@ -11,7 +11,7 @@ import pytest
 from rmw_manycore_py import _ndt, _ndt_bench
 from rmw_manycore_py.ndt import MatcherOptions
 from rmw_manycore_py.ndt.geometry.arrays import map_points, scan_points
-from rmw_manycore_py.ndt.matching.kernel_options import map_options, match_options
+from rmw_manycore_py.ndt.matching.kernel_options import coarse_options, map_options, match_options
 
 pytestmark = pytest.mark.unit
 
@@ -34,7 +34,7 @@ def test_threads_find_what_one_thread_finds(
     cpu = min(os.sched_getaffinity(0))
     threads = _ndt_bench.ThreadMatcher(OPTIONS, [cpu] * derivatives, [cpu] * search)
     alone = _ndt.SerialMatcher(OPTIONS)
-    coarse = _ndt.VoxelMap(map_points(POINTS), map_options(MatcherOptions(), 2.0))
+    coarse = _ndt.VoxelMap(map_points(POINTS), coarse_options(MatcherOptions(), 2.0))
     levels = [coarse, voxel_map]
     expected, found = (m.align(levels, SCAN, GUESS) for m in (alone, threads))
     assert (found.outcome, found.iterations) == (expected.outcome, expected.iterations)

@@ -73,4 +73,5 @@ def test_the_kernel_has_no_defaults_of_its_own() -> None:
             search="kdtree",  # type: ignore[arg-type]
             covariance="pcl",
             min_points_per_voxel=6,
+            widening_m=0.0,
         )

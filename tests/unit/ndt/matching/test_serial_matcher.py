@@ -41,7 +41,7 @@ def test_a_scan_finds_its_place(
     distance_m, angle_deg = errors(found.T_map_sensor, TRUE)
     # With its own cell alone a point's score jumps at the borders, and the best pose is less exact.
     assert distance_m < (0.08 if search == "direct1" else 0.06)
-    assert angle_deg < 0.3
+    assert angle_deg < (0.5 if search == "direct1" else 0.3)
 
 
 def test_a_coarse_level_leads_home_from_far_off() -> None:
