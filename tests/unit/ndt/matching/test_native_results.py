@@ -12,7 +12,7 @@ from ndt_world import pose, scan_at, street
 from rmw_manycore_py import _ndt
 from rmw_manycore_py.ndt import MatcherOptions
 from rmw_manycore_py.ndt.geometry.arrays import map_points, scan_points
-from rmw_manycore_py.ndt.matching.kernel_options import map_options, match_options
+from rmw_manycore_py.ndt.matching.kernel_options import coarse_options, map_options, match_options
 
 pytestmark = pytest.mark.unit
 
@@ -75,3 +75,19 @@ def test_the_kernel_has_no_defaults_of_its_own() -> None:
             min_points_per_voxel=6,
             widening_m=0.0,
         )
+
+
+def test_a_coarse_level_pulls_from_farther_off_than_its_points_are_thick() -> None:
+    """1.2 m above a plane, the finest level does not feel it."""
+    options = MatcherOptions(search="direct7")
+    ground = np.random.default_rng(1).uniform((-20, -20, -0.02), (20, 20, 0.02), (20_000, 3))
+    scan = scan_points(ground[::10])
+    above = pose(0, 0, 1.2, 0, 0, 0)
+    matcher = _ndt.SerialMatcher(match_options(options))
+
+    def pull(chosen: _ndt.MapOptions) -> float:
+        level = _ndt.VoxelMap(map_points(ground), chosen)
+        return float(matcher.evaluate([level], scan, above).gradient[2]) / len(scan)
+
+    assert pull(coarse_options(options, 2.0)) < -0.1
+    assert abs(pull(map_options(options))) < 1e-3
