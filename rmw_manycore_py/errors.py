@@ -51,12 +51,20 @@ class Problem:
         return f"{place}:{key} expected {self.expected}, found {self.found}"
 
 
-class MapfileError(ManycoreError):
-    """Everything wrong with a mapfile or a file it refers to, in the order of the lines."""
+class FileError(ManycoreError):
+    """Everything wrong with files of the user's, in the order of the lines."""
 
     def __init__(self, *problems: Problem) -> None:
         self.problems = tuple(sorted(problems, key=lambda p: (str(p.file), p.line)))
         super().__init__("\n".join(str(problem) for problem in self.problems), EXIT_BAD_INPUT)
+
+
+class MapfileError(FileError):
+    """Everything wrong with a mapfile or a file it refers to."""
+
+
+class DefinitionError(FileError):
+    """Everything wrong with definitions of messages, services and actions."""
 
 
 def what_is_wrong(error: Exception) -> str:

@@ -10,12 +10,25 @@ from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
 
+from rmw_manycore_interfaces import AMENT_PREFIX_PATH, own_prefix
+
 
 def prefixes() -> list[Path]:
-    """Return the install prefixes in order: those of the environment, then the own one."""
-    environment = os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep)
-    named = [*filter(None, environment), sys.prefix]
-    return [Path(prefix) for prefix in dict.fromkeys(named)]
+    """Return the install prefixes in order; the last is that of what the user has built."""
+    return [*_installed_prefixes(), Path(own_prefix())]
+
+
+def _installed_prefixes() -> list[Path]:
+    """Return the prefixes of the environment, then that of this python."""
+    environment = os.environ.get(AMENT_PREFIX_PATH, "").split(os.pathsep)
+    named = dict.fromkeys([*filter(None, environment), sys.prefix])
+    return [Path(prefix) for prefix in named if prefix != own_prefix()]
+
+
+def is_installed(package: str) -> bool:
+    """Tell whether a package with types is installed elsewhere than among those built here."""
+    entry = Path("share/ament_index/resource_index/rosidl_interfaces", package)
+    return any((prefix / entry).is_file() for prefix in _installed_prefixes())
 
 
 def find_resource(kind: str, name: str) -> tuple[Path, Path] | None:

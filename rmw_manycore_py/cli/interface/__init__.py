@@ -9,10 +9,10 @@ from rmw_manycore_py.cli.common.group import LazyGroup
 
 VERBS = {
     verb: f"rmw_manycore_py.cli.interface.{verb}:command"
-    for verb in ("list", "package", "packages", "proto", "show")
+    for verb in ("build", "list", "package", "packages", "proto", "remove", "show")
 }
 
 
 @click.group("interface", cls=LazyGroup, commands_at=VERBS)
 def command() -> None:
-    """List the types of messages, services and actions, and show them."""
+    """List and show the types of messages, services and actions, and build packages of them."""

@@ -39,8 +39,8 @@ _MALLOC_THRESHOLD = str(1 << 30)
 
 def resolve(mapfile: Mapfile) -> Placement:
     """Find everything a mapfile refers to; what does not exist is an error."""
-    launch = _launch_file(mapfile)
-    starts = _starts(mapfile, launch)
+    launch = read_launch(mapfile)
+    starts = node_starts(mapfile, launch)
     cores = _cores(mapfile)
     workers = worker_cores(mapfile, cores.values())
     of_workers = [core for one in workers.values() for core in one]
@@ -78,7 +78,8 @@ def platform_name(mapfile: Mapfile) -> str:
     return mapfile.sections.platform.name or default_platform()
 
 
-def _launch_file(mapfile: Mapfile) -> LaunchFile | None:
+def read_launch(mapfile: Mapfile) -> LaunchFile | None:
+    """Read the launch file that a mapfile names."""
     sections = mapfile.sections
     if sections.launch_path is None:
         return None
@@ -96,7 +97,8 @@ def _launch_file(mapfile: Mapfile) -> LaunchFile | None:
     return launch
 
 
-def _starts(mapfile: Mapfile, launch: LaunchFile | None) -> dict[str, NodeStart]:
+def node_starts(mapfile: Mapfile, launch: LaunchFile | None) -> dict[str, NodeStart]:
+    """Return how each node is started; what does not exist is an error."""
     starts: dict[str, NodeStart] = {}
     owners: dict[str, str] = {}
     problems: list[Problem] = []

@@ -1,0 +1,18 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""`manycore interface remove`."""
+
+from __future__ import annotations
+
+import click
+
+from rmw_manycore_py.cli.common.options import examples
+from rmw_manycore_py.interfaces.build import remove
+
+
+@click.command("remove", epilog=examples("manycore interface remove nav2_msgs"))
+@click.argument("packages", metavar="PACKAGE...", nargs=-1, required=True)
+def command(packages: tuple[str, ...]) -> None:
+    """Remove packages that `manycore interface build` has built."""
+    remove(packages, lambda: click.echo("waiting for the end of a build", err=True))
+    for package in packages:
+        click.echo(f"{package}: removed")

@@ -1,0 +1,141 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""From generated sources to the libraries and the Python module of a package."""
+
+from __future__ import annotations
+
+import sysconfig
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from rmw_manycore_py.interfaces.generator import PYTHON, TYPE_SUPPORTS
+from rmw_manycore_py.interfaces.jobs import Job
+from rmw_manycore_py.interfaces.toolchain import Toolchain
+
+# Optimising more takes half as long again and gains nothing that a message would notice.
+_FLAGS = ("-O1", "-fPIC", "-w", "-fvisibility=default")
+# Sources are compiled together up to this size: the headers cost more than the sources, but one
+# unit must not keep one CPU busy after the others are done.
+_UNIT_BYTES = 400_000
+# Each has constants of the same names.
+_ALONE = "__description.c"
+# Libraries in the order in which they need each other, by the generator of their sources.
+_C_LIBRARIES = ("rosidl_generator_c", *TYPE_SUPPORTS, "rosidl_typesupport_c")
+LIBRARIES = (*_C_LIBRARIES, PYTHON)
+_MODULE = "module"
+
+
+@dataclass(frozen=True)
+class Compilation:
+    """A package to compile: generated sources below `generated`, results below `prefix`."""
+
+    package: str
+    generated: Path
+    prefix: Path
+    toolchain: Toolchain
+    dependencies: dict[str, Path]  # install prefixes of other packages
+
+    def library(self, kind: str) -> Path:
+        """Return a library of the package: rosidl_typesupport_c and the like."""
+        return self.prefix / "lib" / f"lib{self.package}__{kind}.so"
+
+    @property
+    def module(self) -> Path:
+        """Return the native module of the Python package."""
+        suffix = sysconfig.get_config_var("EXT_SUFFIX")
+        return self.prefix / "python" / self.package / f"{self.package}_s__rosidl_typesupport_c{suffix}"
+
+
+def compile_jobs(work: Compilation) -> list[Job]:
+    """Return the commands that compile everything, the longest first."""
+    jobs = []
+    for generator in LIBRARIES:
+        root = work.generated / generator / work.package
+        for number, sources in enumerate(_units(root)):
+            objects = _objects(work, _MODULE if sources[0].parent == root else generator)
+            objects.mkdir(parents=True, exist_ok=True)
+            unit = objects / f"{number}{sources[0].suffix}"
+            unit.write_text("".join(f'#include "{source}"\n' for source in sources))
+            size = sum(source.stat().st_size for source in sources)
+            jobs.append((size, _compile_job(work, unit, sources)))
+    return [job for _, job in sorted(jobs, key=lambda pair: -pair[0])]
+
+
+def link_jobs(work: Compilation) -> Iterator[list[Job]]:
+    """Yield the commands that link the libraries; each list needs those before it."""
+    (work.prefix / "lib").mkdir(parents=True, exist_ok=True)
+    generator_c, *type_supports, dispatch, python = LIBRARIES
+    yield [_link_job(work, generator_c, [])]
+    yield [_link_job(work, kind, [generator_c]) for kind in type_supports]
+    yield [_link_job(work, dispatch, [generator_c, *type_supports])]
+    yield [_link_job(work, python, [generator_c, dispatch])]
+    yield [_module_job(work)]
+
+
+def _units(directory: Path) -> Iterator[list[Path]]:
+    """Yield sources to compile together: of one language, and of one of msg, srv and action."""
+    unit: list[Path] = []
+    size = 0
+    sources = [file for file in directory.rglob("*.c*") if file.suffix in (".c", ".cpp")]
+    for file in sorted(sources):
+        if file.name.endswith(_ALONE):
+            yield [file]
+            continue
+        size += file.stat().st_size
+        if unit and (unit[-1].parent != file.parent or size > _UNIT_BYTES):
+            yield unit
+            unit, size = [], file.stat().st_size
+        unit.append(file)
+    if unit:
+        yield unit
+
+
+def _compile_job(work: Compilation, unit: Path, sources: Sequence[Path]) -> Job:
+    tools = work.toolchain
+    compiler = (*tools.cpp, "-std=c++17") if unit.suffix == ".cpp" else (*tools.c, "-std=gnu11")
+    own = [work.generated / generator for generator in _C_LIBRARIES]
+    others = [prefix / "include" / name for name, prefix in work.dependencies.items()]
+    includes = [*own, *others, *tools.includes, tools.python_headers, tools.numpy_headers]
+    flags = [word for path in includes for word in ("-isystem", str(path))]
+    names = ", ".join(source.name for source in sources[:3])
+    command = (*compiler, *_FLAGS, *flags, "-c", str(unit), "-o", f"{unit}.o")
+    return Job(f"compiling {names} of {work.package}", command)
+
+
+def _link_job(work: Compilation, kind: str, own: Iterable[str]) -> Job:
+    library = work.library(kind)
+    others = [prefix / "lib" / f"lib{n}__{kind}.so" for n, prefix in work.dependencies.items()]
+    libraries = [*(work.library(name) for name in own), *filter(Path.exists, others)]
+    # The loader looks beside the library, then among the packages built by the user, once those
+    # of the wheels and of LD_LIBRARY_PATH are found wanting.
+    flags = [f"-Wl,-soname,{library.name}", "-Wl,-rpath,$ORIGIN:$ORIGIN/../../../current/lib"]
+    return _link(work, library, [_objects(work, kind)], libraries, flags)
+
+
+def _module_job(work: Compilation) -> Job:
+    """Link the Python module, which brings along what others look up by name.
+
+    rosidl_typesupport_c opens the libraries of the type supports by their bare names. The loader
+    gives it those that the module has already loaded, so no search path has to lead to them.
+    """
+    libraries = [work.library(kind) for kind in LIBRARIES]
+    flags = ["-Wl,--no-as-needed", "-Wl,-rpath,$ORIGIN/../../lib"]
+    return _link(work, work.module, [_objects(work, _MODULE)], libraries, flags)
+
+
+def _link(
+    work: Compilation,
+    target: Path,
+    objects: Iterable[Path],
+    libraries: Iterable[Path],
+    flags: Iterable[str],
+) -> Job:
+    files = [str(file) for directory in objects for file in sorted(directory.glob("*.o"))]
+    used = [str(library) for library in (*libraries, *work.toolchain.libraries)]
+    options = ("-shared", "-Wl,--enable-new-dtags", "-Wl,--allow-shlib-undefined", *flags)
+    command = (*work.toolchain.cpp, *options, "-o", str(target), *files, *used)
+    return Job(f"linking {target.name}", command)
+
+
+def _objects(work: Compilation, generator: str) -> Path:
+    return work.generated / "objects" / generator

@@ -1,0 +1,150 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""The directory that built packages are kept in, and how a package gets into it at once or not.
+
+    lock                    held by the one build or removal at a time
+    building/               what builds work in; leftovers of killed ones
+    store/PACKAGE-DIGEST/   complete packages: python/, lib/, include/, share/
+    views/N/                links into the store: an install prefix
+    current -> views/N      the one that programs see; replaced by rename(2)
+"""
+
+from __future__ import annotations
+
+import fcntl
+import json
+import os
+import shutil
+import tempfile
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+from rmw_manycore_interfaces import DIRECTORY_VARIABLE, MANIFEST, own_directory
+from rmw_manycore_py.errors import ManycoreError
+
+_INDEX = "share/ament_index/resource_index"
+
+
+@dataclass(frozen=True)
+class Manifest:
+    """What is known of a built package."""
+
+    package: str
+    digest: str  # of everything that decides what is built
+    types: list[str]
+    available: int  # definitions of the whole package
+    dependencies: dict[str, str]  # hashes of the types of other packages, by name
+    source: str
+    built: str  # local time, ISO 8601
+    seconds: float
+
+    @property
+    def is_whole(self) -> bool:
+        """Tell whether nothing of the package was left out."""
+        return len(self.types) == self.available
+
+
+class Store:
+    """The packages built for this Python; whoever changes them holds `locked()`."""
+
+    def __init__(self) -> None:
+        self.directory = Path(own_directory())
+
+    @contextmanager
+    def locked(self, on_wait: Callable[[], None]) -> Iterator[None]:
+        """Be the only build; call `on_wait` if another one is at it, and wait for its end."""
+        with self._writing():
+            self.directory.mkdir(parents=True, exist_ok=True)
+            lock = (self.directory / "lock").open("w")
+        with lock:
+            try:
+                fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            except BlockingIOError:
+                on_wait()
+                fcntl.flock(lock, fcntl.LOCK_EX)
+            with self._writing():
+                self._tidy()
+                yield
+
+    def packages(self) -> dict[str, Manifest]:
+        """Return the packages that programs see, by name."""
+        files = sorted(self.directory.glob(f"current/share/*/{MANIFEST}"))
+        manifests = (Manifest(**json.loads(file.read_text())) for file in files)
+        return {manifest.package: manifest for manifest in manifests}
+
+    def entry(self, package: str, digest: str) -> Path:
+        """Return where a complete package is, or will be: an install prefix of its own."""
+        return self.directory / "store" / f"{package}-{digest}"
+
+    def has(self, package: str, digest: str) -> bool:
+        """Tell whether a package was built completely, whether programs see it or not."""
+        return (self.entry(package, digest) / "share" / package / MANIFEST).is_file()
+
+    def new_directory(self) -> Path:
+        """Return an empty directory to build in; it is gone when the next build begins."""
+        building = self.directory / "building"
+        building.mkdir(exist_ok=True)
+        return Path(tempfile.mkdtemp(dir=building))
+
+    def add(self, directory: Path, manifest: Manifest) -> Path:
+        """Move a built package to the complete ones, where programs do not see it yet."""
+        file = directory / "share" / manifest.package / MANIFEST
+        file.write_text(json.dumps(asdict(manifest), indent=1))
+        entry = self.entry(manifest.package, manifest.digest)
+        entry.parent.mkdir(exist_ok=True)
+        if entry.exists():  # without a manifest, so not by this function
+            shutil.rmtree(entry)
+        directory.rename(entry)
+        return entry
+
+    def show(self, digests: Mapping[str, str]) -> None:
+        """Let programs see these complete packages and no others, all in one moment."""
+        views = self.directory / "views"
+        views.mkdir(exist_ok=True)
+        view = Path(tempfile.mkdtemp(dir=views))
+        view.chmod(0o755)
+        for package, digest in digests.items():
+            _link(view, self.entry(package, digest), package)
+        link = Path(f"{view}.link")
+        link.symlink_to(view.relative_to(self.directory))
+        link.rename(self.directory / "current")
+        self._tidy()
+
+    def _tidy(self) -> None:
+        """Remove what no program sees: leftovers of killed builds, and what was replaced."""
+        current = self.directory / "current"
+        kept = {f"{m.package}-{m.digest}" for m in self.packages().values()}
+        view = Path(os.readlink(current)).name if current.is_symlink() else ""
+        for folder, names in (("building", set()), ("store", kept), ("views", {view})):
+            for path in sorted((self.directory / folder).glob("*")):
+                if path.is_symlink():
+                    path.unlink()
+                elif path.name not in names:
+                    shutil.rmtree(path)
+
+    @contextmanager
+    def _writing(self) -> Iterator[None]:
+        try:
+            yield
+        except OSError as error:
+            if not str(error.filename or "").startswith(str(Path(self.directory.anchor))):
+                raise
+            raise ManycoreError(
+                f"{error.filename}: cannot be written: {error.strerror}; set {DIRECTORY_VARIABLE} "
+                "to a folder where built packages can be kept"
+            ) from error
+
+
+def _link(view: Path, entry: Path, package: str) -> None:
+    target = Path("../../..") / "store" / entry.name
+    for folder in ("python", "include", "share"):
+        (view / folder).mkdir(exist_ok=True)
+        (view / folder / package).symlink_to(target / folder / package)
+    (view / "lib").mkdir(exist_ok=True)
+    for library in sorted((entry / "lib").iterdir()):
+        (view / "lib" / library.name).symlink_to(target / "lib" / library.name)
+    for kind in ("packages", "rosidl_interfaces"):
+        index = view / _INDEX / kind
+        index.mkdir(parents=True, exist_ok=True)
+        (index / package).symlink_to(Path("../../../../../..") / "store" / entry.name / _INDEX / kind / package)

@@ -1,0 +1,26 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""The types that the nodes of a mapfile use, installed or not."""
+
+from __future__ import annotations
+
+from rmw_manycore_py.errors import MapfileError
+from rmw_manycore_py.mapfile.format.mapfile import Mapfile
+from rmw_manycore_py.mapfile.placing.crossings import CROSSINGS
+from rmw_manycore_py.mapfile.placing.resolve import node_starts, read_launch
+from rmw_manycore_py.mapfile.programs.source import imported_interfaces
+
+
+def used_types(mapfile: Mapfile) -> set[str]:
+    """Return the types that the mapfile names, and those that the sources of its nodes import."""
+    sections = mapfile.sections
+    found = {topic.type for topic in sections.topics.values()}
+    for node in sections.nodes.values():
+        for key in ("publish", "subscribe", *CROSSINGS):
+            found.update(getattr(node, key).values())
+    for start in node_starts(mapfile, read_launch(mapfile)).values():
+        if start.program.source is not None:
+            try:
+                found.update(imported_interfaces(start.program.source))
+            except MapfileError:
+                continue  # Python will say what is wrong with it when it runs.
+    return {name for name in found if name is not None}

@@ -1,0 +1,119 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Lets Python find the interface packages that `manycore interface build` has made.
+
+`rmw_manycore.pth` calls `find()` in every python process where some have been made. A package that
+is found anywhere else wins, wherever and whenever it was installed. See docs/design/interfaces.md.
+
+Imports nothing that python has not imported by then: this runs before everything else.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+
+TYPE_CHECKING = False  # as typing has it, without importing typing
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+    from importlib.machinery import ModuleSpec
+    from types import ModuleType
+
+DIRECTORY_VARIABLE = "MANYCORE_INTERFACES"
+AMENT_PREFIX_PATH = "AMENT_PREFIX_PATH"
+ROS_DISTRIBUTION = "jazzy"
+MANIFEST = "manifest.json"
+
+
+def directory() -> str:
+    """Return where the packages of all Python versions are kept."""
+    named = os.environ.get(DIRECTORY_VARIABLE)
+    if named:
+        return os.path.abspath(named)
+    data = os.environ.get("XDG_DATA_HOME", "")
+    if not os.path.isabs(data):  # which the specification of XDG has ignored
+        data = os.path.expanduser("~/.local/share")
+    return f"{data}/rmw_manycore/interfaces"
+
+
+def own_directory() -> str:
+    """Return where the packages for this Python, its ABI and this ROS distribution are kept."""
+    python = f"{sys.implementation.cache_tag}{sys.abiflags}"
+    return f"{directory()}/{ROS_DISTRIBUTION}-{python}-{os.uname().machine}"
+
+
+def own_prefix() -> str:
+    """Return the install prefix of those packages: python/, share/ and lib/ are in it."""
+    return f"{own_directory()}/current"
+
+
+def find() -> None:
+    """Let this process import the packages, and programs of ament find them."""
+    if any(isinstance(finder, _Finder) for finder in sys.meta_path):
+        return  # in a virtual environment site.py processes each .pth file twice
+    sys.meta_path.insert(0, _Finder())
+    prefixes = os.environ.get(AMENT_PREFIX_PATH)
+    # Without the variable the tools of ament find nothing anyway; CMake takes it for a sourced ROS.
+    if prefixes and own_prefix() not in prefixes.split(os.pathsep):
+        os.environ[AMENT_PREFIX_PATH] = f"{prefixes}{os.pathsep}{own_prefix()}"
+
+
+class _Finder:
+    """Finds packages of the prefix that no other finder has.
+
+    It is asked first, because otherwise a folder of definitions in the working directory, to
+    Python a namespace package, would hide the package that was built from it.
+    """
+
+    @staticmethod
+    def find_spec(
+        name: str, path: Sequence[str] | None = None, target: ModuleType | None = None
+    ) -> ModuleSpec | None:
+        place = f"{own_prefix()}/python"
+        if path is not None or not os.path.isfile(f"{place}/{name}/__init__.py"):
+            return None
+        for finder in sys.meta_path:
+            spec = None if isinstance(finder, _Finder) else finder.find_spec(name, path, target)
+            if spec is not None and spec.origin is not None:
+                return spec
+        from importlib.machinery import PathFinder
+
+        return PathFinder.find_spec(name, [place])
+
+
+def check(package: str) -> None:
+    """Raise ImportError if a type that a built package contains has changed since.
+
+    The package would read and write memory of another layout than that type has now.
+    """
+    import json
+
+    with open(f"{own_prefix()}/share/{package}/{MANIFEST}") as file:
+        needed = json.load(file)["dependencies"]
+    for name, expected in needed.items():
+        if (found := hash_of(name)) != expected:
+            raise ImportError(
+                f"package '{package}' in {own_prefix()} was built for {name} with the hash "
+                f"{expected}, but found {found or 'no such type'}: run `manycore interface build` "
+                f"for it again, or `manycore interface remove {package}`"
+            )
+
+
+def hash_of(name: str) -> str | None:
+    """Return the hash of an installed or built type (REP 2016): of std_msgs/msg/Header."""
+    import json
+
+    package, kind, type_name = name.split("/")
+    for prefix in _prefixes():
+        try:
+            with open(f"{prefix}/share/{package}/{kind}/{type_name}.json") as file:
+                return str(json.load(file)["type_hashes"][0]["hash_string"])
+        except OSError:
+            continue
+    return None
+
+
+def _prefixes() -> Iterator[str]:
+    named = os.environ.get(AMENT_PREFIX_PATH, "").split(os.pathsep)
+    yield from (prefix for prefix in named if prefix and prefix != own_prefix())
+    yield sys.prefix
+    yield own_prefix()
