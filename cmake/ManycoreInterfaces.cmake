@@ -9,6 +9,7 @@ if(DEFINED ENV{AMENT_PREFIX_PATH} AND NOT SKBUILD)
 endif()
 find_package(Python 3.10 REQUIRED COMPONENTS Interpreter Development.Module)
 set(generator ${CMAKE_CURRENT_SOURCE_DIR}/cmake/generate_interfaces.py)
+set(generators ${CMAKE_CURRENT_SOURCE_DIR}/rmw_manycore_py/interfaces/generator.py)
 execute_process(
   COMMAND ${Python_EXECUTABLE} -c
     "import em, lark, numpy, rosidl_generator_py; print(numpy.get_include())"
@@ -30,7 +31,8 @@ function(manycore_interfaces package)
   set(root ${CMAKE_CURRENT_BINARY_DIR}/interfaces)
   file(GLOB_RECURSE definitions CONFIGURE_DEPENDS ${source}/*.msg ${source}/*.srv)
   # At configure time: what the generators write is known only afterwards.
-  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${definitions} ${generator})
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS
+    ${definitions} ${generator} ${generators})
   execute_process(COMMAND ${Python_EXECUTABLE} ${generator} ${source} ${root} ${ros_prefix}
     OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
 
@@ -69,7 +71,7 @@ function(manycore_interfaces package)
   foreach(directory ${source} ${root}/idl/${package}
       ${root}/rosidl_generator_type_description/${package})
     install(DIRECTORY ${directory} DESTINATION ${share}
-      FILES_MATCHING REGEX "\\.(msg|srv|idl|json)$" PATTERN arguments.json EXCLUDE)
+      FILES_MATCHING REGEX "\\.(msg|srv|idl|json)$")
   endforeach()
 endfunction()
 

@@ -28,8 +28,9 @@ class Prefix:
         self.python = path / "bin/python"
         self.site_packages = next(path.glob("lib/python*/site-packages"))
         self.stand_ins = path / "lib/rmw_manycore/standin"
-        for name in ("rmw_manycore_hook.py", "rmw_manycore_program.py", "rmw_manycore.pth"):
-            shutil.copy(Path(hook.__file__).parent / name, self.site_packages)
+        for name in ("hook.py", "interfaces.py", "program.py"):
+            shutil.copy(Path(hook.__file__).parent / f"rmw_manycore_{name}", self.site_packages)
+        shutil.copy(Path(hook.__file__).parent / "rmw_manycore.pth", self.site_packages)
         self.stand_ins.mkdir(parents=True)
         (self.site_packages / "ros_rcl.libs").mkdir()
         for directory in (path / "lib", self.stand_ins):

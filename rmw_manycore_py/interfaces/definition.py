@@ -19,7 +19,11 @@ from rmw_manycore_py.errors import DefinitionError, Problem
 KINDS = ("msg", "srv", "action")
 SEPARATOR = "---"
 # Names of the parts of a definition, in their order.
-_PARTS = {"msg": ("",), "srv": ("_Request", "_Response"), "action": ("_Goal", "_Result", "_Feedback")}
+_PARTS = {
+    "msg": ("",),
+    "srv": ("_Request", "_Response"),
+    "action": ("_Goal", "_Result", "_Feedback"),
+}
 # What the generators put into every service and action.
 _IMPLIED = {
     "msg": (),
@@ -32,12 +36,17 @@ _IMPLIED = {
 }
 # In generated C and C++ a field has the name that the definition gives it.
 _C_WORDS = frozenset(
-    "alignas alignof asm auto bool break case catch char class const constexpr const_cast continue "
-    "decltype default delete do double dynamic_cast else enum explicit export extern false float "
-    "for friend goto if inline int long mutable namespace new noexcept nullptr operator private "
-    "protected public register reinterpret_cast restrict return short signed sizeof static "
-    "static_assert static_cast struct switch template this thread_local throw true try typedef "
-    "typeid typename union unsigned using virtual void volatile wchar_t while".split()
+    {
+        *("alignas", "alignof", "asm", "auto", "bool", "break", "case", "catch", "char", "class"),
+        *("const", "constexpr", "const_cast", "continue", "decltype", "default", "delete", "do"),
+        *("double", "dynamic_cast", "else", "enum", "explicit", "export", "extern", "false"),
+        *("float", "for", "friend", "goto", "if", "inline", "int", "long", "mutable", "namespace"),
+        *("new", "noexcept", "nullptr", "operator", "private", "protected", "public", "register"),
+        *("reinterpret_cast", "restrict", "return", "short", "signed", "sizeof", "static"),
+        *("static_assert", "static_cast", "struct", "switch", "template", "this", "thread_local"),
+        *("throw", "true", "try", "typedef", "typeid", "typename", "union", "unsigned", "using"),
+        *("virtual", "void", "volatile", "wchar_t", "while"),
+    }
 )
 _REPLACED = {"time": "builtin_interfaces/Time", "duration": "builtin_interfaces/Duration"}
 

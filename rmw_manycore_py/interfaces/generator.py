@@ -12,7 +12,6 @@ from __future__ import annotations
 import json
 import pickle
 import sys
-from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -59,7 +58,8 @@ class Request:
         return self.place(DESCRIPTION) / idl.with_suffix(".json")
 
 
-def _describe(request: Request) -> None:
+def describe(request: Request) -> None:
+    """Make an .idl file and a description with its hash of each definition."""
     for name in request.definitions:
         file, place = Path(request.source, name), request.place("idl") / Path(name).parent
         if file.suffix == ".idl":
@@ -73,7 +73,8 @@ def _describe(request: Request) -> None:
     rosidl_generator_type_description.generate_type_hash(arguments)
 
 
-def _generate_code(request: Request) -> None:
+def generate_code(request: Request) -> None:
+    """Make the C of definitions that `describe` has described."""
     import rosidl_generator_c
     import rosidl_typesupport_c
     import rosidl_typesupport_fastrtps_c
@@ -92,7 +93,8 @@ def _generate_code(request: Request) -> None:
     )
 
 
-def _generate_python(request: Request) -> None:
+def generate_python(request: Request) -> None:
+    """Make the Python package; of all definitions at once, as its modules list them."""
     import rosidl_generator_py.generate_py_impl
 
     rosidl_generator_py.generate_py_impl.parse_idl_file = _parsed
@@ -142,19 +144,19 @@ def _arguments(request: Request, generator: str, **more: Any) -> str:
         **more,
     }
     first = request.definitions[0].replace("/", ".")
-    file = place / f"arguments-{first}.json"
+    file = Path(request.output, "arguments", f"{generator}-{request.package}-{first}.json")
+    file.parent.mkdir(exist_ok=True)
     file.write_text(json.dumps(arguments))
     return str(file)
 
 
-STEPS = {"describe": _describe, "code": _generate_code, "python": _generate_python}
+STEPS = {"describe": describe, "code": generate_code, "python": generate_python}
 
 
-def main(arguments: Iterable[str]) -> None:
+def main(step: str, file: str) -> None:
     """Take one step for the request in a file."""
-    step, file = arguments
     STEPS[step](Request(**json.loads(Path(file).read_text())))
 
 
 if __name__ == "__main__":
-    main(sys.argv[1:])
+    main(*sys.argv[1:])

@@ -7,6 +7,7 @@ import importlib.util
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from graphlib import CycleError, TopologicalSorter
+from itertools import pairwise
 from pathlib import Path
 
 from rmw_manycore_interfaces import hash_of
@@ -50,11 +51,11 @@ def select(sources: Mapping[str, Source], only: Collection[str]) -> list[Part]:
     ]
     if problems:
         raise DefinitionError(*problems)
-    parts = {p: _part(types, s, chosen) for p, s in sources.items()}
+    parts = {p: _part(s, chosen) for p, s in sources.items()}
     parts = {package: part for package, part in parts.items() if part.definitions}
     for package, part in parts.items():
         _check_name(package, part)
-    return [parts[package] for package in _order(parts, types)]
+    return [parts[package] for package in _order(parts)]
 
 
 class _Types:
@@ -134,7 +135,7 @@ def _cycles(graph: Mapping[str, list[str]], types: _Types) -> list[Problem]:
             around = error.args[1][::-1]
             text = " -> ".join(around)
             problems = []
-            for here, there in zip(around, around[1:], strict=False):
+            for here, there in pairwise(around):
                 definition, line = edges[here, there]
                 file = definition.file
                 problems.append(Problem(file, line, there, "no cycle of definitions", text))
@@ -142,7 +143,7 @@ def _cycles(graph: Mapping[str, list[str]], types: _Types) -> list[Problem]:
     return []
 
 
-def _part(types: _Types, source: Source, chosen: Collection[str]) -> Part:
+def _part(source: Source, chosen: Collection[str]) -> Part:
     definitions = tuple(d for name, d in sorted(source.definitions.items()) if name in chosen)
     needed = {other.split("/")[0] for d in definitions for other in d.references}
     return Part(
@@ -159,7 +160,7 @@ def _structures(definitions: Iterable[Definition]) -> int:
     return sum(_STRUCTURES[definition.kind] for definition in definitions)
 
 
-def _order(parts: Mapping[str, Part], types: _Types) -> Iterator[str]:
+def _order(parts: Mapping[str, Part]) -> Iterable[str]:
     graph = {
         package: [
             other for other in sorted(part.needed & parts.keys()) if not ament.is_installed(other)

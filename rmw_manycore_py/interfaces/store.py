@@ -1,11 +1,11 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 """The directory that built packages are kept in, and how a package gets into it at once or not.
 
-    lock                    held by the one build or removal at a time
-    building/               what builds work in; leftovers of killed ones
-    store/PACKAGE-DIGEST/   complete packages: python/, lib/, include/, share/
-    views/N/                links into the store: an install prefix
-    current -> views/N      the one that programs see; replaced by rename(2)
+lock                    held by the one build or removal at a time
+building/               what builds work in; leftovers of killed ones
+store/PACKAGE-DIGEST/   complete packages: python/, lib/, include/, share/
+views/N/                links into the store: an install prefix
+current -> views/N      the one that programs see; replaced by rename(2)
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ import json
 import os
 import shutil
 import tempfile
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -54,7 +54,7 @@ class Store:
     @contextmanager
     def locked(self, on_wait: Callable[[], None]) -> Iterator[None]:
         """Be the only build; call `on_wait` if another one is at it, and wait for its end."""
-        with self._writing():
+        with self._writing():  # an error may also name what lies above the directory
             self.directory.mkdir(parents=True, exist_ok=True)
             lock = (self.directory / "lock").open("w")
         with lock:
@@ -64,7 +64,7 @@ class Store:
                 on_wait()
                 fcntl.flock(lock, fcntl.LOCK_EX)
             with self._writing():
-                self._tidy()
+                self._remove_leftovers()
                 yield
 
     def packages(self) -> dict[str, Manifest]:
@@ -109,26 +109,29 @@ class Store:
         link = Path(f"{view}.link")
         link.symlink_to(view.relative_to(self.directory))
         link.rename(self.directory / "current")
-        self._tidy()
+        self._remove_leftovers()
+        self._keep("store", {f"{package}-{digest}" for package, digest in digests.items()})
 
-    def _tidy(self) -> None:
-        """Remove what no program sees: leftovers of killed builds, and what was replaced."""
+    def _remove_leftovers(self) -> None:
+        """Remove what killed builds and replaced views leave."""
         current = self.directory / "current"
-        kept = {f"{m.package}-{m.digest}" for m in self.packages().values()}
-        view = Path(os.readlink(current)).name if current.is_symlink() else ""
-        for folder, names in (("building", set()), ("store", kept), ("views", {view})):
-            for path in sorted((self.directory / folder).glob("*")):
-                if path.is_symlink():
-                    path.unlink()
-                elif path.name not in names:
-                    shutil.rmtree(path)
+        self._keep("building", ())
+        self._keep("views", [Path(os.readlink(current)).name] if current.is_symlink() else ())
+
+    def _keep(self, folder: str, names: Collection[str]) -> None:
+        for path in sorted((self.directory / folder).glob("*")):
+            if path.is_symlink():
+                path.unlink()
+            elif path.name not in names:
+                shutil.rmtree(path)
 
     @contextmanager
     def _writing(self) -> Iterator[None]:
         try:
             yield
         except OSError as error:
-            if not str(error.filename or "").startswith(str(Path(self.directory.anchor))):
+            place = str(error.filename)
+            if not (place.startswith(str(self.directory)) or str(self.directory).startswith(place)):
                 raise
             raise ManycoreError(
                 f"{error.filename}: cannot be written: {error.strerror}; set {DIRECTORY_VARIABLE} "
@@ -147,4 +150,4 @@ def _link(view: Path, entry: Path, package: str) -> None:
     for kind in ("packages", "rosidl_interfaces"):
         index = view / _INDEX / kind
         index.mkdir(parents=True, exist_ok=True)
-        (index / package).symlink_to(Path("../../../../../..") / "store" / entry.name / _INDEX / kind / package)
+        (index / package).symlink_to("../../.." / target / _INDEX / kind / package)

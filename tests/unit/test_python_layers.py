@@ -16,13 +16,13 @@ ROOTS = (REPOSITORY, REPOSITORY / "bridge", REPOSITORY / "startup")
 
 # Lowest first; packages of one layer do not see each other. A leading dot: in rmw_manycore_py.
 LAYERS = [
-    ("rmw_manycore_hook",),
+    ("rmw_manycore_hook", "rmw_manycore_interfaces"),
     ("rmw_manycore_program", "rmw_manycore_py", ".errors", ".examples", ".words"),
     ("._transport", "._ndt"),
     ("._ndt_bench", ".native_errors", ".qos"),
     (".figures", ".parent_death", ".ros", ".readiness", ".signals", ".topology"),
     (".routes",),
-    (".bridge_plan",),
+    (".bridge_plan", ".interfaces"),
     (".mapfile.format",),
     (".mapfile.launch_file", ".mapfile.programs"),
     (".mapfile.placing",),

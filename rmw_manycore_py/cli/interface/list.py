@@ -7,15 +7,22 @@ import click
 
 from rmw_manycore_py.cli.common.options import examples, json_option
 from rmw_manycore_py.cli.common.printing import print_json
+from rmw_manycore_py.cli.interface.built import print_built
 from rmw_manycore_py.cli.interface.kinds import TITLES, kind_of, kind_options
 from rmw_manycore_py.ros.ament import interfaces, packages_with_interfaces
 
 
-@click.command("list", epilog=examples("manycore interface list", "manycore interface list -s"))
+@click.command(
+    "list", epilog=examples("manycore interface list -s", "manycore interface list --built")
+)
 @kind_options
+@click.option("--built", is_flag=True, help="Packages that were built here, and which ones win.")
 @json_option
-def command(kinds: tuple[str, ...], as_json: bool) -> None:
-    """List the types that are installed, by default of all three kinds."""
+def command(kinds: tuple[str, ...], built: bool, as_json: bool) -> None:
+    """List the types that are installed or were built here, by default of all three kinds."""
+    if built:
+        print_built(kinds, as_json)
+        return
     names = sorted(name for package in packages_with_interfaces() for name in interfaces(package))
     found = {
         kind: [name for name in names if kind_of(name) == kind]

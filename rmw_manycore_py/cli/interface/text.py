@@ -39,9 +39,10 @@ def _file(type_name: str) -> Path:
     if share is None:
         raise ManycoreError(f"package '{parts[0]}' is not installed")
     file = share / parts[1] / f"{parts[2]}.{parts[1]}"
-    if not file.is_file():
-        raise ManycoreError(f"type '{type_name}' is not installed: no {file}")
-    return file
+    for candidate in (file, file.with_suffix(".idl")):  # the source of a few packages is IDL
+        if candidate.is_file():
+            return candidate
+    raise ManycoreError(f"type '{type_name}' is not installed: no {file}")
 
 
 def _code(line: str) -> str:
