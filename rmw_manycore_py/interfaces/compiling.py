@@ -43,12 +43,8 @@ class Compilation:
     def module(self) -> Path:
         """Return the native module of the Python package."""
         suffix = sysconfig.get_config_var("EXT_SUFFIX")
-        return (
-            self.prefix
-            / "python"
-            / self.package
-            / f"{self.package}_s__rosidl_typesupport_c{suffix}"
-        )
+        name = f"{self.package}_s__rosidl_typesupport_c{suffix}"
+        return self.prefix / "python" / self.package / name
 
 
 def compile_jobs(work: Compilation) -> list[Job]:

@@ -127,20 +127,22 @@ def _fields(
 
 
 def _parsed(file: Path, package: str, name: str, lines: list[str], start: int) -> Any:
-    for end in (len(lines), *range(1, len(lines) + 1)):  # the whole, then up to the wrong line
+    """Return what rosidl makes of a part; as it tells no lines, an error is looked for by line."""
+    error = None
+    for end in (len(lines), *range(1, len(lines) + 1)):
         try:
             with contextlib.redirect_stderr(io.StringIO()):
                 message = parse_message_string(package, name, "\n".join(lines[:end]))
-        except Exception as error:  # the parser raises errors of a dozen kinds
-            cause = error
-            if end == len(lines):
-                continue
-            text = lines[end - 1].strip()
-            found = f"'{text}'" if str(error) in text else f"'{text}': {error}"
-            raise _error(file, start + end, "", "a field or a constant", found) from error
-        if end == len(lines):
-            return message
-    raise _error(file, start + len(lines), "", "a field or a constant", str(cause)) from cause
+        except Exception as wrong:  # of a dozen kinds
+            if error is not None:  # up to here, and not before
+                text = lines[end - 1].strip()
+                found = f"'{text}'" if str(wrong) in text else f"'{text}': {wrong}"
+                raise _error(file, start + end, "", "a field or a constant", found) from wrong
+            error = wrong
+        else:
+            if error is None:
+                return message
+    raise _error(file, start, "", "fields and constants", str(error)) from error
 
 
 def _idl_references(file: Path, full_name: str, text: str) -> dict[str, int]:
