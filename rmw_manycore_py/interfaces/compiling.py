@@ -93,7 +93,7 @@ def _units(directory: Path) -> Iterator[list[Path]]:
 
 def _compile_job(work: Compilation, unit: Path, sources: Sequence[Path]) -> Job:
     tools = work.toolchain
-    compiler = (*tools.cpp, "-std=c++17") if unit.suffix == ".cpp" else (*tools.c, "-std=gnu11")
+    compiler = (*tools.cpp, "-std=c++17") if unit.suffix == ".cpp" else (*tools.c, "-std=c11")
     own = [work.generated / generator for generator in _C_LIBRARIES]
     others = [prefix / "include" / name for name, prefix in work.dependencies.items()]
     includes = [*own, *others, *tools.includes, tools.python_headers, tools.numpy_headers]

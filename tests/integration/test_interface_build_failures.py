@@ -1,0 +1,151 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Builds that cannot succeed, are killed, or run at the same time; and removals."""
+
+from __future__ import annotations
+
+import fcntl
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from building import TINY, interface, write_definitions
+from installing import READ_ONLY, can_mount
+from support import IS_MANYCORE, manycore_command, wait_until
+
+pytestmark = [
+    pytest.mark.integration,
+    pytest.mark.skipif(not IS_MANYCORE, reason="manycore is about rmw_manycore"),
+]
+
+BASE = {"base_msgs/msg/Base.msg": "int32 number\n"}
+USER = {"user_msgs/msg/User.msg": "base_msgs/Base base\n"}
+
+
+@pytest.fixture
+def env(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> dict[str, str]:
+    monkeypatch.setenv("MANYCORE_INTERFACES", str(tmp_path / "built"))
+    return dict(os.environ)
+
+
+@pytest.fixture
+def sources(tmp_path: Path) -> Path:
+    return tmp_path / "sources"
+
+
+def imported(module: str, env: dict[str, str]) -> subprocess.CompletedProcess[str]:
+    code = f"import {module}; print({module}.__file__)"
+    return subprocess.run(
+        [sys.executable, "-c", code], env=env, capture_output=True, text=True, cwd="/"
+    )
+
+
+def running_below(directory: Path) -> list[str]:
+    """Return the command lines of processes that mention a directory."""
+    found = []
+    for file in Path("/proc").glob("[0-9]*/cmdline"):
+        try:
+            words = file.read_bytes().replace(b"\0", b" ").decode(errors="replace")
+        except OSError:  # it has ended
+            continue
+        if str(directory) in words:
+            found.append(words)
+    return found
+
+
+def test_a_killed_build_leaves_nothing_that_is_imported(start, env, sources, tmp_path) -> None:
+    write_definitions(sources, TINY)
+    build = start(manycore_command("interface", "build", sources / "tiny_msgs"))
+    building = tmp_path / "built"
+    wait_until(lambda: any(building.glob("*/building/*/generated/objects/*/*")), "it compiles", 300)
+    build.signal(signal.SIGKILL)
+    build.wait()
+    wait_until(lambda: not running_below(building), "compilers have died with it")
+    assert "No module named 'tiny_msgs'" in imported("tiny_msgs", env).stderr
+    assert "nothing was built" in interface("list", "--built", env=env).stdout
+    interface("build", sources, env=env)
+    assert imported("tiny_msgs.msg", env).returncode == 0
+    assert list(building.glob("*/building/*")) == []
+
+
+def test_builds_at_once_wait_for_each_other(start, env, sources, tmp_path) -> None:
+    write_definitions(sources, {**TINY, **BASE})
+    interface("list", "--built", env=env)
+    directory = interface("list", "--built", env=env).stdout.split()[-1]
+    Path(directory).mkdir(parents=True)
+    with open(f"{directory}/lock", "w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        names = ("tiny_msgs", "base_msgs")
+        builds = [start(manycore_command("interface", "build", sources / name)) for name in names]
+        for build in builds:
+            build.wait_for("waiting for the end of another build")
+    for build in builds:
+        assert build.wait(600) == 0, build
+    for name in names:
+        assert imported(f"{name}.msg", env).returncode == 0
+
+
+def test_a_changed_package_is_built_again_with_those_that_contain_it(env, sources) -> None:
+    write_definitions(sources, {**BASE, **USER})
+    interface("build", sources, env=env)
+    refused = interface("remove", "base_msgs", env=env, status=1)
+    assert "package 'user_msgs' needs 'base_msgs': remove it, too" in refused.stderr
+    write_definitions(sources, {"base_msgs/msg/Base.msg": "int32 number\nfloat64 more\n"})
+    done = interface("build", sources / "base_msgs", env=env)
+    assert [line.split(" in ")[0] for line in done.stdout.splitlines()] == [
+        "base_msgs: 1 definition",
+        "user_msgs: 1 definition",
+    ]
+    code = "from user_msgs.msg import User; print(User().base.more)"
+    assert subprocess.check_output([sys.executable, "-c", code], env=env, cwd="/") == b"0.0\n"
+    interface("remove", "base_msgs", "user_msgs", env=env)
+    assert "No module named 'user_msgs'" in imported("user_msgs", env).stderr
+    assert list(Path(env["MANYCORE_INTERFACES"]).glob("*/store/*")) == []
+    gone = interface("remove", "user_msgs", env=env, status=1)
+    assert "package 'user_msgs' was not built here; built: none" in gone.stderr
+
+
+def test_a_definition_that_does_not_compile_is_named(env, sources) -> None:
+    # errno is a macro, which only the compiler knows.
+    write_definitions(sources, {**TINY, "tiny_msgs/msg/Odd.msg": "int32 errno\n"})
+    failed = interface("build", sources, env=env, status=2)
+    assert (
+        f"{sources}/tiny_msgs/msg/Odd.msg: expected a definition that can be built" in failed.stderr
+    )
+    assert "No module named 'tiny_msgs'" in imported("tiny_msgs", env).stderr
+
+
+def test_definitions_that_are_wrong_are_named_before_anything_is_built(env, sources) -> None:
+    write_definitions(sources, {**TINY, "bad_msgs/msg/Bad.msg": "int32 a\nint32 9\n"})
+    failed = interface("build", sources, env=env, status=2)
+    assert f"{sources}/bad_msgs/msg/Bad.msg:2: expected a field" in failed.stderr
+    assert not Path(env["MANYCORE_INTERFACES"]).exists()
+
+
+def test_without_a_compiler_it_says_what_to_install(env, sources, tmp_path) -> None:
+    write_definitions(sources, TINY)
+    without = {k: v for k, v in env.items() if k not in ("CC", "CXX")} | {"PATH": str(tmp_path)}
+    failed = interface("build", sources, env=without, status=1)
+    assert "building interfaces needs a C compiler (cc, gcc, clang in PATH)" in failed.stderr
+    failed = interface("build", sources, env={**env, "CXX": "no-such-c++ -O3"}, status=1)
+    assert "CXX=no-such-c++: expected a compiler" in failed.stderr
+
+
+@pytest.mark.skipif(not can_mount(), reason="mounts a file system")
+def test_a_home_that_is_read_only_is_an_error(env, sources, tmp_path) -> None:
+    write_definitions(sources, TINY)
+    home = tmp_path / "home"
+    home.mkdir()
+    script = f'{READ_ONLY.format(home)} exec "$@"'
+    command = manycore_command("interface", "build", sources)
+    done = subprocess.run(
+        ["unshare", "--mount", "sh", "-c", script, "sh", *map(str, command)],
+        env={**env, "MANYCORE_INTERFACES": "", "XDG_DATA_HOME": "", "HOME": str(home)},
+        capture_output=True,
+        text=True,
+    )
+    assert done.returncode == 1
+    assert f"manycore: {home}" in done.stderr
+    assert "Read-only file system; set MANYCORE_INTERFACES to a folder" in done.stderr

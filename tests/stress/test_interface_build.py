@@ -1,0 +1,49 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Large packages: those of the wheels from their definitions, and one of many actions."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from building import interface
+from support import IS_MANYCORE
+
+pytestmark = pytest.mark.skipif(not IS_MANYCORE, reason="manycore is about rmw_manycore")
+
+SHARE = Path(sys.prefix) / "share"
+KINDS = ("msg", "srv", "action")
+COPIES = 20
+
+
+@pytest.mark.parametrize("package", ["std_msgs", "geometry_msgs", "sensor_msgs", "test_msgs"])
+def test_each_type_has_the_hash_of_the_wheel(package: str, tmp_path: Path) -> None:
+    env = {**os.environ, "MANYCORE_INTERFACES": str(tmp_path / "built")}
+    interface("build", SHARE / package, env=env)
+    (built,) = tmp_path.glob(f"built/*/current/share/{package}")
+    files = [file for kind in KINDS for file in sorted((SHARE / package).glob(f"{kind}/*.json"))]
+    assert files
+    for file in files:
+        again = built / file.relative_to(SHARE / package)
+        assert json.loads(again.read_text()) == json.loads(file.read_text()), file
+
+
+def test_a_package_of_many_actions_is_built_and_imported(tmp_path: Path) -> None:
+    """As many definitions as nav2_msgs has, and as many actions among them."""
+    env = {**os.environ, "MANYCORE_INTERFACES": str(tmp_path / "built")}
+    package = tmp_path / "many_msgs"
+    for kind, name in (("action", "Fibonacci"), ("srv", "Arrays"), ("msg", "BasicTypes")):
+        (package / kind).mkdir(parents=True)
+        for number in range(COPIES if kind != "srv" else COPIES // 2):
+            source = SHARE / "test_msgs" / kind / f"{name}.{kind}"
+            copy = package / kind / f"{name}{number}.{kind}"
+            text = source.read_text().replace("BasicTypes ", "test_msgs/BasicTypes ")
+            copy.write_text(text.replace("BasicTypes[", "test_msgs/BasicTypes["))
+    done = interface("build", package, env=env)
+    print(done.stdout)
+    code = "from many_msgs import action, msg, srv; print(action.Fibonacci7.Goal())"
+    subprocess.run([sys.executable, "-c", code], env=env, check=True)
