@@ -58,7 +58,8 @@ def build(
     store = Store()
     with store.locked(listener.on_wait):
         before = store.packages()
-        parts = select(_with_dependents(sources, store, before), _wanted(sources, only, before))
+        related = _with_dependents(sources, store, before)
+        parts = select(related, _wanted(related, only, before))
         outcomes = _build_parts(parts, store, listener)
         after = {name: manifest.digest for name, manifest in before.items()}
         after.update((o.part.package, o.manifest.digest) for o in outcomes)
@@ -104,12 +105,10 @@ def _wanted(
     if not only:
         return set()
     wanted = set(only)
-    for name, manifest in before.items():
-        if name in sources:
-            known = sources[name].definitions
-            wanted |= set(known) if manifest.is_whole else set(manifest.types) & set(known)
-        else:
-            wanted |= set(manifest.types)
+    for name, source in sources.items():
+        if manifest := before.get(name):
+            known = set(source.definitions)
+            wanted |= known if manifest.is_whole else known & set(manifest.types)
     return wanted
 
 

@@ -78,7 +78,7 @@ def test_tools_know_the_types(start, here, built: dict[str, str]) -> None:
     echo.wait_for("number: 200")
     assert echo.wait() == 0
     shown = interface("show", f"{THINGS}/msg/Thing", "--no-comments", env=built).stdout
-    assert shown.splitlines()[-4:-2] == ["\tint32 number", "\tint32[<=4] few"]
+    assert shown.splitlines()[-3:-1] == ["\tint32 number", "\tint32[<=4] few"]
     assert f"{THINGS}/action/Collect" in interface("list", env=built).stdout
     assert "wstring text" in interface("show", f"{THINGS}/msg/Mark", env=built).stdout
 

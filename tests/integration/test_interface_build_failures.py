@@ -42,32 +42,23 @@ def imported(module: str, env: dict[str, str]) -> subprocess.CompletedProcess[st
     )
 
 
-def running_below(directory: Path) -> list[str]:
-    """Return the command lines of processes that mention a directory."""
-    found = []
-    for file in Path("/proc").glob("[0-9]*/cmdline"):
-        try:
-            words = file.read_bytes().replace(b"\0", b" ").decode(errors="replace")
-        except OSError:  # it has ended
-            continue
-        if str(directory) in words:
-            found.append(words)
-    return found
-
-
 def test_a_killed_build_leaves_nothing_that_is_imported(start, env, sources, tmp_path) -> None:
     write_definitions(sources, TINY)
-    build = start(manycore_command("interface", "build", sources / "tiny_msgs"))
-    building = tmp_path / "built"
-    wait_until(lambda: any(building.glob("*/building/*/generated/objects/*/*")), "it compiles", 300)
+    compiler, compiling = tmp_path / "cc", tmp_path / "compiling"
+    compiler.write_text(f"#!/bin/sh\necho $$ >>{compiling}\nexec sleep 1000\n")
+    compiler.chmod(0o755)
+    command = manycore_command("interface", "build", sources / "tiny_msgs")
+    build = start(command, CC=str(compiler), CXX=str(compiler))
+    wait_until(lambda: compiling.exists() and compiling.read_text(), "it compiles", 300)
     build.signal(signal.SIGKILL)
     build.wait()
-    wait_until(lambda: not running_below(building), "compilers have died with it")
+    for pid in compiling.read_text().split():
+        wait_until(lambda pid=pid: not Path("/proc", pid).exists(), "compilers die with it")
     assert "No module named 'tiny_msgs'" in imported("tiny_msgs", env).stderr
     assert "nothing was built" in interface("list", "--built", env=env).stdout
     interface("build", sources, env=env)
     assert imported("tiny_msgs.msg", env).returncode == 0
-    assert list(building.glob("*/building/*")) == []
+    assert list(Path(env["MANYCORE_INTERFACES"]).glob("*/building/*")) == []
 
 
 def test_builds_at_once_wait_for_each_other(start, env, sources, tmp_path) -> None:
@@ -85,6 +76,10 @@ def test_builds_at_once_wait_for_each_other(start, env, sources, tmp_path) -> No
         assert build.wait(600) == 0, build
     for name in names:
         assert imported(f"{name}.msg", env).returncode == 0
+    only = ("--only", "tiny_msgs/msg/Tiny")
+    done = interface("build", sources / "tiny_msgs", *only, env=env)
+    assert done.stdout == "tiny_msgs: 1 definition, built before\n"
+    assert imported("base_msgs.msg", env).returncode == 0
 
 
 def test_a_changed_package_is_built_again_with_those_that_contain_it(env, sources) -> None:
@@ -107,14 +102,18 @@ def test_a_changed_package_is_built_again_with_those_that_contain_it(env, source
     assert "package 'user_msgs' was not built here; built: none" in gone.stderr
 
 
-def test_a_definition_that_does_not_compile_is_named(env, sources) -> None:
+def test_a_package_that_does_not_compile_is_named_and_none_is_seen(env, sources) -> None:
     # errno is a macro, which only the compiler knows.
-    write_definitions(sources, {**TINY, "tiny_msgs/msg/Odd.msg": "int32 errno\n"})
+    odd = {"user_msgs/msg/User.msg": "base_msgs/Base base\nint32 errno\n"}
+    write_definitions(sources, {**BASE, **odd})
     failed = interface("build", sources, env=env, status=2)
-    assert (
-        f"{sources}/tiny_msgs/msg/Odd.msg: expected a definition that can be built" in failed.stderr
-    )
-    assert "No module named 'tiny_msgs'" in imported("tiny_msgs", env).stderr
+    file = f"{sources}/user_msgs/msg/User.msg"
+    assert f"{file}: expected a definition that can be built" in failed.stderr
+    assert "No module named 'base_msgs'" in imported("base_msgs", env).stderr
+    write_definitions(sources, USER)
+    done = interface("build", sources, env=env)
+    assert "base_msgs: 1 definition, built before" in done.stdout
+    assert imported("user_msgs.msg", env).returncode == 0
 
 
 def test_definitions_that_are_wrong_are_named_before_anything_is_built(env, sources) -> None:
