@@ -60,11 +60,6 @@ class Definition:
     references: dict[str, int]  # types in it, and the line of the first of them; 0: implied
 
     @property
-    def package(self) -> str:
-        """Return the name of its package."""
-        return self.name.split("/")[0]
-
-    @property
     def kind(self) -> str:
         """Return "msg", "srv" or "action"."""
         return self.name.split("/")[1]

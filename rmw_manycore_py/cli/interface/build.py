@@ -64,6 +64,13 @@ def _used_by(name: str, sources: Mapping[str, Source]) -> set[str]:
         raise ManycoreError(
             f"{file}: expected nodes that use types of {packages}, found none", EXIT_BAD_INPUT
         )
+    for type_name in sorted(wanted):
+        source = sources[type_name.split("/")[0]]
+        if type_name not in source.definitions:
+            raise ManycoreError(
+                f"{file}: its nodes use {type_name}, which {source.directory} does not define",
+                EXIT_BAD_INPUT,
+            )
     return wanted
 
 
