@@ -9,14 +9,14 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from rmw_manycore_py.interfaces.generator import PYTHON, TYPE_SUPPORTS
-from rmw_manycore_py.interfaces.jobs import Job
+from rmw_manycore_py.interfaces.jobs import Job, usable_cpus
 from rmw_manycore_py.interfaces.toolchain import Toolchain
 
 # Optimising more takes half as long again and gains nothing that a message would notice.
 _FLAGS = ("-O1", "-fPIC", "-w", "-fvisibility=default")
-# Sources are compiled together up to this size: the headers cost more than the sources, but one
-# unit must not keep one CPU busy after the others are done.
-_UNIT_BYTES = 400_000
+# Sources are compiled together up to these sizes, of small and of large packages: the headers cost
+# more than the sources, but one unit must not keep one CPU busy after the others are done.
+_SMALL_UNIT_BYTES, _LARGE_UNIT_BYTES = 400_000, 1_000_000
 # Each has constants of the same names.
 _ALONE = "__description.c"
 # Libraries in the order in which they need each other, by the generator of their sources.
@@ -50,9 +50,11 @@ class Compilation:
 def compile_jobs(work: Compilation) -> list[Job]:
     """Return the commands that compile everything, the longest first."""
     jobs = []
-    for generator in LIBRARIES:
-        root = work.generated / generator / work.package
-        for number, sources in enumerate(_units(root)):
+    roots = {generator: work.generated / generator / work.package for generator in LIBRARIES}
+    total = sum(source.stat().st_size for root in roots.values() for source in _sources(root))
+    enough = max(_SMALL_UNIT_BYTES, min(_LARGE_UNIT_BYTES, total // (4 * usable_cpus())))
+    for generator, root in roots.items():
+        for number, sources in enumerate(_units(root, enough)):
             objects = _objects(work, _MODULE if sources[0].parent == root else generator)
             objects.mkdir(parents=True, exist_ok=True)
             unit = objects / f"{number}{sources[0].suffix}"
@@ -73,17 +75,20 @@ def link_jobs(work: Compilation) -> Iterator[list[Job]]:
     yield [_module_job(work)]
 
 
-def _units(directory: Path) -> Iterator[list[Path]]:
+def _sources(directory: Path) -> list[Path]:
+    return sorted(file for file in directory.rglob("*.c*") if file.suffix in (".c", ".cpp"))
+
+
+def _units(directory: Path, enough_bytes: int) -> Iterator[list[Path]]:
     """Yield sources to compile together: of one language, and of one of msg, srv and action."""
     unit: list[Path] = []
     size = 0
-    sources = [file for file in directory.rglob("*.c*") if file.suffix in (".c", ".cpp")]
-    for file in sorted(sources):
+    for file in _sources(directory):
         if file.name.endswith(_ALONE):
             yield [file]
             continue
         size += file.stat().st_size
-        if unit and (unit[-1].parent != file.parent or size > _UNIT_BYTES):
+        if unit and (unit[-1].parent != file.parent or size > enough_bytes):
             yield unit
             unit, size = [], file.stat().st_size
         unit.append(file)

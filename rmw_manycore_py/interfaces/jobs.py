@@ -22,6 +22,11 @@ class Job:
     command: Sequence[str]
 
 
+def usable_cpus() -> int:
+    """Return the number of CPUs that this process may use."""
+    return len(os.sched_getaffinity(0))
+
+
 class JobError(ManycoreError):
     """A command has failed; `output` is everything that it printed."""
 
@@ -45,7 +50,7 @@ def run_jobs(
     """
     waiting = list(reversed(jobs))
     running: dict[int, tuple[Job, subprocess.Popen[bytes], Path]] = {}
-    limit = max(1, len(os.sched_getaffinity(0)))
+    limit = usable_cpus()
     done = 0
     with selectors.DefaultSelector() as selector:
         try:

@@ -18,13 +18,14 @@ from rmw_manycore_program import own_program
 from rmw_manycore_py.errors import DefinitionError, Problem
 from rmw_manycore_py.interfaces import generator
 from rmw_manycore_py.interfaces.compiling import LIBRARIES, Compilation, compile_jobs, link_jobs
-from rmw_manycore_py.interfaces.jobs import Job, JobError, run_jobs
+from rmw_manycore_py.interfaces.jobs import Job, JobError, run_jobs, usable_cpus
 from rmw_manycore_py.interfaces.selection import Part
 from rmw_manycore_py.interfaces.toolchain import Toolchain
 
-# Definitions that one process generates code for: an action is as much work as ten messages.
+# An action is as much work for the generators as ten messages. A process of theirs takes as long
+# to start as for the smallest batch.
 _WEIGHTS = {"msg": 1, "srv": 3, "action": 10}
-_BATCH_WEIGHT = 25
+_SMALLEST_BATCH = 8
 
 _INIT = """# Written by `manycore interface build`.
 from rmw_manycore_interfaces import check as _check
@@ -141,12 +142,15 @@ def _request(
 
 
 def _batches(definitions: Sequence[str]) -> Iterator[list[str]]:
+    """Yield what one process generates code for, two batches for each CPU or fewer."""
+    weights = {name: _WEIGHTS[name.split("/")[0]] for name in definitions}
+    enough = max(_SMALLEST_BATCH, sum(weights.values()) / (2 * usable_cpus()))
     batch: list[str] = []
     weight = 0
     for name in definitions:
-        weight += _WEIGHTS[name.split("/")[0]]
+        weight += weights[name]
         batch.append(name)
-        if weight >= _BATCH_WEIGHT:
+        if weight >= enough:
             yield batch
             batch, weight = [], 0
     if batch:
