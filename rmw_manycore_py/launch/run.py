@@ -7,6 +7,7 @@ from collections.abc import Iterable
 
 from rmw_manycore_py.launch.bridge import bridge_programs
 from rmw_manycore_py.launch.events import Finished, Notice, PlacedCore, Platform
+from rmw_manycore_py.launch.helpers import helper_programs
 from rmw_manycore_py.launch.platform import configured_platform, remaining_users
 from rmw_manycore_py.launch.processes.program import NodeProgram
 from rmw_manycore_py.launch.runner import Report, Runner
@@ -23,11 +24,13 @@ class Run:
     def __init__(self, placement: Placement) -> None:
         self._placement = placement
         self._bridge = bridge_programs(placement)
+        self._helpers = helper_programs(placement)
 
     @property
     def program_names(self) -> list[str]:
         """The names under which the processes of the run print."""
-        return [p.name for p in self._bridge] + [node.name for node in self._placement.nodes]
+        nodes = [node.name for node in self._placement.nodes]
+        return [p.name for p in self._bridge] + nodes + [p.name for p in self._helpers]
 
     def run(self, report: Report, duration_s: float | None = None) -> int:
         """Start all processes, wait until they have ended, and return the exit status."""
@@ -41,7 +44,7 @@ class Run:
         with configured_platform(placement):
             report(_describe(placement, self._bridge))
             nodes = [NodeProgram.of(node) for node in placement.nodes]
-            runner = Runner([*self._bridge, *nodes], report)
+            runner = Runner([*self._bridge, *nodes, *self._helpers], report)
             exit_status = runner.run(inbox, duration_s)
         if users := remaining_users(placement.name):
             report(Notice(f"platform {placement.name} stays, for {', '.join(users)}"))

@@ -22,6 +22,7 @@ from rmw_manycore_py.launch.events import (
 from rmw_manycore_py.launch.processes.node_process import NodeProcess
 from rmw_manycore_py.launch.processes.program import NodeProgram
 from rmw_manycore_py.launch.processes.state import NodeState
+from rmw_manycore_py.launch.schedule import ended, respawned, schedule, started
 from rmw_manycore_py.signals import SignalInbox
 
 Report = Callable[[Event], None]
@@ -64,6 +65,7 @@ class Runner:
             stack.callback(self._destroy_all)
             self._watch(inbox, lambda: self._take_signals(inbox))
             self._take_signals(inbox)
+            schedule(self._nodes)
             while not self._is_over():
                 self._start_next(duration_s)
                 self._end_without_nodes()
@@ -94,6 +96,7 @@ class Runner:
             return
         if node.start():
             self._watch_node(node)
+            started(self._nodes, node)
         else:
             self._report_end(node)
             self._stop(f"{node.program.name} {node.ending.reason}" if node.ending else "")
@@ -129,8 +132,16 @@ class Runner:
         self._report_lines(node, node.collect())
         if node.program.supervised and not self._stopping:
             self._restart(node)
+            return
+        if not self._stopping and (successor := respawned(node)) is not None:
+            assert node.ending is not None
+            self._report(Restarting(node.program.name, node.ending.reason, node.last_lines))
+            self._nodes[self._nodes.index(node)] = successor
         else:
             self._report_end(node)
+        ended(self._nodes, node)
+        if node.program.rules.ends_run:
+            self._stop(f"{node.program.name} has ended")
 
     def _restart(self, node: NodeProcess) -> None:
         assert node.ending is not None

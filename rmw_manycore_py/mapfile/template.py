@@ -3,19 +3,21 @@
 
 from __future__ import annotations
 
+import json
 import os
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
-from rmw_manycore_py.mapfile.launch_file import read_launch_file
+from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError, MapfileError
+from rmw_manycore_py.mapfile.launch_file import LaunchedNode, read_launch_file
+from rmw_manycore_py.mapfile.placing.launched import Launched, program_of
 from rmw_manycore_py.mapfile.programs.executables import find_module
 from rmw_manycore_py.mapfile.programs.source import SourceNode, scan
 from rmw_manycore_py.ros.names import full_node_name
 
 _ADVICE = "# Choose the clusters. A node takes the first free core, unless its 'core' is given."
-_LAUNCH_SUFFIXES = (".launch.py", ".launch.xml", ".launch.yaml", ".launch.yml", ".xml", ".yaml")
+_LAUNCH_SUFFIXES = (".launch.py", "_launch.py", ".launch", ".xml", ".yaml", ".yml")
 
 
 @dataclass
@@ -25,26 +27,40 @@ class _Entry:
     publish: dict[str, str] = field(default_factory=dict)
     subscribe: dict[str, str] = field(default_factory=dict)
     remarks: list[str] = field(default_factory=list)
+    missing: str = ""  # why it cannot run here
 
 
-def init(sources: Sequence[Path], directory: Path | None = None, platform: str = "host") -> str:
+def init(
+    sources: Sequence[Path],
+    directory: Path | None = None,
+    platform: str = "host",
+    arguments: Mapping[str, str] | None = None,
+) -> str:
     """Return a mapfile with the nodes found in Python files, directories and one launch file.
 
-    Only the clusters are left to fill in. `directory` is where the mapfile will stand.
+    Only the clusters are left to fill in. `directory` is where the mapfile will stand, `arguments`
+    are those of the launch file.
     """
     directory = (directory or Path.cwd()).resolve()
     launches = [path for path in sources if path.is_file() and _is_launch_file(path)]
+    if arguments and not launches:
+        raise ManycoreError("NAME:=VALUE is for a launch file, and none is given", EXIT_BAD_INPUT)
     if len(launches) > 1:
         raise ManycoreError("a mapfile has one launch file", EXIT_BAD_INPUT)
     entries = [entry for file in _python_files(sources) for entry in _entries_of(file, directory)]
     for launch in launches:
-        entries = [*_entries_of_launch(launch), *entries]
+        entries = [*_entries_of_launch(launch, arguments or {}, directory), *entries]
     entries = _with_own_names(entries)
-    if not entries:
+    if not [entry for entry in entries if not entry.missing]:
         places = ", ".join(map(str, sources))
-        raise ManycoreError(f"no nodes found in {places}", EXIT_BAD_INPUT)
+        why = "".join(f"\n{entry.name}: {entry.missing}" for entry in entries)
+        found = "no nodes that can run here" if entries else "no nodes"
+        raise ManycoreError(f"{found} found in {places}{why}", EXIT_BAD_INPUT)
     head = [_ADVICE, f"platform: {platform}"]
     head += [f"launch_path: {_relative(launch, directory)}" for launch in launches]
+    if arguments:
+        head.append("launch_arguments:")
+        head += [f"  {name}: {json.dumps(value)}" for name, value in arguments.items()]
     return (
         "\n".join([*head, "nodes:", *(line for entry in entries for line in _lines(entry))]) + "\n"
     )
@@ -93,17 +109,37 @@ def _remarks(node: SourceNode) -> list[str]:
     return [f"{node.file.name}:{lines}: topic or type is computed; add it here"] if lines else []
 
 
-def _entries_of_launch(launch: Path) -> list[_Entry]:
-    nodes = read_launch_file(launch.resolve()).nodes
+def _entries_of_launch(launch: Path, arguments: Mapping[str, str], directory: Path) -> list[_Entry]:
+    nodes: list[Launched] = []
+    for node in read_launch_file(launch.resolve(), arguments).nodes:
+        nodes.append(node)
+        if _missing(node, directory):  # then its components, as far as they run alone
+            nodes += [one for one in node.components if not _missing(one, directory)]
     several = [node.label for node in nodes]
     return [
         _Entry(
             node.label
             if several.count(node.label) == 1
-            else full_node_name(node.namespace, node.label)
+            else full_node_name(node.namespace, node.label),
+            remarks=_components(node),
+            missing=_missing(node, directory),
         )
         for node in nodes
     ]
+
+
+def _missing(node: Launched, directory: Path) -> str:
+    try:
+        program_of(node, directory)
+    except MapfileError as error:
+        return "; ".join(str(problem) for problem in error.problems)
+    return ""
+
+
+def _components(node: Launched) -> list[str]:
+    if isinstance(node, LaunchedNode) and node.components:
+        return [f"loads {', '.join(one.label for one in node.components)}"]
+    return []
 
 
 def _start(file: Path, directory: Path) -> str:
@@ -144,6 +180,9 @@ def _with_own_names(entries: Iterable[_Entry]) -> list[_Entry]:
 
 
 def _lines(entry: _Entry) -> Iterator[str]:
+    if entry.missing:
+        yield f"  # {entry.name} cannot run here: {entry.missing}"
+        return
     yield f"  {entry.name}:"
     yield from (f"    # {remark}" for remark in entry.remarks)
     yield "    cluster: 1  # choose"

@@ -18,9 +18,10 @@ from rmw_manycore_py.topology import PROFILES
     epilog=examples(
         "manycore map init talker.py listener.py",
         "manycore map init src/ launch/demo.launch.xml --profile coolidge -o map.yaml",
+        "manycore map init launch/robot.launch.py namespace:=left -o map.yaml",
     ),
 )
-@click.argument("sources", nargs=-1, required=True, type=click.Path(exists=True, path_type=Path))
+@click.argument("sources", nargs=-1, required=True)
 @click.option("--profile", type=click.Choice(PROFILES), default="host", show_default=True)
 @click.option(
     "-o",
@@ -28,12 +29,15 @@ from rmw_manycore_py.topology import PROFILES
     type=click.Path(dir_okay=False, path_type=Path),
     help="File to write; it must not exist yet.  [default: standard output]",
 )
-def command(sources: tuple[Path, ...], profile: str, output: Path | None) -> None:
+def command(sources: tuple[str, ...], profile: str, output: Path | None) -> None:
     """Write a mapfile for the nodes in SOURCES: only the clusters are left to choose.
 
-    SOURCES are Python files, directories of them, and at most one launch file.
+    SOURCES are Python files, directories of them, and at most one launch file, with values for its
+    arguments as NAME:=VALUE.
     """
-    text = init(sources, output.parent if output else None, profile)
+    arguments = dict(source.split(":=", 1) for source in sources if ":=" in source)
+    files = [Path(source) for source in sources if ":=" not in source]
+    text = init(files, output.parent if output else None, profile, arguments)
     if output is None:
         click.echo(text, nl=False)
         return

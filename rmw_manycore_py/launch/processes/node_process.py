@@ -33,6 +33,7 @@ class NodeProcess:
         self.ending: Ending | None = None
         self.deadline_s = float("inf")  # on the monotonic clock: when the next step is due
         self.start_at_s = 0.0  # on the monotonic clock: not before, and later when it was started
+        self.respawns = 0  # how many processes of the node there were before
         self.pidfd = -1  # open while the node itself runs
         self.came_up = not program.supervised  # a supervised process reports it; known at its end
         self.vain_starts = 0  # how many processes before it ended without having come up
@@ -113,6 +114,7 @@ class NodeProcess:
     def leader_ended(self) -> None:
         """Note that the node itself ended; its children have a moment for their last words."""
         os.close(self.pidfd)
+        self.respawns = 0  # how many processes of the node there were before
         self.pidfd = -1
         self.deadline_s = time.monotonic() + ORPHAN_GRACE_S
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from rmw_manycore_py.launch.processes.environment import program_environment
-from rmw_manycore_py.mapfile.placing.placement import PlacedNode
+from rmw_manycore_py.mapfile.placing.placement import NO_RULES, LaunchRules, PlacedNode
 from rmw_manycore_py.topology import Core, HostCpu, as_host_cpu
 
 
@@ -27,6 +27,8 @@ class NodeProgram:
     host_cpus: tuple[int, ...]  # none: all that the runner may use
     directory: Path | None = None
     supervised: bool = False
+    rules: LaunchRules = NO_RULES
+    repeats: bool = False  # starts each time that the node of `rules.after` does
 
     @property
     def host_cpu(self) -> HostCpu:
@@ -43,4 +45,5 @@ class NodeProgram:
             core=node.place,
             host_cpus=(node.host_cpu,),
             directory=node.cwd,
+            rules=node.rules,
         )

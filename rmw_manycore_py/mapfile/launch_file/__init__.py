@@ -1,7 +1,21 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 """Launch files of ROS 2 in XML, YAML and Python: what they start, read without starting it."""
 
-from rmw_manycore_py.mapfile.launch_file.context import LaunchedNode, ParameterSource
+from rmw_manycore_py.mapfile.launch_file.launched import (
+    LaunchedComponent,
+    LaunchedNode,
+    ParameterSource,
+    Respawn,
+    Start,
+)
 from rmw_manycore_py.mapfile.launch_file.reader import LaunchFile, read_launch_file
 
-__all__ = ["LaunchFile", "LaunchedNode", "ParameterSource", "read_launch_file"]
+__all__ = [
+    "LaunchFile",
+    "LaunchedComponent",
+    "LaunchedNode",
+    "ParameterSource",
+    "Respawn",
+    "Start",
+    "read_launch_file",
+]

@@ -5,22 +5,24 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Iterable, Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from typing_extensions import override
 
-from rmw_manycore_py.errors import ManycoreError
-from rmw_manycore_py.mapfile.launch_file.context import LaunchContext, LaunchedNode, RefusedError
+from rmw_manycore_py.errors import ManycoreError, Problem
+from rmw_manycore_py.mapfile.launch_file.context import (
+    Later,
+    LaunchContext,
+    MissingText,
+    NotInstalledError,
+    RefusedError,
+)
 from rmw_manycore_py.mapfile.launch_file.guard import failure, guarded
 from rmw_manycore_py.mapfile.launch_file.substitutions import is_true, perform
 
 _HERE = str(Path(__file__).parent)
-# How output is shown and when a process is killed is for `manycore run` to say.
-_WITHOUT_EFFECT = frozenset(
-    {"output", "emulate_tty", "log_cmd", "shell", "sigterm_timeout", "sigkill_timeout"}
-    | {"output_format", "cached_output", "description"}
-)
 
 
 class Condition:
@@ -74,23 +76,33 @@ class LaunchConfigurationNotEquals(LaunchConfigurationEquals):
 class Action:
     """One thing a launch file does; knows the line it stands in."""
 
+    starts_process = False
+
     def __init__(self, *, condition: Condition | None = None) -> None:
         self.condition = condition
-        self.line = _calling_line()
+        self.line = calling_line()
 
     def visit(self, context: LaunchContext) -> None:
         """Do it, unless its condition says otherwise."""
         try:
             if self.condition is None or self.condition.evaluate(context):
-                self.execute(context)
+                visit_all(context, self.execute(context) or ())
+        except NotInstalledError as error:
+            self.cannot_run(context, error.at(context.file, self.line))
         except (ManycoreError, KeyboardInterrupt):
             raise
         except BaseException as error:  # values of kinds that launch does not expect either
             raise failure(context.file, error, self.line) from error
 
-    def execute(self, context: LaunchContext) -> None:
-        """Do it."""
+    def execute(self, context: LaunchContext) -> Any:
+        """Do it; actions that launch files define themselves may return others."""
         raise NotImplementedError
+
+    def cannot_run(self, context: LaunchContext, problem: Problem) -> None:
+        """Note that something it needs is not installed."""
+        context.notice(
+            self.line, f"cannot run here: expected {problem.expected}, found {problem.found}"
+        )
 
 
 class LaunchDescription(Action):
@@ -138,7 +150,7 @@ class DeclareLaunchArgument(Action):
             if self.default_value is None:
                 expected = f"a value for the launch argument '{self.name}', in launch_arguments"
                 raise RefusedError(expected, "none, and it has no default", self.name)
-            values[self.name] = perform(context, self.default_value)
+            values[self.name] = text_or_missing(context, self.default_value)
         if self.choices is not None and values[self.name] not in self.choices:
             raise RefusedError(
                 f"one of {', '.join(self.choices)}", f"'{values[self.name]}'", self.name
@@ -154,7 +166,8 @@ class SetLaunchConfiguration(Action):
 
     @override
     def execute(self, context: LaunchContext) -> None:
-        context.launch_configurations[perform(context, self.name)] = perform(context, self.value)
+        name = perform(context, self.name)
+        context.launch_configurations[name] = text_or_missing(context, self.value)
 
 
 class SetEnvironmentVariable(Action):
@@ -237,83 +250,51 @@ class TimerAction(Action):
     """`timer`: actions that come later."""
 
     def __init__(
-        self, *, period: Any, actions: Iterable[Any], condition: Condition | None = None
+        self,
+        *,
+        period: Any,
+        actions: Iterable[Any],
+        cancel_on_shutdown: Any = True,  # noqa: ARG002  # timers do end with the run
+        condition: Condition | None = None,
     ) -> None:
         super().__init__(condition=condition)
         self.period, self.actions = period, list(actions)
 
     @override
     def execute(self, context: LaunchContext) -> None:
-        context.notice(self.line, "what the timer delays starts with the others")
-        visit_all(context, self.actions)
+        text = str(self.period) if isinstance(self.period, (int, float)) else self.period
+        try:
+            period_s = float(perform(context, text))
+        except ValueError:
+            raise RefusedError("a number of seconds", repr(perform(context, text))) from None
+        start = replace(context.start, delay_s=context.start.delay_s + period_s)
+        actions = self.actions
+        context.later.append(Later(start, context.file, lambda: visit_all(context, actions)))
+
+    def cancel(self) -> None:
+        """Do nothing: no timer runs while a launch file is read."""
 
 
-class ExecuteProcess(Action):
-    """`executable`: a process that is not declared as a node."""
-
-    def __init__(
-        self,
-        *,
-        cmd: Iterable[Any],
-        name: Any = None,
-        additional_env: Mapping[Any, Any] | None = None,
-        condition: Condition | None = None,
-        **options: Any,
-    ) -> None:
-        super().__init__(condition=condition)
-        self.cmd, self.name = list(cmd), name
-        self.additional_env = dict(additional_env or {})
-        self.options = options
-
-    @override
-    def execute(self, context: LaunchContext) -> None:
-        note_options(context, self.line, self.options)
-        command = tuple(perform(context, word) for word in self.cmd)
-        if not command or not command[0]:
-            raise RefusedError("a program and its arguments", "none")
-        context.nodes.append(
-            LaunchedNode(
-                file=context.file,
-                line=self.line,
-                name=None if self.name is None else perform(context, self.name),
-                namespace="/",
-                package=None,
-                executable=None,
-                command=command,
-                parameters=(),
-                remappings=(),
-                arguments=(),
-                ros_arguments=(),
-                env=environment(context, self.additional_env),
-            )
-        )
+def text_or_missing(context: LaunchContext, value: Any) -> str:
+    """Return a text for a launch argument; what is not installed matters only where it is used."""
+    try:
+        return perform(context, value)
+    except NotInstalledError as error:
+        return MissingText.of(error)
 
 
 def visit_all(context: LaunchContext, entities: Iterable[Any]) -> None:
     """Execute actions in their order."""
-    for entity in entities:
+    for entity in [entities] if isinstance(entities, Action) else entities:
+        if isinstance(entity, (list, tuple)):
+            visit_all(context, entity)
+            continue
         if not isinstance(entity, Action):
             raise RefusedError("a launch action", type(entity).__name__)
         entity.visit(context)
 
 
-def environment(context: LaunchContext, additional: Mapping[Any, Any]) -> dict[str, str]:
-    """Return what a launch file adds to the environment of a process."""
-    own = {perform(context, name): perform(context, value) for name, value in additional.items()}
-    return {**context.scope.environment, **own}
-
-
-def note_options(context: LaunchContext, line: int, options: Mapping[str, Any]) -> None:
-    """Refuse options that are not known; say of known ones that they have no effect here."""
-    for name, value in options.items():
-        if name in _WITHOUT_EFFECT or value in (None, False, "false", "", ()):
-            continue
-        if name not in ("respawn", "respawn_delay", "respawn_max_retries", "on_exit", "prefix"):
-            raise RefusedError("an option of a node or executable", f"'{name}'", name)
-        context.notice(line, f"'{name}' has no effect under manycore run")
-
-
-def _calling_line() -> int:
+def calling_line() -> int:
     """Return the line of the launch file in Python that makes an action."""
     frame = sys._getframe(1)
     while frame.f_back is not None and frame.f_code.co_filename.startswith(_HERE):

@@ -13,7 +13,10 @@ from rmw_manycore_py.mapfile.format.bounded_yaml import MAX_DEPTH
 from rmw_manycore_py.mapfile.format.document import Document, KeyPath, read_text, read_yaml
 
 # In YAML these keys hold children; everything else is an attribute.
-_CHILD_LISTS = ("param", "remap", "env", "arg", "let")
+_CHILD_LISTS = (
+    *("param", "remap", "env", "arg", "let", "keep", "choice"),
+    *("composable_node", "extra_arg"),
+)
 _CHILD_BLOCKS = ("group", "timer")
 
 

@@ -3,13 +3,18 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable
 from typing import Any
 
 from rmw_manycore_py.errors import MapfileError
 from rmw_manycore_py.mapfile.format.validation import describe
 from rmw_manycore_py.mapfile.launch_file import actions as a
+from rmw_manycore_py.mapfile.launch_file import composition as c
+from rmw_manycore_py.mapfile.launch_file import events as e
+from rmw_manycore_py.mapfile.launch_file import process_actions as x
 from rmw_manycore_py.mapfile.launch_file import ros_actions as r
+from rmw_manycore_py.mapfile.launch_file import settings as t
 from rmw_manycore_py.mapfile.launch_file import text
 from rmw_manycore_py.mapfile.launch_file.context import RefusedError
 from rmw_manycore_py.mapfile.launch_file.elements import Element
@@ -20,7 +25,10 @@ from rmw_manycore_py.mapfile.launch_file.include import (
 from rmw_manycore_py.mapfile.launch_file.parameters import ParameterFile, ParameterValue
 
 Make = Callable[[Element], a.Action]
-_OPTIONS = ("output", "emulate_tty", "respawn", "respawn_delay", "respawn_max_retries", "on_exit")
+_OPTIONS = (
+    *("output", "emulate_tty", "respawn", "respawn_delay", "respawn_max_retries", "cwd"),
+    *("sigterm_timeout", "sigkill_timeout"),
+)
 _TYPES = {"bool": bool, "int": int, "float": float, "double": float, "str": str}
 
 
@@ -82,18 +90,54 @@ def _arg(element: Element) -> a.Action:
 
 
 def _node(element: Element) -> a.Action:
-    return r.Node(
+    return r.Node(**_node_attributes(element))
+
+
+def _node_attributes(element: Element) -> dict[str, Any]:
+    element.get("exec_name")
+    return {
+        "package": _text(element.get("pkg")),
+        "executable": _text(element.require("exec")),
+        "name": _text(element.get("name")),
+        "namespace": _text(element.get("namespace", "ns")),
+        "arguments": _words(element.get("args")),
+        "ros_arguments": _words(element.get("ros_args")),
+        "parameters": [_parameter(child) for child in element.take("param")],
+        "remappings": _pairs(element.take("remap"), "from", "to"),
+        "additional_env": dict(_pairs(element.take("env"), "name", "value")),
+        **_options(element),
+    }
+
+
+def _container(element: Element) -> a.Action:
+    components = [_component(child) for child in element.take("composable_node")]
+    attributes = _node_attributes(element)
+    attributes["namespace"] = attributes["namespace"] or ""
+    return c.ComposableNodeContainer(composable_node_descriptions=components, **attributes)
+
+
+def _load(element: Element) -> a.Action:
+    components = [_component(child) for child in element.take("composable_node")]
+    target = _text(element.require("target"))
+    return c.LoadComposableNodes(composable_node_descriptions=components, target_container=target)
+
+
+def _component(element: Element) -> c.ComposableNode:
+    component = c.ComposableNode(
         package=_text(element.require("pkg")),
-        executable=_text(element.require("exec")),
+        plugin=_text(element.require("plugin")),
         name=_text(element.get("name")),
         namespace=_text(element.get("namespace", "ns")),
-        arguments=_words(element.get("args")),
-        ros_arguments=_words(element.get("ros_args")),
         parameters=[_parameter(child) for child in element.take("param")],
         remappings=_pairs(element.take("remap"), "from", "to"),
-        additional_env=dict(_pairs(element.take("env"), "name", "value")),
-        **_options(element),
+        extra_arguments=[
+            {name: value} for name, value in _pairs(element.take("extra_arg"), "name", "value")
+        ],
+        condition=_condition(element),
     )
+    component.line = element.line
+    element.check_all_used()
+    return component
 
 
 def _words(line: Any) -> list[text.Parts]:
@@ -101,8 +145,14 @@ def _words(line: Any) -> list[text.Parts]:
 
 
 def _options(element: Element) -> dict[str, Any]:
-    options = {name: element.get(name) for name in _OPTIONS}
-    return {**options, "prefix": element.get("launch-prefix")}
+    options: dict[str, Any] = {name: _text(element.get(name)) for name in _OPTIONS}
+    on_exit = _text(element.get("on_exit"))
+    if on_exit is not None:
+        words = "".join(getattr(part, "text", "?") for part in on_exit)
+        if words != "shutdown":
+            raise element.problem("on_exit to be 'shutdown'", repr(words))
+        options["on_exit"] = [e.EndLaunch()]
+    return {**options, "prefix": _text(element.get("launch-prefix"))}
 
 
 def _pairs(elements: list[Element], first: str, second: str) -> list[tuple[str, Any]]:
@@ -159,8 +209,8 @@ def _group(element: Element) -> a.Action:
 
 
 def _executable(element: Element) -> a.Action:
-    element.get("shell")
-    return a.ExecuteProcess(
+    return x.ExecuteProcess(
+        shell=_text(element.get("shell")),
         cmd=_words(element.require("cmd")),
         name=_text(element.get("name")),
         additional_env=dict(_pairs(element.take("env"), "name", "value")),
@@ -169,7 +219,31 @@ def _executable(element: Element) -> a.Action:
 
 
 def _of_two(make: Callable[..., a.Action], first: str, second: str) -> Make:
-    return lambda e: make(_text(e.require(first)), _text(e.require(second)))
+    return lambda el: make(_text(el.require(first)), _text(el.require(second)))
+
+
+def _append_environment(element: Element) -> a.Action:
+    return t.AppendEnvironmentVariable(
+        _text(element.require("name")),
+        _text(element.require("value")),
+        prepend=_text(element.get("prepend")) or False,
+        separator=_text(element.get("separator")) or os.pathsep,
+    )
+
+
+def _timer(element: Element) -> a.Action:
+    element.get("cancel_on_shutdown")
+    return a.TimerAction(period=_text(element.require("period")), actions=_actions(element))
+
+
+def _shutdown(element: Element) -> a.Action:
+    element.get("reason")
+    return e.EndLaunch()
+
+
+def _reset(element: Element) -> a.Action:
+    keep = dict(_pairs(element.take("keep"), "name", "value"))
+    return t.ResetLaunchConfigurations(keep)
 
 
 def _set_parameter(element: Element) -> a.Action:
@@ -192,7 +266,18 @@ _TAGS: dict[str, Make] = {
     "set_env": _of_two(a.SetEnvironmentVariable, "name", "value"),
     "set_remap": _of_two(r.SetRemap, "from", "to"),
     "set_parameter": _set_parameter,
-    "set_parameters_from_file": lambda e: r.SetParametersFromFile(_text(e.require("filename"))),
-    "log": lambda e: a.LogInfo(msg=_text(e.require("message"))),
-    "timer": lambda e: a.TimerAction(period=_text(e.require("period")), actions=_actions(e)),
+    "set_parameters_from_file": lambda el: r.SetParametersFromFile(_text(el.require("filename"))),
+    "log": lambda el: a.LogInfo(msg=_text(el.require("message"))),
+    "timer": _timer,
+    "ros_timer": _timer,
+    "node_container": _container,
+    "load_composable_node": _load,
+    "append_env": _append_environment,
+    "unset_env": lambda el: t.UnsetEnvironmentVariable(_text(el.require("name"))),
+    "reset_env": lambda _e: t.ResetEnvironment(),
+    "unset": lambda el: t.UnsetLaunchConfiguration(_text(el.require("name"))),
+    "reset": _reset,
+    "set_ros_log_dir": lambda el: r.SetROSLogDir(_text(el.require("new_log_dir"))),
+    "set_use_sim_time": lambda el: r.SetUseSimTime(_text(el.require("value"))),
+    "shutdown": _shutdown,
 }

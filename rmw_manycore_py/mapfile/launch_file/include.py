@@ -11,8 +11,17 @@ from typing import Any
 from typing_extensions import override
 
 from rmw_manycore_py.errors import MapfileError, Problem
-from rmw_manycore_py.mapfile.launch_file.actions import Action, Condition, LaunchDescription
-from rmw_manycore_py.mapfile.launch_file.context import LaunchContext, RefusedError
+from rmw_manycore_py.mapfile.launch_file.actions import (
+    Action,
+    Condition,
+    LaunchDescription,
+    text_or_missing,
+)
+from rmw_manycore_py.mapfile.launch_file.context import (
+    LaunchContext,
+    NotInstalledError,
+    RefusedError,
+)
 from rmw_manycore_py.mapfile.launch_file.substitutions import perform
 
 Frontend = Callable[[Path], LaunchDescription]
@@ -47,12 +56,22 @@ class IncludeLaunchDescription(Action):
     def execute(self, context: LaunchContext) -> None:
         source = self.source
         path = source.launch_file_path if isinstance(source, LaunchDescriptionSource) else source
+        if isinstance(path, LaunchDescription):
+            self._set_arguments(context)
+            path.visit(context)
+            return
         file = Path(perform(context, path))
         if not os.path.isfile(file):
-            raise RefusedError("an existing launch file", str(file))
-        for name, value in self.launch_arguments:
-            context.launch_configurations[perform(context, name)] = perform(context, value)
+            missing = context.is_missing(file)
+            error = NotInstalledError if missing else RefusedError
+            raise error("an existing launch file", str(file))
+        self._set_arguments(context)
         read_into(context, file)
+
+    def _set_arguments(self, context: LaunchContext) -> None:
+        for name, value in self.launch_arguments:
+            key = perform(context, name)
+            context.launch_configurations[key] = text_or_missing(context, value)
 
 
 def read_into(context: LaunchContext, file: Path) -> None:
@@ -69,6 +88,8 @@ def read_into(context: LaunchContext, file: Path) -> None:
     if frontend is None:
         problem = Problem(file, 0, "", f"a file ending in {', '.join(FRONTENDS)}", f"'{file.name}'")
         raise MapfileError(problem)
-    with context.reading(file):
-        frontend(file).visit(context)
-    context.depth -= 1
+    try:
+        with context.reading(file):
+            frontend(file).visit(context)
+    finally:
+        context.depth -= 1

@@ -12,7 +12,12 @@ from rmw_manycore_py.errors import MapfileError
 from rmw_manycore_py.mapfile.format.document import parse_yaml, read_yaml
 from rmw_manycore_py.mapfile.format.validation import describe
 from rmw_manycore_py.mapfile.launch_file import text
-from rmw_manycore_py.mapfile.launch_file.context import LaunchContext, ParameterSource, RefusedError
+from rmw_manycore_py.mapfile.launch_file.context import (
+    LaunchContext,
+    NotInstalledError,
+    RefusedError,
+)
+from rmw_manycore_py.mapfile.launch_file.launched import ParameterSource
 from rmw_manycore_py.mapfile.launch_file.substitutions import Substitution, is_true, perform
 
 _SCALARS = (bool, int, float, str)
@@ -39,6 +44,13 @@ class ParameterValue:
         return value
 
 
+class Parameter:
+    """A parameter with its name."""
+
+    def __init__(self, name: Any, value: Any, *, value_type: Any = None) -> None:
+        self.name, self.value = name, ParameterValue(value, value_type=value_type)
+
+
 class ParameterFile:
     """A parameter file, in which substitutions may stand."""
 
@@ -49,7 +61,10 @@ class ParameterFile:
         """Return the file, or what it says for `node` where substitutions had to be made."""
         path = Path(os.path.expanduser(perform(context, self.param_file)))
         if not os.path.isfile(path):
-            raise RefusedError("an existing parameter file", str(path))
+            if context.is_missing(path) or is_true(context, self.allow_substs):
+                raise NotInstalledError("an existing parameter file", str(path))
+            context.notice(0, f"no such parameter file, so it is left out: {path}")
+            return {}
         if not is_true(context, self.allow_substs):
             return path
         return _expanded(context, path, node)
@@ -63,6 +78,8 @@ def evaluate_all(context: LaunchContext, sources: Any, node: str) -> tuple[Param
 def _evaluate(context: LaunchContext, source: Any, node: str) -> ParameterSource:
     if isinstance(source, Mapping):
         return dict(_flat(context, source, ""))
+    if isinstance(source, Parameter):
+        return {perform(context, source.name): source.value.evaluate(context)}
     if isinstance(source, ParameterFile):
         return source.evaluate(context, node)
     return ParameterFile(source).evaluate(context, node)
@@ -110,7 +127,7 @@ def _typed(words: str) -> Any:
         return words
     if isinstance(value, list) and not all(isinstance(part, _SCALARS) for part in value):
         raise RefusedError("a list of bools, numbers or strings", repr(words))
-    return value if isinstance(value, (bool, int, float, list)) else words
+    return value if isinstance(value, (bool, int, float, str, list)) else words
 
 
 def _expanded(context: LaunchContext, path: Path, node: str) -> dict[str, Any]:

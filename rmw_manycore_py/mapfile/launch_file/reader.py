@@ -8,14 +8,17 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from rmw_manycore_py.errors import MapfileError
-from rmw_manycore_py.mapfile.launch_file.context import LaunchContext, LaunchedNode, RefusedError
+from rmw_manycore_py.mapfile.launch_file.context import LaunchContext, RefusedError
 from rmw_manycore_py.mapfile.launch_file.elements import read_xml, read_yaml_elements
 from rmw_manycore_py.mapfile.launch_file.frontend import description
 from rmw_manycore_py.mapfile.launch_file.include import FRONTENDS, read_into
-from rmw_manycore_py.mapfile.launch_file.python_file import read_python, stand_ins
+from rmw_manycore_py.mapfile.launch_file.launched import LaunchedNode
+from rmw_manycore_py.mapfile.launch_file.python_file import read_python
+from rmw_manycore_py.mapfile.launch_file.stand_ins import stand_ins
 
 FRONTENDS.update(
     {
+        ".launch": lambda file: description(read_xml(file)),
         ".xml": lambda file: description(read_xml(file)),
         ".yaml": lambda file: description(read_yaml_elements(file)),
         ".yml": lambda file: description(read_yaml_elements(file)),
@@ -38,9 +41,12 @@ def read_launch_file(file: Path, arguments: Mapping[str, str] | None = None) -> 
     """Read a launch file with values for its arguments."""
     context = LaunchContext(file, arguments or {})
     try:
-        with stand_ins():
+        with stand_ins(context):
             read_into(context, file)
+            with context.reading(file):
+                context.finish()
     except RefusedError as refused:
         raise MapfileError(refused.at(file, 0)) from refused
     declared = frozenset(context.declared)
-    return LaunchFile(file, tuple(context.nodes), declared, tuple(context.notices))
+    nodes = tuple(context.result())
+    return LaunchFile(file, nodes, declared, tuple(context.notices))

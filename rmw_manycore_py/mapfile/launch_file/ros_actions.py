@@ -8,23 +8,16 @@ from typing import Any
 
 from typing_extensions import override
 
-from rmw_manycore_py.mapfile.launch_file.actions import (
-    Action,
-    Condition,
-    environment,
-    note_options,
-)
-from rmw_manycore_py.mapfile.launch_file.context import (
-    LaunchContext,
-    LaunchedNode,
-    RefusedError,
-    join_namespace,
-)
+from rmw_manycore_py.mapfile.launch_file.actions import Action, Condition
+from rmw_manycore_py.mapfile.launch_file.context import LaunchContext, RefusedError, join_namespace
+from rmw_manycore_py.mapfile.launch_file.events import change_state
+from rmw_manycore_py.mapfile.launch_file.launched import LaunchedNode
 from rmw_manycore_py.mapfile.launch_file.parameters import ParameterFile, evaluate_all
-from rmw_manycore_py.mapfile.launch_file.substitutions import perform
+from rmw_manycore_py.mapfile.launch_file.process_actions import ProcessAction
+from rmw_manycore_py.mapfile.launch_file.substitutions import is_true, perform
 
 
-class Node(Action):
+class Node(ProcessAction):
     """`node`: a ROS 2 node."""
 
     def __init__(
@@ -38,25 +31,40 @@ class Node(Action):
         remappings: Iterable[tuple[Any, Any]] | None = None,
         arguments: Any = None,
         ros_arguments: Any = None,
-        additional_env: Any = None,
-        condition: Condition | None = None,
         **options: Any,
     ) -> None:
-        super().__init__(condition=condition)
+        super().__init__(**options)
         self.executable, self.package = executable, package
         self.name, self.namespace = name, namespace
         self.parameters, self.remappings = parameters, list(remappings or ())
         self.arguments, self.ros_arguments = arguments, ros_arguments
-        self.additional_env, self.options = dict(additional_env or {}), options
+        self.known_name = ""
+
+    def full_name(self, context: LaunchContext) -> str:
+        """Return the full name, as it is where the node stands, or as known at this point."""
+        return self.known_name or self._names(context)[2]
+
+    def _names(self, context: LaunchContext) -> tuple[str | None, str, str]:
+        name = None if self.name is None else perform(context, self.name) or None
+        given = "" if self.namespace is None else perform(context, self.namespace)
+        namespace = join_namespace(context.scope.namespace, given)
+        label = name or perform(context, self.executable)
+        return name, namespace, f"{namespace.rstrip('/')}/{label}"
+
+    @override
+    def label(self, context: LaunchContext) -> tuple[str | None, str]:
+        try:
+            _, namespace, full_name = self._names(context)
+        except RefusedError:
+            return None, "/"
+        return full_name.rpartition("/")[2], namespace
 
     @override
     def execute(self, context: LaunchContext) -> None:
-        note_options(context, self.line, self.options)
-        name = None if self.name is None else perform(context, self.name) or None
+        name, namespace, full_name = self._names(context)
+        self.known_name = full_name
+        options = self.evaluate_options(context)
         executable = perform(context, self.executable)
-        given = "" if self.namespace is None else perform(context, self.namespace)
-        namespace = join_namespace(context.scope.namespace, given)
-        full_name = f"{namespace.rstrip('/')}/{name or executable}"
         remappings = tuple((perform(context, a), perform(context, b)) for a, b in self.remappings)
         package = None if self.package is None else perform(context, self.package)
         context.nodes.append(
@@ -73,30 +81,29 @@ class Node(Action):
                 remappings=context.scope.remappings + remappings,
                 arguments=tuple(perform(context, word) for word in self.arguments or ()),
                 ros_arguments=tuple(perform(context, word) for word in self.ros_arguments or ()),
-                env=environment(context, self.additional_env),
+                env=options.env,
+                serial=context.serial(self),
+                prefix=options.prefix,
+                cwd=options.cwd,
+                start=context.start,
+                respawn=options.respawn,
             )
         )
 
 
 class LifecycleNode(Node):
-    """A node with managed states; bringing it through them is left to whoever manages it."""
+    """A node with managed states."""
 
-
-class ComposableNodeContainer(Action):
-    """Components loaded into one process are not nodes that can be placed on cores."""
-
-    def __init__(self, *, condition: Condition | None = None, **_described: Any) -> None:
-        super().__init__(condition=condition)
+    def __init__(self, *, autostart: Any = False, **described: Any) -> None:
+        super().__init__(**described)
+        self.autostart = autostart
 
     @override
     def execute(self, context: LaunchContext) -> None:
-        raise RefusedError(
-            "nodes with an executable of their own", "a container of composable nodes"
-        )
-
-
-class LoadComposableNodes(ComposableNodeContainer):
-    """The same."""
+        super().execute(context)
+        if is_true(context, self.autostart):
+            change_state(context, [context.serial(self)], 1)
+            change_state(context, [context.serial(self)], 3)
 
 
 class PushROSNamespace(Action):
@@ -147,3 +154,22 @@ class SetParametersFromFile(Action):
     @override
     def execute(self, context: LaunchContext) -> None:
         context.scope.parameters += evaluate_all(context, [ParameterFile(self.filename)], "")
+
+
+class SetUseSimTime(SetParameter):
+    """`set_use_sim_time`."""
+
+    def __init__(self, value: Any, *, condition: Condition | None = None) -> None:
+        super().__init__("use_sim_time", value, condition=condition)
+
+
+class SetROSLogDir(Action):
+    """`set_ros_log_dir`: for the processes that follow."""
+
+    def __init__(self, new_log_dir: Any, *, condition: Condition | None = None) -> None:
+        super().__init__(condition=condition)
+        self.new_log_dir = new_log_dir
+
+    @override
+    def execute(self, context: LaunchContext) -> None:
+        context.scope.environment["ROS_LOG_DIR"] = perform(context, self.new_log_dir)

@@ -16,7 +16,12 @@ from rmw_manycore_py.errors import shorten
 from rmw_manycore_py.mapfile.format.bounded_yaml import MAX_BYTES
 from rmw_manycore_py.mapfile.launch_file import expression
 from rmw_manycore_py.mapfile.launch_file.child import ChildBoundError, run_child
-from rmw_manycore_py.mapfile.launch_file.context import LaunchContext, RefusedError
+from rmw_manycore_py.mapfile.launch_file.context import (
+    LaunchContext,
+    MissingText,
+    NotInstalledError,
+    RefusedError,
+)
 from rmw_manycore_py.ros import ament
 
 # Enough of an expression or command to know it by, before what is wrong with it.
@@ -26,6 +31,13 @@ COMMAND_TIMEOUT_S = 60
 
 class Substitution:
     """A text that is known only while the launch file is read."""
+
+    def __init__(self) -> None:
+        """Exist, as subclasses in launch files call it."""
+
+    def describe(self) -> str:
+        """Return what it is, for launch files that print it."""
+        return type(self).__name__
 
     def perform(self, context: LaunchContext) -> str:
         """Return the text."""
@@ -75,10 +87,15 @@ class LaunchConfiguration(Substitution):
     def perform(self, context: LaunchContext) -> str:
         name = perform(context, self.variable_name)
         if name in context.launch_configurations:
-            return context.launch_configurations[name]
+            value = context.launch_configurations[name]
+            if isinstance(value, MissingText):
+                raise value.error
+            return value
         if self.default is None:
             known = ", ".join(sorted(context.launch_configurations)) or "none"
             raise RefusedError(f"a declared launch argument ({known})", f"'{name}'")
+        if isinstance(self.default, (bool, int, float)):
+            return str(self.default)
         return perform(context, self.default)
 
 
@@ -113,7 +130,7 @@ class FindPackagePrefix(Substitution):
         name = perform(context, self.package)
         path = find(name)
         if path is None:
-            raise RefusedError("an installed package", f"'{name}'")
+            raise NotInstalledError("an installed package", f"'{name}'")
         return path
 
 
@@ -123,6 +140,13 @@ class FindPackageShare(FindPackagePrefix):
     @override
     def perform(self, context: LaunchContext) -> str:
         return str(self.found(context, ament.package_share))
+
+    def find(self, package_name: str) -> str:
+        """Return the share directory of a package."""
+        path = ament.package_share(package_name)
+        if path is None:
+            raise NotInstalledError("an installed package", f"'{package_name}'")
+        return str(path)
 
 
 class ExecutableInPackage(Substitution):
@@ -137,7 +161,7 @@ class ExecutableInPackage(Substitution):
         name = perform(context, self.executable)
         path = Path(prefix, "lib", perform(context, self.package), name)
         if not os.path.isfile(path):
-            raise RefusedError("an executable of the package", str(path))
+            raise NotInstalledError("an executable of the package", str(path))
         return str(path)
 
 
@@ -152,7 +176,7 @@ class FindExecutable(Substitution):
         name = perform(context, self.name)
         path = shutil.which(name)
         if path is None:
-            raise RefusedError("an executable on the PATH", f"'{name}'")
+            raise NotInstalledError("an executable on the PATH", f"'{name}'")
         return path
 
 
@@ -164,7 +188,10 @@ class PathJoinSubstitution(Substitution):
 
     @override
     def perform(self, context: LaunchContext) -> str:
-        return str(Path(*(perform(context, part) for part in self.substitutions)))
+        return os.path.join(*(perform(context, part) for part in self.substitutions))
+
+    def __truediv__(self, part: Any) -> PathJoinSubstitution:
+        return PathJoinSubstitution([*self.substitutions, part])
 
 
 class ThisLaunchFile(Substitution):
@@ -255,6 +282,14 @@ class OrSubstitution(_Logic):
     @override
     def holds(self, context: LaunchContext) -> bool:
         return any(is_true(context, operand) for operand in self.operands)
+
+
+class AllSubstitution(AndSubstitution):
+    """`$(all a b c)`."""
+
+
+class AnySubstitution(OrSubstitution):
+    """`$(any a b c)`."""
 
 
 class EqualsSubstitution(_Logic):

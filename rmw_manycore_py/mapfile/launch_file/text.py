@@ -8,6 +8,7 @@ from collections.abc import Callable
 from typing import Any
 
 from rmw_manycore_py.mapfile.format.bounded_yaml import MAX_DEPTH
+from rmw_manycore_py.mapfile.launch_file import file_substitutions as f
 from rmw_manycore_py.mapfile.launch_file import substitutions as s
 from rmw_manycore_py.mapfile.launch_file.context import RefusedError
 
@@ -24,6 +25,13 @@ _BY_NAME: dict[str, tuple[int, int, Callable[..., s.Substitution]]] = {
     "eval": (1, 2, s.PythonExpression),
     "command": (1, 2, lambda line, on_stderr="fail": s.Command(line, on_stderr=on_stderr)),
     "not": (1, 1, s.NotSubstitution),
+    "all": (1, 99, s.AllSubstitution),
+    "any": (1, 99, s.AnySubstitution),
+    "anon": (1, 1, f.AnonName),
+    "file-content": (1, 1, f.FileContent),
+    "launch_log_dir": (0, 0, f.LaunchLogDir),
+    "log_dir": (0, 0, f.LaunchLogDir),
+    "param": (1, 2, lambda name, default=None: f.Parameter(name, default=default)),
     "and": (2, 2, s.AndSubstitution),
     "or": (2, 2, s.OrSubstitution),
     "equals": (2, 2, s.EqualsSubstitution),

@@ -13,6 +13,40 @@ from rmw_manycore_py.topology import Core, Topology
 
 
 @dataclass(frozen=True)
+class PlacedComponent:
+    """A node that a container loads, as the request for it has it."""
+
+    package: str
+    plugin: str
+    name: str
+    namespace: str
+    parameters: Mapping[str, Any]
+    remappings: tuple[tuple[str, str], ...]
+    extra_arguments: Mapping[str, Any]
+
+
+@dataclass(frozen=True)
+class LaunchRules:
+    """What a launch file wants of a node besides its command line.
+
+    It starts `delay_s` after the others, or after the node `after` has started or ended; it is
+    started again up to `max_respawns` times (below 0: always) unless `respawn_delay_s` is None.
+    """
+
+    after: str | None = None
+    after_exit: bool = False
+    delay_s: float = 0.0
+    respawn_delay_s: float | None = None
+    max_respawns: int = 0
+    ends_run: bool = False
+    transitions: tuple[int, ...] = ()
+    components: tuple[PlacedComponent, ...] = ()
+
+
+NO_RULES = LaunchRules()
+
+
+@dataclass(frozen=True)
 class PlacedNode:
     """A node on its core; `env` is what is set on top of the caller's environment."""
 
@@ -31,6 +65,7 @@ class PlacedNode:
     publish: Mapping[str, str]
     subscribe: Mapping[str, str]
     workers: tuple[tuple[Core, int], ...]  # with the host CPU of each
+    rules: LaunchRules = NO_RULES
 
     @property
     def place(self) -> Core:

@@ -4,14 +4,16 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from rmw_manycore_py.errors import MapfileError, Problem
 from rmw_manycore_py.mapfile.format.checks import PLACE_VARIABLES
 from rmw_manycore_py.mapfile.format.mapfile import Mapfile
-from rmw_manycore_py.mapfile.launch_file import LaunchFile, read_launch_file
+from rmw_manycore_py.mapfile.launch_file import LaunchedNode, LaunchFile, read_launch_file
 from rmw_manycore_py.mapfile.placing.crossings import bridge_placement
 from rmw_manycore_py.mapfile.placing.imports import check_imports
+from rmw_manycore_py.mapfile.placing.launched import launch_rules
 from rmw_manycore_py.mapfile.placing.placement import BridgePlacement, PlacedNode, Placement
 from rmw_manycore_py.mapfile.placing.start import NodeStart, node_start, ros_arguments
 from rmw_manycore_py.mapfile.placing.topics import (
@@ -47,10 +49,15 @@ def resolve(mapfile: Mapfile) -> Placement:
     bridge = bridge_placement(mapfile, starts, {*cores.values(), *of_workers})
     cpus = usable_cpus()
     host_cpus = _host_cpus(mapfile, [*cores.values(), *of_workers], bridge, cpus)
+    launched = {name: start.launched for name, start in starts.items()}
     nodes = tuple(
-        _place(mapfile, name, start, cores[name], workers[name], host_cpus)
+        replace(
+            _place(mapfile, name, start, cores[name], workers[name], host_cpus),
+            rules=launch_rules(name, launched)[0],
+        )
         for name, start in starts.items()
     )
+    of_rules = [text for name in starts for text in launch_rules(name, launched)[1]]
     topics = topic_table(mapfile, nodes)
     memory = memory_of_clusters(mapfile, topics)
     problems = [
@@ -69,7 +76,7 @@ def resolve(mapfile: Mapfile) -> Placement:
         memory=memory,
         host_cpus=host_cpus,
         bridge=bridge,
-        notices=(*mapfile.notices, *_notices(mapfile, launch, host_cpus, cpus)),
+        notices=(*mapfile.notices, *_notices(mapfile, launch, host_cpus, cpus), *of_rules),
     )
 
 
@@ -109,13 +116,18 @@ def node_starts(mapfile: Mapfile, launch: LaunchFile | None) -> dict[str, NodeSt
             problems += error.problems
             continue
         starts[name] = start
-        if start.full_name in owners:
+        if start.full_name in owners and not _has_number(start):
             found = f"{start.full_name}, the name of '{owners[start.full_name]}'"
             problems.append(mapfile.document.problem(("nodes", name), "a name of its own", found))
         owners.setdefault(start.full_name, name)
     if problems:
         raise MapfileError(*problems)
     return starts
+
+
+def _has_number(start: NodeStart) -> bool:
+    """Tell whether the launch file itself starts several nodes of one name."""
+    return isinstance(start.launched, LaunchedNode) and start.launched.number > 1
 
 
 def _cores(mapfile: Mapfile) -> dict[str, Core]:
@@ -194,7 +206,7 @@ def _place(
         host_cpu=host_cpus[core],
         argv=[*start.program.argv, *start.arguments, *words],
         env={**_environment(mapfile, name, core, start), **worker_environment},
-        cwd=mapfile.path.parent.resolve(),
+        cwd=_directory(mapfile, start),
         program=(*start.program.argv, *start.arguments),
         ros_arguments=words,
         parameters=start.parameters,
@@ -203,6 +215,10 @@ def _place(
         subscribe=subscribe,
         workers=placed_workers,
     )
+
+
+def _directory(mapfile: Mapfile, start: NodeStart) -> Path:
+    return (mapfile.path.parent / (start.directory or "")).resolve()
 
 
 def _environment(mapfile: Mapfile, name: str, core: Core, start: NodeStart) -> dict[str, str]:

@@ -82,6 +82,22 @@ def find_executable(package: str, executable: str) -> Program | None:
     return _entry_point(package, executable)
 
 
+def find_component(package: str, plugin: str) -> Program | None:
+    """Return the program that starts the component `plugin` alone.
+
+    rclcpp_components_register_node() makes such programs, with the name of the component's factory
+    in them; nothing else says which it is.
+    """
+    factory = f"NodeFactoryTemplate<{plugin}>".encode()
+    for prefix in ament.prefixes():
+        directory = prefix / "lib" / package
+        for path in sorted(directory.glob("*")) if directory.is_dir() else ():
+            is_program = path.is_file() and os.access(path, os.X_OK) and ".so" not in path.suffixes
+            if is_program and factory in path.read_bytes():
+                return _of_file(path)
+    return None
+
+
 def executables_of(package: str) -> list[str]:
     """Return the names of all executables of a package."""
     files = (

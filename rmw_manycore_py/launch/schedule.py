@@ -1,0 +1,53 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""When nodes start that a launch file lets wait for a time, or for another node."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterable
+
+from rmw_manycore_py.launch.processes.node_process import NodeProcess
+from rmw_manycore_py.launch.processes.state import NodeState
+
+
+def schedule(nodes: Iterable[NodeProcess]) -> None:
+    """Set when each node starts; one that waits for another does not yet."""
+    for node in nodes:
+        rules = node.program.rules
+        if rules.after is not None:
+            node.start_at_s = float("inf")
+        elif rules.delay_s > 0:
+            node.start_at_s = time.monotonic() + rules.delay_s
+
+
+def started(nodes: list[NodeProcess], node: NodeProcess) -> None:
+    """Release what waits for the start of a node, and what is repeated each time it starts."""
+    _release(nodes, node, after_exit=False)
+    for index, one in enumerate(nodes):
+        program = one.program
+        if program.repeats and one.is_over and program.rules.after == node.program.name:
+            nodes[index] = NodeProcess(program)
+
+
+def ended(nodes: Iterable[NodeProcess], node: NodeProcess) -> None:
+    """Release what waits for the end of a node."""
+    _release(nodes, node, after_exit=True)
+
+
+def _release(nodes: Iterable[NodeProcess], node: NodeProcess, *, after_exit: bool) -> None:
+    for one in nodes:
+        rules = one.program.rules
+        waits = one.state is NodeState.WAITING and rules.after == node.program.name
+        if waits and rules.after_exit is after_exit:
+            one.start_at_s = time.monotonic() + rules.delay_s
+
+
+def respawned(node: NodeProcess) -> NodeProcess | None:
+    """Return the process that takes the place of an ended one, if its launch file wants that."""
+    rules = node.program.rules
+    if rules.respawn_delay_s is None or 0 <= rules.max_respawns <= node.respawns:
+        return None
+    successor = NodeProcess(node.program)
+    successor.respawns = node.respawns + 1
+    successor.start_at_s = time.monotonic() + rules.respawn_delay_s
+    return successor

@@ -1,0 +1,325 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Event handlers of launch and launch_ros: what follows the start or the end of a process.
+
+No event happens while a launch file is read. What a handler does once a process has started or
+ended is recorded with that condition; what else it waits for is left out with a notice.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+from typing_extensions import override
+
+from rmw_manycore_py.mapfile.launch_file.actions import Action, Condition, OpaqueFunction, visit_all
+from rmw_manycore_py.mapfile.launch_file.context import Later, LaunchContext
+from rmw_manycore_py.mapfile.launch_file.launched import Start
+from rmw_manycore_py.mapfile.launch_file.substitutions import perform
+
+
+class Event:
+    """Something that happens while launch runs; here it only carries what it was made of."""
+
+    def __init__(self, **described: Any) -> None:
+        vars(self).update(described)
+
+
+class Shutdown(Event):
+    """The event that ends the launch."""
+
+
+class ChangeState(Event):
+    """Asks lifecycle nodes for a transition."""
+
+    lifecycle_node_matcher: Any
+    transition_id: int
+
+
+class StateTransition(Event):
+    """A lifecycle node has reached a state."""
+
+
+class ShutdownProcess(Event):
+    """Ends a process."""
+
+
+class SignalProcess(Event):
+    """Sends a signal to a process."""
+
+    def __init__(self, *, signal_number: Any = None, **described: Any) -> None:
+        super().__init__(signal=signal_number, **described)
+
+
+class EventHandler:
+    """Actions for an event; `matcher` and kind decide for which."""
+
+    what = "an event handler of its own kind"
+
+    def __init__(
+        self,
+        *,
+        matcher: Any = None,
+        entities: Any = None,
+        handle_once: bool = False,
+        target_action: Any = None,
+    ) -> None:
+        self.matcher, self.entities, self.handle_once = matcher, entities, handle_once
+        self.target_action = target_action
+
+    def register(self, context: LaunchContext, line: int) -> None:
+        """Record what the handler will do."""
+        context.notice(line, f"{self.what} has no effect here")
+
+    def actions(self, context: LaunchContext, line: int) -> list[Any]:
+        """Return the actions, without code that wants the event itself."""
+        entities = self.entities or ()
+        listed = [entities] if isinstance(entities, Action) else entities
+        if callable(listed) or not isinstance(listed, Iterable):
+            context.notice(line, "code that an event would call is not run here")
+            return []
+        kept = [one for one in listed if not isinstance(one, OpaqueFunction)]
+        if len(kept) < len(list(listed)):
+            context.notice(line, "code that an event would call is not run here")
+        return kept
+
+
+class _OfProcess(EventHandler):
+    """Acts at the start or end of a process, or of all that are started by then."""
+
+    on_exit = False
+
+    @override
+    def register(self, context: LaunchContext, line: int) -> None:
+        actions = self.actions(context, line)
+        if not actions:
+            return
+        if isinstance(self.target_action, Action):
+            self._add(context, context.serial(self.target_action), actions)
+            return
+
+        def visit_for_first() -> None:
+            matches = self.target_action or (lambda _action: True)
+            by_serial = dict(context.serials.values())
+            found = [n.serial for n in context.nodes if matches(by_serial.get(n.serial))]
+            if found:
+                self._add(context, found[0], actions)
+
+        context.later.append(Later(Start(), context.file, visit_for_first))
+
+    def _add(self, context: LaunchContext, serial: int, actions: list[Any]) -> None:
+        start = Start(after=serial, on_exit=self.on_exit)
+        context.later.append(Later(start, context.file, lambda: visit_all(context, actions)))
+
+
+class OnProcessStart(_OfProcess):
+    """Acts when a process has started."""
+
+    def __init__(self, *, on_start: Any = None, target_action: Any = None, **named: Any) -> None:
+        super().__init__(entities=on_start, target_action=target_action, **named)
+
+
+class OnProcessExit(_OfProcess):
+    """Acts when a process has ended."""
+
+    on_exit = True
+
+    def __init__(self, *, on_exit: Any = None, target_action: Any = None, **named: Any) -> None:
+        super().__init__(entities=on_exit, target_action=target_action, **named)
+
+
+class OnExecutionComplete(EventHandler):
+    """Acts when an action is done: here that is when a process ends, else at once."""
+
+    def __init__(
+        self, *, on_completion: Any = None, target_action: Any = None, **named: Any
+    ) -> None:
+        super().__init__(entities=on_completion, target_action=target_action, **named)
+
+    @override
+    def register(self, context: LaunchContext, line: int) -> None:
+        if isinstance(self.target_action, Action) and self.target_action.starts_process:
+            OnProcessExit(on_exit=self.entities, target_action=self.target_action).register(
+                context, line
+            )
+            return
+        actions = self.actions(context, line)
+        start = context.start
+        context.later.append(Later(start, context.file, lambda: visit_all(context, actions)))
+
+
+class OnShutdown(EventHandler):
+    """Acts when the launch ends."""
+
+    what = "what is done on shutdown"
+
+    def __init__(self, *, on_shutdown: Any = None, **named: Any) -> None:
+        super().__init__(entities=on_shutdown, **named)
+
+
+class OnProcessIO(EventHandler):
+    """Acts on what a process prints."""
+
+    what = "what is done with the output of a process"
+
+    def __init__(self, *, target_action: Any = None, **_callbacks: Any) -> None:
+        super().__init__(target_action=target_action)
+
+
+class OnIncludeLaunchDescription(EventHandler):
+    """Acts when a launch file is included."""
+
+
+class OnStateTransition(EventHandler):
+    """Acts when a lifecycle node reaches a state, which it does by transitions asked for here."""
+
+    def __init__(
+        self,
+        *,
+        entities: Any,
+        target_lifecycle_node: Any = None,
+        goal_state: str | None = None,
+        **named: Any,
+    ) -> None:
+        super().__init__(entities=entities, target_action=target_lifecycle_node)
+        self.goal_state = goal_state
+        self.is_simple = not {key for key, value in named.items() if value and key != "handle_once"}
+
+    @override
+    def register(self, context: LaunchContext, line: int) -> None:
+        context.handlers.append((self, line))
+
+
+# The states that the transitions of lifecycle_msgs lead to.
+_GOALS = {1: "inactive", 2: "unconfigured", 3: "active", 4: "inactive"}
+
+
+def change_state(context: LaunchContext, serials: Iterable[int], transition: int) -> None:
+    """Record a transition of lifecycle nodes, and what is done when they have made it."""
+    by_serial = dict(context.serials.values())
+    for serial in serials:
+        context.transitions.setdefault(serial, []).append(transition)
+        goal = _GOALS.get(transition)
+        for handler, line in [*context.handlers]:
+            is_meant = handler.target_action is by_serial.get(serial) and handler.is_simple
+            if is_meant and goal is not None and handler.goal_state == goal:
+                context.handlers.remove((handler, line))
+                visit_all(context, handler.actions(context, line))
+
+
+class RegisterEventHandler(Action):
+    """Adds an event handler."""
+
+    def __init__(self, event_handler: Any, *, condition: Condition | None = None) -> None:
+        super().__init__(condition=condition)
+        self.event_handler = event_handler
+
+    @override
+    def execute(self, context: LaunchContext) -> None:
+        self.event_handler.register(context, self.line)
+
+
+class UnregisterEventHandler(RegisterEventHandler):
+    """Takes an event handler away."""
+
+    @override
+    def execute(self, context: LaunchContext) -> None:
+        context.notice(self.line, "event handlers stay registered here")
+
+
+class EmitEvent(Action):
+    """Emits an event: shutdown and transitions of lifecycle nodes take effect."""
+
+    def __init__(self, *, event: Any, condition: Condition | None = None) -> None:
+        super().__init__(condition=condition)
+        self.event = event
+
+    @override
+    def execute(self, context: LaunchContext) -> None:
+        event = self.event
+        if isinstance(event, ChangeState):
+            start = context.start
+
+            # Also of nodes that stand behind this action.
+            def ask() -> None:
+                change_state(context, _matching(context, event), event.transition_id)
+
+            context.later.append(Later(start, context.file, ask))
+        elif isinstance(event, Shutdown):
+            end_run(context, self.line)
+        else:
+            context.notice(self.line, f"the event {type(event).__name__} has no effect here")
+
+
+class EndLaunch(Action):
+    """`shutdown`: the action Shutdown."""
+
+    def __init__(self, *, reason: Any = "", condition: Condition | None = None) -> None:
+        super().__init__(condition=condition)
+        self.reason = reason
+
+    @override
+    def execute(self, context: LaunchContext) -> None:
+        end_run(context, self.line)
+
+
+def end_run(context: LaunchContext, line: int) -> None:
+    """Record that the run ends with the process whose end is waited for."""
+    start = context.start
+    if start.after is not None and start.on_exit and not start.delay_s:
+        context.ending.add(start.after)
+    else:
+        context.notice(line, "a shutdown takes effect only when a process ends")
+
+
+def matches_action(target_action: Any) -> Any:
+    """Return the matcher of an action."""
+    return lambda action: action is target_action
+
+
+def matches_node_name(node_name: str) -> Any:
+    """Return the matcher of the full name of a node."""
+    return _NodeName(node_name)
+
+
+class _NodeName:
+    def __init__(self, name: str) -> None:
+        self.name = name
+
+
+def _matching(context: LaunchContext, event: ChangeState) -> list[int]:
+    matcher = event.lifecycle_node_matcher
+    if isinstance(matcher, _NodeName):
+        wanted = f"/{matcher.name.strip('/')}"
+        return [n.serial for n in context.nodes if f"{n.namespace.rstrip('/')}/{n.label}" == wanted]
+    by_serial = dict(context.serials.values())
+    return [n.serial for n in context.nodes if matcher(by_serial.get(n.serial))]
+
+
+class LifecycleTransition(Action):
+    """Brings lifecycle nodes through transitions."""
+
+    def __init__(
+        self,
+        *,
+        lifecycle_node_names: Iterable[Any],
+        transition_ids: Iterable[Any],
+        condition: Condition | None = None,
+    ) -> None:
+        super().__init__(condition=condition)
+        self.names, self.transition_ids = list(lifecycle_node_names), list(transition_ids)
+
+    @override
+    def execute(self, context: LaunchContext) -> None:
+        names = [perform(context, name) for name in self.names]
+        numbers = [
+            int(n if isinstance(n, int) else perform(context, n)) for n in self.transition_ids
+        ]
+
+        def ask() -> None:
+            for number in numbers:
+                for name in names:
+                    event = ChangeState(lifecycle_node_matcher=_NodeName(name))
+                    change_state(context, _matching(context, event), number)
+
+        context.later.append(Later(context.start, context.file, ask))

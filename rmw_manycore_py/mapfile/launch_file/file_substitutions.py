@@ -1,0 +1,121 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Substitutions that stand for files, directories and names made up while launch runs."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from typing import Any
+
+from typing_extensions import override
+
+from rmw_manycore_py.mapfile.format.bounded_yaml import MAX_BYTES
+from rmw_manycore_py.mapfile.launch_file.context import (
+    LaunchContext,
+    NotInstalledError,
+    RefusedError,
+)
+from rmw_manycore_py.mapfile.launch_file.substitutions import (
+    PathJoinSubstitution,
+    Substitution,
+    is_true,
+    perform,
+)
+
+
+class PathSubstitution(PathJoinSubstitution):
+    """A path that `/` extends."""
+
+    def __init__(self, path: Any) -> None:
+        super().__init__([path])
+
+
+class StringJoinSubstitution(Substitution):
+    """Joins its parts with a delimiter."""
+
+    def __init__(self, substitutions: Any, delimiter: Any = "") -> None:
+        self.substitutions, self.delimiter = list(substitutions), delimiter
+
+    @override
+    def perform(self, context: LaunchContext) -> str:
+        parts = (perform(context, part) for part in self.substitutions)
+        return perform(context, self.delimiter).join(parts)
+
+
+class FileContent(Substitution):
+    """`$(file-content path)`."""
+
+    def __init__(self, path: Any) -> None:
+        self.path = path
+
+    @override
+    def perform(self, context: LaunchContext) -> str:
+        path = perform(context, self.path)
+        try:
+            with open(path, encoding="utf-8") as file:
+                content = file.read(MAX_BYTES + 1)
+        except (OSError, ValueError) as error:
+            reason = getattr(error, "strerror", None) or "it is no text"
+            raise NotInstalledError("a readable file", f"'{path}': {reason}") from error
+        if len(content) > MAX_BYTES:
+            raise RefusedError(f"a file of at most {MAX_BYTES} characters", f"'{path}'")
+        return content
+
+
+class LaunchLogDir(Substitution):
+    """`$(launch_log_dir)`: `manycore run` writes no log files, so it is that of temporary files."""
+
+    @override
+    def perform(self, context: LaunchContext) -> str:
+        return os.environ.get("ROS_LOG_DIR", tempfile.gettempdir())
+
+
+class AnonName(Substitution):
+    """`$(anon name)`: a name that ends in numbers; the same each time, so that mapfiles hold."""
+
+    def __init__(self, name: Any) -> None:
+        self.name = name
+
+    @override
+    def perform(self, context: LaunchContext) -> str:
+        return f"{perform(context, self.name)}_1"
+
+
+class BooleanSubstitution(Substitution):
+    """True or false as text."""
+
+    def __init__(self, value: Any) -> None:
+        self.value = value
+
+    @override
+    def perform(self, context: LaunchContext) -> str:
+        return str(is_true(context, self.value)).lower()
+
+
+class LocalSubstitution(Substitution):
+    """What only launch itself knows while an event is handled."""
+
+    def __init__(self, expression: str, description: str = "") -> None:
+        super().__init__()
+        self.expression, self.description = expression, description
+
+    @override
+    def perform(self, context: LaunchContext) -> str:
+        raise RefusedError("a text that is known before anything runs", f"'{self.expression}'")
+
+
+class Parameter(Substitution):
+    """`$(param name)`: a parameter that was set for all nodes that follow."""
+
+    def __init__(self, name: Any, *, default: Any = None) -> None:
+        self.name, self.default = name, default
+
+    @override
+    def perform(self, context: LaunchContext) -> str:
+        name = perform(context, self.name)
+        for source in reversed(context.scope.parameters):
+            if isinstance(source, dict) and name in source:
+                return str(source[name])
+        if self.default is None:
+            raise RefusedError("a parameter that 'set_parameter' has set", f"'{name}'")
+        return perform(context, self.default)

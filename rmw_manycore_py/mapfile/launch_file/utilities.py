@@ -1,0 +1,100 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""The functions and small types of launch that launch files in Python call besides its actions."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Iterable
+from typing import Any
+
+from rmw_manycore_py.mapfile.launch_file.actions import Action
+from rmw_manycore_py.mapfile.launch_file.context import LaunchContext, RefusedError
+from rmw_manycore_py.mapfile.launch_file.substitutions import (
+    Substitution,
+    TextSubstitution,
+    is_true,
+    perform,
+)
+
+
+class InvalidLaunchFileError(Exception):
+    """A launch file that launch cannot read."""
+
+
+class SubstitutionFailure(RuntimeError):  # noqa: N818  # the name is that of launch
+    """A substitution that has no value."""
+
+
+class InvalidConditionExpressionError(Exception):
+    """A condition that is neither true nor false."""
+
+
+class LaunchIntrospector:
+    """Describes launch descriptions."""
+
+    def format_launch_description(self, launch_description: Any) -> str:
+        """Return a line for each action at the top."""
+        lines = [f"    {type(one).__name__}" for one in launch_description.entities]
+        return "\n".join(["<launch_description>", *lines])
+
+
+class LaunchService:
+    """Runs launch descriptions, which no launch file does while it is read."""
+
+    def __init__(self, **_options: Any) -> None:
+        raise RefusedError("a launch file that returns its description", "one that runs launch")
+
+
+def normalize_to_list_of_substitutions(subs: Any) -> list[Substitution]:
+    """Return text, a substitution or several of these as a list of substitutions."""
+    if isinstance(subs, Substitution):
+        return [subs]
+    if isinstance(subs, Iterable) and not isinstance(subs, str):
+        return [one for sub in subs for one in normalize_to_list_of_substitutions(sub)]
+    return [TextSubstitution(text=str(subs))]
+
+
+def normalize_to_list_of_entities(entities: Any) -> list[Any]:
+    """Return an action or several as a list."""
+    return [entities] if isinstance(entities, Action) else list(entities)
+
+
+def perform_substitutions(context: LaunchContext, subs: Any) -> str:
+    """Return the text of substitutions, one after the other."""
+    return perform(context, subs)
+
+
+def normalize_typed_substitution(value: Any, _data_type: Any = None) -> Any:
+    """Return what `perform_typed_substitution` takes."""
+    return value
+
+
+def perform_typed_substitution(context: LaunchContext, value: Any, data_type: Any) -> Any:
+    """Return the value of a substitution as one of the type."""
+    if isinstance(value, (bool, int, float)):
+        return value
+    return is_true(context, value) if data_type is bool else data_type(perform(context, value))
+
+
+def evaluate_condition_expression(context: LaunchContext, expression: Any) -> bool:
+    """Return the truth of a condition."""
+    return is_true(context, expression)
+
+
+def ensure_argument_type(*_what: Any) -> None:
+    """Do nothing: values are checked where they are used."""
+
+
+def is_a(thing: Any, kind: type) -> bool:
+    """Tell whether it is of that kind."""
+    return isinstance(thing, kind)
+
+
+def expose(_name: str) -> Any:
+    """Return a decorator that changes nothing: tags of other packages are not known here."""
+    return lambda decorated: decorated
+
+
+def get_logger(name: str | None = None) -> logging.Logger:
+    """Return a logger."""
+    return logging.getLogger(name or "launch")

@@ -1,0 +1,151 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Which node of a launch file a node of the mapfile is, and what the launch file does with it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from rmw_manycore_py.errors import MapfileError, Problem
+from rmw_manycore_py.mapfile.launch_file import (
+    LaunchedComponent,
+    LaunchedNode,
+    LaunchFile,
+    ParameterSource,
+)
+from rmw_manycore_py.mapfile.placing.parameter_files import parameters_in
+from rmw_manycore_py.mapfile.placing.placement import LaunchRules, PlacedComponent
+from rmw_manycore_py.mapfile.programs import executables
+from rmw_manycore_py.mapfile.programs.executables import Program
+from rmw_manycore_py.ros import ament
+from rmw_manycore_py.ros.names import full_node_name
+
+if TYPE_CHECKING:
+    from rmw_manycore_py.mapfile.format.mapfile import Mapfile
+
+Launched = LaunchedNode | LaunchedComponent
+
+
+def find_launched(mapfile: Mapfile, name: str, launch: LaunchFile | None) -> Launched | None:
+    """Return the node in the launch file, which is needed where the mapfile cannot start it."""
+    if launch is None:
+        return None
+    components = [one for node in launch.nodes for one in node.components]
+    nodes: list[Launched] = [one for one in launch.nodes if is_meant(name, one)]
+    found = nodes or [one for one in components if is_meant(name, one)]
+    node = mapfile.sections.nodes[name]
+    if len(found) > 1:
+        full = ", ".join(full_node_name(one.namespace, one.label) for one in found)
+        expected = "a name that one node of the launch file has"
+        raise MapfileError(mapfile.document.problem(("nodes", name), expected, f"several: {full}"))
+    if not found and not (node.module or node.script or node.executable or node.command):
+        labels = {one.label for one in launch.nodes} | {one.label for one in components}
+        known = ", ".join(sorted(labels)) or "none"
+        expected = f"a node of {launch.file.name} ({known})"
+        raise MapfileError(mapfile.document.problem(("nodes", name), expected, f"'{name}'"))
+    return found[0] if found else None
+
+
+def is_meant(name: str, launched: Launched) -> bool:
+    """Tell whether a mapfile means this node by that name."""
+    if "/" in name:
+        return full_node_name(launched.namespace, launched.label) == f"/{name.strip('/')}"
+    return launched.label == name
+
+
+def program_of(launched: Launched, directory: Path) -> Program:
+    """Return what starts a node of a launch file; what is not installed is an error."""
+    if isinstance(launched, LaunchedComponent):
+        return _program_of_component(launched)
+    if launched.problem is not None:
+        raise MapfileError(launched.problem)
+    if launched.package is not None and launched.executable is not None:
+        found = executables.find_executable(launched.package, launched.executable)
+        expected, wanted = expected_executable(launched.package), launched.executable
+    else:
+        found = executables.find_command(launched.command, directory)
+        expected, wanted = expected_command(launched.command, directory)
+    if found is None:
+        problem = Problem(launched.file, launched.line, launched.label, expected, f"'{wanted}'")
+        raise MapfileError(problem)
+    return Program((*launched.prefix, *found.argv), found.source)
+
+
+def _program_of_component(component: LaunchedComponent) -> Program:
+    found = executables.find_component(component.package, component.plugin)
+    if found is None:
+        expected = (
+            f"an executable of the package '{component.package}' that starts {component.plugin} "
+            "alone, or its container in the mapfile in place of it"
+        )
+        place = (component.file, component.line, component.label)
+        raise MapfileError(Problem(*place, expected, "none"))
+    return found
+
+
+def expected_command(words: tuple[str, ...] | list[str], directory: Path) -> tuple[str, str]:
+    """Return what is expected, and the word of the command that does not name such a thing."""
+    word = executables.unfound_script(words, directory)
+    if word is None:
+        return "an executable", words[0]
+    return "an existing Python file" if word.endswith(".py") else "an installed Python module", word
+
+
+def expected_executable(package: str) -> str:
+    """Return what is expected of a package's executables."""
+    known = executables.executables_of(package)
+    if known or ament.package_prefix(package):
+        return f"an executable of the package '{package}' ({', '.join(known) or 'it has none'})"
+    return f"an executable of the package '{package}' (it is not installed)"
+
+
+def launch_rules(
+    name: str, launched: Mapping[str, Launched | None]
+) -> tuple[LaunchRules, tuple[str, ...]]:
+    """Return what the launch file wants of a mapped node besides its start, and notices."""
+    own = launched[name]
+    if not isinstance(own, LaunchedNode):
+        return LaunchRules(), ()
+    notices = []
+    names = {one.serial: key for key, one in launched.items() if isinstance(one, LaunchedNode)}
+    after = names.get(own.start.after) if own.start.after is not None else None
+    if own.start.after is not None and after is None:
+        place = f"{own.file}:{own.line}"
+        notices.append(f"{place}: '{name}' does not wait for what is not in the mapfile")
+    apart = [one for one in launched.values() if isinstance(one, LaunchedComponent)]
+    for one in own.components:
+        if one in apart:
+            place = f"{one.file}:{one.line}"
+            notices.append(f"{place}: '{one.label}' is a process of its own, not in {own.label}")
+    rules = LaunchRules(
+        after=after,
+        after_exit=own.start.on_exit,
+        delay_s=own.start.delay_s,
+        respawn_delay_s=own.respawn.delay_s if own.respawn else None,
+        max_respawns=own.respawn.max_retries if own.respawn else 0,
+        ends_run=own.ends_run,
+        transitions=own.transitions,
+        components=tuple(_placed(one) for one in own.components if one not in apart),
+    )
+    return rules, tuple(notices)
+
+
+def _placed(component: LaunchedComponent) -> PlacedComponent:
+    full_name = full_node_name(component.namespace, component.name or "")
+    return PlacedComponent(
+        package=component.package,
+        plugin=component.plugin,
+        name=component.name or "",
+        namespace=component.namespace,
+        parameters=_values(component.parameters, full_name),
+        remappings=component.remappings,
+        extra_arguments=_values(component.extra_arguments, full_name),
+    )
+
+
+def _values(sources: tuple[ParameterSource, ...], full_name: str) -> dict[str, Any]:
+    values: dict[str, Any] = {}
+    for source in sources:
+        values |= parameters_in(source, full_name) if isinstance(source, Path) else source
+    return values
