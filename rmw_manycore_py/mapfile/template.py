@@ -163,6 +163,9 @@ def _with_own_names(entries: Iterable[_Entry]) -> list[_Entry]:
     named: dict[str, _Entry] = {}
     for entry in entries:
         known = named.get(entry.name)
+        if known is not None and known.missing:
+            named[entry.name] = entry
+            continue
         if known is not None and not known.start:
             known.publish, known.subscribe, known.remarks = (
                 entry.publish,

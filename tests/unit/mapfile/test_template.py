@@ -59,7 +59,29 @@ def test_files_of_packages_become_modules(tmp_path: Path) -> None:
     assert "    module: app.talker\n" in init([tmp_path / "app"], tmp_path)
 
 
-def test_nodes_of_a_launch_file_take_topics_from_their_sources(tmp_path: Path) -> None:
+def install(prefix: Path, package: str, *executables: str, content: str = "#!/bin/sh\n") -> None:
+    """Write an ament package with programs into a prefix."""
+    index = prefix / "share/ament_index/resource_index/packages"
+    index.mkdir(parents=True, exist_ok=True)
+    (index / package).touch()
+    for name in executables:
+        program = prefix / "lib" / package / name
+        program.parent.mkdir(parents=True, exist_ok=True)
+        program.write_text(content)
+        program.chmod(0o755)
+
+
+@pytest.fixture
+def prefix(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    directory = tmp_path / "prefix"
+    monkeypatch.setenv("AMENT_PREFIX_PATH", str(directory))
+    return directory
+
+
+def test_nodes_of_a_launch_file_take_topics_from_their_sources(
+    tmp_path: Path, prefix: Path
+) -> None:
+    install(prefix, "p", "talker", "other")
     write_node(tmp_path / "talker.py", "talker", "publisher")
     launch = tmp_path / "demo.launch.xml"
     launch.write_text('<launch><node pkg="p" exec="talker"/><node pkg="p" exec="other"/></launch>')
@@ -79,3 +101,60 @@ def test_sources_without_nodes_are_an_error(tmp_path: Path) -> None:
         init([tmp_path])
     with pytest.raises(ManycoreError, match="no such file or directory"):
         init([tmp_path / "absent.py"])
+
+
+def test_nodes_that_cannot_run_here_are_comments(tmp_path: Path, prefix: Path) -> None:
+    install(prefix, "p", "talker")
+    launch = tmp_path / "robot_launch.py"
+    launch.write_text(
+        "from launch import LaunchDescription\n"
+        "from launch_ros.actions import Node\n"
+        "def generate_launch_description():\n"
+        "    return LaunchDescription([\n"
+        "        Node(package='p', executable='talker'),\n"
+        "        Node(package='absent', executable='listener'),\n"
+        "    ])\n"
+    )
+    lines = init([launch], tmp_path).splitlines()
+    assert "  talker:" in lines
+    (comment,) = (line for line in lines if "listener" in line)
+    assert comment.startswith("  # listener cannot run here: ")
+    assert comment.endswith("the package 'absent' (it is not installed), found 'listener'")
+    mapfile = tmp_path / "map.yaml"
+    mapfile.write_text("\n".join(lines))
+    assert [node.name for node in check(mapfile).nodes] == ["talker"]
+
+
+def test_arguments_of_a_launch_file_are_kept(tmp_path: Path, prefix: Path) -> None:
+    install(prefix, "p", "talker")
+    launch = tmp_path / "demo.launch.xml"
+    launch.write_text(
+        '<launch><arg name="who"/><node pkg="p" exec="talker" name="$(var who)"/></launch>'
+    )
+    mapfile = tmp_path / "map.yaml"
+    mapfile.write_text(init([launch], tmp_path, arguments={"who": "left"}))
+    assert [node.full_name for node in check(mapfile).nodes] == ["/left"]
+    with pytest.raises(ManycoreError, match="NAME:=VALUE is for a launch file"):
+        init([tmp_path], tmp_path, arguments={"who": "left"})
+
+
+def test_components_run_alone_where_only_they_are_installed(tmp_path: Path, prefix: Path) -> None:
+    install(prefix, "p", "camera", content="#!/bin/sh\n# NodeFactoryTemplate<p::Camera>\n")
+    install(prefix, "p", "other", content="#!/bin/sh\n# NodeFactoryTemplate<p::Other>\n")
+    launch = tmp_path / "demo.launch.xml"
+    launch.write_text(
+        '<launch><node_container pkg="absent" exec="component_container" name="c" namespace="">'
+        '<composable_node pkg="p" plugin="p::Camera" name="eye" namespace="left">'
+        '<param name="rate" value="5"/><remap from="a" to="b"/></composable_node>'
+        '<composable_node pkg="p" plugin="p::Lens" name="lens"/>'
+        "</node_container></launch>"
+    )
+    text = init([launch], tmp_path)
+    assert "  # c cannot run here: " in text
+    mapfile = tmp_path / "map.yaml"
+    mapfile.write_text(text)
+    (node,) = check(mapfile).nodes
+    assert (node.name, node.full_name) == ("eye", "/left/eye")
+    assert node.argv[0] == str(prefix / "lib/p/camera")
+    assert node.parameters == {"rate": 5}
+    assert "a:=b" in node.argv

@@ -1,3 +1,3 @@
 from launch import LaunchDescription
-from launch.event_handlers import OnProcessExit
-# expected: unknown_import.launch.py:2: expected launch code that is understood here, found ModuleNotFoundError: No module named 'launch.event_handlers'
+from launch.no_such_part import OnProcessExit
+# expected: unknown_import.launch.py:2: expected launch code that is understood here, found ModuleNotFoundError: No module named 'launch.no_such_part'
