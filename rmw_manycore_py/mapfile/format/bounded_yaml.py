@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import Any
 
 import yaml
@@ -85,6 +86,16 @@ class BoundedLoader(yaml.SafeLoader):
         if self._values > MAX_VALUES:
             expected = f"at most {MAX_VALUES} values, each alias counted as what it stands for"
             raise BoundError(expected, "more", event.start_mark)
+
+
+# As rcl reads numbers, where YAML 1.1 wants a point and a sign: 1e-9.
+_EXPONENT = re.compile(r"[-+]?(\d+(\.\d*)?|\.\d+)[eE][-+]?\d+$")
+BoundedLoader.add_implicit_resolver("tag:yaml.org,2002:float", _EXPONENT, list("-+.0123456789"))
+
+
+def is_number_to_rcl(text: str) -> bool:
+    """Tell whether a text is a number to rcl, and none to YAML 1.1."""
+    return _EXPONENT.match(text) is not None
 
 
 def _check_text(text: str, node: yaml.Node) -> None:

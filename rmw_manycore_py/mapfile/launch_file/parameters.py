@@ -8,8 +8,11 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
+import yaml
+
 from rmw_manycore_py.errors import MapfileError
 from rmw_manycore_py.mapfile.format.document import parse_yaml, read_yaml
+from rmw_manycore_py.mapfile.format.parameter_sections import sections_of
 from rmw_manycore_py.mapfile.format.validation import describe
 from rmw_manycore_py.mapfile.launch_file import text
 from rmw_manycore_py.mapfile.launch_file.context import (
@@ -127,6 +130,8 @@ def _typed(words: str) -> Any:
         return words
     if isinstance(value, list) and not all(isinstance(part, _SCALARS) for part in value):
         raise RefusedError("a list of bools, numbers or strings", repr(words))
+    if isinstance(value, float) and not isinstance(yaml.safe_load(words), float):
+        return words  # 1e-9, which is a number only to rcl
     return value if isinstance(value, (bool, int, float, str, list)) else words
 
 
@@ -136,12 +141,9 @@ def _expanded(context: LaunchContext, path: Path, node: str) -> dict[str, Any]:
     if not isinstance(data, Mapping):
         expected = "node names, each with 'ros__parameters'"
         raise MapfileError(document.problem((), expected, describe(data)))
-    namespace, _, name = node.rpartition("/")
     chosen: dict[str, Any] = {}
-    for key in ("/**", f"{namespace}/*", name, f"/{name}", node):
-        section = data.get(key)
-        if isinstance(section, Mapping) and isinstance(section.get("ros__parameters"), Mapping):
-            chosen |= dict(_flat(context, _substitute(section["ros__parameters"]), ""))
+    for section in sections_of(data, node):
+        chosen |= dict(_flat(context, _substitute(section), ""))
     return chosen
 
 

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rmw_manycore_py.errors import MapfileError, Problem
+from rmw_manycore_py.mapfile.format.bounded_yaml import is_number_to_rcl
 from rmw_manycore_py.mapfile.launch_file import (
     LaunchedComponent,
     LaunchedNode,
@@ -129,6 +130,19 @@ def launch_rules(
         components=tuple(_placed(one) for one in own.components if one not in apart),
     )
     return rules, tuple(notices)
+
+
+def values_on_a_command_line(source: ParameterSource) -> ParameterSource:
+    """Return values as rcl reads them from launch: it writes 1e-9 without quotes, also as text."""
+    if isinstance(source, Path):
+        return source
+    return {name: _as_rcl_reads(value) for name, value in source.items()}
+
+
+def _as_rcl_reads(value: Any) -> Any:
+    if isinstance(value, list):
+        return [_as_rcl_reads(item) for item in value]
+    return float(value) if isinstance(value, str) and is_number_to_rcl(value) else value
 
 
 def _placed(component: LaunchedComponent) -> PlacedComponent:

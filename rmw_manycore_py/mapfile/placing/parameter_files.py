@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -11,29 +10,9 @@ from pydantic_core import PydanticCustomError
 
 from rmw_manycore_py.errors import MapfileError, Problem
 from rmw_manycore_py.mapfile.format.document import Document, dotted, read_yaml
+from rmw_manycore_py.mapfile.format.parameter_sections import sections_of
 from rmw_manycore_py.mapfile.format.validation import describe
 from rmw_manycore_py.mapfile.format.values import flatten_parameters
-
-
-def sections_of(data: Any, full_name: str) -> list[Mapping[str, Any]]:
-    """Return the sections for a node, those for many nodes first."""
-    namespace, _, name = full_name.rpartition("/")
-    found = []
-    for key in ("/**", f"{namespace}/*", name if not namespace else None, full_name):
-        section = data.get(key) if isinstance(data, Mapping) and key is not None else None
-        if section is None and key == full_name and isinstance(data, Mapping):
-            section = _nested(data, full_name)
-        if isinstance(section, Mapping) and isinstance(section.get("ros__parameters"), Mapping):
-            found.append(section["ros__parameters"])
-    return found
-
-
-def _nested(data: Mapping[str, Any], full_name: str) -> Any:
-    """Follow a name that is written one namespace below the other."""
-    section: Any = data
-    for part in full_name.strip("/").split("/"):
-        section = section.get(part, section.get(f"/{part}")) if isinstance(section, dict) else None
-    return section
 
 
 def parameters_in(file: Path, full_name: str) -> dict[str, Any]:

@@ -19,6 +19,7 @@ from rmw_manycore_py.mapfile.placing.launched import (
     expected_executable,
     find_launched,
     program_of,
+    values_on_a_command_line,
 )
 from rmw_manycore_py.mapfile.placing.parameter_files import parameters_in
 from rmw_manycore_py.mapfile.programs import executables
@@ -56,7 +57,8 @@ def node_start(mapfile: Mapfile, name: str, launch: LaunchFile | None) -> NodeSt
     files = tuple(mapfile.file(file) for file in node.param_file)
     process = launched if isinstance(launched, LaunchedNode) else None
     is_plain = process is not None and process.executable is None
-    sources = (*(launched.parameters if launched else ()), *files, node.parameters)
+    given = map(values_on_a_command_line, launched.parameters if launched else ())
+    sources = (*given, *files, node.parameters)
     return NodeStart(
         full_name=full_name,
         program=_program(mapfile, name, node, launched),
