@@ -68,9 +68,12 @@ def _call(node: Node, kind: Any, service: str, wanted: Any) -> Any:
     client = node.create_client(kind, service)
     try:
         while not client.wait_for_service(timeout_sec=_PATIENCE_S):
-            pass
+            if not rclpy.ok():
+                raise ExternalShutdownException
         future = client.call_async(wanted)
         rclpy.spin_until_future_complete(node, future)
+        if not future.done():
+            raise ExternalShutdownException
         return future.result()
     finally:
         node.destroy_client(client)

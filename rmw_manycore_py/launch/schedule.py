@@ -24,14 +24,22 @@ def started(nodes: list[NodeProcess], node: NodeProcess) -> None:
     """Release what waits for the start of a node, and what is repeated each time it starts."""
     _release(nodes, node, after_exit=False)
     for index, one in enumerate(nodes):
-        program = one.program
-        if program.repeats and one.is_over and program.rules.after == node.program.name:
-            nodes[index] = NodeProcess(program)
+        if _repeats_with(one, node):
+            if one.is_over:
+                nodes[index] = NodeProcess(one.program)
+            one.is_wanted_again = one.is_alive
 
 
 def ended(nodes: Iterable[NodeProcess], node: NodeProcess) -> None:
-    """Release what waits for the end of a node."""
+    """Release what waits for the end of a node; stop what only makes sense while it runs."""
     _release(nodes, node, after_exit=True)
+    for one in nodes:
+        if _repeats_with(one, node) and one.state is NodeState.RUNNING and not one.is_leaderless:
+            one.stop()
+
+
+def _repeats_with(one: NodeProcess, node: NodeProcess) -> bool:
+    return one.program.repeats and one.program.rules.after == node.program.name
 
 
 def _release(nodes: Iterable[NodeProcess], node: NodeProcess, *, after_exit: bool) -> None:
@@ -43,8 +51,10 @@ def _release(nodes: Iterable[NodeProcess], node: NodeProcess, *, after_exit: boo
 
 
 def respawned(node: NodeProcess) -> NodeProcess | None:
-    """Return the process that takes the place of an ended one, if its launch file wants that."""
+    """Return the process that takes the place of an ended one, where there is to be one."""
     rules = node.program.rules
+    if node.is_wanted_again:
+        return NodeProcess(node.program)
     if rules.respawn_delay_s is None or 0 <= rules.max_respawns <= node.respawns:
         return None
     successor = NodeProcess(node.program)

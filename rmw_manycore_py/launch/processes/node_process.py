@@ -34,6 +34,7 @@ class NodeProcess:
         self.deadline_s = float("inf")  # on the monotonic clock: when the next step is due
         self.start_at_s = 0.0  # on the monotonic clock: not before, and later when it was started
         self.respawns = 0  # how many processes of the node there were before
+        self.is_wanted_again = False  # its place is taken by a new process when it is over
         self.pidfd = -1  # open while the node itself runs
         self.came_up = not program.supervised  # a supervised process reports it; known at its end
         self.vain_starts = 0  # how many processes before it ended without having come up
@@ -114,7 +115,6 @@ class NodeProcess:
     def leader_ended(self) -> None:
         """Note that the node itself ended; its children have a moment for their last words."""
         os.close(self.pidfd)
-        self.respawns = 0  # how many processes of the node there were before
         self.pidfd = -1
         self.deadline_s = time.monotonic() + ORPHAN_GRACE_S
 
