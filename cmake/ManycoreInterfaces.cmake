@@ -99,6 +99,7 @@ macro(manycore_interface_target target kind)
   endforeach()
 endmacro()
 
-foreach(package autoware_internal_debug_msgs composition_interfaces tf2_msgs tier4_localization_msgs)
+foreach(package
+    autoware_internal_debug_msgs composition_interfaces tf2_msgs tier4_localization_msgs)
   manycore_interfaces(${package})
 endforeach()

@@ -106,19 +106,17 @@ def launch_rules(
 ) -> tuple[LaunchRules, tuple[str, ...]]:
     """Return what the launch file wants of a mapped node besides its start, and notices."""
     own = launched[name]
-    if not isinstance(own, LaunchedNode):
+    if own is None:
         return LaunchRules(), ()
+    place = f"{own.file}:{own.line}"
+    if isinstance(own, LaunchedComponent):
+        return LaunchRules(), (f"{place}: '{name}' is a process of its own, in no container",)
     notices = []
     names = {one.serial: key for key, one in launched.items() if isinstance(one, LaunchedNode)}
     after = names.get(own.start.after) if own.start.after is not None else None
     if own.start.after is not None and after is None:
-        place = f"{own.file}:{own.line}"
         notices.append(f"{place}: '{name}' does not wait for what is not in the mapfile")
     apart = [one for one in launched.values() if isinstance(one, LaunchedComponent)]
-    for one in own.components:
-        if one in apart:
-            place = f"{one.file}:{one.line}"
-            notices.append(f"{place}: '{one.label}' is a process of its own, not in {own.label}")
     rules = LaunchRules(
         after=after,
         after_exit=own.start.on_exit,

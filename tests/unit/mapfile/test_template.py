@@ -153,7 +153,9 @@ def test_components_run_alone_where_only_they_are_installed(tmp_path: Path, pref
     assert "  # c cannot run here: " in text
     mapfile = tmp_path / "map.yaml"
     mapfile.write_text(text)
-    (node,) = check(mapfile).nodes
+    placement = check(mapfile)
+    assert f"{launch}:1: 'eye' is a process of its own, in no container" in placement.notices
+    (node,) = placement.nodes
     assert (node.name, node.full_name) == ("eye", "/left/eye")
     assert node.argv[0] == str(prefix / "lib/p/camera")
     assert node.parameters == {"rate": 5}
