@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable
 from pathlib import Path
 
@@ -61,7 +62,8 @@ def test_components_are_those_of_their_container_wherever_they_are_loaded(read: 
         <group><push-ros-namespace namespace="left"/><set_remap from="a" to="b"/>
           <node_container pkg="demo" exec="component_container" name="box" namespace="">
             <composable_node pkg="p" plugin="p::Camera" name="camera">
-              <param name="rate" value="5"/><remap from="image" to="raw"/>
+              <param name="rate" value="5"/><param name="small" value="1e-9"/>
+              <remap from="image" to="raw"/>
               <extra_arg name="use_intra_process_comms" value="true"/>
             </composable_node>
             <composable_node pkg="p" plugin="p::Eye" name="eye" if="$(var eyes)"/>
@@ -78,7 +80,7 @@ def test_components_are_those_of_their_container_wherever_they_are_loaded(read: 
     camera, lens = box.components
     assert (box.label, box.namespace) == ("box", "/left")
     assert (camera.namespace, camera.name, camera.plugin) == ("/left", "camera", "p::Camera")
-    assert camera.parameters == ({"rate": 5},)
+    assert camera.parameters == ({"rate": 5}, {"small": "1e-9"})  # as text in LoadNode
     assert camera.remappings == (("a", "b"), ("image", "raw"))
     assert camera.extra_arguments == ({"use_intra_process_comms": True},)
     assert (lens.namespace, lens.remappings) == ("/right", ())
@@ -236,9 +238,10 @@ def test_modules_that_use_launch_get_the_stand_ins_while_a_file_is_read(
         "    node = Node(package='p', executable='e', name=Upper(['a', 'b']))\n"
         "    return LaunchDescription([node])\n"
     )
-    for _ in range(2):  # with stand-ins of the second reading, too
+    for _ in range(2):
         (node,) = read(text, "demo.launch.py").nodes
         assert node.name == "AB"
+        assert "own_substitutions" not in sys.modules
 
 
 def test_a_node_without_a_name_keeps_its_own(tmp_path: Path, read: Read) -> None:
