@@ -97,6 +97,35 @@ def generate_launch_description():
     ])
 """
 
+MANAGED = """\
+#!{python}
+import rclpy
+from lifecycle_msgs.srv import ChangeState
+from rclpy.executors import ExternalShutdownException
+from rclpy.node import Node
+
+def change(request, response):
+    response.success = True
+    return response
+
+rclpy.init()
+node = Node("managed")
+node.create_service(ChangeState, "~/change_state", change)
+try:
+    rclpy.spin(node)
+except (ExternalShutdownException, KeyboardInterrupt):
+    pass
+"""
+AUTOSTART = """\
+from launch import LaunchDescription
+from launch_ros.actions import LifecycleNode
+
+def generate_launch_description():
+    return LaunchDescription([
+        LifecycleNode(package="demo", executable="container", name="arm", namespace="left",
+                      autostart=True)])
+"""
+
 
 def events(program: Program, kind: str) -> list[dict[str, Any]]:
     lines = (json.loads(line) for line in program.lines if line.startswith("{"))
@@ -150,6 +179,16 @@ def test_a_component_that_is_not_loaded_fails_the_run(start, container, platform
     run.wait_for(r"hearer was not loaded into /left/box: no such plugin$")
     run.wait_for(r"^manycore \| \(components of box\) failed: exit status 1$")
     assert run.stop() == 1
+
+
+def test_a_lifecycle_node_is_configured_and_activated(start, container, platform) -> None:
+    program = container / "prefix/lib/demo/container"
+    program.write_text(MANAGED.format(python=sys.executable))
+    nodes = "  arm: {cluster: 1, core: 1}\n"
+    run = start(manycore_command("run", write(container, "demo.launch.py", AUTOSTART, nodes)))
+    for transition in (1, 3):
+        run.wait_for(rf"^\(states of arm\) \| /left/arm made transition {transition}$")
+    assert run.stop() == 0
 
 
 def test_what_waits_for_a_process_starts_and_ends_with_it(start, tmp_path, platform) -> None:
