@@ -54,7 +54,7 @@ std::vector<Simd> kinds() {
   return found;
 }
 
-MapOptions map_options(Search search) { return {2.0, search, VoxelCovariance::autoware, 6}; }
+MapOptions map_options(Search search) { return {2.0, search, VoxelCovariance::autoware, 6, 0.0}; }
 
 const MatchOptions match_options{StepRule::trust_region, 30, 0.1, 0.01, 0.55, 0.0};
 const Pose6 pose{0.3, -0.2, 0.1, 0.02, -0.03, 0.4};
