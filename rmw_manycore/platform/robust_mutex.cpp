@@ -40,11 +40,15 @@ int lock_until(pthread_mutex_t & mutex, const timespec & until) {
 #endif
 }
 
-/// Thread id of the owner, 0 for none or a dead one: of a robust mutex that is the kernel's futex
-/// word, from which the kernel takes the thread when it ends.
+/// The kernel's futex word of a robust mutex: thread id of the owner, from which the kernel takes
+/// the thread when it ends, and whether others wait.
+uint32_t futex_word_of(const pthread_mutex_t & mutex) {
+  return static_cast<uint32_t>(__atomic_load_n(&mutex.__data.__lock, __ATOMIC_ACQUIRE));
+}
+
+/// 0 for none or a dead one.
 pid_t owner_of(const pthread_mutex_t & mutex) {
-  const int word = __atomic_load_n(&mutex.__data.__lock, __ATOMIC_ACQUIRE);
-  return static_cast<pid_t>(word & FUTEX_TID_MASK);
+  return static_cast<pid_t>(futex_word_of(mutex) & FUTEX_TID_MASK);
 }
 
 }  // namespace
@@ -81,6 +85,10 @@ RobustMutex::Outcome RobustMutex::lock(long timeout_ns) {
 }
 
 bool RobustMutex::is_locked() const noexcept { return owner_of(mutex_) != 0; }
+
+bool RobustMutex::is_waited_for() const noexcept {
+  return (futex_word_of(mutex_) & FUTEX_WAITERS) != 0;
+}
 
 void RobustMutex::unlock() noexcept { pthread_mutex_unlock(&mutex_); }
 

@@ -19,6 +19,8 @@ public:
   void unlock() noexcept;
   /// True while the thread that locked it lives. Any thread may ask.
   bool is_locked() const noexcept;
+  /// True when some thread may sleep until its owner, the caller, unlocks it.
+  bool is_waited_for() const noexcept;
   /// After owner_died, once the protected state has been repaired.
   void mark_consistent() noexcept;
 

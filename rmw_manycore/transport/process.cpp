@@ -232,7 +232,7 @@ uint32_t Process::Impl::fill_endpoint(const EndpointSpec & spec, EndpointKind ki
 uint32_t Process::Impl::add_endpoint(const EndpointSpec & spec, EndpointKind kind) {
   check_qos_ranges(spec);
   membership->require();
-  const Registry::Lock lock(*registry);
+  std::optional<Registry::Lock> lock(std::in_place, *registry);
   closing::sweep(*registry);
   matching::require_reach(*registry, spec.topic, kind);
   const uint32_t taken = fill_endpoint(spec, kind);
@@ -252,10 +252,19 @@ uint32_t Process::Impl::add_endpoint(const EndpointSpec & spec, EndpointKind kin
   registry->endpoints().publish(taken);
   registry->link_endpoint(taken);
   try {
-    matching::connect(*registry, taken);
+    std::vector<matching::Candidate> candidates = matching::candidates_of(*registry, taken);
+    matching::connect_some(*registry, taken, candidates);
+    while (!candidates.empty()) {
+      lock.reset();
+      lock.emplace(*registry);
+      membership->require();
+      matching::connect_some(*registry, taken, candidates);
+    }
   } catch (...) {
-    closing::close(*registry, taken, false);
-    closing::sweep(*registry);
+    lock.reset();
+    if (membership->holds()) {
+      closing::leave(*registry, taken);
+    }
     throw;
   }
   return taken;

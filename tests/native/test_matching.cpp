@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <thread>
 
 #include "messages.hpp"
 #include "node_role.hpp"
@@ -226,6 +227,29 @@ TEST_CASE(
   publish(*publisher, 1);
   far.tell("take 1 1 1");
   CHECK(take_all(*near) == numbers(1, 1));
+}
+
+TEST_CASE("endpoints that are created at the same time are matched once each") {
+  constexpr uint32_t count = 150;  // more than are matched without giving the registry lock back
+  Fixture f;
+  std::vector<std::unique_ptr<Publisher>> publishers;
+  std::vector<std::unique_ptr<Subscription>> subscriptions;
+  std::thread other([&] {
+    for (uint32_t i = 0; i < count; ++i) {
+      publishers.push_back(f.publisher(keep_last(1)));
+    }
+  });
+  for (uint32_t i = 0; i < count; ++i) {
+    subscriptions.push_back(f.subscription(keep_last(1)));
+  }
+  other.join();
+  for (uint32_t i = 0; i < count; ++i) {
+    CHECK(publishers[i]->matched().current == count);
+    CHECK(publishers[i]->matched().total == count);
+    CHECK(subscriptions[i]->matched().current == count);
+    CHECK(subscriptions[i]->matched().total == count);
+    CHECK(f.inspection.readers_of(*publishers[i]) == count);
+  }
 }
 
 TEST_CASE("a match wakes the process only while somebody watches events of endpoints") {

@@ -15,6 +15,9 @@
 namespace manycore::matching {
 namespace {
 
+/// Each takes about 1 us under the registry lock.
+constexpr uint32_t matches_at_a_time = 64;
+
 /// Both ends of a possible match.
 struct Pair {
   uint32_t publisher_slot;
@@ -199,18 +202,34 @@ void require_reach(Registry & registry, const std::string & topic, EndpointKind 
   });
 }
 
-void connect(Registry & registry, uint32_t endpoint) {
-  EndpointEntry & own = registry.endpoints()[endpoint];
-  registry.for_each_of_topic(own.topic, [&](uint32_t slot, EndpointEntry & other) {
-    if (other.kind == own.kind || !registry.endpoints().is_live(slot)) {
-      return;
-    }
-    if (own.kind == EndpointKind::publisher) {
-      consider(registry, {endpoint, slot, own, other});
-    } else {
-      consider(registry, {slot, endpoint, other, own});
+std::vector<Candidate> candidates_of(Registry & registry, uint32_t endpoint) {
+  const EndpointEntry & own = registry.endpoints()[endpoint];
+  std::vector<Candidate> candidates;
+  registry.for_each_of_topic(own.topic, [&](uint32_t slot, const EndpointEntry & other) {
+    if (other.kind != own.kind && registry.endpoints().is_live(slot)) {
+      candidates.push_back({slot, other.slot.incarnation.load()});
     }
   });
+  return candidates;
+}
+
+void connect_some(Registry & registry, uint32_t endpoint, std::vector<Candidate> & candidates) {
+  EndpointEntry & own = registry.endpoints()[endpoint];
+  for (uint32_t i = 0; i < matches_at_a_time && !candidates.empty(); ++i) {
+    const Candidate candidate = candidates.back();
+    candidates.pop_back();
+    EndpointEntry & other = registry.endpoints()[candidate.slot];
+    if (
+      !registry.endpoints().is_live(candidate.slot) ||
+      other.slot.incarnation.load() != candidate.incarnation) {
+      continue;
+    }
+    if (own.kind == EndpointKind::publisher) {
+      consider(registry, {endpoint, candidate.slot, own, other});
+    } else {
+      consider(registry, {candidate.slot, endpoint, other, own});
+    }
+  }
 }
 
 void undo_half_matches(Registry & registry) {

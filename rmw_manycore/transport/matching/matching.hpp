@@ -1,6 +1,8 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <vector>
+
 #include "transport/registry/registry.hpp"
 
 namespace manycore::matching {
@@ -9,8 +11,20 @@ namespace manycore::matching {
 /// may be matched: connect() would fail half way. Needs the registry lock.
 void require_reach(Registry & registry, const std::string & topic, EndpointKind kind);
 
-/// Joins a live endpoint with all compatible endpoints of its topic. Needs the registry lock.
-void connect(Registry & registry, uint32_t endpoint);
+/// The endpoints that a live one has still to be matched with. Those that come later find it in the
+/// graph and match themselves.
+struct Candidate {
+  uint32_t slot;
+  uint32_t incarnation;
+};
+
+/// All endpoints of its topic of the other kind. Needs the registry lock.
+std::vector<Candidate> candidates_of(Registry & registry, uint32_t endpoint);
+
+/// Joins a live endpoint with the last of the candidates that are compatible and still there, and
+/// takes them off: as many as may be matched while others wait for the registry lock, which it
+/// needs.
+void connect_some(Registry & registry, uint32_t endpoint, std::vector<Candidate> & candidates);
 
 /// After an owner of the registry lock died in connect(): takes back the match it left half made.
 void undo_half_matches(Registry & registry);

@@ -7,12 +7,15 @@
 #include <cerrno>
 #include <random>
 
+#include "platform/clock.hpp"
 #include "platform/error.hpp"
 #include "transport/layout/subscription_layout.hpp"
 #include "transport/layout/topic_dsm_layout.hpp"
 
 namespace manycore {
 namespace {
+
+constexpr int64_t others_first_ns = 100'000;
 
 uint64_t random_nonce() {
   std::random_device random;
@@ -152,7 +155,20 @@ Registry::Lock::Lock(Registry & registry, long wait_ns) : registry_(registry) {
   }
 }
 
+/// A thread that is woken needs about 50 us to run; without this, one that creates many endpoints
+/// in a row has the lock again each time before it.
+void Registry::let_others_go_first() const noexcept {
+  const int64_t until_ns = others_first_until_ns_.load(std::memory_order_relaxed);
+  if (monotonic_ns() < until_ns) {
+    const timespec until = to_timespec(until_ns);
+    clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr);
+  }
+}
+
 RobustMutex::Outcome Registry::lock_within(long wait_ns) {
+  if (wait_ns >= Lock::usual_wait_ns) {
+    let_others_go_first();
+  }
   try {
     const RobustMutex::Outcome outcome = header().mutex.lock(wait_ns);
     stayed_locked_ = false;
@@ -171,6 +187,10 @@ Registry::Lock::~Lock() {
   RegistryHeader & header = registry_.header();
   header.changes.store(
     (header.changes.load(std::memory_order_relaxed) | 1) + 1, std::memory_order_release);
+  if (header.mutex.is_waited_for()) {
+    registry_.others_first_until_ns_.store(
+      monotonic_ns() + others_first_ns, std::memory_order_relaxed);
+  }
   header.mutex.unlock();
 }
 

@@ -98,8 +98,9 @@ public:
     static constexpr long short_wait_ns = 100'000'000;  ///< from inside a publish
     static constexpr long no_wait_ns = 0;
 
-    /// Throws Error{timeout} when the lock is not to be had within `wait_ns`; OutOfReach when a
-    /// former owner died and this process cannot map all that is to be repaired.
+    /// Who had the lock and comes back at once lets those go first that waited for it meanwhile,
+    /// but for short waits. Throws Error{timeout} when the lock is not to be had within `wait_ns`;
+    /// OutOfReach when a former owner died and this process cannot map all that is to be repaired.
     explicit Lock(Registry & registry, long wait_ns = usual_wait_ns);
     ~Lock();
     Lock(const Lock &) = delete;
@@ -157,6 +158,7 @@ private:
   friend class Lock;
   std::atomic<uint32_t> & bucket_of(uint64_t topic_hash) const noexcept;
   RobustMutex::Outcome lock_within(long wait_ns);
+  void let_others_go_first() const noexcept;
   /// Throws OutOfReach before it changes anything.
   void repair();
   void mark_blocks_of(EndpointEntry & entry) noexcept;
@@ -169,6 +171,7 @@ private:
   Table<EndpointEntry> endpoints_;
   Clusters clusters_;
   std::atomic<bool> stayed_locked_{false};
+  std::atomic<int64_t> others_first_until_ns_{0};  ///< CLOCK_MONOTONIC
 };
 
 /// FNV-1a; a hash of names that is equal in every process.
