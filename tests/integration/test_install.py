@@ -120,7 +120,8 @@ def test_an_ordinary_ros_finds_the_middleware(prefix: Path, kind: str) -> None:
 
 def test_top_level_names(unpacked: Path) -> None:
     names = {path.name for path in unpacked.iterdir() if not path.name.startswith("rmw_manycore-")}
-    startup = {"rmw_manycore.pth", "rmw_manycore_hook.py", "rmw_manycore_program.py"}
+    modules = {f"rmw_manycore_{name}.py" for name in ("hook", "interfaces", "program")}
+    startup = {"rmw_manycore.pth", *modules}
     assert names == startup | {"rmw_manycore_bridge", "rmw_manycore_py"} | BUILT_MESSAGES
 
 
