@@ -7,7 +7,7 @@
 //   create   to create one more subscription,
 //   beside   to create a publisher of another topic, from a second thread, while the first creates
 //            all of them,
-//   publish  to publish; nobody takes, so with a small depth each queue is full.
+//   publish  to publish; nothing is taken, so with a small depth each queue is full.
 #include <atomic>
 #include <memory>
 #include <thread>

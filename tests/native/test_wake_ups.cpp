@@ -1,6 +1,6 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 //
-// Which threads of a process a message wakes. An epoch that was not raised wakes nobody, so the
+// Which threads of a process a message wakes. An epoch that was not raised wakes no thread, so the
 // tests compare epochs; that a raised one wakes is test_waiter's matter.
 #include <doctest/doctest.h>
 

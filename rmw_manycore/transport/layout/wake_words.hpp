@@ -10,7 +10,7 @@ struct WakeWord {
   FutexWord epoch;
   std::atomic<uint32_t> sleepers;
 
-  /// Raises the epoch; one system call only if somebody sleeps.
+  /// Raises the epoch; one system call only if a thread sleeps.
   ///
   /// No wake-up is lost: the sleeper counts itself before the kernel compares the epoch, the waker
   /// raises the epoch before it looks at the count; both are seq_cst, so one of them sees the

@@ -98,7 +98,7 @@ public:
     static constexpr long short_wait_ns = 100'000'000;  ///< from inside a publish
     static constexpr long no_wait_ns = 0;
 
-    /// Who had the lock and comes back at once lets those go first that waited for it meanwhile,
+    /// A process that had the lock and comes back at once lets those go first that waited for it,
     /// but for short waits. Throws Error{timeout} when the lock is not to be had within `wait_ns`;
     /// OutOfReach when a former owner died and this process cannot map all that is to be repaired.
     explicit Lock(Registry & registry, long wait_ns = usual_wait_ns);

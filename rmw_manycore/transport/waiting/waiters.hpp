@@ -19,7 +19,7 @@ public:
   Waiters(const Waiters &) = delete;
   Waiters & operator=(const Waiters &) = delete;
 
-  /// For whatever arrives at subscriptions whose watchers nobody has set.
+  /// For what arrives at subscriptions whose watchers were not set.
   Waiter & common() noexcept { return waiters_.front(); }
   /// Shared by some once more than `thread_numbers` threads wait.
   Waiter & of_this_thread() noexcept { return waiters_[word_of_this_thread()]; }
