@@ -46,7 +46,7 @@ class Manifest:
 
 
 class Store:
-    """The packages built for this Python; whoever changes them holds `locked()`."""
+    """The packages built for this Python; changes to them are made under `locked()`."""
 
     def __init__(self) -> None:
         self.directory = Path(own_directory())

@@ -59,7 +59,9 @@ struct SubscriptionHeader {
   uint32_t free_source_from;  ///< no source below this index is free; under the registry lock
 
   /// True when it is the first that counts: before it no deadline was due.
-  bool note_arrival() noexcept { return has_deadline != 0 && deadline.touch(deadline_ns); }
+  [[nodiscard]] bool note_arrival() noexcept {
+    return has_deadline != 0 && deadline.touch(deadline_ns);
+  }
 
   alignas(64) EntryBlocks sources;
 

@@ -107,7 +107,9 @@ void RecordFinder::resync(std::optional<Hint> popped) {
   counts_.suspect_losses();
   if (found_.size() > announced) {
     arrivals_by_resync_.fetch_add(found_.size() - announced, std::memory_order_relaxed);
-    header_.note_arrival();
+    if (header_.note_arrival()) {  // from now on a deadline is due
+      notify_event_watchers(registry_, header_.process.load(std::memory_order_relaxed));
+    }
   }
   drop_beyond_depth();
   if (!backlog_.empty()) {
