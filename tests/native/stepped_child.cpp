@@ -1,6 +1,7 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #include "stepped_child.hpp"
 
+#include <sched.h>
 #include <sys/ptrace.h>
 #include <sys/syscall.h>
 #include <sys/wait.h>
@@ -29,6 +30,19 @@ bool is_main_thread_dead(pid_t pid) {
   return state == 'Z';
 }
 
+cpu_set_t affinity() {
+  cpu_set_t cpus;
+  require(sched_getaffinity(0, sizeof cpus, &cpus) == 0);
+  return cpus;
+}
+
+cpu_set_t only(int cpu) {
+  cpu_set_t cpus;
+  CPU_ZERO(&cpus);
+  CPU_SET(static_cast<size_t>(cpu), &cpus);
+  return cpus;
+}
+
 /// The signal that stopped a traced process.
 int wait_for_stop(pid_t pid) {
   int status = 0;
@@ -49,20 +63,31 @@ void begin_steps() {
 void finish_steps() { raise(finish_signal); }
 
 SteppedChild::SteppedChild(const std::string & role, const Arguments & arguments)
-: Child(role, arguments) {
+: Child(role, arguments), cpus_(affinity()) {
+  const cpu_set_t one = only(sched_getcpu());
+  require(sched_setaffinity(0, sizeof one, &one) == 0);
+  require(sched_setaffinity(pid(), sizeof one, &one) == 0);
   if (wait_for_stop(pid()) != begin_signal) {
     throw std::runtime_error("a stepped process has not come to its steps");
   }
 }
 
+SteppedChild::~SteppedChild() { sched_setaffinity(0, sizeof cpus_, &cpus_); }
+
 uint64_t SteppedChild::step(uint64_t instructions) {
   uint64_t done = 0;
   while (done < instructions && !finished_) {
-    ptrace(PTRACE_SINGLESTEP, pid(), nullptr, nullptr);
-    finished_ = wait_for_stop(pid()) == finish_signal;
+    resume(PTRACE_SINGLESTEP);
     ++done;
   }
   return done;
+}
+
+void SteppedChild::run_to_system_call() { resume(PTRACE_SYSCALL); }
+
+void SteppedChild::resume(int request) {
+  ptrace(static_cast<__ptrace_request>(request), pid(), nullptr, nullptr);
+  finished_ = wait_for_stop(pid()) == finish_signal;
 }
 
 void SteppedChild::end_main_thread() {

@@ -240,7 +240,8 @@ TEST_CASE("killed while it brings up a platform: the next process does, and 'cle
   const auto kill_at = [&](size_t files, uint64_t more) {
     SteppedChild first("joins", {platform.name()});
     while (!std::filesystem::exists(directory) || files_in(directory) < files) {
-      REQUIRE(first.step(1) == 1);
+      first.run_to_system_call();
+      REQUIRE_FALSE(first.finished());
     }
     first.step(more);
     first.kill();
@@ -265,7 +266,8 @@ TEST_CASE("killed while it takes a platform away: the receive threads go on with
   const std::string directory = platform.paths().directory;
   const size_t all = files_in(directory);
   while (files_in(directory) == all) {
-    REQUIRE(last.step(1) == 1);
+    last.run_to_system_call();
+    REQUIRE_FALSE(last.finished());
   }
   last.kill();
   wait_until("the platform is gone", [&] { return !platform.exists(); });
