@@ -279,6 +279,24 @@ TEST_CASE("files removed from outside: members notice, and a new platform begins
   platform.receive_thread(1);  // it clears away what the killed newcomer leaves
 }
 
+// A repair maps all clusters, and the files of those that were not mapped are gone.
+TEST_CASE("files removed from outside after the owner of the registry lock was killed") {
+  TestPlatform platform;
+  const Node other(platform, 2);
+  const pid_t witness = platform.receive_thread(2);
+  const auto process = platform.join(1);
+  const pid_t owner = platform.receive_thread(1);
+  {
+    const Standstill looks_later(platform, 2);
+    platform.stop_receive_thread(1);
+    Registry(platform.paths()).header().needs_repair = 1;
+    std::filesystem::remove_all(platform.paths().directory);
+    kill(owner, SIGKILL);
+    wait_until("it is dead", [&] { return !is_running(owner); });
+  }
+  wait_until("the other receive thread has ended", [&] { return !is_running(witness); });
+}
+
 TEST_CASE("joining and leaving again and again leaves no descriptor open") {
   TestPlatform platform;
   platform.join();

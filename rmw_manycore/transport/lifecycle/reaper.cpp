@@ -203,19 +203,34 @@ int Reaper::patience_ms() const noexcept {
   return is_closing_ ? retry_ms : for_ever_ms;
 }
 
-void Reaper::run() noexcept {
-  bool somebody_ended = true;  // perhaps all who were there when this receive thread was started
-  while (running_) {
-    try {
-      somebody_ended = watch_and_reap() || somebody_ended;
-      if (somebody_ended || !files_) {
-        exit_if_unused(registry_);
-      }
-      somebody_ended = wait_for_end(patience_ms());
-    } catch (const std::exception &) {
-      // A lock that stayed taken or a damaged entry.
-      somebody_ended = wait_for_end(retry_ms) || somebody_ended;
+int Reaper::try_to_reap() noexcept {
+  try {
+    somebody_ended_ = watch_and_reap() || somebody_ended_;
+    return patience_ms();
+  } catch (const std::exception &) {
+    // A lock that stayed taken, a damaged entry; or the platform's files are gone, and a repair
+    // needs them.
+    somebody_ended_ = true;
+    return retry_ms;
+  }
+}
+
+int Reaper::try_to_end(int patience_ms) noexcept {
+  try {
+    if (somebody_ended_ || !files_) {
+      exit_if_unused(registry_);
     }
+    somebody_ended_ = false;
+    return patience_ms;
+  } catch (const std::exception &) {
+    return retry_ms;  // the JoinLock stayed taken
+  }
+}
+
+void Reaper::run() noexcept {
+  while (running_) {
+    const int patience_ms = try_to_end(try_to_reap());
+    somebody_ended_ = wait_for_end(patience_ms) || somebody_ended_;
   }
 }
 

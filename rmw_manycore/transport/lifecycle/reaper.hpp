@@ -26,6 +26,9 @@ public:
 
 private:
   void run() noexcept;
+  /// Each returns how long to wait for the next end before trying again.
+  int try_to_reap() noexcept;
+  int try_to_end(int patience_ms) noexcept;
   /// True when a member was dead.
   bool watch_and_reap();
   void watch_members();
@@ -46,6 +49,7 @@ private:
   bool some_unwatched_ = false;  ///< in other PID namespaces, or no descriptor was left
   bool is_closing_ = false;  ///< something could not be freed yet, and nobody tells when it can be
   bool graph_may_have_changed_ = true;
+  bool somebody_ended_ = true;  ///< perhaps all, before this receive thread was started
   std::atomic<bool> running_{true};
   std::thread thread_;
 };
