@@ -27,7 +27,7 @@ public:
   WaitingThread(Process & process, const std::vector<Subscription *> & awaited)
   : thread_([this, &process, awaited] {
       waiter_ = &process.waiters().of_this_thread();
-      word_ = Waiters::mask_of_this_thread();
+      word_ = Waiters::word_of_this_thread();
       for (Subscription * const subscription : awaited) {
         subscription->watchers().add(word_);
       }
@@ -44,7 +44,7 @@ public:
   WaitingThread(const WaitingThread &) = delete;
   WaitingThread & operator=(const WaitingThread &) = delete;
 
-  WakeMask word() const noexcept { return word_; }
+  uint32_t word() const noexcept { return word_; }
   /// Since the call before.
   uint32_t wake_ups() noexcept {
     const uint32_t epoch = waiter_->epoch();
@@ -53,7 +53,7 @@ public:
 
 private:
   Waiter * waiter_ = nullptr;
-  WakeMask word_ = 0;
+  uint32_t word_ = 0;
   uint32_t seen_ = 0;
   std::promise<void> started_;
   std::promise<void> ended_;
@@ -66,7 +66,7 @@ struct Fixture {
     platform.receive_thread(1);  // which has all threads look when it starts
     for (uint32_t i = 0; i < subscriptions_count; ++i) {
       subscriptions.push_back(process->create_subscription(on_topic(topic(i), keep_last(10))));
-      subscriptions.back()->watchers().words.store(0);
+      subscriptions.back()->watchers().reset();
     }
   }
   static std::string topic(uint32_t i) { return "/wake_" + std::to_string(i); }
@@ -127,7 +127,7 @@ TEST_CASE("a message wakes a thread once, however many subscriptions it reaches"
     Fixture f(0);
     for (int i = 0; i < 5; ++i) {
       f.subscriptions.push_back(f.process->create_subscription(on_topic("/many", keep_last(10))));
-      f.subscriptions.back()->watchers().words.store(0);
+      f.subscriptions.back()->watchers().reset();
     }
     WaitingThread thread(*f.process, f.from(0, 5));
     Node publisher(f.platform, publisher_cluster);
@@ -147,7 +147,7 @@ TEST_CASE("those that wait for events are woken by the first message and by disp
   Qos qos = keep_last(1);
   qos.deadline_ns = 3600 * ns_per_s;
   f.subscriptions.push_back(f.process->create_subscription(on_topic("/timed", qos)));
-  f.subscriptions.back()->watchers().words.store(0);
+  f.subscriptions.back()->watchers().reset();
   WaitingThread thread(*f.process, {});
   f.process->waiters().event_watchers().add(thread.word());
   const auto publisher = f.process->create_publisher(on_topic("/timed", qos));
@@ -167,7 +167,7 @@ TEST_CASE("what a thread forgets wakes it no more") {
   const Watched second(f.process->waiters(), f.subscriptions[1]->watchers());
   WaitingThread other(*f.process, f.from(0, 2));
   Waiter & own = f.process->waiters().of_this_thread();
-  const WakeMask word = Waiters::mask_of_this_thread();
+  const uint32_t word = Waiters::word_of_this_thread();
   for (Watchers * const watchers :
        {&first.watchers(), &second.watchers(), &f.process->waiters().graph_watchers(),
         &f.process->waiters().event_watchers()}) {
@@ -191,21 +191,22 @@ TEST_CASE("threads share words once there are more of them, and then nothing is 
   const Watched watched(f.process->waiters(), f.subscriptions[0]->watchers());
   const auto publisher = f.process->create_publisher(on_topic(Fixture::topic(0), keep_last(10)));
   std::vector<std::unique_ptr<WaitingThread>> threads;
-  WakeMask words = Waiters::mask_of_this_thread();
+  WakeSet words = WakeSet::of(Waiters::word_of_this_thread());
   while (!are_thread_numbers_shared()) {
     threads.push_back(std::make_unique<WaitingThread>(*f.process, f.from(0, 1)));
-    words |= threads.back()->word();
+    words |= WakeSet::of(threads.back()->word());
     REQUIRE(threads.size() <= thread_numbers);
   }
   CHECK(threads.size() == thread_numbers);  // this thread has one as well
-  CHECK(words == ~common_word);
+  words |= WakeSet::of(common_word);
+  CHECK(words.parts == std::array<uint64_t, 2>{UINT64_MAX, UINT64_MAX});
   publish(*publisher, 1);
   for (const auto & thread : threads) {
     CHECK(thread->wake_ups() == 1);
   }
-  f.subscriptions[0]->watchers().add(Waiters::mask_of_this_thread());
+  f.subscriptions[0]->watchers().add(Waiters::word_of_this_thread());
   f.process->waiters().forget_this_thread();
-  CHECK((f.subscriptions[0]->watchers().read() & Waiters::mask_of_this_thread()) != 0);
+  CHECK(f.subscriptions[0]->watchers().read().contains(Waiters::word_of_this_thread()));
   threads.clear();
   WaitingThread later(*f.process, {});
   CHECK_FALSE(are_thread_numbers_shared());  // they were given back

@@ -43,7 +43,7 @@ void CallbackThread::stop() noexcept {
 
 void CallbackThread::run() noexcept {
   manycore::Waiter & waiter = waiters_.of_this_thread();
-  const manycore::WakeMask word = manycore::Waiters::mask_of_this_thread();
+  const uint32_t word = manycore::Waiters::word_of_this_thread();
   std::unique_lock lock(mutex_);
   sleeping_ = &waiter;
   while (!stopping_) {
@@ -70,7 +70,7 @@ void CallbackThread::wake_sleep() noexcept {
   }
 }
 
-void CallbackThread::watch_all(manycore::WakeMask word) noexcept {
+void CallbackThread::watch_all(uint32_t word) noexcept {
   for (Callback * const callback : active_) {
     callback->watchers_.add(word);
   }

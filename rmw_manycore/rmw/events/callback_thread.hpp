@@ -38,7 +38,7 @@ private:
   void run() noexcept;
   void report_all() noexcept;
   void wake_sleep() noexcept;
-  void watch_all(manycore::WakeMask word) noexcept;
+  void watch_all(uint32_t word) noexcept;
   std::optional<int64_t> next_due_ns() const;
 
   manycore::Waiters & waiters_;

@@ -20,7 +20,7 @@ public:
     on_arrival_(
       thread, watched_.watchers(), [this] { return subscription_->arrivals(); },
       [this] { return unread(); }) {
-    watched_.watchers().words.store(0);  // threads that wait for arrivals add their own
+    watched_.watchers().reset();  // threads that wait for arrivals add their own
   }
 
   const manycore::Subscription & transport() const noexcept { return *subscription_; }

@@ -11,7 +11,7 @@ Sleep::Sleep(manycore::Waiters & own, const Waited & waited) : own_(own), waited
 
 /// The thread's word has the same number on each platform.
 void Sleep::watch() noexcept {
-  const manycore::WakeMask word = manycore::Waiters::mask_of_this_thread();
+  const uint32_t word = manycore::Waiters::word_of_this_thread();
   waited_.for_each_place([&](const Place & place) { place.watchers.add(word); });
   waited_.conditions.for_each([&](const GuardCondition & condition) {
     if (condition.source() == GuardCondition::Source::graph) {

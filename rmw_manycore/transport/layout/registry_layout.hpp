@@ -55,7 +55,7 @@ struct ProcessEntry {
   char label[88];
   WakeWords wake;
 };
-static_assert(sizeof(ProcessEntry) == 704);
+static_assert(sizeof(ProcessEntry) == 1216);
 
 struct NodeEntry {
   Slot slot;

@@ -1,6 +1,8 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+
 #include "platform/futex.hpp"
 
 namespace manycore {
@@ -23,33 +25,87 @@ struct WakeWord {
   }
 };
 
-/// Bit i = wake word i of a process.
-using WakeMask = uint64_t;
-
-constexpr uint32_t wake_words_per_process = 64;
+/// So that a hundred threads, and some, have one each.
+constexpr uint32_t wake_words_per_process = 128;
 /// The word of those that wait for whatever their process gets; the others are threads' own.
-constexpr WakeMask common_word = 1;
+constexpr uint32_t common_word = 0;
+
+/// Some of a process's wake words.
+struct WakeSet {
+  static constexpr uint32_t words_per_part = 64;
+  static constexpr uint32_t part_count = wake_words_per_process / words_per_part;
+
+  std::array<uint64_t, part_count> parts{};
+
+  static constexpr uint64_t bit(uint32_t word) noexcept {
+    return uint64_t{1} << word % words_per_part;
+  }
+  static constexpr WakeSet of(uint32_t word) noexcept {
+    WakeSet set;
+    set.parts[word / words_per_part] = bit(word);
+    return set;
+  }
+  bool contains(uint32_t word) const noexcept {
+    return (parts[word / words_per_part] & bit(word)) != 0;
+  }
+  bool empty() const noexcept {
+    uint64_t any = 0;
+    for (const uint64_t part : parts) {
+      any |= part;
+    }
+    return any == 0;
+  }
+  WakeSet & operator|=(const WakeSet & other) noexcept {
+    for (uint32_t i = 0; i < part_count; ++i) {
+      parts[i] |= other.parts[i];
+    }
+    return *this;
+  }
+  template<typename Visit>
+  void for_each(Visit visit) const {
+    for (uint32_t i = 0; i < part_count; ++i) {
+      for (uint64_t left = parts[i]; left != 0; left &= left - 1) {
+        visit(i * words_per_part + static_cast<uint32_t>(__builtin_ctzll(left)));
+      }
+    }
+  }
+};
 
 /// The wake words behind which something is waited for. A thread adds its own before it looks and
 /// sleeps; it stays there until the thread was woken for nothing, so waiting again costs a load.
 ///
 /// No wake-up is lost: the waiting thread adds its word before it looks for the cause, the waker
-/// makes the cause before it reads the words; all seq_cst, so one of them sees the other. See
+/// makes the cause before it reads the words; all seq_cst, so one of them sees the other. A thread
+/// has one word, so it does not matter that parts are read one after the other. See
 /// docs/model/waiting.pml.
 struct Watchers {
-  std::atomic<WakeMask> words;
+  std::atomic<uint64_t> parts[WakeSet::part_count];
 
-  void add(WakeMask word) noexcept {
-    if ((words.load(std::memory_order_seq_cst) & word) == 0) {
-      words.fetch_or(word, std::memory_order_seq_cst);
+  void add(uint32_t word) noexcept {
+    std::atomic<uint64_t> & part = parts[word / WakeSet::words_per_part];
+    if ((part.load(std::memory_order_seq_cst) & WakeSet::bit(word)) == 0) {
+      part.fetch_or(WakeSet::bit(word), std::memory_order_seq_cst);
     }
   }
-  void remove(WakeMask word) noexcept {
-    if ((words.load(std::memory_order_relaxed) & word) != 0) {
-      words.fetch_and(~word, std::memory_order_seq_cst);
+  void remove(uint32_t word) noexcept {
+    std::atomic<uint64_t> & part = parts[word / WakeSet::words_per_part];
+    if ((part.load(std::memory_order_relaxed) & WakeSet::bit(word)) != 0) {
+      part.fetch_and(~WakeSet::bit(word), std::memory_order_seq_cst);
     }
   }
-  WakeMask read() const noexcept { return words.load(std::memory_order_seq_cst); }
+  WakeSet read() const noexcept {
+    WakeSet set;
+    for (uint32_t i = 0; i < WakeSet::part_count; ++i) {
+      set.parts[i] = parts[i].load(std::memory_order_seq_cst);
+    }
+    return set;
+  }
+  /// Before anybody waits.
+  void reset() noexcept {
+    for (std::atomic<uint64_t> & part : parts) {
+      part.store(0);
+    }
+  }
 };
 
 /// In the registry, one per process slot.
@@ -58,16 +114,22 @@ struct alignas(64) WakeWords {
   Watchers graph;            ///< of changes of the graph
   Watchers endpoint_events;  ///< of matches, incompatible QoS, losses, deadlines
 
-  void notify(WakeMask mask) noexcept {
-    for (; mask != 0; mask &= mask - 1) {
-      words[__builtin_ctzll(mask)].notify();
-    }
+  void notify(const WakeSet & set) noexcept {
+    set.for_each([this](uint32_t word) { words[word].notify(); });
   }
   /// Those to be woken by an arrival at a subscription of the process.
-  WakeMask mask_of(const Watchers & arrivals, bool changes_events) const noexcept {
-    return arrivals.read() | (changes_events ? endpoint_events.read() : 0);
+  WakeSet set_of(const Watchers & arrivals, bool changes_events) const noexcept {
+    WakeSet set = arrivals.read();
+    if (changes_events) {
+      set |= endpoint_events.read();
+    }
+    return set;
   }
-  void notify_all() noexcept { notify(~WakeMask{0}); }
+  void notify_all() noexcept {
+    for (WakeWord & word : words) {
+      word.notify();
+    }
+  }
   void notify(const Watchers & watchers) noexcept { notify(watchers.read()); }
 
   /// Once, before the process that has taken the slot is known to anybody.
@@ -75,10 +137,10 @@ struct alignas(64) WakeWords {
     for (WakeWord & word : words) {
       word.sleepers.store(0);
     }
-    graph.words.store(0);
-    endpoint_events.words.store(0);
+    graph.reset();
+    endpoint_events.reset();
   }
 };
-static_assert(sizeof(WakeWords) == 576);
+static_assert(sizeof(WakeWords) == 1088);
 
 }  // namespace manycore

@@ -27,7 +27,7 @@ uint64_t push_to_own_cluster(
   const Cluster & own, const ReaderList & list, const Announcement & announcement) noexcept {
   uint64_t others = 0;
   WakeWords * pending = nullptr;  // readers of one process stand together
-  WakeMask words = 0;
+  WakeSet words;
   for (const Reader & reader : list.readers()) {
     if (!is_for(announcement, reader)) {
       continue;
@@ -40,10 +40,10 @@ uint64_t push_to_own_cluster(
       *reader.subscription, {reader.source_index, reader.source_incarnation, announcement.number},
       [&](const Hint & oldest) { note_displaced(own, reader, oldest); });
     if (pending != reader.wake && pending != nullptr) {
-      pending->notify(std::exchange(words, 0));
+      pending->notify(std::exchange(words, {}));
     }
     pending = reader.wake;
-    words |= pending->mask_of(reader.subscription->watchers, changes_events);
+    words |= pending->set_of(reader.subscription->watchers, changes_events);
   }
   if (pending != nullptr) {
     pending->notify(words);

@@ -14,8 +14,8 @@ public:
   explicit PendingWakes(Registry & registry) noexcept : registry_(registry) {}
 
   /// `process`: a slot below the high water mark.
-  void add(uint32_t process, WakeMask words) noexcept {
-    if (words_[process] == 0 && words != 0) {
+  void add(uint32_t process, const WakeSet & words) noexcept {
+    if (words_[process].empty() && !words.empty()) {
       processes_[count_++] = process;
     }
     words_[process] |= words;
@@ -24,13 +24,13 @@ public:
     while (count_ != 0) {
       const uint32_t process = processes_[--count_];
       registry_.processes()[process].wake.notify(words_[process]);
-      words_[process] = 0;
+      words_[process] = {};
     }
   }
 
 private:
   Registry & registry_;
-  std::array<WakeMask, process_capacity> words_{};    ///< by process slot
+  std::array<WakeSet, process_capacity> words_{};     ///< by process slot
   std::array<uint32_t, process_capacity> processes_;  ///< those with words, `count_` of them
   uint32_t count_ = 0;
 };

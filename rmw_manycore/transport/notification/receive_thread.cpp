@@ -137,7 +137,7 @@ void ReceiveThread::push(SegmentRef ref, const Hint & hint) noexcept {
   const uint32_t process = subscription->process.load(std::memory_order_relaxed);
   if (process < registry_.processes().high_water()) {
     const WakeWords & wake = registry_.processes()[process].wake;
-    wakes_.add(process, wake.mask_of(subscription->watchers, changes_events));
+    wakes_.add(process, wake.set_of(subscription->watchers, changes_events));
   }
 }
 

@@ -33,7 +33,7 @@ SubscriptionHeader & create(Registry & registry, uint32_t endpoint_slot) {
   header.has_deadline = entry.qos.deadline_ns == infinite_ns ? 0 : 1;
   header.deadline_ns = entry.qos.deadline_ns;
   header.deadline.reset();
-  header.watchers.words.store(common_word);
+  header.watchers.add(common_word);
   subscriber_queue::initialize(header);
   header.magic.store(subscription_magic, std::memory_order_release);
   return header;

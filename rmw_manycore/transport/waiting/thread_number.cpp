@@ -6,22 +6,32 @@
 namespace manycore {
 namespace {
 
-constexpr uint64_t all_numbers = (uint64_t{1} << thread_numbers) - 1;
+constexpr uint32_t numbers_per_part = 64;
+constexpr uint32_t parts = (thread_numbers + numbers_per_part - 1) / numbers_per_part;
 
 /// No mutex guards them: a child of fork() could find it locked for ever.
-std::atomic<uint64_t> taken{0};
+std::atomic<uint64_t> taken[parts];
 std::atomic<uint32_t> sharing{0};  ///< threads that found all numbers taken
 std::atomic<uint32_t> next_shared{0};
+
+/// Bits of numbers that there are.
+constexpr uint64_t all_of(uint32_t part) {
+  return thread_numbers - part * numbers_per_part >= numbers_per_part
+           ? ~uint64_t{0}
+           : (uint64_t{1} << thread_numbers % numbers_per_part) - 1;
+}
 
 class ThreadNumber {
 public:
   ThreadNumber() noexcept {
-    uint64_t known = taken.load(std::memory_order_relaxed);
-    while (known != all_numbers) {
-      const uint64_t lowest = ~known & (known + 1);
-      if (taken.compare_exchange_weak(known, known | lowest)) {
-        value_ = static_cast<uint32_t>(__builtin_ctzll(lowest));
-        return;
+    for (uint32_t part = 0; part < parts; ++part) {
+      uint64_t known = taken[part].load(std::memory_order_relaxed);
+      while (known != all_of(part)) {
+        const uint64_t lowest = ~known & (known + 1);
+        if (taken[part].compare_exchange_weak(known, known | lowest)) {
+          value_ = part * numbers_per_part + static_cast<uint32_t>(__builtin_ctzll(lowest));
+          return;
+        }
       }
     }
     shares_ = true;
@@ -32,7 +42,7 @@ public:
     if (shares_) {
       sharing.fetch_sub(1);
     } else {
-      taken.fetch_and(~(uint64_t{1} << value_));
+      taken[value_ / numbers_per_part].fetch_and(~(uint64_t{1} << value_ % numbers_per_part));
     }
   }
   ThreadNumber(const ThreadNumber &) = delete;

@@ -5,7 +5,7 @@
 
 namespace manycore {
 
-constexpr uint32_t thread_numbers = 63;
+constexpr uint32_t thread_numbers = 127;
 
 /// The calling thread's number, below `thread_numbers`: from its first call to its end its own,
 /// while no more threads than that have one; further threads share numbers.

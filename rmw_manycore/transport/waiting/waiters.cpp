@@ -16,9 +16,7 @@ Waiters::Waiters(WakeWords & words, WaitMode mode) : words_(words) {
 uint32_t Waiters::word_of_this_thread() noexcept { return 1 + thread_number(); }
 
 void Waiters::notify(const Watchers & watchers) noexcept {
-  for (WakeMask mask = watchers.read(); mask != 0; mask &= mask - 1) {
-    waiters_[static_cast<size_t>(__builtin_ctzll(mask))].notify();
-  }
+  watchers.read().for_each([this](uint32_t word) { waiters_[word].notify(); });
 }
 
 void Waiters::notify_all() noexcept {
@@ -32,7 +30,7 @@ void Waiters::forget_this_thread() noexcept {
   if (are_thread_numbers_shared()) {
     return;
   }
-  const WakeMask word = mask_of_this_thread();
+  const uint32_t word = word_of_this_thread();
   words_.graph.remove(word);
   words_.endpoint_events.remove(word);
   const std::lock_guard<std::mutex> lock(mutex_);

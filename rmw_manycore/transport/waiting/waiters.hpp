@@ -24,7 +24,7 @@ public:
   /// Shared by some once more than `thread_numbers` threads wait.
   Waiter & of_this_thread() noexcept { return waiters_[word_of_this_thread()]; }
   /// To be added to the Watchers of all that this thread waits for.
-  static WakeMask mask_of_this_thread() noexcept { return WakeMask{1} << word_of_this_thread(); }
+  static uint32_t word_of_this_thread() noexcept;
 
   Watchers & graph_watchers() noexcept { return words_.graph; }
   Watchers & event_watchers() noexcept { return words_.endpoint_events; }
@@ -38,7 +38,6 @@ public:
 
 private:
   friend class Watched;
-  static uint32_t word_of_this_thread() noexcept;
 
   WakeWords & words_;
   /// In a child of fork() the mutex may be locked for ever.
