@@ -174,18 +174,16 @@ Process::Impl::~Impl() {
 
 void Process::Impl::leave() {
   const JoinLock join_lock(paths);
-  {
+  // Those whose own closing did not get the lock.
+  closing::EndpointsOfProcess endpoints(*registry, slot, false);
+  for (bool closed = false; !closed;) {
     const Registry::Lock lock(*registry, registry->parting_wait_ns());
-    for (uint32_t node = 0; node < registry->nodes().high_water(); ++node) {
-      if (registry->nodes().is_live(node) && registry->nodes()[node].process == slot) {
-        registry->nodes().give_back(node);
-      }
+    closed = endpoints.close_some();
+    if (closed) {
+      endpoints.require_all_closed();
+      closing::sweep(*registry);
+      leave_registry(*registry, slot);
     }
-    // Those whose own closing did not get the lock.
-    closing::close_all_of(*registry, slot, false);
-    closing::sweep(*registry);
-    discharge(*registry, slot);
-    registry->processes().give_back(slot);
   }
   registry->graph_changed();
   lifeline.reset();

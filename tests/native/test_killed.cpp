@@ -16,12 +16,15 @@
 #include "stepped_child.hpp"
 #include "transport/lifecycle/configurator.hpp"
 #include "transport/lifecycle/lifecycle.hpp"
+#include "transport/matching/closing.hpp"
 
 using namespace manycore;
 
 namespace {
 
 constexpr const char * topic = "/x";
+constexpr const char * crowded_topic = "/crowded";
+constexpr size_t crowd = 100;          // more than one piece of undoing matches
 constexpr size_t large_bytes = 5'000;  // the topic DSM has to grow for it
 
 std::shared_ptr<Process> join(const std::string & platform) {
@@ -78,13 +81,25 @@ const Role closes("closes", [](Lines &, const Arguments & arguments) {
   finish_steps();
 });
 
+/// Endpoints whose matches are undone in several pieces.
+const Role closes_many("closes_many", [](Lines &, const Arguments & arguments) {
+  const auto process = join(arguments.at(0));
+  auto publisher = process->create_publisher(on_topic(crowded_topic, transient_local(2)));
+  auto subscription = process->create_subscription(on_topic(crowded_topic, transient_local(2)));
+  begin_steps();
+  publisher.reset();
+  subscription.reset();
+  finish_steps();
+});
+
 /// As a receive thread that clears away what other processes left.
 const Role reaps("reaps", [](Lines &, const Arguments & arguments) {
   Registry registry(PlatformPaths::of(arguments.at(0)));
   begin_steps();
+  reap_dead(registry);
   {
     const Registry::Lock lock(registry);
-    reap_dead(registry);
+    closing::sweep(registry);
   }
   finish_steps();
 });
@@ -98,6 +113,14 @@ Profile small_profile() {
 
 /// A publisher and two subscriptions that have to go on.
 struct Fixture {
+  void crowd_topic() {
+    for (size_t i = 0; i < crowd; ++i) {
+      const EndpointSpec spec = on_topic(crowded_topic, transient_local(1));
+      publishers.push_back(process->create_publisher(spec));
+      subscriptions.push_back(process->create_subscription(spec));
+    }
+  }
+
   /// Dead nodes with both kinds of endpoints, which the receive thread cannot have reaped.
   void leave_dead_nodes() {
     Node node(platform, 1);
@@ -128,10 +151,19 @@ struct Fixture {
       REQUIRE(found);
       CHECK(found->number == number);
     }
-    CHECK(inspection.live_endpoints() == 3);
+    CHECK(inspection.live_endpoints() == 3 + publishers.size() + subscriptions.size());
     CHECK(inspection.readers_of(*publisher) == 2);
     CHECK(publisher->matched().current == 2);
     CHECK(subscription->matched().current == 1);
+  }
+
+  void check_crowd() {
+    for (const auto & each : publishers) {
+      CHECK(each->matched().current == subscriptions.size());
+    }
+    for (const auto & each : subscriptions) {
+      CHECK(each->matched().current == publishers.size());
+    }
   }
 
   TestPlatform platform;
@@ -143,6 +175,8 @@ struct Fixture {
     process->create_subscription(on_topic(topic, transient_local(10)));
   std::unique_ptr<Subscription> other =
     process->create_subscription(on_topic(topic, transient_local(10)));
+  std::vector<std::unique_ptr<Publisher>> publishers;
+  std::vector<std::unique_ptr<Subscription>> subscriptions;
   Inspection inspection{platform};
   uint64_t number = 0;
 };
@@ -177,6 +211,9 @@ uint64_t kill_after(Fixture & f, const std::string & role, uint64_t instructions
 void check_kills(const std::string & role) {
   Fixture f;
   f.platform.receive_thread(1);
+  if (role == "closes_many") {
+    f.crowd_topic();
+  }
   f.check_that_it_goes_on();
   const uint64_t all = kill_after(f, role, UINT64_MAX);
   CHECK(all > 1000);
@@ -192,6 +229,7 @@ void check_kills(const std::string & role) {
     kill_after(f, role, instructions);
     f.wait_until_alone();
     f.check_that_it_goes_on();
+    f.check_crowd();
     CHECK(f.inspection.used_bytes() == used);
   }
 }
@@ -207,6 +245,10 @@ TEST_CASE("killed at any instruction while it creates and closes endpoints") {
 TEST_CASE("killed at any instruction while it publishes") { check_kills("publishes"); }
 
 TEST_CASE("killed at any instruction while it takes messages") { check_kills("takes"); }
+
+TEST_CASE("killed at any instruction while it closes endpoints of many matches") {
+  check_kills("closes_many");
+}
 
 TEST_CASE("killed at any instruction while it clears away what other dead left") {
   check_kills("reaps");

@@ -57,6 +57,7 @@ struct SubscriptionHeader {
   int64_t deadline_ns;
   Watchers watchers;          ///< threads of its process that wait for arrivals
   uint32_t free_source_from;  ///< no source below this index is free; under the registry lock
+  uint32_t closed_before;     ///< closing: sources below this index are revoked; under that lock
 
   /// True when it is the first that counts: before it no deadline was due.
   [[nodiscard]] bool note_arrival() noexcept {

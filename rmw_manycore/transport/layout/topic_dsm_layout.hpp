@@ -87,7 +87,9 @@ struct TopicDsmHeader {
   alignas(64) GenerationEntry generations[max_generations];
   ReaderEntry readers[readers_in_header];
   EntryBlocks further_readers;
-  uint64_t reserved2;
+  /// Closing: readers below this index know that the publisher is gone; under the registry lock.
+  uint32_t closed_before;
+  uint32_t reserved2;
 };
 static_assert(sizeof(TopicDsmHeader) == 1024);
 static_assert(std::is_standard_layout_v<TopicDsmHeader>);

@@ -100,15 +100,27 @@ bool is_in_use(Registry & registry) {
   return false;
 }
 
-void reap(Registry & registry, uint32_t process) {
-  closing::close_all_of(registry, process, true);
-  for (uint32_t slot = 0; slot < registry.nodes().high_water(); ++slot) {
-    if (registry.nodes().is_live(slot) && registry.nodes()[slot].process == process) {
-      registry.nodes().give_back(slot);
+/// Without the registry lock a process that is joining may be taken for dead.
+bool is_dead(Registry & registry, uint32_t process) {
+  return registry.processes().is_live(process) && !registry.lifelines().is_held(process);
+}
+
+/// False when another reaper was faster.
+bool reap(Registry & registry, uint32_t process) {
+  const std::atomic<uint32_t> & incarnation = registry.processes()[process].slot.incarnation;
+  const uint32_t first = incarnation.load();
+  closing::EndpointsOfProcess endpoints(registry, process, true);
+  while (true) {
+    const Registry::Lock lock(registry);
+    if (incarnation.load() != first || !is_dead(registry, process)) {
+      return false;
+    }
+    if (endpoints.close_some()) {
+      endpoints.require_all_closed();
+      leave_registry(registry, process);
+      return true;
     }
   }
-  discharge(registry, process);
-  registry.processes().give_back(process);
 }
 
 }  // namespace
@@ -222,16 +234,24 @@ void note_removal(Registry & registry) noexcept {
   }
 }
 
+void leave_registry(Registry & registry, uint32_t process) {
+  for (uint32_t slot = 0; slot < registry.nodes().high_water(); ++slot) {
+    if (registry.nodes().is_live(slot) && registry.nodes()[slot].process == process) {
+      registry.nodes().give_back(slot);
+    }
+  }
+  discharge(registry, process);
+  registry.processes().give_back(process);
+}
+
 uint32_t reap_dead(Registry & registry) {
-  const Lifelines & alive = registry.lifelines();
   uint32_t dead = 0;
   for (uint32_t slot = 0; slot < registry.processes().high_water(); ++slot) {
-    if (registry.processes().is_live(slot) && !alive.is_held(slot)) {
-      reap(registry, slot);
+    // First without the lock: it waits until the last thread of the dead is gone.
+    if (is_dead(registry, slot) && reap(registry, slot)) {
       ++dead;
     }
   }
-  closing::sweep(registry);
   return dead;
 }
 

@@ -53,9 +53,14 @@ std::vector<std::string> remove_platform(const PlatformPaths & paths);
 /// Tells all members that the files are gone, and wakes them to notice.
 void note_removal(Registry & registry) noexcept;
 
-/// Under the registry lock: closes what dead processes left behind, and frees what could not be
-/// freed before. Returns the number of the dead.
+/// Closes what dead processes left behind, and makes their places free; their endpoints' memory
+/// goes with closing::sweep(). Takes the registry lock anew for each piece. Returns the number of
+/// the dead.
 uint32_t reap_dead(Registry & registry);
+
+/// Under the registry lock: gives back the place of a process whose endpoints are closed, and its
+/// nodes.
+void leave_registry(Registry & registry, uint32_t process);
 
 /// Has the reapers of all clusters but `own` look whom to watch.
 void tell_other_reapers(Registry & registry, uint32_t own);

@@ -14,6 +14,7 @@
 
 #include "platform/os_process.hpp"
 #include "transport/lifecycle/lifecycle.hpp"
+#include "transport/matching/closing.hpp"
 
 namespace manycore {
 namespace {
@@ -157,17 +158,20 @@ void Reaper::watch_members() {
   }
 }
 
-/// Both under the lock: the members that died before they were watched are found by reap_dead().
+/// Watches first: the members that died before they were watched are found by reap_dead().
 bool Reaper::watch_and_reap() {
   // What a predecessor reaped may be untold, as is what this one reaps before it fails.
   if (std::exchange(graph_may_have_changed_, true)) {
     registry_.graph_changed();
   }
-  uint32_t dead = 0;
   {
     const Registry::Lock lock(registry_);
     watch_members();
-    dead = reap_dead(registry_);
+  }
+  const uint32_t dead = reap_dead(registry_);
+  {
+    const Registry::Lock lock(registry_);
+    closing::sweep(registry_);
     is_closing_ = registry_.header().closing_count != 0;
   }
   if (dead != 0) {

@@ -17,6 +17,11 @@
 namespace manycore::closing {
 namespace {
 
+/// Each takes about half a microsecond under the registry lock.
+constexpr uint32_t entries_at_a_time = 64;
+/// Each may be a cache miss.
+constexpr uint32_t slots_at_a_time = 512;
+
 void count_unmatched(Registry & registry, EndpointEntry & entry) {
   if (entry.matched_current.load() != 0) {
     entry.matched_current.fetch_sub(1);
@@ -24,29 +29,42 @@ void count_unmatched(Registry & registry, EndpointEntry & entry) {
   notify_event_watchers(registry, entry.process);
 }
 
-/// Once more, if the process that did this before died half way: then some of its sources are
-/// `revoked`, and their readers may still be on the reader tables.
-void close_subscription(Registry & registry, EndpointEntry & entry) {
+void undo_match(Registry & registry, SourceEntry & source) {
+  const SourceState state = source.state.load();
+  if (state == SourceState::free) {
+    return;
+  }
+  const uint32_t publisher = source.topic_dsm_endpoint.load();
+  if (
+    state == SourceState::active && topic_dsm_of(registry, source) != nullptr &&
+    registry.endpoints().is_live(publisher)) {
+    count_unmatched(registry, registry.endpoints()[publisher]);
+  }
+  source.state.store(SourceState::revoked, std::memory_order_seq_cst);
+  detach_reader(registry, source);
+}
+
+/// Undoes some matches; true when none is left. `closed_before` moves after each, so a process that
+/// dies half way leaves at most one to be undone once more: its source is `revoked` then, and its
+/// reader may still be on the reader table.
+bool close_some_of_subscription(Registry & registry, EndpointEntry & entry) {
   Cluster * const cluster = registry.reach(entry.block.cluster());
   auto * const header = registry.reach<SubscriptionHeader>(entry.block);
   if (cluster == nullptr || header == nullptr) {
-    return;
+    return true;
   }
-  visit_source_table(*cluster, *header, [&](SourceEntry & source, uint32_t) {
-    const SourceState state = source.state.load();
-    if (state == SourceState::free) {
-      return false;
-    }
-    const uint32_t publisher = source.topic_dsm_endpoint.load();
-    if (
-      state == SourceState::active && topic_dsm_of(registry, source) != nullptr &&
-      registry.endpoints().is_live(publisher)) {
-      count_unmatched(registry, registry.endpoints()[publisher]);
-    }
-    source.state.store(SourceState::revoked, std::memory_order_seq_cst);
-    detach_reader(registry, source);
-    return false;
-  });
+  const uint32_t end = header->closed_before + entries_at_a_time;
+  bool stopped = false;
+  source_table(*cluster, *header)
+    .visit(header->closed_before, [&](SourceEntry & source, uint32_t index) {
+      stopped = index >= end;
+      if (!stopped) {
+        undo_match(registry, source);
+        header->closed_before = index + 1;
+      }
+      return stopped;
+    });
+  return !stopped;
 }
 
 /// Nothing when the entry leads nowhere. Throws OutOfReach.
@@ -62,47 +80,59 @@ std::optional<OrphanReader> follow(
     cluster, dsm, *header, *source, registry.endpoints()[slot], slot, reader.source_index.load()};
 }
 
-/// All or, when one is out of reach, none: what is counted down for a reader may not be counted
-/// down again.
-std::vector<OrphanReader> live_readers(
-  Registry & registry, const Cluster & cluster, TopicDsmHeader & dsm) {
-  std::vector<OrphanReader> readers;
-  for_each_reader(cluster, dsm, [&](ReaderEntry & entry) {
-    const std::optional<OrphanReader> reader = follow(registry, cluster, dsm, entry);
-    if (reader && registry.endpoints().is_live(reader->endpoint_slot)) {
-      readers.push_back(*reader);
-    }
-  });
-  return readers;
+/// Hints of its last records may never have been pushed (`died`), or may have been displaced: a
+/// reader that misses something is told to look, so that the topic DSM does not wait for it for
+/// ever.
+void tell_of_end(
+  Registry & registry, const EndpointEntry & publisher, const OrphanReader & reader, bool died) {
+  EndpointEntry & subscription = registry.endpoints()[reader.endpoint_slot];
+  if (died) {
+    note_death(publisher, subscription);
+  }
+  count_unmatched(registry, subscription);
+  if (has_undelivered(reader)) {
+    reader.subscription.resync.store(1, std::memory_order_seq_cst);
+    notify_watchers(registry, reader.subscription);
+  }
 }
 
-/// Hints of its last records may never have been pushed (`died`), or may have been displaced:
-/// readers that miss something are told to look, so that the topic DSM does not wait for them for
-/// ever.
-void close_publisher(Registry & registry, EndpointEntry & entry, bool died) {
+/// Tells some readers; true when all know. `closed_before` moves after each: what is counted down
+/// for a reader may not be counted down again.
+bool close_some_of_publisher(Registry & registry, EndpointEntry & entry, bool died) {
   Cluster * const cluster = registry.reach(entry.block.cluster());
   auto * const dsm = registry.reach<TopicDsmHeader>(entry.block);
   if (cluster == nullptr || dsm == nullptr) {
-    return;
+    return true;
   }
   if (died) {
     dsm->phase.store(0, std::memory_order_seq_cst);  // the dead follow no references
   }
   if (dsm->orphan.load() != 0) {
-    return;
+    return true;
   }
-  for (const OrphanReader & reader : live_readers(registry, *cluster, *dsm)) {
-    EndpointEntry & subscription = registry.endpoints()[reader.endpoint_slot];
-    if (died) {
-      note_death(entry, subscription);
-    }
-    count_unmatched(registry, subscription);
-    if (has_undelivered(reader)) {
-      reader.subscription.resync.store(1, std::memory_order_seq_cst);
-      notify_watchers(registry, reader.subscription);
-    }
+  const uint32_t end = dsm->closed_before + entries_at_a_time;
+  bool stopped = false;
+  visit_reader_table(
+    *cluster, *dsm,
+    [&](ReaderEntry & reader_entry, uint32_t index) {
+      stopped = index >= end;
+      if (stopped) {
+        return true;
+      }
+      if (reader_entry.active.load(std::memory_order_acquire) != 0) {
+        const std::optional<OrphanReader> reader = follow(registry, *cluster, *dsm, reader_entry);
+        if (reader && registry.endpoints().is_live(reader->endpoint_slot)) {
+          tell_of_end(registry, entry, *reader, died);
+        }
+      }
+      dsm->closed_before = index + 1;
+      return false;
+    },
+    dsm->closed_before);
+  if (!stopped) {
+    dsm->orphan.store(1, std::memory_order_seq_cst);
   }
-  dsm->orphan.store(1, std::memory_order_seq_cst);
+  return !stopped;
 }
 
 /// True when no receive thread follows references that it loaded before now. The dead follow none:
@@ -231,41 +261,51 @@ void wake_reaper(Registry & registry, uint32_t process) {
 
 }  // namespace
 
-void close(Registry & registry, uint32_t endpoint, bool died) {
+bool close_some(Registry & registry, uint32_t endpoint, bool died) {
   EndpointEntry & entry = registry.endpoints()[endpoint];
   if (entry.slot.state.load() == SlotState::live) {
     entry.slot.state.store(SlotState::closing);
     registry.unlink_endpoint(endpoint);
     ++registry.header().closing_count;
   }
-  if (entry.kind == EndpointKind::publisher) {
-    close_publisher(registry, entry, died);
-  } else {
-    close_subscription(registry, entry);
-  }
-  if (entry.slot.state.load() == SlotState::closing) {
+  const bool done = entry.kind == EndpointKind::publisher
+                      ? close_some_of_publisher(registry, entry, died)
+                      : close_some_of_subscription(registry, entry);
+  if (done && entry.slot.state.load() == SlotState::closing) {
     entry.slot.state.store(SlotState::closed);
   }
+  return done;
 }
 
-void close_all_of(Registry & registry, uint32_t process, bool died) {
-  std::optional<OutOfReach> obstacle;
-  for (uint32_t slot = 0; slot < registry.endpoints().high_water(); ++slot) {
-    const EndpointEntry & entry = registry.endpoints()[slot];
-    if (entry.process == process && entry.slot.state.load() != SlotState::free) {
-      try {
-        close(registry, slot, died);
-      } catch (const OutOfReach & error) {
-        obstacle.emplace(error);
+bool EndpointsOfProcess::close_some() {
+  const uint32_t end = std::min(next_ + slots_at_a_time, registry_.endpoints().high_water());
+  for (; next_ < end; ++next_) {
+    const EndpointEntry & entry = registry_.endpoints()[next_];
+    if (entry.process != process_ || entry.slot.state.load() == SlotState::free) {
+      continue;
+    }
+    try {
+      if (!closing::close_some(registry_, next_, died_)) {
+        return false;
       }
+    } catch (const OutOfReach & error) {
+      obstacle_.emplace(error);
+      continue;
     }
+    ++next_;
+    return false;
   }
-  if (obstacle) {
-    if (!died) {
-      wake_reaper(registry, process);
-    }
-    throw OutOfReach(*obstacle);
+  return next_ >= registry_.endpoints().high_water();
+}
+
+void EndpointsOfProcess::require_all_closed() {
+  if (!obstacle_) {
+    return;
   }
+  if (!died_) {
+    wake_reaper(registry_, process_);
+  }
+  throw OutOfReach(*obstacle_);
 }
 
 namespace {
@@ -281,7 +321,7 @@ bool is_left_closing(Registry & registry, const EndpointEntry & entry) {
 bool sweep_endpoint(Registry & registry, WantedSources & wanted, uint32_t slot) {
   EndpointEntry & entry = registry.endpoints()[slot];
   if (is_left_closing(registry, entry)) {
-    close(registry, slot, false);
+    close_some(registry, slot, false);
   }
   const SlotState state = entry.slot.state.load();
   if (state != SlotState::closed && state != SlotState::freeing) {
@@ -312,16 +352,24 @@ bool sweep(Registry & registry) {
 }
 
 void leave(Registry & registry, uint32_t endpoint) noexcept {
+  const Slot & slot = registry.endpoints()[endpoint].slot;
+  const uint32_t incarnation = slot.incarnation.load();
   try {
-    const Registry::Lock lock(registry, registry.parting_wait_ns());
-    const uint32_t process = registry.endpoints()[endpoint].process;
-    try {
-      close(registry, endpoint, false);
-    } catch (const OutOfReach &) {
-      // So it is out of the sweep's reach, too.
-    }
-    if (!sweep(registry)) {
-      wake_reaper(registry, process);
+    bool closed = false;
+    while (!closed) {
+      const Registry::Lock lock(registry, registry.parting_wait_ns());
+      if (slot.state.load() == SlotState::free || slot.incarnation.load() != incarnation) {
+        break;  // meanwhile others closed and freed it
+      }
+      const uint32_t process = registry.endpoints()[endpoint].process;
+      try {
+        closed = close_some(registry, endpoint, false);
+      } catch (const OutOfReach &) {
+        closed = true;  // as far as this process can; it is out of the sweep's reach, too
+      }
+      if (closed && !sweep(registry)) {
+        wake_reaper(registry, process);
+      }
     }
   } catch (const std::exception &) {
     // The registry stayed locked: this endpoint is closed when its process leaves or ends.

@@ -49,7 +49,7 @@ ReaderEntry & free_reader(Cluster & cluster, TopicDsmHeader & dsm) {
   ReaderEntry * found = nullptr;
   visit_reader_table(
     cluster, dsm,
-    [&](ReaderEntry & entry) {
+    [&](ReaderEntry & entry, uint32_t) {
       found = entry.active.load() == 0 ? &entry : nullptr;
       return found != nullptr;
     },
@@ -174,6 +174,17 @@ void undo_half_matches_of(Registry & registry, EndpointEntry & entry) {
   });
 }
 
+/// A publisher that is closing counts down reader by reader.
+bool counts_down(Registry & registry, TopicDsmHeader & dsm, const SourceEntry & source) {
+  const SegmentRef ref{source.reader.load()};
+  const Cluster * const cluster = registry.clusters().find(ref.cluster());
+  const auto * const reader = registry.clusters().find<ReaderEntry>(ref);
+  const auto index = cluster == nullptr || reader == nullptr
+                       ? std::nullopt
+                       : index_of_reader(*cluster, dsm, *reader);
+  return index && *index < dsm.closed_before;
+}
+
 /// Those that are closing count as well until they have left: it is then that they count down.
 void count_matches_of(Registry & registry, uint32_t slot, std::vector<uint64_t> & counts) {
   const EndpointEntry & entry = registry.endpoints()[slot];
@@ -184,7 +195,9 @@ void count_matches_of(Registry & registry, uint32_t slot, std::vector<uint64_t> 
   }
   visit_source_table(*cluster, *header, [&](SourceEntry & source, uint32_t) {
     TopicDsmHeader * const dsm = topic_dsm_of(registry, source);
-    if (source.state.load() == SourceState::active && dsm != nullptr && dsm->orphan.load() == 0) {
+    if (
+      source.state.load() == SourceState::active && dsm != nullptr && dsm->orphan.load() == 0 &&
+      !counts_down(registry, *dsm, source)) {
       ++counts[slot];
       ++counts[source.topic_dsm_endpoint.load()];
     }

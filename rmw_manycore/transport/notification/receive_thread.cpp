@@ -101,7 +101,7 @@ bool ReceiveThread::push_to_readers(
   const Cluster & source, TopicDsmHeader & dsm, const EmcosMessage & message) noexcept {
   const uint64_t generation = dsm.match_generation.load(std::memory_order_seq_cst);
   bool unchanged = true;
-  visit_reader_table(source, dsm, [&](ReaderEntry & entry) {
+  visit_reader_table(source, dsm, [&](ReaderEntry & entry, uint32_t) {
     if (entry.active.load(std::memory_order_acquire) == 0) {
       return false;
     }

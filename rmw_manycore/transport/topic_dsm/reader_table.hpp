@@ -15,20 +15,20 @@ inline EntryTable<ReaderEntry> further_readers(
   return {cluster, dsm.further_readers};
 }
 
-/// Calls `visit(ReaderEntry &)` for each entry of a topic DSM's reader table from index `from` on,
-/// used or not, until it returns true.
+/// Calls `visit(ReaderEntry &, index)` for each entry of a topic DSM's reader table from index
+/// `from` on, used or not, until it returns true.
 template<typename Visit>
 void visit_reader_table(
   const Cluster & cluster, TopicDsmHeader & dsm, Visit visit, uint32_t from = 0) {
   for (uint32_t i = from; i < readers_in_header; ++i) {
-    if (visit(dsm.readers[i])) {
+    if (visit(dsm.readers[i], i)) {
       return;
     }
   }
   further_readers(cluster, dsm)
     .visit(
       std::max(from, readers_in_header) - readers_in_header,
-      [&](ReaderEntry & entry, uint32_t) { return visit(entry); });
+      [&](ReaderEntry & entry, uint32_t i) { return visit(entry, i + readers_in_header); });
 }
 
 inline std::optional<uint32_t> index_of_reader(
@@ -51,7 +51,7 @@ inline void free_reader_entry(
 /// As visit_reader_table, active entries only, no early end.
 template<typename Visit>
 void for_each_reader(const Cluster & cluster, TopicDsmHeader & dsm, Visit visit) {
-  visit_reader_table(cluster, dsm, [&](ReaderEntry & entry) {
+  visit_reader_table(cluster, dsm, [&](ReaderEntry & entry, uint32_t) {
     if (entry.active.load(std::memory_order_acquire) != 0) {
       visit(entry);
     }
