@@ -1,12 +1,13 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 // What do many publishers and subscriptions of one topic cost each other?
 //
-//   matches endpoints=N iterations=N measure=create|beside|publish depth=N
+//   matches endpoints=N iterations=N measure=create|close|beside|publish depth=N
 //
 // With `endpoints` of each kind, one process prints how long it takes
 //   create   to create one more subscription,
+//   close    to close one subscription,
 //   beside   to create a publisher of another topic, from a second thread, while the first creates
-//            all of them,
+//            and closes all of them,
 //   publish  to publish; nothing is taken, so with a small depth each queue is full.
 #include <atomic>
 #include <memory>
@@ -44,15 +45,18 @@ struct Endpoints {
   std::vector<std::unique_ptr<Subscription>> subscriptions;
 };
 
-std::vector<int64_t> create(Node & node, const Arguments & arguments) {
+enum class Half { create, close };
+
+std::vector<int64_t> one_more(Node & node, const Arguments & arguments, Half half) {
   const Endpoints endpoints(node, arguments.number("endpoints"), arguments.number("depth"));
+  const rmw_qos_profile_t qos = reliable_qos(arguments.number("depth"));
   std::vector<int64_t> samples_ns;
   for (size_t i = 0; i < arguments.number("iterations"); ++i) {
-    std::unique_ptr<Subscription> one_more;
-    samples_ns.push_back(duration_ns([&] {
-      one_more =
-        std::make_unique<Subscription>(node, topic, reliable_qos(arguments.number("depth")));
-    }));
+    std::unique_ptr<Subscription> subscription;
+    const int64_t create_ns =
+      duration_ns([&] { subscription = std::make_unique<Subscription>(node, topic, qos); });
+    const int64_t close_ns = duration_ns([&] { subscription.reset(); });
+    samples_ns.push_back(half == Half::create ? create_ns : close_ns);
   }
   return samples_ns;
 }
@@ -67,11 +71,9 @@ std::vector<int64_t> beside(Node & node, const Arguments & arguments) {
         [&] { publisher = std::make_unique<Publisher>(node, "/other", reliable_qos(1)); }));
     }
   });
-  {
-    const Endpoints endpoints(node, arguments.number("endpoints"), arguments.number("depth"));
-    done = true;
-    other.join();
-  }
+  { const Endpoints endpoints(node, arguments.number("endpoints"), arguments.number("depth")); }
+  done = true;
+  other.join();
   return samples_ns;
 }
 
@@ -98,7 +100,8 @@ int main(int argc, char ** argv) {
     Node node("matches");
     const std::string & measure = arguments.text("measure");
     print_samples(
-      measure == "create"   ? create(node, arguments)
+      measure == "create"   ? one_more(node, arguments, Half::create)
+      : measure == "close"  ? one_more(node, arguments, Half::close)
       : measure == "beside" ? beside(node, arguments)
                             : publish(node, arguments));
   });

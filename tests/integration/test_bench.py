@@ -93,9 +93,17 @@ def test_a_message_wakes_one_thread_of_many() -> None:
 
 def test_many_matches_are_measured() -> None:
     rows = run_bench("scale", "--only", "as many publishers: manycore")["results"]
-    assert len({row["question"] for row in rows}) == 3
+    assert len({row["question"] for row in rows}) == 4
     assert {row["axis"] for row in rows} == {"endpoints"}
     assert all(row["median"] > 0 for row in rows)
+
+
+def test_nodes_do_not_wake_each_other() -> None:
+    report = run_bench("scale", "--only", "until each topic has its subscription: manycore")
+    found = {row["question"]: row["median"] for row in report["results"]}
+    assert len(found) == 7
+    assert found["sleeps of all others per node that joins"] == 0
+    assert found["CPU time of all when nothing happens"] == 0
 
 
 def test_scan_matching_is_measured_alone_and_split() -> None:

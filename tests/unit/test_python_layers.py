@@ -36,7 +36,7 @@ LAYERS = [
     (".ndt.nodes.scan_matcher",),
     (".ndt.nodes",),
     (".bench", ".bench.nodes"),
-    (".bench.ndt",),
+    (".bench.ndt", ".bench.scale"),
     (".cli.common", ".cli.topic.meters"),
     (".cli.doctor.report",),
     (

@@ -1,0 +1,23 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""What threads, endpoints and nodes cost each other as they become many."""
+
+from __future__ import annotations
+
+from rmw_manycore_py.bench.question import Question, Run
+from rmw_manycore_py.bench.scale import endpoints, nodes, threads
+from rmw_manycore_py.bench.summary import Result
+
+PARTS = (threads, endpoints, nodes)
+
+
+def measure(run: Run) -> list[Result]:
+    """Return the curves over threads of a process, endpoints of a topic, and nodes."""
+    return [result for part in PARTS for result in part.measure(run)]
+
+
+QUESTION = Question(
+    "scale",
+    measure,
+    tuple(goal for part in PARTS for goal in part.GOALS),
+    "; ".join(part.PLACEMENT for part in PARTS),
+)

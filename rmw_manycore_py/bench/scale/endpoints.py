@@ -1,0 +1,73 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""What many publishers and subscriptions of one topic cost each other."""
+
+from __future__ import annotations
+
+from rmw_manycore_py.bench.contenders import FAST_DDS, INSIDE, Middleware
+from rmw_manycore_py.bench.question import Run
+from rmw_manycore_py.bench.scale.common import at_count, drawn, on_curve
+from rmw_manycore_py.bench.session import Session
+from rmw_manycore_py.bench.summary import Goal, Result
+
+CREATE = "creating a subscription"
+CLOSE = "closing a subscription"
+BESIDE = "creating a publisher of another topic meanwhile"
+PUBLISH = "publishing to a topic with as many publishers"
+ENDPOINTS = (25, 50, 100, 200, 400, 800)
+# Fast DDS matches each pair by messages of its own: more take minutes.
+MOST_ENDPOINTS_OF_FAST_DDS = 50
+ITERATIONS = 200
+FULL, ROOM = "queues full", "with room"
+DEPTHS = {FULL: 1, ROOM: 1000}
+
+
+def measure(run: Run) -> list[Result]:
+    """Return what creating and publishing take, over the endpoints of a topic."""
+    results: list[Result] = []
+    for middleware in (INSIDE, FAST_DDS):
+        most = ENDPOINTS[-1] if middleware.is_manycore else MOST_ENDPOINTS_OF_FAST_DDS
+        for count in drawn(run, (count for count in ENDPOINTS if count <= most)):
+            if run.wants(f"{PUBLISH}: {middleware.name}"):
+                run.note(f"{count} publishers and {count} subscriptions: {middleware.name}")
+                results += _match(run, middleware, count)
+    return results
+
+
+def _match(run: Run, middleware: Middleware, count: int) -> list[Result]:
+    def samples_us(measure: str, depth: int) -> list[float]:
+        with Session(middleware, run.cpus) as session:
+            found = session.native(
+                "matches",
+                0,
+                endpoints=count,
+                iterations=run.iterations(ITERATIONS),
+                measure=measure,
+                depth=depth,
+            ).finish()
+        return [sample / 1e3 for sample in found["samples_ns"]]
+
+    name = middleware.name
+    return [
+        on_curve(CREATE, name, count, "endpoints", "us", samples_us("create", 1)),
+        on_curve(CLOSE, name, count, "endpoints", "us", samples_us("close", 1)),
+        on_curve(BESIDE, name, count, "endpoints", "us", samples_us("beside", 1)),
+        *(
+            on_curve(
+                PUBLISH, f"{name}, {fill}", count, "endpoints", "us", samples_us("publish", depth)
+            )
+            for fill, depth in DEPTHS.items()
+        ),
+    ]
+
+
+GOALS = tuple(
+    Goal(
+        PUBLISH,
+        at_count(f"{INSIDE.name}, {FULL}", count, "endpoints"),
+        "within",
+        2,
+        at_count(f"{INSIDE.name}, {ROOM}", count, "endpoints"),
+    )
+    for count in ENDPOINTS
+)
+PLACEMENT = "endpoints: all in one process on the first"

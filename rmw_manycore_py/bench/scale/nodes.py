@@ -1,0 +1,159 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""What hundreds of nodes cost each other, each a process with the services of its parameters."""
+
+from __future__ import annotations
+
+import os
+import signal
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+
+from rmw_manycore_py._transport import Platform
+from rmw_manycore_py.bench.contenders import FAST_DDS, Middleware, manycore
+from rmw_manycore_py.bench.idle import cpu_ns, wait_until_quiet, wake_ups
+from rmw_manycore_py.bench.question import Run
+from rmw_manycore_py.bench.round_trip import WARM_UP, in_us
+from rmw_manycore_py.bench.scale.common import at_count, drawn, on_curve
+from rmw_manycore_py.bench.session import PATIENCE_S, Process, Session
+from rmw_manycore_py.bench.summary import Goal, Result
+from rmw_manycore_py.errors import ManycoreError
+
+UP = "starting all nodes, until each topic has its subscription"
+CREATE = "creating one more node"
+WOKEN = "sleeps of all others per node that joins"
+IDLE = "CPU time of all when nothing happens"
+ROUND_TRIP = "round trip of 64 B beside them"
+GRAPH = "reading all nodes and endpoints of the graph"
+RECLAIM = "until nothing is left of those killed at once"
+
+NODES = (30, 60, 125, 250, 500)
+# Each process of Fast DDS speaks with each other one: more take minutes to find each other.
+MOST_NODES_OF_FAST_DDS = 60
+KILLED = 0.4  # of the nodes
+JOINS = 5
+READS = 20
+ROUND_TRIPS = 1000
+WINDOW_S = 5.0
+CLUSTERS = 5
+OWN = replace(manycore("inside"), name=f"manycore in {CLUSTERS} clusters (block)")
+
+
+def measure(run: Run) -> list[Result]:
+    """Return what starting, joining, waiting, reading and killing take, over the nodes."""
+    results: list[Result] = []
+    for middleware in (OWN, FAST_DDS):
+        most = NODES[-1] if middleware.is_manycore else MOST_NODES_OF_FAST_DDS
+        for count in drawn(run, (count for count in NODES if count <= most)):
+            if run.wants(f"{UP}: {middleware.name}"):
+                run.note(f"{count} nodes: {middleware.name}")
+                results += _watch(run, _spread(middleware, count), count)
+    return results
+
+
+def _spread(middleware: Middleware, count: int) -> Middleware:
+    if not middleware.is_manycore:
+        return middleware
+    return replace(middleware, clusters=tuple(i % CLUSTERS + 1 for i in range(count)))
+
+
+def _watch(run: Run, middleware: Middleware, count: int) -> list[Result]:
+    def found(question: str, unit: str, samples: Sequence[float]) -> Result:
+        return on_curve(question, middleware.name, count, "nodes", unit, samples)
+
+    with Session(middleware, run.cpus) as session:
+        start = time.monotonic()
+        nodes = [
+            session.native("fleet", party, first=party, nodes=1, all=count)
+            for party in range(count)
+        ]
+        for node in nodes:
+            node.wait_until_ready()
+        results = [found(UP, "s", [time.monotonic() - start])]
+        pids = [node.pid for node in nodes]
+        wait_until_quiet(pids)
+        joins = [_join(session, pids, count + i) for i in range(JOINS)]
+        results += [
+            found(CREATE, "ms", [create_ms for create_ms, _ in joins]),
+            found(WOKEN, "count", [woken for _, woken in joins]),
+            found(IDLE, "ms/s", [_idle_ms(session, pids, WINDOW_S * max(run.share, 0.2))]),
+            found(ROUND_TRIP, "us", _round_trips_us(run, session)),
+        ]
+        if middleware.is_manycore:
+            with Platform(session.platform) as platform:
+                results += [
+                    found(GRAPH, "ms", [_read_ms(platform) for _ in range(READS)]),
+                    found(RECLAIM, "ms", [_reclaim_ms(platform, nodes)]),
+                ]
+    return results
+
+
+def _join(session: Session, others: Sequence[int], number: int) -> tuple[float, float]:
+    """Return the milliseconds that a node took to create, and how often others woke up."""
+    before = wake_ups(others)
+    node = session.native("fleet", 0, first=number, nodes=1, all=0)
+    node.wait_until_ready()
+    woken = wake_ups(others) - before
+    node.release()
+    return node.finish()["samples_ns"][0] / 1e6, woken
+
+
+def _idle_ms(session: Session, nodes: Sequence[int], window_s: float) -> float:
+    pids = [*nodes, *session.receive_thread_pids()]
+    wait_until_quiet(pids)
+    before = cpu_ns(pids)
+    time.sleep(window_s)
+    return (cpu_ns(pids) - before) / 1e6 / window_s
+
+
+def _round_trips_us(run: Run, session: Session) -> list[float]:
+    ping = session.native(
+        "round_trip",
+        0,
+        role="ping",
+        bytes=64,
+        warm_up=WARM_UP,
+        iterations=run.iterations(ROUND_TRIPS),
+    )
+    # In the same cluster, on the other CPU.
+    pong = session.native("round_trip", CLUSTERS, role="pong")
+    samples = in_us(ping.finish()["samples_ns"])
+    pong.finish()
+    return samples
+
+
+def _read_ms(platform: Platform) -> float:
+    return _ms_of(lambda: (platform.nodes(), platform.endpoints()))
+
+
+def _reclaim_ms(platform: Platform, nodes: Sequence[Process]) -> float:
+    victims = nodes[: int(len(nodes) * KILLED)]
+    left = len(nodes) - len(victims)
+
+    def kill() -> None:
+        for victim in victims:
+            os.kill(victim.pid, signal.SIGKILL)
+        deadline = time.monotonic() + PATIENCE_S
+        while len(platform.processes()) > left or len(platform.nodes()) > left:
+            if time.monotonic() > deadline:
+                raise ManycoreError("killed nodes stay in the registry")
+            time.sleep(0.005)
+
+    return _ms_of(kill)
+
+
+def _ms_of(action: Callable[[], object]) -> float:
+    start = time.monotonic_ns()
+    action()
+    return (time.monotonic_ns() - start) / 1e6
+
+
+_most, _least = (at_count(OWN.name, count, "nodes") for count in (NODES[-1], NODES[0]))
+GOALS = (
+    Goal(UP, _most, "within", 20),
+    Goal(WOKEN, _most, "within", 0),
+    Goal(IDLE, _most, "within", 0),
+    Goal(ROUND_TRIP, _most, "within", 1.1, _least),
+    Goal(RECLAIM, _most, "within", 1000),
+)
+PLACEMENT = f"nodes: on both in turn, over {CLUSTERS} clusters"
