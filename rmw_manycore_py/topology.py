@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import os
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
@@ -140,6 +140,34 @@ def room_for_topic_dsms(smem_size: int) -> int:
 def usable_cpus() -> tuple[int, ...]:
     """Return the host CPUs this process may run on."""
     return tuple(sorted(os.sched_getaffinity(0)))
+
+
+def isolated_cpus(system: Path = Path("/sys/devices/system/cpu")) -> tuple[int, ...]:
+    """Return the CPUs that the kernel schedules nothing on by itself, and this process may name.
+
+    They are not in its affinity mask; its cpuset may leave them out, too.
+    """
+    try:
+        isolated = cpus_of_list((system / "isolated").read_text())
+    except OSError:
+        return ()
+    before = os.sched_getaffinity(0)
+    return tuple(cpu for cpu in isolated if cpu in before or _may_run_on(cpu, before))
+
+
+def cpus_of_list(text: str) -> tuple[int, ...]:
+    """Return the CPUs of a list as the kernel writes it: 0-2,5."""
+    ends = [part.split("-") for part in text.strip().split(",") if part]
+    return tuple(cpu for end in ends for cpu in range(int(end[0]), int(end[-1]) + 1))
+
+
+def _may_run_on(cpu: int, before: Collection[int]) -> bool:
+    try:
+        os.sched_setaffinity(0, {cpu})
+    except OSError:  # not in the cpuset
+        return False
+    os.sched_setaffinity(0, before)
+    return True
 
 
 def as_host_cpu(cpus: tuple[int, ...]) -> HostCpu:

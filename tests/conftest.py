@@ -6,6 +6,7 @@ from __future__ import annotations
 import os
 import signal
 import sys
+import tempfile
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
@@ -48,6 +49,9 @@ def pytest_configure(config: pytest.Config) -> None:
         config.pluginmanager.register(ForkServer(config))
     else:
         config.stash[PEER_SERVERS] = servers = PeerServers()
+        states = tempfile.TemporaryDirectory(prefix="manycore-state-")
+        config.add_cleanup(states.cleanup)
+        os.environ["MANYCORE_STATE"] = states.name
         config.add_cleanup(servers.end)
         config.pluginmanager.register(Isolation(servers))
 

@@ -13,7 +13,7 @@ from rmw_manycore_py.cli.common.mapfile_argument import mapfile_argument
 from rmw_manycore_py.cli.common.options import examples
 from rmw_manycore_py.cli.common.printing import new_table, print_table
 from rmw_manycore_py.cli.common.run_printer import RunPrinter
-from rmw_manycore_py.launch.run import Run
+from rmw_manycore_py.launch.run import Mode, Run
 from rmw_manycore_py.mapfile import Placement, load_mapfile, resolve
 from rmw_manycore_py.mapfile.installed import description, installed_mapfiles
 
@@ -42,7 +42,7 @@ def command(mapfile: Path, duration_s: float, as_list: bool) -> None:
         return
     placement = resolve(load_mapfile(mapfile))
     click.echo(f"{mapfile}: {description(mapfile)}\n")
-    run = Run(placement)
+    run = Run(placement, Mode(mapfile))
     exit_status = run.run(RunPrinter(run.program_names).report, duration_s)
     if exit_status == 0:
         _explain(mapfile, placement)

@@ -11,6 +11,12 @@ from rmw_manycore_py.cli.common.options import examples
 
 VERBS = {
     "run": "rmw_manycore_py.cli.run:command",
+    "up": "rmw_manycore_py.cli.up:command",
+    "ps": "rmw_manycore_py.cli.ps:command",
+    "logs": "rmw_manycore_py.cli.logs:command",
+    "restart": "rmw_manycore_py.cli.restart:command",
+    "attach": "rmw_manycore_py.cli.attach:command",
+    "stop": "rmw_manycore_py.cli.stop:command",
     "demo": "rmw_manycore_py.cli.demo:command",
     "create": "rmw_manycore_py.cli.create:command",
     "map": "rmw_manycore_py.cli.map:command",
@@ -35,7 +41,7 @@ VERBS = {
 @click.group(
     cls=LazyGroup,
     commands_at=VERBS,
-    until_ctrl_c=("run", "demo"),
+    until_ctrl_c=("run", "demo", "logs"),
     context_settings={"help_option_names": ["-h", "--help"]},
     epilog=examples(
         "manycore demo",

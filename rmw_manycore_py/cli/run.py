@@ -12,9 +12,8 @@ from rmw_manycore_py.cli.common.duration import duration_option
 from rmw_manycore_py.cli.common.mapfile_argument import mapfile_argument
 from rmw_manycore_py.cli.common.options import examples
 from rmw_manycore_py.cli.common.run_printer import RunPrinter
+from rmw_manycore_py.cli.common.starting import prepared_run, starting_options
 from rmw_manycore_py.launch.events import Event
-from rmw_manycore_py.launch.run import Run
-from rmw_manycore_py.mapfile import load_mapfile, resolve
 
 
 @click.command(
@@ -22,20 +21,25 @@ from rmw_manycore_py.mapfile import load_mapfile, resolve
     epilog=examples(
         "manycore run my_map.yaml",
         "manycore run talker_listener --duration 10",
+        "manycore run more_nodes.yaml --join",
         "manycore run talker_listener --json | jq 'select(.event == \"output\")'",
     ),
 )
 @mapfile_argument()
 @duration_option()
+@starting_options
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object per event.")
-def command(mapfile: Path, duration_s: float | None, as_json: bool) -> None:
+def command(
+    mapfile: Path, duration_s: float | None, joins: bool, nodes: tuple[str, ...], as_json: bool
+) -> None:
     """Start the nodes of MAPFILE, each on its core, and stop them together.
 
     MAPFILE is a file, or the name of an installed one (manycore demo --list).
     Ends when all nodes have ended, when the duration is over, or on Ctrl-C; a second Ctrl-C does
     not wait for nodes that take their time. The exit status is 0 unless a node failed.
+    In the background: manycore up -d.
     """
-    run = Run(resolve(load_mapfile(mapfile)))
+    run, _ = prepared_run(mapfile, joins, nodes)
     report = _print_json if as_json else RunPrinter(run.program_names).report
     sys.exit(run.run(report, duration_s))
 

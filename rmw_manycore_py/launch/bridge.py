@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from contextlib import closing
+
 from rmw_manycore_program import own_program
 from rmw_manycore_py.bridge_plan import Plan
 from rmw_manycore_py.launch.events import Finished
@@ -40,8 +42,7 @@ def run_bridge(plan: Plan, report: Report) -> int:
         for direction, core in zip(DIRECTIONS, _STANDALONE_CORES, strict=True)
         if plan.of(direction, 0)
     ]
-    runner = Runner(programs, report)
-    with signal_inbox() as inbox:
+    with closing(Runner(programs, report)) as runner, signal_inbox() as inbox:
         exit_status = runner.run(inbox)
         report(Finished(runner.failed, exit_status))
     return exit_status

@@ -5,7 +5,9 @@ from __future__ import annotations
 
 import json
 import re
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass
+from typing import Any
 
 from rmw_manycore_py.topology import HostCpu
 
@@ -14,10 +16,14 @@ from rmw_manycore_py.topology import HostCpu
 class Event:
     """Something that happened during a run."""
 
-    def as_json(self) -> str:
-        """Return one line: the kind of event, then its fields."""
+    def as_data(self) -> dict[str, Any]:
+        """Return the kind of event, then its fields."""
         kind = re.sub(r"(?<!^)(?=[A-Z])", "_", type(self).__name__).lower()
-        return json.dumps({"event": kind, **asdict(self)})
+        return {"event": kind, **asdict(self)}
+
+    def as_json(self) -> str:
+        """Return the same as one line."""
+        return json.dumps(self.as_data())
 
 
 @dataclass(frozen=True)
@@ -110,3 +116,18 @@ class Finished(Event):
 
     failed: tuple[str, ...]
     exit_status: int
+
+
+KINDS = (Platform, Notice, Started, Stopping, Insisting, Restarting, Ended, Finished)
+
+
+def event_of(data: Mapping[str, Any]) -> Event | None:
+    """Return the event of which `as_data` or `as_json` made this; None for a kind it lacks."""
+    fields = dict(data)
+    name = str(fields.pop("event", "")).title().replace("_", "")
+    for kind in KINDS:
+        if kind.__name__ == name:
+            if kind is Platform:
+                fields["cores"] = tuple(PlacedCore(**core) for core in fields["cores"])
+            return kind(**fields)
+    return None

@@ -1,12 +1,14 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Brings a platform up before its first node, and clears it away after its last one."""
+"""Brings a platform up before its first node, clears it away after its last; or joins one."""
 
 from __future__ import annotations
 
 from rmw_manycore_py import _transport
+from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
+from rmw_manycore_py.launch.ros2_daemon import CURE, is_daemon
 from rmw_manycore_py.mapfile.placing.placement import Placement
 from rmw_manycore_py.native_errors import translate_native_errors
-from rmw_manycore_py.topology import RECEIVE_THREAD_CORE
+from rmw_manycore_py.topology import RECEIVE_THREAD_CORE, Core
 
 GROWS = 0  # the size of a topic DSM that starts small
 
@@ -43,7 +45,52 @@ def remaining_users(name: str) -> list[str]:
         return []
     try:
         with _transport.Platform(name) as platform:
-            processes = platform.processes()
+            living = [process for process in platform.processes() if process.alive]
+            users = [
+                f"the ros2 daemon ({process.pid}; `{CURE}` ends it)"
+                if is_daemon(platform, process)
+                else f"{process.label} ({process.pid})"
+                for process in living
+            ]
     except _transport.PlatformError:
         return []  # it went away between two looks
-    return [f"{process.label} ({process.pid})" for process in processes if process.alive]
+    return users
+
+
+def occupied_cores(name: str) -> set[Core]:
+    """Return the cores of a running platform that have a process.
+
+    :raises ManycoreError: when there is no such platform to join.
+    """
+    with _opened(name) as platform:
+        return {
+            Core(process.cluster, process.core)
+            for process in platform.processes()
+            if process.alive and process.core is not None
+        }
+
+
+def check_joined(placement: Placement) -> None:
+    """Refuse nodes that the running platform has no core for."""
+    with _opened(placement.name) as platform:
+        info = platform.info()
+    for node in placement.nodes:
+        if node.cluster > info.clusters or node.core >= info.cores_per_cluster:
+            raise ManycoreError(
+                f"'{node.name}' is placed on {node.place}, and platform '{placement.name}' has "
+                f"{info.clusters} clusters x {info.cores_per_cluster} cores",
+                EXIT_BAD_INPUT,
+            )
+
+
+def _opened(name: str) -> _transport.Platform:
+    if name in _transport.platforms():
+        with translate_native_errors():
+            platform = _transport.Platform(name)
+            if platform.info().alive:
+                return platform
+            platform.close()
+    raise ManycoreError(
+        f"there is no platform '{name}' to join: start it without --join, or name another one "
+        "(platform: {name: ...} of the mapfile, or $MANYCORE_PLATFORM)"
+    )

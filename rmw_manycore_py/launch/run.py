@@ -3,28 +3,50 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import AbstractContextManager, ExitStack, closing, contextmanager, nullcontext
+from dataclasses import dataclass
+from datetime import datetime, timezone
+from pathlib import Path
+from typing import Any
 
+from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
 from rmw_manycore_py.launch.bridge import bridge_programs
-from rmw_manycore_py.launch.events import Finished, Notice, PlacedCore, Platform
+from rmw_manycore_py.launch.control import Control
+from rmw_manycore_py.launch.events import Event, Finished, Notice, PlacedCore, Platform
 from rmw_manycore_py.launch.helpers import helper_programs
-from rmw_manycore_py.launch.platform import configured_platform, remaining_users
+from rmw_manycore_py.launch.log_keeper import LogKeeper
+from rmw_manycore_py.launch.platform import check_joined, configured_platform, remaining_users
 from rmw_manycore_py.launch.processes.program import NodeProgram
+from rmw_manycore_py.launch.ros2_daemon import CURE, end_lone_daemons
 from rmw_manycore_py.launch.runner import Report, Runner
 from rmw_manycore_py.mapfile.placing.placement import Placement
+from rmw_manycore_py.runs.directory import OwnRun, new_run
+from rmw_manycore_py.scheduling import refusal
 from rmw_manycore_py.signals import SignalInbox, signal_inbox
 from rmw_manycore_py.topology import RECEIVE_THREAD_CORE
 
 RECEIVE_THREAD = "(receive thread)"  # no node can have a name with blanks
 
 
-class Run:
-    """The nodes of a placement and its bridge, on a platform of their own."""
+@dataclass(frozen=True)
+class Mode:
+    """How a run runs: on a platform of its own or one that is there, seen or in the background."""
 
-    def __init__(self, placement: Placement) -> None:
+    mapfile: Path
+    joins: bool = False
+    detached: bool = False
+
+
+class Run:
+    """The nodes of a placement and its bridge, on a platform of their own or on a running one."""
+
+    def __init__(self, placement: Placement, mode: Mode) -> None:
         self._placement = placement
+        self._mode = mode
         self._bridge = bridge_programs(placement)
         self._helpers = helper_programs(placement)
+        _check_scheduling(placement)
 
     @property
     def program_names(self) -> list[str]:
@@ -32,24 +54,124 @@ class Run:
         nodes = [node.name for node in self._placement.nodes]
         return [p.name for p in self._bridge] + nodes + [p.name for p in self._helpers]
 
-    def run(self, report: Report, duration_s: float | None = None) -> int:
-        """Start all processes, wait until they have ended, and return the exit status."""
-        with signal_inbox() as inbox:
-            return self._run(inbox, report, duration_s)
+    def run(
+        self,
+        report: Report,
+        duration_s: float | None = None,
+        all_started: Callable[[], None] | None = None,
+    ) -> int:
+        """Start all processes, wait until they have ended, and return the exit status.
 
-    def _run(self, inbox: SignalInbox, report: Report, duration_s: float | None) -> int:
-        placement = self._placement
-        for text in placement.notices:
-            report(Notice(text))
-        with configured_platform(placement):
-            report(_describe(placement, self._bridge))
-            nodes = [NodeProgram.of(node) for node in placement.nodes]
-            runner = Runner([*self._bridge, *nodes, *self._helpers], report)
-            exit_status = runner.run(inbox, duration_s)
-        if users := remaining_users(placement.name):
-            report(Notice(f"platform {placement.name} stays, for {', '.join(users)}"))
-        report(Finished(runner.failed, exit_status))
+        :param all_started: called once, when each node whose time has come was started.
+        """
+        with signal_inbox() as inbox, ExitStack() as stack:
+            own = stack.enter_context(self._directory(report))
+            return self._run(inbox, _Reports(report, own), duration_s, all_started)
+
+    def _run(
+        self,
+        inbox: SignalInbox,
+        reports: _Reports,
+        duration_s: float | None,
+        all_started: Callable[[], None] | None,
+    ) -> int:
+        placement, report = self._placement, reports.report
+        nodes = [NodeProgram.of(node) for node in placement.nodes]
+        programs = [*self._bridge, *nodes, *self._helpers]
+        with closing(Runner(programs, report)) as runner, reports.kept(runner, self.program_names):
+            for text in placement.notices:
+                report(Notice(text))
+            with self._platform(report):
+                report(_describe(placement, self._bridge))
+                exit_status = runner.run(inbox, duration_s, all_started)
+            if users := self._remaining_users():
+                report(Notice(f"platform {placement.name} stays, for {', '.join(users)}"))
+            report(Finished(runner.failed, exit_status))
         return exit_status
+
+    @contextmanager
+    def _directory(self, report: Report) -> Iterator[OwnRun | None]:
+        """Yield the run's directory, where it can be had; without it there are no logs."""
+        mode = self._mode
+        info: dict[str, Any] = {
+            "mapfile": str(mode.mapfile.resolve()),
+            "nodes": self.program_names,
+            "detached": mode.detached,
+            "joins": mode.joins,
+            "started": datetime.now(timezone.utc).isoformat(timespec="seconds"),
+        }
+        with ExitStack() as stack:
+            own = None
+            try:
+                own = stack.enter_context(new_run(self._placement.name, info, mode.joins))
+            except OSError as error:
+                text = f"{error.filename or 'the directory of runs'}: {error.strerror}"
+                if mode.detached:
+                    advice = "set MANYCORE_STATE to a directory that can be written to"
+                    raise ManycoreError(f"{text}; {advice}") from error
+                report(Notice(f"{text}: no logs are kept, and other shells cannot stop this run"))
+            yield own
+
+    def _platform(self, report: Report) -> AbstractContextManager[Any]:
+        if self._mode.joins:
+            check_joined(self._placement)
+            return nullcontext()
+        for pid in end_lone_daemons(self._placement.name):
+            report(
+                Notice(
+                    f"the ros2 daemon ({pid}) of an earlier run was ended, for it kept platform "
+                    f"{self._placement.name} as it was; `{CURE}` does that, too"
+                )
+            )
+        return configured_platform(self._placement)
+
+    def _remaining_users(self) -> list[str]:
+        return [] if self._mode.joins else remaining_users(self._placement.name)
+
+
+class _Reports:
+    """Everything that wants to know of events: the caller, the logs, and clients."""
+
+    def __init__(self, report: Report, own: OwnRun | None) -> None:
+        self._report = report
+        self._own = own
+        self._logs: LogKeeper | None = None
+        self._control: Control | None = None
+
+    def report(self, event: Event) -> None:
+        """Pass an event on; the caller comes last, for it may refuse it."""
+        if self._logs:
+            self._logs.report(event)
+        if self._control:
+            self._control.report(event)
+        self._report(event)
+
+    @contextmanager
+    def kept(self, runner: Runner, names: list[str]) -> Iterator[None]:
+        """Keep logs and serve clients while the runner runs."""
+        if self._own is None:
+            yield
+            return
+        self._control = control = Control(self._own.listener, runner)
+        logs = LogKeeper(self._own.directory.logs, names, self._report, control.log_changed)
+        self._logs = logs
+        try:
+            yield
+        finally:
+            self._logs = self._control = None
+            control.close()
+            logs.close()
+
+
+def _check_scheduling(placement: Placement) -> None:
+    """Refuse policies that this user may not set, before anything is started."""
+    refused = [
+        f"'{node.name}': {reason}"
+        for node in placement.nodes
+        if node.scheduling is not None and (reason := refusal(node.scheduling))
+    ]
+    if refused:
+        raise ManycoreError("\n".join(refused), EXIT_BAD_INPUT)
 
 
 def _describe(placement: Placement, bridge: Iterable[NodeProgram]) -> Platform:

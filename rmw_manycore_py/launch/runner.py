@@ -5,11 +5,13 @@ from __future__ import annotations
 
 import selectors
 import time
+from collections import defaultdict
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack
+from dataclasses import replace
 from typing import Protocol
 
-from rmw_manycore_py.errors import EXIT_FAILURE
+from rmw_manycore_py.errors import EXIT_FAILURE, ManycoreError
 from rmw_manycore_py.launch.events import (
     Ended,
     Event,
@@ -34,8 +36,11 @@ RESTART_PAUSE_S = 1.0
 MAX_VAIN_STARTS = 3
 
 
-class _Readable(Protocol):
-    def fileno(self) -> int: ...
+class Readable(Protocol):
+    """What a selector takes."""
+
+    def fileno(self) -> int:
+        """Return the descriptor."""
 
 
 class Runner:
@@ -48,22 +53,44 @@ class Runner:
         self._stopping = False
         self._silent = False
         self._is_timed = False
+        self._all_started: Handler | None = None
         self._end_s = float("inf")  # when the run's duration is over, on the monotonic clock
+        # By the names of nodes: what gets their output as it comes.
+        self.taps: defaultdict[str, list[Callable[[bytes], None]]] = defaultdict(list)
+
+    @property
+    def nodes(self) -> Sequence[NodeProcess]:
+        """The latest process of each program."""
+        return self._nodes
+
+    def node(self, name: str) -> NodeProcess:
+        """Return the latest process of a program."""
+        for node in self._nodes:
+            if node.program.name == name:
+                return node
+        raise ManycoreError(f"no node '{name}' in this run")
 
     @property
     def failed(self) -> tuple[str, ...]:
         """The names of the nodes that failed."""
         return tuple(n.program.name for n in self._nodes if n.state is NodeState.FAILED)
 
-    def run(self, inbox: SignalInbox, duration_s: float | None = None) -> int:
+    def run(
+        self,
+        inbox: SignalInbox,
+        duration_s: float | None = None,
+        all_started: Handler | None = None,
+    ) -> int:
         """Run until all nodes are over, or for a time from the start of the last; exit status.
 
         A signal that came before the first node ends the run without one.
+
+        :param all_started: called once, when each node whose time has come was started.
         """
+        self._all_started = all_started
         with ExitStack() as stack:
-            stack.callback(self._selector.close)
             stack.callback(self._destroy_all)
-            self._watch(inbox, lambda: self._take_signals(inbox))
+            self.watch(inbox, lambda: self._take_signals(inbox))
             self._take_signals(inbox)
             schedule(self._nodes)
             while not self._is_over():
@@ -75,6 +102,10 @@ class Runner:
                 self._keep_deadlines()
         return EXIT_FAILURE if self.failed else 0
 
+    def close(self) -> None:
+        """Stop watching."""
+        self._selector.close()
+
     def _destroy_all(self) -> None:
         for node in self._nodes:
             node.destroy()
@@ -82,7 +113,7 @@ class Runner:
     def _is_over(self) -> bool:
         if self._stopping:
             return not any(node.is_alive for node in self._nodes)
-        return all(node.is_over for node in self._nodes)
+        return all(node.is_over and not node.is_held for node in self._nodes)
 
     def _next_node(self) -> NodeProcess | None:
         now_s = time.monotonic()
@@ -94,24 +125,42 @@ class Runner:
         node = self._next_node()
         if node is None:
             return
-        if node.start():
+        if node.start(lambda data: self._tap(node.program.name, data)):
             self._watch_node(node)
             started(self._nodes, node)
         else:
             self._report_end(node)
-            self._stop(f"{node.program.name} {node.ending.reason}" if node.ending else "")
-        if duration_s is not None and not self._is_timed and self._next_node() is None:
+            if not node.was_asked_for:
+                self._stop(f"{node.program.name} {node.ending.reason}" if node.ending else "")
+        if not self._is_timed and self._next_node() is None:
             self._is_timed = True
-            self._end_s = time.monotonic() + duration_s
+            if duration_s is not None:
+                self._end_s = time.monotonic() + duration_s
+            if self._all_started is not None and not self._stopping:
+                self._all_started()
+
+    def _tap(self, name: str, data: bytes) -> None:
+        for tap in tuple(self.taps[name]):
+            tap(data)
 
     def _watch_node(self, node: NodeProcess) -> None:
         core = node.program.core
         self._report(Started(node.program.name, node.process.pid, *core, node.program.host_cpu))
-        self._watch(node.output, lambda: self._read_output(node))
+        self.watch(node.output, lambda: self._read_output(node))
         self._selector.register(node.pidfd, selectors.EVENT_READ, lambda: self._leader_ended(node))
 
-    def _watch(self, readable: _Readable, handler: Handler) -> None:
+    def watch(self, readable: Readable, handler: Handler) -> None:
+        """Call a handler whenever there is something to read."""
         self._selector.register(readable, selectors.EVENT_READ, handler)
+
+    def watch_also_writable(self, readable: Readable, writable: bool) -> None:
+        """Call the handler also, or no more, when there is room to write."""
+        events = selectors.EVENT_READ | (selectors.EVENT_WRITE if writable else 0)
+        self._selector.modify(readable, events, self._selector.get_key(readable).data)
+
+    def unwatch(self, readable: Readable) -> None:
+        """Undo `watch`."""
+        self._selector.unregister(readable)
 
     def _read_output(self, node: NodeProcess) -> None:
         self._report_lines(node, node.output.read_lines())
@@ -130,7 +179,7 @@ class Runner:
         if not node.output.at_end:
             self._selector.unregister(node.output)
         self._report_lines(node, node.collect())
-        if node.program.supervised and not self._stopping:
+        if node.program.supervised and not self._stopping and not node.is_held:
             self._restart(node)
             return
         if not self._stopping and (successor := respawned(node)) is not None:
@@ -140,7 +189,7 @@ class Runner:
         else:
             self._report_end(node)
         ended(self._nodes, node)
-        if node.program.rules.ends_run:
+        if node.program.rules.ends_run and not (node.is_wanted_again or node.is_held):
             self._stop(f"{node.program.name} has ended")
 
     def _restart(self, node: NodeProcess) -> None:
@@ -159,15 +208,50 @@ class Runner:
     def _end_without_nodes(self) -> None:
         """Stop what is supervised when those are over for whom it is there."""
         served = [node for node in self._nodes if not node.program.supervised]
-        if served and len(served) < len(self._nodes) and all(node.is_over for node in served):
+        are_over = all(node.is_over and not node.is_held for node in served)
+        if served and len(served) < len(self._nodes) and are_over:
             self._stop("all nodes have ended")
+
+    def stop_all(self, reason: str) -> None:
+        """Stop the run; asked again it does not wait for nodes that take their time."""
+        if self._stopping:
+            self._insist(float("inf"))
+        else:
+            self._stop(reason)
+
+    def stop_node(self, name: str) -> None:
+        """Stop a node, but not the run; it is not respawned."""
+        node = self.node(name)
+        node.is_held, node.is_wanted_again = True, False
+        if node.state is NodeState.WAITING:
+            node.withdraw()
+            self._report_end(node)
+        elif node.state is NodeState.RUNNING and not node.is_leaderless:
+            node.stop()
+
+    def restart_node(self, name: str, terminal: bool = False) -> None:
+        """Start a node again, which is stopped first if it runs.
+
+        :param terminal: give it a terminal if it has none.
+        """
+        if self._stopping:
+            raise ManycoreError("the run is being stopped: its nodes are not started again")
+        node = self.node(name)
+        if terminal:
+            node.program = replace(node.program, terminal=True)
+        node.is_held = False
+        if node.is_over:
+            self._nodes[self._nodes.index(node)] = node.successor()
+        elif node.state is NodeState.WAITING:
+            node.start_at_s = 0.0
+        else:
+            node.is_wanted_again = True
+            if node.state is NodeState.RUNNING and not node.is_leaderless:
+                node.stop()
 
     def _take_signals(self, inbox: SignalInbox) -> None:
         for number in inbox.take():
-            if self._stopping:
-                self._insist(float("inf"))  # asked again: no more patience
-            else:
-                self._stop(number.name)
+            self.stop_all(number.name)
 
     def _stop(self, reason: str) -> None:
         if self._stopping:

@@ -53,8 +53,10 @@ def _release(nodes: Iterable[NodeProcess], node: NodeProcess, *, after_exit: boo
 def respawned(node: NodeProcess) -> NodeProcess | None:
     """Return the process that takes the place of an ended one, where there is to be one."""
     rules = node.program.rules
+    if node.is_held:
+        return None
     if node.is_wanted_again:
-        return NodeProcess(node.program)
+        return node.successor()
     if rules.respawn_delay_s is None or 0 <= rules.max_respawns <= node.respawns:
         return None
     successor = NodeProcess(node.program)

@@ -34,6 +34,7 @@ def _allow_none_entries(node: dict[str, Any]) -> None:
     for key in ("param_file", "param_path"):
         options = node[key].pop("anyOf")
         node[key]["anyOf"] = [*options, {**empty, "additionalProperties": False}]
+    node["respawn"]["anyOf"].insert(0, {"type": "boolean"})
     node["parameters"] = {"anyOf": [node["parameters"], {"const": True}]}
     for key in (*CROSSINGS, "publish", "subscribe"):
         # A type is checked when the file is read: there also the spellings of ROS 1 are known.

@@ -16,11 +16,12 @@ ROOTS = (REPOSITORY, REPOSITORY / "bridge", REPOSITORY / "startup")
 
 # Lowest first; packages of one layer do not see each other. A leading dot: in rmw_manycore_py.
 LAYERS = [
-    ("rmw_manycore_hook", "rmw_manycore_interfaces"),
+    ("rmw_manycore_executor", "rmw_manycore_hook", "rmw_manycore_interfaces"),
     ("rmw_manycore_program", "rmw_manycore_py", ".errors", ".examples", ".words"),
     ("._transport", "._ndt"),
     ("._ndt_bench", ".native_errors", ".qos"),
-    (".figures", ".parent_death", ".ros", ".readiness", ".signals", ".topology"),
+    (".figures", ".parent_death", ".ros", ".readiness", ".runs", ".scheduling", ".signals"),
+    (".topology",),
     (".routes",),
     (".bridge_plan", ".interfaces"),
     (".mapfile.format",),

@@ -9,6 +9,7 @@ from itertools import cycle
 import click
 
 from rmw_manycore_py.cli.common.printing import new_table, print_table, size_text
+from rmw_manycore_py.launch.event_text import SUPERVISOR, text_of
 from rmw_manycore_py.launch.events import (
     Ended,
     Event,
@@ -18,8 +19,6 @@ from rmw_manycore_py.launch.events import (
     Output,
     Platform,
     Restarting,
-    Started,
-    Stopping,
 )
 from rmw_manycore_py.topology import host_cpu_text
 
@@ -35,7 +34,7 @@ COLOURS = (
     "bright_magenta",
     "bright_blue",
 )  # red is for failures
-RUNNER = "manycore"
+_WARNINGS = (Notice, Insisting, Restarting)
 
 
 class RunPrinter:
@@ -47,7 +46,7 @@ class RunPrinter:
     def __init__(self, nodes: Sequence[str] = ()) -> None:
         # What serves the nodes prints little: its longer names may stick out.
         named = [name for name in nodes if not name.startswith("(")]
-        self._width = max(len(name) for name in (*named, RUNNER))
+        self._width = max(len(name) for name in (*named, SUPERVISOR))
         self._colours = cycle(COLOURS)
         self._prefixes = {name: self._new_prefix(name) for name in nodes}
         self._failures: list[Ended] = []
@@ -58,23 +57,12 @@ class RunPrinter:
             click.echo(self._prefix(event.node) + event.line)
         elif isinstance(event, Platform):
             _print_platform(event)
-        elif isinstance(event, Notice):
-            self._say(event.text, fg="yellow")
-        elif isinstance(event, Started):
-            self._say(
-                f"{event.node} started: cluster {event.cluster} core {event.core} -> "
-                f"host CPU {host_cpu_text(event.host_cpu)}, pid {event.pid}"
-            )
-        elif isinstance(event, Stopping):
-            self._say(f"stopping: {event.reason}")
-        elif isinstance(event, Insisting):
-            self._say(f"{event.node} does not end: {event.signal}", fg="yellow")
-        elif isinstance(event, Restarting):
-            self._say(f"{event.node} is started again: {event.reason}", fg="yellow")
         elif isinstance(event, Ended):
             self._ended(event)
         elif isinstance(event, Finished):
             self._finished()
+        elif (text := text_of(event)) is not None:
+            self.say(text, fg="yellow" if isinstance(event, _WARNINGS) else None)
 
     def _prefix(self, name: str) -> str:
         if name not in self._prefixes:
@@ -84,14 +72,15 @@ class RunPrinter:
     def _new_prefix(self, name: str) -> str:
         return click.style(f"{name:<{self._width}} | ", fg=next(self._colours))
 
-    def _say(self, text: str, fg: str | None = None) -> None:
-        click.secho(f"{RUNNER:<{self._width}} | {text}", fg=fg, bold=fg is None)
+    def say(self, text: str, fg: str | None = None) -> None:
+        """Print a line of the run itself."""
+        click.secho(f"{SUPERVISOR:<{self._width}} | {text}", fg=fg, bold=fg is None)
 
     def _ended(self, event: Ended) -> None:
         failed = event.state == "failed"
         if failed:
             self._failures.append(event)
-        self._say(f"{event.node} {event.state}: {event.reason}", fg="red" if failed else None)
+        self.say(text_of(event) or "", fg="red" if failed else None)
 
     def _finished(self) -> None:
         """Say again who failed and why: the reason may have scrolled away."""

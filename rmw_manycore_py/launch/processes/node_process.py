@@ -7,14 +7,17 @@ import os
 import signal
 import subprocess
 import time
+from collections.abc import Callable
 
 from rmw_manycore_py.launch.processes.birth import pinned_to
 from rmw_manycore_py.launch.processes.ending import Ending, judge, not_started
 from rmw_manycore_py.launch.processes.output import OutputReader
 from rmw_manycore_py.launch.processes.program import NodeProgram
 from rmw_manycore_py.launch.processes.state import STOP_STEPS, NodeState, check_transition
+from rmw_manycore_py.launch.processes.terminal import Pipe, Terminal, before_exec
 from rmw_manycore_py.parent_death import dies_with_this_process
 from rmw_manycore_py.readiness import Readiness
+from rmw_manycore_py.scheduling import scheduled_as
 
 # How long children of a node may go on printing after the node itself has ended.
 ORPHAN_GRACE_S = 1.0
@@ -35,6 +38,8 @@ class NodeProcess:
         self.start_at_s = 0.0  # on the monotonic clock: not before, and later when it was started
         self.respawns = 0  # how many processes of the node there were before
         self.is_wanted_again = False  # its place is taken by a new process when it is over
+        self.is_held = False  # a person has stopped it: it is not respawned, its run goes on
+        self.was_asked_for = False  # a person has restarted it: the run outlives a failing start
         self.pidfd = -1  # open while the node itself runs
         self.came_up = not program.supervised  # a supervised process reports it; known at its end
         self.vain_starts = 0  # how many processes before it ended without having come up
@@ -74,33 +79,41 @@ class NodeProcess:
         """Tell whether nothing will happen to the node any more."""
         return self.state in (NodeState.FINISHED, NodeState.FAILED)
 
-    def start(self) -> bool:
-        """Start the node on its CPU; where that fails the ending says why."""
+    def start(self, tap: Callable[[bytes], None] | None = None) -> bool:
+        """Start the node on its CPU; where that fails the ending says why.
+
+        :param tap: gets the node's output as it comes.
+        """
         self.start_at_s = time.monotonic()
         if self.program.supervised:
             self._readiness = Readiness()
         try:
-            with pinned_to(self.program.host_cpus):
-                self._process = subprocess.Popen(
-                    self.program.command,
-                    env={**self.program.environment, **self._readiness_variables()},
-                    cwd=self.program.directory,
-                    stdin=subprocess.DEVNULL,
-                    stdout=subprocess.PIPE,
-                    stderr=subprocess.STDOUT,
-                    bufsize=0,
-                    start_new_session=True,
-                    pass_fds=[self._readiness.fd] if self._readiness else [],
-                    preexec_fn=dies_with_this_process(),
-                )
+            streams = Terminal() if self.program.terminal else Pipe()
+            try:
+                self._process = self._spawned(streams)
+            except BaseException:
+                streams.discard()
+                raise
         except OSError as error:
             self._end(not_started(error))
             return False
-        assert self._process.stdout is not None
-        self._output = OutputReader(self._process.stdout)
+        self._output = OutputReader(streams.opened(), tap)
         self._become(NodeState.RUNNING)
         self.pidfd = os.pidfd_open(self._process.pid)
         return True
+
+    def _spawned(self, streams: Pipe) -> subprocess.Popen[bytes]:
+        with pinned_to(self.program.host_cpus), scheduled_as(self.program.scheduling):
+            return subprocess.Popen(
+                self.program.command,
+                env={**self.program.environment, **self._readiness_variables()},
+                cwd=self.program.directory,
+                bufsize=0,
+                start_new_session=True,
+                pass_fds=[self._readiness.fd] if self._readiness else [],
+                preexec_fn=before_exec(dies_with_this_process(), streams),
+                **streams.options,
+            )
 
     def stop(self) -> signal.Signals | None:
         """Take the next step of stopping the node; return the signal that was sent."""
@@ -111,6 +124,17 @@ class NodeProcess:
         self._become(step.state)
         self.deadline_s = time.monotonic() + step.grace_s
         return step.signal
+
+    def withdraw(self) -> None:
+        """Give a waiting node up: its turn is not to come."""
+        self._end(Ending(False, "not started"))
+
+    def successor(self) -> NodeProcess:
+        """Return the process that a person wants in the place of this one."""
+        successor = NodeProcess(self.program)
+        successor.respawns = self.respawns
+        successor.was_asked_for = True
+        return successor
 
     def leader_ended(self) -> None:
         """Note that the node itself ended; its children have a moment for their last words."""

@@ -3,8 +3,10 @@
 
 from __future__ import annotations
 
+import errno
 import os
 from collections import deque
+from collections.abc import Callable
 from typing import IO
 
 READ_BYTES = 65536  # what a pipe holds
@@ -13,10 +15,14 @@ TAIL_LINES = 20  # a python traceback of a usual depth
 
 
 class OutputReader:
-    """Reads a pipe without waiting; keeps the last lines for the report of a failure."""
+    """Reads a pipe or terminal without waiting; keeps the last lines for the report of a failure.
 
-    def __init__(self, stream: IO[bytes]) -> None:
+    :param tap: gets all that is read as it comes, for those who are attached to the node.
+    """
+
+    def __init__(self, stream: IO[bytes], tap: Callable[[bytes], None] | None = None) -> None:
         self._stream = stream
+        self._tap = tap
         self._partial = b""
         self.tail: deque[str] = deque(maxlen=TAIL_LINES)
         self.at_end = False  # everyone who could have written is gone
@@ -49,7 +55,13 @@ class OutputReader:
             data = os.read(self._stream.fileno(), READ_BYTES)
         except BlockingIOError:
             return b""
+        except OSError as error:
+            if error.errno != errno.EIO:
+                raise
+            data = b""  # of a terminal: its last user is gone
         self.at_end = not data
+        if self._tap and data:
+            self._tap(data)
         return data
 
     def _keep(self, lines: list[bytes]) -> list[str]:

@@ -9,6 +9,7 @@ from pathlib import Path
 
 from rmw_manycore_py.launch.processes.environment import program_environment
 from rmw_manycore_py.mapfile.placing.placement import NO_RULES, LaunchRules, PlacedNode
+from rmw_manycore_py.scheduling import Scheduling
 from rmw_manycore_py.topology import Core, HostCpu, as_host_cpu
 
 
@@ -29,6 +30,8 @@ class NodeProgram:
     supervised: bool = False
     rules: LaunchRules = NO_RULES
     repeats: bool = False  # starts each time that the node of `rules.after` does
+    terminal: bool = False  # its streams are a terminal that `manycore attach` attaches to
+    scheduling: Scheduling | None = None  # None: as the runner itself
 
     @property
     def host_cpu(self) -> HostCpu:
@@ -46,4 +49,6 @@ class NodeProgram:
             host_cpus=(node.host_cpu,),
             directory=node.cwd,
             rules=node.rules,
+            terminal=node.terminal,
+            scheduling=node.scheduling,
         )

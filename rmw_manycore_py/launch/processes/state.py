@@ -25,7 +25,7 @@ class NodeState(Enum):
 
 
 TRANSITIONS: dict[NodeState, frozenset[NodeState]] = {
-    NodeState.WAITING: frozenset({NodeState.RUNNING, NodeState.FAILED}),
+    NodeState.WAITING: frozenset({NodeState.RUNNING, NodeState.FINISHED, NodeState.FAILED}),
     NodeState.RUNNING: frozenset({NodeState.INTERRUPTED, NodeState.FINISHED, NodeState.FAILED}),
     NodeState.INTERRUPTED: frozenset({NodeState.TERMINATED, NodeState.FINISHED, NodeState.FAILED}),
     NodeState.TERMINATED: frozenset({NodeState.KILLED, NodeState.FINISHED, NodeState.FAILED}),

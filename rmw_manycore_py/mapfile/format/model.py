@@ -13,7 +13,9 @@ from pydantic import (
     StrictBool,
     StrictInt,
     StringConstraints,
+    model_validator,
 )
+from typing_extensions import Self
 
 from rmw_manycore_py.mapfile.format.values import (
     ActionType,
@@ -24,6 +26,7 @@ from rmw_manycore_py.mapfile.format.values import (
     InterfaceType,
     MessageType,
     OneOrMore,
+    OrBool,
     Parameters,
     ServiceType,
     Size,
@@ -31,6 +34,7 @@ from rmw_manycore_py.mapfile.format.values import (
 )
 from rmw_manycore_py.ros.domain import MAX_DOMAIN, PLATFORM_NAME
 from rmw_manycore_py.ros.patterns import is_pattern
+from rmw_manycore_py.scheduling import MAX_PRIORITY, MIN_PRIORITY, REAL_TIME
 
 # Receiver clusters are a mask of 64 bits.
 MAX_CLUSTERS = 64
@@ -183,6 +187,35 @@ _A_TYPE = "a type such as std_msgs/msg/String or std_srvs/srv/SetBool"
 Crossings = Annotated[dict[TopicPattern, InterfaceType | None], AfterValidator(_check_crossings)]
 
 
+class RespawnSection(Section):
+    """A node is started again when it ends by itself."""
+
+    delay: Annotated[float, Field(ge=0, le=1e6, allow_inf_nan=False)] = Field(
+        default=1.0, description="Seconds from its end to its next start"
+    )
+    max_retries: Annotated[StrictInt, Field(ge=0)] | None = Field(
+        default=None, description="How often; without end unless given"
+    )
+
+
+class SchedulingSection(Section):
+    """How the operating system schedules a node."""
+
+    policy: Literal["fifo", "rr", "other"] = Field(description="Policy of sched(7)")
+    priority: Annotated[StrictInt, Field(ge=MIN_PRIORITY, le=MAX_PRIORITY)] | None = Field(
+        default=None, description="Priority, for fifo and rr"
+    )
+
+    @model_validator(mode="after")
+    def _check_priority(self) -> Self:
+        if (self.priority is None) == (self.policy in REAL_TIME):
+            expected = f"{MIN_PRIORITY} to {MAX_PRIORITY} as priority of {self.policy}"
+            if self.policy not in REAL_TIME:
+                expected = f"no priority beside the policy {self.policy}"
+            raise refusal(expected, found=self.priority, name="priority")
+        return self
+
+
 class NodeSection(Section):
     """A node: where it runs, how it is started, what it says to the outside."""
 
@@ -209,6 +242,15 @@ class NodeSection(Section):
     env: dict[Text, EnvironmentValue] = Field(default_factory=dict, description="Environment")
     wait: WaitMode | None = Field(
         default=None, description="How the node waits; block is the default"
+    )
+    scheduling: SchedulingSection | None = Field(
+        default=None, description="Policy and priority; those of manycore run unless given"
+    )
+    respawn: Annotated[RespawnSection, OrBool] | None = Field(
+        default=None, description="Start the node again when it ends; true, or how"
+    )
+    terminal: StrictBool = Field(
+        default=False, description="Give the node a terminal, for manycore attach"
     )
     workers: WorkerCount = Field(
         default=0, description="Further cores of the cluster, for workers of the node"

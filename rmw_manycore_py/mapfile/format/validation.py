@@ -18,7 +18,9 @@ from rmw_manycore_py.mapfile.format.model import (
     NodeSection,
     PlatformSection,
     QosSection,
+    RespawnSection,
     RouteSection,
+    SchedulingSection,
     TopicSection,
 )
 
@@ -148,6 +150,8 @@ def _section(path: KeyPath) -> type[BaseModel]:
     if path[0] == "bridge" and len(path) > 1:
         parts: dict[int, type[BaseModel]] = {2: BridgeSection, 4: RouteSection}
         return parts.get(len(path), QosSection)
+    if path[0] == "nodes" and len(path) > 3:
+        return RespawnSection if path[2] == "respawn" else SchedulingSection
     sections: dict[Any, type[BaseModel]] = {
         "platform": PlatformSection,
         "topics": TopicSection,

@@ -80,6 +80,13 @@ def _host_cpus(value: Any) -> tuple[int, ...]:
     return tuple(sorted(set(cpus)))
 
 
+def _respawn(value: Any) -> Any:
+    """Read true as a mapping without keys, false as no retries: the launch file's are overruled."""
+    if isinstance(value, bool):
+        return {} if value else {"max_retries": 0}
+    return value
+
+
 def flatten_parameters(value: Any, prefix: str = "") -> dict[str, Any]:
     """Return nested parameters under their dotted names."""
     if not isinstance(value, dict):
@@ -146,6 +153,8 @@ OneOrMore = Annotated[
 Parameters = Annotated[
     dict[str, Any], BeforeValidator(flatten_parameters), WithJsonSchema({"type": "object"})
 ]
+# Before a section: also true and false.
+OrBool = BeforeValidator(_respawn)
 MessageType = Annotated[str, StringConstraints(pattern=r"^[A-Za-z]\w*/msg/[A-Z][A-Za-z0-9]*$")]
 InterfaceType = Annotated[
     str, StringConstraints(pattern=r"^[A-Za-z]\w*/(msg|srv)/[A-Z][A-Za-z0-9]*$")

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from rmw_manycore_py.routes import DIRECTIONS, Direction, Route
+from rmw_manycore_py.scheduling import Scheduling
 from rmw_manycore_py.topology import Core, Topology
 
 
@@ -27,7 +28,7 @@ class PlacedComponent:
 
 @dataclass(frozen=True)
 class LaunchRules:
-    """What a launch file wants of a node besides its command line.
+    """What a launch file or a mapfile wants of a node besides its command line.
 
     It starts `delay_s` after the others, or after the node `after` has started or ended; it is
     started again up to `max_respawns` times (below 0: always) unless `respawn_delay_s` is None.
@@ -66,6 +67,8 @@ class PlacedNode:
     subscribe: Mapping[str, str]
     workers: tuple[tuple[Core, int], ...]  # with the host CPU of each
     rules: LaunchRules = NO_RULES
+    terminal: bool = False
+    scheduling: Scheduling | None = None
 
     @property
     def place(self) -> Core:

@@ -3,18 +3,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import replace
 from pathlib import Path
 
 from rmw_manycore_py.errors import MapfileError, Problem
 from rmw_manycore_py.mapfile.format.checks import PLACE_VARIABLES
 from rmw_manycore_py.mapfile.format.mapfile import Mapfile
+from rmw_manycore_py.mapfile.format.model import NodeSection
 from rmw_manycore_py.mapfile.launch_file import LaunchedNode, LaunchFile, read_launch_file
+from rmw_manycore_py.mapfile.placing.cores import assign_cores, assign_cpus
 from rmw_manycore_py.mapfile.placing.crossings import bridge_placement
 from rmw_manycore_py.mapfile.placing.imports import check_imports
 from rmw_manycore_py.mapfile.placing.launched import launch_rules
-from rmw_manycore_py.mapfile.placing.placement import BridgePlacement, PlacedNode, Placement
+from rmw_manycore_py.mapfile.placing.notices import refused_scheduling, unpublished
+from rmw_manycore_py.mapfile.placing.placement import (
+    LaunchRules,
+    PlacedNode,
+    Placement,
+)
 from rmw_manycore_py.mapfile.placing.start import NodeStart, node_start, ros_arguments
 from rmw_manycore_py.mapfile.placing.topics import (
     check_crossing_types,
@@ -28,10 +35,9 @@ from rmw_manycore_py.mapfile.programs.source import SourceNode, scan
 from rmw_manycore_py.ros.ament import canonical_type
 from rmw_manycore_py.ros.domain import default_platform
 from rmw_manycore_py.ros.names import full_node_name, resolve_topic
+from rmw_manycore_py.scheduling import Scheduling
 from rmw_manycore_py.topology import (
-    RECEIVE_THREAD_CORE,
     Core,
-    assign_host_cpus,
     usable_cpus,
 )
 
@@ -39,21 +45,24 @@ from rmw_manycore_py.topology import (
 _MALLOC_THRESHOLD = str(1 << 30)
 
 
-def resolve(mapfile: Mapfile) -> Placement:
-    """Find everything a mapfile refers to; what does not exist is an error."""
+def resolve(mapfile: Mapfile, occupied: Collection[Core] = ()) -> Placement:
+    """Find everything a mapfile refers to; what does not exist is an error.
+
+    :param occupied: cores that nodes of other runs have on the platform.
+    """
     launch = read_launch(mapfile)
     starts = node_starts(mapfile, launch)
-    cores = _cores(mapfile)
-    workers = worker_cores(mapfile, cores.values())
+    cores = assign_cores(mapfile, occupied)
+    workers = worker_cores(mapfile, {*cores.values(), *occupied})
     of_workers = [core for one in workers.values() for core in one]
-    bridge = bridge_placement(mapfile, starts, {*cores.values(), *of_workers})
+    bridge = bridge_placement(mapfile, starts, {*cores.values(), *of_workers, *occupied})
     cpus = usable_cpus()
-    host_cpus = _host_cpus(mapfile, [*cores.values(), *of_workers], bridge, cpus)
+    host_cpus = assign_cpus(mapfile, [*cores.values(), *of_workers], bridge, cpus)
     launched = {name: start.launched for name, start in starts.items()}
     nodes = tuple(
         replace(
             _place(mapfile, name, start, cores[name], workers[name], host_cpus),
-            rules=launch_rules(name, launched)[0],
+            rules=_rules(mapfile.sections.nodes[name], launch_rules(name, launched)[0]),
         )
         for name, start in starts.items()
     )
@@ -76,7 +85,13 @@ def resolve(mapfile: Mapfile) -> Placement:
         memory=memory,
         host_cpus=host_cpus,
         bridge=bridge,
-        notices=(*mapfile.notices, *_notices(mapfile, launch, host_cpus, cpus), *of_rules),
+        notices=(
+            *mapfile.notices,
+            *_notices(mapfile, launch, host_cpus, cpus),
+            *of_rules,
+            *unpublished(mapfile, starts, nodes),
+            *refused_scheduling(nodes),
+        ),
     )
 
 
@@ -130,61 +145,6 @@ def _has_number(start: NodeStart) -> bool:
     return isinstance(start.launched, LaunchedNode) and start.launched.number > 1
 
 
-def _cores(mapfile: Mapfile) -> dict[str, Core]:
-    """Return each node's core; nodes that name none get the first free ones of their cluster."""
-    nodes = mapfile.sections.nodes
-    taken = {Core(node.cluster, node.core) for node in nodes.values() if node.core is not None}
-    cores: dict[str, Core] = {}
-    for name, node in nodes.items():
-        if node.core is not None:
-            cores[name] = Core(node.cluster, node.core)
-            continue
-        cluster = mapfile.topology.clusters[node.cluster - 1]
-        free = [core for core in cluster.free if Core(cluster.id, core) not in taken]
-        if not free:
-            expected = f"a free core in cluster {cluster.id}"
-            found = f"all {len(cluster.free)} taken"
-            raise MapfileError(mapfile.document.problem(("nodes", name), expected, found))
-        cores[name] = Core(cluster.id, free[0])
-        taken.add(cores[name])
-    return cores
-
-
-def _host_cpus(
-    mapfile: Mapfile,
-    used: Sequence[Core],
-    bridge: BridgePlacement | None,
-    cpus: Sequence[int],
-) -> dict[Core, int]:
-    """Return the CPU of every used core: nodes, workers, then receive threads.
-
-    The bridge may run on any CPU, or on those that the mapfile names: its cores have none.
-    """
-    fixed: dict[Core, int] = {}
-    problems: list[Problem] = []
-    usable = f"a CPU this process may use ({', '.join(map(str, cpus))})"
-    for cpu in mapfile.sections.bridge.host_cpu or ():
-        if cpu not in cpus:
-            problems.append(mapfile.document.problem(("bridge", "host_cpu"), usable, str(cpu)))
-    for (name, node), core in zip(mapfile.sections.nodes.items(), used, strict=False):
-        if node.host_cpu is None:
-            continue
-        if node.host_cpu not in cpus:
-            path = ("nodes", name, "host_cpu")
-            problems.append(mapfile.document.problem(path, usable, str(node.host_cpu)))
-        if node.host_cpu != fixed.setdefault(core, node.host_cpu):
-            expected = f"{fixed[core]}, as another node on core {core.core} has it"
-            path = ("nodes", name, "host_cpu")
-            problems.append(mapfile.document.problem(path, expected, str(node.host_cpu)))
-    if problems:
-        raise MapfileError(*problems)
-    clusters = {core.cluster for core in used}
-    if bridge is not None:
-        clusters |= {core.cluster for lane in bridge.cores for core in lane}
-    receivers = [Core(cluster, RECEIVE_THREAD_CORE) for cluster in sorted(clusters)]
-    return assign_host_cpus([*used, *receivers], fixed, cpus)
-
-
 def _place(
     mapfile: Mapfile,
     name: str,
@@ -214,6 +174,25 @@ def _place(
         publish=publish,
         subscribe=subscribe,
         workers=placed_workers,
+        terminal=mapfile.sections.nodes[name].terminal,
+        scheduling=_scheduling(mapfile.sections.nodes[name]),
+    )
+
+
+def _scheduling(node: NodeSection) -> Scheduling | None:
+    section = node.scheduling
+    return Scheduling(section.policy, section.priority or 0) if section else None
+
+
+def _rules(node: NodeSection, launched: LaunchRules) -> LaunchRules:
+    """Return the launch file's rules with what the mapfile says itself."""
+    if node.respawn is None:
+        return launched
+    retries = node.respawn.max_retries
+    return replace(
+        launched,
+        respawn_delay_s=node.respawn.delay,
+        max_respawns=-1 if retries is None else retries,
     )
 
 

@@ -190,7 +190,7 @@ def interrupt(*_: object) -> None:
 @pytest.mark.parametrize(
     ("words", "interrupted", "status"),
     [
-        (("run", "talker_listener"), "rmw_manycore_py.cli.run.load_mapfile", 0),
+        (("run", "talker_listener"), "rmw_manycore_py.cli.common.starting.load_mapfile", 0),
         (("demo",), "rmw_manycore_py.cli.demo.load_mapfile", 0),
         (("run", "talker_listener"), "importlib.import_module", 0),
         (("status",), "importlib.import_module", 130),

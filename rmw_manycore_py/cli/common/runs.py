@@ -1,0 +1,51 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Runs of a platform, and their nodes as a person names them."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable, Sequence
+
+from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
+from rmw_manycore_py.runs.directory import RunDirectory, all_runs, runs_of
+
+
+def living_runs(platform: str) -> list[RunDirectory]:
+    """Return the runs of a platform whose supervisors live; an error says that there is none."""
+    runs = [run for run in runs_of(platform) if run.is_alive]
+    if not runs:
+        raise ManycoreError(no_run(platform))
+    return runs
+
+
+def no_run(platform: str) -> str:
+    """Return that a platform has no run, and which ones have."""
+    others = sorted({run.platform for run in all_runs() if run.is_alive} - {platform})
+    hint = f"; there is {', '.join(others)} (--platform)" if others else ""
+    return f"platform '{platform}' is run by no `manycore run` or `manycore up`{hint}"
+
+
+def nodes_by_run(
+    runs: Sequence[RunDirectory], names: Iterable[str]
+) -> list[tuple[RunDirectory, list[str]]]:
+    """Return which nodes of each run are meant; a name may have a slash in front."""
+    chosen: dict[int, list[str]] = {}
+    for name in dict.fromkeys(names):
+        # Of several runs that have had a node of this name, the latest has it now.
+        owners = [i for i, run in enumerate(runs) if _known_as(run, name)]
+        if not owners:
+            raise ManycoreError(_unknown(runs, name), EXIT_BAD_INPUT)
+        chosen.setdefault(owners[-1], []).append(_known_as(runs[owners[-1]], name) or name)
+    return [(runs[index], nodes) for index, nodes in chosen.items()]
+
+
+def _known_as(run: RunDirectory, name: str) -> str | None:
+    known = {node.lstrip("/"): node for node in run.nodes}
+    return known.get(name.lstrip("/"))
+
+
+def _unknown(runs: Sequence[RunDirectory], name: str) -> str:
+    known = [node for run in runs for node in run.nodes]
+    close = difflib.get_close_matches(name, known, n=1)
+    hint = f"is {close[0]} meant?" if close else f"there is {', '.join(known) or 'none'}"
+    return f"no node '{name}' in this run; {hint}"

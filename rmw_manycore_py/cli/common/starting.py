@@ -1,0 +1,60 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""What `manycore run` and `manycore up` have in common: which nodes of a mapfile, and where."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import click
+
+from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
+from rmw_manycore_py.launch.platform import occupied_cores
+from rmw_manycore_py.launch.run import Mode, Run
+from rmw_manycore_py.mapfile import Mapfile, Placement, load_mapfile, resolve
+from rmw_manycore_py.mapfile.placing.resolve import platform_name
+
+
+def starting_options(command: Callable[..., Any]) -> Callable[..., Any]:
+    """Add --join and --node to a command."""
+    node = click.option(
+        "--node",
+        "nodes",
+        metavar="NODE",
+        multiple=True,
+        help="Start this node of MAPFILE only; may be repeated.",
+    )
+    join = click.option(
+        "--join", "joins", is_flag=True, help="Add the nodes to the platform, which runs already."
+    )
+    return join(node(command))
+
+
+def prepared_run(
+    mapfile: Path, joins: bool, nodes: tuple[str, ...], detached: bool = False
+) -> tuple[Run, Placement]:
+    """Return the run of a mapfile, or of some nodes of it; nothing is started yet."""
+    loaded = _only(load_mapfile(mapfile), nodes)
+    occupied = occupied_cores(platform_name(loaded)) if joins else ()
+    placement = resolve(loaded, occupied)
+    return Run(placement, Mode(mapfile, joins, detached)), placement
+
+
+def _only(mapfile: Mapfile, names: tuple[str, ...]) -> Mapfile:
+    """Return a mapfile with some of its nodes alone."""
+    if not names:
+        return mapfile
+    nodes = mapfile.sections.nodes
+    known = {name.lstrip("/"): name for name in nodes}
+    for name in names:
+        if name.lstrip("/") not in known:
+            close = difflib.get_close_matches(name, nodes, n=1)
+            hint = f"is {close[0]} meant?" if close else f"it has {', '.join(sorted(nodes))}"
+            text = f"--node: no node '{name}' in {mapfile.path}; {hint}"
+            raise ManycoreError(text, EXIT_BAD_INPUT)
+    wanted = {known[name.lstrip("/")] for name in names}
+    chosen = {name: node for name, node in nodes.items() if name in wanted}
+    return replace(mapfile, sections=mapfile.sections.model_copy(update={"nodes": chosen}))

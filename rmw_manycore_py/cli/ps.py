@@ -1,0 +1,72 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""`manycore ps`."""
+
+from __future__ import annotations
+
+import click
+
+from rmw_manycore_py.cli.common.options import any_platform_option, examples, json_option
+from rmw_manycore_py.cli.common.printing import new_table, print_json, print_table
+from rmw_manycore_py.cli.common.rows import Row
+from rmw_manycore_py.errors import ManycoreError
+from rmw_manycore_py.runs.client import Client
+from rmw_manycore_py.runs.directory import RunDirectory, all_runs, runs_of
+
+
+@click.command("ps", epilog=examples("manycore ps", "manycore ps --json"))
+@any_platform_option
+@json_option
+def command(platform: str | None, as_json: bool) -> None:
+    """Show the nodes of the runs of this user: those that run, and those that have ended.
+
+    `manycore status` shows the platforms, nodes that were started by hand included.
+    """
+    runs = runs_of(platform) if platform else all_runs()
+    rows = [_row(run) for run in runs if run.is_alive]
+    if as_json:
+        print_json(rows)
+        return
+    if not rows:
+        click.echo("nothing is run by `manycore run` or `manycore up`")
+    for number, row in enumerate(rows):
+        if number:
+            click.echo()
+        _show(row)
+
+
+def _row(run: RunDirectory) -> Row:
+    info = run.info
+    row = {
+        "platform": run.platform,
+        "run": run.number,
+        "mapfile": info.get("mapfile"),
+        "pid": info.get("pid"),
+        "detached": info.get("detached"),
+        "started": info.get("started"),
+        "logs": run.logs,
+    }
+    try:
+        with Client(run, "state") as client:
+            return {**row, "nodes": client.answer["nodes"]}
+    except ManycoreError as error:
+        return {**row, "error": str(error), "nodes": []}
+
+
+def _show(row: Row) -> None:
+    kind = "in the background" if row["detached"] else "in a terminal"
+    click.echo(f"platform {row['platform']}: {row['mapfile']}, {kind}, pid {row['pid']}")
+    if "error" in row:
+        click.echo(f"  {row['error']}")
+        return
+    table = new_table("node", "#pid", "#cluster", "#core", "#respawns", "state")
+    for node in row["nodes"]:
+        numbers = (node["pid"], node["cluster"], node["core"], node["respawns"])
+        texts = ("-" if number is None else str(number) for number in numbers)
+        table.add_row(node["name"], *texts, _state(node))
+    print_table(table)
+
+
+def _state(node: Row) -> str:
+    if node["reason"] is None or node["reason"] == node["state"]:
+        return str(node["state"])
+    return f"{node['state']}: {node['reason']}"

@@ -1,0 +1,95 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""`manycore stop`."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+
+import click
+
+from rmw_manycore_py import _transport
+from rmw_manycore_py.cli.common.options import examples, platform_option
+from rmw_manycore_py.cli.common.run_printer import RunPrinter
+from rmw_manycore_py.cli.common.runs import living_runs, no_run, nodes_by_run
+from rmw_manycore_py.errors import EXIT_FAILURE, ManycoreError
+from rmw_manycore_py.launch.events import Finished, event_of
+from rmw_manycore_py.launch.platform import remaining_users
+from rmw_manycore_py.runs.client import Client
+from rmw_manycore_py.runs.directory import RunDirectory, runs_of
+
+
+@click.command(
+    "stop",
+    epilog=examples("manycore stop", "manycore stop talker", "manycore stop --platform domain-3"),
+)
+@click.argument("nodes", nargs=-1)
+@click.option("--now", is_flag=True, help="Do not wait for nodes that take their time.")
+@platform_option
+def command(nodes: tuple[str, ...], now: bool, platform: str) -> None:
+    """Stop the runs of a platform, or only NODES: those stay known, and `restart` starts them.
+
+    Nodes get SIGINT, after 5 s SIGTERM, after 3 s more SIGKILL; --now sends the next at once, as
+    a second Ctrl-C does. The exit status is that of the run. A platform that nothing runs on is
+    stopped already: that is no error.
+    """
+    if nodes:
+        for run, names in nodes_by_run(living_runs(platform), nodes):
+            _stop_nodes(run, names)
+        return
+    runs = [run for run in runs_of(platform) if run.is_alive]
+    if not runs:
+        _explain(platform)
+        return
+    # Those that have joined go before the one that has started the platform.
+    sys.exit(max(_stop(run, now) for run in reversed(runs)))
+
+
+def _stop(run: RunDirectory, now: bool) -> int:
+    """Stop a run; return its exit status."""
+    printer = RunPrinter(run.nodes)
+    try:
+        with Client(run, "stop") as client:
+            if now:
+                with Client(run, "stop"):
+                    pass
+            status = None
+            for message in client.messages():
+                if event := event_of(message):
+                    printer.report(event)
+                if isinstance(event, Finished):
+                    status = event.exit_status
+        run.wait()
+        if status is not None:
+            return status
+    except ManycoreError:
+        if run.is_alive:
+            raise
+        return 0  # it was just ending by itself
+    raise ManycoreError(f"the supervisor of platform '{run.platform}' died before its run was over")
+
+
+def _stop_nodes(run: RunDirectory, names: Sequence[str]) -> None:
+    printer = RunPrinter(run.nodes)
+    with Client(run, "stop", nodes=names) as client:
+        waits_for = set(client.answer["waits_for"])
+        for message in client.messages() if waits_for else ():
+            if event := event_of(message):
+                printer.report(event)
+            if message.get("event") == "ended":
+                waits_for.discard(message["node"])
+            if not waits_for:
+                return
+
+
+def _explain(platform: str) -> None:
+    """Say what there is of a platform that no supervisor runs."""
+    if users := remaining_users(platform):
+        raise ManycoreError(
+            f"{no_run(platform)}: on it are {', '.join(users)}, which were started otherwise; "
+            "end them where they were started",
+            EXIT_FAILURE,
+        )
+    removed = _transport.clean(platform) if platform in _transport.platforms() else []
+    what = "what was left of it is removed" if removed else "nothing runs on it"
+    click.echo(f"platform {platform} is stopped: {what}")

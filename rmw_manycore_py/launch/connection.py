@@ -1,0 +1,142 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""One client of a supervisor, which never waits for it."""
+
+from __future__ import annotations
+
+import base64
+import os
+import socket
+from collections.abc import Callable
+from contextlib import suppress
+
+from rmw_manycore_py.errors import ManycoreError
+from rmw_manycore_py.launch.processes.terminal import set_size
+from rmw_manycore_py.launch.runner import Runner
+from rmw_manycore_py.runs.lines import LineBuffer, Message, encoded
+
+# A client that is so far behind is let go.
+MAX_QUEUE_BYTES = 4 << 20
+_GOODBYE_S = 1.0
+
+
+class Connection:
+    """Reads requests, and sends what the client can take."""
+
+    def __init__(
+        self,
+        client: socket.socket,
+        runner: Runner,
+        handle: Callable[[Connection, Message], None],
+        closed: Callable[[Connection], None],
+    ) -> None:
+        client.setblocking(False)
+        self._client = client
+        self._runner = runner
+        self._handle = handle
+        self._closed = closed
+        self._lines = LineBuffer()
+        self._queue = bytearray()
+        self._is_finished = False
+        self._is_watched = True
+        self.wants_events = False
+        self.follows_logs = False
+        self.node: str | None = None  # the one that it is attached to
+        runner.watch(client, self._serve)
+
+    @property
+    def is_idle(self) -> bool:
+        """Tell whether the client has been sent everything."""
+        return not self._queue
+
+    def send(self, message: Message) -> None:
+        """Send a message as far as there is room, and the rest later."""
+        if self._is_finished:
+            return
+        self._queue += encoded(message)
+        self._flush()
+
+    def finish(self, message: Message) -> None:
+        """Send a last message; the connection is closed behind it."""
+        self.send(message)
+        self._is_finished = True
+        if not self._queue:
+            self.close()
+
+    def attach(self, node: str) -> None:
+        """Send the output of a node from now on."""
+        self.node = node
+        self._runner.taps[node].append(self._output)
+
+    def type(self, data: bytes) -> None:
+        """Type on the node's terminal; what it does not read and has no room for is lost."""
+        terminal = self._terminal()
+        if terminal is not None:
+            with suppress(OSError):
+                os.write(terminal, data)
+
+    def resize(self, rows: int, columns: int) -> None:
+        """Set the size of the node's terminal."""
+        terminal = self._terminal()
+        if terminal is not None:
+            with suppress(OSError):
+                set_size(terminal, rows, columns)
+
+    def close(self) -> None:
+        """Forget the client."""
+        if not self._is_watched:
+            return
+        self._is_watched = False
+        if self.node is not None:
+            self._runner.taps[self.node].remove(self._output)
+        self._runner.unwatch(self._client)
+        self._client.close()
+        self._closed(self)
+
+    def say_goodbye(self) -> None:
+        """Send what is left before the end of the run, and close; for a moment this waits."""
+        with suppress(OSError):
+            self._client.settimeout(_GOODBYE_S)
+            self._client.sendall(self._queue)
+        self.close()
+
+    def _terminal(self) -> int | None:
+        if self.node is None:
+            return None
+        node = self._runner.node(self.node)
+        return node.output.fileno() if node.is_alive and not node.output.at_end else None
+
+    def _output(self, data: bytes) -> None:
+        self.send({"output": base64.b64encode(data).decode()})
+
+    def _serve(self) -> None:
+        self._flush()
+        if not self._is_watched:
+            return
+        try:
+            data = self._client.recv(1 << 16)
+        except BlockingIOError:
+            return
+        except OSError:
+            data = b""
+        if not data:
+            self.close()
+            return
+        try:
+            for message in self._lines.take(data):
+                self._handle(self, message)
+        except ManycoreError as error:
+            self.finish({"error": str(error)})
+
+    def _flush(self) -> None:
+        try:
+            sent = self._client.send(self._queue) if self._queue else 0
+        except BlockingIOError:
+            sent = 0
+        except OSError:
+            self.close()
+            return
+        del self._queue[:sent]
+        if len(self._queue) > MAX_QUEUE_BYTES or (self._is_finished and not self._queue):
+            self.close()
+            return
+        self._runner.watch_also_writable(self._client, bool(self._queue))

@@ -1,0 +1,116 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""A run in the background: its supervisor is a child that outlives the shell it came from."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import sys
+from contextlib import suppress
+from typing import IO
+
+from rmw_manycore_py.errors import EXIT_FAILURE, EXIT_INTERRUPTED, ManycoreError
+from rmw_manycore_py.launch.events import Event, Output, event_of
+from rmw_manycore_py.launch.run import Run
+from rmw_manycore_py.launch.runner import Report
+
+_ERROR = "error"
+
+
+def run_in_background(run: Run, report: Report) -> int:
+    """Start a run in a process of its own, report until its nodes have been started; exit status.
+
+    Ctrl-C until then stops what has been started.
+    """
+    reader, writer = os.pipe()
+    sys.stdout.flush()
+    sys.stderr.flush()
+    pid = os.fork()  # this process has one thread, and nothing of a platform yet
+    if pid == 0:
+        os.close(reader)
+        _be_supervisor(run, writer)
+    os.close(writer)
+    with os.fdopen(reader, "rb") as events:
+        return _until_started(pid, events, report)
+
+
+def _until_started(pid: int, events: IO[bytes], report: Report) -> int:
+    is_interrupted = False
+    while True:
+        try:
+            is_up = _pass_on(events, report)
+            break
+        except KeyboardInterrupt:
+            is_interrupted = True
+            with suppress(ProcessLookupError):
+                os.kill(pid, signal.SIGTERM)
+    if is_up and not is_interrupted:
+        return 0
+    _, status = os.waitpid(pid, 0)
+    return EXIT_INTERRUPTED if is_interrupted else os.waitstatus_to_exitcode(status) or 0
+
+
+def _pass_on(events: IO[bytes], report: Report) -> bool:
+    """Report what the supervisor says; tell whether it came up before it fell silent."""
+    for line in events:
+        data = json.loads(line)
+        if data.get("event") == "up":
+            return True
+        if _ERROR in data:
+            raise ManycoreError(data[_ERROR], data["exit_status"])
+        event = event_of(data)
+        if event is not None:
+            report(event)
+    return False
+
+
+def _be_supervisor(run: Run, writer: int) -> None:
+    """Run, in a session of its own; never return."""
+    status = EXIT_FAILURE
+    try:
+        os.setsid()
+        _leave_streams()
+        progress = _Progress(writer)
+        try:
+            status = run.run(progress.report, all_started=progress.come_up)
+        except ManycoreError as error:
+            status = error.exit_status
+            progress.say({_ERROR: str(error), "exit_status": status})
+        except Exception as error:
+            progress.say({_ERROR: f"{type(error).__name__}: {error}", "exit_status": status})
+    finally:
+        os._exit(status)
+
+
+def _leave_streams() -> None:
+    """Let go of the shell's terminal and pipes, which wait for the end of those that hold them."""
+    null = os.open(os.devnull, os.O_RDWR)
+    for descriptor in (0, 1, 2):
+        os.dup2(null, descriptor)
+    os.close(null)
+
+
+class _Progress:
+    """Tells the process in the foreground what happens, until all nodes have been started."""
+
+    def __init__(self, descriptor: int) -> None:
+        self._descriptor = descriptor
+
+    def report(self, event: Event) -> None:
+        """Tell an event, but not what nodes print."""
+        if not isinstance(event, Output):
+            self.say(event.as_data())
+
+    def come_up(self) -> None:
+        """Tell that the run is up, and nothing more."""
+        self.say({"event": "up"})
+        if self._descriptor >= 0:
+            os.close(self._descriptor)
+            self._descriptor = -1
+
+    def say(self, data: object) -> None:
+        """Tell something; when nobody listens any more the run goes on."""
+        with suppress(OSError):
+            if self._descriptor >= 0:
+                os.write(self._descriptor, json.dumps(data).encode() + b"\n")

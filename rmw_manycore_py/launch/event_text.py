@@ -1,0 +1,40 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Events in words, for terminals and logs."""
+
+from __future__ import annotations
+
+from rmw_manycore_py.launch.events import (
+    Ended,
+    Event,
+    Finished,
+    Insisting,
+    Notice,
+    Restarting,
+    Started,
+    Stopping,
+)
+from rmw_manycore_py.topology import host_cpu_text
+
+SUPERVISOR = "manycore"  # the name behind which the run itself prints
+
+
+def text_of(event: Event) -> str | None:
+    """Return what the run says of an event; None where it says nothing."""
+    if isinstance(event, Notice):
+        return event.text
+    if isinstance(event, Started):
+        return (
+            f"{event.node} started: cluster {event.cluster} core {event.core} -> "
+            f"host CPU {host_cpu_text(event.host_cpu)}, pid {event.pid}"
+        )
+    if isinstance(event, Stopping):
+        return f"stopping: {event.reason}"
+    if isinstance(event, Insisting):
+        return f"{event.node} does not end: {event.signal}"
+    if isinstance(event, Restarting):
+        return f"{event.node} is started again: {event.reason}"
+    if isinstance(event, Ended):
+        return f"{event.node} {event.state}: {event.reason}"
+    if isinstance(event, Finished):
+        return f"the run has ended with exit status {event.exit_status}"
+    return None

@@ -1,0 +1,52 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Keeps what a run and its nodes print, for `manycore logs`."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+from rmw_manycore_py.launch.event_text import SUPERVISOR, text_of
+from rmw_manycore_py.launch.events import Ended, Event, Notice, Output
+from rmw_manycore_py.runs.log_file import LogFile, share_of
+
+
+class LogKeeper:
+    """Writes a file per node; a disk that is full costs lines, never the run.
+
+    :param warn: told once per node when its lines cannot be kept.
+    :param changed: called after each line.
+    """
+
+    def __init__(
+        self,
+        directory: Path,
+        nodes: Sequence[str],
+        warn: Callable[[Event], None],
+        changed: Callable[[], None],
+    ) -> None:
+        names = (SUPERVISOR, *nodes)
+        max_bytes = share_of(len(names))
+        self._files = {name: LogFile(directory, name, max_bytes) for name in names}
+        self._warn = warn
+        self._changed = changed
+
+    def report(self, event: Event) -> None:
+        """Keep an event, if it is one that people see."""
+        if isinstance(event, Output):
+            self._write(event.node, event.line)
+        elif (text := text_of(event)) is not None:
+            self._write(SUPERVISOR, text)
+            if isinstance(event, Ended):
+                for line in event.last_lines:
+                    self._write(SUPERVISOR, f"    {line}")
+
+    def close(self) -> None:
+        """Close all files."""
+        for file in self._files.values():
+            file.close()
+
+    def _write(self, name: str, line: str) -> None:
+        if reason := self._files[name].write(line):
+            self._warn(Notice(f"the log of {name} is not kept: {reason}"))
+        self._changed()

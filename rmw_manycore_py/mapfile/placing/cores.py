@@ -1,0 +1,90 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Which core each node has, and which CPU of the host each core."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
+
+from rmw_manycore_py.errors import MapfileError, Problem
+from rmw_manycore_py.mapfile.format.mapfile import Mapfile
+from rmw_manycore_py.mapfile.placing.placement import BridgePlacement
+from rmw_manycore_py.topology import (
+    RECEIVE_THREAD_CORE,
+    Core,
+    assign_host_cpus,
+    isolated_cpus,
+)
+
+
+def assign_cores(mapfile: Mapfile, occupied: Collection[Core] = ()) -> dict[str, Core]:
+    """Return each node's core; nodes that name none get the first free ones of their cluster.
+
+    :param occupied: cores that nodes of other runs have on the platform.
+    """
+    nodes = mapfile.sections.nodes
+    taken = {Core(node.cluster, node.core) for node in nodes.values() if node.core is not None}
+    _check_occupied(mapfile, taken & set(occupied))
+    taken |= set(occupied)
+    cores: dict[str, Core] = {}
+    for name, node in nodes.items():
+        if node.core is not None:
+            cores[name] = Core(node.cluster, node.core)
+            continue
+        cluster = mapfile.topology.clusters[node.cluster - 1]
+        free = [core for core in cluster.free if Core(cluster.id, core) not in taken]
+        if not free:
+            expected = f"a free core in cluster {cluster.id}"
+            found = f"all {len(cluster.free)} taken"
+            raise MapfileError(mapfile.document.problem(("nodes", name), expected, found))
+        cores[name] = Core(cluster.id, free[0])
+        taken.add(cores[name])
+    return cores
+
+
+def _check_occupied(mapfile: Mapfile, both: Collection[Core]) -> None:
+    if mapfile.sections.allow_shared_cores:
+        return
+    problems = []
+    for name, node in mapfile.sections.nodes.items():
+        if node.core is not None and (core := Core(node.cluster, node.core)) in both:
+            expected = "a core that no node on the platform has (allow_shared_cores: true lifts it)"
+            problems.append(mapfile.document.problem(("nodes", name, "core"), expected, str(core)))
+    if problems:
+        raise MapfileError(*problems)
+
+
+def assign_cpus(
+    mapfile: Mapfile,
+    used: Sequence[Core],
+    bridge: BridgePlacement | None,
+    cpus: Sequence[int],
+) -> dict[Core, int]:
+    """Return the CPU of every used core: nodes, workers, then receive threads.
+
+    The bridge may run on any CPU, or on those that the mapfile names: its cores have none. CPUs
+    that are isolated from the scheduler are for nodes that name them.
+    """
+    fixed: dict[Core, int] = {}
+    problems: list[Problem] = []
+    nameable = sorted({*cpus, *isolated_cpus()})
+    usable = f"a CPU this process may use ({', '.join(map(str, nameable))})"
+    for cpu in mapfile.sections.bridge.host_cpu or ():
+        if cpu not in nameable:
+            problems.append(mapfile.document.problem(("bridge", "host_cpu"), usable, str(cpu)))
+    for (name, node), core in zip(mapfile.sections.nodes.items(), used, strict=False):
+        if node.host_cpu is None:
+            continue
+        if node.host_cpu not in nameable:
+            path = ("nodes", name, "host_cpu")
+            problems.append(mapfile.document.problem(path, usable, str(node.host_cpu)))
+        if node.host_cpu != fixed.setdefault(core, node.host_cpu):
+            expected = f"{fixed[core]}, as another node on core {core.core} has it"
+            path = ("nodes", name, "host_cpu")
+            problems.append(mapfile.document.problem(path, expected, str(node.host_cpu)))
+    if problems:
+        raise MapfileError(*problems)
+    clusters = {core.cluster for core in used}
+    if bridge is not None:
+        clusters |= {core.cluster for lane in bridge.cores for core in lane}
+    receivers = [Core(cluster, RECEIVE_THREAD_CORE) for cluster in sorted(clusters)]
+    return assign_host_cpus([*used, *receivers], fixed, cpus)

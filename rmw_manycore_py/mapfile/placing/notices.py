@@ -1,0 +1,62 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""What is valid in a mapfile, and yet hardly what its author meant."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING
+
+from rmw_manycore_py.errors import MapfileError
+from rmw_manycore_py.mapfile.placing.placement import PlacedNode
+from rmw_manycore_py.mapfile.programs.source import scan
+from rmw_manycore_py.ros.names import resolve_topic
+from rmw_manycore_py.ros.patterns import is_pattern
+from rmw_manycore_py.scheduling import refusal
+
+if TYPE_CHECKING:
+    from rmw_manycore_py.mapfile.format.mapfile import Mapfile
+    from rmw_manycore_py.mapfile.placing.start import NodeStart
+
+
+def unpublished(
+    mapfile: Mapfile, starts: Mapping[str, NodeStart], nodes: Sequence[PlacedNode]
+) -> Iterator[str]:
+    """Yield topics in `topic_to` that no source publishes, of nodes whose sources say all."""
+    published = {topic for node in nodes for topic in node.publish}
+    for name, section in mapfile.sections.nodes.items():
+        start = starts[name]
+        for written, type_name in section.topic_to.items():
+            if type_name is None or is_pattern(written) or "/msg/" not in type_name:
+                continue
+            topic = resolve_topic(written, start.full_name, start.remappings)
+            if topic in published or not _says_all(start):
+                continue
+            place = f"{mapfile.path}:{mapfile.document.line(('nodes', name, 'topic_to', written))}"
+            meant = _advice(topic, published)
+            yield f"{place}: nodes.{name}.topic_to: no source publishes {topic}; {meant}"
+
+
+def refused_scheduling(nodes: Sequence[PlacedNode]) -> Iterator[str]:
+    """Yield nodes whose policy this user may not set; `manycore run` refuses them."""
+    for node in nodes:
+        if node.scheduling is not None and (reason := refusal(node.scheduling)):
+            yield f"'{node.name}' cannot run here: {reason}"
+
+
+def _says_all(start: NodeStart) -> bool:
+    """Tell whether the source of a node shows all that it publishes itself."""
+    if start.program.source is None:
+        return False
+    try:
+        nodes = scan(start.program.source)
+    except MapfileError:
+        return False
+    return len(nodes) == 1 and not nodes[0].unclear
+
+
+def _advice(topic: str, published: set[str]) -> str:
+    close = difflib.get_close_matches(topic, published, n=1)
+    if close:
+        return f"is {close[0]} meant?"
+    return "name it under `publish` if the node publishes it all the same"

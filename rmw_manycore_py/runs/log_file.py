@@ -1,0 +1,88 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""The log of one node: bounded, each line behind the time it was read at."""
+
+from __future__ import annotations
+
+import os
+from contextlib import suppress
+from datetime import datetime, timezone
+from pathlib import Path
+
+# A run of few nodes keeps this much of each; many nodes share MAX_RUN_BYTES.
+MAX_NODE_BYTES = 8 << 20
+MIN_NODE_BYTES = 64 << 10
+MAX_RUN_BYTES = 256 << 20
+SUFFIX, OLDER_SUFFIX = ".log", ".log.1"
+_TIME = "%Y-%m-%dT%H:%M:%S.%fZ"
+TIME_CHARACTERS = len("2026-01-01T00:00:00.000000Z")
+
+
+def share_of(nodes: int) -> int:
+    """Return the bytes that each of so many nodes may keep."""
+    return max(min(MAX_NODE_BYTES, MAX_RUN_BYTES // max(nodes, 1)), MIN_NODE_BYTES)
+
+
+def log_path(directory: Path, node: str, suffix: str = SUFFIX) -> Path:
+    """Return the file of a node; no name of ROS 2 has a dot, so no two are alike."""
+    return directory / f"{node.strip('/').replace('/', '.')}{suffix}"
+
+
+class LogFile:
+    """Appends lines; when it is full, the older half of them goes.
+
+    What cannot be written is counted, and said in the log once there is room again.
+    """
+
+    def __init__(self, directory: Path, node: str, max_bytes: int) -> None:
+        self._path = log_path(directory, node)
+        self._older = log_path(directory, node, OLDER_SUFFIX)
+        self._half_bytes = max_bytes // 2
+        self._descriptor = -1
+        self._size_bytes = 0
+        self._is_torn = False  # the last line lacks its end
+        self._unwritten = 0
+        self._reason = ""
+
+    def write(self, text: str) -> str | None:
+        """Append a line; return the reason when this is the first one that could not be written."""
+        line = _stamped(text)
+        if self._unwritten:
+            told = f"({self._unwritten} lines were not kept: {self._reason})"
+            line = _stamped(told) + line
+        try:
+            self._append(b"\n" + line if self._is_torn else line)
+        except OSError as error:
+            self._unwritten += 1
+            is_first, self._reason = not self._reason, error.strerror or str(error)
+            return self._reason if is_first else None
+        self._unwritten = 0
+        return None
+
+    def close(self) -> None:
+        """Close the file."""
+        if self._descriptor >= 0:
+            os.close(self._descriptor)
+            self._descriptor = -1
+
+    def _append(self, data: bytes) -> None:
+        if self._descriptor < 0 or self._size_bytes + len(data) > self._half_bytes:
+            self._begin_file()
+        while data:
+            written = os.write(self._descriptor, data)
+            self._size_bytes += written
+            self._is_torn = written < len(data)
+            data = data[written:]
+
+    def _begin_file(self) -> None:
+        self.close()
+        with suppress(FileNotFoundError):
+            os.replace(self._path, self._older)
+        flags = os.O_WRONLY | os.O_CREAT | os.O_APPEND
+        self._descriptor = os.open(self._path, flags, 0o600)
+        self._size_bytes = 0
+        self._is_torn = False
+
+
+def _stamped(text: str) -> bytes:
+    now = datetime.now(timezone.utc).strftime(_TIME)
+    return f"{now} {text}\n".encode(errors="replace")

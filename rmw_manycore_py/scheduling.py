@@ -1,0 +1,79 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""The scheduling policy and priority that a process is given before its first instruction."""
+
+from __future__ import annotations
+
+import os
+import resource
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+
+POLICIES = {"other": os.SCHED_OTHER, "fifo": os.SCHED_FIFO, "rr": os.SCHED_RR}
+REAL_TIME = ("fifo", "rr")
+# Of sched(7); 0 is for the other policies.
+MIN_PRIORITY, MAX_PRIORITY = 1, 99
+
+
+@dataclass(frozen=True)
+class Scheduling:
+    """A policy of sched(7), and a priority from 1 to 99 for those of real time, else 0."""
+
+    policy: str
+    priority: int = 0
+
+    def __str__(self) -> str:
+        return f"{self.policy} {self.priority}" if self.policy in REAL_TIME else self.policy
+
+
+@contextmanager
+def scheduled_as(scheduling: Scheduling | None) -> Iterator[None]:
+    """Schedule the calling thread so while it starts a process, which inherits that from it.
+
+    :raises OSError: when this user may not.
+    """
+    if scheduling is None:
+        yield
+        return
+    before = os.sched_getscheduler(0), os.sched_getparam(0)
+    _set(scheduling)
+    try:
+        yield
+    finally:
+        os.sched_setscheduler(0, *before)
+
+
+def refusal(scheduling: Scheduling) -> str | None:
+    """Return why this process may not start others so, and what to do; None where it may."""
+    try:
+        with scheduled_as(scheduling):
+            return None
+    except OSError as error:
+        return error.strerror
+
+
+def real_time_limit() -> int:
+    """Return the highest priority of real time that this process may set by its limits."""
+    soft, _ = resource.getrlimit(resource.RLIMIT_RTPRIO)
+    return MAX_PRIORITY if soft == resource.RLIM_INFINITY else min(soft, MAX_PRIORITY)
+
+
+def _set(scheduling: Scheduling) -> None:
+    try:
+        parameters = os.sched_param(scheduling.priority)
+        os.sched_setscheduler(0, POLICIES[scheduling.policy], parameters)
+    except PermissionError as error:
+        raise OSError(error.errno, _advice(scheduling)) from error
+
+
+def _advice(scheduling: Scheduling) -> str:
+    return (
+        f"scheduling {scheduling} is not allowed (limit rtprio: {real_time_limit()}): add "
+        f"'{_user()} - rtprio {scheduling.priority}' to /etc/security/limits.conf and log in "
+        "again; a container needs --cap-add=sys_nice or "
+        f"--ulimit rtprio={scheduling.priority}"
+    )
+
+
+def _user() -> str:
+    return os.environ.get("USER") or f"#{os.getuid()}"

@@ -1,0 +1,216 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""`manycore attach`: a person's terminal, here a pseudo-terminal, on that of a node."""
+
+from __future__ import annotations
+
+import fcntl
+import os
+import pty
+import re
+import select
+import signal
+import struct
+import subprocess
+import sys
+import termios
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+from support import IS_MANYCORE, PATIENCE_S, environment, manycore_command
+
+pytestmark = [
+    pytest.mark.integration,
+    pytest.mark.skipif(not IS_MANYCORE, reason="manycore attach is about rmw_manycore"),
+]
+
+# As teleop_twist_keyboard: single keys in raw mode, published by a node; q ends it.
+TELEOP = """
+import os, sys, termios, tty
+import rclpy
+from rclpy.node import Node
+from std_msgs.msg import String
+before = termios.tcgetattr(sys.stdin)
+rclpy.init()
+node = Node("teleop")
+publisher = node.create_publisher(String, "keys", 10)
+print("use the keys", flush=True)
+try:
+    tty.setraw(sys.stdin.fileno())
+    while (key := sys.stdin.read(1)) != "q":
+        publisher.publish(String(data=key))
+        print(f"key {key!r}\\r", flush=True)
+finally:
+    termios.tcsetattr(sys.stdin, termios.TCSADRAIN, before)
+"""
+SHELL = """
+import os, signal, sys, threading
+def resized(*_):
+    size = os.get_terminal_size()
+    print("size", size.lines, size.columns, flush=True)
+signal.signal(signal.SIGWINCH, resized)
+print("ready", os.isatty(0), os.isatty(1), flush=True)
+try:
+    for line in sys.stdin:
+        print("said", line.strip(), flush=True)
+except KeyboardInterrupt:
+    print("interrupted", flush=True)
+    sys.exit(4)
+"""
+
+
+class Person:
+    """Somebody at a terminal who has started a program."""
+
+    def __init__(self, command: list[str | Path], env: dict[str, str]) -> None:
+        self._terminal, theirs = pty.openpty()
+        self.resize(30, 90)
+        self.before = termios.tcgetattr(theirs)
+        self._theirs = theirs
+        self.seen = ""
+        self.process = subprocess.Popen(
+            command, env=env, stdin=theirs, stdout=theirs, stderr=theirs, start_new_session=True
+        )
+
+    def resize(self, rows: int, columns: int) -> None:
+        fcntl.ioctl(self._terminal, termios.TIOCSWINSZ, struct.pack("HHHH", rows, columns, 0, 0))
+
+    def type(self, keys: str) -> None:
+        os.write(self._terminal, keys.encode())
+
+    def sees(self, pattern: str) -> re.Match[str]:
+        """Return the next match; what stands before it is then done with."""
+        deadline = time.monotonic() + PATIENCE_S
+        while not (match := re.search(pattern, self.seen)):
+            left_s = max(0, deadline - time.monotonic())
+            assert select.select([self._terminal], [], [], left_s)[0], (pattern, self.seen)
+            self.seen += os.read(self._terminal, 4096).decode()
+        self.seen = self.seen[match.end() :]
+        return match
+
+    def leaves(self) -> int:
+        """Return the exit status; the terminal is as it was before."""
+        status = self.process.wait(PATIENCE_S)
+        assert termios.tcgetattr(self._theirs) == self.before
+        return status
+
+    def close(self) -> None:
+        self.process.kill()
+        self.process.wait()
+        os.close(self._terminal)
+        os.close(self._theirs)
+
+
+@pytest.fixture
+def attach(platform: str) -> Iterator[Callable[..., Person]]:
+    people: list[Person] = []
+
+    def attached(*words: str) -> Person:
+        people.append(Person(manycore_command("attach", *words), environment(platform)))
+        return people[-1]
+
+    yield attached
+    for person in people:
+        person.close()
+
+
+@pytest.fixture
+def run(start, tmp_path: Path, platform: str):
+    """Start a run with a node of that program; stop it in the end."""
+    runs = []
+
+    def begin(code: str, keys: str = "terminal: true"):
+        (tmp_path / "node.py").write_text(code)
+        mapfile = tmp_path / "map.yaml"
+        command = f"command: [{sys.executable}, node.py], ros_arguments: false"
+        listener = "{cluster: 1, core: 4, command: [sleep, '1000'], ros_arguments: false}"
+        mapfile.write_text(
+            f"nodes:\n  node: {{cluster: 1, core: 1, {command}, {keys}}}\n  other: {listener}\n"
+        )
+        runs.append(start(manycore_command("run", mapfile)))
+        return runs[-1]
+
+    yield begin
+    for one in runs:
+        one.stop()
+
+
+def test_keys_reach_a_node_that_teleoperates(run, attach, start) -> None:
+    running = run(TELEOP)
+    running.wait_for("use the keys")
+    echo = start(manycore_command("topic", "echo", "/keys", "std_msgs/msg/String"))
+    person = attach("node")
+    person.sees("use the keys")  # what it said before
+    person.type("i")
+    person.sees("key 'i'")
+    running.wait_for("^node .*key 'i'")
+    running.skip_output()
+    person.type("\x03")  # raw: a key as any other
+    person.sees(r"key '\\x03'")
+    person.type("k")
+    person.sees("key 'k'")
+    person.type("\x10\x11")
+    person.sees("node: left running")
+    assert person.leaves() == 0
+    again = attach("/node")
+    again.sees("key 'k'")
+    again.type("kkkq")
+    again.sees("node: has ended: finished")
+    assert again.leaves() == 0
+    running.wait_for("^manycore | node finished")
+    echo.wait_for("data: .*k")
+    echo.stop()
+
+
+def test_sizes_and_signals_are_those_of_a_terminal(run, attach) -> None:
+    run(SHELL).wait_for("ready True True")
+    person = attach("node", "--detach-keys", "ctrl-x")
+    person.sees("size 30 90")
+    person.resize(41, 123)
+    person.process.send_signal(signal.SIGWINCH)
+    person.sees("size 41 123")
+    person.type("hello\n")
+    person.sees("said hello")
+    person.type("\x18")
+    person.sees("node: left running")
+    assert person.leaves() == 0
+    killed = attach("node")
+    killed.sees("said hello")
+    killed.process.kill()
+    third = attach("node")
+    third.type("still there\n")
+    third.sees("said still there")
+    third.type("\x03")
+    third.sees("interrupted")
+    third.sees("node: has ended: exit status 4")
+    assert third.leaves() == 0
+    dead = attach("node")
+    dead.sees(r"'node' does not run \(exit status 4\): `manycore restart node` starts it")
+    assert dead.leaves() == 1
+
+
+def test_a_respawned_node_stays_attached(run, attach) -> None:
+    run(SHELL, "terminal: true, respawn: {delay: 0.1}").wait_for("ready True True")
+    person = attach("node")
+    person.sees("ready True True")
+    person.type("\x03")
+    person.sees(r"\[exit status 4; it is started again\]")
+    person.sees("ready True True")
+    person.type("once more\n")
+    person.sees("said once more")
+    person.process.terminate()
+    person.sees(r"node: left running \(SIGTERM\)")
+    assert person.leaves() == 0
+
+
+def test_a_node_without_a_terminal_can_be_given_one(run, attach) -> None:
+    run(SHELL, "wait: block").wait_for("ready False False")
+    refused = attach("node")
+    refused.sees("'node' has no terminal: give it `terminal: true` in the mapfile")
+    assert refused.leaves() == 1
+    person = attach("--restart", "node")
+    person.sees("ready True True")
+    person.type("\x10\x11")
+    person.sees("left running")
+    assert person.leaves() == 0
