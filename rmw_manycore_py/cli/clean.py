@@ -11,12 +11,14 @@ from rmw_manycore_py.cli.common.printing import print_json
 from rmw_manycore_py.cli.common.view import platform_names
 from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.ros.domain import checked_platform
+from rmw_manycore_py.runs.directory import remove_ended, runs_of
 
 
-@click.command("clean", epilog=examples("manycore clean", "manycore clean domain-0"))
+@click.command("clean", epilog=examples("manycore clean", "manycore clean --logs domain-0"))
 @click.argument("platforms", nargs=-1)
+@click.option("--logs", is_flag=True, help="Remove the logs of runs that have ended, too.")
 @json_option
-def command(platforms: tuple[str, ...], as_json: bool) -> None:
+def command(platforms: tuple[str, ...], logs: bool, as_json: bool) -> None:
     """Remove what dead PLATFORMS left in shared memory; by default of all that are dead.
 
     Living platforms are left alone. The next start of a platform does the same by itself.
@@ -25,12 +27,16 @@ def command(platforms: tuple[str, ...], as_json: bool) -> None:
     known = platform_names()
     for name in platforms or known:
         if checked_platform(name, "PLATFORMS") not in known:
+            if logs and runs_of(name):
+                continue
             raise ManycoreError(f"no platform '{name}'")
         try:
             removed += _transport.clean(name)
         except _transport.PlatformError as error:
             if platforms:
                 raise ManycoreError(str(error)) from error
+    if logs:
+        removed += [str(path) for name in platforms or (None,) for path in remove_ended(name)]
     if as_json:
         print_json({"removed": removed})
         return

@@ -12,6 +12,7 @@ from rmw_manycore_py.cli.common.options import examples, json_option
 from rmw_manycore_py.cli.common.printing import print_json, print_notices
 from rmw_manycore_py.create import create
 from rmw_manycore_py.mapfile import as_data
+from rmw_manycore_py.mapfile.placing.show import rules_in_words
 from rmw_manycore_py.topology import as_host_cpu, host_cpu_text
 
 
@@ -30,6 +31,7 @@ def command(mapfile: Path, directory: Path, as_json: bool) -> None:
     """Write the topic table, launch scripts, parameter files and memory use of MAPFILE."""
     report = create(mapfile, directory)
     if as_json:
+        data = as_data(report.placement)
         print_json(
             {
                 "directory": report.directory,
@@ -37,7 +39,8 @@ def command(mapfile: Path, directory: Path, as_json: bool) -> None:
                 "written_lines": report.written_lines,
                 "generated_lines": report.generated_lines,
                 "delta_loc": report.delta_loc,
-                "bridge": as_data(report.placement)["bridge"],
+                "bridge": data["bridge"],
+                "nodes": data["nodes"],
             }
         )
         return
@@ -45,6 +48,9 @@ def command(mapfile: Path, directory: Path, as_json: bool) -> None:
     for file in report.files:
         click.echo(file)
     click.echo(report.summary)
+    for node in report.placement.nodes:
+        for rule in rules_in_words(node):
+            click.echo(f"{node.full_name}: {rule}")
     if bridge := report.placement.bridge:
         cpus = host_cpu_text(as_host_cpu(bridge.host_cpus))
         click.echo(f"bridge: {len(bridge.routes)} routes, host CPU {cpus}")

@@ -8,6 +8,7 @@ import shlex
 from pathlib import PurePosixPath
 
 from rmw_manycore_py.mapfile.placing.placement import PlacedNode
+from rmw_manycore_py.mapfile.placing.show import rules_in_words
 
 # What an installation of ROS 2 is found by; taken from the environment of `create`.
 _OF_THE_INSTALLATION = ("AMENT_PREFIX_PATH", "PYTHONPATH", "ROS_DOMAIN_ID")
@@ -19,13 +20,19 @@ def launch_script(node: PlacedNode, parameter_files: list[PurePosixPath]) -> str
     lines = [
         "#!/bin/sh",
         f"# {node.full_name} on {node.place}, host CPU {node.host_cpu}.",
+        *(f"# With manycore run: {rule}." for rule in rules_in_words(node)),
         'created=$(cd "$(dirname "$0")/.." && pwd) || exit 1',
         *(f"export {key}={shlex.quote(value)}" for key, value in {**inherited, **node.env}.items()),
         f"cd {shlex.quote(str(node.cwd))} || exit 1",
-        f"exec taskset --cpu-list {node.host_cpu} \\",
+        f"exec {_scheduler(node)}taskset --cpu-list {node.host_cpu} \\",
         *_command(node, parameter_files),
     ]
     return "\n".join(lines) + "\n"
+
+
+def _scheduler(node: PlacedNode) -> str:
+    scheduling = node.scheduling
+    return f"chrt --{scheduling.policy} {scheduling.priority} " if scheduling else ""
 
 
 def _command(node: PlacedNode, parameter_files: list[PurePosixPath]) -> list[str]:

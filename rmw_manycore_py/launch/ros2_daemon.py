@@ -34,6 +34,14 @@ def end_lone_daemons(name: str) -> list[int]:
 
     ros2 starts another one when it wants it: nothing is lost but a warm cache.
     """
+    pids = lone_daemons(name)
+    for pid in pids:
+        _end(pid)
+    return pids
+
+
+def lone_daemons(name: str) -> list[int]:
+    """Return the process ids of the daemons of a platform on which nothing else lives."""
     if name not in _transport.platforms():
         return []
     try:
@@ -43,8 +51,6 @@ def end_lone_daemons(name: str) -> list[int]:
                 return []
     except _transport.PlatformError:
         return []  # it went away between two looks
-    for process in living:
-        _end(process.pid)
     return [process.pid for process in living]
 
 

@@ -18,7 +18,9 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
-from support import IS_MANYCORE, PATIENCE_S, environment, manycore_command
+from support import IS_MANYCORE, PATIENCE_S, environment, manycore_command, wait_until
+
+from rmw_manycore_py import _transport
 
 pytestmark = [
     pytest.mark.integration,
@@ -136,14 +138,21 @@ def run(start, tmp_path: Path, platform: str):
         one.stop()
 
 
-def test_keys_reach_a_node_that_teleoperates(run, attach, start) -> None:
+def is_heard(platform: str) -> bool:
+    with _transport.Platform(platform) as opened:
+        return any(e.topic == "/keys" and e.matched for e in opened.endpoints())
+
+
+def test_keys_reach_a_node_that_teleoperates(run, attach, start, platform) -> None:
     running = run(TELEOP)
     running.wait_for("use the keys")
     echo = start(manycore_command("topic", "echo", "/keys", "std_msgs/msg/String"))
+    wait_until(lambda: is_heard(platform), "the echo has found the node")
     person = attach("node")
     person.sees("use the keys")  # what it said before
     person.type("i")
     person.sees("key 'i'")
+    echo.wait_for("^data: i$")
     running.wait_for("^node .*key 'i'")
     running.skip_output()
     person.type("\x03")  # raw: a key as any other
@@ -159,7 +168,6 @@ def test_keys_reach_a_node_that_teleoperates(run, attach, start) -> None:
     again.sees("node: has ended: finished")
     assert again.leaves() == 0
     running.wait_for("^manycore | node finished")
-    echo.wait_for("data: .*k")
     echo.stop()
 
 

@@ -14,6 +14,7 @@ from pathlib import Path
 
 import rmw_manycore_hook
 from rmw_manycore_program import own_program
+from rmw_manycore_py.cli.doctor.built import check_built
 from rmw_manycore_py.cli.doctor.finding import Finding, Verdict, advised, judged
 from rmw_manycore_py.parent_death import dies_with_this_process
 from rmw_manycore_py.ros.ament import prefixes
@@ -40,6 +41,7 @@ def check_install() -> Iterator[Finding]:
     yield _hook()
     yield _substitution()
     yield _selected()
+    yield from check_built()
 
 
 def _python() -> Finding:

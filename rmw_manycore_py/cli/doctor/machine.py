@@ -12,8 +12,10 @@ from collections.abc import Iterator
 import posix_ipc
 
 from rmw_manycore_py.cli.common.printing import size_text
+from rmw_manycore_py.cli.doctor.daemons import check_daemons
 from rmw_manycore_py.cli.doctor.finding import Finding, Verdict, advised, judged
 from rmw_manycore_py.cli.doctor.logout import check_logout
+from rmw_manycore_py.cli.doctor.scheduling import check_isolation, check_real_time
 from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.topology import platforms_directory, shared_memory_place
 
@@ -34,10 +36,13 @@ def check_machine() -> Iterator[Finding]:
         yield _user_directory()
     yield _posix_shared_memory()
     yield _cpus()
+    yield check_isolation()
+    yield check_real_time()
     yield _pidfd()
     yield _futex()
     yield check_logout()
     yield _stale_platforms()
+    yield from check_daemons()
 
 
 def _shared_memory_size() -> Finding:

@@ -18,7 +18,7 @@ from rmw_manycore_py.cli.common.printing import (
     size_text,
 )
 from rmw_manycore_py.mapfile import Placement, load_mapfile, resolve
-from rmw_manycore_py.mapfile.placing.show import as_data
+from rmw_manycore_py.mapfile.placing.show import as_data, rules_in_words
 from rmw_manycore_py.routes import DIRECTIONS
 from rmw_manycore_py.topology import as_host_cpu, host_cpu_text
 
@@ -34,6 +34,7 @@ def command(mapfile: Path, as_json: bool) -> None:
         return
     print_notices(placement.notices)
     _show_nodes(placement)
+    _show_rules(placement)
     _show_topics(placement)
     _show_memory(placement)
 
@@ -52,6 +53,17 @@ def _show_nodes(placement: Placement) -> None:
             for direction, core in zip(DIRECTIONS, lane, strict=True):
                 table.add_row(f"(bridge {direction})", *map(str, core), cpus, "")
     print_table(table)
+
+
+def _show_rules(placement: Placement) -> None:
+    rules = {node.full_name: rules_in_words(node) for node in placement.nodes}
+    if any(rules.values()):
+        click.echo("\nlaunch rules")
+        table = new_table("node", "rule")
+        for name, words in rules.items():
+            for word in words:
+                table.add_row(name, word)
+        print_table(table)
 
 
 def _show_topics(placement: Placement) -> None:

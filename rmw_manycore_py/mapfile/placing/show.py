@@ -8,6 +8,7 @@ from typing import Any
 
 from rmw_manycore_py.mapfile.placing.placement import (
     BridgePlacement,
+    LaunchRules,
     PlacedNode,
     Placement,
     TopicEntry,
@@ -52,9 +53,65 @@ def _node(node: PlacedNode) -> dict[str, Any]:
         "command": node.argv,
         "environment": node.env,
         "directory": str(node.cwd),
+        "scheduling": asdict(node.scheduling) if node.scheduling else None,
+        "terminal": node.terminal,
+        **_rules(node.rules),
         "publish": dict(node.publish),
         "subscribe": dict(node.subscribe),
     }
+
+
+def _rules(rules: LaunchRules) -> dict[str, Any]:
+    respawns = rules.respawn_delay_s is not None and rules.max_respawns != 0
+    retries = None if rules.max_respawns < 0 else rules.max_respawns
+    return {
+        "start": {
+            "delay_s": rules.delay_s,
+            "after": rules.after,
+            "on": ("exit" if rules.after_exit else "start") if rules.after else None,
+        },
+        "respawn": {"delay_s": rules.respawn_delay_s, "max_retries": retries} if respawns else None,
+        "ends_run": rules.ends_run,
+        "transitions": [_TRANSITIONS.get(number, str(number)) for number in rules.transitions],
+        "components": [asdict(component) for component in rules.components],
+    }
+
+
+# Of lifecycle_msgs/msg/Transition.
+_TRANSITIONS = {
+    1: "configure",
+    2: "cleanup",
+    3: "activate",
+    4: "deactivate",
+    5: "shutdown",
+    6: "shutdown",
+    7: "shutdown",
+}
+
+
+def rules_in_words(node: PlacedNode) -> list[str]:
+    """Return what `manycore run` does with a node besides starting it at once."""
+    data = _rules(node.rules)
+    start, respawn, words = data["start"], data["respawn"], []
+    if start["delay_s"] or start["after"]:
+        what = {"exit": "the end of ", "start": "the start of "}.get(start["on"], "the others")
+        after = f"after {what}{start['after'] or ''}"
+        words.append(f"starts {start['delay_s']:g} s {after}" if start["delay_s"] else after)
+    if respawn:
+        often = (
+            "" if respawn["max_retries"] is None else f", {respawn['max_retries']} times at most"
+        )
+        words.append(f"respawned {respawn['delay_s']:g} s after it ends{often}")
+    if data["ends_run"]:
+        words.append("its end stops the run")
+    if data["transitions"]:
+        words.append(f"lifecycle: {', '.join(data['transitions'])}")
+    words += [f"loads {one.plugin} as {one.name or 'named there'}" for one in node.rules.components]
+    if node.scheduling:
+        words.append(f"scheduling {node.scheduling}")
+    if node.terminal:
+        words.append("has a terminal")
+    return words
 
 
 def _topic(topic: TopicEntry) -> dict[str, Any]:

@@ -12,7 +12,7 @@ from rmw_manycore_py.cli.doctor.report.environment import is_shown
 from rmw_manycore_py.errors import ManycoreError
 
 _HIDDEN = "(not shown)"
-_OPTIONS_WITH_VALUES = ("--duration",)
+_OPTIONS_WITH_VALUES = ("--duration", "--node")
 
 
 def mapfiles(given: str | None) -> list[dict[str, Any]] | str:
@@ -65,7 +65,9 @@ def _running() -> Iterator[Path]:
 def mapfile_of(words: list[str]) -> str | None:
     """Return the mapfile in the command line of a run; None for other programs."""
     names = [Path(word).name for word in words]
-    if "manycore" not in names[:2] or words[names.index("manycore") + 1 :][:1] != ["run"]:
+    if "manycore" not in names[:2]:
+        return None
+    if words[names.index("manycore") + 1 :][:1] not in (["run"], ["up"]):
         return None
     rest = iter(words[names.index("manycore") + 2 :])
     for word in rest:

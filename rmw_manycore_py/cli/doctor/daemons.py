@@ -1,0 +1,25 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""A check of the doctor: daemons of ros2cli that alone keep a platform."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from rmw_manycore_py.cli.doctor.finding import Finding, advised
+
+
+def check_daemons() -> Iterator[Finding]:
+    """Yield what keeps platforms that nothing else is on; nothing where that cannot be seen."""
+    try:
+        from rmw_manycore_py import _transport
+        from rmw_manycore_py.launch.ros2_daemon import CURE, lone_daemons
+    except ImportError:
+        return
+    try:
+        found = {name: pids for name in _transport.platforms() if (pids := lone_daemons(name))}
+    except _transport.PlatformError:
+        return
+    texts = (f"{name} (pid {', '.join(map(str, pids))})" for name, pids in found.items())
+    shown = ", ".join(texts) or "none keeps a platform"
+    advice = f"{CURE}; the next run of the platform ends it, too"
+    yield advised("ros2 daemon", not found, shown, advice)

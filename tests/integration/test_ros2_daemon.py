@@ -1,0 +1,58 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""A daemon of ros2cli that outlives a run: a node and a command line like its own stand for it."""
+
+from __future__ import annotations
+
+import sys
+
+import pytest
+from support import IS_MANYCORE, MAPFILES, leftovers, manycore_command, wait_until
+
+pytestmark = [
+    pytest.mark.integration,
+    pytest.mark.skipif(not IS_MANYCORE, reason="manycore run is about rmw_manycore"),
+]
+
+RUN = manycore_command("run", MAPFILES / "talker_listener.yaml")
+DAEMON = """
+import rclpy
+from rclpy.executors import ExternalShutdownException
+rclpy.init()
+node = rclpy.create_node("_ros2cli_daemon_0_0123456789abcdef", start_parameter_services=False)
+print("serving", flush=True)
+try:
+    rclpy.spin(node)
+except ExternalShutdownException:
+    pass
+"""
+
+
+def test_a_daemon_left_behind_does_not_block_the_next_run(start, platform) -> None:
+    daemon = start([sys.executable, "-c", DAEMON, "--name", "ros2cli.daemon"])
+    daemon.wait_for("serving")
+    doctor = start(manycore_command("doctor"))
+    doctor.wait()
+    assert f"ros2 daemon: {platform} (pid {daemon.pid})" in doctor.output
+    run = start(RUN)
+    run.wait_for(rf"the ros2 daemon \({daemon.pid}\) of an earlier run was ended")
+    assert daemon.wait() == 0
+    run.wait_for("talker started")
+    second = start([sys.executable, "-c", DAEMON, "--name", "ros2cli.daemon"])
+    second.wait_for("serving")
+    assert run.stop() == 0
+    assert f"the ros2 daemon ({second.pid}; `ros2 daemon stop` ends it)" in run.output
+    again = start(RUN)
+    assert second.wait() == 0
+    again.wait_for("I heard")
+    assert again.stop() == 0
+    wait_until(lambda: leftovers(platform) == [], "nothing is left")
+
+
+def test_another_node_is_never_taken_for_a_daemon(start, platform) -> None:
+    node = start([sys.executable, "-c", DAEMON, "--name", "something-else"])
+    node.wait_for("serving")
+    run = start(RUN)
+    assert run.wait() == 1
+    assert f"platform '{platform}' is running already" in run.output
+    assert node.is_running()
+    node.stop()

@@ -1,0 +1,176 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Directories of runs and their logs: bounds, order, full disks, proof of life."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from rmw_manycore_py.errors import ManycoreError
+from rmw_manycore_py.runs import log_file
+from rmw_manycore_py.runs.directory import RunDirectory, new_run, remove_ended, runs_of
+from rmw_manycore_py.runs.lines import LineBuffer, encoded
+from rmw_manycore_py.runs.log_file import LogFile, log_path, share_of
+from rmw_manycore_py.runs.log_reader import NodeLog, in_order
+
+pytestmark = pytest.mark.unit
+
+LINE = "x" * 100
+# Writes a line, two that do not fit, and one when there is room again.
+FULL_DISK = """
+import resource, signal, sys
+from pathlib import Path
+from rmw_manycore_py.runs.log_file import LogFile
+signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+log = LogFile(Path(sys.argv[1]), "node", 1 << 20)
+limit = lambda size: resource.setrlimit(resource.RLIMIT_FSIZE, (size, resource.RLIM_INFINITY))
+limit(int(sys.argv[2]))
+print([log.write(text) for text in ("first", "second", "third")])
+limit(1 << 20)
+print(log.write("fourth"))
+"""
+HOLD = """
+import sys
+from rmw_manycore_py.runs.directory import new_run
+with new_run("platform", {"nodes": ["a"]}, joins=False) as own:
+    print("held", flush=True)
+    sys.stdin.read()
+"""
+
+
+@pytest.fixture(autouse=True)
+def state(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.setenv("MANYCORE_STATE", str(tmp_path / "state"))
+    return tmp_path / "state"
+
+
+def run_in(directory: Path) -> RunDirectory:
+    run = RunDirectory(directory / "1")
+    run.logs.mkdir(parents=True)
+    return run
+
+
+def texts(log: NodeLog) -> list[str]:
+    return [line.text for line in log.read()]
+
+
+def test_a_log_is_bounded_and_keeps_the_newest(tmp_path: Path) -> None:
+    run = run_in(tmp_path)
+    log = LogFile(run.logs, "/ns/node", max_bytes=4000)
+    for number in range(1000):
+        log.write(f"{LINE} {number}")
+    files = list(run.logs.iterdir())
+    assert {file.name for file in files} == {"ns.node.log", "ns.node.log.1"}
+    assert sum(file.stat().st_size for file in files) <= 4000
+    numbers = [int(text.split()[1]) for text in texts(NodeLog(run, "/ns/node"))]
+    assert numbers == list(range(numbers[0], 1000))
+    assert len(numbers) > 4000 // 2 // 150
+
+
+def test_a_follower_reads_across_the_halves(tmp_path: Path) -> None:
+    run = run_in(tmp_path)
+    log = LogFile(run.logs, "node", max_bytes=4000)
+    reader = NodeLog(run, "node")
+    assert texts(reader) == []
+    seen = []
+    for number in range(100):
+        log.write(f"{LINE} {number}")
+        if number % 5 == 0:
+            seen += texts(reader)
+    seen += texts(reader)
+    assert [int(text.split()[1]) for text in seen] == list(range(100))
+
+
+def test_logs_are_merged_by_time_and_cut_by_node(tmp_path: Path) -> None:
+    run = run_in(tmp_path)
+    one, two = (LogFile(run.logs, name, 1 << 20) for name in ("one", "two"))
+    for number in range(3):
+        one.write(f"{number}")
+        two.write(f"{number}")
+    lines = list(in_order([NodeLog(run, "two"), NodeLog(run, "one")], tail=2))
+    assert [(line.node, line.text) for line in lines] == [
+        *(("one", "1"), ("two", "1")),
+        *(("one", "2"), ("two", "2")),
+    ]
+
+
+@pytest.mark.parametrize("room", [35, 60], ids=["nothing fits", "a part fits"])
+def test_lines_that_a_full_disk_has_no_room_for_are_counted(tmp_path: Path, room: int) -> None:
+    run = run_in(tmp_path)
+    result = subprocess.run(
+        [sys.executable, "-c", FULL_DISK, run.logs, str(room)],
+        check=True,
+        capture_output=True,
+        text=True,
+    )
+    assert result.stdout.splitlines() == ["[None, 'File too large', None]", "None"]
+    found = texts(NodeLog(run, "node"))
+    assert (found[0], found[-1]) == ("first", "fourth")
+    assert "(2 lines were not kept: File too large)" in found
+
+
+def test_nodes_share_what_a_run_may_keep() -> None:
+    assert share_of(1) == log_file.MAX_NODE_BYTES
+    assert 1000 * share_of(1000) <= log_file.MAX_RUN_BYTES
+    assert share_of(10**6) == log_file.MIN_NODE_BYTES
+
+
+def test_a_run_lives_as_long_as_its_process() -> None:
+    holder = subprocess.Popen(
+        [sys.executable, "-c", HOLD], stdin=subprocess.PIPE, stdout=subprocess.PIPE
+    )
+    assert holder.stdout is not None
+    assert holder.stdout.readline() == b"held\n"
+    (run,) = runs_of("platform")
+    assert run.is_alive
+    assert run.info["pid"] == holder.pid
+    with pytest.raises(ManycoreError, match="is running already"), new_run("platform", {}, False):
+        pass
+    with new_run("platform", {}, joins=True) as second:
+        assert second.directory.number == 2
+    assert remove_ended() == [second.directory.path]
+    holder.send_signal(signal.SIGKILL)
+    holder.communicate()
+    run.wait()
+    assert not run.is_alive
+    with new_run("platform", {}, joins=False) as third:
+        assert third.directory.number == 1, "it has taken the place of what has ended"
+        with third.directory.connect(1) as client:
+            client.settimeout(1)
+            third.listener.accept()[0].close()
+    remove_ended("platform")
+    assert runs_of("platform") == []
+
+
+def test_a_long_path_takes_a_socket(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("MANYCORE_STATE", str(tmp_path / ("long" * 40)))
+    with new_run("platform", {}, joins=False) as own, own.directory.connect(1):
+        assert len(str(own.directory.path)) > 107
+
+
+def test_platforms_of_another_directory_have_runs_of_their_own(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with new_run("platform", {}, joins=False):
+        monkeypatch.setenv("MANYCORE_DIRECTORY", str(tmp_path))
+        assert runs_of("platform") == []
+
+
+def test_messages_are_cut_at_lines() -> None:
+    lines = LineBuffer()
+    data = encoded({"do": "state"}) + encoded({"do": "stop"})
+    assert lines.take(data[:5]) == []
+    assert lines.take(data[5:]) == [{"do": "state"}, {"do": "stop"}]
+    for bad in (b"[]\n", b"{\n", b"\xff\n"):
+        with pytest.raises(ManycoreError):
+            LineBuffer().take(bad)
+
+
+def test_the_log_of_a_node_is_one_file(tmp_path: Path) -> None:
+    assert log_path(tmp_path, "/a/b").name == "a.b.log"
+    assert os.fspath(log_path(tmp_path, "(bridge inward)")).endswith("(bridge inward).log")
