@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import os
+from pathlib import Path
 
 import pytest
 
@@ -9,7 +10,9 @@ from rmw_manycore_py.topology import (
     MIB,
     Core,
     assign_host_cpus,
+    cpus_of_list,
     host_smem_size,
+    isolated_cpus,
     profile,
     share_of_memory,
 )
@@ -63,3 +66,24 @@ def test_cores_that_are_not_in_a_mapfile_go_round_the_cpus() -> None:
     coolidge = profile("coolidge")
     assert coolidge.default_host_cpu(Core(1, 1), (4, 6, 7)) == 6
     assert coolidge.default_host_cpu(Core(2, 1), (4, 6, 7)) == 7
+
+
+@pytest.mark.parametrize(
+    ("text", "cpus"), [("\n", ()), ("3\n", (3,)), ("0-2,5\n", (0, 1, 2, 5)), ("1,3-4\n", (1, 3, 4))]
+)
+def test_lists_of_cpus_are_those_of_the_kernel(text: str, cpus: tuple[int, ...]) -> None:
+    assert cpus_of_list(text) == cpus
+
+
+def test_isolated_cpus_are_those_that_the_cpuset_has(tmp_path: Path) -> None:
+    """CPUs of the machine may be named although the mask lacks them; others may not."""
+    assert isolated_cpus(tmp_path) == ()
+    before = os.sched_getaffinity(0)
+    first = min(before)
+    (tmp_path / "isolated").write_text(f"{first},1000\n")
+    try:
+        os.sched_setaffinity(0, {max(before)})  # as a shell has it where `first` is isolated
+        assert isolated_cpus(tmp_path) == (first,)
+        assert os.sched_getaffinity(0) == {max(before)}
+    finally:
+        os.sched_setaffinity(0, before)

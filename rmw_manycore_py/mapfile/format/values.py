@@ -84,6 +84,8 @@ def _respawn(value: Any) -> Any:
     """Read true as a mapping without keys, false as no retries: the launch file's are overruled."""
     if isinstance(value, bool):
         return {} if value else {"max_retries": 0}
+    if not isinstance(value, dict):
+        raise refusal("true, false or a mapping")
     return value
 
 

@@ -96,7 +96,8 @@ def rules_in_words(node: PlacedNode) -> list[str]:
     if start["delay_s"] or start["after"]:
         what = {"exit": "the end of ", "start": "the start of "}.get(start["on"], "the others")
         after = f"after {what}{start['after'] or ''}"
-        words.append(f"starts {start['delay_s']:g} s {after}" if start["delay_s"] else after)
+        delay = f"{start['delay_s']:g} s " if start["delay_s"] else ""
+        words.append(f"starts {delay}{after}")
     if respawn:
         often = (
             "" if respawn["max_retries"] is None else f", {respawn['max_retries']} times at most"
