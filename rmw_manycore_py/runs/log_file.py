@@ -4,8 +4,9 @@
 from __future__ import annotations
 
 import os
+import time
 from contextlib import suppress
-from datetime import datetime, timezone
+from functools import lru_cache
 from pathlib import Path
 
 # A run of few nodes keeps this much of each; many nodes share MAX_RUN_BYTES.
@@ -13,7 +14,7 @@ MAX_NODE_BYTES = 8 << 20
 MIN_NODE_BYTES = 64 << 10
 MAX_RUN_BYTES = 256 << 20
 SUFFIX, OLDER_SUFFIX = ".log", ".log.1"
-_TIME = "%Y-%m-%dT%H:%M:%S.%fZ"
+_SECOND = "%Y-%m-%dT%H:%M:%S"
 TIME_CHARACTERS = len("2026-01-01T00:00:00.000000Z")
 
 
@@ -84,5 +85,11 @@ class LogFile:
 
 
 def _stamped(text: str) -> bytes:
-    now = datetime.now(timezone.utc).strftime(_TIME)
-    return f"{now} {text}\n".encode(errors="replace")
+    now_us = time.time_ns() // 1000
+    second = _second_text(now_us // 1_000_000)
+    return f"{second}.{now_us % 1_000_000:06}Z {text}\n".encode(errors="replace")
+
+
+@lru_cache(maxsize=1)
+def _second_text(second: int) -> str:
+    return time.strftime(_SECOND, time.gmtime(second))
