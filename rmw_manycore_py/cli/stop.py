@@ -15,6 +15,7 @@ from rmw_manycore_py.cli.common.runs import living_runs, no_run, nodes_by_run
 from rmw_manycore_py.errors import EXIT_FAILURE, ManycoreError
 from rmw_manycore_py.launch.events import Finished, event_of
 from rmw_manycore_py.launch.platform import remaining_users
+from rmw_manycore_py.native_errors import translate_native_errors
 from rmw_manycore_py.runs.client import Client
 from rmw_manycore_py.runs.directory import RunDirectory, runs_of
 
@@ -90,6 +91,7 @@ def _explain(platform: str) -> None:
             "end them where they were started",
             EXIT_FAILURE,
         )
-    removed = _transport.clean(platform) if platform in _transport.platforms() else []
+    with translate_native_errors():
+        removed = _transport.clean(platform) if platform in _transport.platforms() else []
     what = "what was left of it is removed" if removed else "nothing runs on it"
     click.echo(f"platform {platform} is stopped: {what}")

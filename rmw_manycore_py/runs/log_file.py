@@ -46,12 +46,8 @@ class LogFile:
 
     def write(self, text: str) -> str | None:
         """Append a line; return the reason when this is the first one that could not be written."""
-        line = _stamped(text)
-        if self._unwritten:
-            told = f"({self._unwritten} lines were not kept: {self._reason})"
-            line = _stamped(told) + line
         try:
-            self._append(b"\n" + line if self._is_torn else line)
+            self._append(self._told() + _stamped(text))
         except OSError as error:
             self._unwritten += 1
             is_first, self._reason = not self._reason, error.strerror or str(error)
@@ -60,7 +56,20 @@ class LogFile:
         return None
 
     def close(self) -> None:
-        """Close the file."""
+        """Close the file, behind the number of lines that are missing at its end."""
+        with suppress(OSError):
+            if told := self._told():
+                self._append(told)
+        self._close()
+
+    def _told(self) -> bytes:
+        """Return what has to be said before the next line."""
+        end = b"\n" if self._is_torn else b""
+        if not self._unwritten:
+            return end
+        return end + _stamped(f"({self._unwritten} lines were not kept: {self._reason})")
+
+    def _close(self) -> None:
         if self._descriptor >= 0:
             os.close(self._descriptor)
             self._descriptor = -1
@@ -75,7 +84,7 @@ class LogFile:
             data = data[written:]
 
     def _begin_file(self) -> None:
-        self.close()
+        self._close()
         with suppress(FileNotFoundError):
             os.replace(self._path, self._older)
         flags = os.O_WRONLY | os.O_CREAT | os.O_APPEND
