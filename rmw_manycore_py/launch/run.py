@@ -83,11 +83,25 @@ class Run:
                 report(Notice(text))
             with self._platform(report):
                 report(_describe(placement, self._bridge))
-                exit_status = runner.run(inbox, duration_s, all_started)
+                exit_status = self._run_nodes(runner, report, inbox, duration_s, all_started)
             if users := self._remaining_users():
                 report(Notice(f"platform {placement.name} stays, for {', '.join(users)}"))
             report(Finished(runner.failed, exit_status))
         return exit_status
+
+    @staticmethod
+    def _run_nodes(
+        runner: Runner,
+        report: Report,
+        inbox: SignalInbox,
+        duration_s: float | None,
+        all_started: Callable[[], None] | None,
+    ) -> int:
+        try:
+            return runner.run(inbox, duration_s, all_started)
+        except Exception as error:  # in the background only the log is there to say so
+            report(Notice(f"the supervisor failed: {type(error).__name__}: {error}"))
+            raise
 
     @contextmanager
     def _directory(self, report: Report) -> Iterator[OwnRun | None]:
