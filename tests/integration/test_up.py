@@ -72,8 +72,10 @@ def test_a_run_goes_on_in_the_background(manycore, start, tmp_path, platform) ->
     assert "manycore | in the background: manycore logs -f; manycore stop" in up.lines
     assert {n["state"] for n in states(manycore, platform).values()} == {"running"}
     follower = start(manycore_command("logs", "-f", "listener"))
-    for _ in range(2):
-        follower.wait_for(r"^listener \| .*I heard: 'Hello World")
+    follower.wait_for(r"^listener \| .*I heard: 'Hello World")
+    last = manycore("logs", "--tail", "1", "listener").lines[-1]
+    number = int(last.rpartition(" ")[2].strip("'"))  # not before the follower has begun
+    follower.wait_for(rf"I heard: 'Hello World: {number + 2}'$")
     stopped = manycore("stop")
     assert "manycore | talker finished: stopped" in stopped.lines
     assert follower.wait() == 0
