@@ -137,8 +137,9 @@ def test_nodes_are_stopped_and_restarted_one_by_one(manycore, tmp_path, platform
 
 
 def test_a_node_that_ends_at_once_fails_its_restart(manycore, tmp_path, platform) -> None:
-    code = "import sys; print('no luck'); sys.exit(7)"
-    manycore("up", "-d", write(tmp_path, bad=plain(code), sleeper=SLEEPER))
+    code = "echo no luck; exit 7"  # a shell ends soon, however busy the machine is
+    bad = f"{{cluster: 1, core: 2, command: [sh, -c, '{code}'], ros_arguments: false}}"
+    manycore("up", "-d", write(tmp_path, bad=bad, sleeper=SLEEPER))
     restart = manycore("restart", "bad", status=1)
     assert "manycore | bad failed: exit status 7" in restart.lines
     assert "    no luck" in restart.lines
