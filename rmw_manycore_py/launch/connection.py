@@ -126,6 +126,8 @@ class Connection:
                 self._handle(self, message)
         except ManycoreError as error:
             self.finish({"error": str(error)})
+        except (KeyError, TypeError, ValueError) as error:  # values of another type than expected
+            self.finish({"error": f"the request cannot be understood: {error}"})
 
     def _flush(self) -> None:
         try:

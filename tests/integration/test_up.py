@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from support import IS_MANYCORE, Program, leftovers, manycore_command, wait_until
+from support import IS_MANYCORE, PATIENCE_S, Program, leftovers, manycore_command, wait_until
 
 from rmw_manycore_py.errors import EXIT_BAD_INPUT
 from rmw_manycore_py.runs.directory import RunDirectory, runs_of
@@ -234,6 +234,28 @@ def test_files_of_a_run_are_private(manycore, tmp_path, platform) -> None:
     refused = manycore("run", write(tmp_path, sleeper=SLEEPER), status=1)
     assert f"chmod 700 {run.path.parent}" in refused.output
     run.path.parent.chmod(0o700)
+
+
+@pytest.mark.parametrize(
+    "request_line",
+    [
+        b'{"do": "restart", "nodes": 5}',
+        b'{"do": "attach", "node": "sleeper", "size": "large"}',
+        b'{"do": "fly"}',
+        b"[]",
+        b"\xff\xfe",
+    ],
+)
+def test_a_request_that_cannot_be_understood_is_refused(
+    start, tmp_path, platform, request_line: bytes
+) -> None:
+    sleeper = SLEEPER.replace("}", ", terminal: true}")
+    run = start(manycore_command("run", write(tmp_path, sleeper=sleeper)))
+    run.wait_for("sleeper started")
+    with the_run(platform).connect(PATIENCE_S) as client, client.makefile("rb") as answers:
+        client.sendall(request_line + b"\n")
+        assert any("error" in json.loads(line) for line in answers)
+    assert run.stop() == 0
 
 
 def test_a_state_directory_that_cannot_be_had(start, tmp_path, platform) -> None:
