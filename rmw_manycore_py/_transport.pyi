@@ -415,3 +415,131 @@ class Process:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None: ...
+
+class TraceName:
+    """What an endpoint was called when its first event was recorded."""
+
+    @property
+    def slot(self) -> int: ...
+    @property
+    def incarnation(self) -> int: ...
+    @property
+    def process(self) -> int: ...
+    @property
+    def cluster(self) -> int: ...
+    @property
+    def is_publisher(self) -> bool: ...
+    @property
+    def role(self) -> int:
+        """0 = topic, 1 = request, 2 = reply."""
+
+    @property
+    def topic(self) -> str: ...
+    @property
+    def type(self) -> str: ...
+    @property
+    def node(self) -> str:
+        """Its full name."""
+
+class ThreadTrace:
+    """What one thread recorded."""
+
+    @property
+    def tid(self) -> int: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def events(self) -> bytes:
+        """Of 32 bytes each, oldest first."""
+
+    @property
+    def lost(self) -> int:
+        """Number of further events, for which there was no room."""
+
+class ProcessTrace:
+    """What one process recorded."""
+
+    @property
+    def cluster(self) -> int: ...
+    @property
+    def process(self) -> int | None:
+        """Its slot; None = a receive thread."""
+
+    @property
+    def pid(self) -> int: ...
+    @property
+    def core(self) -> int:
+        """-1 = not placed on a core."""
+
+    @property
+    def host_cpu(self) -> int:
+        """-1 = not pinned."""
+
+    @property
+    def label(self) -> str: ...
+    @property
+    def alive(self) -> bool: ...
+    @property
+    def threads(self) -> list[ThreadTrace]: ...
+    @property
+    def names(self) -> list[TraceName]: ...
+    @property
+    def unplaced(self) -> int:
+        """Number of lost events of threads that had no room at all."""
+
+class TraceState:
+    """Whether a platform is traced, and what waits to be saved."""
+
+    @property
+    def started_ns(self) -> int:
+        """On the monotonic clock; 0 = nothing is traced."""
+
+    @property
+    def clusters(self) -> list[int]: ...
+    @property
+    def nodes(self) -> list[str]: ...
+    @property
+    def ring_events(self) -> int: ...
+    @property
+    def pending(self) -> int:
+        """Number of events that were not saved yet."""
+
+    @property
+    def lost(self) -> int: ...
+
+class TraceSaver:
+    """What was recorded and not saved yet; one at a time."""
+
+    def __init__(self, platform: str) -> None: ...
+    @property
+    def processes(self) -> list[ProcessTrace]: ...
+    @property
+    def unplaced(self) -> int:
+        """Number of lost events of processes that had no room at all."""
+
+    def finish(self) -> None:
+        """Give the room of what was found back, now that it is saved."""
+
+    def close(self) -> None: ...
+    def __enter__(self) -> Self: ...
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None: ...
+
+def start_trace(
+    platform: str,
+    *,
+    clusters: Sequence[int],
+    nodes: Sequence[str],
+    events: int,
+    discard: bool,
+) -> None:
+    """Record from now on; PlatformError while a trace is on, or one was not saved."""
+
+def stop_trace(platform: str) -> None:
+    """Record no more; PlatformError where nothing is recorded."""
+
+def trace_state(platform: str) -> TraceState: ...

@@ -13,6 +13,7 @@
 #include "platform/error.hpp"
 #include "transport/lifecycle/lifecycle.hpp"
 #include "transport/lifecycle/receive_thread_watcher.hpp"
+#include "transport/lifecycle/trace_control.hpp"
 #include "transport/matching/closing.hpp"
 #include "transport/matching/matching.hpp"
 #include "transport/publisher/publisher_impl.hpp"
@@ -119,6 +120,8 @@ Process::Impl::Impl(const Placement & placement_) : Impl(placement_, JoinOnly{})
   waiters = std::make_unique<Waiters>(registry->processes()[slot].wake, placement.wait_mode);
   graph = std::make_unique<Graph>(*registry);
   watcher = std::make_unique<ReceiveThreadWatcher>(*registry, placement.cluster);
+  registry->tracer().follow(registry->processes()[slot].trace, identity_of(*registry, slot));
+  registry->tracer().note(TraceKind::join);
 }
 
 /// Has the reaper look for this process; while its cluster has none, the others'. Before there is
@@ -151,6 +154,7 @@ uint32_t Process::Impl::take_process_slot() {
   entry.core = placement.core ? static_cast<int32_t>(*placement.core) : -1;
   entry.host_cpu = only_cpu();
   entry.charged_bytes = 0;
+  entry.trace.store(scope_of_new_process(registry->header(), placement.cluster));
   std::memset(entry.label, 0, sizeof entry.label);
   std::strncpy(entry.label, placement.label.c_str(), sizeof entry.label - 1);
   entry.wake.reset();
@@ -182,6 +186,8 @@ void Process::Impl::leave() {
     if (closed) {
       endpoints.require_all_closed();
       closing::sweep(*registry);
+      registry->tracer().note(TraceKind::leave);
+      registry->tracer().unfollow();
       leave_registry(*registry, slot);
     }
   }
@@ -340,6 +346,7 @@ uint32_t Process::add_node(
       throw;
     }
     entry.process = impl_->slot;
+    entry.traced.store(0);
     registry.nodes().publish(taken);
   }
   registry.graph_changed();
@@ -374,6 +381,7 @@ bool Process::is_inherited() const noexcept { return impl_->membership->is_inher
 void Process::require_membership() const { impl_->membership->require(); }
 
 Waiters & Process::waiters() noexcept { return *impl_->waiters; }
+Tracer & Process::tracer() noexcept { return impl_->registry->tracer(); }
 Graph & Process::graph() noexcept { return *impl_->graph; }
 const Placement & Process::placement() const noexcept { return impl_->placement; }
 

@@ -11,6 +11,7 @@
 #include "transport/publisher/publisher.hpp"
 #include "transport/registry/graph.hpp"
 #include "transport/subscription/subscription.hpp"
+#include "transport/trace/tracer.hpp"
 #include "transport/waiting/waiters.hpp"
 
 namespace manycore {
@@ -55,6 +56,7 @@ public:
   void require_membership() const;
 
   Waiters & waiters() noexcept;
+  Tracer & tracer() noexcept;
   Graph & graph() noexcept;
   const Placement & placement() const noexcept;
 

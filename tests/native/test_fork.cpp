@@ -14,6 +14,7 @@
 #include "patience.hpp"
 #include "platform_of_test.hpp"
 #include "transport/lifecycle/configurator.hpp"
+#include "transport/lifecycle/trace_control.hpp"
 
 using namespace manycore;
 
@@ -119,4 +120,19 @@ TEST_CASE("a member that was removed as dead notices before it touches memory") 
   f.publisher.reset();  // leaves the slot to whose it is now
   CHECK(registry.endpoints().is_live(slot));
   registry.endpoints()[slot].slot.incarnation.fetch_sub(1);
+}
+
+TEST_CASE("a child of fork() writes nothing into its parent's trace") {
+  Fixture f;
+  Registry registry(f.platform.paths());
+  start_trace(registry, {});
+  publish(*f.publisher, 1);
+  const uint64_t before = trace_state(registry).pending;
+  CHECK(in_child([&] {
+    f.process->tracer().note(TraceKind::join);
+    f.process.reset();
+    return true;
+  }));
+  CHECK(trace_state(registry).pending == before);
+  stop_trace(registry);
 }

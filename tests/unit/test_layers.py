@@ -25,7 +25,7 @@ NATIVE_BELOW = {
 # above all of its folders.
 FOLDERS = {
     "transport": [
-        *("layout", "registry", "queue", "topic_dsm", "qos", "matching", "notification"),
+        *("layout", "trace", "registry", "queue", "topic_dsm", "qos", "matching", "notification"),
         *("lifecycle", "waiting", "publisher", "subscription"),
     ],
     "rmw": [

@@ -11,6 +11,7 @@ void bind_platform(nanobind::module_ & module);
 void bind_configurator(nanobind::module_ & module);
 void bind_publisher(nanobind::module_ & module);
 void bind_subscription(nanobind::module_ & module);
+void bind_trace(nanobind::module_ & module);
 void bind_process(nanobind::module_ & module);
 
 }  // namespace manycore::python

@@ -20,4 +20,5 @@ NB_MODULE(_transport, module) {
   bind_publisher(module);
   bind_subscription(module);
   bind_process(module);
+  bind_trace(module);
 }

@@ -62,7 +62,10 @@ public:
     }
     const std::shared_ptr<Process> process = member();  // another thread may close this object
     const nb::gil_scoped_release released;
-    return process->waiters().common().wait(seen, deadline_ns);
+    process->tracer().note(TraceKind::wait_begin, nothing, 0, UINT64_MAX);
+    const bool woken = process->waiters().common().wait(seen, deadline_ns);
+    process->tracer().note(TraceKind::wait_end, nothing, 0, woken ? 1 : 0);
+    return woken;
   }
   void notify() { member()->waiters().common().notify(); }
   void close() { process_.reset(); }

@@ -86,6 +86,11 @@ rmw_ret_t rmw_wait(
       {services ? services->services : nullptr, services ? services->service_count : 0},
       {clients ? clients->clients : nullptr, clients ? clients->client_count : 0},
       {events ? events->events : nullptr, events ? events->event_count : 0}};
+    manycore::Tracer & tracer = sleeper.tracer();
+    tracer.note(
+      manycore::TraceKind::wait_begin, manycore::nothing, 0,
+      wait_timeout == nullptr ? UINT64_MAX
+                              : static_cast<uint64_t>(rmw_time_total_nsec(*wait_timeout)));
     const bool poll = wait_timeout != nullptr && rmw_time_total_nsec(*wait_timeout) == 0;
     auto ended = poll ? rmw_manycore::Ended::by_timeout : rmw_manycore::Ended::woken;
     if (!poll && !waited.any_ready()) {
@@ -93,6 +98,7 @@ rmw_ret_t rmw_wait(
         rmw_manycore::sleep_until_ready(sleeper, waited, rmw_manycore::deadline_of(wait_timeout));
     }
     const bool some_ready = waited.keep_ready();
+    tracer.note(manycore::TraceKind::wait_end, manycore::nothing, 0, some_ready ? 1 : 0);
     return some_ready || ended == rmw_manycore::Ended::woken ? RMW_RET_OK : RMW_RET_TIMEOUT;
   });
 }

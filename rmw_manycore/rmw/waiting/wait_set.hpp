@@ -19,6 +19,7 @@ public:
   rmw_wait_set_t handle{};
 
   manycore::Waiters & waiters() const noexcept { return process_->waiters(); }
+  manycore::Tracer & tracer() const noexcept { return process_->tracer(); }
   bool is_cut_off() const noexcept { return process_->is_cut_off(); }
   /// Throws manycore::Error where nothing would ever wake it.
   void require_membership() const { process_->require_membership(); }

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <cstring>
 #include <string>
 
 #include "transport/layout/qos.hpp"
@@ -11,6 +12,13 @@ namespace manycore {
 
 /// Globally unique name of an endpoint: platform nonce, endpoint slot, incarnation (see gid.hpp).
 using Gid = std::array<uint8_t, 16>;
+
+/// Slot and incarnation of the endpoint, as trace_endpoint() puts them.
+inline uint64_t endpoint_in(const Gid & gid) noexcept {
+  uint64_t word = 0;
+  std::memcpy(&word, gid.data() + 8, sizeof word);
+  return word;
+}
 
 enum class EndpointKind : uint8_t { publisher, subscription };
 

@@ -6,6 +6,7 @@
 #include "platform/robust_mutex.hpp"
 #include "transport/layout/endpoint.hpp"
 #include "transport/layout/segment_layout.hpp"
+#include "transport/layout/trace_layout.hpp"
 #include "transport/layout/wake_words.hpp"
 
 namespace manycore {
@@ -50,21 +51,23 @@ struct ProcessEntry {
   uint32_t cluster;
   int32_t core;      ///< -1 = not placed on a core
   int32_t host_cpu;  ///< -1 = not pinned
-  uint32_t reserved;
+  TraceSwitch trace;
   uint64_t charged_bytes;  ///< outside the segment, but counted as SMEM
   char label[88];
   WakeWords wake;
 };
-static_assert(sizeof(ProcessEntry) == 1216);
+static_assert(sizeof(ProcessEntry) == 1216 && offsetof(ProcessEntry, trace) == 28);
 
 struct NodeEntry {
   Slot slot;
   uint32_t process;
+  std::atomic<uint32_t> traced;  ///< where only some nodes of its process are
+  uint32_t reserved;
   char name[name_bytes];
   char ns[name_bytes];
   char enclave[name_bytes];
 };
-static_assert(sizeof(NodeEntry) == 784);
+static_assert(sizeof(NodeEntry) == 792);
 
 /// Written by the endpoint's owner only, read by the tools.
 struct EndpointCounters {
@@ -144,6 +147,7 @@ struct RegistryHeader {
   std::atomic<uint64_t> clusters_present;  ///< bit c - 1: cluster c has a segment
   std::atomic<uint32_t> removed;           ///< the files are gone: no process can join
   uint32_t needs_repair;                   ///< an owner of the mutex died; not yet repaired
+  TraceControl trace;
   std::atomic<uint32_t> topic_buckets[topic_bucket_count];
 };
 

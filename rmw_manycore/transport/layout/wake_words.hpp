@@ -55,6 +55,13 @@ struct WakeSet {
     }
     return any == 0;
   }
+  uint32_t count() const noexcept {
+    uint32_t words = 0;
+    for (const uint64_t part : parts) {
+      words += static_cast<uint32_t>(__builtin_popcountll(part));
+    }
+    return words;
+  }
   WakeSet & operator|=(const WakeSet & other) noexcept {
     for (uint32_t i = 0; i < part_count; ++i) {
       parts[i] |= other.parts[i];

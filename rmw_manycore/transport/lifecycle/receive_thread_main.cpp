@@ -33,6 +33,12 @@ void serve(const std::string & platform, uint32_t id, Daemon & daemon) {
   if (host_cpu >= 0) {
     pin_to_cpu(host_cpu);
   }
+  TraceIdentity identity;
+  identity.cluster = id;
+  identity.host_cpu = host_cpu;
+  identity.label = "receive thread";
+  registry.tracer().follow(registry.header().trace.receive_threads[id - 1], identity);
+  registry.tracer().note(TraceKind::join);
   ReceiveThread receive_thread(registry, id);
   if (replaces) {
     receive_thread.recover();

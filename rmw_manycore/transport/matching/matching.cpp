@@ -115,6 +115,9 @@ void join(Registry & registry, const Pair & pair) {
     notify_watchers(registry, *header);
   }
   note_successor(pair.subscription);
+  registry.tracer().note(
+    TraceKind::match, pair.subscription_slot, 0,
+    trace_endpoint(pair.publisher_slot, pair.publisher.slot.incarnation));
   for (EndpointEntry * end : {&pair.publisher, &pair.subscription}) {
     // In this order: matched_of() reads the total first, and never sees more changes than there
     // were.

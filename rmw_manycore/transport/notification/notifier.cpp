@@ -24,7 +24,8 @@ void note_displaced(const Cluster & own, const Reader & reader, const Hint & old
 
 /// Pushes to the own cluster's readers; returns the mask of the other clusters concerned.
 uint64_t push_to_own_cluster(
-  const Cluster & own, const ReaderList & list, const Announcement & announcement) noexcept {
+  Tracer & tracer, const Cluster & own, const ReaderList & list,
+  const Announcement & announcement) noexcept {
   uint64_t others = 0;
   WakeWords * pending = nullptr;  // readers of one process stand together
   WakeSet words;
@@ -36,16 +37,21 @@ uint64_t push_to_own_cluster(
       others |= uint64_t{1} << (reader.cluster - 1);
       continue;
     }
+    tracer.note(
+      TraceKind::hint, reader.endpoint, announcement.number,
+      trace_endpoint(announcement.endpoint, announcement.incarnation));
     const bool changes_events = subscriber_queue::push(
       *reader.subscription, {reader.source_index, reader.source_incarnation, announcement.number},
       [&](const Hint & oldest) { note_displaced(own, reader, oldest); });
     if (pending != reader.wake && pending != nullptr) {
+      tracer.note(TraceKind::wake, announcement.endpoint, announcement.number, words.count());
       pending->notify(std::exchange(words, {}));
     }
     pending = reader.wake;
     words |= pending->set_of(reader.subscription->watchers, changes_events);
   }
   if (pending != nullptr) {
+    tracer.note(TraceKind::wake, announcement.endpoint, announcement.number, words.count());
     pending->notify(words);
   }
   return others;
@@ -83,7 +89,7 @@ void ask_to_look(Cluster & cluster, const ReaderList & list) noexcept {
 void announce(
   Registry & registry, const Cluster & own, const ReaderList & list,
   const Announcement & announcement) noexcept {
-  uint64_t others = push_to_own_cluster(own, list, announcement);
+  uint64_t others = push_to_own_cluster(registry.tracer(), own, list, announcement);
   if (others == 0) {
     return;
   }
@@ -95,8 +101,9 @@ void announce(
   message.number = announcement.number;
   message.target = target_slot(list, announcement);
   for (; others != 0; others &= others - 1) {
-    Cluster * const cluster =
-      registry.clusters().find(static_cast<uint32_t>(__builtin_ctzll(others)) + 1);
+    const uint32_t id = static_cast<uint32_t>(__builtin_ctzll(others)) + 1;
+    Cluster * const cluster = registry.clusters().find(id);
+    registry.tracer().note(TraceKind::send, announcement.endpoint, announcement.number, id);
     if (cluster != nullptr && !cluster->send(message)) {
       ask_to_look(*cluster, list);
     }

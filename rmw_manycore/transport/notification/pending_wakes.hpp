@@ -23,6 +23,7 @@ public:
   void flush() noexcept {
     while (count_ != 0) {
       const uint32_t process = processes_[--count_];
+      registry_.tracer().note(TraceKind::wake, nothing, process, words_[process].count());
       registry_.processes()[process].wake.notify(words_[process]);
       words_[process] = {};
     }

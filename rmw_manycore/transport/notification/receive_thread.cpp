@@ -89,6 +89,7 @@ void ReceiveThread::forward(const EmcosMessage & message) noexcept {
                        dsm->endpoint.load(std::memory_order_relaxed) == message.endpoint &&
                        dsm->incarnation.load(std::memory_order_relaxed) == message.incarnation;
   if (current) {
+    registry_.tracer().note(TraceKind::receive, message.endpoint, message.number, cluster_.id());
     while (!push_to_readers(*source, *dsm, message)) {
     }
     wakes_.flush();
@@ -114,20 +115,23 @@ bool ReceiveThread::push_to_readers(
     unchanged = dsm.match_generation.load(std::memory_order_seq_cst) == generation;
     const bool wanted = message.target == nothing || message.target == endpoint;
     if (unchanged && wanted && subscription.cluster() == cluster_.id()) {
-      push(subscription, hint);
+      push(subscription, hint, message);
     }
     return !unchanged;
   });
   return unchanged;
 }
 
-void ReceiveThread::push(SegmentRef ref, const Hint & hint) noexcept {
+void ReceiveThread::push(SegmentRef ref, const Hint & hint, const EmcosMessage & message) noexcept {
   auto * const subscription = cluster_.find<SubscriptionHeader>(ref.offset());
   if (
     subscription == nullptr ||
     subscription->magic.load(std::memory_order_relaxed) != subscription_magic) {
     return;
   }
+  registry_.tracer().note(
+    TraceKind::hint, subscription->endpoint.load(std::memory_order_relaxed), message.number,
+    trace_endpoint(message.endpoint, message.incarnation));
   const bool changes_events = subscriber_queue::push(*subscription, hint, [&](const Hint & oldest) {
     note_displaced(cluster_, *subscription, oldest);
   });

@@ -36,7 +36,7 @@ private:
   bool is_there(const EmcosMessage & message) const noexcept;
   bool push_to_readers(
     const Cluster & source, TopicDsmHeader & dsm, const EmcosMessage & message) noexcept;
-  void push(SegmentRef subscription, const Hint & hint) noexcept;
+  void push(SegmentRef subscription, const Hint & hint, const EmcosMessage & message) noexcept;
   bool take_overflow() noexcept;
   void wake_who_must_look() noexcept;
 

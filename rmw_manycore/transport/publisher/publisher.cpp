@@ -25,7 +25,16 @@ const Qos & Publisher::qos() const noexcept { return impl_->entry.qos; }
 Draft Publisher::draft(size_t size_bytes) {
   Impl & impl = *impl_;
   impl.membership.require();
-  return Draft(impl.write(), impl.writer, size_bytes);
+  Tracer & tracer = impl.registry.tracer();
+  tracer.note(TraceKind::publish_begin, impl.slot, 0, size_bytes);
+  try {
+    Draft draft(impl.write(), impl.writer, size_bytes);
+    tracer.note(TraceKind::serialize_begin, impl.slot, impl.writer.next_number());
+    return draft;
+  } catch (...) {
+    tracer.note(TraceKind::refused, impl.slot);
+    throw;
+  }
 }
 
 uint64_t Publisher::publish(
@@ -39,6 +48,7 @@ uint64_t Publisher::publish(
   if (started || revived) {  // who slept as nothing was due has to look, too
     notify_event_watchers(impl.registry, impl.entry.process);
   }
+  impl.trace_write(size_bytes, correlation);
   const uint64_t number =
     impl.writer.commit(size_bytes, source_timestamp_ns, sequence_number, correlation);
   const bool targeted = impl.entry.role == EndpointRole::reply;
@@ -46,6 +56,7 @@ uint64_t Publisher::publish(
     impl.registry, impl.cluster, impl.writer.readers(),
     {impl.entry.block, impl.slot, impl.entry.slot.incarnation, number,
      targeted ? &correlation.client : nullptr});
+  impl.registry.tracer().note(TraceKind::publish_end, impl.slot, number);
   EndpointCounters & counters = impl.entry.counters;
   counters.messages.store(sequence_number, std::memory_order_relaxed);
   counters.bytes.store(
@@ -75,6 +86,18 @@ void Publisher::assert_liveliness() {
   if (impl_->is_manual() && impl_->liveliness.assert_now()) {
     impl_->tell_event_watchers();
     notify_event_watchers(impl_->registry, impl_->entry.process);
+  }
+}
+
+/// Before the record can be seen: whatever its readers record of it is later.
+void Publisher::Impl::trace_write(size_t size_bytes, const Correlation & correlation) noexcept {
+  Tracer & tracer = registry.tracer();
+  tracer.note(TraceKind::write, slot, writer.next_number(), size_bytes);
+  if (entry.role != EndpointRole::topic) {
+    const bool asks = entry.role == EndpointRole::request;
+    tracer.note(
+      asks ? TraceKind::request : TraceKind::reply, slot, writer.next_number(),
+      static_cast<uint64_t>(correlation.number));
   }
 }
 

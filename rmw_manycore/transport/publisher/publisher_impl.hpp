@@ -30,6 +30,7 @@ struct Publisher::Impl {
   }
   /// This thread's turn; waits for that of another one.
   Writing write() { return Writing(mutex, writer, membership); }
+  void trace_write(size_t size_bytes, const Correlation & correlation) noexcept;
   /// Wakes the processes of the readers that wait for events.
   void tell_event_watchers();
 

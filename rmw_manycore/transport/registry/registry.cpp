@@ -103,7 +103,8 @@ Registry::Registry(const PlatformPaths & paths)
   processes_(memory_, header().processes, process_table_offset, process_capacity),
   nodes_(memory_, header().nodes, node_table_offset, node_capacity),
   endpoints_(memory_, header().endpoints, endpoint_table_offset, endpoint_capacity),
-  clusters_(paths, nonce()) {}
+  clusters_(paths, nonce()),
+  tracer_(memory_, paths.directory) {}
 
 bool Registry::is_current() const noexcept {
   const uint64_t present = header().clusters_present.load();

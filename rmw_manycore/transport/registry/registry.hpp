@@ -11,6 +11,7 @@
 #include "platform/shared_memory.hpp"
 #include "transport/layout/registry_layout.hpp"
 #include "transport/registry/cluster.hpp"
+#include "transport/trace/tracer.hpp"
 
 namespace manycore {
 
@@ -129,6 +130,8 @@ public:
     return cluster == nullptr ? nullptr : cluster->find<T>(ref.offset());
   }
   const Lifelines & lifelines() const noexcept { return lifelines_; }
+  /// Records what this process does through this view of the registry.
+  Tracer & tracer() noexcept { return tracer_; }
   const PlatformPaths & paths() const noexcept { return paths_; }
   /// True while the platform's directory still holds what is mapped here, and not a later platform
   /// of the same name.
@@ -170,6 +173,7 @@ private:
   Table<NodeEntry> nodes_;
   Table<EndpointEntry> endpoints_;
   Clusters clusters_;
+  Tracer tracer_;
   std::atomic<bool> stayed_locked_{false};
   std::atomic<int64_t> others_first_until_ns_{0};  ///< CLOCK_MONOTONIC
 };

@@ -23,6 +23,8 @@ Claim::~Claim() {
     return;
   }
   const bool finished = source_.release(number_);
+  subscription_.impl_->registry.tracer().note(
+    TraceKind::release, subscription_.impl_->slot, number_, endpoint_in(info_.publisher));
   lock_.unlock();
   if (finished) {
     subscription_.impl_->sweep();

@@ -11,6 +11,31 @@
 
 namespace manycore {
 
+namespace {
+
+/// Notes what a look for the next record showed to be lost.
+class LossTrace {
+public:
+  explicit LossTrace(Subscription::Impl & impl) noexcept : impl_(impl), before_(now()) {}
+  ~LossTrace() {
+    if (const uint64_t lost = now() - before_; lost != 0) {
+      impl_.registry.tracer().note(TraceKind::lost, impl_.slot, 0, lost);
+    }
+  }
+  LossTrace(const LossTrace &) = delete;
+  LossTrace & operator=(const LossTrace &) = delete;
+
+private:
+  uint64_t now() const noexcept {
+    return impl_.entry.counters.lost.load(std::memory_order_relaxed);
+  }
+
+  Subscription::Impl & impl_;
+  const uint64_t before_;
+};
+
+}  // namespace
+
 Subscription::Subscription(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 
 Subscription::~Subscription() {
@@ -35,6 +60,7 @@ std::optional<Claim> Subscription::claim() {
   Impl & impl = *impl_;
   impl.membership.require();
   std::unique_lock<std::mutex> lock(impl.mutex);
+  const LossTrace losses(impl);
   while (const auto candidate = impl.finder.next()) {
     Source & source = *candidate->source;
     Source::View view;
@@ -45,6 +71,7 @@ std::optional<Claim> Subscription::claim() {
         continue;
       case Source::ClaimResult::expired:
         impl.counts.count_expired();
+        impl.registry.tracer().note(TraceKind::expired, impl.slot, candidate->number);
         continue;
       case Source::ClaimResult::not_ours:
         continue;
@@ -62,6 +89,7 @@ std::optional<Claim> Subscription::claim() {
     claim.info_.publisher = source.publisher();
     claim.info_.correlation = view.record->correlation;
     claim.info_.from_this_process = source.publisher_process() == impl.entry.process;
+    impl.trace_claim(claim.info_, candidate->number);
     return claim;
   }
   return std::nullopt;
@@ -95,6 +123,17 @@ TimedCount Subscription::deadline_missed() const noexcept {
 
 LivelinessCount Subscription::liveliness() const {
   return liveliness_of(impl_->registry, impl_->entry);
+}
+
+void Subscription::Impl::trace_claim(const RecordInfo & info, uint64_t number) noexcept {
+  Tracer & tracer = registry.tracer();
+  tracer.note(TraceKind::claim, slot, number, endpoint_in(info.publisher));
+  if (entry.role != EndpointRole::topic) {
+    const bool asked = entry.role == EndpointRole::request;
+    tracer.note(
+      asked ? TraceKind::request : TraceKind::reply, slot, number,
+      static_cast<uint64_t>(info.correlation.number));
+  }
 }
 
 void Subscription::Impl::sweep() noexcept {

@@ -20,6 +20,7 @@ struct Subscription::Impl {
     counts(entry, header),
     finder(registry_, cluster, header, entry, counts) {}
 
+  void trace_claim(const RecordInfo & info, uint64_t number) noexcept;
   /// A finished topic DSM waits for its last reader only: frees it.
   void sweep() noexcept;
 

@@ -173,6 +173,7 @@ void TopicDsmWriter::wait_for_progress(uint64_t number) {
   const uint32_t seen = dsm_.progress.load(std::memory_order_seq_cst);
   dsm_.writer_waits.store(1, std::memory_order_seq_cst);
   if (is_owed(number)) {
+    registry_.tracer().note(TraceKind::blocked, dsm_.endpoint.load(), number);
     leave();  // nobody needs to wait for this publisher's references meanwhile
     futex_wait(dsm_.progress, seen, blocked_until_ns_);
     enter();

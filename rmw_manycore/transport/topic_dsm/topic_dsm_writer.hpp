@@ -38,6 +38,9 @@ public:
     uint64_t size_bytes, int64_t source_timestamp_ns, uint64_t publication_sequence_number,
     const Correlation & correlation);
 
+  /// Of the record that commit() makes, after find_room().
+  uint64_t next_number() const noexcept { return next_number_; }
+
   const ReaderList & readers() const noexcept { return readers_; }
   TopicDsmHeader & header() const noexcept { return dsm_; }
 

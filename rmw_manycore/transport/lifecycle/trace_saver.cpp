@@ -1,0 +1,97 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#include "transport/lifecycle/trace_saver.hpp"
+
+#include <dirent.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstring>
+
+namespace manycore {
+namespace {
+
+/// Saving a million events takes seconds, and is not waited for.
+constexpr int lock_timeout_ms = 100;
+
+}  // namespace
+
+std::vector<std::string> trace_files(const PlatformPaths & paths) {
+  std::vector<std::string> found;
+  DIR * const directory = opendir(paths.directory.c_str());
+  if (directory == nullptr) {
+    return found;
+  }
+  constexpr const char * prefix = "trace-";
+  while (const dirent * const entry = readdir(directory)) {
+    if (std::strncmp(entry->d_name, prefix, std::strlen(prefix)) == 0) {
+      found.push_back(paths.directory + "/" + entry->d_name);
+    }
+  }
+  closedir(directory);
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+TraceSaver::TraceSaver(Registry & registry) : registry_(registry) {
+  const std::string lock = registry.paths().directory + "/.trace-lock";
+  try {
+    lock_ = FileLock::acquire(lock, lock_timeout_ms);
+  } catch (const Error & error) {
+    if (error.code() != ErrorCode::timeout) {
+      throw;
+    }
+    throw Error(
+      ErrorCode::timeout, "another process is saving the trace of this platform; wait for its end");
+  }
+  const TraceControl & control = registry.header().trace;
+  unplaced_total_ = control.unplaced.load();
+  unplaced_ = unplaced_total_ - control.unplaced_saved.load();
+  for (const std::string & path : trace_files(registry.paths())) {
+    TraceReader reader(path, registry.nonce());
+    const TraceFileHeader & header = static_cast<const TraceReader &>(reader).header();
+    ProcessTrace process;
+    process.cluster = header.segment.cluster;
+    if (header.process != nothing) {
+      process.process = header.process;
+    }
+    process.pid = header.pid;
+    process.core = header.core;
+    process.host_cpu = header.host_cpu;
+    process.label = text_of(header.label);
+    process.alive = is_writer_alive(header);  // before its events are read: then these are all
+    process.threads = reader.read();
+    process.names = reader.names();
+    process.unplaced = reader.unplaced();
+    processes_.push_back(std::move(process));
+    readers_.push_back(std::move(reader));
+  }
+}
+
+bool TraceSaver::is_writer_alive(const TraceFileHeader & header) const {
+  const Lifelines & alive = registry_.lifelines();
+  if (header.process == nothing) {
+    const uint32_t id = header.segment.cluster;
+    Cluster * const cluster =
+      id == 0 || id > max_clusters ? nullptr : registry_.clusters().find(id);
+    return cluster != nullptr && alive.is_held(receive_thread_line + id) &&
+           cluster->header().receive_thread_pid.load() == header.pid;
+  }
+  return registry_.processes().is_live(header.process) &&
+         registry_.processes()[header.process].slot.incarnation.load() == header.incarnation &&
+         alive.is_held(header.process);
+}
+
+/// A file whose process had ended before it was read has nothing more to come.
+void TraceSaver::finish() noexcept {
+  registry_.header().trace.unplaced_saved.store(unplaced_total_);
+  for (size_t i = 0; i < readers_.size(); ++i) {
+    readers_[i].free_read();
+    if (!processes_[i].alive && readers_[i].is_drained()) {
+      unlink(readers_[i].path().c_str());
+    }
+  }
+}
+
+void discard_trace(Registry & registry) { TraceSaver(registry).finish(); }
+
+}  // namespace manycore

@@ -1,0 +1,53 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <mutex>
+#include <optional>
+#include <string>
+
+#include "platform/fork_side.hpp"
+#include "platform/shared_memory.hpp"
+#include "transport/trace/trace_ring.hpp"
+
+namespace manycore {
+
+/// Of which process a trace file is.
+struct TraceIdentity {
+  uint64_t platform_nonce = 0;
+  uint32_t cluster = 0;
+  uint32_t process = UINT32_MAX;  ///< slot; UINT32_MAX = a receive thread
+  uint32_t incarnation = 0;
+  int32_t core = -1;
+  int32_t host_cpu = -1;
+  std::string label;
+};
+
+/// The file that a traced process writes its events to: a ring for each thread, and the names of
+/// the endpoints they are about. It outlives its process. Thread-safe; useless in a child of
+/// fork().
+class TraceFile {
+public:
+  /// Throws Error{no_space|system}.
+  TraceFile(const std::string & path, const TraceIdentity & identity, uint32_t events_log2);
+
+  /// A ring of the calling thread's own; nothing when all are taken or there is no memory.
+  std::optional<TraceRingWriter> add_ring() noexcept;
+  void push(TraceRingWriter & ring, const TraceEvent & event) noexcept;
+  void count_unplaced() noexcept { header().unplaced.fetch_add(1, std::memory_order_relaxed); }
+  /// Drops it silently where there is no room: the event then has a number in place of a name.
+  void add_name(const TraceName & name) noexcept;
+  bool is_inherited() const noexcept { return side_.is_inherited(); }
+
+private:
+  TraceFileHeader & header() const noexcept { return memory_.at<TraceFileHeader>(0); }
+  TraceRing * free_ring() noexcept;
+  /// Backs a step of a ring's events; returns how many are backed.
+  uint64_t back(const TraceRing & ring, uint64_t backed) const noexcept;
+  bool try_back(uint64_t offset, uint64_t length) const noexcept;
+
+  const ForkSide side_;
+  SharedMemory memory_;
+  std::mutex mutex_;  ///< of rings and names being added
+};
+
+}  // namespace manycore

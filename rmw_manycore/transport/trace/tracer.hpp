@@ -1,0 +1,68 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <memory>
+#include <mutex>
+#include <string>
+
+#include "transport/layout/registry_layout.hpp"
+#include "transport/trace/trace_file.hpp"
+
+namespace manycore {
+
+/// Records what this process does on one platform, while it is traced. See docs/design/trace.md.
+/// Thread-safe.
+class Tracer {
+public:
+  /// `registry` and `directory`: of the platform.
+  Tracer(const SharedMemory & registry, std::string directory);
+  ~Tracer();
+  Tracer(const Tracer &) = delete;
+  Tracer & operator=(const Tracer &) = delete;
+
+  /// From here on this process is traced as `by` says.
+  void follow(const TraceSwitch & by, const TraceIdentity & identity);
+  /// Ends what follow() began: `by` may now be another process's.
+  void unfollow() noexcept;
+
+  /// A trace site. Costs two loads while nothing is traced.
+  void note(
+    TraceKind kind, uint32_t endpoint = nothing, uint64_t number = 0, uint64_t value = 0) noexcept {
+    if (__builtin_expect(is_on(), 0)) {
+      record(kind, endpoint, number, value);
+    }
+  }
+  bool is_on() const noexcept {
+    return switch_.load(std::memory_order_relaxed)->load(std::memory_order_relaxed) !=
+           TraceScope::off;
+  }
+
+private:
+  [[gnu::noinline, gnu::cold]] void record(
+    TraceKind kind, uint32_t endpoint, uint64_t number, uint64_t value) noexcept;
+  /// The calling thread's; nullptr where none is to be had, which is counted.
+  TraceRingWriter * ring_of_this_thread() noexcept;
+  TraceRingWriter * add_ring() noexcept;
+  /// The process's file, made at its first event; nullptr when it cannot be made.
+  std::shared_ptr<TraceFile> file() noexcept;
+  bool is_wanted(const EndpointEntry & endpoint) const noexcept;
+  void describe(uint32_t endpoint, uint32_t incarnation) noexcept;
+
+  RegistryHeader & header() const noexcept { return registry_.at<RegistryHeader>(0); }
+  EndpointEntry * endpoint_at(uint32_t slot) const noexcept;
+
+  const ForkSide side_;
+  const uint64_t id_;  ///< no other tracer of this process has it
+  const SharedMemory & registry_;
+  const std::string directory_;
+  std::atomic<const TraceSwitch *> switch_;
+  std::mutex mutex_;  ///< of identity_ and file_
+  TraceIdentity identity_;
+  std::shared_ptr<TraceFile> file_;
+  uint64_t failures_ = 0;
+  /// By endpoint slot: the incarnation whose name is in the file.
+  std::unique_ptr<std::array<std::atomic<uint32_t>, endpoint_capacity>> described_;
+};
+
+}  // namespace manycore

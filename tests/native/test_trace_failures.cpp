@@ -1,0 +1,90 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+//
+// Traces that are refused, damaged, or find no room.
+#include <doctest/doctest.h>
+
+#include <unistd.h>
+
+#include <cstdio>
+
+#include "patience.hpp"
+#include "trace_of_test.hpp"
+
+using namespace manycore;
+using namespace trace_of_test;
+
+TEST_CASE("one trace at a time, one saver at a time, and no trace is thrown away unasked") {
+  Fixture f;
+  CHECK(refusal_of([&] { stop_trace(f.registry()); }).says("not being traced"));
+  start_trace(f.registry(), {});
+  CHECK(refusal_of([&] { start_trace(f.registry(), {}); }).says("one trace at a time"));
+  f.talk(1, 3);
+  stop_trace(f.registry());
+  CHECK(refusal_of([&] { start_trace(f.registry(), {}); }).says("was not saved"));
+  {
+    TraceSaver first(f.registry());
+    CHECK(refusal_of([&] { TraceSaver(f.registry()); }).says("is saving the trace"));
+  }
+  discard_trace(f.registry());
+  start_trace(f.registry(), {});
+  CHECK(refusal_of([&] {
+          stop_trace(f.registry());
+          start_trace(f.registry(), {{}, {}, UINT32_MAX});
+        }).says("too large"));
+}
+
+TEST_CASE("a damaged trace file is refused with its name, and costs no one else anything") {
+  Fixture f;
+  start_trace(f.registry(), {{}, {}, 128});
+  f.talk(1, 3);
+  const std::string path = trace_files(f.platform.paths()).at(0);
+  {
+    SharedMemory memory = SharedMemory::open(path, sizeof(TraceFileHeader));
+    auto & header = memory.at<TraceFileHeader>(0);
+    const auto refused = [&](const std::string & why) {
+      const Refusal refusal = refusal_of([&] { TraceSaver(f.registry()); });
+      CHECK_MESSAGE(refusal.says(why), refusal.text);
+      CHECK(refusal.says(path));
+      CHECK_NOTHROW(trace_state(f.registry()));
+    };
+    const uint64_t read = header.rings[0].read.load();
+    header.rings[0].read.store(read - 1000);
+    refused("positions");
+    header.rings[0].read.store(read);
+    const uint64_t offset = header.rings[0].offset;
+    header.rings[0].offset = UINT64_MAX - 5;
+    refused("positions");
+    header.rings[0].offset = offset;
+    header.events_log2 = 60;
+    refused("does not fit its header");
+    header.events_log2 = 7;
+    ++header.segment.platform_nonce;
+    refused("another platform");
+    --header.segment.platform_nonce;
+    header.segment.version = 10;
+    refused("layout version");
+    header.segment.version = layout_version;
+    header.rings[0].read.store(UINT64_MAX / 2);
+    f.talk(4, 8);  // the writer loses its events, no more
+    header.rings[0].read.store(read);
+    CHECK_NOTHROW(TraceSaver(f.registry()));
+  }
+  CHECK(rename(path.c_str(), (path + ".old").c_str()) == 0);
+  CHECK(symlink("/dev/zero", path.c_str()) == 0);
+  CHECK(refusal_of([&] { TraceSaver(f.registry()); }).says(path));
+}
+
+TEST_CASE("a process without descriptors loses its events, and counts them") {
+  Fixture f;
+  {
+    wait_until("its receive thread is watched", [] { return watches_receive_thread(getpid()); });
+    start_trace(f.registry(), {});
+    const NoDescriptors none;
+    f.talk(1, 3);
+  }
+  stop_trace(f.registry());
+  const TraceState state = trace_state(f.registry());
+  CHECK(state.lost > 0);
+  const Saved saved(f.registry());
+  CHECK(saved.lost == state.lost);
+}
