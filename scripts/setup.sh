@@ -108,6 +108,7 @@ missing_for_tests() {
 install_for_tests() {
   install_packages $(missing_for_tests)
   install_extra ndt
+  install_extra trace
   touch .venv/tests
 }
 

@@ -22,6 +22,7 @@ VERBS = {
     "map": "rmw_manycore_py.cli.map:command",
     "status": "rmw_manycore_py.cli.status:command",
     "top": "rmw_manycore_py.cli.top:command",
+    "trace": "rmw_manycore_py.cli.trace:command",
     "topic": "rmw_manycore_py.cli.topic:command",
     "node": "rmw_manycore_py.cli.node:command",
     "service": "rmw_manycore_py.cli.service:command",

@@ -11,9 +11,11 @@ import click
 from rmw_manycore_py.cli.common.duration import duration_option
 from rmw_manycore_py.cli.common.mapfile_argument import mapfile_argument
 from rmw_manycore_py.cli.common.options import examples
+from rmw_manycore_py.cli.common.output_file import OutputFile
 from rmw_manycore_py.cli.common.run_printer import RunPrinter
 from rmw_manycore_py.cli.common.starting import prepared_run, starting_options
 from rmw_manycore_py.launch.events import Event
+from rmw_manycore_py.trace.files import SUFFIXES
 
 
 @click.command(
@@ -22,6 +24,7 @@ from rmw_manycore_py.launch.events import Event
         "manycore run my_map.yaml",
         "manycore run talker_listener --duration 10",
         "manycore run more_nodes.yaml --join",
+        "manycore run talker_listener --duration 10 --trace trace.json",
         "manycore run talker_listener --json | jq 'select(.event == \"output\")'",
     ),
 )
@@ -29,8 +32,18 @@ from rmw_manycore_py.launch.events import Event
 @duration_option()
 @starting_options
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object per event.")
+@click.option(
+    "--trace",
+    type=OutputFile(*SUFFIXES),
+    help="Trace the whole run into this file: .json, .csv or .pftrace.",
+)
 def command(
-    mapfile: Path, duration_s: float | None, joins: bool, nodes: tuple[str, ...], as_json: bool
+    mapfile: Path,
+    duration_s: float | None,
+    joins: bool,
+    nodes: tuple[str, ...],
+    as_json: bool,
+    trace: Path | None,
 ) -> None:
     """Start the nodes of MAPFILE, each on its core, and stop them together.
 
@@ -41,7 +54,7 @@ def command(
     """
     run, _ = prepared_run(mapfile, joins, nodes)
     report = _print_json if as_json else RunPrinter(run.program_names).report
-    sys.exit(run.run(report, duration_s))
+    sys.exit(run.run(report, duration_s, trace=trace))
 
 
 def _print_json(event: Event) -> None:

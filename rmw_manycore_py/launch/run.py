@@ -20,6 +20,7 @@ from rmw_manycore_py.launch.platform import check_joined, configured_platform, r
 from rmw_manycore_py.launch.processes.program import NodeProgram
 from rmw_manycore_py.launch.ros2_daemon import CURE, end_lone_daemons
 from rmw_manycore_py.launch.runner import Report, Runner
+from rmw_manycore_py.launch.traced import traced
 from rmw_manycore_py.mapfile.placing.placement import Placement
 from rmw_manycore_py.runs.directory import OwnRun, new_run
 from rmw_manycore_py.scheduling import refusal
@@ -59,14 +60,16 @@ class Run:
         report: Report,
         duration_s: float | None = None,
         all_started: Callable[[], None] | None = None,
+        trace: Path | None = None,
     ) -> int:
         """Start all processes, wait until they have ended, and return the exit status.
 
         :param all_started: called once, when each node whose time has come was started.
+        :param trace: file for a trace of the whole run.
         """
         with signal_inbox() as inbox, ExitStack() as stack:
             own = stack.enter_context(self._directory(report))
-            return self._run(inbox, _Reports(report, own), duration_s, all_started)
+            return self._run(inbox, _Reports(report, own), duration_s, all_started, trace)
 
     def _run(
         self,
@@ -74,6 +77,7 @@ class Run:
         reports: _Reports,
         duration_s: float | None,
         all_started: Callable[[], None] | None,
+        trace: Path | None,
     ) -> int:
         placement, report = self._placement, reports.report
         nodes = [NodeProgram.of(node) for node in placement.nodes]
@@ -81,7 +85,7 @@ class Run:
         with closing(Runner(programs, report)) as runner, reports.kept(runner, self.program_names):
             for text in placement.notices:
                 report(Notice(text))
-            with self._platform(report):
+            with self._platform(report), self._traced(trace, report):
                 report(_describe(placement, self._bridge))
                 exit_status = self._run_nodes(runner, report, inbox, duration_s, all_started)
             if users := self._remaining_users():
@@ -138,6 +142,11 @@ class Run:
                 )
             )
         return configured_platform(self._placement)
+
+    def _traced(self, path: Path | None, report: Report) -> AbstractContextManager[Any]:
+        if path is None:
+            return nullcontext()
+        return traced(self._placement.name, path, lambda text: report(Notice(text)))
 
     def _remaining_users(self) -> list[str]:
         return [] if self._mode.joins else remaining_users(self._placement.name)

@@ -20,6 +20,8 @@ LAYERS = [
     ("rmw_manycore_program", "rmw_manycore_py", ".errors", ".examples", ".words"),
     ("._transport", "._ndt"),
     ("._ndt_bench", ".native_errors", ".qos"),
+    (".trace",),
+    (".trace.files",),
     (".figures", ".parent_death", ".ros", ".readiness", ".runs", ".scheduling", ".signals"),
     (".topology",),
     (".routes",),
@@ -43,7 +45,7 @@ LAYERS = [
     (
         *(".cli.action", ".cli.bench", ".cli.bridge", ".cli.doctor", ".cli.interface"),
         *(".cli.lifecycle", ".cli.map", ".cli.ndt", ".cli.node", ".cli.param", ".cli.service"),
-        *(".cli.top", ".cli.topic"),
+        *(".cli.top", ".cli.topic", ".cli.trace"),
     ),
     (".cli",),
 ]

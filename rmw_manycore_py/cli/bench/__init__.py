@@ -7,10 +7,11 @@ import click
 
 from rmw_manycore_py.cli.common.group import LazyGroup
 
-VERBS = {
-    verb: f"rmw_manycore_py.cli.bench.{verb}:command"
-    for verb in ("all", "bridge", "idle", "memory", "ndt", "rclpy", "rmw", "scale", "startup")
-}
+_NAMES = (
+    *("all", "bridge", "idle", "memory", "ndt", "rclpy", "rmw", "scale", "startup"),
+    "trace",
+)
+VERBS = {verb: f"rmw_manycore_py.cli.bench.{verb}:command" for verb in _NAMES}
 
 
 @click.group("bench", cls=LazyGroup, commands_at=VERBS)

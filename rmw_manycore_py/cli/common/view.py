@@ -18,12 +18,17 @@ def platform_names() -> list[str]:
         return _transport.platforms()
 
 
-def open_platform(name: str) -> _transport.Platform:
-    """Return the view of a platform; where there is none, say which ones there are."""
+def require_platform(name: str) -> None:
+    """Where there is no such platform, say which ones there are."""
     names = platform_names()
     if name not in names:
         others = f"; there is {', '.join(names)} (--platform)" if names else "; none is running"
         raise ManycoreError(f"no platform '{name}'{others}")
+
+
+def open_platform(name: str) -> _transport.Platform:
+    """Return the view of a platform; where there is none, say which ones there are."""
+    require_platform(name)
     with translate_native_errors():
         return _transport.Platform(name)
 

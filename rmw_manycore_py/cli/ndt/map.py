@@ -8,7 +8,7 @@ from pathlib import Path
 import click
 
 from rmw_manycore_py.cli.common.options import examples
-from rmw_manycore_py.cli.ndt.output_file import writing
+from rmw_manycore_py.cli.common.output_file import writing
 from rmw_manycore_py.cli.ndt.recording_options import recording_options
 from rmw_manycore_py.ndt.geometry.thinning import voxel_centroids
 from rmw_manycore_py.ndt.maps.map_file import SUFFIXES, write_points

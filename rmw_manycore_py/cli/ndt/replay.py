@@ -10,8 +10,8 @@ from pathlib import Path
 import click
 
 from rmw_manycore_py.cli.common.options import examples
+from rmw_manycore_py.cli.common.output_file import OutputFile, writing
 from rmw_manycore_py.cli.common.printing import new_table, print_json, print_table
-from rmw_manycore_py.cli.ndt.output_file import OutputFile, writing
 from rmw_manycore_py.cli.ndt.recording_options import recording_options
 from rmw_manycore_py.figures import load_figure
 from rmw_manycore_py.launch.processes.environment import enter_middleware, leave_middleware

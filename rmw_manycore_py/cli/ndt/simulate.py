@@ -10,7 +10,7 @@ import numpy as np
 from rich.progress import track
 
 from rmw_manycore_py.cli.common.options import examples
-from rmw_manycore_py.cli.ndt.output_file import writing
+from rmw_manycore_py.cli.common.output_file import writing
 from rmw_manycore_py.ndt.geometry.poses import transform
 from rmw_manycore_py.ndt.geometry.thinning import voxel_centroids
 from rmw_manycore_py.ndt.maps.map_file import write_points

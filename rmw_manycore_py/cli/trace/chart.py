@@ -1,0 +1,35 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""A picture of where the time goes in chains."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from rmw_manycore_py.cli.common.output_file import writing
+from rmw_manycore_py.errors import ManycoreError
+from rmw_manycore_py.trace.latency import ChainLatency
+
+_HOPS = ("communication", "node")
+
+
+def plot(chains: Sequence[ChainLatency], path: Path) -> None:
+    """Draw a bar for each chain, made of its hops' medians."""
+    try:
+        from matplotlib.figure import Figure
+    except ImportError as error:
+        raise ManycoreError("--plot needs matplotlib: pip install 'rmw-manycore[trace]'") from error
+    figure = Figure(figsize=(10, 1.5 + len(chains)), layout="constrained")
+    axes = figure.subplots()
+    for row, one in enumerate(chains):
+        left_us = 0.0
+        for part in one.parts:
+            if part.name.split()[0] in _HOPS:
+                length_us = part.quantile(0.5)
+                axes.barh(row, length_us, left=left_us, label=part.name)
+                left_us += length_us
+    axes.set_yticks(range(len(chains)), [" ".join(one.chain) for one in chains])
+    axes.set_xlabel("median, us")
+    axes.legend(fontsize="small")
+    with writing(path):
+        figure.savefig(path)

@@ -1,0 +1,90 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""`manycore trace latency`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from rmw_manycore_py.cli.common.options import examples, json_option, platform_option
+from rmw_manycore_py.cli.common.output_file import OutputFile
+from rmw_manycore_py.cli.common.printing import new_table, print_json, print_table
+from rmw_manycore_py.cli.common.view import require_platform
+from rmw_manycore_py.cli.trace.chart import plot
+from rmw_manycore_py.errors import ManycoreError
+from rmw_manycore_py.trace.chains import Messages
+from rmw_manycore_py.trace.events import Trace
+from rmw_manycore_py.trace.files import load
+from rmw_manycore_py.trace.latency import ChainLatency, latencies
+from rmw_manycore_py.trace.recorded import looked_at
+
+
+@click.command(
+    "latency",
+    epilog=examples(
+        "manycore trace latency trace.json",
+        "manycore trace latency --chain '/image /image_small' trace.json",
+        "manycore trace latency --live",
+    ),
+)
+@click.argument("file", required=False, type=click.Path(dir_okay=False, path_type=Path))
+@click.option("--live", is_flag=True, help="What is recorded and not saved; it stays as it is.")
+@click.option(
+    "--chain", "chains", multiple=True, help="Only this chain: its topics, between blanks."
+)
+@click.option("--plot", "picture", type=OutputFile(".png", ".svg", ".pdf"), help="Draw it, too.")
+@json_option
+@platform_option
+def command(
+    file: Path | None,
+    live: bool,
+    chains: tuple[str, ...],
+    picture: Path | None,
+    as_json: bool,
+    platform: str,
+) -> None:
+    """Show how long messages take through chains of nodes, hop by hop, in microseconds.
+
+    A chain goes on where a node publishes while it works on what it has taken.
+    """
+    if live == (file is not None):
+        raise click.UsageError("expected either FILE or --live")
+    found = evaluated(load(file) if file else _recorded(platform), chains)
+    if picture is not None:
+        plot(found, picture)
+    if as_json:
+        print_json([one.row() for one in found])
+        return
+    for number, one in enumerate(found):
+        if number:
+            click.echo()
+        _show(one)
+
+
+def evaluated(trace: Trace, chains: tuple[str, ...] = ()) -> list[ChainLatency]:
+    """Return the latency of chains given by their topics; else of all that there are."""
+    messages = Messages(trace)
+    wanted = [tuple(chain.split()) for chain in chains] or messages.chains
+    found = latencies(messages, wanted)
+    for chain in wanted if chains else ():
+        if not any(one.chain == chain for one in found):
+            known = "; ".join(" ".join(one) for one in messages.chains) or "none"
+            raise ManycoreError(
+                f"no message went through {' '.join(chain)}; the chains of the trace: {known}"
+            )
+    return found
+
+
+def _recorded(platform: str) -> Trace:
+    require_platform(platform)
+    return looked_at(platform)
+
+
+def _show(one: ChainLatency) -> None:
+    click.echo(one.name)
+    table = new_table("  part", "#count", "#p50", "#p99", "#max")
+    for part in one.parts:
+        values = (f"{part.quantile(share):.1f}" for share in (0.5, 0.99, 1))
+        table.add_row(f"  {part.name}", str(len(part.samples_us)), *values)
+    print_table(table)

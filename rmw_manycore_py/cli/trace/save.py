@@ -1,0 +1,44 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""`manycore trace save`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from rmw_manycore_py.cli.common.options import examples, platform_option
+from rmw_manycore_py.cli.common.output_file import OutputFile
+from rmw_manycore_py.cli.common.printing import counted, print_notices
+from rmw_manycore_py.cli.common.view import require_platform
+from rmw_manycore_py.errors import ManycoreError
+from rmw_manycore_py.trace.files import SUFFIXES, save
+from rmw_manycore_py.trace.recorded import recorded
+
+
+@click.command(
+    "save",
+    epilog=examples("manycore trace save -o trace.json", "manycore trace save -o trace.pftrace"),
+)
+@click.option(
+    "-o",
+    "--output",
+    required=True,
+    type=OutputFile(*SUFFIXES),
+    help="Chrome's .json, a .csv of all events, or Perfetto's .pftrace.",
+)
+@platform_option
+def command(output: Path, platform: str) -> None:
+    """Write what was recorded into a file, and give its room back."""
+    require_platform(platform)
+    with recorded(platform) as trace:
+        if not trace.event_count and not trace.lost:
+            raise ManycoreError(
+                f"platform {platform} has recorded nothing since its last trace was saved"
+            )
+        save(trace, output)
+    if trace.lost:
+        print_notices(
+            [f"{trace.lost} events were lost, as rings were full: trace start --events N"]
+        )
+    click.echo(f"{output}: {counted(trace.event_count, 'event')}")

@@ -1,0 +1,56 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""What got slower from one trace to another."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, Literal
+
+from rmw_manycore_py.trace.latency import ChainLatency, Part
+
+Verdict = Literal["slower", "faster", "same", "too few"]
+MIN_SAMPLES = 6  # below, the interval of a median is all there is
+
+
+@dataclass(frozen=True)
+class Change:
+    """A part of a chain in both traces."""
+
+    chain: str
+    part: str
+    before_us: float  # medians
+    after_us: float
+    verdict: Verdict
+
+    def row(self) -> dict[str, Any]:
+        """Return it for programs."""
+        return dict(vars(self))
+
+
+def compare(before: Sequence[ChainLatency], after: Sequence[ChainLatency]) -> list[Change]:
+    """Return each part that is in both; it changed where the medians' intervals lie apart."""
+    known = {(one.chain, one.nodes): one for one in before}
+    changes = []
+    for one in after:
+        other = known.get((one.chain, one.nodes))
+        if other is not None:
+            changes += [
+                _change(one.name, old, new)
+                for old, new in zip(other.parts, one.parts, strict=True)
+                if old.samples_us and new.samples_us
+            ]
+    return changes
+
+
+def _change(chain: str, old: Part, new: Part) -> Change:
+    return Change(chain, old.name, old.quantile(0.5), new.quantile(0.5), _verdict(old, new))
+
+
+def _verdict(old: Part, new: Part) -> Verdict:
+    if min(len(old.samples_us), len(new.samples_us)) < MIN_SAMPLES:
+        return "too few"
+    (old_low, old_high), (new_low, new_high) = old.median_interval(), new.median_interval()
+    if new_low > old_high:
+        return "slower"
+    return "faster" if new_high < old_low else "same"

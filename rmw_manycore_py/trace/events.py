@@ -1,0 +1,149 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""A trace as plain data: processes, their threads, and the events of each."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from enum import IntEnum
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+Events = NDArray[Any]  # of EVENT
+
+# As TraceEvent of rmw_manycore/transport/layout/trace_layout.hpp.
+EVENT = np.dtype(
+    [
+        ("time_ns", "<i8"),
+        ("number", "<u8"),
+        ("value", "<u8"),
+        ("endpoint", "<u4"),
+        ("incarnation", "<u2"),
+        ("kind", "<u2"),
+    ]
+)
+NO_ENDPOINT = 0xFFFFFFFF
+_ID_MASK = 0xFFFF_FFFF_FFFF  # 16 bits of the incarnation, as events have them
+
+
+class Kind(IntEnum):
+    """What happened; as TraceKind of trace_layout.hpp, which says what the fields mean."""
+
+    PUBLISH_BEGIN = 1
+    SERIALIZE_BEGIN = 2
+    WRITE = 3
+    PUBLISH_END = 4
+    SEND = 5
+    RECEIVE = 6
+    HINT = 7
+    WAKE = 8
+    WAIT_BEGIN = 9
+    WAIT_END = 10
+    CLAIM = 11
+    RELEASE = 12
+    REQUEST = 13
+    REPLY = 14
+    LOST = 15
+    EXPIRED = 16
+    REFUSED = 17
+    BLOCKED = 18
+    MATCH = 19
+    JOIN = 20
+    LEAVE = 21
+    HOP_BEGIN = 22
+    HOP_END = 23
+    PASS_BEGIN = 24
+    PASS_END = 25
+
+
+EndpointId = int
+RecordId = tuple[EndpointId, int]  # publisher and number: one of its kind on a platform
+
+
+def endpoint_id(slot: int, incarnation: int) -> EndpointId:
+    """Return slot and incarnation of an endpoint in one number."""
+    return (incarnation & 0xFFFF) << 32 | slot
+
+
+def endpoint_in(value: int) -> EndpointId:
+    """Return the endpoint that an event's value names."""
+    return value & _ID_MASK
+
+
+@dataclass(frozen=True)
+class Endpoint:
+    """What an endpoint was called."""
+
+    is_publisher: bool
+    role: str  # topic, request or reply
+    topic: str
+    type: str
+    node: str  # full name
+    cluster: int
+
+
+@dataclass(frozen=True)
+class Thread:
+    """What one thread recorded."""
+
+    tid: int
+    name: str
+    events: Events
+    lost: int  # further events, for which there was no room
+
+
+@dataclass(frozen=True)
+class Process:
+    """A process, and what its threads recorded."""
+
+    pid: int
+    cluster: int
+    core: int | None
+    host_cpu: int | None
+    label: str
+    is_receive_thread: bool
+    is_alive: bool  # when the trace was saved
+    threads: tuple[Thread, ...]
+    unplaced: int  # lost events of threads that had no room at all
+
+
+@dataclass(frozen=True)
+class Trace:
+    """A saved trace. Times are those of CLOCK_MONOTONIC, in nanoseconds."""
+
+    platform: str
+    processes: tuple[Process, ...]
+    endpoints: Mapping[EndpointId, Endpoint]
+    unplaced: int  # lost events of processes that had no room at all
+
+    def threads(self) -> Iterator[tuple[Process, Thread]]:
+        """Yield every thread with its process."""
+        for process in self.processes:
+            for thread in process.threads:
+                yield process, thread
+
+    @property
+    def event_count(self) -> int:
+        """Number of events that are there."""
+        return sum(len(thread.events) for _, thread in self.threads())
+
+    @property
+    def lost(self) -> int:
+        """Number of events that are not, as there was no room for them."""
+        return (
+            self.unplaced
+            + sum(process.unplaced for process in self.processes)
+            + sum(thread.lost for _, thread in self.threads())
+        )
+
+    def topic_of(self, endpoint: EndpointId) -> str:
+        """Return the topic of an endpoint, or its number where it has no name."""
+        named = self.endpoints.get(endpoint)
+        return named.topic if named else f"endpoint {endpoint & 0xFFFFFFFF}"
+
+    def node_of(self, endpoint: EndpointId) -> str:
+        """Return the node of an endpoint, or its number where it has no name."""
+        named = self.endpoints.get(endpoint)
+        return named.node if named else f"endpoint {endpoint & 0xFFFFFFFF}"

@@ -1,0 +1,139 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""A trace as one text, which files for viewers carry along: `latency` and `compare` read it."""
+
+from __future__ import annotations
+
+import base64
+import binascii
+import json
+import zlib
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from pydantic import BaseModel, ConfigDict, NonNegativeInt, ValidationError
+
+from rmw_manycore_py.errors import FileError, Problem, what_is_wrong
+from rmw_manycore_py.trace.events import EVENT, Endpoint, Process, Thread, Trace
+
+VERSION = 1
+_QUICKLY = 1  # zlib's level: a tenth of the time of the usual one
+
+
+class _Strict(BaseModel):
+    model_config = ConfigDict(extra="forbid", strict=True)
+
+
+class _Thread(_Strict):
+    tid: int
+    name: str
+    events: NonNegativeInt
+    lost: NonNegativeInt
+
+
+class _Process(_Strict):
+    pid: int
+    cluster: int
+    core: int | None
+    host_cpu: int | None
+    label: str
+    is_receive_thread: bool
+    is_alive: bool
+    threads: list[_Thread]
+    unplaced: NonNegativeInt
+
+
+class _Endpoint(_Strict):
+    id: NonNegativeInt
+    is_publisher: bool
+    role: str
+    topic: str
+    type: str
+    node: str
+    cluster: int
+
+
+class _Header(_Strict):
+    version: int
+    platform: str
+    unplaced: NonNegativeInt
+    processes: list[_Process]
+    endpoints: list[_Endpoint]
+
+
+def header_of(trace: Trace) -> dict[str, Any]:
+    """Return everything but the events."""
+    processes = [
+        {**_fields(p), "threads": [{**_fields(t), "events": len(t.events)} for t in p.threads]}
+        for p in trace.processes
+    ]
+    endpoints = [{"id": key, **_fields(endpoint)} for key, endpoint in trace.endpoints.items()]
+    return {
+        "version": VERSION,
+        "platform": trace.platform,
+        "unplaced": trace.unplaced,
+        "processes": processes,
+        "endpoints": endpoints,
+    }
+
+
+def _fields(row: object) -> dict[str, Any]:
+    return dict(vars(row))
+
+
+def to_text(trace: Trace) -> str:
+    """Return header and events: a line of JSON, a line of base64."""
+    parts = [thread.events for _, thread in trace.threads()]
+    events = np.concatenate(parts).tobytes() if parts else b""
+    packed = base64.b64encode(zlib.compress(events, _QUICKLY)).decode()
+    return f"{json.dumps(header_of(trace))}\n{packed}"
+
+
+def from_text(text: str, path: Path) -> Trace:
+    """Return the trace in a text of `to_text`."""
+    first, _, second = text.partition("\n")
+    header = parsed_header(first, path)
+    try:
+        data = zlib.decompress(base64.b64decode(second, validate=True))
+    except (binascii.Error, zlib.error, ValueError) as error:
+        raise wrong(path, "events", "compressed events", what_is_wrong(error)) from error
+    return with_events(header, data, path)
+
+
+def parsed_header(text: str, path: Path) -> _Header:
+    """Return the header, checked."""
+    try:
+        header = _Header.model_validate_json(text)
+    except ValidationError as error:
+        first = error.errors()[0]
+        key = ".".join(map(str, first["loc"])) or "header"
+        raise wrong(path, key, "what manycore trace save writes", first["msg"]) from error
+    if header.version != VERSION:
+        raise wrong(path, "version", str(VERSION), str(header.version))
+    return header
+
+
+def with_events(header: _Header, data: bytes, path: Path) -> Trace:
+    """Return the trace of a header and all events, thread after thread."""
+    count = sum(thread.events for process in header.processes for thread in process.threads)
+    if len(data) != count * EVENT.itemsize:
+        found = f"{len(data) // EVENT.itemsize} (the file is truncated?)"
+        raise wrong(path, "events", f"{count} events", found)
+    events = np.frombuffer(data, EVENT)
+    position = 0
+    processes = []
+    for process in header.processes:
+        threads = []
+        for thread in process.threads:
+            own = events[position : position + thread.events]
+            threads.append(Thread(thread.tid, thread.name, own, thread.lost))
+            position += thread.events
+        fields = process.model_dump(exclude={"threads"})
+        processes.append(Process(threads=tuple(threads), **fields))
+    endpoints = {e.id: Endpoint(**e.model_dump(exclude={"id"})) for e in header.endpoints}
+    return Trace(header.platform, tuple(processes), endpoints, header.unplaced)
+
+
+def wrong(path: Path, key: str, expected: str, found: str) -> FileError:
+    """Return the error for a file that is no trace, or not a whole one."""
+    return FileError(Problem(path, 0, key, expected, found))

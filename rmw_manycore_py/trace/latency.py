@@ -1,0 +1,130 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""How long messages take through a chain, in microseconds, and where."""
+
+from __future__ import annotations
+
+import math
+from collections import defaultdict
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+
+from rmw_manycore_py.trace.chains import Chain, Messages, Passage
+
+_NS_PER_US = 1000
+_Z_95 = 1.96
+
+
+@dataclass(frozen=True)
+class Part:
+    """Samples of one part of a chain."""
+
+    name: str
+    samples_us: tuple[float, ...]
+
+    def quantile(self, share: float) -> float:
+        """Return the value below which that share of the samples lies."""
+        return float(np.quantile(self.samples_us, share)) if self.samples_us else math.nan
+
+    def median_interval(self) -> tuple[float, float]:
+        """Return the 95 % confidence interval of the median, from order statistics."""
+        ordered = sorted(self.samples_us)
+        half = _Z_95 * math.sqrt(len(ordered)) / 2
+        middle = len(ordered) / 2
+        low = max(math.floor(middle - half), 0)
+        high = min(math.ceil(middle + half), len(ordered) - 1)
+        return ordered[low], ordered[high]
+
+    def row(self) -> dict[str, Any]:
+        """Return it for programs."""
+        return {
+            "part": self.name,
+            "count": len(self.samples_us),
+            "p50_us": self.quantile(0.5),
+            "p99_us": self.quantile(0.99),
+            "max_us": self.quantile(1),
+        }
+
+
+@dataclass(frozen=True)
+class ChainLatency:
+    """What a chain takes: each hop, their sum, and two views of the whole."""
+
+    chain: Chain
+    nodes: tuple[str, ...]
+    parts: tuple[Part, ...]  # communication and node in turns, `total`, `reaction`, `data age`
+
+    @property
+    def name(self) -> str:
+        """The topics, and the nodes that took them."""
+        steps = zip(self.chain, self.nodes, strict=True)
+        return " > ".join(f"{topic} ({node})" for topic, node in steps)
+
+    def row(self) -> dict[str, Any]:
+        """Return it for programs."""
+        return {
+            "chain": list(self.chain),
+            "nodes": list(self.nodes),
+            "parts": [part.row() for part in self.parts],
+        }
+
+
+def latencies(messages: Messages, chains: Sequence[Chain]) -> list[ChainLatency]:
+    """Return the latency of each chain, one for each way it takes through nodes."""
+    found = []
+    for chain in chains:
+        by_nodes: dict[tuple[str, ...], list[Passage]] = defaultdict(list)
+        for passage in messages.passages(chain):
+            by_nodes[passage.nodes].append(passage)
+        found += [_latency(chain, nodes, by_nodes[nodes]) for nodes in sorted(by_nodes)]
+    return found
+
+
+def _latency(chain: Chain, nodes: tuple[str, ...], passages: list[Passage]) -> ChainLatency:
+    parts = []
+    for i, topic in enumerate(chain):
+        came = [p.callback_ns[i] - p.published_ns[i] for p in passages]
+        parts.append(_part(f"communication {topic}", came))
+        if i + 1 < len(chain):
+            worked = [p.published_ns[i + 1] - p.callback_ns[i] for p in passages]
+            parts.append(_part(f"node {nodes[i]}", worked))
+    parts.append(_part("total", [p.callback_ns[-1] - p.published_ns[0] for p in passages]))
+    parts.append(_part("reaction", _reactions_ns(passages)))
+    parts.append(_part("data age", _ages_ns(passages)))
+    return ChainLatency(chain, nodes, tuple(parts))
+
+
+def _part(name: str, samples_ns: list[int]) -> Part:
+    return Part(name, tuple(sample / _NS_PER_US for sample in samples_ns))
+
+
+def _firsts(passages: list[Passage]) -> list[Passage]:
+    """Return the first arrival of each input, without those that a newer one has overtaken."""
+    found: list[Passage] = []
+    for passage in passages:
+        if not found or passage.published_ns[0] > found[-1].published_ns[0]:
+            found.append(passage)
+    return found
+
+
+def _reactions_ns(passages: list[Passage]) -> list[int]:
+    """Return the longest times from a change outside to the first callback that shows it.
+
+    The change comes just after an input was published: it has to wait for the next one that
+    arrives.
+    """
+    firsts = _firsts(passages)
+    return _to_next(firsts)
+
+
+def _ages_ns(passages: list[Passage]) -> list[int]:
+    """Return how old each input is that the last node works with, when a newer one arrives."""
+    return _to_next(passages)
+
+
+def _to_next(passages: list[Passage]) -> list[int]:
+    """Return the time from each input to the arrival of the next one."""
+    return [after.callback_ns[-1] - before.published_ns[0] for before, after in pairwise(passages)]

@@ -1,0 +1,73 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""What a platform has recorded and nobody has saved yet."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+import numpy as np
+
+from rmw_manycore_py import _transport
+from rmw_manycore_py.native_errors import translate_native_errors
+from rmw_manycore_py.trace.events import EVENT, Endpoint, Process, Thread, Trace, endpoint_id
+
+_ROLES = ("topic", "request", "reply")
+
+
+@contextmanager
+def recorded(platform: str) -> Iterator[Trace]:
+    """Yield what was recorded; when the block ends without an error, it counts as saved.
+
+    Its room is then given back, and the files of processes that are gone are removed.
+    """
+    with translate_native_errors():
+        saver = _transport.TraceSaver(platform)
+    with saver:
+        yield _trace_of(platform, saver)
+        saver.finish()
+
+
+def looked_at(platform: str) -> Trace:
+    """Return what was recorded; all of it stays to be saved."""
+    with translate_native_errors():
+        saver = _transport.TraceSaver(platform)
+    with saver:
+        return _trace_of(platform, saver)
+
+
+def _trace_of(platform: str, saver: _transport.TraceSaver) -> Trace:
+    endpoints: dict[int, Endpoint] = {}
+    processes = []
+    for process in saver.processes:
+        processes.append(_process_of(process))
+        for name in process.names:
+            endpoints[endpoint_id(name.slot, name.incarnation)] = Endpoint(
+                name.is_publisher,
+                _ROLES[name.role] if name.role < len(_ROLES) else "topic",
+                name.topic,
+                name.type,
+                name.node,
+                name.cluster,
+            )
+    return Trace(platform, tuple(processes), endpoints, saver.unplaced)
+
+
+def _process_of(process: _transport.ProcessTrace) -> Process:
+    return Process(
+        pid=process.pid,
+        cluster=process.cluster,
+        core=_unless_negative(process.core),
+        host_cpu=_unless_negative(process.host_cpu),
+        label=process.label,
+        is_receive_thread=process.process is None,
+        is_alive=process.alive,
+        threads=tuple(
+            Thread(t.tid, t.name, np.frombuffer(t.events, EVENT), t.lost) for t in process.threads
+        ),
+        unplaced=process.unplaced,
+    )
+
+
+def _unless_negative(number: int) -> int | None:
+    return None if number < 0 else number

@@ -1,0 +1,187 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Traces of real nodes: each take has one flow from its publish, whatever is killed meanwhile."""
+
+from __future__ import annotations
+
+import json
+import resource
+import signal
+from collections import defaultdict
+
+import pytest
+from forked import forked_example, forked_manycore
+from processes import kill, receive_threads_of
+from support import IS_MANYCORE, MAPFILES, PLATFORMS, entries, manycore_command, wait_until
+
+from rmw_manycore_py.trace.events import Kind
+from rmw_manycore_py.trace.files import load
+from rmw_manycore_py.trace.flows import flows_of
+
+pytestmark = [
+    pytest.mark.integration,
+    pytest.mark.skipif(not IS_MANYCORE, reason="manycore is about rmw_manycore"),
+]
+
+
+@pytest.fixture
+def manycore(start):
+    """Return a function that runs a verb to its end and returns its output."""
+
+    def call(*words: object, status: int = 0) -> str:
+        program = start(forked_manycore(*map(str, words)))
+        assert program.wait() == status, program
+        return program.output
+
+    return call
+
+
+@pytest.fixture
+def talking(start):
+    """A talker and a listener, each in its cluster, that hear each other."""
+    listener = start(forked_example("listener"), cluster=2)
+    talker = start(forked_example("talker"))
+    listener.wait_for("I heard")
+    return talker, listener
+
+
+def check_flows(trace) -> int:
+    """Check that each take whose publish is there has one flow, forward in time; how many."""
+    claims = sum(int((t.events["kind"] == Kind.CLAIM).sum()) for _, t in trace.threads())
+    flows = flows_of(trace)
+    assert len(flows.flows) + flows.without_publish == claims
+    takes = {(flow.subscription, flow.record) for flow in flows.flows}
+    assert len(takes) == len(flows.flows)
+    for flow in flows.flows:
+        times = [flow.write.time_ns, flow.claim.time_ns]
+        times[1:1] = [flow.receive.time_ns] if flow.receive else []
+        assert times == sorted(times)
+    return len(flows.flows)
+
+
+def check_drawn(path) -> None:
+    """Check that what viewers show of flows leads from a publish to a take."""
+    events = json.loads(path.read_bytes())["traceEvents"]
+    slices = defaultdict(list)
+    for event in events:
+        if event["ph"] == "X":
+            slices[event["pid"], event["tid"]].append(event)
+    phases = defaultdict(list)
+    for event in events:
+        if event["ph"] in "stf":
+            phases[event["id"]].append(event)
+    assert phases
+    for steps in phases.values():
+        assert [step["ph"] for step in steps] in (["s", "f"], ["s", "t", "f"])
+        kinds = {"s": "publish", "t": "receive", "f": "take"}
+        for step in steps:
+            around = [
+                one
+                for one in slices[step["pid"], step["tid"]]
+                if one["ts"] <= step["ts"] <= one["ts"] + one["dur"] + 0.001
+            ]
+            assert any(one["cat"] == kinds[step["ph"]] for one in around), step
+
+
+def test_a_run_is_traced_from_beginning_to_end(start, tmp_path) -> None:
+    path = tmp_path / "trace.json"
+    run = start(manycore_command("run", MAPFILES / "talker_listener.yaml", "--trace", path))
+    for _ in range(3):
+        run.wait_for("I heard")
+    assert run.stop() == 0, run
+    trace = load(path)
+    assert trace.lost == 0
+    assert flows_of(trace).without_publish == 0
+    assert check_flows(trace) >= 3
+    check_drawn(path)
+    chatter = [f for f in flows_of(trace).flows if trace.topic_of(f.record[0]) == "/chatter"]
+    assert all(flow.receive for flow in chatter)
+
+
+def test_a_trace_is_started_stopped_saved_and_evaluated(talking, manycore, tmp_path) -> None:
+    manycore("trace", "start")
+    talking[1].wait_for("I heard")
+    manycore("trace", "stop")
+    assert "not traced" in manycore("trace", "status")
+    manycore("trace", "save", "-o", tmp_path / "a.json")
+    assert "recorded nothing" in manycore("trace", "save", "-o", tmp_path / "b.json", status=1)
+    trace = load(tmp_path / "a.json")
+    assert check_flows(trace) >= 1
+    shown = manycore("trace", "latency", tmp_path / "a.json", "--json")
+    parts = json.loads(shown)[0]["parts"]
+    assert parts[0]["part"] == "communication /chatter"
+    assert parts[0]["count"] >= 1
+
+
+def test_killed_nodes_and_receive_threads_leave_their_events(
+    talking, manycore, start, platform, tmp_path
+) -> None:
+    talker, listener = talking
+    manycore("trace", "start")
+    listener.wait_for("I heard")
+    for pid in receive_threads_of(platform):
+        kill(pid)
+    listener.wait_for("I heard")
+    listener.wait_for("I heard")
+    talker.signal(signal.SIGKILL)
+    talker.wait()
+    second = start(forked_example("talker"))
+    listener.skip_output()
+    listener.wait_for("I heard")
+    status = json.loads(manycore("trace", "status", "--json"))
+    assert status["on"]
+    assert status["events"] > 0
+    assert status["lost"] == 0
+    files = len(entries(PLATFORMS / platform, "trace-*"))
+    manycore("trace", "save", "-o", tmp_path / "trace.json")
+    trace = load(tmp_path / "trace.json")
+    assert check_flows(trace) >= 4
+    check_drawn(tmp_path / "trace.json")
+    gone = [process for process in trace.processes if not process.is_alive]
+    assert {process.is_receive_thread for process in gone} == {True, False}
+    assert len(entries(PLATFORMS / platform, "trace-*")) == files - len(gone)
+    second.stop()
+
+
+def test_what_is_lost_is_told(talking, manycore, tmp_path) -> None:
+    manycore("trace", "start", "--events", "128")
+    for _ in range(30):
+        talking[1].wait_for("I heard")
+        if json.loads(manycore("trace", "status", "--json"))["lost"]:
+            break
+    output = manycore("trace", "save", "-o", tmp_path / "trace.csv")
+    assert "were lost" in output
+    trace = load(tmp_path / "trace.csv")
+    assert trace.lost > 0
+    check_flows(trace)
+
+
+def test_one_trace_at_a_time_and_none_is_thrown_away(talking, manycore, tmp_path) -> None:
+    assert "not being traced" in manycore("trace", "stop", status=1)
+    assert "no node '/nobody'" in manycore("trace", "start", "--node", "/nobody", status=1)
+    manycore("trace", "start", "--node", "/talker")
+    assert "one trace at a time" in manycore("trace", "start", status=1)
+    wait_until(
+        lambda: json.loads(manycore("trace", "status", "--json"))["events"], "the talker publishes"
+    )
+    manycore("trace", "stop")
+    assert "was not saved" in manycore("trace", "start", status=1)
+    manycore("trace", "start", "--discard", "--cluster", "2")
+    manycore("trace", "stop")
+
+
+def test_a_full_disk_costs_no_trace(talking, manycore, start, tmp_path) -> None:
+    manycore("trace", "start")
+    talking[1].wait_for("I heard")
+    manycore("trace", "stop")
+    path = tmp_path / "trace.json"
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (1000, before[1]))
+    try:
+        save = start(manycore_command("trace", "save", "-o", path))
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
+    assert save.wait() == 1, save
+    assert "the trace is kept" in save.output
+    assert list(tmp_path.iterdir()) == []
+    manycore("trace", "save", "-o", path)
+    assert check_flows(load(path)) >= 1

@@ -1,0 +1,235 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Saved traces: what is written is read again, what is no trace is refused, chains are exact."""
+
+from __future__ import annotations
+
+from collections import Counter
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from rmw_manycore_py.errors import FileError, ManycoreError
+from rmw_manycore_py.trace.chains import Messages
+from rmw_manycore_py.trace.comparison import compare
+from rmw_manycore_py.trace.events import (
+    EVENT,
+    NO_ENDPOINT,
+    Endpoint,
+    Kind,
+    Process,
+    Thread,
+    Trace,
+    endpoint_id,
+)
+from rmw_manycore_py.trace.files import SUFFIXES, load, save
+from rmw_manycore_py.trace.flows import flows_of
+from rmw_manycore_py.trace.latency import ChainLatency, latencies
+from rmw_manycore_py.trace.slices import slices_of
+
+pytestmark = pytest.mark.unit
+
+US = 1000
+CAMERA, FILTER_IN, FILTER_OUT, SINK = 1, 2, 3, 4
+NAMES = {
+    CAMERA: (True, "/image", "/camera"),
+    FILTER_IN: (False, "/image", "/filter"),
+    FILTER_OUT: (True, "/small", "/filter"),
+    SINK: (False, "/small", "/sink"),
+}
+INCARNATION = 1 << 16 | 5  # events have its low bits
+
+
+def event(time_us: int, kind: Kind, slot: int, number: int = 0, value: int = 0):
+    return (time_us * US, number, value, slot, 0 if slot == NO_ENDPOINT else 5, kind)
+
+
+def publish(at_us: int, slot: int, number: int) -> list:
+    return [
+        event(at_us, Kind.PUBLISH_BEGIN, slot, 0, 64),
+        event(at_us + 1, Kind.SERIALIZE_BEGIN, slot, number),
+        event(at_us + 2, Kind.WRITE, slot, number, 60),
+        event(at_us + 5, Kind.PUBLISH_END, slot, number),
+    ]
+
+
+def take(at_us: int, slot: int, number: int, publisher: int) -> list:
+    origin = endpoint_id(publisher, INCARNATION) | 1 << 48  # all of the incarnation
+    return [
+        event(at_us, Kind.CLAIM, slot, number, origin),
+        event(at_us + 3, Kind.RELEASE, slot, number, origin),
+    ]
+
+
+def wait(begin_us: int, end_us: int) -> list:
+    none = NO_ENDPOINT
+    return [event(begin_us, Kind.WAIT_BEGIN, none), event(end_us, Kind.WAIT_END, none, 0, 1)]
+
+
+def process(cluster: int, rows: list, *, lost: int = 0, is_receive_thread: bool = False) -> Process:
+    thread = Thread(100 + cluster, "python", np.array(rows, EVENT), lost)
+    return Process(
+        cluster, cluster, None if is_receive_thread else 2, 0, "node", is_receive_thread, True,
+        (thread,), 0,
+    )  # fmt: skip
+
+
+def example(slower_us: int = 0, rounds: int = 8) -> Trace:
+    """Camera, filter and sink in three clusters; the sink's clusters are told by a thread."""
+    camera, filtering, sink, told = [], [], [], []
+    for i in range(1, rounds + 1):
+        t = 10_000 * i
+        camera += publish(t, CAMERA, i)
+        told.append(event(t + 10, Kind.RECEIVE, CAMERA, i, 2))
+        told.append(event(t + 11, Kind.HINT, FILTER_IN, i, endpoint_id(CAMERA, INCARNATION)))
+        filtering += wait(t - 100, t + 20) + take(t + 30, FILTER_IN, i, CAMERA)
+        filtering += publish(t + 133 + slower_us, FILTER_OUT, i)
+        sink += wait(t - 100, t + 300) + take(t + 330 + slower_us, SINK, i, FILTER_OUT)
+    endpoints = {
+        endpoint_id(slot, INCARNATION): Endpoint(
+            is_publisher, "topic", topic, "std_msgs/msg/String", node, 1
+        )
+        for slot, (is_publisher, topic, node) in NAMES.items()
+    }
+    return Trace(
+        "test",
+        (
+            process(1, camera, lost=3),
+            process(2, filtering),
+            process(3, sink),
+            process(2, told, is_receive_thread=True),
+        ),
+        endpoints,
+        4,
+    )
+
+
+def evaluated(trace: Trace) -> list[ChainLatency]:
+    messages = Messages(trace)
+    return latencies(messages, messages.chains)
+
+
+@pytest.mark.needs("perfetto")
+@pytest.mark.parametrize("suffix", SUFFIXES)
+def test_what_is_saved_is_read_again(tmp_path: Path, suffix: str) -> None:
+    trace = example()
+    save(trace, tmp_path / f"t{suffix}")
+    again = load(tmp_path / f"t{suffix}")
+    assert (again.platform, again.endpoints, again.lost) == ("test", trace.endpoints, 7)
+    assert again.event_count == trace.event_count
+    for (old, before), (new, after) in zip(trace.threads(), again.threads(), strict=True):
+        assert (old.cluster, old.core, old.label) == (new.cluster, new.core, new.label)
+        assert before.events.tolist() == after.events.tolist()
+    assert [p.name for p in tmp_path.iterdir()] == [f"t{suffix}"]
+
+
+@pytest.mark.needs("perfetto")
+@pytest.mark.parametrize("suffix", SUFFIXES)
+def test_what_is_no_whole_trace_is_refused_by_name(tmp_path: Path, suffix: str) -> None:
+    path = tmp_path / f"t{suffix}"
+    save(example(), path)
+    whole = path.read_bytes()
+    foreign = b'{"traceEvents": []}', b"time,name\n1,x\n", b"\x0a\x02\x08\x01", b"[1]", b"\xff" * 99
+    for content in (b"", *foreign, whole[: len(whole) // 3], whole[:1500]):
+        path.write_bytes(content)
+        with pytest.raises(FileError) as refused:
+            load(path)
+        assert str(path) in str(refused.value)
+    with pytest.raises(ManycoreError, match="cannot be read"):
+        load(tmp_path / f"none{suffix}")
+
+
+def test_each_take_has_one_flow_through_the_receive_thread() -> None:
+    trace = example()
+    flows = flows_of(trace)
+    assert len(flows.flows) == 16
+    assert flows.without_publish == 0
+    assert Counter(flow.receive is not None for flow in flows.flows) == {True: 8, False: 8}
+    for flow in flows.flows:
+        assert flow.write.time_ns < flow.claim.time_ns
+
+
+@pytest.mark.needs("perfetto")
+def test_perfetto_gets_one_flow_for_each_take_and_tracks_in_their_places(tmp_path: Path) -> None:
+    from perfetto.protos.perfetto.trace import perfetto_trace_pb2
+
+    save(example(), tmp_path / "t.pftrace")
+    parsed = perfetto_trace_pb2.Trace()
+    parsed.ParseFromString((tmp_path / "t.pftrace").read_bytes())
+    begins: Counter[int] = Counter()
+    ends: Counter[int] = Counter()
+    depth: Counter[int] = Counter()
+    times: dict[int, int] = {}
+    for packet in parsed.packet:
+        event = packet.track_event
+        begins.update(event.flow_ids)
+        ends.update(event.terminating_flow_ids)
+        track = event.track_uuid
+        if packet.HasField("track_event"):
+            assert packet.timestamp >= times.get(track, 0)
+            times[track] = packet.timestamp
+            depth[track] += {1: 1, 2: -1}.get(event.type, 0)
+            assert depth[track] >= 0
+    assert set(depth.values()) == {0}
+    assert ends == dict.fromkeys(range(1, 17), 1)
+    assert set(begins) == set(ends)
+    tracks = {p.track_descriptor.uuid: p.track_descriptor for p in parsed.packet}
+    thread = next(t for t in tracks.values() if t.name == "python (103)")
+    path = []
+    while thread.parent_uuid:
+        thread = tracks[thread.parent_uuid]
+        path.append(thread.name)
+    assert path == ["/sink", "core 2", "cluster 3"]
+
+
+def test_slices_of_a_node() -> None:
+    trace = example(rounds=2)
+    spans = {
+        (one.name, one.begin_ns // US, one.end_ns // US)
+        for one in slices_of(trace, trace.processes[1].threads[0])
+        if one.begin_ns < 15_000 * US
+    }
+    assert spans == {
+        ("wait", 9_900, 10_020),
+        ("take /image", 10_030, 10_033),
+        ("callback /image", 10_033, 19_900),
+        ("serialize", 10_134, 10_135),
+        ("publish /small", 10_133, 10_138),
+    }
+
+
+def test_hops_add_up_and_are_what_caret_calls_them() -> None:
+    (found,) = evaluated(example())
+    assert found.chain == ("/image", "/small")
+    assert found.nodes == ("/filter", "/sink")
+    assert {part.name: part.quantile(0.5) for part in found.parts} == {
+        "communication /image": 33,
+        "node /filter": 100,
+        "communication /small": 200,
+        "total": 333,
+        "reaction": 10_333,
+        "data age": 10_333,
+    }
+
+
+def test_what_got_slower_is_told() -> None:
+    changes = compare(evaluated(example()), evaluated(example(slower_us=50)))
+    assert {change.part: change.verdict for change in changes} == {
+        "communication /image": "same",
+        "node /filter": "slower",
+        "communication /small": "same",
+        "total": "slower",
+        "reaction": "slower",
+        "data age": "slower",
+    }
+    few = compare(evaluated(example(rounds=3)), evaluated(example(rounds=3)))
+    assert {change.verdict for change in few} == {"too few"}
+
+
+def test_a_publish_that_a_kill_cut_short_is_drawn_for_its_takes() -> None:
+    trace = example(rounds=1)
+    camera = trace.processes[0].threads[0]
+    cut = Thread(camera.tid, camera.name, camera.events[:3], 0)
+    one = next(s for s in slices_of(trace, cut) if s.category == "publish")
+    assert one.record == (endpoint_id(CAMERA, INCARNATION), 1)
+    assert one.arguments == {"end": "unknown"}
