@@ -52,10 +52,6 @@ class Kind(IntEnum):
     MATCH = 19
     JOIN = 20
     LEAVE = 21
-    HOP_BEGIN = 22
-    HOP_END = 23
-    PASS_BEGIN = 24
-    PASS_END = 25
 
 
 EndpointId = int

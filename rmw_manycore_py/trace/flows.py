@@ -3,8 +3,8 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -21,16 +21,14 @@ from rmw_manycore_py.trace.events import (
 )
 
 
-@dataclass(frozen=True)
-class Place:
+class Place(NamedTuple):
     """A moment in a thread."""
 
     thread: int  # index among the trace's threads
     time_ns: int
 
 
-@dataclass(frozen=True)
-class Flow:
+class Flow(NamedTuple):
     """One take of one message."""
 
     record: RecordId
@@ -93,14 +91,6 @@ def _of_kind(thread: Thread, kind: Kind) -> list[tuple[int, int, int, int, int, 
 
 def _record(event: tuple[int, int, int, int, int, int]) -> RecordId:
     return endpoint_id(event[3], event[4]), event[1]
-
-
-def by_write(flows: Flows) -> dict[RecordId, list[Flow]]:
-    """Return the flows of each record."""
-    found: dict[RecordId, list[Flow]] = defaultdict(list)
-    for flow in flows.flows:
-        found[flow.record].append(flow)
-    return found
 
 
 def merged(threads: list[tuple[Process, Thread]], kinds: tuple[Kind, ...]) -> Events:

@@ -60,6 +60,8 @@ def read(content: bytes, path: Path) -> Trace:
         raise wrong(path, "", "a trace as text", what_is_wrong(error)) from error
     if len(lines) < 2 or not lines[0].startswith(_MARK) or lines[1] != ",".join(_COLUMNS):
         raise wrong(path, "", "a trace of manycore trace save", "a file of another program")
+    if not content.endswith(b"\n"):
+        raise wrong(path, "", "a whole trace", "a last line that is cut short")
     header = parsed_header(lines[0].removeprefix(_MARK), path)
     try:
         events = np.array(list(_events(lines[2:])), EVENT)

@@ -130,7 +130,7 @@ def test_what_is_no_whole_trace_is_refused_by_name(tmp_path: Path, suffix: str) 
     save(example(), path)
     whole = path.read_bytes()
     foreign = b'{"traceEvents": []}', b"time,name\n1,x\n", b"\x0a\x02\x08\x01", b"[1]", b"\xff" * 99
-    for content in (b"", *foreign, whole[: len(whole) // 3], whole[:1500]):
+    for content in (b"", *foreign, whole[: len(whole) // 3], whole[:1500], whole[:-9]):
         path.write_bytes(content)
         with pytest.raises(FileError) as refused:
             load(path)
@@ -160,6 +160,7 @@ def test_perfetto_gets_one_flow_for_each_take_and_tracks_in_their_places(tmp_pat
     ends: Counter[int] = Counter()
     depth: Counter[int] = Counter()
     times: dict[int, int] = {}
+    arguments: set[tuple[str, int]] = set()
     for packet in parsed.packet:
         event = packet.track_event
         begins.update(event.flow_ids)
@@ -170,9 +171,12 @@ def test_perfetto_gets_one_flow_for_each_take_and_tracks_in_their_places(tmp_pat
             times[track] = packet.timestamp
             depth[track] += {1: 1, 2: -1}.get(event.type, 0)
             assert depth[track] >= 0
+        arguments.update((a.name, a.uint_value) for a in event.debug_annotations)
     assert set(depth.values()) == {0}
     assert ends == dict.fromkeys(range(1, 17), 1)
     assert set(begins) == set(ends)
+    assert arguments == {("bytes", 64), ("end", 0), *(("number", i) for i in range(1, 9))}
+    assert max(times.values()) == 80_333 * US  # the last event of the last round
     tracks = {p.track_descriptor.uuid: p.track_descriptor for p in parsed.packet}
     thread = next(t for t in tracks.values() if t.name == "python (103)")
     path = []
