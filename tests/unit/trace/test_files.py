@@ -24,7 +24,7 @@ from rmw_manycore_py.trace.events import (
 )
 from rmw_manycore_py.trace.files import SUFFIXES, load, save
 from rmw_manycore_py.trace.flows import flows_of
-from rmw_manycore_py.trace.latency import ChainLatency, latencies
+from rmw_manycore_py.trace.latency import ChainLatency, Part, latencies
 from rmw_manycore_py.trace.slices import slices_of
 
 pytestmark = pytest.mark.unit
@@ -74,7 +74,7 @@ def process(cluster: int, rows: list, *, lost: int = 0, is_receive_thread: bool 
     )  # fmt: skip
 
 
-def example(slower_us: int = 0, rounds: int = 8) -> Trace:
+def example(slower_us: int = 0, rounds: int = 8, *, twice: bool = False) -> Trace:
     """Camera, filter and sink in three clusters; the sink's clusters are told by a thread."""
     camera, filtering, sink, told = [], [], [], []
     for i in range(1, rounds + 1):
@@ -83,8 +83,11 @@ def example(slower_us: int = 0, rounds: int = 8) -> Trace:
         told.append(event(t + 10, Kind.RECEIVE, CAMERA, i, 2))
         told.append(event(t + 11, Kind.HINT, FILTER_IN, i, endpoint_id(CAMERA, INCARNATION)))
         filtering += wait(t - 100, t + 20) + take(t + 30, FILTER_IN, i, CAMERA)
-        filtering += publish(t + 133 + slower_us, FILTER_OUT, i)
-        sink += wait(t - 100, t + 300) + take(t + 330 + slower_us, SINK, i, FILTER_OUT)
+        filtering += publish(t + 133 + slower_us, FILTER_OUT, 2 * i)
+        sink += wait(t - 100, t + 300) + take(t + 330 + slower_us, SINK, 2 * i, FILTER_OUT)
+        if twice:
+            filtering += publish(t + 150, FILTER_OUT, 2 * i + 1)
+            sink += wait(t + 335, t + 340) + take(t + 350, SINK, 2 * i + 1, FILTER_OUT)
     endpoints = {
         endpoint_id(slot, INCARNATION): Endpoint(
             is_publisher, "topic", topic, "std_msgs/msg/String", node, 1
@@ -130,8 +133,10 @@ def test_what_is_no_whole_trace_is_refused_by_name(tmp_path: Path, suffix: str) 
     save(example(), path)
     whole = path.read_bytes()
     foreign = b'{"traceEvents": []}', b"time,name\n1,x\n", b"\x0a\x02\x08\x01", b"[1]", b"\xff" * 99
-    for content in (b"", *foreign, whole[: len(whole) // 3], whole[:1500], whole[:-9]):
+    for content in (b"", *foreign, whole[: len(whole) // 3], whole[:1500], whole[:-9], whole[:-2]):
         path.write_bytes(content)
+        if suffix == ".csv" and content == whole[:-9]:
+            path.write_bytes(whole[: whole.rindex(b"\n", 0, -1) + 1])  # a whole line is missing
         with pytest.raises(FileError) as refused:
             load(path)
         assert str(path) in str(refused.value)
@@ -175,7 +180,11 @@ def test_perfetto_gets_one_flow_for_each_take_and_tracks_in_their_places(tmp_pat
     assert set(depth.values()) == {0}
     assert ends == dict.fromkeys(range(1, 17), 1)
     assert set(begins) == set(ends)
-    assert arguments == {("bytes", 64), ("end", 0), *(("number", i) for i in range(1, 9))}
+    assert arguments == {
+        ("bytes", 64),
+        ("end", 0),
+        *(("number", i) for i in range(1, 17) if i < 9 or i % 2 == 0),
+    }
     assert max(times.values()) == 80_333 * US  # the last event of the last round
     tracks = {p.track_descriptor.uuid: p.track_descriptor for p in parsed.packet}
     thread = next(t for t in tracks.values() if t.name == "python (103)")
@@ -228,6 +237,23 @@ def test_what_got_slower_is_told() -> None:
     }
     few = compare(evaluated(example(rounds=3)), evaluated(example(rounds=3)))
     assert {change.verdict for change in few} == {"too few"}
+
+
+def test_medians_whose_intervals_overlap_are_the_same() -> None:
+    def of(first: int) -> list[ChainLatency]:
+        parts = (Part("total", tuple(range(first, first + 20))),)
+        return [ChainLatency(("/a",), ("/b",), parts)]
+
+    verdicts = {n: compare(of(0), of(n))[0].verdict for n in (-30, -2, 0, 2, 30)}
+    assert verdicts == {-30: "faster", -2: "same", 0: "same", 2: "same", 30: "slower"}
+
+
+def test_a_second_answer_to_one_input_is_no_new_reaction() -> None:
+    (found,) = evaluated(example(twice=True))
+    parts = {part.name: part for part in found.parts}
+    assert (parts["reaction"].quantile(0), parts["reaction"].quantile(1)) == (10_333, 10_333)
+    assert len(parts["reaction"].samples_us) == 7
+    assert (parts["data age"].quantile(0), parts["data age"].quantile(1)) == (353, 10_333)
 
 
 def test_a_publish_that_a_kill_cut_short_is_drawn_for_its_takes() -> None:
