@@ -44,6 +44,13 @@ def talking(start):
     return talker, listener
 
 
+def hear(listener, messages: int = 1) -> None:
+    """Wait until so many messages were published and heard from now on."""
+    listener.skip_output()
+    for _ in range(messages + 1):  # the first one may have been on its way
+        listener.wait_for("I heard")
+
+
 def check_flows(trace) -> int:
     """Check that each take whose publish is there has one flow, forward in time; how many."""
     claims = sum(int((t.events["kind"] == Kind.CLAIM).sum()) for _, t in trace.threads())
@@ -99,7 +106,7 @@ def test_a_run_is_traced_from_beginning_to_end(start, tmp_path) -> None:
 
 def test_a_trace_is_started_stopped_saved_and_evaluated(talking, manycore, tmp_path) -> None:
     manycore("trace", "start")
-    talking[1].wait_for("I heard")
+    hear(talking[1])
     manycore("trace", "stop")
     assert "not traced" in manycore("trace", "status")
     manycore("trace", "save", "-o", tmp_path / "a.json")
@@ -117,16 +124,14 @@ def test_killed_nodes_and_receive_threads_leave_their_events(
 ) -> None:
     talker, listener = talking
     manycore("trace", "start")
-    listener.wait_for("I heard")
+    hear(listener)
     for pid in receive_threads_of(platform):
         kill(pid)
-    listener.wait_for("I heard")
-    listener.wait_for("I heard")
+    hear(listener, 2)
     talker.signal(signal.SIGKILL)
     talker.wait()
     second = start(forked_example("talker"))
-    listener.skip_output()
-    listener.wait_for("I heard")
+    hear(listener)
     status = json.loads(manycore("trace", "status", "--json"))
     assert status["on"]
     assert status["events"] > 0
@@ -171,7 +176,7 @@ def test_one_trace_at_a_time_and_none_is_thrown_away(talking, manycore, tmp_path
 
 def test_a_full_disk_costs_no_trace(talking, manycore, start, tmp_path) -> None:
     manycore("trace", "start")
-    talking[1].wait_for("I heard")
+    hear(talking[1])
     manycore("trace", "stop")
     path = tmp_path / "trace.json"
     before = resource.getrlimit(resource.RLIMIT_FSIZE)

@@ -4,10 +4,21 @@
 #include "platform/clock.hpp"
 #include "rmw/common/checks.hpp"
 #include "rmw/common/error.hpp"
+#include "rmw/common/tracepoints.hpp"
 #include "rmw/rmw.h"
 #include "rmw/topics/publisher.hpp"
 
 using rmw_manycore::Publisher;
+
+namespace {
+
+void trace_publish(const rmw_publisher_t * publisher, const void * message, int64_t now_ns) {
+  if (const auto publish = rmw_manycore::tracepoints().publish) {
+    publish(publisher, message, now_ns);
+  }
+}
+
+}  // namespace
 
 rmw_ret_t rmw_publish(
   const rmw_publisher_t * publisher, const void * ros_message, rmw_publisher_allocation_t *) {
@@ -19,6 +30,7 @@ rmw_ret_t rmw_publish(
   return rmw_manycore::guarded([&] {
     const Publisher & sender = Publisher::of(publisher);
     const int64_t now_ns = manycore::realtime_ns();
+    trace_publish(publisher, ros_message, now_ns);
     manycore::Draft draft = sender.transport().draft(sender.cdr().size_bound(ros_message));
     const size_t size = sender.cdr().serialize(ros_message, draft.data(), draft.capacity());
     sender.transport().publish(std::move(draft), size, now_ns);
@@ -37,6 +49,7 @@ rmw_ret_t rmw_publish_serialized_message(
   return rmw_manycore::guarded([&] {
     manycore::Publisher & transport = Publisher::of(publisher).transport();
     const int64_t now_ns = manycore::realtime_ns();
+    trace_publish(publisher, serialized_message, now_ns);
     const size_t size = serialized_message->buffer_length;
     manycore::Draft draft = transport.draft(size);
     if (size != 0) {

@@ -4,6 +4,7 @@
 #include "rmw/common/checks.hpp"
 #include "rmw/common/error.hpp"
 #include "rmw/common/names.hpp"
+#include "rmw/common/tracepoints.hpp"
 #include "rmw/qos/qos.hpp"
 #include "rmw/rmw.h"
 #include "rmw/topics/endpoint_spec.hpp"
@@ -71,7 +72,11 @@ rmw_publisher_t * rmw_create_publisher(
     const rmw_qos_profile_t profile =
       rmw_manycore::best_available_for_publisher(owner, topic_name, *qos_profile);
     const auto type = rmw_manycore::MessageType::of(type_support);
-    return &(new Publisher(owner, type, topic_name, profile, *publisher_options))->handle;
+    auto & made = *new Publisher(owner, type, topic_name, profile, *publisher_options);
+    if (const auto init = rmw_manycore::tracepoints().publisher_init) {
+      init(&made.handle, made.transport().gid().data());
+    }
+    return &made.handle;
   });
 }
 

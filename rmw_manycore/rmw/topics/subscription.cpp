@@ -4,6 +4,7 @@
 #include "rmw/common/checks.hpp"
 #include "rmw/common/error.hpp"
 #include "rmw/common/names.hpp"
+#include "rmw/common/tracepoints.hpp"
 #include "rmw/qos/qos.hpp"
 #include "rmw/rmw.h"
 #include "rmw/topics/endpoint_spec.hpp"
@@ -86,7 +87,11 @@ rmw_subscription_t * rmw_create_subscription(
     const rmw_qos_profile_t profile =
       rmw_manycore::best_available_for_subscription(owner, topic_name, *qos_policies);
     const auto type = rmw_manycore::MessageType::of(type_support);
-    return &(new Subscription(owner, type, topic_name, profile, *subscription_options))->handle;
+    auto & made = *new Subscription(owner, type, topic_name, profile, *subscription_options);
+    if (const auto init = rmw_manycore::tracepoints().subscription_init) {
+      init(&made.handle, made.transport().gid().data());
+    }
+    return &made.handle;
   });
 }
 

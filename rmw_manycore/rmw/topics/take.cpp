@@ -1,6 +1,7 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #include "rmw/common/checks.hpp"
 #include "rmw/common/error.hpp"
+#include "rmw/common/tracepoints.hpp"
 #include "rmw/rmw.h"
 #include "rmw/topics/message_info.hpp"
 #include "rmw/topics/subscription.hpp"
@@ -13,6 +14,11 @@ bool take(Subscription & subscription, void * ros_message, rmw_message_info_t * 
   const auto taken = subscription.inbox().take(subscription.cdr(), ros_message);
   if (taken && info != nullptr) {
     *info = to_rmw(*taken);
+  }
+  if (const auto traced = tracepoints().take) {
+    traced(
+      &subscription.handle, ros_message, info != nullptr ? info->source_timestamp : 0,
+      taken.has_value());
   }
   return taken.has_value();
 }

@@ -3,6 +3,7 @@
 
 #include "rmw/common/checks.hpp"
 #include "rmw/common/error.hpp"
+#include "rmw/common/tracepoints.hpp"
 #include "rmw/rmw.h"
 #include "rmw/topics/message_info.hpp"
 #include "rmw/topics/subscription.hpp"
@@ -14,7 +15,7 @@ namespace {
 constexpr size_t word_bytes = 4;
 
 /// `info` may be null.
-bool take_serialized(
+bool copy_next(
   Subscription & subscription, rmw_serialized_message_t & message, rmw_message_info_t * info) {
   const std::optional<manycore::Claim> claim = subscription.inbox().claim();
   if (!claim) {
@@ -34,6 +35,15 @@ bool take_serialized(
     *info = to_rmw(claim->info());
   }
   return true;
+}
+
+bool take_serialized(
+  Subscription & subscription, rmw_serialized_message_t & message, rmw_message_info_t * info) {
+  const bool taken = copy_next(subscription, message, info);
+  if (const auto traced = tracepoints().take) {
+    traced(&subscription.handle, &message, info != nullptr ? info->source_timestamp : 0, taken);
+  }
+  return taken;
 }
 
 }  // namespace

@@ -48,11 +48,6 @@ enum class TraceKind : uint16_t {
   match,       ///< value: the other endpoint
   join,        ///< of the process
   leave,       ///< of the process
-  hop_begin,   ///< the bridge begins to carry a message; value: bytes
-  hop_end,
-  pass_begin,  ///< of the scan matcher; value: workers
-  pass_end,
-  count,
 };
 
 /// Slot and incarnation of an endpoint in one word.

@@ -1,0 +1,37 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#include "rmw/common/tracepoints.hpp"
+
+#include <dlfcn.h>
+
+namespace rmw_manycore {
+namespace {
+
+/// What another library puts in its place by LD_PRELOAD comes first, as with linked functions.
+template<typename Function>
+void find(Function *& function, void * library, const char * name) noexcept {
+  void * found = dlsym(RTLD_DEFAULT, name);
+  if (found == nullptr && library != nullptr) {
+    found = dlsym(library, name);
+  }
+  function = reinterpret_cast<Function *>(found);
+}
+
+Tracepoints find_all() noexcept {
+  // Python loads its modules, and what they need, out of the sight of others.
+  void * const library = dlopen("libtracetools.so", RTLD_LAZY | RTLD_NOLOAD);
+  Tracepoints found{};
+  find(found.publisher_init, library, "ros_trace_rmw_publisher_init");
+  find(found.publish, library, "ros_trace_rmw_publish");
+  find(found.subscription_init, library, "ros_trace_rmw_subscription_init");
+  find(found.take, library, "ros_trace_rmw_take");
+  return found;
+}
+
+}  // namespace
+
+const Tracepoints & tracepoints() noexcept {
+  static const Tracepoints found = find_all();
+  return found;
+}
+
+}  // namespace rmw_manycore

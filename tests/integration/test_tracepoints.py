@@ -1,0 +1,39 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""The rmw's tracepoints of libtracetools, as ros2_tracing and CARET expect them.
+
+Seen through a library in the place of libtracetools: there is no LTTng session here.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+from pathlib import Path
+
+import pytest
+from support import IS_MANYCORE, TESTS, example_command
+
+pytestmark = [
+    pytest.mark.integration,
+    pytest.mark.skipif(not IS_MANYCORE, reason="the tracepoints of rmw_manycore"),
+]
+
+
+@pytest.fixture(scope="module")
+def tracepoints(tmp_path_factory) -> Path:
+    library = tmp_path_factory.mktemp("tracepoints") / "tracepoints.so"
+    source = TESTS / "programs" / "tracepoints.c"
+    compiler = os.environ.get("CC", "cc")
+    subprocess.run([compiler, "-shared", "-fPIC", "-o", library, source], check=True)
+    return library
+
+
+def test_publish_and_take_are_told_with_handle_message_and_time(start, tracepoints) -> None:
+    preload = {"LD_PRELOAD": str(tracepoints)}
+    listener = start(example_command("listener"), **preload)
+    talker = start(example_command("talker"), **preload)
+    published = talker.wait_for(r"^publish (\S+) 1 [1-9]\d{17,}$")
+    assert published[1] in re.findall(r"^publisher_init (\S+) [1-9]", talker.output, re.M)
+    taken = listener.wait_for(r"^take (\S+) 1 [1-9]\d{17,} 1$")
+    assert taken[1] in re.findall(r"^subscription_init (\S+) [1-9]", listener.output, re.M)

@@ -1,0 +1,23 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+// In the place of libtracetools' tracepoints of the rmw, by LD_PRELOAD: says each call.
+#include <stdbool.h>
+#include <stdint.h>
+#include <stdio.h>
+
+void ros_trace_rmw_publisher_init(const void * publisher, const uint8_t * gid) {
+  fprintf(stderr, "publisher_init %p %d\n", publisher, gid[0] | gid[1] | gid[2]);
+}
+
+void ros_trace_rmw_publish(const void * publisher, const void * message, int64_t timestamp_ns) {
+  fprintf(stderr, "publish %p %d %ld\n", publisher, message != NULL, (long)timestamp_ns);
+}
+
+void ros_trace_rmw_subscription_init(const void * subscription, const uint8_t * gid) {
+  fprintf(stderr, "subscription_init %p %d\n", subscription, gid[0] | gid[1] | gid[2]);
+}
+
+void ros_trace_rmw_take(
+  const void * subscription, const void * message, int64_t source_timestamp_ns, bool taken) {
+  fprintf(
+    stderr, "take %p %d %ld %d\n", subscription, message != NULL, (long)source_timestamp_ns, taken);
+}
