@@ -168,6 +168,8 @@ def test_one_trace_at_a_time_and_none_is_thrown_away(talking, manycore, tmp_path
     wait_until(
         lambda: json.loads(manycore("trace", "status", "--json"))["events"], "the talker publishes"
     )
+    assert "one trace at a time" in manycore("trace", "start", "--discard", status=1)
+    assert json.loads(manycore("trace", "status", "--json"))["events"]
     manycore("trace", "stop")
     assert "was not saved" in manycore("trace", "start", status=1)
     manycore("trace", "start", "--discard", "--cluster", "2")

@@ -125,6 +125,7 @@ TEST_CASE("a member that was removed as dead notices before it touches memory") 
 TEST_CASE("a child of fork() writes nothing into its parent's trace") {
   Fixture f;
   Registry registry(f.platform.paths());
+  f.platform.receive_thread(1);  // or it may note later that it has come
   start_trace(registry, {});
   publish(*f.publisher, 1);
   const uint64_t before = trace_state(registry).pending;

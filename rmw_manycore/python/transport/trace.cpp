@@ -24,7 +24,7 @@ void start(
   const std::vector<std::string> & nodes, uint32_t events, bool discard) {
   const nb::gil_scoped_release released;
   Registry registry(PlatformPaths::of(platform));
-  if (discard) {
+  if (discard && trace_state(registry).started_ns == 0) {  // not one that is going on
     discard_trace(registry);
   }
   start_trace(registry, {clusters, nodes, events});
