@@ -54,7 +54,12 @@ def package_share(package: str) -> Path | None:
 
 def packages_with_interfaces() -> list[str]:
     """Return the packages that have message, service or action types."""
-    directories = (p / "share/ament_index/resource_index/rosidl_interfaces" for p in prefixes())
+    return resource_names("rosidl_interfaces")
+
+
+def resource_names(kind: str) -> list[str]:
+    """Return the names of the entries of a kind in the resource index."""
+    directories = (p / "share/ament_index/resource_index" / kind for p in prefixes())
     found = {entry.name for d in directories if d.is_dir() for entry in d.iterdir()}
     return sorted(found)
 

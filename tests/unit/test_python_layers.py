@@ -43,9 +43,9 @@ LAYERS = [
     (".cli.common", ".cli.topic.meters"),
     (".cli.doctor.report",),
     (
-        *(".cli.action", ".cli.bench", ".cli.bridge", ".cli.doctor", ".cli.interface"),
-        *(".cli.lifecycle", ".cli.map", ".cli.ndt", ".cli.node", ".cli.param", ".cli.service"),
-        *(".cli.top", ".cli.topic", ".cli.trace"),
+        *(".cli.action", ".cli.bench", ".cli.bridge", ".cli.component", ".cli.doctor"),
+        *(".cli.interface", ".cli.lifecycle", ".cli.map", ".cli.ndt", ".cli.node", ".cli.param"),
+        *(".cli.service", ".cli.top", ".cli.topic", ".cli.trace"),
     ),
     (".cli",),
 ]

@@ -6,6 +6,7 @@ from __future__ import annotations
 import click
 
 from rmw_manycore_py.cli.common import view
+from rmw_manycore_py.cli.common.completion import complete_actions
 from rmw_manycore_py.cli.common.names import row_of
 from rmw_manycore_py.cli.common.options import (
     count_option,
@@ -18,7 +19,7 @@ from rmw_manycore_py.cli.common.printing import print_json
 
 
 @click.command("info", epilog=examples("manycore action info -t /fibonacci"))
-@click.argument("action")
+@click.argument("action", shell_complete=complete_actions)
 @types_option
 @count_option
 @json_option

@@ -7,11 +7,13 @@ from typing import Any
 
 import click
 
+from rmw_manycore_py.cli.common.completion import complete_actions, complete_types_of_action
 from rmw_manycore_py.cli.common.interface_types import load_type
 from rmw_manycore_py.cli.common.message_text import ALL, to_yaml
 from rmw_manycore_py.cli.common.message_values import message_of, parse_values
 from rmw_manycore_py.cli.common.options import examples, platform_option
 from rmw_manycore_py.cli.common.tool_node import result_of, spin_once, tool_node
+from rmw_manycore_py.cli.common.values_argument import DEFAULTS, values_argument
 from rmw_manycore_py.errors import ManycoreError
 
 # By their number in action_msgs/msg/GoalStatus.
@@ -25,15 +27,17 @@ STATUSES = ("UNKNOWN", "ACCEPTED", "EXECUTING", "CANCELING", "SUCCEEDED", "CANCE
         "manycore action send_goal -f /fibonacci test_msgs/action/Fibonacci '{order: 5}'",
     ),
 )
-@click.argument("action")
-@click.argument("type_name", metavar="TYPE")
-@click.argument("goal", default="{}")
+@click.argument("action", shell_complete=complete_actions)
+@click.argument("type_name", metavar="TYPE", shell_complete=complete_types_of_action)
+@values_argument("goal")
 @click.option("-f", "--feedback", "shows_feedback", is_flag=True, help="Print feedback too.")
 @platform_option
-def command(action: str, type_name: str, goal: str, shows_feedback: bool, platform: str) -> None:
+def command(
+    action: str, type_name: str, goal: str | None, shows_feedback: bool, platform: str
+) -> None:
     """Send ACTION a GOAL in YAML and print its result; Ctrl-C cancels it."""
     action_type = load_type(type_name, "action")
-    request = message_of(action_type.Goal, parse_values(goal))
+    request = message_of(action_type.Goal, parse_values(goal or DEFAULTS))
     with tool_node(platform) as node:
         from rclpy.action import ActionClient
 

@@ -8,9 +8,11 @@ import importlib.util
 from typing import Any
 
 import click
+from click.shell_completion import CompletionItem
 from typing_extensions import override
 
 from rmw_manycore_hook import raise_on_interrupt
+from rmw_manycore_py.cli.common.suggestions import did_you_mean
 from rmw_manycore_py.errors import EXIT_INTERRUPTED, ManycoreError
 
 
@@ -50,8 +52,20 @@ class LazyGroup(click.Group):
     def resolve_command(
         self, ctx: click.Context, args: list[str]
     ) -> tuple[str | None, click.Command | None, list[str]]:
-        ctx.invoked_subcommand = args[0]  # known while its module is imported, too
+        name = args[0]
+        ctx.invoked_subcommand = name  # known while its module is imported, too
+        command = self.get_command(ctx, name)
+        if command is None and not name.startswith("-") and not ctx.resilient_parsing:
+            ctx.fail(f"No such command '{name}'{did_you_mean(name, self.list_commands(ctx))}")
         return super().resolve_command(ctx, args)
+
+    @override
+    def shell_complete(self, ctx: click.Context, incomplete: str) -> list[CompletionItem[str]]:
+        """Complete verbs without importing them: click would, for their help texts."""
+        verbs = [
+            CompletionItem(name) for name in self.list_commands(ctx) if name.startswith(incomplete)
+        ]
+        return [*verbs, *click.Command.shell_complete(self, ctx, incomplete)]
 
     @override
     def invoke(self, ctx: click.Context) -> Any:

@@ -8,20 +8,39 @@ from pathlib import Path
 from typing import Any
 
 import click
+from click.shell_completion import CompletionItem
 
-from rmw_manycore_py.mapfile.installed import find_mapfile, installed_mapfiles
+from rmw_manycore_py.cli.common.suggestions import did_you_mean
+from rmw_manycore_py.mapfile.installed import SUFFIXES, find_mapfile, installed_mapfiles
 
 
 def mapfile_argument(metavar: str = "MAPFILE", default: str | None = None) -> Callable[[Any], Any]:
     """Return the argument `mapfile`; it may be left out where there is a default."""
     return click.argument(
-        "mapfile", metavar=metavar, default=default, required=default is None, callback=_find
+        "mapfile",
+        metavar=metavar,
+        default=default,
+        required=default is None,
+        callback=_find,
+        shell_complete=_complete,
     )
 
 
 def _find(_context: click.Context, _argument: click.Parameter, name: str) -> Path:
     found = find_mapfile(name)
     if found is None:
-        known = ", ".join(installed_mapfiles()) or "none"
-        raise click.BadParameter(f"There is no file '{name}'; installed mapfiles: {known}.")
+        known = installed_mapfiles()
+        names = ", ".join(known) or "none"
+        meant = did_you_mean(name, known)
+        raise click.BadParameter(f"There is no file '{name}'; installed mapfiles: {names}{meant}")
     return found
+
+
+def _complete(
+    _context: click.Context, _parameter: click.Parameter, incomplete: str
+) -> list[CompletionItem[str]]:
+    """Offer installed mapfiles and those of the working directory; for a path, the shell's own."""
+    here = (file.name for suffix in SUFFIXES for file in Path().glob(f"*{suffix}"))
+    names = sorted({*installed_mapfiles(), *here})
+    found = [CompletionItem(name) for name in names if name.startswith(incomplete)]
+    return found or [CompletionItem(incomplete, type="file")]

@@ -13,8 +13,8 @@ import yaml
 # What `ros2 topic echo` shows of a long string or array unless it is told otherwise.
 SHOWN_LENGTH = 128
 ELLIPSIS = "..."
-_SEQUENCE = re.compile(r"sequence<([^,>]+).*>")
-_ARRAY = re.compile(r"(.+)\[(\d+)\]")
+_SEQUENCE = re.compile(r"sequence<([\w/]+)(?:<\d+>)?(?:, (\d+))?>")
+_ARRAY = re.compile(r"([\w/]+)(?:<\d+>)?\[(\d+)\]")
 
 
 @dataclass(frozen=True)
@@ -66,8 +66,13 @@ _LinePerField.add_representer(
 
 def to_yaml(message: Any, shown: Shown = BRIEFLY, *, flow_style: bool = False) -> str:
     """Return a message as a YAML document without its separator."""
+    return plain_to_yaml(to_plain(message, shown), flow_style=flow_style)
+
+
+def plain_to_yaml(plain: Any, *, flow_style: bool = False) -> str:
+    """Return what `to_plain` made of a message as such a document."""
     text = yaml.dump(
-        to_plain(message, shown),
+        plain,
         Dumper=_LinePerField,
         sort_keys=False,
         allow_unicode=True,
@@ -93,10 +98,16 @@ def _values(plain: Any) -> Iterator[Any]:
 def _field(value: Any, type_name: str, shown: Shown) -> Any:
     if not shown.arrays:
         if match := _SEQUENCE.fullmatch(type_name):
-            return f"<sequence type: {match[1]}, length: {len(value)}>"
+            bound = f"[{match[2]}]" if match[2] else ""
+            return f"<sequence type: {_full(match[1])}{bound}, length: {len(value)}>"
         if match := _ARRAY.fullmatch(type_name):
-            return f"<array type: {match[1]}[{match[2]}]>"
+            return f"<array type: {_full(match[1])}[{match[2]}]>"
     return to_plain(value, shown)
+
+
+def _full(type_name: str) -> str:
+    """Return std_msgs/msg/Header for std_msgs/Header."""
+    return "/msg/".join(type_name.split("/"))
 
 
 def _string(text: str, shown: Shown) -> str:

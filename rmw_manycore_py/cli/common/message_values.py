@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -15,11 +16,14 @@ from rosidl_parser.definition import (
 )
 
 from rmw_manycore_py.cli.common.interface_types import load_type
+from rmw_manycore_py.cli.common.suggestions import did_you_mean
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError, MapfileError
-from rmw_manycore_py.mapfile.format.document import parse_yaml
+from rmw_manycore_py.mapfile.format.document import parse_yaml, read_text
 
 # Words in the place of a message that stand for the present time.
 STAMPS = {("std_msgs", "Header"): "auto", ("builtin_interfaces", "Time"): "now"}
+
+_DOCUMENT_END = re.compile(r"^---[ \t]*$", re.MULTILINE)
 
 
 def parse_values(text: str) -> dict[str, Any]:
@@ -31,6 +35,15 @@ def parse_values(text: str) -> dict[str, Any]:
     if not isinstance(values, dict):
         raise _wrong(f"expected fields like '{{data: 1}}', found '{text}'")
     return values
+
+
+def read_values(file: Path) -> list[dict[str, Any]]:
+    """Return the fields in each document of a YAML file, which stand between lines of ---."""
+    documents = _DOCUMENT_END.split(read_text(file))
+    found = [parse_values(text) for text in documents if text.strip()]
+    if not found:
+        raise _wrong(f"{file}: expected the fields of a message, found nothing")
+    return found
 
 
 def message_of(message_type: Any, values: Mapping[str, Any], stamp: Any = None) -> Any:
@@ -57,12 +70,15 @@ class _Filler:
         types = dict(zip(names, message_type.SLOT_TYPES, strict=True))
         for name, value in values.items():
             if name not in types:
-                raise _wrong(f"no field '{path}{name}'; there is {', '.join(names) or 'none'}")
+                meant = did_you_mean(name, names) or f"; there is {', '.join(names) or 'none'}"
+                raise _wrong(f"Failed to populate field: no field '{path}{name}'{meant}")
             try:
                 setattr(message, name, self._converted(types[name], value, f"{path}{name}"))
             except (AssertionError, TypeError, ValueError, OverflowError) as error:
                 expected = names[name]
-                raise _wrong(f"{path}{name}: expected {expected}, found {value!r}") from error
+                raise _wrong(
+                    f"Failed to populate field: {path}{name}: expected {expected}, found {value!r}"
+                ) from error
         return message
 
     def _converted(self, kind: Any, value: Any, path: str) -> Any:

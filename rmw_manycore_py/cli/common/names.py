@@ -9,6 +9,7 @@ import click
 
 from rmw_manycore_py.cli.common.printing import print_json
 from rmw_manycore_py.cli.common.rows import Row
+from rmw_manycore_py.cli.common.suggestions import did_you_mean
 from rmw_manycore_py.errors import ManycoreError
 
 
@@ -30,7 +31,15 @@ def row_of(rows: Sequence[Row], name: str, kind: str) -> Row:
     for row in rows:
         if row["name"] == name:
             return row
-    raise ManycoreError(f"unknown {kind} '{name}' (manycore {kind} list shows all)")
+    raise unknown(name, kind, rows)
+
+
+def unknown(name: str, kind: str, rows: Sequence[Row]) -> ManycoreError:
+    """Return the error that there is none of that name among the rows."""
+    meant = did_you_mean(name, (row["name"] for row in rows))
+    return ManycoreError(
+        f"Unknown {kind} '{name}'" + (meant or f" (manycore {kind} list shows all)")
+    )
 
 
 def show_types(rows: Sequence[Row], name: str, kind: str) -> None:

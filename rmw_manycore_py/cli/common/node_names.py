@@ -3,8 +3,13 @@
 
 from __future__ import annotations
 
+import time
+
 from rmw_manycore_py.cli.common import view
+from rmw_manycore_py.cli.common.suggestions import did_you_mean
 from rmw_manycore_py.errors import ManycoreError
+
+_LOOK_S = 0.1
 
 
 def absolute_name(name: str) -> str:
@@ -12,14 +17,33 @@ def absolute_name(name: str) -> str:
     return name if name.startswith("/") else f"/{name}"
 
 
-def existing_node(platform: str, name: str) -> str:
-    """Return the full name of a node that is there."""
-    full_name = absolute_name(name)
+def existing_node(
+    platform: str, name: str, timeout_s: float = 0.0, missing: str = "Unable to find node"
+) -> str:
+    """Return the full name of a node that is there, or comes within a timeout.
+
+    :param timeout_s: a negative one has no end.
+    :param missing: how the error begins, which ros2cli words differently for each verb.
+    """
+    wanted = absolute_name(name)
+    end_s = time.monotonic() + timeout_s if timeout_s >= 0 else float("inf")
+    while True:
+        is_last_look = time.monotonic() >= end_s
+        names = _names_on(platform, may_lack=not is_last_look)
+        if wanted in names:
+            return wanted
+        if is_last_look:
+            meant = did_you_mean(wanted, names) or " (manycore node list shows all)"
+            raise ManycoreError(f"{missing} '{wanted}'{meant}")
+        time.sleep(_LOOK_S)
+
+
+def _names_on(platform: str, *, may_lack: bool) -> list[str]:
+    """Return the nodes of a platform, none where it may be missing and is."""
+    if may_lack and platform not in view.platform_names():
+        return []
     with view.open_platform(platform) as opened:
-        names = view.node_names(opened.nodes(), hidden=True)
-    if full_name not in names:
-        raise ManycoreError(f"unable to find node '{full_name}' (manycore node list shows all)")
-    return full_name
+        return view.node_names(opened.nodes(), hidden=True)
 
 
 def nodes_with_service(platform: str, service: str, type_name: str) -> list[str]:

@@ -22,26 +22,43 @@ _LOOK_PERIOD_S = 0.1
 
 
 @contextmanager
-def tool_node(platform: str, name: str | None = None) -> Iterator[Any]:
+def tool_node(platform: str, name: str | None = None, *, sim_time: bool = False) -> Iterator[Any]:
     """Yield a node that runs until the block ends or is interrupted; both end it quietly.
 
-    An interrupt reaches the block as KeyboardInterrupt, while the node still works.
+    With `sim_time` its clock follows the topic /clock. An interrupt reaches the block as
+    KeyboardInterrupt, while the node still works.
     """
     enter_middleware()
     os.environ["MANYCORE_PLATFORM"] = platform
     import rclpy
+    from rclpy.parameter import Parameter
     from rclpy.signals import SignalHandlerOptions
 
     rclpy.init(args=[], signal_handler_options=SignalHandlerOptions.NO)
     node = rclpy.create_node(
-        name or f"_manycore_{os.getpid()}", enable_rosout=False, start_parameter_services=False
+        name or f"_manycore_{os.getpid()}",
+        enable_rosout=False,
+        start_parameter_services=False,
+        parameter_overrides=[Parameter("use_sim_time", value=sim_time)],
     )
     try:
-        with suppress(KeyboardInterrupt):
+        with suppress(KeyboardInterrupt), _errors_of_rcl():
             yield node
     finally:
         node.destroy_node()
         rclpy.shutdown()
+
+
+@contextmanager
+def _errors_of_rcl() -> Iterator[None]:
+    """Report what rcl refuses, a name or a QoS policy, without the places in its sources."""
+    from rclpy._rclpy_pybind11 import RCLError
+    from rclpy.exceptions import NameValidationException
+
+    try:
+        yield
+    except (RCLError, NameValidationException) as error:
+        raise ManycoreError(str(error).partition(", at ")[0]) from error
 
 
 def spin_once(node: Any, timeout_s: float = _LOOK_PERIOD_S) -> None:

@@ -13,41 +13,63 @@ from rmw_manycore_py.cli.common.printing import print_json
 from rmw_manycore_py.cli.doctor.finding import Finding, Verdict
 from rmw_manycore_py.cli.doctor.install import check_install
 from rmw_manycore_py.cli.doctor.machine import check_machine
-from rmw_manycore_py.cli.doctor.writing import write_report
+from rmw_manycore_py.cli.doctor.writing import PRINTED, write_report
 from rmw_manycore_py.errors import EXIT_FAILURE
 
 COLOURS = {Verdict.OK: "green", Verdict.WARNING: "yellow", Verdict.FAILURE: "red"}
 
 
-@click.command("doctor", epilog=examples("manycore doctor", "manycore doctor --report report.txt"))
+@click.command(
+    "doctor",
+    epilog=examples("manycore doctor", "manycore doctor --report", "manycore doctor -r report.txt"),
+)
 @json_option
 @click.option(
+    "-r",
     "--report",
     "target",
-    metavar="FILE",
-    help="Write what a bug report needs to FILE (JSON for .json, - prints it) instead.",
+    metavar="[FILE]",
+    is_flag=False,
+    flag_value=PRINTED,
+    help="Print what a bug report needs instead, or write it to FILE (JSON for .json).",
+)
+@click.option("-rf", "--report-failed", "failed_only", is_flag=True, help="Print only what failed.")
+@click.option(
+    "-ep", "--exclude-packages", "lean", is_flag=True, help="Leave packages out of the report."
+)
+@click.option(
+    "-iw", "--include-warnings", "strict", is_flag=True, help="Count warnings as failures."
 )
 @click.option("--mapfile", metavar="MAPFILE", help="Report this one, not those that are running.")
-def command(as_json: bool, target: str | None, mapfile: str | None) -> None:
+def command(
+    as_json: bool,
+    target: str | None,
+    failed_only: bool,
+    lean: bool,
+    strict: bool,
+    mapfile: str | None,
+) -> None:
     """Check this machine and this installation; say what to do about what is wrong.
 
     The exit status is 0 when nothing fails; warnings do not count. A report has no messages in it,
     no secrets, and neither the user's name nor the host's; it is made whatever is broken.
     """
     if target is not None:
-        write_report(target, mapfile, _findings)
+        write_report(target, mapfile, lambda: _rows(_findings()), packages=not lean)
         return
-    findings = [*check_install(), *check_machine()]
+    failures = {Verdict.FAILURE, Verdict.WARNING} if strict else {Verdict.FAILURE}
+    findings = _findings()
+    shown = [f for f in findings if f.verdict in failures] if failed_only else findings
     if as_json:
-        print_json(_rows(findings))
+        print_json(_rows(shown))
     else:
-        _show(findings)
-    if any(finding.verdict is Verdict.FAILURE for finding in findings):
+        _show(shown)
+    if any(finding.verdict in failures for finding in findings):
         sys.exit(EXIT_FAILURE)
 
 
-def _findings() -> list[dict[str, str]]:
-    return _rows([*check_install(), *check_machine()])
+def _findings() -> list[Finding]:
+    return [*check_install(), *check_machine()]
 
 
 def _rows(findings: Iterable[Finding]) -> list[dict[str, str]]:

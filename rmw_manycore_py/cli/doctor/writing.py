@@ -13,9 +13,11 @@ from rmw_manycore_py.errors import ManycoreError
 PRINTED = "-"
 
 
-def write_report(target: str, mapfile: str | None, findings: Section) -> None:
+def write_report(
+    target: str, mapfile: str | None, findings: Section, *, packages: bool = True
+) -> None:
     """Make a report, and write it to a file or print it."""
-    sections = report(findings, mapfile)
+    sections = report(findings, mapfile, packages=packages)
     text = as_json(sections) if Path(target).suffix == ".json" else as_text(sections)
     if target == PRINTED:
         click.echo(text, nl=False)

@@ -5,22 +5,27 @@ from __future__ import annotations
 
 import click
 
+from rmw_manycore_py.cli.common.completion import complete_packages
 from rmw_manycore_py.cli.common.options import examples, json_option
 from rmw_manycore_py.cli.common.printing import print_json
+from rmw_manycore_py.cli.common.suggestions import did_you_mean
 from rmw_manycore_py.cli.interface.kinds import kind_options, of_kinds
 from rmw_manycore_py.errors import ManycoreError
-from rmw_manycore_py.ros.ament import interfaces
+from rmw_manycore_py.ros.ament import interfaces, packages_with_interfaces
 
 
 @click.command("package", epilog=examples("manycore interface package std_srvs"))
-@click.argument("package")
+@click.argument("package", shell_complete=complete_packages)
 @kind_options
 @json_option
 def command(package: str, kinds: tuple[str, ...], as_json: bool) -> None:
     """List the types of PACKAGE."""
     names = sorted(of_kinds(interfaces(package), kinds))
     if not interfaces(package):
-        raise ManycoreError(f"package '{package}' is not installed, or has no types")
+        meant = did_you_mean(package, packages_with_interfaces())
+        raise ManycoreError(
+            f"Unknown package '{package}'" + (meant or ": it is not installed, or has no types")
+        )
     if as_json:
         print_json(names)
         return

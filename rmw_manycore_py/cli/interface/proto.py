@@ -7,6 +7,7 @@ from typing import Any
 
 import click
 
+from rmw_manycore_py.cli.common.completion import complete_types
 from rmw_manycore_py.cli.common.interface_types import load_type
 from rmw_manycore_py.cli.common.message_text import ALL, to_yaml
 from rmw_manycore_py.cli.common.options import examples
@@ -17,7 +18,7 @@ _PARTS = {"msg": None, "srv": "Request", "action": "Goal"}
 
 
 @click.command("proto", epilog=examples("manycore interface proto std_srvs/srv/SetBool"))
-@click.argument("type_name", metavar="TYPE")
+@click.argument("type_name", metavar="TYPE", shell_complete=complete_types)
 @click.option("--no-quotes", is_flag=True, help="Print no quotes around it.")
 def command(type_name: str, no_quotes: bool) -> None:
     """Show values of TYPE to copy and change: of a service its request, of an action its goal."""
@@ -28,6 +29,10 @@ def command(type_name: str, no_quotes: bool) -> None:
 def _prototype(type_name: str) -> Any:
     parts = type_name.split("/")
     if len(parts) != 3 or parts[1] not in _PARTS:
-        raise ManycoreError(f"'{type_name}' is no type: expected package/msg/Name", EXIT_BAD_INPUT)
+        raise ManycoreError(
+            f"Invalid name '{type_name}': expected package/msg/Name, package/srv/Name or "
+            "package/action/Name",
+            EXIT_BAD_INPUT,
+        )
     loaded, part = load_type(type_name, parts[1]), _PARTS[parts[1]]
     return getattr(loaded, part)() if part else loaded()

@@ -7,8 +7,9 @@ import re
 from collections.abc import Iterator
 from pathlib import Path
 
+from rmw_manycore_py.cli.common.suggestions import did_you_mean
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
-from rmw_manycore_py.ros.ament import package_share
+from rmw_manycore_py.ros.ament import interfaces, package_share, packages_with_interfaces
 
 # Up to a comment: quoted text, in which # is a character as any other, or anything else.
 _CODE = re.compile(r"""(?:"[^"]*"|'[^']*'|[^#"'])*""")
@@ -34,15 +35,21 @@ def definition(
 def _file(type_name: str) -> Path:
     parts = type_name.split("/")
     if len(parts) != 3 or parts[1] not in ("msg", "srv", "action"):
-        raise ManycoreError(f"'{type_name}' is no type: expected package/msg/Name", EXIT_BAD_INPUT)
+        raise ManycoreError(
+            f"Invalid name '{type_name}': expected package/msg/Name, package/srv/Name or "
+            "package/action/Name",
+            EXIT_BAD_INPUT,
+        )
     share = package_share(parts[0])
     if share is None:
-        raise ManycoreError(f"package '{parts[0]}' is not installed")
+        meant = did_you_mean(parts[0], packages_with_interfaces())
+        raise ManycoreError(f"Unknown package '{parts[0]}'{meant}")
     file = share / parts[1] / f"{parts[2]}.{parts[1]}"
     for candidate in (file, file.with_suffix(".idl")):  # the source of a few packages is IDL
         if candidate.is_file():
             return candidate
-    raise ManycoreError(f"type '{type_name}' is not installed: no {file}")
+    meant = did_you_mean(type_name, interfaces(parts[0])) or f": there is no {file}"
+    raise ManycoreError(f"Could not find the interface '{type_name}'{meant}")
 
 
 def _code(line: str) -> str:

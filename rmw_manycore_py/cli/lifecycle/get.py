@@ -5,23 +5,37 @@ from __future__ import annotations
 
 import click
 
-from rmw_manycore_py.cli.common.options import examples, json_option, platform_option
+from rmw_manycore_py.cli.common import view
+from rmw_manycore_py.cli.common.options import (
+    discovery_options,
+    examples,
+    hidden_option,
+    json_option,
+    platform_option,
+)
 from rmw_manycore_py.cli.common.printing import print_json
 from rmw_manycore_py.cli.common.tool_node import tool_node
 from rmw_manycore_py.cli.lifecycle.services import (
     Lifecycle,
+    complete_lifecycle_nodes,
     existing_lifecycle_node,
     lifecycle_nodes,
 )
 
 
 @click.command("get", epilog=examples("manycore lifecycle get", "manycore lifecycle get /camera"))
-@click.argument("node", required=False)
+@click.argument("node", required=False, shell_complete=complete_lifecycle_nodes)
 @json_option
+@hidden_option
+@discovery_options
 @platform_option
-def command(node: str | None, platform: str, as_json: bool) -> None:
+def command(node: str | None, platform: str, as_json: bool, hidden: bool) -> None:
     """Print the state of NODE, or of all nodes with a lifecycle."""
-    names = [existing_lifecycle_node(platform, node)] if node else lifecycle_nodes(platform)
+    if node:
+        names = [existing_lifecycle_node(platform, node)]
+    else:
+        found = lifecycle_nodes(platform)
+        names = [name for name in found if hidden or not view.is_hidden(name)]
     with tool_node(platform) as tool:
         states = {name: Lifecycle(tool, name).state() for name in names}
     if as_json:

@@ -6,16 +6,26 @@ from __future__ import annotations
 import click
 
 from rmw_manycore_py.cli.common.message_text import to_plain
-from rmw_manycore_py.cli.common.options import examples, json_option, platform_option
+from rmw_manycore_py.cli.common.options import (
+    examples,
+    json_option,
+    named_node_options,
+    platform_option,
+)
 from rmw_manycore_py.cli.common.printing import print_json
 from rmw_manycore_py.cli.common.tool_node import tool_node
-from rmw_manycore_py.cli.lifecycle.services import Lifecycle, existing_lifecycle_node
+from rmw_manycore_py.cli.lifecycle.services import (
+    Lifecycle,
+    complete_lifecycle_nodes,
+    existing_lifecycle_node,
+)
 
 
 @click.command("list", epilog=examples("manycore lifecycle list /camera"))
-@click.argument("node")
+@click.argument("node", shell_complete=complete_lifecycle_nodes)
 @click.option("-a", "--all", "every", is_flag=True, help="Those from all other states too.")
 @json_option
+@named_node_options
 @platform_option
 def command(node: str, every: bool, platform: str, as_json: bool) -> None:
     """List the transitions that NODE can take from its present state."""

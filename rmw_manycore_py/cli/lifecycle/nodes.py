@@ -8,6 +8,7 @@ import click
 from rmw_manycore_py.cli.common import view
 from rmw_manycore_py.cli.common.options import (
     count_option,
+    discovery_options,
     examples,
     hidden_option,
     json_option,
@@ -18,14 +19,16 @@ from rmw_manycore_py.cli.lifecycle.services import lifecycle_nodes
 
 
 @click.command("nodes", epilog=examples("manycore lifecycle nodes"))
+@click.option("-a", "--all", "everything", is_flag=True, help="The same as --include-hidden.")
 @count_option
 @hidden_option
+@discovery_options
 @json_option
 @platform_option
-def command(platform: str, count: bool, hidden: bool, as_json: bool) -> None:
+def command(platform: str, count: bool, hidden: bool, everything: bool, as_json: bool) -> None:
     """List the nodes that have a lifecycle."""
     found = lifecycle_nodes(platform)
-    names = [name for name in found if hidden or not view.is_hidden(name)]
+    names = [name for name in found if hidden or everything or not view.is_hidden(name)]
     if as_json:
         print_json(names)
     elif count:

@@ -5,7 +5,9 @@ from __future__ import annotations
 
 from typing import Any
 
+from rmw_manycore_py.cli.common.completion import completer, platform_of
 from rmw_manycore_py.cli.common.node_names import absolute_name, nodes_with_service
+from rmw_manycore_py.cli.common.suggestions import did_you_mean
 from rmw_manycore_py.cli.common.tool_node import answer_of
 from rmw_manycore_py.errors import ManycoreError
 
@@ -17,12 +19,14 @@ def lifecycle_nodes(platform: str) -> list[str]:
 
 def existing_lifecycle_node(platform: str, name: str) -> str:
     """Return the full name of a node that is there and has a lifecycle."""
-    full_name = absolute_name(name)
-    if full_name not in lifecycle_nodes(platform):
-        raise ManycoreError(
-            f"no node '{full_name}' with a lifecycle (manycore lifecycle nodes shows all)"
-        )
+    full_name, known = absolute_name(name), lifecycle_nodes(platform)
+    if full_name not in known:
+        meant = did_you_mean(full_name, known) or " (manycore lifecycle nodes shows all)"
+        raise ManycoreError(f"Node not found: no '{full_name}' with a lifecycle{meant}")
     return full_name
+
+
+complete_lifecycle_nodes = completer(lambda context: lifecycle_nodes(platform_of(context)))
 
 
 class Lifecycle:

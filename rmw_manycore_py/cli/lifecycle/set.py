@@ -7,15 +7,20 @@ from typing import Any
 
 import click
 
-from rmw_manycore_py.cli.common.options import examples, platform_option
+from rmw_manycore_py.cli.common.options import examples, named_node_options, platform_option
 from rmw_manycore_py.cli.common.tool_node import tool_node
-from rmw_manycore_py.cli.lifecycle.services import Lifecycle, existing_lifecycle_node
+from rmw_manycore_py.cli.lifecycle.services import (
+    Lifecycle,
+    complete_lifecycle_nodes,
+    existing_lifecycle_node,
+)
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
 
 
 @click.command("set", epilog=examples("manycore lifecycle set /camera configure"))
-@click.argument("node")
+@click.argument("node", shell_complete=complete_lifecycle_nodes)
 @click.argument("transition")
+@named_node_options
 @platform_option
 def command(node: str, transition: str, platform: str) -> None:
     """Let NODE take a TRANSITION, given by its label or number."""

@@ -6,14 +6,22 @@ from __future__ import annotations
 import click
 
 from rmw_manycore_py.cli.common import view
+from rmw_manycore_py.cli.common.completion import complete_nodes
 from rmw_manycore_py.cli.common.node_names import existing_node
-from rmw_manycore_py.cli.common.options import examples, hidden_option, json_option, platform_option
+from rmw_manycore_py.cli.common.options import (
+    discovery_options,
+    examples,
+    hidden_option,
+    json_option,
+    platform_option,
+)
 from rmw_manycore_py.cli.common.printing import print_json
 
 
 @click.command("info", epilog=examples("manycore node info /talker"))
-@click.argument("node")
+@click.argument("node", shell_complete=complete_nodes)
 @hidden_option
+@discovery_options
 @json_option
 @platform_option
 def command(node: str, platform: str, as_json: bool, hidden: bool) -> None:

@@ -8,6 +8,7 @@ import click
 from rmw_manycore_py.cli.common import view
 from rmw_manycore_py.cli.common.options import (
     count_option,
+    discovery_options,
     examples,
     hidden_option,
     json_option,
@@ -15,11 +16,17 @@ from rmw_manycore_py.cli.common.options import (
 )
 from rmw_manycore_py.cli.common.printing import print_json
 
+SHARED_NAME = (
+    "WARNING: Be aware that there are nodes in the graph that share an exact name, which can have "
+    "unintended side effects."
+)
+
 
 @click.command("list", epilog=examples("manycore node list", "manycore node list --json"))
 @click.option("-a", "--all", "everything", is_flag=True, help="The same as --include-hidden.")
 @count_option
 @hidden_option
+@discovery_options
 @json_option
 @platform_option
 def command(platform: str, as_json: bool, hidden: bool, everything: bool, count: bool) -> None:
@@ -30,5 +37,7 @@ def command(platform: str, as_json: bool, hidden: bool, everything: bool, count:
     if as_json:
         print_json(view.placed_nodes(nodes, processes, set(names)))
         return
+    if len(set(names)) < len(names) and not count:
+        click.echo(SHARED_NAME, err=True)
     for name in [len(names)] if count else names:
         click.echo(name)

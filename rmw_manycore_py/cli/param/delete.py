@@ -5,20 +5,23 @@ from __future__ import annotations
 
 import click
 
-from rmw_manycore_py.cli.common.node_names import existing_node
-from rmw_manycore_py.cli.common.options import examples, platform_option
+from rmw_manycore_py.cli.common.completion import complete_nodes
+from rmw_manycore_py.cli.common.options import examples, named_node_options, platform_option
 from rmw_manycore_py.cli.common.tool_node import tool_node
+from rmw_manycore_py.cli.param.awaited_node import timeout_option, waited_for
 from rmw_manycore_py.cli.param.parameters import Parameters, parameter_of
 from rmw_manycore_py.errors import ManycoreError
 
 
 @click.command("delete", epilog=examples("manycore param delete /controller gain"))
-@click.argument("node")
+@click.argument("node", shell_complete=complete_nodes)
 @click.argument("parameter")
+@named_node_options
+@timeout_option
 @platform_option
-def command(node: str, parameter: str, platform: str) -> None:
+def command(node: str, parameter: str, timeout_s: float, platform: str) -> None:
     """Delete a PARAMETER of NODE; only nodes that allow undeclared parameters do that."""
-    name = existing_node(platform, node)
+    name = waited_for(platform, node, timeout_s)
     with tool_node(platform) as tool:
         ((_, result),) = Parameters(tool, name).set([parameter_of(parameter, None)])
     reason = f": {result.reason}" if result.reason else ""

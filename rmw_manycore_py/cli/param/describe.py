@@ -8,22 +8,32 @@ from typing import Any
 
 import click
 
+from rmw_manycore_py.cli.common.completion import complete_nodes
 from rmw_manycore_py.cli.common.message_text import to_plain
-from rmw_manycore_py.cli.common.node_names import existing_node
-from rmw_manycore_py.cli.common.options import examples, json_option, platform_option
+from rmw_manycore_py.cli.common.options import (
+    examples,
+    json_option,
+    named_node_options,
+    platform_option,
+)
 from rmw_manycore_py.cli.common.printing import print_json
 from rmw_manycore_py.cli.common.tool_node import tool_node
+from rmw_manycore_py.cli.param.awaited_node import timeout_option, waited_for
 from rmw_manycore_py.cli.param.parameters import TYPES, Parameters
 
 
 @click.command("describe", epilog=examples("manycore param describe /controller gain"))
-@click.argument("node")
+@click.argument("node", shell_complete=complete_nodes)
 @click.argument("parameters", nargs=-1, required=True)
 @json_option
+@named_node_options
+@timeout_option
 @platform_option
-def command(node: str, parameters: tuple[str, ...], platform: str, as_json: bool) -> None:
+def command(
+    node: str, parameters: tuple[str, ...], timeout_s: float, platform: str, as_json: bool
+) -> None:
     """Show type, description and constraints of PARAMETERS of NODE."""
-    name = existing_node(platform, node)
+    name = waited_for(platform, node, timeout_s)
     with tool_node(platform) as tool:
         descriptors = Parameters(tool, name).descriptors(parameters)
     if as_json:

@@ -6,20 +6,28 @@ from __future__ import annotations
 import click
 import yaml
 
-from rmw_manycore_py.cli.common.node_names import existing_node
-from rmw_manycore_py.cli.common.options import examples, json_option, platform_option
+from rmw_manycore_py.cli.common.completion import complete_nodes
+from rmw_manycore_py.cli.common.options import (
+    examples,
+    json_option,
+    named_node_options,
+    platform_option,
+)
 from rmw_manycore_py.cli.common.printing import print_json
 from rmw_manycore_py.cli.common.tool_node import tool_node
+from rmw_manycore_py.cli.param.awaited_node import timeout_option, waited_for
 from rmw_manycore_py.cli.param.parameters import Parameters, nested
 
 
 @click.command("dump", epilog=examples("manycore param dump /controller > controller.yaml"))
-@click.argument("node")
+@click.argument("node", shell_complete=complete_nodes)
 @json_option
+@named_node_options
+@timeout_option
 @platform_option
-def command(node: str, platform: str, as_json: bool) -> None:
+def command(node: str, timeout_s: float, platform: str, as_json: bool) -> None:
     """Print all parameters of NODE as a parameter file."""
-    name = existing_node(platform, node)
+    name = waited_for(platform, node, timeout_s)
     with tool_node(platform) as tool:
         parameters = Parameters(tool, name)
         names = parameters.names()

@@ -5,22 +5,32 @@ from __future__ import annotations
 
 import click
 
-from rmw_manycore_py.cli.common.node_names import existing_node
-from rmw_manycore_py.cli.common.options import examples, json_option, platform_option
+from rmw_manycore_py.cli.common.completion import complete_nodes
+from rmw_manycore_py.cli.common.options import (
+    examples,
+    json_option,
+    named_node_options,
+    platform_option,
+)
 from rmw_manycore_py.cli.common.printing import print_json
 from rmw_manycore_py.cli.common.tool_node import tool_node
+from rmw_manycore_py.cli.param.awaited_node import timeout_option, waited_for
 from rmw_manycore_py.cli.param.parameters import TYPES, Parameters
 
 
 @click.command("get", epilog=examples("manycore param get /controller gain"))
-@click.argument("node")
+@click.argument("node", shell_complete=complete_nodes)
 @click.argument("parameter")
 @click.option("--hide-type", is_flag=True, help="Print the value alone.")
 @json_option
+@named_node_options
+@timeout_option
 @platform_option
-def command(node: str, parameter: str, hide_type: bool, platform: str, as_json: bool) -> None:
+def command(
+    node: str, parameter: str, hide_type: bool, timeout_s: float, platform: str, as_json: bool
+) -> None:
     """Print the value of a PARAMETER of NODE."""
-    name = existing_node(platform, node)
+    name = waited_for(platform, node, timeout_s)
     with tool_node(platform) as tool:
         ((kind, value),) = Parameters(tool, name).values([parameter])
     if as_json:

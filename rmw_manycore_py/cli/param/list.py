@@ -6,28 +6,59 @@ from __future__ import annotations
 import re
 
 import click
+from typing_extensions import override
 
 from rmw_manycore_py.cli.common import view
+from rmw_manycore_py.cli.common.completion import complete_nodes
 from rmw_manycore_py.cli.common.node_names import existing_node, nodes_with_service
-from rmw_manycore_py.cli.common.options import examples, hidden_option, json_option, platform_option
+from rmw_manycore_py.cli.common.options import (
+    discovery_options,
+    examples,
+    hidden_option,
+    json_option,
+    platform_option,
+)
 from rmw_manycore_py.cli.common.printing import print_json
 from rmw_manycore_py.cli.common.tool_node import tool_node
 from rmw_manycore_py.cli.param.parameters import TYPES, Parameters
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
 
+_PREFIXES = "--param-prefixes"
 
-@click.command("list", epilog=examples("manycore param list", "manycore param list /controller"))
-@click.argument("node", required=False)
+
+class _ManyPrefixes(click.Command):
+    """Gives --param-prefixes all words up to the next option, as ros2cli does; click cannot."""
+
+    @override
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        expanded: list[str] = []
+        inside = False
+        for word, following in zip(args, [*args[1:], "-"], strict=True):
+            inside = word == _PREFIXES or (inside and not word.startswith("-"))
+            if word == _PREFIXES:
+                expanded += [word] if following.startswith("-") else []  # click says what lacks
+            else:
+                expanded += [_PREFIXES, word] if inside else [word]
+        return super().parse_args(ctx, expanded)
+
+
+@click.command(
+    "list",
+    cls=_ManyPrefixes,
+    epilog=examples("manycore param list", "manycore param list /controller"),
+)
+@click.argument("node", required=False, shell_complete=complete_nodes)
 @click.option(
-    "--param-prefixes",
+    _PREFIXES,
     "prefixes",
     multiple=True,
     metavar="PREFIX",
-    help="Only parameters below PREFIX; may be given several times.",
+    help="Only parameters below PREFIX, and those that follow up to the next option.",
 )
 @click.option("--filter", "expression", metavar="REGEX", help="Only names that begin like that.")
 @click.option("--param-type", "shows_types", is_flag=True, help="Show the type of each.")
 @hidden_option
+@discovery_options
 @json_option
 @platform_option
 def command(
@@ -42,7 +73,7 @@ def command(
     """List the parameters of NODE, or of all nodes that have some."""
     wanted = _pattern(expression or "")
     if node:
-        names = [existing_node(platform, node)]
+        names = [existing_node(platform, node, missing="Node not found:")]
     else:
         owners = nodes_with_service(
             platform, "list_parameters", "rcl_interfaces/srv/ListParameters"

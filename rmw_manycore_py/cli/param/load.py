@@ -5,23 +5,27 @@ from __future__ import annotations
 
 import click
 
-from rmw_manycore_py.cli.common.node_names import existing_node
-from rmw_manycore_py.cli.common.options import examples, platform_option
+from rmw_manycore_py.cli.common.completion import complete_nodes
+from rmw_manycore_py.cli.common.options import examples, named_node_options, platform_option
 from rmw_manycore_py.cli.common.tool_node import tool_node
+from rmw_manycore_py.cli.param.awaited_node import timeout_option, waited_for
 from rmw_manycore_py.cli.param.parameters import Parameters, parameters_of_file
 from rmw_manycore_py.errors import ManycoreError
 
 
 @click.command("load", epilog=examples("manycore param load /controller controller.yaml"))
-@click.argument("node")
+@click.argument("node", shell_complete=complete_nodes)
 @click.argument("file", type=click.Path(dir_okay=False, exists=True))
+@click.option("--no-use-wildcard", is_flag=True, help="Leave out parameters below /**.")
+@named_node_options
+@timeout_option
 @platform_option
-def command(node: str, file: str, platform: str) -> None:
+def command(node: str, file: str, no_use_wildcard: bool, timeout_s: float, platform: str) -> None:
     """Set the parameters of NODE that stand in a parameter FILE."""
-    name = existing_node(platform, node)
+    name = waited_for(platform, node, timeout_s)
     refused = []
     with tool_node(platform) as tool:
-        wanted = parameters_of_file(file, name)
+        wanted = parameters_of_file(file, name, wildcard=not no_use_wildcard)
         for parameter, result in Parameters(tool, name).set(wanted):
             reason = f": {result.reason}" if result.reason else ""
             if result.successful:

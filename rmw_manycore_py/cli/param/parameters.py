@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
+from rmw_manycore_py.cli.common.suggestions import did_you_mean
 from rmw_manycore_py.cli.common.tool_node import ANSWER_TIMEOUT_S, result_of
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
 from rmw_manycore_py.mapfile.format.document import read_yaml
@@ -48,14 +49,14 @@ class Parameters:
 
         answer = self._answer(self._client.get_parameters(list(names)))
         if len(answer.values) != len(names):
-            raise ManycoreError(f"{self.node_name} has not all of these parameters: {_list(names)}")
+            raise self._not_set(names)
         return [(value.type, parameter_value_to_python(value)) for value in answer.values]
 
     def descriptors(self, names: Sequence[str]) -> list[Any]:
         """Return an rcl_interfaces ParameterDescriptor for each."""
         answer = self._answer(self._client.describe_parameters(list(names)))
         if len(answer.descriptors) != len(names):
-            raise ManycoreError(f"{self.node_name} has not all of these parameters: {_list(names)}")
+            raise self._not_set(names)
         return list(answer.descriptors)
 
     def set(self, parameters: Sequence[Any]) -> Iterator[tuple[str, Any]]:
@@ -63,6 +64,12 @@ class Parameters:
         answer = self._answer(self._client.set_parameters(list(parameters)))
         for parameter, result in zip(parameters, answer.results, strict=True):
             yield parameter.name, result
+
+    def _not_set(self, names: Iterable[str]) -> ManycoreError:
+        known = self.names()
+        missing = [name for name in names if name not in known]
+        meant = did_you_mean(missing[0], known) if missing else ""
+        return ManycoreError(f"Parameter not set: {self.node_name} has no {_list(missing)}{meant}")
 
     def _answer(self, future: Any) -> Any:
         return result_of(self._node, future, f"parameters of {self.node_name}")
@@ -77,13 +84,17 @@ def parameter_of(name: str, text: str | None) -> Any:
     return Parameter(name=name, value=value)
 
 
-def parameters_of_file(path: str, node: str) -> list[Any]:
-    """Return the rcl_interfaces Parameters that a parameter file has for a node, or for all."""
+def parameters_of_file(path: str, node: str, *, wildcard: bool = True) -> list[Any]:
+    """Return the rcl_interfaces Parameters that a parameter file has for a node.
+
+    With `wildcard`, those for all nodes too.
+    """
     from rclpy.parameter import parameter_dict_from_yaml_file
 
     try:
         owners = read_yaml(Path(path)).data.keys()  # within bounds, which rclpy does not have
-        sections = [name for name in ("/**", node, node.removeprefix("/")) if name in owners]
+        fitting = ("/**", node, node.removeprefix("/"))[0 if wildcard else 1 :]
+        sections = [name for name in fitting if name in owners]
         if not sections:
             raise ValueError(f"there are some for {_list(owners)}")
         return list(parameter_dict_from_yaml_file(path, target_nodes=sections).values())

@@ -5,21 +5,28 @@ from __future__ import annotations
 
 import click
 
-from rmw_manycore_py.cli.common.node_names import existing_node
-from rmw_manycore_py.cli.common.options import examples, platform_option
+from rmw_manycore_py.cli.common.completion import complete_nodes
+from rmw_manycore_py.cli.common.options import examples, named_node_options, platform_option
 from rmw_manycore_py.cli.common.tool_node import tool_node
+from rmw_manycore_py.cli.param.awaited_node import timeout_option, waited_for
 from rmw_manycore_py.cli.param.parameters import Parameters, parameter_of
 from rmw_manycore_py.errors import ManycoreError
 
 
-@click.command("set", epilog=examples("manycore param set /controller gain 2.5"))
-@click.argument("node")
+@click.command(
+    "set",
+    context_settings={"ignore_unknown_options": True},  # a value may be -1
+    epilog=examples("manycore param set /controller gain 2.5"),
+)
+@click.argument("node", shell_complete=complete_nodes)
 @click.argument("parameter")
 @click.argument("value")
+@named_node_options
+@timeout_option
 @platform_option
-def command(node: str, parameter: str, value: str, platform: str) -> None:
+def command(node: str, parameter: str, value: str, timeout_s: float, platform: str) -> None:
     """Set a PARAMETER of NODE to a VALUE in YAML."""
-    name = existing_node(platform, node)
+    name = waited_for(platform, node, timeout_s)
     with tool_node(platform) as tool:
         ((_, result),) = Parameters(tool, name).set([parameter_of(parameter, value)])
     reason = f": {result.reason}" if result.reason else ""

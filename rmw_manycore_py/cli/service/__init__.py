@@ -6,13 +6,15 @@ from __future__ import annotations
 import click
 
 from rmw_manycore_py.cli.common.group import LazyGroup
+from rmw_manycore_py.cli.common.options import hidden_group_option
 
 VERBS = {
     verb: f"rmw_manycore_py.cli.service.{verb}:command"
-    for verb in ("list", "info", "type", "find", "call")
+    for verb in ("list", "info", "type", "find", "call", "echo")
 }
 
 
 @click.group("service", cls=LazyGroup, commands_at=VERBS)
+@hidden_group_option("--include-hidden-services")
 def command() -> None:
-    """List services and call them."""
+    """List services, call them, and see who calls them."""

@@ -8,23 +8,29 @@ import time
 
 import click
 
+from rmw_manycore_py.cli.common import view
+from rmw_manycore_py.cli.common.completion import complete_services, complete_types_of_service
 from rmw_manycore_py.cli.common.interface_types import load_type
 from rmw_manycore_py.cli.common.message_text import to_plain
 from rmw_manycore_py.cli.common.message_values import message_of, parse_values
-from rmw_manycore_py.cli.common.options import examples, platform_option, values_argument
+from rmw_manycore_py.cli.common.options import examples, platform_option
+from rmw_manycore_py.cli.common.printing import print_notices
+from rmw_manycore_py.cli.common.suggestions import closest
 from rmw_manycore_py.cli.common.tool_node import result_of, spin_once, tool_node
+from rmw_manycore_py.cli.common.values_argument import DEFAULTS, values_argument
 
 
 @click.command(
     "call",
     epilog=examples(
         "manycore service call /switch_lamp std_srvs/srv/SetBool '{data: true}'",
+        "echo '{data: true}' | manycore service call --stdin /switch_lamp std_srvs/srv/SetBool",
         "manycore service call -r 2 /switch_lamp std_srvs/srv/SetBool",
     ),
 )
-@click.argument("service")
-@click.argument("type_name", metavar="TYPE")
-@values_argument
+@click.argument("service", shell_complete=complete_services)
+@click.argument("type_name", metavar="TYPE", shell_complete=complete_types_of_service)
+@values_argument()
 @click.option(
     "-r",
     "--rate",
@@ -35,15 +41,21 @@ from rmw_manycore_py.cli.common.tool_node import result_of, spin_once, tool_node
 @click.option("--json", "as_json", is_flag=True, help="Print each response as a line of JSON.")
 @platform_option
 def command(
-    service: str, type_name: str, values: str, rate_hz: float | None, platform: str, as_json: bool
+    service: str,
+    type_name: str,
+    values: str | None,
+    rate_hz: float | None,
+    platform: str,
+    as_json: bool,
 ) -> None:
     """Call SERVICE with VALUES in YAML; waits for a server if there is none."""
     service_type = load_type(type_name, "srv")
-    request = message_of(service_type.Request, parse_values(values))
+    request = message_of(service_type.Request, parse_values(values or DEFAULTS))
     with tool_node(platform) as node:
         client = node.create_client(service_type, service)
         if not client.service_is_ready() and not as_json:
             click.echo("waiting for service to become available...")
+            _suggest(service, platform)
         while not client.service_is_ready():
             spin_once(node)
         while True:
@@ -55,3 +67,11 @@ def command(
             if rate_hz is None:
                 return
             time.sleep(max(0.0, start_s + 1 / rate_hz - time.monotonic()))
+
+
+def _suggest(service: str, platform: str) -> None:
+    """Name the service that was probably meant."""
+    rows = view.services(view.endpoints_on(platform), hidden=True)
+    served = [row["name"] for row in rows if row["servers"]]
+    if meant := closest(service, served):
+        print_notices([f"there is no service '{service}' yet; did you mean '{meant}'?"])

@@ -9,6 +9,7 @@ from rmw_manycore_py.cli.common import view
 from rmw_manycore_py.cli.common.names import show_names
 from rmw_manycore_py.cli.common.options import (
     count_option,
+    discovery_options,
     examples,
     hidden_option,
     json_option,
@@ -21,6 +22,7 @@ from rmw_manycore_py.cli.common.options import (
 @types_option
 @count_option
 @hidden_option
+@discovery_options
 @json_option
 @platform_option
 def command(platform: str, as_json: bool, show_types: bool, count: bool, hidden: bool) -> None:

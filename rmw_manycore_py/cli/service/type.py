@@ -6,12 +6,14 @@ from __future__ import annotations
 import click
 
 from rmw_manycore_py.cli.common import view
+from rmw_manycore_py.cli.common.completion import complete_services
 from rmw_manycore_py.cli.common.names import show_types
-from rmw_manycore_py.cli.common.options import examples, platform_option
+from rmw_manycore_py.cli.common.options import discovery_options, examples, platform_option
 
 
 @click.command("type", epilog=examples("manycore service type /switch_lamp"))
-@click.argument("service")
+@click.argument("service", shell_complete=complete_services)
+@discovery_options
 @platform_option
 def command(service: str, platform: str) -> None:
     """Print the type of SERVICE."""

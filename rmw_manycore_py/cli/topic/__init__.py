@@ -6,6 +6,7 @@ from __future__ import annotations
 import click
 
 from rmw_manycore_py.cli.common.group import LazyGroup
+from rmw_manycore_py.cli.common.options import hidden_group_option
 
 VERBS = {
     verb: f"rmw_manycore_py.cli.topic.{verb}:command"
@@ -14,5 +15,6 @@ VERBS = {
 
 
 @click.group("topic", cls=LazyGroup, commands_at=VERBS)
+@hidden_group_option("--include-hidden-topics")
 def command() -> None:
     """List topics, look at what they carry, and publish."""

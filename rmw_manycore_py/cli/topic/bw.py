@@ -3,8 +3,6 @@
 
 from __future__ import annotations
 
-import time
-
 import click
 
 from rmw_manycore_py.cli.common.options import examples
@@ -15,15 +13,22 @@ from rmw_manycore_py.cli.topic.meters.bandwidth import BandwidthMeter
 
 @click.command("bw", epilog=examples("manycore topic bw /image"))
 @measuring_options(2, 100, "messages")
-def command(topic: str, type_name: str | None, platform: str, window: int, as_json: bool) -> None:
+def command(
+    topic: str,
+    type_name: str | None,
+    platform: str,
+    window: int,
+    as_json: bool,
+    sim_time: bool,
+) -> None:
     """Print the bandwidth of TOPIC once per second; messages are not deserialized.
 
-    TYPE is needed only while nobody uses the topic.
+    Waits for a topic that nothing uses yet; with TYPE, subscribes to it at once.
     """
     meter = BandwidthMeter(window)
 
     def show() -> None:
-        bandwidth = meter.bandwidth(time.monotonic())
+        bandwidth = meter.bandwidth(listener.now_s())
         if bandwidth is not None:
             print_result(bandwidth, as_json)
 
@@ -31,8 +36,11 @@ def command(topic: str, type_name: str | None, platform: str, window: int, as_js
         platform,
         topic,
         type_name,
-        lambda data: meter.arrived(time.monotonic(), len(data)),
+        lambda data: meter.arrived(listener.now_s(), len(data)),
         raw=True,
+        sim_time=sim_time,
+        waits=True,
+        subscribed=None if as_json else lambda name: click.echo(f"Subscribed to [{name}]"),
     )
     listener.every(PERIOD_S, show)
     listener.run()

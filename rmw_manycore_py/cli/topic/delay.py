@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import time
 from typing import Any
 
 import click
@@ -17,19 +16,27 @@ from rmw_manycore_py.errors import ManycoreError
 
 @click.command("delay", epilog=examples("manycore topic delay /points"))
 @measuring_options(1, 10000, "messages")
-def command(topic: str, type_name: str | None, platform: str, window: int, as_json: bool) -> None:
+def command(
+    topic: str,
+    type_name: str | None,
+    platform: str,
+    window: int,
+    as_json: bool,
+    sim_time: bool,
+) -> None:
     """Print how old the messages of TOPIC are by the stamp in their header, once per second.
 
-    TYPE is needed only while nobody uses the topic.
+    Waits for a topic that nothing uses yet; with TYPE, subscribes to it at once.
     """
     meter = DelayMeter(window)
     printed: Delay | None = None
 
     def heard(message: Any) -> None:
         if not hasattr(message, "header"):
-            raise ManycoreError(f"messages of '{topic}' have no header with a stamp")
-        stamp = message.header.stamp
-        meter.arrived(time.time() - stamp.sec - stamp.nanosec * 1e-9)
+            raise ManycoreError(f"msg does not have header: those of '{topic}' have no stamp")
+        stamp, now_s = message.header.stamp, listener.now_s()
+        if now_s:  # simulated time is zero until /clock says more
+            meter.arrived(now_s - stamp.sec - stamp.nanosec * 1e-9)
 
     def show() -> None:
         nonlocal printed
@@ -37,7 +44,9 @@ def command(topic: str, type_name: str | None, platform: str, window: int, as_js
         if delay is not None and delay != printed:
             print_result(delay, as_json)
             printed = delay
+        elif delay is not None and not as_json:
+            click.echo("no new messages")
 
-    listener = Listener(platform, topic, type_name, heard)
+    listener = Listener(platform, topic, type_name, heard, sim_time=sim_time, waits=True)
     listener.every(PERIOD_S, show)
     listener.run()

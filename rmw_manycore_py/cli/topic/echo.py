@@ -4,18 +4,27 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
 from typing import Any
 
 import click
 import yaml
 
-from rmw_manycore_py.cli.common.message_text import SHOWN_LENGTH, Shown, to_csv, to_plain, to_yaml
-from rmw_manycore_py.cli.common.options import examples, platform_option
+from rmw_manycore_py.cli.common.completion import complete_topics, complete_types_of_topic
+from rmw_manycore_py.cli.common.message_text import (
+    Shown,
+    is_message,
+    to_csv,
+    to_plain,
+    to_yaml,
+)
+from rmw_manycore_py.cli.common.options import discovery_options, examples, platform_option
+from rmw_manycore_py.cli.common.shown_options import shown_options
 from rmw_manycore_py.cli.topic.listening import Listener
 from rmw_manycore_py.cli.topic.message_part import message_filter, part_of
 from rmw_manycore_py.cli.topic.outside import OutsideListener
 from rmw_manycore_py.cli.topic.qos_options import QosOptions, qos_request_options
+
+_RAW_HEAD = "---Got new message, message info:---\n{}\n---Message data:---\n"
 
 
 @click.command(
@@ -29,33 +38,29 @@ from rmw_manycore_py.cli.topic.qos_options import QosOptions, qos_request_option
         "manycore topic echo /chatter --json | jq .data",
     ),
 )
-@click.argument("topic")
-@click.argument("type_name", metavar="[TYPE]", required=False)
+@click.argument("topic", shell_complete=complete_topics)
+@click.argument(
+    "type_name", metavar="[TYPE]", required=False, shell_complete=complete_types_of_topic
+)
 @click.option("--once", is_flag=True, help="End after the first message.")
-@click.option("--timeout", "timeout_s", type=float, metavar="S", help="End after S seconds.")
+@click.option(
+    "--timeout",
+    "timeout_s",
+    type=click.FloatRange(min=0, min_open=True),
+    metavar="S",
+    help="End after S seconds.",
+)
 @click.option("--field", default="", metavar="PATH", help="Print only this part.")
 @click.option("--filter", "expression", metavar="EXPR", help="Print only what it holds for, as m.")
-@click.option("--csv", "style", flag_value="csv", help="Print values with commas between them.")
-@click.option("--flow-style", "style", flag_value="flow", help="Print each array in one line.")
-@click.option("--json", "style", flag_value="json", help="Print each as a line of JSON, in full.")
+@shown_options
 @click.option("--raw", "style", flag_value="raw", help="Print the bytes of each message.")
-@click.option("-f", "--full-length", is_flag=True, help="Shorten nothing.")
-@click.option(
-    "-l",
-    "--truncate-length",
-    type=click.IntRange(0),
-    default=SHOWN_LENGTH,
-    show_default=True,
-    help="What is shown of strings and arrays.",
-)
-@click.option("--no-arr", "no_arrays", is_flag=True, help="Name arrays without their elements.")
-@click.option("--no-str", "no_strings", is_flag=True, help="Print only the lengths of strings.")
 @click.option(
     "-i", "--include-message-info", "with_info", is_flag=True, help="Print times and numbers."
 )
 @click.option("--no-lost-messages", "silent", is_flag=True, help="Do not tell of lost messages.")
 @click.option("--outside", is_flag=True, help="Listen in the DDS domain $ROS_DOMAIN_ID instead.")
 @qos_request_options
+@discovery_options
 @platform_option
 def command(
     topic: str,
@@ -67,26 +72,19 @@ def command(
     field: str,
     expression: str | None,
     style: str | None,
-    full_length: bool,
-    truncate_length: int,
-    no_arrays: bool,
-    no_strings: bool,
+    shown: Shown,
     with_info: bool,
     silent: bool,
     outside: bool,
 ) -> None:
     """Print the messages of TOPIC. TYPE is needed only while nobody uses the topic."""
-    shown = Shown(None if full_length else truncate_length, not no_arrays, not no_strings)
-    text, fulfils = _writer(style, shown), message_filter(expression)
+    fulfils = message_filter(expression)
 
     def heard(message: Any, info: dict[str, Any]) -> None:
         part = message if style == "raw" else part_of(message, field)
         if not fulfils(part):
             return
-        if with_info and style == "json":
-            click.echo(json.dumps({"info": info, "message": to_plain(part)}))
-        else:
-            click.echo((_info_text(info, style) if with_info else "") + text(part))
+        click.echo(_text(part, info if with_info else None, style, shown))
         if once:
             listener.stop()
 
@@ -106,13 +104,20 @@ def command(
     listener.run(timeout_s)
 
 
-def _info_text(info: dict[str, Any], style: str | None) -> str:
-    """Return times (ns since 1970) and sequence numbers of a message, to stand before it."""
+def _text(part: Any, info: dict[str, Any] | None, style: str | None, shown: Shown) -> str:
+    """Return a message or a part of one, behind its times (ns since 1970) and numbers.
+
+    A part that is no message is written as Python does, as ros2cli has it.
+    """
+    if style == "json":
+        plain = to_plain(part)
+        return json.dumps(plain if info is None else {"info": info, "message": plain})
+    if style == "raw" or not is_message(part):
+        return ("" if info is None else _RAW_HEAD.format(info)) + f"{part}\n---"
     if style == "csv":
-        return "".join(f"{value}," for value in info.values())
-    if style == "raw":
-        return f"---Got new message, message info:---\n{info}\n---Message data:---\n"
-    return f"{yaml.safe_dump(info)}---\n"
+        return "".join(f"{value}," for value in (info or {}).values()) + to_csv(part, shown)
+    head = "" if info is None else f"{yaml.safe_dump(info)}---\n"
+    return f"{head}{to_yaml(part, shown, flow_style=style == 'flow')}---"
 
 
 def _tell_lost(status: Any) -> None:
@@ -120,13 +125,3 @@ def _tell_lost(status: Any) -> None:
         f"A message was lost!!!\n\ttotal count change:{status.total_count_change}"
         f"\n\ttotal count: {status.total_count}---"
     )
-
-
-def _writer(style: str | None, shown: Shown) -> Callable[[Any], str]:
-    writers: dict[str | None, Callable[[Any], str]] = {
-        "csv": lambda part: to_csv(part, shown),
-        "json": lambda part: json.dumps(to_plain(part)),
-        "raw": lambda data: f"{data}\n---",
-        "flow": lambda part: f"{to_yaml(part, shown, flow_style=True)}---",
-    }
-    return writers.get(style, lambda part: f"{to_yaml(part, shown)}---")

@@ -18,21 +18,22 @@ from rmw_manycore_py.cli.topic.meters.rate import Rate, RateMeter
 @click.command("hz", epilog=examples("manycore topic hz /chatter"))
 @measuring_options(1, 10000, "intervals")
 @click.option("--filter", "expression", metavar="EXPR", help="Count what it holds for, as m.")
-@click.option("--wall-time", is_flag=True, help="Accepted as of ros2: no other time is used.")
+@click.option("--wall-time", is_flag=True, help="Measure by the wall clock, also with -s.")
 def command(
     topic: str,
     type_name: str | None,
     platform: str,
     window: int,
     expression: str | None,
-    wall_time: bool,  # noqa: ARG001
+    wall_time: bool,
     as_json: bool,
+    sim_time: bool,
 ) -> None:
     """Print the rate of TOPIC once per second while messages come.
 
     They are not deserialized, unless there is a filter.
 
-    TYPE is needed only while nobody uses the topic.
+    Waits for a topic that nothing uses yet; with TYPE, subscribes to it at once.
     """
     meter, fulfils = RateMeter(window), message_filter(expression)
     printed: Rate | None = None
@@ -45,9 +46,18 @@ def command(
             printed = rate
 
     def heard(message: Any) -> None:
-        if fulfils(message):
-            meter.arrived(time.monotonic())
+        now_s = time.time() if wall_time else listener.now_s()
+        if now_s and fulfils(message):  # simulated time is zero until /clock says more
+            meter.arrived(now_s)
 
-    listener = Listener(platform, topic, type_name, heard, raw=expression is None)
+    listener = Listener(
+        platform,
+        topic,
+        type_name,
+        heard,
+        raw=expression is None,
+        sim_time=sim_time,
+        waits=True,
+    )
     listener.every(PERIOD_S, show)
     listener.run()

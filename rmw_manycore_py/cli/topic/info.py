@@ -7,25 +7,33 @@ import click
 
 from rmw_manycore_py._transport import EndpointInfo, Qos
 from rmw_manycore_py.cli.common import view
-from rmw_manycore_py.cli.common.options import examples, json_option, platform_option
+from rmw_manycore_py.cli.common.completion import complete_topics
+from rmw_manycore_py.cli.common.names import unknown
+from rmw_manycore_py.cli.common.options import (
+    discovery_options,
+    examples,
+    json_option,
+    platform_option,
+)
 from rmw_manycore_py.cli.common.printing import print_json
 from rmw_manycore_py.cli.common.rows import counters_row, endpoint_row
-from rmw_manycore_py.errors import ManycoreError
 
 
 @click.command(
     "info",
     epilog=examples("manycore topic info /chatter", "manycore topic info /chatter --verbose"),
 )
-@click.argument("topic")
+@click.argument("topic", shell_complete=complete_topics)
 @click.option("-v", "--verbose", is_flag=True, help="Show each publisher and subscription.")
+@discovery_options
 @json_option
 @platform_option
 def command(topic: str, platform: str, as_json: bool, verbose: bool) -> None:
     """Show who publishes TOPIC and who subscribes to it."""
-    endpoints = view.endpoints_of_topic(view.endpoints_on(platform), topic)
+    on_platform = view.endpoints_on(platform)
+    endpoints = view.endpoints_of_topic(on_platform, topic)
     if not endpoints:
-        raise ManycoreError(f"unknown topic '{topic}' (manycore topic list shows all)")
+        raise unknown(topic, "topic", view.topics(on_platform, hidden=True))
     publishers = [e for e in endpoints if e.kind == "publisher"]
     subscriptions = [e for e in endpoints if e.kind == "subscription"]
     if as_json:
@@ -42,6 +50,8 @@ def command(topic: str, platform: str, as_json: bool, verbose: bool) -> None:
         click.echo(f"\n{title} count: {len(found)}")
         for endpoint in found:
             click.echo(f"\n{describe(endpoint)}")
+    if verbose:
+        click.echo()  # as ros2cli ends
 
 
 def describe(endpoint: EndpointInfo) -> str:

@@ -11,6 +11,7 @@ from rmw_manycore_py.cli.common import view
 from rmw_manycore_py.cli.common.names import show_names
 from rmw_manycore_py.cli.common.options import (
     count_option,
+    discovery_options,
     examples,
     hidden_option,
     json_option,
@@ -26,6 +27,7 @@ from rmw_manycore_py.cli.common.rows import Row
 @click.option("-v", "--verbose", is_flag=True, help="Show who publishes and who subscribes.")
 @count_option
 @hidden_option
+@discovery_options
 @json_option
 @platform_option
 def command(
@@ -33,7 +35,7 @@ def command(
 ) -> None:
     """List the topics of a platform."""
     rows = view.topics(view.endpoints_on(platform), hidden=hidden)
-    if verbose and not as_json:
+    if verbose and rows and not as_json and not count:
         _show_users(rows, "Published topics", "publisher")
         _show_users(rows, "Subscribed topics", "subscription")
         return

@@ -4,12 +4,16 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from typing import Any
+
+import click
 
 from rmw_manycore_py._transport import EndpointInfo
 from rmw_manycore_py.cli.common import view
 from rmw_manycore_py.cli.common.interface_types import load_type
+from rmw_manycore_py.cli.common.printing import print_notices
+from rmw_manycore_py.cli.common.suggestions import did_you_mean
 from rmw_manycore_py.cli.common.tool_node import spin_once, tool_node
 from rmw_manycore_py.cli.topic.qos_options import QosOptions
 from rmw_manycore_py.errors import ManycoreError
@@ -22,7 +26,9 @@ class Listener:
     """Subscribes to a topic of a platform, as its publishers offer it.
 
     `heard` is called with each message, and with what rclpy knows of it if it takes two arguments;
-    `lost` with the status of each event of lost messages.
+    `lost` with the status of each event of lost messages; `subscribed` with the topic's full name
+    when it begins. Where `waits`, a topic that nothing uses yet is waited for; else its type has to
+    be given.
     """
 
     def __init__(
@@ -35,14 +41,19 @@ class Listener:
         lost: Callable[[Any], None] | None = None,
         raw: bool = False,
         qos: QosOptions = ANY_QOS,
+        sim_time: bool = False,
+        waits: bool = False,
+        subscribed: Callable[[str], None] | None = None,
     ) -> None:
-        topic = expand(topic, "/")
-        self._endpoints, self._qos = _endpoints(platform, topic), qos
-        self._message_type = load_type(type_name or type_of_topic(topic, self._endpoints))
-        self._platform, self._topic = platform, topic
+        self._platform, self._topic = platform, expand(topic, "/")
+        self._qos, self._sim_time, self._type_name = qos, sim_time, type_name
         self._heard, self._lost, self._raw = heard, lost, raw
+        self._subscribed = subscribed
         self._timers: list[tuple[float, Callable[[], None]]] = []
         self._over = False
+        self._clock: Any = None
+        if not waits:
+            self._message_type()
 
     def every(self, period_s: float, call: Callable[[], None]) -> None:
         """Call something once per period."""
@@ -52,34 +63,66 @@ class Listener:
         """End `run` after the present message."""
         self._over = True
 
+    def now_s(self) -> float:
+        """Return the time to measure with while `run` runs: simulated, or since 1970."""
+        return float(self._clock.now().nanoseconds * 1e-9)
+
     def run(self, timeout_s: float | None = None) -> None:
         """Listen until stopped or interrupted, or until the time is over."""
-        from rclpy.event_handler import SubscriptionEventCallbacks
-
-        # No more than every publisher offers, so that all are heard.
-        reliable, kept = offered_policies(self._endpoints)
-        with tool_node(self._platform) as node:
-            qos = self._qos.profile(reliable=reliable, kept=kept)
-            node.create_subscription(
-                self._message_type,
-                self._topic,
-                self._heard,
-                qos,
-                event_callbacks=SubscriptionEventCallbacks(message_lost=self._lost),
-                raw=self._raw,
-            )
+        with tool_node(self._platform, sim_time=self._sim_time) as node:
+            self._clock = node.get_clock()
+            self._wait_for_topic(node)
+            self._subscribe(node)
+            if self._subscribed:
+                self._subscribed(self._topic)
             for period_s, call in self._timers:
                 node.create_timer(period_s, call)
             end_s = float("inf") if timeout_s is None else time.monotonic() + timeout_s
             while not self._over and time.monotonic() < end_s:
                 spin_once(node, max(end_s - time.monotonic(), 0))
 
+    def _wait_for_topic(self, node: Any) -> None:
+        if self._type_name or _endpoints(self._platform, self._topic):
+            return
+        click.echo(
+            f"WARNING: topic [{self._topic}] does not appear to be published yet"
+            f"{did_you_mean(self._topic, _topics(self._platform))}",
+            err=True,
+        )
+        while not _endpoints(self._platform, self._topic):
+            spin_once(node)
 
-def type_of_topic(topic: str, endpoints: Iterable[EndpointInfo]) -> str:
-    """Return the one type of a topic."""
+    def _subscribe(self, node: Any) -> None:
+        from rclpy.event_handler import SubscriptionEventCallbacks
+
+        # No more than every publisher offers, so that all are heard.
+        endpoints = _endpoints(self._platform, self._topic)
+        print_notices(mixed_offers(endpoints, self._qos))
+        reliable, kept = offered_policies(endpoints)
+        node.create_subscription(
+            self._message_type(),
+            self._topic,
+            self._heard,
+            self._qos.profile(reliable=reliable, kept=kept),
+            event_callbacks=SubscriptionEventCallbacks(message_lost=self._lost),
+            raw=self._raw,
+        )
+
+    def _message_type(self) -> Any:
+        if self._type_name:
+            return load_type(self._type_name)
+        endpoints = _endpoints(self._platform, self._topic)
+        return load_type(type_of_topic(self._topic, endpoints, _topics(self._platform)))
+
+
+def type_of_topic(topic: str, endpoints: Iterable[EndpointInfo], known: Iterable[str] = ()) -> str:
+    """Return the one type of a topic; `known` are the names of all topics."""
     types = sorted({endpoint.type for endpoint in endpoints})
     if not types:
-        raise ManycoreError(f"nobody uses the topic '{topic}' yet; give its type to wait for it")
+        meant = did_you_mean(topic, known) or "; give its type to wait for it"
+        raise ManycoreError(
+            f"Could not determine the type for the passed topic: nothing uses '{topic}' yet{meant}"
+        )
     if len(types) > 1:
         raise ManycoreError(f"'{topic}' has several types, give one: {', '.join(types)}")
     return types[0]
@@ -91,9 +134,33 @@ def _endpoints(platform: str, topic: str) -> list[EndpointInfo]:
     return view.endpoints_of_topic(view.endpoints_on(platform), topic)
 
 
-def offered_policies(endpoints: Iterable[EndpointInfo]) -> tuple[bool, bool]:
-    """Return whether all publishers of a topic are reliable, and whether all keep messages."""
+def _topics(platform: str) -> list[str]:
+    if platform not in view.platform_names():
+        return []
+    return [row["name"] for row in view.topics(view.endpoints_on(platform), hidden=True)]
+
+
+def offered_policies(endpoints: Iterable[EndpointInfo]) -> tuple[bool | None, bool | None]:
+    """Return whether all publishers of a topic are reliable, and whether all keep messages.
+
+    None where there is no publisher yet.
+    """
     offers = [e.qos for e in endpoints if e.kind == "publisher"]
-    reliable = all(qos.reliability == "reliable" for qos in offers)
-    kept = bool(offers) and all(qos.durability == "transient_local" for qos in offers)
-    return reliable, kept
+    if not offers:
+        return None, None
+    return (
+        all(qos.reliability == "reliable" for qos in offers),
+        all(qos.durability == "transient_local" for qos in offers),
+    )
+
+
+def mixed_offers(endpoints: Iterable[EndpointInfo], asked: QosOptions) -> Iterator[str]:
+    """Yield what a user has to know of policies that only some publishers of a topic offer."""
+    offers = [e.qos for e in endpoints if e.kind == "publisher"]
+    policies = (
+        (asked.reliability, {qos.reliability for qos in offers}, "reliable", "best_effort"),
+        (asked.durability, {qos.durability for qos in offers}, "transient_local", "volatile"),
+    )
+    for wanted, offered, strong, weak in policies:
+        if wanted is None and len(offered) > 1:
+            yield f"some, but not all, publishers offer {strong}; asking for {weak} to hear all"

@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
-from rmw_manycore_py.cli.common.options import platform_option
+from rmw_manycore_py.cli.common.completion import complete_topics, complete_types_of_topic
+from rmw_manycore_py.cli.common.options import platform_option, talking_options
 
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance
@@ -26,6 +27,7 @@ def measuring_options(least: int, default: int, of: str) -> Callable[[Command], 
     def decorate(command: Command) -> Command:
         for decorator in (
             platform_option,
+            talking_options,
             click.option(
                 "--json", "as_json", is_flag=True, help="Print each result as a line of JSON."
             ),
@@ -37,8 +39,13 @@ def measuring_options(least: int, default: int, of: str) -> Callable[[Command], 
                 show_default=True,
                 help=f"Number of {of} to look back on.",
             ),
-            click.argument("type_name", metavar="[TYPE]", required=False),
-            click.argument("topic"),
+            click.argument(
+                "type_name",
+                metavar="[TYPE]",
+                required=False,
+                shell_complete=complete_types_of_topic,
+            ),
+            click.argument("topic", shell_complete=complete_topics),
         ):
             command = decorator(command)
         return command

@@ -30,7 +30,7 @@ def part_of(message: Any, path: str) -> Any:
 def _field(value: Any, name: str) -> Any:
     names = list(value.get_fields_and_field_types()) if is_message(value) else []
     if name not in names:
-        raise _wrong(f"no field '{name}'; there is {', '.join(names) or 'none, only a value'}")
+        raise _wrong(f"Invalid field '{name}': there is {', '.join(names) or 'none, only a value'}")
     return getattr(value, name)
 
 

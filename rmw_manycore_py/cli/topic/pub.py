@@ -5,22 +5,24 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator
+from itertools import repeat
+from pathlib import Path
 from typing import Any
 
 import click
 from builtin_interfaces.msg import Time
 
+from rmw_manycore_py.cli.common.completion import complete_topics, complete_types_of_topic
 from rmw_manycore_py.cli.common.interface_types import load_type
-from rmw_manycore_py.cli.common.message_values import message_of, parse_values
-from rmw_manycore_py.cli.common.options import examples, platform_option, values_argument
+from rmw_manycore_py.cli.common.message_values import message_of, parse_values, read_values
+from rmw_manycore_py.cli.common.options import examples, platform_option, talking_options
 from rmw_manycore_py.cli.common.tool_node import spin_once, tool_node
+from rmw_manycore_py.cli.common.values_argument import DEFAULTS, exclude, values_argument
 from rmw_manycore_py.cli.topic.qos_options import QosOptions, qos_options
-from rmw_manycore_py.errors import ManycoreError
+from rmw_manycore_py.cli.topic.subscribers import wait_for_subscriptions
 
 # How long the node stays after its last message, for late ends of its matches to see it.
 KEEP_ALIVE_S = 0.1
-# How often a waiting publisher says so.
-TOLD_PERIOD_S = 1.0
 
 
 @click.command(
@@ -29,15 +31,24 @@ TOLD_PERIOD_S = 1.0
         "manycore topic pub /chatter std_msgs/msg/String 'data: hello'",
         "manycore topic pub --once /chatter std_msgs/msg/String 'data: hello'",
         "manycore topic pub -r 10 /pose geometry_msgs/msg/PoseStamped '{header: auto}'",
+        "manycore topic pub --once --stdin /chatter std_msgs/msg/String < message.yaml",
+        "manycore topic pub --yaml-file echoed.yaml /chatter std_msgs/msg/String",
     ),
 )
-@click.argument("topic")
-@click.argument("type_name", metavar="TYPE")
-@values_argument
+@click.argument("topic", shell_complete=complete_topics)
+@click.argument("type_name", metavar="TYPE", shell_complete=complete_types_of_topic)
+@values_argument()
+@click.option(
+    "--yaml-file",
+    "file",
+    type=click.Path(dir_okay=False, exists=True, path_type=Path),
+    help="Publish the messages of a file in turn, as `topic echo` writes them.",
+)
 @click.option(
     "-r",
     "--rate",
     "rate_hz",
+    metavar="N",
     type=click.FloatRange(min=0, min_open=True),
     default=1.0,
     show_default=True,
@@ -80,11 +91,13 @@ TOLD_PERIOD_S = 1.0
 )
 @click.option("-n", "--node-name", metavar="NAME", help="Name of the publishing node.")
 @qos_options
+@talking_options
 @platform_option
 def command(
     topic: str,
     type_name: str,
-    values: str,
+    values: str | None,
+    file: Path | None,
     rate_hz: float,
     once: bool,
     times: int,
@@ -94,21 +107,31 @@ def command(
     keep_alive_s: float,
     node_name: str | None,
     qos: QosOptions,
+    sim_time: bool,
     platform: str,
 ) -> None:
     """Publish messages of TYPE on TOPIC, with VALUES in YAML and defaults elsewhere.
 
     The word `auto` stands for a header, and `now` for a time, of the moment of publishing.
     """
-    message_type, fields = load_type(type_name), parse_values(values)
-    message_of(message_type, fields, Time())
+    exclude(("--yaml-file", file is not None), ("VALUES", values is not None))
+    exclude(("--once", once), ("--times", times > 0))
     times = 1 if once else times
-    with tool_node(platform, node_name) as node:
+    wanted = int(times > 0) if wanted is None else wanted
+    if patience_s is not None and not wanted:
+        raise click.UsageError(
+            "--max-wait-time-secs needs --wait-matching-subscriptions, --once or --times."
+        )
+    message_type = load_type(type_name)
+    given = read_values(file) if file else [parse_values(values or DEFAULTS)]
+    for fields in given:
+        message_of(message_type, fields, Time())
+    with tool_node(platform, node_name, sim_time=sim_time) as node:
         publisher = node.create_publisher(message_type, topic, qos.profile())
-        wanted = int(times > 0) if wanted is None else wanted
-        _wait_for_subscriptions(node, publisher, wanted, patience_s)
+        wait_for_subscriptions(node, publisher, wanted, patience_s)
         click.echo("publisher: beginning loop")
-        for number in _ticks(node, 1 / rate_hz, times):
+        turns = given if file else repeat(given[0])  # those of a file once each
+        for fields, number in zip(turns, _ticks(node, 1 / rate_hz, times), strict=False):
             message = message_of(message_type, fields, node.get_clock().now().to_msg())
             if shown and number % shown == 0:
                 click.echo(f"publishing #{number}: {message!r}\n")
@@ -116,28 +139,15 @@ def command(
         time.sleep(keep_alive_s)
 
 
-def _wait_for_subscriptions(
-    node: Any, publisher: Any, wanted: int, patience_s: float | None
-) -> None:
-    start_s = time.monotonic()
-    told = 0  # once per second
-    while (found := publisher.get_subscription_count()) < wanted:
-        waited_s = time.monotonic() - start_s
-        if told and patience_s is not None and waited_s >= patience_s:
-            raise ManycoreError(
-                f"timed out waiting for subscriptions: {wanted} wanted, {found} matched"
-            )
-        if waited_s >= told * TOLD_PERIOD_S:
-            click.echo(f"Waiting for at least {wanted} matching subscription(s)...")
-            told += 1
-        spin_once(node)
-
-
 def _ticks(node: Any, period_s: float, times: int) -> Iterator[int]:
     """Yield 1, 2, ... once per period, as often as asked for or, if that is 0, for ever."""
-    number, due_s = 0, time.monotonic()
+
+    def now_s() -> float:
+        return float(node.get_clock().now().nanoseconds * 1e-9)
+
+    number, due_s = 0, now_s()
     while not times or number < times:
-        while (left_s := due_s - time.monotonic()) > 0:
+        while (left_s := due_s - now_s()) > 0:
             spin_once(node, left_s)
         number += 1
         due_s += period_s

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Callable
+from copy import copy
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,61 +13,90 @@ import click
 
 _Command = Callable[..., None]
 
+# The words of rclpy, which is not imported for the sake of --help.
+PRESETS = (
+    *("unknown", "default", "system_default", "sensor_data", "services_default", "parameters"),
+    *("parameter_events", "action_status_default", "best_available"),
+)
+POLICIES = {
+    "history": ("system_default", "keep_last", "keep_all", "unknown"),
+    "reliability": ("system_default", "reliable", "best_effort", "unknown", "best_available"),
+    "durability": ("system_default", "transient_local", "volatile", "unknown", "best_available"),
+    "liveliness": ("system_default", "automatic", "manual_by_topic", "unknown", "best_available"),
+}
+_PUBLISHING, _LISTENING = "default", "sensor_data"
+
 
 @dataclass(frozen=True)
 class QosOptions:
-    """What was asked for, as ROS 2 names it; None = nothing in particular."""
+    """What was asked for, as ROS 2 names it; None = what the preset has."""
 
+    preset: str = _LISTENING
     reliability: str | None = None
     durability: str | None = None
     history: str | None = None
+    liveliness: str | None = None
     depth: int | None = None
+    lease_s: float | None = None
 
-    def profile(self, *, reliable: bool = True, kept: bool = False) -> Any:
-        """Return it as an rclpy QoSProfile, with these policies where none was asked for."""
-        from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
+    def profile(self, *, reliable: bool | None = None, kept: bool | None = None) -> Any:
+        """Return it as an rclpy QoSProfile.
 
-        reliability = self.reliability or ("reliable" if reliable else "best_effort")
-        durability = self.durability or ("transient_local" if kept else "volatile")
-        return QoSProfile(
-            reliability=ReliabilityPolicy[reliability.upper()],
-            durability=DurabilityPolicy[durability.upper()],
-            history=HistoryPolicy[(self.history or "keep_last").upper()],
-            depth=self.depth or 10,
-        )
+        :param reliable, kept: what publishers offer, for policies that were not asked for.
+        """
+        from rclpy import qos
+        from rclpy.duration import Duration
+
+        profile = copy(qos.QoSPresetProfiles.get_from_short_key(self.preset))
+        if reliability := self.reliability or _offered(reliable, "reliable", "best_effort"):
+            profile.reliability = qos.ReliabilityPolicy.get_from_short_key(reliability)
+        if durability := self.durability or _offered(kept, "transient_local", "volatile"):
+            profile.durability = qos.DurabilityPolicy.get_from_short_key(durability)
+        if self.history:
+            profile.history = qos.HistoryPolicy.get_from_short_key(self.history)
+        if self.liveliness:
+            profile.liveliness = qos.LivelinessPolicy.get_from_short_key(self.liveliness)
+        if self.lease_s is not None:
+            profile.liveliness_lease_duration = Duration(nanoseconds=int(self.lease_s * 1e9))
+        if self.depth is not None:
+            profile.depth = self.depth
+        return profile
 
 
-def _qos_options(unasked: str | None) -> Callable[[_Command], _Command]:
+def _offered(offer: bool | None, strong: str, weak: str) -> str | None:
+    return None if offer is None else strong if offer else weak
+
+
+def _qos_options(preset: str, unasked: str) -> Callable[[_Command], _Command]:
     """Return a decorator; `unasked` says what holds for policies that are not given."""
 
-    def choice(policy: str, *values: str) -> Callable[[_Command], _Command]:
-        return click.option(
-            f"--qos-{policy}",
-            type=click.Choice(values),
-            default=None if unasked else values[0],
-            show_default=unasked or True,
-        )
+    def policy(name: str) -> Callable[[_Command], _Command]:
+        return click.option(f"--qos-{name}", name, type=click.Choice(POLICIES[name]))
 
     def decorate(function: _Command) -> _Command:
-        @choice("reliability", "reliable", "best_effort")
-        @choice("durability", "volatile", "transient_local")
         @click.option(
-            "--qos-history",
-            type=click.Choice(("keep_last", "keep_all")),
-            default="keep_last",
+            "--qos-profile",
+            "preset",
+            type=click.Choice(PRESETS),
+            default=preset,
             show_default=True,
+            help=f"Preset; for policies that are not given, {unasked}.",
         )
-        @click.option("--qos-depth", type=click.IntRange(1), default=10, show_default=True)
+        @policy("reliability")
+        @policy("durability")
+        @policy("history")
+        @click.option("--qos-depth", "depth", metavar="N", type=click.IntRange(1))
+        @policy("liveliness")
+        @click.option(
+            "--qos-liveliness-lease-duration-seconds",
+            "lease_s",
+            metavar="S",
+            type=click.FloatRange(min=0, min_open=True),
+        )
         @functools.wraps(function)
-        def with_qos(
-            qos_reliability: str | None,
-            qos_durability: str | None,
-            qos_history: str,
-            qos_depth: int,
-            **others: Any,
-        ) -> None:
-            qos = QosOptions(qos_reliability, qos_durability, qos_history, qos_depth)
-            function(qos=qos, **others)
+        def with_qos(**options: Any) -> None:
+            asked = {name: options.pop(name) for name in QosOptions.__dataclass_fields__}
+            function(qos=QosOptions(**asked), **options)
 
         return with_qos
 
@@ -74,5 +104,7 @@ def _qos_options(unasked: str | None) -> Callable[[_Command], _Command]:
 
 
 # Give a command the options --qos-*, which reach it as the argument `qos`.
-qos_options = _qos_options(None)
-qos_request_options = _qos_options("what all publishers offer")
+qos_options = _qos_options(_PUBLISHING, "it decides")
+qos_request_options = _qos_options(
+    _LISTENING, "it decides, but reliability and durability are what all publishers offer"
+)

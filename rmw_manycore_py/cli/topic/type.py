@@ -6,13 +6,19 @@ from __future__ import annotations
 import click
 
 from rmw_manycore_py.cli.common import view
+from rmw_manycore_py.cli.common.completion import complete_topics
 from rmw_manycore_py.cli.common.names import show_types
-from rmw_manycore_py.cli.common.options import examples, platform_option
+from rmw_manycore_py.cli.common.options import (
+    discovery_options,
+    examples,
+    platform_option,
+)
 
 
 @click.command("type", epilog=examples("manycore topic type /chatter"))
-@click.argument("topic")
+@click.argument("topic", shell_complete=complete_topics)
+@discovery_options
 @platform_option
 def command(topic: str, platform: str) -> None:
-    """Print the type of TOPIC."""
+    """Print the type of TOPIC, a hidden one too."""
     show_types(view.topics(view.endpoints_on(platform), hidden=True), topic, "topic")

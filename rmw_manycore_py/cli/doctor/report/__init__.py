@@ -24,14 +24,15 @@ Section = Callable[[], Any]
 _HEAD = "# Report of manycore doctor. It holds no messages; read it before you pass it on.\n"
 
 
-def report(findings: Section, mapfile: str | None) -> dict[str, Any]:
+def report(findings: Section, mapfile: str | None, *, packages: bool = True) -> dict[str, Any]:
     """Return all sections; one that is empty says why.
 
     :param findings: what the doctor itself finds.
     :param mapfile: path or name of one; without it, those of the runs in progress.
+    :param packages: whether to list versions of installed packages.
     """
     sections: Mapping[str, Section] = {
-        "versions": versions,
+        "versions": lambda: versions(packages=packages),
         "machine": machine,
         "limits": limits,
         "kernel settings": kernel_settings,

@@ -59,7 +59,8 @@ def test_words_for_the_present_time() -> None:
 @pytest.mark.parametrize(
     ("message_type", "text", "expected"),
     [
-        (String, "dat: x", "no field 'dat'; there is data"),
+        (String, "x: y", "no field 'x'; there is data"),
+        (String, "dat: x", "Failed to populate field: no field 'dat'; did you mean 'data'"),
         (String, "data: [x]", r"data: expected string, found \['x'\]"),
         (Int32, "data: many", "data: expected int32, found 'many'"),
         (Int32, "data: true", "data: expected int32, found True"),

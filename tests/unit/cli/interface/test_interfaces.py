@@ -50,8 +50,8 @@ def test_nested_types_are_indented() -> None:
 def test_types_that_are_not_there() -> None:
     for name, expected in (
         ("Odometry", "expected package/msg/Name"),
-        ("no_such_msgs/msg/A", "package 'no_such_msgs' is not installed"),
-        ("std_msgs/msg/A", "type 'std_msgs/msg/A' is not installed"),
+        ("no_such_msgs/msg/A", "Unknown package 'no_such_msgs'"),
+        ("std_msgs/msg/A", "Could not find the interface 'std_msgs/msg/A'"),
     ):
         with pytest.raises(ManycoreError, match=expected):
             list(definition(name))

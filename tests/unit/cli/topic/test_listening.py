@@ -30,6 +30,8 @@ def test_the_type_is_the_one_in_use() -> None:
     assert type_of_topic("/t", [of_type("a/msg/A"), of_type("a/msg/A")]) == "a/msg/A"
     with pytest.raises(ManycoreError, match="give its type"):
         type_of_topic("/t", [])
+    with pytest.raises(ManycoreError, match="did you mean '/talk'"):
+        type_of_topic("/talkk", [], ["/list", "/talk"])
     with pytest.raises(ManycoreError, match="a/msg/A, a/msg/B"):
         type_of_topic("/t", [of_type("a/msg/B"), of_type("a/msg/A")])
 
@@ -38,8 +40,8 @@ def test_types_that_are_not_there() -> None:
     assert load_type("std_msgs/msg/String").__name__ == "String"
     with pytest.raises(ManycoreError, match="not installed"):
         load_type("no_such_msgs/msg/Thing")
-    with pytest.raises(ManycoreError, match="not installed"):
-        load_type("std_msgs/msg/NoSuchThing")
+    with pytest.raises(ManycoreError, match="did you mean 'std_msgs/msg/String'"):
+        load_type("std_msgs/msg/Strin")
     with pytest.raises(ManycoreError, match="expected package/msg/Name"):
         load_type("String")
     assert load_type("std_srvs/SetBool", "srv").__name__ == "SetBool"
@@ -48,7 +50,7 @@ def test_types_that_are_not_there() -> None:
 
 
 def test_no_more_is_asked_for_than_all_publishers_offer() -> None:
-    assert offered_policies([]) == (True, False)
+    assert offered_policies([]) == (None, None)
     latched = publisher("reliable", "transient_local")
     assert offered_policies([latched]) == (True, True)
     assert offered_policies([latched, publisher("reliable", "volatile")]) == (True, False)

@@ -23,8 +23,8 @@ def test_a_path_leads_to_fields_and_elements() -> None:
 @pytest.mark.parametrize(
     ("path", "error"),
     [
-        ("pose.nowhere", "no field 'nowhere'; there is position, orientation"),
-        ("pose.position.x.y", "no field 'y'; there is none"),
+        ("pose.nowhere", "Invalid field 'nowhere': there is position, orientation"),
+        ("pose.position.x.y", "Invalid field 'y': there is none"),
         ("pose.position[0]", r"no element 'position\[0\]'"),
         ("pose/position", "expected a path"),
     ],

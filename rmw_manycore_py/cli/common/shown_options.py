@@ -1,0 +1,41 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""The options of verbs that print messages: how, and how much of long ones."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Callable
+from typing import Any
+
+import click
+
+from rmw_manycore_py.cli.common.message_text import SHOWN_LENGTH, Shown
+
+
+def shown_options(function: Callable[..., None]) -> Callable[..., None]:
+    """Give a command the arguments `shown` and `style`: None, "csv", "flow" or "json"."""
+
+    @click.option("--csv", "style", flag_value="csv", help="Print values with commas between them.")
+    @click.option("--flow-style", "style", flag_value="flow", help="Print each array in one line.")
+    @click.option(
+        "--json", "style", flag_value="json", help="Print each as a line of JSON, in full."
+    )
+    @click.option("-f", "--full-length", is_flag=True, help="Shorten nothing.")
+    @click.option(
+        "-l",
+        "--truncate-length",
+        type=click.IntRange(0),
+        default=SHOWN_LENGTH,
+        show_default=True,
+        help="What is shown of strings and arrays.",
+    )
+    @click.option("--no-arr", "no_arrays", is_flag=True, help="Name arrays without their elements.")
+    @click.option("--no-str", "no_strings", is_flag=True, help="Print only the lengths of strings.")
+    @functools.wraps(function)
+    def with_shown(
+        full_length: bool, truncate_length: int, no_arrays: bool, no_strings: bool, **others: Any
+    ) -> None:
+        length = None if full_length else truncate_length
+        function(shown=Shown(length, not no_arrays, not no_strings), **others)
+
+    return with_shown

@@ -1,0 +1,51 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""`manycore component list`, printed as `ros2 component list` prints."""
+
+from __future__ import annotations
+
+import click
+
+from rmw_manycore_py.cli.common.options import (
+    discovery_options,
+    examples,
+    json_option,
+    platform_option,
+)
+from rmw_manycore_py.cli.common.printing import print_json
+from rmw_manycore_py.cli.common.tool_node import tool_node
+from rmw_manycore_py.cli.component.containers import (
+    Container,
+    complete_containers,
+    containers_on,
+    existing_container,
+)
+
+
+@click.command(
+    "list", epilog=examples("manycore component list", "manycore component list /container")
+)
+@click.argument("container", required=False, shell_complete=complete_containers)
+@click.option("--containers-only", is_flag=True, help="List the containers without components.")
+@discovery_options
+@json_option
+@platform_option
+def command(container: str | None, containers_only: bool, as_json: bool, platform: str) -> None:
+    """List the containers and the components in them, or only those in CONTAINER."""
+    names = [existing_container(platform, container)] if container else containers_on(platform)
+    found: dict[str, list[tuple[int, str]]] = {name: [] for name in names}
+    if names and not containers_only:
+        with tool_node(platform) as tool:
+            found = {name: Container(tool, name).components() for name in names}
+    if as_json:
+        print_json(
+            {
+                name: [{"id": unique_id, "node": node} for unique_id, node in components]
+                for name, components in found.items()
+            }
+        )
+        return
+    for name, components in found.items():
+        if not container:
+            click.echo(name)
+        for unique_id, node in components:
+            click.echo(("" if container else "  ") + f"{unique_id}  {node}")
