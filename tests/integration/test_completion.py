@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import shutil
 import subprocess
+from collections.abc import Iterable
 from pathlib import Path
 
 import pytest
@@ -16,31 +17,36 @@ pytestmark = [
     pytest.mark.skipif(not IS_MANYCORE, reason="manycore is about rmw_manycore"),
 ]
 
-# Each calls the completion of a line as its shell does for Tab, and prints what that offers.
+# Each calls, for every line, the completion that its shell calls for Tab, and prints what it offers
+# and a line END.
 BASH = """
 eval "$(manycore completion bash)"
-COMP_LINE="$1"; COMP_WORDS=($COMP_LINE); [[ $1 == *" " ]] && COMP_WORDS+=("")
-COMP_CWORD=$((${#COMP_WORDS[@]} - 1))
 compopt() { echo "compopt $*"; }
 function=$(complete -p manycore | sed 's/.* -F \\([^ ]*\\) .*/\\1/')
-$function manycore "${COMP_WORDS[COMP_CWORD]}"
-printf '%s\\n' "${COMPREPLY[@]}"
+for line in "$@"; do
+    COMPREPLY=() COMP_WORDS=($line); [[ $line == *" " ]] && COMP_WORDS+=("")
+    COMP_CWORD=$((${#COMP_WORDS[@]} - 1))
+    $function manycore "${COMP_WORDS[COMP_CWORD]}"
+    printf '%s\\n' "${COMPREPLY[@]}" END
+done
 """
 # Only inside of its line editor does zsh complete, so the functions that show the result stand in.
 ZSH = """
 compdef() { :; }
 compadd() { while [[ $1 == -* ]]; do [[ $1 == -V ]] && shift; shift; done; print -l ${(P)1}; }
-_describe() { print -l ${${(P)3}%%:*}; }
-_path_files() { echo "files $*"; }
 eval "$(manycore completion zsh)"
-words=(${(z)1}); [[ $1 == *" " ]] && words+=("")
-CURRENT=$#words
-_manycore_completion
+for line in "$@"; do
+    words=(${(z)line}); CURRENT=$#words
+    _manycore_completion
+    print END
+done
 """
 FISH = """
 manycore completion fish | source
-complete --do-complete "$argv[1]" | string replace --regex '\\t.*' ''
-true
+for line in $argv
+    complete --do-complete "$line" | string replace --regex '\\t.*' ''
+    echo END
+end
 """
 
 
@@ -63,11 +69,11 @@ def complete(start, platform):
     start(peer_command(talking)).wait_for("ready")
     program = Path(manycore_command()[0])
 
-    def offered(command: list[str], line: str, directory: Path) -> list[str]:
+    def offered(command: list[str], directory: Path, lines: Iterable[str]) -> list[list[str]]:
         variables = environment(platform)
         path = f"{program.parent}:{variables['PATH']}"
         done = subprocess.run(
-            [*command, line],
+            [*command, *lines],
             env={**variables, "PATH": path, "HOME": str(directory)},
             cwd=directory,
             text=True,
@@ -75,47 +81,46 @@ def complete(start, platform):
             check=True,
         )
         assert done.stderr == ""
-        return done.stdout.split()
+        return [part.split() for part in done.stdout.split("END\n")[:-1]]
 
     return offered
 
 
 def test_bash_completes(complete, tmp_path) -> None:
     (tmp_path / "my_map.yaml").touch()
-
-    def offered(line: str) -> list[str]:
-        return complete(["bash", "--norc", "-c", BASH, "bash"], line, tmp_path)
-
-    assert offered("manycore top") == ["top", "topic"]
-    assert offered("manycore node ") == ["list", "info"]
-    assert offered("manycore topic echo --qos-d") == ["--qos-durability", "--qos-depth"]
-    assert offered("manycore topic echo --qos-profile sen") == ["sensor_data"]
-    assert offered("manycore topic echo /ch") == ["/chatter"]
-    assert "/_hidden" not in offered("manycore topic echo /")
-    assert offered("manycore topic pub /chatter ") == ["std_msgs/msg/String"]
-    assert offered("manycore topic pub /new std_msgs/msg/Str") == ["std_msgs/msg/String"]
-    assert offered("manycore node info ") == ["/talker"]
-    assert offered("manycore service call /sw") == ["/switch"]
-    assert offered("manycore run talker_l") == ["talker_listener"]
-    assert offered("manycore run my") == ["my_map.yaml"]
-    assert offered("manycore run ./my") == ["compopt", "-o", "default"]
-    assert offered("manycore interface show std_srvs/srv/Set") == ["std_srvs/srv/SetBool"]
-    assert offered("manycore topic echo --platform no-such /ch") == []
+    expected = {
+        "manycore top": ["top", "topic"],
+        "manycore node ": ["list", "info"],
+        "manycore topic echo --qos-d": ["--qos-durability", "--qos-depth"],
+        "manycore topic echo --qos-profile sen": ["sensor_data"],
+        "manycore topic echo /": ["/chatter", "/parameter_events", "/rosout"],
+        "manycore topic pub /chatter ": ["std_msgs/msg/String"],
+        "manycore node info ": ["/talker"],
+        "manycore service call /sw": ["/switch"],
+        "manycore run talker_l": ["talker_listener"],
+        "manycore run my": ["my_map.yaml"],
+        "manycore run ./my": ["compopt", "-o", "default"],
+        "manycore interface show std_srvs/srv/Set": ["std_srvs/srv/SetBool"],
+        "manycore topic echo --platform no-such /ch": [],
+    }
+    found = complete(["bash", "--norc", "-c", BASH, "bash"], tmp_path, expected)
+    assert dict(zip(expected, found, strict=True)) == expected
 
 
 @pytest.mark.parametrize(
-    ("shell", "command"), [("zsh", ["-f", "-c", ZSH, "zsh"]), ("fish", ["--no-config", "-c", FISH])]
+    ("shell", "options"), [("zsh", ["-f", "-c", ZSH, "zsh"]), ("fish", ["--no-config", "-c", FISH])]
 )
-def test_other_shells_complete(complete, tmp_path, shell: str, command: list[str]) -> None:
-    found = shutil.which(shell)
-    if found is None:
+def test_other_shells_complete(complete, tmp_path, shell: str, options: list[str]) -> None:
+    program = shutil.which(shell)
+    if program is None:
         pytest.skip(f"{shell} is not installed")
-    for line, expected in (
-        ("manycore top", ["top", "topic"]),
-        ("manycore topic echo /ch", ["/chatter"]),
-        ("manycore run talker_l", ["talker_listener"]),
-    ):
-        assert complete([found, *command], line, tmp_path) == expected
+    expected = {
+        "manycore top": ["top", "topic"],
+        "manycore topic echo /ch": ["/chatter"],
+        "manycore run talker_l": ["talker_listener"],
+    }
+    found = complete([program, *options], tmp_path, expected)
+    assert dict(zip(expected, found, strict=True)) == expected
 
 
 def test_how_to_switch_it_on_is_printed(start) -> None:
