@@ -78,8 +78,8 @@ def test_topics_with_the_options_of_ros2(running, manycore) -> None:
     assert manycore("topic", "list", *looks).splitlines()[:2] == ["/array", "/chatter"]
     assert "/_hidden" in manycore("topic", "--include-hidden-topics", "list").splitlines()
     assert manycore("topic", "list", "-v", "-c", *looks) == manycore("topic", "list", "-c")
-    assert "Unknown topic '/chater'; did you mean '/chatter'?" in manycore(
-        "topic", "info", "/chater", status=1
+    assert "Unknown topic '/chattr'; did you mean '/chatter'?" in manycore(
+        "topic", "info", "/chattr", status=1
     )
     once = ("topic", "echo", "--once", "--no-daemon", "--spin-time", "1")
     whole = manycore(*once, "/array", "--qos-profile", "default", "--flow-style").splitlines()
@@ -143,8 +143,8 @@ def test_values_from_standard_input_and_files(start, manycore, tmp_path) -> None
     assert "--max-wait-time-secs needs" in manycore(
         *("topic", "pub", "--max-wait-time-secs", "1", *pub[-2:]), status=2
     )
-    unknown = manycore(*pub[:3], "/talk", "std_msgs/msg/Strin", status=1)
-    assert "The passed message type is invalid: 'std_msgs/msg/Strin'" in unknown
+    unknown = manycore(*pub[:3], "/talk", "std_msgs/msg/Stringg", status=1)
+    assert "The passed message type is invalid: 'std_msgs/msg/Stringg'" in unknown
     assert "did you mean 'std_msgs/msg/String'?" in unknown
 
 
@@ -169,8 +169,8 @@ def test_calls_of_a_service_are_shown(running, start, manycore) -> None:
     silent = start(manycore_command("service", "echo", "/filter/get_parameters"))
     silent.wait_for("No publishers on topic '/filter/get_parameters/_service_event'; is service")
     silent.stop()
-    unknown = manycore("service", "info", "/swich", status=1)
-    assert unknown == "manycore: Unknown service '/swich'; did you mean '/switch'?"
+    unknown = manycore("service", "info", "/switchh", status=1)
+    assert unknown == "manycore: Unknown service '/switchh'; did you mean '/switch'?"
 
 
 SWITCH = ("/switch", "std_srvs/srv/SetBool")

@@ -79,6 +79,8 @@ def plain_to_yaml(plain: Any, *, flow_style: bool = False) -> str:
         width=float("inf"),
         default_flow_style=flow_style,
     )
+    if isinstance(plain, (dict, list)):
+        return str(text)
     return str(text).removesuffix("...\n")  # the end of a document that is one scalar
 
 

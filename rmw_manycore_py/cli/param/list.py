@@ -33,7 +33,7 @@ class _ManyPrefixes(click.Command):
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
         expanded: list[str] = []
         inside = False
-        for word, following in zip(args, [*args[1:], "-"], strict=True):
+        for word, following in zip(args, [*args[1:], "-"], strict=False):
             inside = word == _PREFIXES or (inside and not word.startswith("-"))
             if word == _PREFIXES:
                 expanded += [word] if following.startswith("-") else []  # click says what lacks

@@ -9,6 +9,7 @@ import yaml
 from geometry_msgs.msg import PoseStamped
 from sensor_msgs.msg import CameraInfo, Image
 from std_msgs.msg import Byte, Float64MultiArray, MultiArrayDimension, MultiArrayLayout, String
+from test_msgs.msg import BoundedSequences
 
 from rmw_manycore_py.cli.common.message_text import (
     ELLIPSIS,
@@ -46,6 +47,19 @@ def test_json_has_everything() -> None:
 
 def test_a_byte_is_a_number() -> None:
     assert to_plain(Byte(data=b"\x07")) == {"data": 7}
+
+
+def test_a_shortened_string_at_the_end_keeps_its_dots() -> None:
+    assert to_yaml(String(data="Hello World"), Shown(5)) == "data: Hello...\n"
+
+
+def test_array_types_are_named_in_full() -> None:
+    left_out = Shown(arrays=False)
+    bounded = to_plain(BoundedSequences(), left_out)
+    assert bounded["float64_values"] == "<sequence type: double[3], length: 0>"
+    assert bounded["string_values"] == "<sequence type: string[3], length: 0>"
+    dimensions = to_plain(MultiArrayLayout(), left_out)["dim"]
+    assert dimensions == "<sequence type: std_msgs/msg/MultiArrayDimension, length: 0>"
 
 
 def test_arrays_and_strings_may_be_left_out() -> None:

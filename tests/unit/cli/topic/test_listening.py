@@ -41,7 +41,7 @@ def test_types_that_are_not_there() -> None:
     with pytest.raises(ManycoreError, match="not installed"):
         load_type("no_such_msgs/msg/Thing")
     with pytest.raises(ManycoreError, match="did you mean 'std_msgs/msg/String'"):
-        load_type("std_msgs/msg/Strin")
+        load_type("std_msgs/msg/Stringg")
     with pytest.raises(ManycoreError, match="expected package/msg/Name"):
         load_type("String")
     assert load_type("std_srvs/SetBool", "srv").__name__ == "SetBool"
