@@ -7,11 +7,22 @@ import difflib
 from collections.abc import Iterable
 
 
+# Of difflib's ratio, from 0 for names that have nothing in common to 1 for equal ones.
+_ALIKE = 0.6
+
+
 def closest(name: str, known: Iterable[str]) -> str | None:
-    """Return the known name that is most like this one, unless none is."""
+    """Return the known name that is most like this one, unless none is.
+
+    The last parts have to be alike, too: all types of a package begin alike.
+    """
     by_folded = {candidate.casefold(): candidate for candidate in known}
-    close = difflib.get_close_matches(name.casefold(), by_folded, n=1)
-    return by_folded[close[0]] if close else None
+    folded = name.casefold()
+    for close in difflib.get_close_matches(folded, by_folded, cutoff=_ALIKE):
+        last_parts = folded.rpartition("/")[2], close.rpartition("/")[2]
+        if difflib.SequenceMatcher(None, *last_parts).ratio() >= _ALIKE:
+            return by_folded[close]
+    return None
 
 
 def did_you_mean(name: str, known: Iterable[str]) -> str:
