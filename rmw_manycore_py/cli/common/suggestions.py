@@ -6,7 +6,6 @@ from __future__ import annotations
 import difflib
 from collections.abc import Iterable
 
-
 # Of difflib's ratio, from 0 for names that have nothing in common to 1 for equal ones.
 _ALIKE = 0.6
 
