@@ -1,7 +1,7 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #
-# Messages and services that PyPI has no wheels of, from their published definitions in interfaces/:
-# one Python package each, and its libraries.
+# Messages, services and actions that PyPI has no wheels of, from their published definitions in
+# interfaces/: one Python package each, and its libraries.
 #
 # In a sourced ROS 2 install they are packages of the system.
 if(DEFINED ENV{AMENT_PREFIX_PATH} AND NOT SKBUILD)
@@ -29,7 +29,8 @@ endif()
 function(manycore_interfaces package)
   set(source ${CMAKE_CURRENT_SOURCE_DIR}/interfaces/${package})
   set(root ${CMAKE_CURRENT_BINARY_DIR}/interfaces)
-  file(GLOB_RECURSE definitions CONFIGURE_DEPENDS ${source}/*.msg ${source}/*.srv)
+  file(GLOB_RECURSE definitions CONFIGURE_DEPENDS
+    ${source}/*.msg ${source}/*.srv ${source}/*.action)
   # At configure time: what the generators write is known only afterwards.
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS
     ${definitions} ${generator} ${generators})
@@ -71,7 +72,7 @@ function(manycore_interfaces package)
   foreach(directory ${source} ${root}/idl/${package}
       ${root}/rosidl_generator_type_description/${package})
     install(DIRECTORY ${directory} DESTINATION ${share}
-      FILES_MATCHING REGEX "\\.(msg|srv|idl|json)$")
+      FILES_MATCHING REGEX "\\.(msg|srv|action|idl|json)$")
   endforeach()
 endfunction()
 
@@ -93,7 +94,8 @@ macro(manycore_interface_target target kind)
   target_link_libraries(${target} PRIVATE ${libraries} manycore_ros
     ${ros_prefix}/lib/librosidl_typesupport_c.so
     ${ros_prefix}/lib/librosidl_typesupport_introspection_c.so)
-  foreach(dependency builtin_interfaces geometry_msgs rcl_interfaces service_msgs std_msgs)
+  foreach(dependency action_msgs builtin_interfaces geometry_msgs rcl_interfaces service_msgs
+      std_msgs unique_identifier_msgs)
     target_include_directories(${target} SYSTEM PRIVATE ${ros_prefix}/include/${dependency})
     target_link_libraries(${target} PRIVATE ${ros_prefix}/lib/lib${dependency}__rosidl_${kind}.so)
   endforeach()

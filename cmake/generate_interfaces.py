@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Generate C and Python for the messages and services of one package, with ROS 2's generators.
+"""Generate C and Python for the interfaces of one package, with ROS 2's generators.
 
 Called by ManycoreInterfaces.cmake, with the directory of the package's definitions, the directory
 for what is generated, and the prefix of the ROS 2 wheels.

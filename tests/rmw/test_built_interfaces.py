@@ -7,9 +7,12 @@ import pytest
 import rclpy
 from autoware_internal_debug_msgs.msg import Float32Stamped, Int32Stamped
 from geometry_msgs.msg import TransformStamped
+from rclpy.action import ActionClient, ActionServer
 from ros_support import announce, peer_node, spin_until
 from support import PATIENCE_S
-from tf2_msgs.msg import TFMessage
+from tf2_msgs.action import LookupTransform
+from tf2_msgs.msg import TF2Error, TFMessage
+from tf2_msgs.srv import FrameGraph
 from tier4_localization_msgs.srv import PoseWithCovarianceStamped
 
 
@@ -30,8 +33,23 @@ def echo() -> None:
             publisher = node.create_publisher(type(message), f"{name}_back", 10)
             node.create_subscription(type(message), f"{name}_there", publisher.publish, 10)
         node.create_service(PoseWithCovarianceStamped, "pose", same_pose)
+        node.create_service(FrameGraph, "frames", graph)
+        action_server = ActionServer(node, LookupTransform, "lookup", look_up)
         announce("ready")
         rclpy.spin(node)
+        action_server.destroy()
+
+
+def graph(_: FrameGraph.Request, response: FrameGraph.Response) -> FrameGraph.Response:
+    response.frame_yaml = "base_link: {parent: map}"
+    return response
+
+
+def look_up(goal: object) -> LookupTransform.Result:
+    goal.succeed()
+    result = LookupTransform.Result(error=TF2Error(error=TF2Error.TIMEOUT_ERROR))
+    result.transform.child_frame_id = goal.request.target_frame
+    return result
 
 
 def same_pose(
@@ -66,3 +84,23 @@ def test_a_service(node, start_peer):
     response = answer.result()
     assert (response.success, response.reliable) == (False, True)
     assert response.pose_with_covariance == request.pose_with_covariance
+
+
+def test_what_the_python_library_of_tf2_imports(node, start_peer):
+    """Our tf2_msgs hides one that the user builds, so it has all of the published one."""
+    start_peer(echo, cluster=2)
+    frames = node.create_client(FrameGraph, "frames")
+    assert frames.wait_for_service(PATIENCE_S)
+    answer = frames.call_async(FrameGraph.Request())
+    spin_until(node, answer.done)
+    assert answer.result().frame_yaml == "base_link: {parent: map}"
+    client = ActionClient(node, LookupTransform, "lookup")
+    assert client.wait_for_server(PATIENCE_S)
+    accepted = client.send_goal_async(LookupTransform.Goal(target_frame="lidar"))
+    spin_until(node, accepted.done)
+    done = accepted.result().get_result_async()
+    spin_until(node, done.done)
+    result = done.result().result
+    assert result.transform.child_frame_id == "lidar"
+    assert result.error.error == TF2Error.TIMEOUT_ERROR
+    client.destroy()
