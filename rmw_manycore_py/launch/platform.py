@@ -3,6 +3,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
+
 from rmw_manycore_py import _transport
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
 from rmw_manycore_py.launch.ros2_daemon import CURE, is_daemon
@@ -14,9 +17,12 @@ GROWS = 0  # the size of a topic DSM that starts small
 
 
 def configured_platform(placement: Placement) -> _transport.Configurator:
-    """Create a platform; as a context manager remove it in the end unless others are on it."""
+    """Create a platform; as a context manager remove it in the end unless others are on it.
+
+    Where there is one of that name, the error names the processes on it.
+    """
     topology = placement.topology
-    with translate_native_errors():
+    with translate_native_errors(), naming_users(placement.name):
         return _transport.Configurator(
             placement.name,
             clusters=len(topology.clusters),
@@ -37,6 +43,18 @@ def configured_platform(placement: Placement) -> _transport.Configurator:
                 for topic in placement.topics
             ],
         )
+
+
+@contextmanager
+def naming_users(name: str) -> Iterator[None]:
+    """Add the processes on a platform to an error about it."""
+    try:
+        yield
+    except _transport.PlatformError as error:
+        users = remaining_users(name)
+        if not users:
+            raise
+        raise ManycoreError(f"{error}; on it: {', '.join(users)}") from error
 
 
 def remaining_users(name: str) -> list[str]:

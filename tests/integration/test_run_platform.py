@@ -4,7 +4,9 @@
 from __future__ import annotations
 
 import json
+import re
 import signal
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -97,9 +99,22 @@ def test_a_platform_runs_once(start, platform) -> None:
     first.wait_for(HEARD)
     second = start(manycore_command("run", TALKER_LISTENER))
     assert second.wait() == 1
-    assert f"platform '{platform}' is running already" in second.output
+    assert re.search(
+        f"platform '{platform}' is running already; .*; on it: .*talker \\(\\d+\\)", second.output
+    )
     first.wait_for(HEARD)
     assert first.stop() == 0
+
+
+def test_the_daemon_of_ros2cli_is_named_as_what_it_is(start, platform) -> None:
+    code = (
+        "import rclpy; rclpy.init(); rclpy.create_node('daemon'); print('up', flush=True); input()"
+    )
+    daemon = start([sys.executable, "-c", f"'ros2cli.daemon'; {code}"])
+    daemon.wait_for("up")
+    run = start(manycore_command("run", TALKER_LISTENER))
+    assert run.wait() == 1
+    assert "`ros2 daemon stop` ends the daemon of ros2cli" in run.output
 
 
 def test_after_the_runner_was_killed_the_platform_starts_again(start, platform) -> None:
