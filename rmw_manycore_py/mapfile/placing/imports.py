@@ -19,22 +19,39 @@ if TYPE_CHECKING:
 
 
 def check_imports(mapfile: Mapfile, starts: Mapping[str, NodeStart]) -> Iterator[Problem]:
-    """Yield types that a node imports and that are not installed."""
+    """Yield types that a node imports and whose packages are not installed."""
     for name, start in starts.items():
-        for type_name, place in _needed(start).items():
+        for type_name, place in _missing(start):
             package = type_name.split("/")[0]
-            if not _is_installed(package, type_name):
+            if not ament.interfaces(package):
                 expected = f"{type_name} to be installed, which {place} imports"
-                has = "without it" if ament.interfaces(package) else "not installed"
-                found = f"the package '{package}' {has}"
+                found = f"the package '{package}' not installed"
                 yield mapfile.document.problem(("nodes", name), expected, found)
+
+
+def notices_of_imports(starts: Mapping[str, NodeStart]) -> Iterator[str]:
+    """Yield types that a node imports and that their installed packages do not have.
+
+    A program may add a type to a package before it imports it, as rosboard does.
+    """
+    for name, start in starts.items():
+        for type_name, place in _missing(start):
+            if ament.interfaces(type_name.split("/")[0]):
+                yield f"'{name}' imports {type_name} ({place}), which its package does not have"
+
+
+def _missing(start: NodeStart) -> Iterator[tuple[str, str]]:
+    for type_name, place in _needed(start).items():
+        if not _is_installed(type_name.split("/")[0], type_name):
+            yield type_name, place
 
 
 def _needed(start: NodeStart) -> dict[str, str]:
     """Return what the source of a node imports, and where, if it runs in this environment."""
     source = start.program.source
-    elsewhere = Path(start.program.argv[0]).parent != Path(sys.executable).parent
-    if source is None or elsewhere or "PYTHONPATH" in start.env:
+    if source is None or "PYTHONPATH" in start.env:
+        return {}
+    if Path(start.program.argv[0]).parent != Path(sys.executable).parent:
         return {}
     try:
         imported = imported_interfaces(source)
