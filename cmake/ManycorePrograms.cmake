@@ -23,3 +23,17 @@ endforeach()
 if(NOT SKBUILD)
   manycore_program(manycore rmw_manycore_py.cli bin)
 endif()
+
+# pip also writes the metadata by which `ros2` and `ros2 launch` find what extends them.
+if(NOT SKBUILD)
+  file(READ ${CMAKE_CURRENT_SOURCE_DIR}/pyproject.toml settings)
+  string(REGEX MATCHALL "\\[project\\.entry-points[^[]*" groups "${settings}")
+  string(REGEX REPLACE "\\[project\\.entry-points\\.\"([^\"]*)\"\\]" "[\\1]" groups "${groups}")
+  string(REGEX REPLACE "= \"([^\"]*)\"" "= \\1" groups "${groups}")
+  string(REPLACE ";" "" groups "${groups}")
+  set(metadata ${CMAKE_CURRENT_BINARY_DIR}/rmw_manycore-${PROJECT_VERSION}.dist-info)
+  file(WRITE ${metadata}/entry_points.txt "${groups}")
+  file(WRITE ${metadata}/METADATA
+    "Metadata-Version: 2.1\nName: rmw-manycore\nVersion: ${PROJECT_VERSION}\n")
+  install(DIRECTORY ${metadata} DESTINATION ${MANYCORE_SITE_PACKAGES})
+endif()

@@ -106,17 +106,6 @@ def test_a_platform_runs_once(start, platform) -> None:
     assert first.stop() == 0
 
 
-def test_the_daemon_of_ros2cli_is_named_as_what_it_is(start, platform) -> None:
-    code = (
-        "import rclpy; rclpy.init(); rclpy.create_node('daemon'); print('up', flush=True); input()"
-    )
-    daemon = start([sys.executable, "-c", f"'ros2cli.daemon'; {code}"])
-    daemon.wait_for("up")
-    run = start(manycore_command("run", TALKER_LISTENER))
-    assert run.wait() == 1
-    assert "`ros2 daemon stop` ends the daemon of ros2cli" in run.output
-
-
 def test_after_the_runner_was_killed_the_platform_starts_again(start, platform) -> None:
     killed = start(manycore_command("run", TALKER_LISTENER, "--json"))
     killed.wait_for(HEARD)

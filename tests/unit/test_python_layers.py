@@ -48,6 +48,7 @@ LAYERS = [
         *(".cli.service", ".cli.top", ".cli.topic", ".cli.trace"),
     ),
     (".cli",),
+    (".extensions",),
 ]
 HEIGHTS = {
     f"rmw_manycore_py{room}" if room.startswith(".") else room: height

@@ -7,6 +7,7 @@ from rmw_manycore_py.mapfile.launch_file.launched import (
     ParameterSource,
     Respawn,
     Start,
+    numbered,
 )
 from rmw_manycore_py.mapfile.launch_file.reader import LaunchFile, read_launch_file
 
@@ -17,5 +18,6 @@ __all__ = [
     "ParameterSource",
     "Respawn",
     "Start",
+    "numbered",
     "read_launch_file",
 ]

@@ -17,6 +17,7 @@ from rmw_manycore_py.mapfile.launch_file.launched import (
     LaunchedNode,
     ParameterSource,
     Start,
+    numbered,
 )
 
 
@@ -142,15 +143,9 @@ class LaunchContext:
         taken: set[str] = set()
         for node in self.nodes:
             full_name = join_namespace(node.namespace, node.label)
-            number, label = 1, full_name
-            while label in taken:
-                number += 1
-                label = join_namespace(node.namespace, replace(node, number=number).label)
-            taken.add(label)
             nodes.append(
                 replace(
-                    node,
-                    number=number,
+                    numbered(node, taken),
                     components=tuple(containers.pop(full_name, ())),
                     ends_run=node.serial in self.ending,
                     transitions=tuple(self.transitions.get(node.serial, ())),

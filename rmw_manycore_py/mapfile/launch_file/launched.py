@@ -5,11 +5,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 from rmw_manycore_py.errors import Problem
+from rmw_manycore_py.ros.names import full_node_name
 
 ParameterSource = dict[str, Any] | Path
 
@@ -90,6 +91,19 @@ class LaunchedNode:
         program = self.executable or (*self.command, "?")[0]
         label = self.name or as_name(Path(program).name.removesuffix(".py"))
         return label if self.number == 1 else f"{label}_{self.number}"
+
+
+def numbered(node: LaunchedNode, taken: set[str]) -> LaunchedNode:
+    """Return the node with the first number that gives it a name of its own, and take that name."""
+    number = 1
+    while (full_name := _full_label(replace(node, number=number))) in taken:
+        number += 1
+    taken.add(full_name)
+    return replace(node, number=number)
+
+
+def _full_label(node: LaunchedNode) -> str:
+    return full_node_name(node.namespace, node.label)
 
 
 def as_name(text: str) -> str:

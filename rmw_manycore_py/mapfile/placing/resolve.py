@@ -14,7 +14,8 @@ from rmw_manycore_py.mapfile.format.model import NodeSection
 from rmw_manycore_py.mapfile.launch_file import LaunchedNode, LaunchFile, read_launch_file
 from rmw_manycore_py.mapfile.placing.cores import assign_cores, assign_cpus
 from rmw_manycore_py.mapfile.placing.crossings import bridge_placement
-from rmw_manycore_py.mapfile.placing.imports import check_imports
+from rmw_manycore_py.mapfile.placing.foreign import foreign_starts
+from rmw_manycore_py.mapfile.placing.imports import check_imports, notices_of_imports
 from rmw_manycore_py.mapfile.placing.launched import launch_rules
 from rmw_manycore_py.mapfile.placing.notices import refused_scheduling, unpublished
 from rmw_manycore_py.mapfile.placing.placement import (
@@ -51,7 +52,23 @@ def resolve(mapfile: Mapfile, occupied: Collection[Core] = ()) -> Placement:
     :param occupied: cores that nodes of other runs have on the platform.
     """
     launch = read_launch(mapfile)
-    starts = node_starts(mapfile, launch)
+    return _placement(mapfile, node_starts(mapfile, launch), launch, occupied)
+
+
+def resolve_places(mapfile: Mapfile) -> Placement:
+    """Find the core of each node of a mapfile whose nodes `ros2 launch` starts.
+
+    The command lines of the placed nodes are empty. What is wrong is an error.
+    """
+    return _placement(mapfile, foreign_starts(mapfile), None, ())
+
+
+def _placement(
+    mapfile: Mapfile,
+    starts: dict[str, NodeStart],
+    launch: LaunchFile | None,
+    occupied: Collection[Core],
+) -> Placement:
     cores = assign_cores(mapfile, occupied)
     workers = worker_cores(mapfile, {*cores.values(), *occupied})
     of_workers = [core for one in workers.values() for core in one]
@@ -66,6 +83,7 @@ def resolve(mapfile: Mapfile, occupied: Collection[Core] = ()) -> Placement:
         )
         for name, start in starts.items()
     )
+    of_imports = notices_of_imports(starts)
     of_rules = [text for name in starts for text in launch_rules(name, launched)[1]]
     topics = topic_table(mapfile, nodes)
     memory = memory_of_clusters(mapfile, topics)
@@ -88,7 +106,7 @@ def resolve(mapfile: Mapfile, occupied: Collection[Core] = ()) -> Placement:
         notices=(
             *mapfile.notices,
             *_notices(mapfile, launch, host_cpus, cpus),
-            *of_rules,
+            *(*of_rules, *of_imports),
             *unpublished(mapfile, starts, nodes),
             *refused_scheduling(nodes),
         ),

@@ -1,0 +1,154 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""The extension of launch_ros that places the nodes of an unmodified launch file.
+
+`MANYCORE_MAPFILE` names the mapfile; without it the extension does nothing. launch_ros calls it
+for each Node action, LifecycleNode and ComposableNodeContainer among them, before it is started.
+See docs/design/ros2_launch.md.
+"""
+
+from __future__ import annotations
+
+import atexit
+import os
+import shutil
+from collections.abc import Sequence
+from functools import cache
+from typing import Any
+
+from launch import LaunchContext, LaunchDescription
+from launch.actions import ExecuteProcess
+from launch.event_handlers import OnShutdown
+from launch.events import IncludeLaunchDescription
+from launch.logging import get_logger
+from launch.utilities import normalize_to_list_of_substitutions, perform_substitutions
+from launch_ros.actions.node import Node, NodeActionExtension
+
+from rmw_manycore_py.errors import ManycoreError, MapfileError
+from rmw_manycore_py.extensions.foreign_launch import MAPFILE_VARIABLE, ForeignLaunch
+from rmw_manycore_py.mapfile.placing.placement import PlacedNode
+from rmw_manycore_py.ros.names import full_node_name
+
+_RESTART_PAUSE_S = 1.0  # as under `manycore run`
+
+
+class ManycoreNodeAction(NodeActionExtension):  # type: ignore[misc]
+    """Pins a node to the host CPU of its core, and joins it to its cluster."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        # The platform must exist before launch itself has a node, as it does for lifecycles.
+        # launch_ros only logs what is raised here; `prepare_for_execute` says it again.
+        if os.environ.get(MAPFILE_VARIABLE):
+            _begin()
+
+    def prepare_for_execute(
+        self, context: LaunchContext, ros_specific_arguments: dict[str, Any], node_action: Node
+    ) -> tuple[list[Any], dict[str, Any]]:
+        """Find the place of a node; the command line stays as it is."""
+        if os.environ.get(MAPFILE_VARIABLE):
+            launch = _launch(context)
+            name, namespace, executable = _names(context, ros_specific_arguments, node_action)
+            try:
+                placed = launch.place(name, namespace, executable)
+            except MapfileError as error:  # raised here it would leave started nodes behind
+                _logger().error(f"{error}; the last one is not pinned")
+                return [], ros_specific_arguments
+            if placed is None:
+                full_name = full_node_name(namespace, name or executable)
+                _logger().warning(f"{full_name} is not in the mapfile: it is not pinned")
+            else:
+                _place(launch, node_action, placed)
+        return [], ros_specific_arguments
+
+
+def _names(
+    context: LaunchContext, ros_specific_arguments: dict[str, Any], node_action: Node
+) -> tuple[str | None, str, str]:
+    """Return name (None: that of its code), namespace and executable of a node."""
+    name = ros_specific_arguments.get("name", "").removeprefix("__node:=")
+    namespace = ros_specific_arguments.get("ns", "").removeprefix("__ns:=")
+    if namespace == Node.UNSPECIFIED_NODE_NAMESPACE:
+        namespace = ""
+    executable = normalize_to_list_of_substitutions(node_action.node_executable)
+    return name or None, namespace or "/", perform_substitutions(context, executable)
+
+
+def _place(launch: ForeignLaunch, action: Node, placed: PlacedNode) -> None:
+    """Start the action's process on its host CPU, with the environment of its core."""
+    description = action.process_description
+    prepare = description.prepare
+
+    def prepare_and_place(context: LaunchContext, action: Any) -> None:
+        prepare(context, action)
+        # Before any prefix of the launch file, so that debuggers see the node itself.
+        description.final_cmd[:0] = _pinned([placed.host_cpu])
+        environment = launch.environment(placed, description.final_env)
+        description.final_env.clear()
+        description.final_env.update(environment)
+
+    description.prepare = prepare_and_place
+    _logger().info(
+        f"{placed.name}: cluster {placed.cluster} core {placed.core} -> host CPU {placed.host_cpu}"
+    )
+
+
+def _pinned(host_cpus: Sequence[int]) -> list[str]:
+    """Return the words before a command that pin it before its first instruction."""
+    if not host_cpus:
+        return []
+    taskset = shutil.which("taskset")
+    if taskset is None:
+        raise ManycoreError("expected taskset, to pin nodes, found none; apt install util-linux")
+    return [taskset, "--cpu-list", ",".join(map(str, host_cpus))]
+
+
+@cache
+def _begin() -> ForeignLaunch | ManycoreError:
+    """Configure the platform, once for this process; what is wrong is raised with the first node.
+
+    An exception out of a constructor would only be logged by launch_ros, and the nodes started.
+    """
+    try:
+        launch = ForeignLaunch(os.environ[MAPFILE_VARIABLE])
+    except ManycoreError as error:
+        return error
+    atexit.register(launch.close)
+    return launch
+
+
+def _launch(context: LaunchContext) -> ForeignLaunch:
+    launch = _begin()
+    if isinstance(launch, ManycoreError):
+        raise launch
+    _accompany(launch, context)
+    return launch
+
+
+@cache
+def _accompany(launch: ForeignLaunch, context: LaunchContext) -> None:
+    """Say what the mapfile comes to, start its bridge, and look at the end for what is left."""
+    for is_warning, text in launch.describe():
+        (_logger().warning if is_warning else _logger().info)(text)
+
+    def say_what_is_left(_event: Any, _context: LaunchContext) -> None:
+        if names := ", ".join(launch.not_started):
+            _logger().warning(f"in the mapfile, but not started by the launch file: {names}")
+
+    context.register_event_handler(OnShutdown(on_shutdown=say_what_is_left))
+    processes = [
+        ExecuteProcess(
+            cmd=[*_pinned(program.host_cpus), *program.command],
+            name=program.name.strip("()").replace(" ", "_"),
+            env=dict(program.environment),
+            output="screen",
+            respawn=True,
+            respawn_delay=_RESTART_PAUSE_S,
+        )
+        for program in launch.bridge
+    ]
+    if processes:
+        context.emit_event_sync(IncludeLaunchDescription(LaunchDescription(processes)))
+
+
+def _logger() -> Any:
+    return get_logger("manycore")

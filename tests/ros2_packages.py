@@ -1,0 +1,50 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""launch, launch_ros and ros2cli, which are not on PyPI: installed, or from checkouts."""
+
+from __future__ import annotations
+
+import importlib.util
+import os
+import sys
+from pathlib import Path
+
+from installing import run
+
+# Names a directory with checkouts of the repositories launch, launch_ros and ros2cli.
+CHECKOUTS_VARIABLE = "MANYCORE_ROS2_CHECKOUTS"
+PACKAGES = (
+    *("launch/launch", "launch/launch_xml", "launch/launch_yaml"),
+    *("launch_ros/launch_ros", "launch_ros/ros2launch", "ros2cli/ros2cli", "ros2cli/ros2pkg"),
+)
+# Of PyPI; they need each other's versions no more exactly than this.
+REQUIREMENTS = ("osrf_pycommon", "lark", "importlib_metadata", "zipp", "packaging")
+REASON = (
+    "needs launch, launch_ros and ros2cli, which PyPI does not have: install them, or name a "
+    f"directory with their checkouts in {CHECKOUTS_VARIABLE}"
+)
+
+
+def are_installed() -> bool:
+    """Tell whether this python imports them."""
+    return all(importlib.util.find_spec(name) for name in ("launch_ros", "ros2launch", "ros2cli"))
+
+
+def install(directory: Path) -> dict[str, str]:
+    """Install the checkouts into a directory; return the environment in which they are found."""
+    checkouts = Path(os.environ[CHECKOUTS_VARIABLE])
+    pip = [sys.executable, "-m", "pip", "install", "--quiet", "--no-deps", "--target", directory]
+    run(*pip, *REQUIREMENTS, *(checkouts / name for name in PACKAGES))
+    return {
+        "PYTHONPATH": _before(os.environ.get("PYTHONPATH"), directory),
+        "AMENT_PREFIX_PATH": _before(sys.prefix, directory),
+        "PATH": _before(search_path(), directory / "bin"),
+    }
+
+
+def search_path() -> str:
+    """Return a PATH on which this python is the first: the examples are `python3` scripts."""
+    return _before(os.environ["PATH"], Path(sys.executable).parent)
+
+
+def _before(path: str | None, directory: Path) -> str:
+    return os.pathsep.join([str(directory), *([path] if path else [])])
