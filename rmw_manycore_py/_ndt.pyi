@@ -41,6 +41,14 @@ class VoxelMap:
     """The normal distributions of points (N, 3) [m, map frame], in memory that workers share."""
 
     def __init__(self, points: NDArray[np.float64], options: MapOptions) -> None: ...
+    @staticmethod
+    def attach(shared_path: str) -> VoxelMap:
+        """Return the map that another process named by `shared_path`; it outlives that process."""
+
+    @property
+    def shared_path(self) -> str:
+        """Where other processes of this user find the map while this one lives."""
+
     @property
     def voxels(self) -> int:
         """Number of voxels with a normal distribution."""

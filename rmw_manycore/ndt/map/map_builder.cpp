@@ -1,6 +1,8 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 // From points to the memory image of a voxel map.
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -78,8 +80,8 @@ MapHeader lay_out(const Grid & grid, Search search, size_t voxels, const Neighbo
   h.magic = MapHeader::magic_value;
   h.version = MapHeader::layout_version;
   h.search = search;
-  static std::atomic<uint64_t> maps{0};
-  h.id = ++maps;
+  static std::atomic<uint32_t> maps{0};
+  h.id = (static_cast<uint64_t>(getpid()) << 32) | ++maps;
   h.voxel_size_m = grid.voxel_size_m;
   std::copy(grid.origin_m.begin(), grid.origin_m.end(), h.origin_m);
   std::copy(grid.first.begin(), grid.first.end(), h.first_cell);

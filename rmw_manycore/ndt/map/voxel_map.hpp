@@ -35,7 +35,7 @@ struct MapHeader {
   uint64_t magic;
   uint32_t version;
   Search search;
-  uint64_t id;  ///< no other map that this process built has it
+  uint64_t id;  ///< of the process that built the map, and a count: no other map there is has it
   double voxel_size_m;
   double origin_m[3];     ///< in the map frame; a multiple of the voxel size
   int32_t first_cell[3];  ///< of the grid, counted from the origin

@@ -8,7 +8,7 @@ from typing import Any
 
 import click
 
-from rmw_manycore_py.bench.ndt import alignments, basin, passes, split
+from rmw_manycore_py.bench.ndt import alignments, basin, passes, split, trust
 from rmw_manycore_py.cli.bench.answer import answer
 from rmw_manycore_py.cli.bench.options import bench_options
 
@@ -21,6 +21,9 @@ from rmw_manycore_py.cli.bench.options import bench_options
 )
 @bench_options
 def command(pclomp: Path | None, **options: Any) -> None:
-    """Scan matching beside PCL, pclomp, small_gicp and Open3D, over workers, and from far off."""
-    questions = [passes.question(pclomp), alignments.QUESTION, split.QUESTION, basin.QUESTION]
-    answer(questions, **options)
+    """Scan matching beside PCL, pclomp, small_gicp and Open3D, over workers, and from far off.
+
+    Also how many wrong poses are believed, and how many right ones refused.
+    """
+    own = [alignments.QUESTION, split.QUESTION, basin.QUESTION, trust.QUESTION]
+    answer([passes.question(pclomp), *own], **options)

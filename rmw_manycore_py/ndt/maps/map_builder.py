@@ -1,5 +1,9 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Voxel maps built beside the work that goes on, to be swapped in between two scans."""
+"""Voxel maps built beside the work that goes on, to be swapped in between two scans.
+
+A thread reads points. Voxels are built in a process of its own (map_process.py), whose CPU time
+counts less: where matcher and thread shared a CPU, scans took several times as long meanwhile.
+"""
 
 from __future__ import annotations
 
@@ -10,8 +14,10 @@ from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass
 
 from rmw_manycore_py.errors import what_is_wrong
+from rmw_manycore_py.helper_process import HelperProcess, leave_real_time
 from rmw_manycore_py.ndt.geometry.arrays import Points
 from rmw_manycore_py.ndt.geometry.precision import why_coarse
+from rmw_manycore_py.ndt.maps import map_process
 from rmw_manycore_py.ndt.matching.options import MatcherOptions
 from rmw_manycore_py.ndt.matching.voxel_map import VoxelMap
 
@@ -31,14 +37,15 @@ class BuiltMap:
 
 
 class MapBuilder:
-    """One thread reads points and builds voxels; of what waits, only the newest is done.
+    """One thread reads points and has voxels built; of what waits, only the newest is done.
 
     Thread-safe, but for `take`, which belongs to one thread.
     """
 
     def __init__(self, options: MatcherOptions) -> None:
         self._options = options
-        self._executor = ThreadPoolExecutor(max_workers=1, thread_name_prefix="map")
+        self._helper = HelperProcess("map builder")
+        self._executor = ThreadPoolExecutor(1, "map", leave_real_time)
         self._running: Future[BuiltMap] | None = None
         self._waiting: Callable[[], Points | None] | None = None
         self._lock = threading.Lock()
@@ -69,7 +76,8 @@ class MapBuilder:
         return built
 
     def close(self) -> None:
-        """End the thread after what it is doing."""
+        """End the process, and the thread with what it is doing."""
+        self._helper.close()
         self._executor.shutdown(wait=True, cancel_futures=True)
 
     def _build(self, read: Callable[[], Points | None]) -> BuiltMap:
@@ -78,9 +86,16 @@ class MapBuilder:
         try:
             points = read()
             if points is not None:
-                voxel_map = VoxelMap.from_points(points, self._options)
+                voxel_map = self._voxels_of(points)
                 warning = why_coarse(points)
         except Exception as error:  # whatever is wrong with a map, the one before it stays
             problem = what_is_wrong(error)
         duration_ms = 1e3 * (time.perf_counter() - start)
         return BuiltMap(voxel_map, points, problem, warning, duration_ms)
+
+    def _voxels_of(self, points: Points) -> VoxelMap:
+        held = self._helper.call(map_process.build, points, self._options)
+        try:
+            return VoxelMap.attach(held.shared_paths, self._options, held.own_likelihood)
+        finally:
+            self._helper.call(map_process.let_go)

@@ -3,12 +3,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from rmw_manycore_py import _ndt
-from rmw_manycore_py.ndt.geometry.arrays import Matrix6, Pose
+from rmw_manycore_py.ndt.geometry.arrays import Matrix, Matrix6, Pose
 from rmw_manycore_py.ndt.matching.options import MatcherOptions
 from rmw_manycore_py.words import Outcome
 
@@ -56,7 +56,12 @@ class Alignment:
         the identity when the guess was no pose either.
     :param covariance: (6, 6) of x, y, z [m], roll, pitch, yaw [rad].
     :param iterations: steps taken.
-    :param converged: False when the pose must not be used; ``why`` then says so.
+    :param converged: False when the alignment did not end by itself, or at no maximum; ``why`` then
+        says so. It does not tell whether the pose is right: ``ndt.trust`` does.
+    :param share_in_map: of the finite points, those that see a voxel: 0 to 1.
+    :param is_degenerate: nothing can be held of the pose: the score has no maximum there.
+    :param xy_spread_m2: (2, 2) covariance of x and y by the score's curvature, times the number of
+        points: large along a tunnel, whatever the scan's size.
     :param guesses_around: (4, 4) poses around the result that its covariance was made of, if any.
     :param results_around: (4, 4) what alignments from them reached, if there were such.
     """
@@ -69,6 +74,9 @@ class Alignment:
     nearest_voxel_likelihood: float
     converged: bool
     why: str
+    share_in_map: float = 0.0
+    is_degenerate: bool = False
+    xy_spread_m2: Matrix = field(default_factory=lambda: np.zeros((2, 2)))
     guesses_around: tuple[Pose, ...] = ()
     results_around: tuple[Pose, ...] = ()
 
@@ -85,8 +93,11 @@ class Alignment:
         ended = found.outcome
         outcome = "degenerate" if ended == "converged" and not is_maximum else ended
         covariance: Matrix6 = np.diag(options.fixed_pose_variances)
-        if options.pose_covariance == "laplace" and is_maximum:
-            covariance = (vectors / values) @ vectors.T
+        by_curvature: Matrix6 = np.zeros((6, 6))
+        if is_maximum:
+            by_curvature = (vectors / values) @ vectors.T
+            if options.pose_covariance == "laplace":
+                covariance = by_curvature
         return cls(
             T_map_sensor=found.pose,
             covariance=covariance,
@@ -96,6 +107,9 @@ class Alignment:
             nearest_voxel_likelihood=score.nearest_voxel_likelihood,
             converged=outcome == "converged",
             why=WHY[outcome],
+            share_in_map=score.points_in_map / max(found.at.scan_points, 1),
+            is_degenerate=not is_maximum or ended == "no_overlap",
+            xy_spread_m2=by_curvature[:2, :2] * found.at.scan_points,
         )
 
     @classmethod
@@ -110,4 +124,5 @@ class Alignment:
             nearest_voxel_likelihood=0.0,
             converged=False,
             why=why,
+            is_degenerate=True,
         )

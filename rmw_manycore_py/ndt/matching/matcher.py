@@ -96,6 +96,11 @@ class Matcher:
                 )
         self._map = voxel_map
 
+    @property
+    def worker_pids(self) -> list[int]:
+        """Return the process ids of the workers, of which the calling thread needs none."""
+        return []
+
     def shared_bytes(
         self,
         points: int = 0,  # noqa: ARG002 - on the calling thread nothing is shared

@@ -3,14 +3,24 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
+import numpy as np
 from numpy.typing import ArrayLike
 
 from rmw_manycore_py import _ndt
 from rmw_manycore_py.errors import EXIT_BAD_INPUT
 from rmw_manycore_py.native_errors import translate_native_errors
-from rmw_manycore_py.ndt.geometry.arrays import map_points
-from rmw_manycore_py.ndt.matching.kernel_options import coarse_options, map_options
+from rmw_manycore_py.ndt.geometry.arrays import Matrix, map_points
+from rmw_manycore_py.ndt.matching.alignment import Score
+from rmw_manycore_py.ndt.matching.kernel_options import (
+    coarse_options,
+    map_options,
+    match_options,
+)
 from rmw_manycore_py.ndt.matching.options import MatcherOptions
+
+SAMPLE = 20_000  # of a map's points, whose score is taken
 
 
 class VoxelMap:
@@ -20,11 +30,16 @@ class VoxelMap:
     covariance: those of the options it was built with.
 
     :param levels: coarsest first.
+    :param own_likelihood: nearest-voxel likelihood of the map's own points, where they lie: what no
+        scan is expected to exceed by much.
     """
 
-    def __init__(self, levels: list[_ndt.VoxelMap], options: MatcherOptions) -> None:
+    def __init__(
+        self, levels: list[_ndt.VoxelMap], options: MatcherOptions, own_likelihood: float
+    ) -> None:
         self.levels = levels
         self.options = options
+        self.own_likelihood = own_likelihood
 
     @classmethod
     def from_points(cls, points: ArrayLike, options: MatcherOptions | None = None) -> VoxelMap:
@@ -40,7 +55,26 @@ class VoxelMap:
                 _ndt.VoxelMap(xyz_m, coarse_options(options, factor))
                 for factor in options.coarse_levels
             ]
-        return cls([*coarse, finest], options)
+            own_likelihood = _likelihood(finest, xyz_m, options)
+        return cls([*coarse, finest], options, own_likelihood)
+
+    @classmethod
+    def attach(
+        cls, shared_paths: Sequence[str], options: MatcherOptions, own_likelihood: float
+    ) -> VoxelMap:
+        """Return a map that another process holds, and that outlives it from now on.
+
+        :param shared_paths: of its levels, coarsest first.
+        :raises ManycoreError: when there is none any more.
+        """
+        with translate_native_errors("the map of another process"):
+            levels = [_ndt.VoxelMap.attach(path) for path in shared_paths]
+        return cls(levels, options, own_likelihood)
+
+    @property
+    def shared_paths(self) -> list[str]:
+        """Return where other processes of this user find the levels while this one lives."""
+        return [level.shared_path for level in self.levels]
 
     @property
     def finest(self) -> _ndt.VoxelMap:
@@ -56,3 +90,14 @@ class VoxelMap:
     def size_bytes(self) -> int:
         """Return the memory that all levels take."""
         return sum(level.size_bytes for level in self.levels)
+
+
+def _likelihood(finest: _ndt.VoxelMap, points: Matrix, options: MatcherOptions) -> float:
+    sample = points[:: max(1, len(points) // SAMPLE)]
+    sample = sample[np.isfinite(sample).all(axis=1)]
+    middle = np.eye(4)
+    if len(sample):
+        middle[:3, 3] = np.median(sample, axis=0)
+    relative = np.ascontiguousarray(sample - middle[:3, 3], np.float32)
+    matcher = _ndt.SerialMatcher(match_options(options))
+    return Score.of(matcher.evaluate([finest], relative, middle)).nearest_voxel_likelihood

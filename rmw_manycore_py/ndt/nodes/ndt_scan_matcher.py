@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import time
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -26,7 +27,6 @@ from rmw_manycore_py.ndt.messages.conversions import (
     pose_with_covariance,
     seconds,
 )
-from rmw_manycore_py.ndt.nodes.scan_matcher import judgement
 from rmw_manycore_py.ndt.nodes.scan_matcher.cluster_memory import ClusterMemory
 from rmw_manycore_py.ndt.nodes.scan_matcher.cpu_time import tree_cpu_s
 from rmw_manycore_py.ndt.nodes.scan_matcher.diagnostics import Diagnostics
@@ -43,9 +43,16 @@ from rmw_manycore_py.ndt.nodes.scan_matcher.pose_buffer import (
     NoPoseError,
 )
 from rmw_manycore_py.ndt.nodes.scan_matcher.pose_inputs import PoseInputs
+from rmw_manycore_py.ndt.nodes.scan_matcher.real_time import schedule_in_real_time
 from rmw_manycore_py.ndt.nodes.scan_matcher.rejected import Rejected
 from rmw_manycore_py.ndt.nodes.scan_matcher.scan_inbox import ScanInbox
 from rmw_manycore_py.ndt.nodes.scan_matcher.scan_points import ScanPoints
+from rmw_manycore_py.ndt.nodes.scan_matcher.tracking import (
+    AutowareTracking,
+    RobustTracking,
+    ScanAt,
+    Tracking,
+)
 from rmw_manycore_py.ndt.nodes.support.declared import declare
 from rmw_manycore_py.ndt.nodes.support.running import run_node
 
@@ -66,11 +73,13 @@ class NdtScanMatcher(Node):
         self._own = declare(self, OwnParameters)
         options = matcher_options(self._p, self._own)
         self._matcher = make_matcher(options, self._own.worker_cpus)
+        schedule_in_real_time(self._own.realtime_priority, self._matcher.worker_pids)
+        self._tracking = self._make_tracking()
         self._memory = ClusterMemory(self, self._matcher)
         self._map = MapSupply(options, self._p, self._own, self._match_to)
         self._frames = FrameTree()
         self._scan_points = ScanPoints(self._p, self._own, self._frames)
-        self._is_activated = self._own.activated
+        self._is_activated = self._own.activated or self._tracking.was_activated
         self._scan: Points | None = None
         self._rejected_in_a_row = 0
         self._skipped = 0
@@ -97,6 +106,11 @@ class NdtScanMatcher(Node):
         )
         self._listen()
 
+    def _make_tracking(self) -> Tracking:
+        if self._own.behaviour == "autoware":
+            return AutowareTracking(self._matcher, self._p)
+        return RobustTracking(self._matcher, self._p, self._own, self._now_s())
+
     def _listen(self) -> None:
         sensor = QoSProfile(depth=SCAN_DEPTH, reliability=ReliabilityPolicy.BEST_EFFORT)
         kept = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
@@ -112,6 +126,7 @@ class NdtScanMatcher(Node):
         try:
             self._thread.close()
         finally:
+            self._tracking.close()
             self._map.close()
             self._matcher.close()
             super().destroy_node()
@@ -144,6 +159,7 @@ class NdtScanMatcher(Node):
             reliable = self._match(message, report)
         except (Rejected, ManycoreError) as why:
             report.warn(str(why))
+            self._tracking.missed(report)
             reliable = False
         failed = self._is_activated and not reliable
         self._rejected_in_a_row = self._rejected_in_a_row + 1 if failed else 0
@@ -173,17 +189,16 @@ class NdtScanMatcher(Node):
             report.note("Lidar has gone out of the map range")
         self._memory.make_room_for_scan(len(points))
         regularization = self._poses.regularization_at(stamp_s, guess.T, report)
-        alignment = self._matcher.align(points, guess.T, regularization)
+        tracked = self._tracking.track(ScanAt(stamp_s, points, guess.T, regularization), report)
+        alignment = tracked.alignment
         if not np.isfinite(alignment.T_map_sensor).all():
             raise Rejected(f"the alignment has no finite result: {alignment.why}")
-        reliable = judgement.is_reliable(alignment, self._p, report)
         distance_m = poses.distance_m(guess.T, alignment.T_map_sensor)
         report.value("distance_initial_to_result", distance_m)
         if distance_m > self._p.result_distance_m:
             report.warn(f"distance_initial_to_result is too large ({distance_m:.2f} m)")
-        if reliable:
-            covariance = judgement.output_covariance(alignment, self._p)
-            self._outputs.accepted_pose(stamp, alignment.T_map_sensor, covariance)
+        if tracked.is_reliable:
+            self._outputs.accepted_pose(stamp, alignment.T_map_sensor, tracked.covariance)
         exe_time_ms = 1e3 * (time.perf_counter() - start)
         report.value("execution_time", round(exe_time_ms, 3))
         if exe_time_ms > self._p.critical_exe_time_ms:
@@ -192,7 +207,7 @@ class NdtScanMatcher(Node):
         self._outputs.result(stamp, alignment, guess)
         self._markers.alignment(stamp, guess.T, alignment.T_map_sensor)
         self._publish_clouds(stamp, points, alignment.T_map_sensor)
-        return reliable
+        return tracked.is_reliable
 
     def _guess_at(self, stamp_s: float, report: Diagnostics) -> Interpolated:
         try:
@@ -228,6 +243,7 @@ class NdtScanMatcher(Node):
         self._memory.make_room_for_map(voxel_map)
         try:
             self._matcher.set_map(voxel_map)
+            self._tracking.map_changed(voxel_map)
         finally:
             self._memory.give_back()
 
@@ -262,6 +278,7 @@ class NdtScanMatcher(Node):
         now = self.get_clock().now().to_msg()
         report.value("service_call_time_stamp", seconds(now))
         self._is_activated = bool(request.data)
+        self._thread.post(partial(self._tracking.activated, self._is_activated))
         self._thread.guesses_changed()
         if self._is_activated:
             self._poses.guesses.clear()

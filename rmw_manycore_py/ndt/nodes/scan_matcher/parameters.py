@@ -115,3 +115,7 @@ class OwnParameters:
     guess_wait_s: float = parameter("validation.initial_pose_wait_sec", 0.05, least=0.0, most=10.0)
     activated: bool = parameter("activated", False)
     worker_cpus: tuple[int, ...] = parameter("worker_host_cpus", (), whole=True)
+    recovery_after_scans: int = parameter("recovery.after_scans", 5, least=0, most=10_000)
+    recovery_radius_m: float = parameter("recovery.radius", 20.0, least=5.0, most=200.0)
+    last_pose_path: str = parameter("last_pose_path", "")
+    realtime_priority: int = parameter("realtime_priority", 0, least=0, most=99)

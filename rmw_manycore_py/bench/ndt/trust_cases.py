@@ -1,0 +1,154 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Right and wrong results of alignments, each with what a judge would have seen before it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from rmw_manycore_py.bench.ndt.trust_worlds import Drive
+from rmw_manycore_py.ndt import Alignment, MatcherOptions, SerialMatcher, VoxelMap
+from rmw_manycore_py.ndt.geometry import poses
+from rmw_manycore_py.ndt.geometry.arrays import Matrix, Pose, scan_points
+from rmw_manycore_py.ndt.trust.judge import PoseJudge, Verdict
+from rmw_manycore_py.ndt.trust.score_level import ScoreLevel
+
+OPTIONS = MatcherOptions(search="radius")  # as the node has them
+RIGHT_M, RIGHT_DEG = 0.2, 1.0
+WRONG_M, WRONG_DEG = 0.5, 3.0
+# Guesses in a random direction: metres, degrees. The last two go along the drive, as the next
+# period of a street that repeats lies there.
+NEAR = ((0.3, 2.0), (1.0, 5.0), (2.0, 10.0))
+FAR = ((3.0, 40.0), (5.0, 20.0), (8.0, 40.0), (15.0, 90.0), (1.0, 180.0))
+ALONG_M = (12.0, 20.0)
+HISTORY = 20
+HISTORY_M, HISTORY_RAD = 0.03, 0.003  # error of the poses before
+SEED = 11
+FEWEST_SCORES_BEFORE = 3
+
+
+@dataclass(frozen=True)
+class Before:
+    """A scan before the one that is judged: its pose, its guess and its score."""
+
+    stamp_s: float
+    T: Pose
+    guess: Pose
+    score: float
+
+
+@dataclass(frozen=True)
+class Case:
+    """The result of an alignment.
+
+    :param before: what was believed before it; empty at a start.
+    :param truth: T_map_sensor.
+    """
+
+    drive: str
+    own_score: float
+    stamp_s: float
+    before: tuple[Before, ...]
+    guess: Pose
+    alignment: Alignment
+    truth: Pose
+
+    @property
+    def is_right(self) -> bool:
+        """Tell whether the result is at the truth."""
+        return self.error_m < RIGHT_M and self.error_deg < RIGHT_DEG
+
+    @property
+    def is_wrong(self) -> bool:
+        """Tell whether the result is too far off to be of use; some are neither."""
+        return self.error_m > WRONG_M or self.error_deg > WRONG_DEG
+
+    @property
+    def error_m(self) -> float:
+        """Return the distance from the truth."""
+        return poses.distance_m(self.alignment.T_map_sensor, self.truth)
+
+    @property
+    def error_deg(self) -> float:
+        """Return the angle from the truth."""
+        return float(np.degrees(poses.angle_rad(self.alignment.T_map_sensor, self.truth)))
+
+    def judged(self, level: ScoreLevel) -> Verdict:
+        """Return what a judge says that has seen what was before."""
+        judge = PoseJudge(level)
+        level.map_changed(self.own_score)
+        for one in self.before:
+            seen = replace(self.alignment, T_map_sensor=one.T, nearest_voxel_likelihood=one.score)
+            judge.believe(one.stamp_s, seen, one.guess)
+        return judge.judge(self.stamp_s, self.alignment, self.guess)
+
+
+def cases_of(drive: Drive, wanted: int) -> list[Case]:
+    """Return about so many right and so many wrong results of a drive, and those between."""
+    generator = np.random.default_rng(SEED)
+    voxel_map = VoxelMap.from_points(drive.map_points, OPTIONS)
+    matcher = SerialMatcher(OPTIONS)
+    matcher.set_map(voxel_map)
+    scans = {index: scan_points(drive.scan(index)) for index in drive.tested}
+    scores: dict[int, float] = {}
+    for index, scan in scans.items():
+        scores[index] = matcher.score(scan, drive.poses[index]).nearest_voxel_likelihood
+    found: list[Case] = []
+    rounds = -(-wanted // len(scans))
+    for index, scan in scans.items():
+        before = _before(drive, index, scores, generator)
+        for guess in _guesses(drive.poses[index], rounds, generator):
+            alignment = matcher.align(scan, guess, only_pose=True)
+            found.append(
+                Case(
+                    drive.name,
+                    voxel_map.own_likelihood,
+                    float(drive.stamps_s[index]),
+                    before,
+                    guess,
+                    alignment,
+                    drive.poses[index],
+                )
+            )
+    return found
+
+
+def _before(
+    drive: Drive, index: int, scores: dict[int, float], generator: np.random.Generator
+) -> tuple[Before, ...]:
+    """Return the last scans, with scores of the tested ones among or before them."""
+    if not drive.is_drive or sum(other < index for other in scores) < FEWEST_SCORES_BEFORE:
+        return ()
+    found = []
+    for other in range(max(0, index - HISTORY), index):
+        scored = max((one for one in scores if one <= other), default=min(scores))
+        T = poses.perturbed(drive.poses[other], HISTORY_M, HISTORY_RAD, generator)
+        guess = poses.perturbed(drive.poses[other], *_in_rad(NEAR[0]), generator)
+        found.append(Before(float(drive.stamps_s[other]), T, guess, scores[scored]))
+    return tuple(found)
+
+
+def _guesses(truth: Pose, rounds: int, generator: np.random.Generator) -> Iterator[Pose]:
+    """Yield guesses near and far, three of each in a round."""
+    for turn in range(rounds):
+        yield poses.perturbed(truth, *_in_rad(NEAR[turn % len(NEAR)]), generator)
+        for kind in range(2):
+            distance_m, angle_deg = FAR[(2 * turn + kind) % len(FAR)]
+            direction = generator.uniform(-np.pi, np.pi)
+            turned = np.radians(generator.uniform(0.3, 1.0) * angle_deg)
+            yield _moved(truth, distance_m, direction, turned * generator.choice([-1.0, 1.0]))
+        along = float(np.arctan2(truth[1, 0], truth[0, 0])) + generator.choice([0.0, np.pi])
+        yield _moved(truth, ALONG_M[turn % len(ALONG_M)], along, 0.0)
+
+
+def _moved(truth: Pose, distance_m: float, direction_rad: float, yaw_rad: float) -> Pose:
+    T: Matrix = truth.copy()
+    T[:2, 3] += distance_m * np.array([np.cos(direction_rad), np.sin(direction_rad)])
+    T[:3, :3] = poses.from_rotation_vector((0.0, 0.0, yaw_rad)) @ T[:3, :3]
+    return T
+
+
+def _in_rad(offset: tuple[float, float]) -> tuple[float, float]:
+    return offset[0], float(np.radians(offset[1]))

@@ -1,0 +1,154 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Drives whose poses are judged: every recording there is, and streets of kinds that mislead."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from rmw_manycore_py.bench.ndt.world import DATA_VARIABLE
+from rmw_manycore_py.errors import ManycoreError
+from rmw_manycore_py.ndt.geometry.arrays import Matrix, Points
+from rmw_manycore_py.ndt.geometry.poses import transform
+from rmw_manycore_py.ndt.recordings.recording import Recording, load_recording
+from rmw_manycore_py.ndt.simulation.drive import poses_along, scans_along
+from rmw_manycore_py.ndt.simulation.lidar import Lidar
+from rmw_manycore_py.ndt.simulation.street import Street, build_street
+
+LENGTH_M = 120.0
+LIDAR = Lidar(rings=32, azimuths=400)
+STEP_M, PERIOD_S = 1.5, 0.1  # 15 m/s at 10 Hz
+MAPPING_M, SPARSE_MAPPING_M = 4.0, 16.0  # between the scans that make the map
+CONSECUTIVE_S = 1.0  # scans farther apart in time are no drive
+
+
+@dataclass(frozen=True)
+class Drive:
+    """A map, and the scans of a drive that the map is not made of.
+
+    :param poses: T_map_sensor (S, 4, 4) of all scans, also of those that make the map.
+    :param stamps_s: (S) in seconds.
+    :param tested: indices of the scans that are judged.
+    :param scan: returns the points (n, 3) of one.
+    :param is_drive: the scans follow each other, so that motion tells.
+    """
+
+    name: str
+    map_points: Points
+    poses: Matrix
+    stamps_s: Matrix
+    tested: list[int]
+    scan: Callable[[int], Points]
+    is_drive: bool
+
+
+def drives(scans: int) -> Iterator[Drive]:
+    """Yield all drives, of each at most so many scans."""
+    yield from _recorded(scans)
+    yield from _simulated(scans)
+
+
+def _recorded(scans: int) -> Iterator[Drive]:
+    checkout = Path(__file__).resolve().parents[3]
+    directory = Path(os.environ.get(DATA_VARIABLE, checkout.parent / "shared" / "data"))
+    for path in sorted(directory.glob("*.npz")) if directory.is_dir() else ():
+        try:
+            recording = load_recording(path)
+        except ManycoreError:
+            continue  # another kind of data
+        if len(recording) > 1:
+            yield _of_recording(path.stem, recording, scans)
+
+
+def _of_recording(name: str, recording: Recording, scans: int) -> Drive:
+    odd = list(range(1, len(recording), 2))
+    stamps_s = recording.times_s()
+    return Drive(
+        name,
+        recording.accumulated(range(0, len(recording), 2)).astype(np.float32),
+        recording.poses,
+        stamps_s,
+        _spread(odd, scans),
+        recording.scan,
+        len(recording) > 10 and float(np.median(np.diff(stamps_s))) < CONSECUTIVE_S,
+    )
+
+
+def _spread(indices: list[int], count: int) -> list[int]:
+    if len(indices) <= count:
+        return indices
+    return [indices[i] for i in np.linspace(0, len(indices) - 1, count).astype(int)]
+
+
+def _simulated(scans: int) -> Iterator[Drive]:
+    for seed in (1, 2):
+        generator = np.random.default_rng(seed)
+        yield _driven(f"street {seed}", build_street(LENGTH_M, generator), generator, scans)
+    for period_m in (12.0, 20.0):
+        generator = np.random.default_rng(int(period_m))
+        street = repeating_street(period_m, generator)
+        yield _driven(f"street that repeats every {period_m:g} m", street, generator, scans)
+    generator = np.random.default_rng(5)
+    yield _driven("tunnel", tunnel(), generator, scans)
+    street = build_street(LENGTH_M, generator)
+    yield _driven("street, sparse map", street, generator, scans, SPARSE_MAPPING_M)
+
+
+def repeating_street(period_m: float, generator: np.random.Generator) -> Street:
+    """Return one stretch of a street over and over."""
+    one = build_street(period_m, generator)
+    boxes = (one.lower[:, 0] >= 0.0) & (one.lower[:, 0] < period_m)
+    uprights = (one.centres[:, 0] >= 0.0) & (one.centres[:, 0] < period_m)
+    shifts = np.arange(-60.0 // period_m, (LENGTH_M + 60.0) // period_m + 1) * period_m
+
+    def repeated(corners: Matrix) -> Matrix:
+        along = np.zeros(corners.shape[1])
+        along[0] = 1.0
+        return np.concatenate([corners + shift * along for shift in shifts])
+
+    return Street(
+        repeated(one.lower[boxes]),
+        repeated(one.upper[boxes]),
+        repeated(one.centres[uprights]),
+        np.tile(one.radii[uprights], len(shifts)),
+        np.tile(one.heights[uprights], len(shifts)),
+    )
+
+
+def tunnel() -> Street:
+    """Return a tube of 9 m by 5 m with a niche's frame every 25 m."""
+    half_m, end_m = 4.5, LENGTH_M + 60.0
+    lower = [[-60.0, -half_m - 1, 0.0], [-60.0, half_m, 0.0], [-60.0, -half_m, 5.0]]
+    upper = [[end_m, -half_m, 5.0], [end_m, half_m + 1, 5.0], [end_m, half_m, 6.0]]
+    for x in np.arange(0.0, LENGTH_M, 25.0):
+        lower.append([x, half_m - 0.4, 0.0])
+        upper.append([x + 0.6, half_m, 2.2])
+    return Street(np.array(lower), np.array(upper), np.zeros((0, 2)), np.zeros(0), np.zeros(0))
+
+
+def _driven(
+    name: str,
+    street: Street,
+    generator: np.random.Generator,
+    scans: int,
+    mapping_m: float = MAPPING_M,
+) -> Drive:
+    places = poses_along(np.arange(-8.0, LENGTH_M + 8.0, mapping_m), side_m=0.6)
+    mapped = scans_along(street, places, LIDAR, generator)
+    points = [transform(T, scan) for T, scan in zip(places, mapped, strict=True)]
+    poses = poses_along(np.arange(1.3, LENGTH_M - 2.0, STEP_M))
+    stamps_s: Matrix = np.arange(len(poses), dtype=np.float64) * PERIOD_S
+    seeds = np.random.default_rng(len(poses))
+    return Drive(
+        name,
+        np.concatenate(points).astype(np.float32),
+        poses,
+        stamps_s,
+        _spread(list(range(3, len(poses))), scans),
+        lambda index: LIDAR.scan(street, poses[index], seeds),
+        is_drive=True,
+    )

@@ -1,0 +1,175 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""A Python process that calls functions for this one, beside all that goes on here.
+
+```
+ this process                              helper: niced, no ROS
+ call(function, *arguments) ── pickle ──►  function(*arguments)
+   a thread sleeps          ◄── pickle ──  its result, or its error
+```
+
+Arrays go through the pipes as they are, outside of the pickle. The helper ends with `close()`, and
+with this process however it ends.
+"""
+
+from __future__ import annotations
+
+import os
+import pickle
+import signal
+import struct
+import subprocess
+import sys
+import threading
+from collections.abc import Callable
+from typing import IO, Any, TypeVar
+
+from rmw_manycore_program import own_program
+from rmw_manycore_py.errors import ManycoreError
+from rmw_manycore_py.parent_death import dies_with_this_process
+
+T = TypeVar("T")
+
+SIZE = struct.Struct("<Q")
+NICENESS = 10  # a tenth of the share of CPU time that a node on the same CPU has
+
+
+class HelperProcess:
+    """Starts with the first call. Calls from several threads take turns.
+
+    :param name: for messages, as "map builder".
+    """
+
+    def __init__(self, name: str) -> None:
+        self._name = name
+        self._process: subprocess.Popen[bytes] | None = None
+        self._turn = threading.Lock()
+        self._is_closed = False
+
+    @property
+    def pid(self) -> int | None:
+        """Return the process id; None before the first call."""
+        return None if self._process is None else self._process.pid
+
+    def call(self, function: Callable[..., T], *arguments: Any) -> T:
+        """Return what a function of a module returns, called there; raises what it raises.
+
+        A helper that died is replaced by the next call.
+
+        :raises ManycoreError: when the helper died during the call, or was closed.
+        """
+        with self._turn:
+            process = self._running()
+            assert process.stdin is not None
+            assert process.stdout is not None
+            try:
+                _send(process.stdin, (function, arguments))
+                error, result = _receive(process.stdout)
+            except (OSError, EOFError) as gone:
+                self._end()
+                raise ManycoreError(f"the {self._name} process ended unexpectedly") from gone
+        if error is not None:
+            raise error
+        value: T = result
+        return value
+
+    def close(self) -> None:
+        """End the process, whatever it is doing."""
+        self._is_closed = True
+        process = self._process
+        if process is not None:
+            process.kill()
+        with self._turn:  # whoever waited for an answer has been told
+            self._end()
+
+    def _running(self) -> subprocess.Popen[bytes]:
+        if self._is_closed:
+            raise ManycoreError(f"the {self._name} process was closed")
+        if self._process is not None and self._process.poll() is not None:
+            self._end()
+        if self._process is None:
+            self._process = subprocess.Popen(
+                own_program("rmw_manycore_py.helper_process"),
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                preexec_fn=_before_exec(),
+            )
+        return self._process
+
+    def _end(self) -> None:
+        if self._process is not None:
+            self._process.kill()
+            self._process.communicate()
+            self._process = None
+
+
+def _before_exec() -> Callable[[], None]:
+    dies = dies_with_this_process()
+
+    def before_exec() -> None:
+        dies()
+        signal.signal(signal.SIGINT, signal.SIG_IGN)  # the terminal's: this process ends the helper
+
+    return before_exec
+
+
+def _send(pipe: IO[bytes], value: object) -> None:
+    arrays: list[pickle.PickleBuffer] = []
+    parts = [pickle.dumps(value, protocol=5, buffer_callback=arrays.append)]
+    raw = [memoryview(parts[0]), *(array.raw() for array in arrays)]
+    pipe.write(SIZE.pack(len(raw)))
+    for part in raw:
+        pipe.write(SIZE.pack(part.nbytes))
+        pipe.write(part)
+    pipe.flush()
+
+
+def _receive(pipe: IO[bytes]) -> Any:
+    (count,) = SIZE.unpack(_exactly(pipe, SIZE.size))
+    parts = []
+    for _ in range(count):
+        (size,) = SIZE.unpack(_exactly(pipe, SIZE.size))
+        parts.append(_exactly(pipe, size))
+    return pickle.loads(parts[0], buffers=parts[1:])
+
+
+def _exactly(pipe: IO[bytes], size: int) -> bytearray:
+    """Return so many bytes, which arrays may keep and write to."""
+    data = bytearray(size)
+    view, filled = memoryview(data), 0
+    while filled < size:
+        got = pipe.readinto(view[filled:])  # type: ignore[attr-defined]
+        if not got:
+            raise EOFError
+        filled += got
+    return data
+
+
+def main() -> None:
+    """Answer calls until the pipe is closed."""
+    with os.fdopen(os.dup(sys.stdin.fileno()), "rb") as calls:
+        answers = os.fdopen(os.dup(sys.stdout.fileno()), "wb")
+        os.dup2(sys.stderr.fileno(), sys.stdout.fileno())  # what a function prints is no answer
+        leave_real_time()
+        os.nice(NICENESS)
+        while True:
+            try:
+                function, arguments = _receive(calls)
+            except EOFError:
+                return
+            _send(answers, _answer(function, arguments))
+
+
+def _answer(function: Callable[..., Any], arguments: tuple[Any, ...]) -> tuple[Any, Any]:
+    try:
+        return None, function(*arguments)
+    except Exception as error:  # the caller's to handle
+        return error, None
+
+
+def leave_real_time() -> None:
+    """Schedule the calling thread as ordinary programs are, also where its starter is not."""
+    os.sched_setscheduler(0, os.SCHED_OTHER, os.sched_param(0))
+
+
+if __name__ == "__main__":
+    main()

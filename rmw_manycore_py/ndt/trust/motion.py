@@ -1,0 +1,164 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Whether a vehicle can have come from the poses that were believed to another one.
+
+Two things tell where it should be: the motion up to the last believed pose, which holds for half a
+second, and the motion of the guesses since then (odometry, in most stacks), which holds longer but
+only as long as the guesses do not jump.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from dataclasses import dataclass
+
+import numpy as np
+
+from rmw_manycore_py.ndt.geometry import poses
+from rmw_manycore_py.ndt.geometry.arrays import Pose
+
+NEAR_M, NEAR_RAD = 1.0, np.radians(15.0)  # within which the score alone decides
+ACCELERATION_M_S2 = 10.0  # an emergency braking of any vehicle
+TURN_ACCELERATION_RAD_S2 = 8.0  # a LiDAR carried by hand
+STEADY_S = 0.55  # how long the motion before is continued: scans at 2 Hz
+GUESS_DRIFT = 0.1  # of the length and angle of the guesses' motion
+# Guesses may shift so far from one scan to the next; farther, they have jumped.
+SHIFT_M = 2.5
+SHIFT_ACCELERATION_M_S2 = 3.0
+MAX_SPEED_M_S = 60.0
+
+
+@dataclass(frozen=True)
+class Believed:
+    """A pose T_map_base that was believed, and the guess for the same scan."""
+
+    stamp_s: float
+    T: Pose
+    guess: Pose | None
+
+
+@dataclass(frozen=True)
+class Expectation:
+    """Where the vehicle should be.
+
+    :param by_motion: continued from the last believed poses; None where they tell no motion.
+    :param by_guess: moved on as the guesses moved; None where they have jumped, or without one.
+    :param age_s: time since the last believed pose.
+    """
+
+    last: Pose
+    by_motion: Pose | None
+    by_guess: Pose | None
+    age_s: float
+    guess_motion_m: float = 0.0
+    guess_motion_rad: float = 0.0
+
+    @property
+    def best(self) -> Pose:
+        """Return the pose to look at first."""
+        expected = (self.by_guess, self.by_motion, self.last)
+        return next(T for T in expected if T is not None)
+
+    def why_implausible(self, T: Pose) -> str:
+        """Say how far a pose is from where the vehicle should be, "" where it is near enough."""
+        speed_m_s = (poses.distance_m(self.last, T) - NEAR_M) / max(self.age_s, 1e-3)
+        if speed_m_s > MAX_SPEED_M_S:
+            return f"it is {poses.distance_m(self.last, T):.1f} m from the last one"
+        found = []
+        if self.by_motion is not None:
+            reach_m = NEAR_M + 0.5 * ACCELERATION_M_S2 * self.age_s**2
+            reach_rad = NEAR_RAD + 0.5 * TURN_ACCELERATION_RAD_S2 * self.age_s**2
+            found.append(_beyond(self.by_motion, T, reach_m, reach_rad))
+        if self.by_guess is not None:
+            reach_m = NEAR_M + GUESS_DRIFT * self.guess_motion_m
+            reach_rad = NEAR_RAD + GUESS_DRIFT * self.guess_motion_rad
+            found.append(_beyond(self.by_guess, T, reach_m, reach_rad))
+        if not found:
+            # Nothing but the last pose tells: as far as a vehicle that stood may have come.
+            reach_m = NEAR_M + SHIFT_M + 0.5 * SHIFT_ACCELERATION_M_S2 * self.age_s**2
+            return _beyond(self.last, T, reach_m, np.pi)
+        return "" if "" in found else found[-1]
+
+
+class MotionModel:
+    """Keeps the last believed poses."""
+
+    def __init__(self) -> None:
+        self._believed: deque[Believed] = deque(maxlen=2)
+
+    @property
+    def last(self) -> Believed | None:
+        """Return the newest believed pose."""
+        return self._believed[-1] if self._believed else None
+
+    def believe(self, stamp_s: float, T: Pose, guess: Pose | None) -> None:
+        """Go on from a pose; time that jumps back, as in a recording played again, begins anew."""
+        if self.last is not None and stamp_s <= self.last.stamp_s:
+            self._believed.clear()
+        self._believed.append(Believed(stamp_s, T, guess))
+
+    def forget(self) -> None:
+        """Begin anew."""
+        self._believed.clear()
+
+    def at(self, stamp_s: float, guess: Pose | None) -> Expectation | None:
+        """Return where the vehicle should be at a time; None where nothing tells.
+
+        :param guess: the guess T_map_base for that time.
+        """
+        last = self.last
+        if last is None or stamp_s <= last.stamp_s:
+            return None
+        age_s = stamp_s - last.stamp_s
+        by_motion = self._continued(age_s)
+        by_guess, motion = None, np.eye(4)
+        if guess is not None and last.guess is not None:
+            motion = poses.inverse(last.guess) @ guess
+            moved = last.T @ motion
+            from_here = last.T if by_motion is None else by_motion
+            reach_m = SHIFT_M + 0.5 * SHIFT_ACCELERATION_M_S2 * age_s**2
+            if by_motion is None:
+                reach_m += _speed_m_s(self._believed) * age_s
+            if poses.distance_m(from_here, moved) <= reach_m:
+                by_guess = moved
+        return Expectation(
+            last.T,
+            by_motion,
+            by_guess,
+            age_s,
+            float(np.linalg.norm(motion[:3, 3])),
+            float(np.linalg.norm(poses.rotation_vector(motion[:3, :3]))),
+        )
+
+    def _continued(self, age_s: float) -> Pose | None:
+        if len(self._believed) < 2 or age_s > STEADY_S:
+            return None
+        before, last = self._believed
+        span_s = last.stamp_s - before.stamp_s
+        if span_s > STEADY_S:
+            return None
+        motion = poses.inverse(before.T) @ last.T
+        share = age_s / span_s
+        T = np.eye(4)
+        T[:3, :3] = poses.from_rotation_vector(share * poses.rotation_vector(motion[:3, :3]))
+        T[:3, 3] = share * motion[:3, 3]
+        continued: Pose = last.T @ T
+        return continued
+
+
+def _speed_m_s(believed: deque[Believed]) -> float:
+    """Return the speed between the last two poses; without two, that of a car on a main road."""
+    if len(believed) < 2:
+        return 25.0
+    before, last = believed
+    return poses.distance_m(before.T, last.T) / (last.stamp_s - before.stamp_s)
+
+
+def _beyond(expected: Pose, T: Pose, reach_m: float, reach_rad: float) -> str:
+    distance_m = poses.distance_m(expected, T)
+    angle_rad = poses.angle_rad(expected, T)
+    if distance_m <= reach_m and angle_rad <= reach_rad:
+        return ""
+    return (
+        f"it is {distance_m:.1f} m and {np.degrees(angle_rad):.0f} degrees from where the motion "
+        f"leads, more than {reach_m:.1f} m or {np.degrees(min(reach_rad, np.pi)):.0f} degrees"
+    )

@@ -1,0 +1,135 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Finding back after scans were refused: first around the last good pose, then farther.
+
+```
+ tracking ── N scans refused ─► around: 5 m, 30 degrees ── unclear ─► globally: 20 m, any yaw ◄┐
+    ▲                             │ clear                    │ clear      └──── unclear ───────┘
+    └──── a scan believed ◄── found: scans are aligned from there ◄┘
+```
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+
+from rmw_manycore_py.errors import ManycoreError
+from rmw_manycore_py.ndt.geometry import poses
+from rmw_manycore_py.ndt.geometry.arrays import Pose, ScanPoints
+from rmw_manycore_py.ndt.matching.options import MatcherOptions
+from rmw_manycore_py.ndt.matching.voxel_map import VoxelMap
+from rmw_manycore_py.ndt.trust.judge import PoseJudge
+from rmw_manycore_py.ndt.trust.motion import Believed
+from rmw_manycore_py.ndt.trust.region_search import RegionSearch
+from rmw_manycore_py.ndt.trust.search import Region
+
+AROUND_M = 5.0
+
+
+class Step(Enum):
+    """Where a recovery is."""
+
+    TRACKING = "tracking"
+    AROUND = "searching around the last good pose"
+    GLOBALLY = "searching globally"
+    FOUND = "found a pose"
+
+
+@dataclass(frozen=True)
+class _Scan:
+    """A refused scan; `guess` is T_map_base, as far as there was one."""
+
+    stamp_s: float
+    points: ScanPoints
+    guess: Pose | None
+
+
+class Recovery:
+    """Searches while scans are refused. Not thread-safe.
+
+    :param after_scans: refused in a row, until the search begins; 0: never.
+    :param radius_m: of the global search.
+    """
+
+    def __init__(self, options: MatcherOptions, after_scans: int, radius_m: float) -> None:
+        self._after_scans = after_scans
+        self._radius_m = radius_m
+        self._search = RegionSearch(options)
+        self._searched: _Scan | None = None
+        self._region: Region | None = None
+        self._refused = 0
+        self.step = Step.TRACKING
+        self.note = ""
+
+    @property
+    def is_on(self) -> bool:
+        """Tell whether anything is ever searched."""
+        return self._after_scans > 0
+
+    def map_changed(self, voxel_map: VoxelMap) -> None:
+        """Search in this map from now on."""
+        self._search.map_changed(voxel_map)
+
+    def hurry(self) -> None:
+        """Search with the next scan that is refused."""
+        self._refused = self._after_scans
+
+    def believed(self) -> None:
+        """Note that a scan was believed: the search is over."""
+        self._refused, self.note = 0, ""
+        self.step = Step.TRACKING
+        self._region = None
+
+    def reset(self) -> None:
+        """Begin anew: what is being searched is of no use any more."""
+        self.believed()
+        self._searched = None
+
+    def refused(self, stamp_s: float, points: ScanPoints, guess: Pose | None, at: Pose) -> None:
+        """Take a scan that was refused; search when it is time.
+
+        :param at: T_map_base to search around.
+        """
+        self._refused += 1
+        if not self.is_on or self._refused < self._after_scans or not self._search.is_idle:
+            return
+        if self.step in (Step.TRACKING, Step.FOUND):
+            self.step = Step.AROUND
+            self._region = Region(at, AROUND_M, any_yaw=False)
+        else:
+            self.step = Step.GLOBALLY
+            self._region = Region(at, self._radius_m, any_yaw=True)
+        self._refused = 0  # of the next search, which need not follow at once
+        self._searched = _Scan(stamp_s, points, guess)
+        self._search.begin(points, self._region)
+
+    def take(self, judge: PoseJudge) -> bool:
+        """Let the judge go on from what was found meanwhile; tell whether it does."""
+        try:
+            found = self._search.take()
+        except ManycoreError as error:
+            self.note = str(error)
+            return False
+        if found is None:
+            return False
+        scan, self._searched = self._searched, None
+        if scan is None or self.step is Step.TRACKING:  # found back without it
+            return False
+        unclear = found.why_unclear(judge.level.of_map)
+        self.note = f"{self.step.value}: {unclear or 'clear'}"
+        if unclear:
+            return False
+        best = found.places[0].alignment
+        self.step = Step.FOUND
+        assert self._region is not None
+        away_m = poses.distance_m(self._region.centre, best.T_map_sensor)
+        self.note = (
+            f"found a pose {away_m:.1f} m away, score {best.nearest_voxel_likelihood:.3f}, "
+            f"{100 * found.margin:.0f} % before the next best"
+        )
+        judge.begin_at(Believed(scan.stamp_s, best.T_map_sensor, scan.guess))
+        return True
+
+    def close(self) -> None:
+        """End the search."""
+        self._search.close()

@@ -1,0 +1,88 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""The search for a pose in a process of its own, so that no scan and no guess waits for it."""
+
+from __future__ import annotations
+
+from concurrent.futures import Future, ThreadPoolExecutor
+from dataclasses import replace
+
+from rmw_manycore_py.helper_process import HelperProcess, leave_real_time
+from rmw_manycore_py.ndt.geometry.arrays import ScanPoints
+from rmw_manycore_py.ndt.matching.matcher import SerialMatcher
+from rmw_manycore_py.ndt.matching.options import MatcherOptions
+from rmw_manycore_py.ndt.matching.voxel_map import VoxelMap
+from rmw_manycore_py.ndt.trust.search import Found, Region, search
+
+SKETCH_ITERATIONS = 15
+
+
+class RegionSearch:
+    """One search at a time; the process starts with the first."""
+
+    def __init__(self, options: MatcherOptions) -> None:
+        self._options = options
+        self._map: VoxelMap | None = None
+        self._helper = HelperProcess("pose search")
+        self._executor = ThreadPoolExecutor(1, "search", leave_real_time)
+        self._running: Future[Found] | None = None
+
+    def map_changed(self, voxel_map: VoxelMap) -> None:
+        """Search in another map from the next search on."""
+        self._map = voxel_map
+
+    @property
+    def is_idle(self) -> bool:
+        """Tell whether a search may begin: none runs, and none waits to be taken."""
+        return self._running is None and self._map is not None
+
+    def begin(self, scan: ScanPoints, region: Region) -> None:
+        """Search for a scan (N, 3) [m, base frame], if the search is idle."""
+        if self.is_idle and self._map is not None:
+            self._running = self._executor.submit(self._search, self._map, scan, region)
+
+    def take(self) -> Found | None:
+        """Return what was found, once; None while a search runs, or without one.
+
+        :raises ManycoreError: when the search could not be done.
+        """
+        running = self._running
+        if running is None or not running.done():
+            return None
+        self._running = None
+        return running.result()
+
+    def close(self) -> None:
+        """End the process, whatever it is doing."""
+        self._helper.close()
+        self._executor.shutdown(wait=True, cancel_futures=True)
+
+    def _search(self, voxel_map: VoxelMap, scan: ScanPoints, region: Region) -> Found:
+        # Held until the answer is there: the helper attaches to this process's memory.
+        paths = voxel_map.shared_paths
+        return self._helper.call(search_in_map, paths, self._options, scan, region)
+
+
+def search_in_map(
+    shared_paths: list[str], options: MatcherOptions, scan: ScanPoints, region: Region
+) -> Found:
+    """Search in the map of another process."""
+    only_pose = replace(options, pose_covariance="fixed")
+    voxel_map = VoxelMap.attach(shared_paths, only_pose, 0.0)
+    matcher = SerialMatcher(only_pose)
+    matcher.set_map(voxel_map)
+    return search(_sketcher(voxel_map, only_pose), matcher, scan, region)
+
+
+def _sketcher(voxel_map: VoxelMap, options: MatcherOptions) -> SerialMatcher:
+    """Return a matcher to the coarsest level alone."""
+    factor = options.coarse_levels[0] if options.coarse_levels else 1.0
+    coarse = replace(
+        options,
+        voxel_size_m=factor * options.voxel_size_m,
+        coarse_levels=(),
+        max_iterations=SKETCH_ITERATIONS,
+        trans_epsilon=min(0.1, options.step_size),
+    )
+    sketcher = SerialMatcher(coarse)
+    sketcher.set_map(VoxelMap(voxel_map.levels[:1], coarse, 0.0))
+    return sketcher

@@ -1,0 +1,128 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Where around a place a scan fits: all that is found, best first, and whether one stands out.
+
+```
+ grid of places and directions ─► thinned scan, to the coarse level alone ─► the best dozens
+   ─► whole scan, to all levels ─► places that differ, best first ─► margin over the second
+```
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from rmw_manycore_py.ndt.geometry import poses
+from rmw_manycore_py.ndt.geometry.arrays import Pose, ScanPoints
+from rmw_manycore_py.ndt.matching.alignment import Alignment
+from rmw_manycore_py.ndt.matching.matcher import Matcher
+
+STEP_M = 3.0  # between places: levels of 4 m and 2 m find home from more than half its diagonal
+TURN_RAD = np.radians(30.0)
+SKETCH_POINTS = 1500
+FOLLOWED = 24  # of the grid's results, aligned with the whole scan
+SAME_M, SAME_RAD = 1.0, np.radians(10.0)  # results nearer to each other are one place
+MARGIN = 0.05  # of the best fit, that the second best place must be worse by
+
+
+@dataclass(frozen=True)
+class Region:
+    """Where to look.
+
+    :param centre: T_map_base.
+    :param any_yaw: whether the vehicle may look anywhere, or as the centre does, within 30 degrees.
+    """
+
+    centre: Pose
+    radius_m: float
+    any_yaw: bool
+
+    def grid(self) -> Iterator[Pose]:
+        """Yield poses, no place of the region farther than the levels reach from one of them."""
+        steps = np.arange(-self.radius_m, self.radius_m + 0.5 * STEP_M, STEP_M)
+        turns = np.arange(0.0, 2 * np.pi - 1e-6, TURN_RAD) if self.any_yaw else (0.0, -0.4, 0.4)
+        for x in steps:
+            for y in steps:
+                if np.hypot(x, y) > self.radius_m:
+                    continue
+                for turn in turns:
+                    T = poses.from_xyz_rpy((x, y, 0.0))
+                    T[:3, 3] += self.centre[:3, 3]
+                    turned = poses.from_xyz_rpy((0.0, 0.0, 0.0), (0.0, 0.0, float(turn)))
+                    T[:3, :3] = turned[:3, :3] @ self.centre[:3, :3]
+                    yield T
+
+
+@dataclass(frozen=True)
+class Place:
+    """Where the scan fits, and how well: the likelihood, less for points outside the map."""
+
+    alignment: Alignment
+
+    @property
+    def fit(self) -> float:
+        """Return what places are compared by."""
+        return self.alignment.nearest_voxel_likelihood * self.alignment.share_in_map
+
+
+@dataclass(frozen=True)
+class Found:
+    """Places that differ, best first."""
+
+    places: tuple[Place, ...]
+
+    @property
+    def margin(self) -> float:
+        """Return by which share of its fit the best place is better than the second best."""
+        if len(self.places) < 2:
+            return 1.0 if self.places else 0.0
+        best, second = (place.fit for place in self.places[:2])
+        return (best - second) / best if best > 0.0 else 0.0
+
+    def why_unclear(self, level: float) -> str:
+        """Say what is wrong with the best place; "" where it stands out.
+
+        :param level: the score that it must reach.
+        """
+        if not self.places:
+            return "the scan fits nowhere"
+        best = self.places[0].alignment
+        if not best.nearest_voxel_likelihood > level:
+            return f"the best score {best.nearest_voxel_likelihood:.3f} is below {level:.3f}"
+        if self.margin < MARGIN:
+            other = self.places[1].alignment
+            apart_m = poses.distance_m(best.T_map_sensor, other.T_map_sensor)
+            return f"{apart_m:.1f} m apart it fits as well, within {100 * self.margin:.1f} %"
+        return ""
+
+
+def search(sketcher: Matcher, matcher: Matcher, scan: ScanPoints, region: Region) -> Found:
+    """Return where in a region a scan (N, 3) [m, base frame] fits.
+
+    :param sketcher: has a map of the coarse level alone.
+    :param matcher: has the whole map.
+    """
+    sketch = scan[:: max(1, len(scan) // SKETCH_POINTS)]
+    tried = [sketcher.align(sketch, T, only_pose=True) for T in region.grid()]
+    rough = _distinct([Place(one) for one in tried if not one.is_degenerate], 0.5 * SAME_M)
+    fine = [matcher.align(scan, one.alignment.T_map_sensor, only_pose=True) for one in rough]
+    return Found(tuple(_distinct([Place(one) for one in fine if not one.is_degenerate], SAME_M)))
+
+
+def _distinct(places: Sequence[Place], apart_m: float) -> list[Place]:
+    """Return the best of each place, best first."""
+    kept: list[Place] = []
+    for place in sorted(places, key=lambda one: one.fit, reverse=True):
+        if not any(_is_same(place, other, apart_m) for other in kept):
+            kept.append(place)
+            if len(kept) == FOLLOWED:
+                break
+    return kept
+
+
+def _is_same(a: Place, b: Place, apart_m: float) -> bool:
+    T_a, T_b = a.alignment.T_map_sensor, b.alignment.T_map_sensor
+    near = poses.distance_m(T_a, T_b) < apart_m
+    return near and poses.angle_rad(T_a, T_b) < SAME_RAD
