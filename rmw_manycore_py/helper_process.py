@@ -30,17 +30,18 @@ from rmw_manycore_py.parent_death import dies_with_this_process
 T = TypeVar("T")
 
 SIZE = struct.Struct("<Q")
-NICENESS = 10  # a tenth of the share of CPU time that a node on the same CPU has
 
 
 class HelperProcess:
     """Starts with the first call. Calls from several threads take turns.
 
     :param name: for messages, as "map builder".
+    :param niceness: beside a node on the same CPU, 5 leaves it a third of the time, 10 a tenth.
     """
 
-    def __init__(self, name: str) -> None:
+    def __init__(self, name: str, niceness: int) -> None:
         self._name = name
+        self._niceness = niceness
         self._process: subprocess.Popen[bytes] | None = None
         self._turn = threading.Lock()
         self._is_closed = False
@@ -88,7 +89,7 @@ class HelperProcess:
             self._end()
         if self._process is None:
             self._process = subprocess.Popen(
-                own_program("rmw_manycore_py.helper_process"),
+                own_program("rmw_manycore_py.helper_process", str(self._niceness)),
                 stdin=subprocess.PIPE,
                 stdout=subprocess.PIPE,
                 preexec_fn=_before_exec(),
@@ -150,7 +151,7 @@ def main() -> None:
         answers = os.fdopen(os.dup(sys.stdout.fileno()), "wb")
         os.dup2(sys.stderr.fileno(), sys.stdout.fileno())  # what a function prints is no answer
         leave_real_time()
-        os.nice(NICENESS)
+        os.nice(int(sys.argv[1]))
         while True:
             try:
                 function, arguments = _receive(calls)

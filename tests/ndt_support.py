@@ -22,6 +22,7 @@ from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from ros_support import spin_until
 from sensor_msgs.msg import PointCloud2
+from std_srvs.srv import SetBool
 from support import PATIENCE_S
 
 from rmw_manycore_py.ndt.geometry import poses
@@ -197,9 +198,26 @@ class Stack:
         """Send a scan until there is a pose for it: the map may still be on its way."""
         deadline = time.monotonic() + PATIENCE_S
         while (report := self.report_of(stamp_ns := self.send(scan, guess))).level != b"\x00":
-            assert time.monotonic() < deadline, f"no pose: {report.message}"
+            assert time.monotonic() < deadline, f"no pose: {report}"
         spin_until(self.node, lambda: stamp_ns in self.poses)
         return self.poses[stamp_ns]
+
+    def be_sure(self) -> None:
+        """Send scans until their poses confirm each other."""
+        deadline = time.monotonic() + PATIENCE_S
+        while {pair.key: pair.value for pair in self._answer().values}.get("is_sure") != "True":
+            assert time.monotonic() < deadline, "no pose is sure"
+
+    def begin_anew(self) -> None:
+        """Have the matcher forget where it was, as a first pose would."""
+        trigger = self.node.create_client(SetBool, "trigger_node_srv")
+        assert trigger.wait_for_service(PATIENCE_S)
+        answer = trigger.call_async(SetBool.Request(data=True))
+        spin_until(self.node, answer.done)
+        self.node.destroy_client(trigger)
+
+    def _answer(self) -> Any:
+        return self.report_of(self.send(street_scan(), NEAR))
 
 
 def error_m(T: np.ndarray) -> float:

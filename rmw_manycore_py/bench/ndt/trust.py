@@ -16,18 +16,25 @@ from rmw_manycore_py.bench.ndt.trust_cases import Case, cases_of
 from rmw_manycore_py.bench.ndt.trust_worlds import drives
 from rmw_manycore_py.bench.question import Question, Run
 from rmw_manycore_py.bench.summary import Goal, Result
+from rmw_manycore_py.ndt.geometry import poses
 from rmw_manycore_py.ndt.trust.score_level import ScoreLevel
+from rmw_manycore_py.ndt.trust.search import Found, Region
 
 CASES = 1000  # right ones, and as many wrong ones
 SCANS = 40  # of each drive
 BELIEVED, REFUSED = "wrong poses believed", "right poses refused"
 AT_START = "wrong poses believed at a start"
 SHARES = "share of the drive's median, chosen without the drive"
+FIRST_SHARES = "share of the map's score for a first pose, chosen without the drive"
 OURS, AUTOWARE = "rmw_manycore", "as Autoware"
 AUTOWARE_SCORE = 2.3  # converged_param_nearest_voxel_transformation_likelihood
+SEARCHED, FOUND_WRONG = "right places found by a search", "wrong places found by a search"
+SEARCHES = 8  # of each drive
 # Chosen shares leave 0.3 % of the right poses of other drives below, and some room for a drive that
-# is unlike them: scores of a sparse map vary more along the way.
-LEFT_BELOW, DRIVE_ROOM, MAP_ROOM = 0.003, 0.02, 0.1
+# is unlike them: scores of a sparse map vary more along the way. A first pose must fit better than
+# all wrong ones of other drives, and a little more.
+LEFT_BELOW, DRIVE_ROOM, MAP_ROOM, FIRST_ROOM = 0.003, 0.07, 0.1, 0.03
+AROUND_M, GLOBAL_M = 5.0, 20.0
 
 
 @dataclass(frozen=True)
@@ -36,10 +43,11 @@ class Shares:
 
     of_map: float
     of_drive: float
+    of_first: float
 
     def level(self) -> ScoreLevel:
         """Return a level that has learned nothing yet."""
-        return ScoreLevel(self.of_map, self.of_drive)
+        return ScoreLevel(self.of_map, self.of_drive, self.of_first)
 
 
 def measure(run: Run) -> list[Result]:
@@ -59,28 +67,61 @@ def measure(run: Run) -> list[Result]:
 def judged(cases: dict[str, list[Case]], count: int) -> list[Result]:
     """Return the results of at most `count` right and wrong cases, as many of each drive."""
     shares = {
-        name: chosen([c for n, all_ in cases.items() if n != name for c in all_]) for name in cases
+        name: chosen(
+            [case for other, of_other in cases.items() if other != name for case in of_other]
+        )
+        for name in cases
     }
     right = _picked([[c for c in all_ if c.is_right] for all_ in cases.values()], count)
     wrong = _picked([[c for c in all_ if c.is_wrong] for all_ in cases.values()], count)
+    mislead = {id(case): misleads(case, shares[case.drive]) for case in wrong}
+    refuse = {id(case): is_refused(case, shares[case.drive]) for case in right}
     results = [
-        _share(BELIEVED, OURS, [misleads(case, shares[case.drive]) for case in wrong]),
+        _share(BELIEVED, OURS, list(mislead.values())),
         _share(BELIEVED, AUTOWARE, [_as_autoware(case) for case in wrong]),
-        _share(REFUSED, OURS, [not _is_believed(case, shares[case.drive]) for case in right]),
+        _share(REFUSED, OURS, list(refuse.values())),
         _share(REFUSED, AUTOWARE, [not _as_autoware(case) for case in right]),
         Result(SHARES, OURS, "", tuple(one.of_drive for one in shares.values())),
+        Result(FIRST_SHARES, OURS, "", tuple(one.of_first for one in shares.values())),
     ]
     for name in cases:
         of_drive = [case for case in wrong if case.drive == name]
-        if of_drive:
-            mislead = [misleads(case, shares[name]) for case in of_drive]
-            results.append(_share(f"{BELIEVED}: {name}", OURS, mislead))
-            fresh = [misleads(replace(case, before=()), shares[name]) for case in of_drive]
-            results.append(_share(f"{AT_START}: {name}", OURS, fresh))
-        refused = [not _is_believed(c, shares[name]) for c in right if c.drive == name]
-        if refused:
-            results.append(_share(f"{REFUSED}: {name}", OURS, refused))
-    return results
+        fresh = [misleads(replace(case, before=()), shares[name]) for case in of_drive]
+        answers = {
+            f"{BELIEVED}: {name}": [mislead[id(case)] for case in of_drive],
+            f"{AT_START}: {name}": fresh,
+            f"{REFUSED}: {name}": [refuse[id(case)] for case in right if case.drive == name],
+        }
+        results += [_share(question, OURS, is_so) for question, is_so in answers.items() if is_so]
+    return [*results, *_searches(wrong, shares)]
+
+
+def _without(name: str, cases: dict[str, list[Case]]) -> list[Case]:
+    return [case for other, of_drive in cases.items() if other != name for case in of_drive]
+
+
+def _searches(wrong: Sequence[Case], shares: dict[str, Shares]) -> list[Result]:
+    """Search where alignments led astray, globally around their guesses."""
+    is_right, is_wrong = [], []
+    for name in shares:
+        for case in [c for c in wrong if c.drive == name and _is_in_reach(c)][:SEARCHES]:
+            region = Region(case.guess, GLOBAL_M, any_yaw=True)
+            found = case.world.searched(case.scan, region)
+            is_clear = not found.why_unclear(_level_of(case, shares[name]), region)
+            there = is_clear and _is_there(found, case)
+            is_right.append(there)
+            is_wrong.append(is_clear and not there)
+    if not is_right:
+        return []
+    return [_share(SEARCHED, OURS, is_right), _share(FOUND_WRONG, OURS, is_wrong)]
+
+
+def _is_in_reach(case: Case) -> bool:
+    return poses.distance_m(case.guess, case.truth) < GLOBAL_M
+
+
+def _is_there(found: Found, case: Case) -> bool:
+    return replace(case, alignment=found.places[0]).is_right
 
 
 def chosen(cases: Sequence[Case]) -> Shares:
@@ -92,9 +133,15 @@ def chosen(cases: Sequence[Case]) -> Shares:
         for case in right
         if case.before
     ]
+    wrong = [
+        case.alignment.fit / case.own_score
+        for case in cases
+        if case.is_wrong and not case.world.drive.repeats
+    ]
     return Shares(
         float(np.quantile(of_map, LEFT_BELOW)) - MAP_ROOM,
         float(np.quantile(of_drive, LEFT_BELOW)) - DRIVE_ROOM,
+        max(wrong) + FIRST_ROOM,
     )
 
 
@@ -106,8 +153,24 @@ def misleads(case: Case, shares: Shares) -> bool:
     return not verdict.covers(case.alignment.T_map_sensor, case.truth)
 
 
-def _is_believed(case: Case, shares: Shares) -> bool:
-    return case.judged(shares.level()).is_believed
+def is_refused(case: Case, shares: Shares) -> bool:
+    """Tell whether a right pose is refused, and at a start a search does not find it either."""
+    if case.judged(shares.level()).is_believed:
+        return False
+    if case.before:
+        return True
+    for radius_m, any_yaw in ((AROUND_M, False), (GLOBAL_M, True)):
+        region = Region(case.guess, radius_m, any_yaw)
+        found = case.world.searched(case.scan, region)
+        if not found.why_unclear(_level_of(case, shares), region):
+            return not _is_there(found, case)
+    return True
+
+
+def _level_of(case: Case, shares: Shares) -> ScoreLevel:
+    level = shares.level()
+    level.map_changed(case.own_score)
+    return level
 
 
 def _as_autoware(case: Case) -> bool:

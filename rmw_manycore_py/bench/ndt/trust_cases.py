@@ -11,9 +11,11 @@ import numpy as np
 from rmw_manycore_py.bench.ndt.trust_worlds import Drive
 from rmw_manycore_py.ndt import Alignment, MatcherOptions, SerialMatcher, VoxelMap
 from rmw_manycore_py.ndt.geometry import poses
-from rmw_manycore_py.ndt.geometry.arrays import Matrix, Pose, scan_points
+from rmw_manycore_py.ndt.geometry.arrays import Matrix, Pose, ScanPoints, scan_points
 from rmw_manycore_py.ndt.trust.judge import PoseJudge, Verdict
+from rmw_manycore_py.ndt.trust.region_search import sketcher_of
 from rmw_manycore_py.ndt.trust.score_level import ScoreLevel
+from rmw_manycore_py.ndt.trust.search import Found, Region, search
 
 OPTIONS = MatcherOptions(search="radius")  # as the node has them
 RIGHT_M, RIGHT_DEG = 0.2, 1.0
@@ -40,6 +42,27 @@ class Before:
 
 
 @dataclass(frozen=True)
+class World:
+    """A drive's map, and matchers to it."""
+
+    drive: Drive
+    voxel_map: VoxelMap
+    matcher: SerialMatcher
+
+    @classmethod
+    def of(cls, drive: Drive) -> World:
+        """Build the map."""
+        voxel_map = VoxelMap.from_points(drive.map_points, OPTIONS)
+        matcher = SerialMatcher(OPTIONS)
+        matcher.set_map(voxel_map)
+        return cls(drive, voxel_map, matcher)
+
+    def searched(self, scan: ScanPoints, region: Region) -> Found:
+        """Search as the node does."""
+        return search(sketcher_of(self.voxel_map, OPTIONS), self.matcher, scan, region)
+
+
+@dataclass(frozen=True)
 class Case:
     """The result of an alignment.
 
@@ -47,13 +70,23 @@ class Case:
     :param truth: T_map_sensor.
     """
 
-    drive: str
-    own_score: float
+    world: World
+    scan: ScanPoints
     stamp_s: float
     before: tuple[Before, ...]
     guess: Pose
     alignment: Alignment
     truth: Pose
+
+    @property
+    def drive(self) -> str:
+        """Return the name of the drive."""
+        return self.world.drive.name
+
+    @property
+    def own_score(self) -> float:
+        """Return the score of the map's own points."""
+        return self.world.voxel_map.own_likelihood
 
     @property
     def is_right(self) -> bool:
@@ -88,9 +121,8 @@ class Case:
 def cases_of(drive: Drive, wanted: int) -> list[Case]:
     """Return about so many right and so many wrong results of a drive, and those between."""
     generator = np.random.default_rng(SEED)
-    voxel_map = VoxelMap.from_points(drive.map_points, OPTIONS)
-    matcher = SerialMatcher(OPTIONS)
-    matcher.set_map(voxel_map)
+    world = World.of(drive)
+    matcher = world.matcher
     scans = {index: scan_points(drive.scan(index)) for index in drive.tested}
     scores: dict[int, float] = {}
     for index, scan in scans.items():
@@ -103,8 +135,8 @@ def cases_of(drive: Drive, wanted: int) -> list[Case]:
             alignment = matcher.align(scan, guess, only_pose=True)
             found.append(
                 Case(
-                    drive.name,
-                    voxel_map.own_likelihood,
+                    world,
+                    scan,
                     float(drive.stamps_s[index]),
                     before,
                     guess,

@@ -35,6 +35,7 @@ class Drive:
     :param tested: indices of the scans that are judged.
     :param scan: returns the points (n, 3) of one.
     :param is_drive: the scans follow each other, so that motion tells.
+    :param repeats: scans fit as well at other places: nothing in one tells them apart.
     """
 
     name: str
@@ -44,12 +45,13 @@ class Drive:
     tested: list[int]
     scan: Callable[[int], Points]
     is_drive: bool
+    repeats: bool = False
 
 
 def drives(scans: int) -> Iterator[Drive]:
     """Yield all drives, of each at most so many scans."""
     yield from _recorded(scans)
-    yield from _simulated(scans)
+    yield from simulated(scans)
 
 
 def _recorded(scans: int) -> Iterator[Drive]:
@@ -84,16 +86,19 @@ def _spread(indices: list[int], count: int) -> list[int]:
     return [indices[i] for i in np.linspace(0, len(indices) - 1, count).astype(int)]
 
 
-def _simulated(scans: int) -> Iterator[Drive]:
+def simulated(scans: int) -> Iterator[Drive]:
+    """Yield drives in made-up streets, of each at most so many scans."""
     for seed in (1, 2):
         generator = np.random.default_rng(seed)
         yield _driven(f"street {seed}", build_street(LENGTH_M, generator), generator, scans)
     for period_m in (12.0, 20.0):
         generator = np.random.default_rng(int(period_m))
         street = repeating_street(period_m, generator)
-        yield _driven(f"street that repeats every {period_m:g} m", street, generator, scans)
+        yield _driven(
+            f"street that repeats every {period_m:g} m", street, generator, scans, repeats=True
+        )
     generator = np.random.default_rng(5)
-    yield _driven("tunnel", tunnel(), generator, scans)
+    yield _driven("tunnel", tunnel(), generator, scans, repeats=True)
     street = build_street(LENGTH_M, generator)
     yield _driven("street, sparse map", street, generator, scans, SPARSE_MAPPING_M)
 
@@ -136,6 +141,8 @@ def _driven(
     generator: np.random.Generator,
     scans: int,
     mapping_m: float = MAPPING_M,
+    *,
+    repeats: bool = False,
 ) -> Drive:
     places = poses_along(np.arange(-8.0, LENGTH_M + 8.0, mapping_m), side_m=0.6)
     mapped = scans_along(street, places, LIDAR, generator)
@@ -151,4 +158,5 @@ def _driven(
         _spread(list(range(3, len(poses))), scans),
         lambda index: LIDAR.scan(street, poses[index], seeds),
         is_drive=True,
+        repeats=repeats,
     )

@@ -21,6 +21,8 @@ from rmw_manycore_py.ndt.maps import map_process
 from rmw_manycore_py.ndt.matching.options import MatcherOptions
 from rmw_manycore_py.ndt.matching.voxel_map import VoxelMap
 
+NICENESS = 10
+
 
 @dataclass(frozen=True)
 class BuiltMap:
@@ -44,7 +46,7 @@ class MapBuilder:
 
     def __init__(self, options: MatcherOptions) -> None:
         self._options = options
-        self._helper = HelperProcess("map builder")
+        self._helper = HelperProcess("map builder", NICENESS)
         self._executor = ThreadPoolExecutor(1, "map", leave_real_time)
         self._running: Future[BuiltMap] | None = None
         self._waiting: Callable[[], Points | None] | None = None

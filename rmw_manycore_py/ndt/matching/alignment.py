@@ -112,6 +112,11 @@ class Alignment:
             xy_spread_m2=by_curvature[:2, :2] * found.at.scan_points,
         )
 
+    @property
+    def fit(self) -> float:
+        """Return the likelihood, less for points outside the map: to compare places by."""
+        return self.nearest_voxel_likelihood * self.share_in_map
+
     @classmethod
     def refused(cls, guess: Pose | None, why: str, options: MatcherOptions) -> Alignment:
         """Return the answer to what cannot be aligned at all."""

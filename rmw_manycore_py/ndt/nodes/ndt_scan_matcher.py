@@ -109,7 +109,7 @@ class NdtScanMatcher(Node):
     def _make_tracking(self) -> Tracking:
         if self._own.behaviour == "autoware":
             return AutowareTracking(self._matcher, self._p)
-        return RobustTracking(self._matcher, self._p, self._own, self._now_s())
+        return RobustTracking(self._matcher, self._p, self._own)
 
     def _listen(self) -> None:
         sensor = QoSProfile(depth=SCAN_DEPTH, reliability=ReliabilityPolicy.BEST_EFFORT)

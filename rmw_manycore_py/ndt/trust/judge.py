@@ -16,7 +16,7 @@ from rmw_manycore_py.ndt.trust.motion import Believed, Expectation, MotionModel
 from rmw_manycore_py.ndt.trust.score_level import ScoreLevel
 
 LEAST_SHARE_IN_MAP = 0.3  # of the points: below, the vehicle has left the map, or is elsewhere
-DROP_SHARE = 0.93  # of the median of the last few scores: less is a sudden drop
+DROP_SHARE = 0.88  # of the median of the last few scores: less is a sudden drop
 DROP_SCORES = 5
 SURE_AFTER = 3  # poses in a row that each agreed with the one before
 UNSURE_M, UNSURE_RAD = 1.0, 0.2  # standard deviations of a pose that nothing before it confirms
@@ -73,9 +73,13 @@ class Verdict:
 
 
 class PoseJudge:
-    """Judges one drive's poses, scan by scan; what it believes makes it know the next better."""
+    """Judges one drive's poses, scan by scan; what it believes makes it know the next better.
 
-    def __init__(self, level: ScoreLevel | None = None) -> None:
+    :param searches: a search finds the first pose where the guess's result is not good enough.
+    """
+
+    def __init__(self, level: ScoreLevel | None = None, *, searches: bool = True) -> None:
+        self._searches = searches
         self.level = level or ScoreLevel()
         self.motion = MotionModel()
         self._recent: deque[float] = deque(maxlen=DROP_SCORES)
@@ -117,15 +121,22 @@ class PoseJudge:
     def _why_not(self, alignment: Alignment, expected: Expectation | None) -> str:
         score = alignment.nearest_voxel_likelihood
         if alignment.is_degenerate:
-            return alignment.why or "the scan does not say where it fits"
+            return f"no convergence: {alignment.why}"
         if alignment.share_in_map < LEAST_SHARE_IN_MAP:
             return f"only {100 * alignment.share_in_map:.0f} % of the points lie in the map"
         if not score > self.level.level:
             return f"the score {score:.3f} is not above the level {self.level.level:.3f}"
         if len(self._recent) == DROP_SCORES and score < DROP_SHARE * median(self._recent):
             return f"the score fell from {median(self._recent):.3f} to {score:.3f}"
-        implausible = "" if expected is None else expected.why_implausible(alignment.T_map_sensor)
+        if expected is None:
+            return self._why_not_first(alignment)
+        implausible = expected.why_implausible(alignment.T_map_sensor)
         return f"the pose is implausible: {implausible}" if implausible else ""
+
+    def _why_not_first(self, alignment: Alignment) -> str:
+        if not self._searches or alignment.fit > self.level.of_first:
+            return ""
+        return f"the first pose's fit {alignment.fit:.3f} is below {self.level.of_first:.3f}"
 
 
 def weak_axis(alignment: Alignment) -> Matrix | None:

@@ -21,7 +21,7 @@ from rmw_manycore_py.ndt.geometry.poses import rigid
 from rmw_manycore_py.ndt.trust.motion import Believed
 
 MAGIC = b"manycore last pose 1\0\0\0\0"
-BODY = struct.Struct("<24sd?16d16d")
+BODY = struct.Struct("<24sdd?16d16d")
 CHECK = struct.Struct("<I")
 SIZE = BODY.size + CHECK.size
 NO_GUESS = np.zeros((4, 4))
@@ -46,11 +46,14 @@ class LastPose:
                 f"parameter last_pose_path: {path} cannot be written: {error}", EXIT_BAD_INPUT
             ) from error
 
-    def write(self, believed: Believed, is_activated: bool) -> None:
-        """Keep a pose in place of the one before."""
+    def write(self, now_s: float, believed: Believed, is_activated: bool) -> None:
+        """Keep a pose in place of the one before.
+
+        :param now_s: wall-clock time; stamps may be of another clock, as of a recording.
+        """
         guess = NO_GUESS if believed.guess is None else believed.guess
         numbers = (*believed.T.ravel(), *guess.ravel())
-        body = BODY.pack(MAGIC, believed.stamp_s, is_activated, *numbers)
+        body = BODY.pack(MAGIC, now_s, believed.stamp_s, is_activated, *numbers)
         self._bytes[:] = body + CHECK.pack(zlib.crc32(body))
 
     def read(self, now_s: float, max_age_s: float) -> tuple[Believed, bool] | None:
@@ -62,8 +65,8 @@ class LastPose:
         body = data[: BODY.size]
         if CHECK.unpack(data[BODY.size :])[0] != zlib.crc32(body):
             return None
-        magic, stamp_s, is_activated, *numbers = BODY.unpack(body)
-        if magic != MAGIC or not 0.0 <= now_s - stamp_s <= max_age_s:
+        magic, written_s, stamp_s, is_activated, *numbers = BODY.unpack(body)
+        if magic != MAGIC or not 0.0 <= now_s - written_s <= max_age_s:
             return None
         T, guess = (_pose(np.array(part)) for part in (numbers[:16], numbers[16:]))
         return None if T is None else (Believed(stamp_s, T, guess), is_activated)

@@ -24,6 +24,7 @@ GUESS_DRIFT = 0.1  # of the length and angle of the guesses' motion
 # Guesses may shift so far from one scan to the next; farther, they have jumped.
 SHIFT_M = 2.5
 SHIFT_ACCELERATION_M_S2 = 3.0
+MAX_DRAWN_M = 4.5  # beyond, a street that repeats would look the same
 MAX_SPEED_M_S = 60.0
 
 
@@ -53,10 +54,9 @@ class Expectation:
     guess_motion_rad: float = 0.0
 
     @property
-    def best(self) -> Pose:
-        """Return the pose to look at first."""
-        expected = (self.by_guess, self.by_motion, self.last)
-        return next(T for T in expected if T is not None)
+    def poses(self) -> list[Pose]:
+        """Return where to look, first where the vehicle most probably is."""
+        return [T for T in (self.by_guess, self.by_motion, self.last) if T is not None]
 
     def why_implausible(self, T: Pose) -> str:
         """Say how far a pose is from where the vehicle should be, "" where it is near enough."""
@@ -72,10 +72,11 @@ class Expectation:
             reach_m = NEAR_M + GUESS_DRIFT * self.guess_motion_m
             reach_rad = NEAR_RAD + GUESS_DRIFT * self.guess_motion_rad
             found.append(_beyond(self.by_guess, T, reach_m, reach_rad))
-        if not found:
-            # Nothing but the last pose tells: as far as a vehicle that stood may have come.
-            reach_m = NEAR_M + SHIFT_M + 0.5 * SHIFT_ACCELERATION_M_S2 * self.age_s**2
-            return _beyond(self.last, T, reach_m, np.pi)
+        if self.by_motion is None:
+            # The vehicle may have stood, whatever the guesses did.
+            drawn_m = 0.5 * SHIFT_ACCELERATION_M_S2 * self.age_s**2
+            reach_m = NEAR_M + SHIFT_M + min(drawn_m, MAX_DRAWN_M)
+            found.append(_beyond(self.last, T, reach_m, np.pi))
         return "" if "" in found else found[-1]
 
 

@@ -2,9 +2,11 @@
 """Finding back after scans were refused: first around the last good pose, then farther.
 
 ```
- tracking ── N scans refused ─► around: 5 m, 30 degrees ── unclear ─► globally: 20 m, any yaw ◄┐
-    ▲                             │ clear                    │ clear      └──── unclear ───────┘
-    └──── a scan believed ◄── found: scans are aligned from there ◄┘
+ tracking ── N scans refused ─► around: 5 m, 30 degrees ── unclear ─► globally: 20 m, any yaw
+    ▲                              │ clear                               │ clear     │ unclear
+    │                              ▼                                     ▼           ▼
+    └──── a scan believed ◄─── found: scans are aligned from there ◄── the same around the guess,
+                                                                       if it is elsewhere; again
 ```
 """
 
@@ -58,6 +60,7 @@ class Recovery:
         self._searched: _Scan | None = None
         self._region: Region | None = None
         self._refused = 0
+        self._searches = 0
         self.step = Step.TRACKING
         self.note = ""
 
@@ -76,9 +79,8 @@ class Recovery:
 
     def believed(self) -> None:
         """Note that a scan was believed: the search is over."""
-        self._refused, self.note = 0, ""
+        self._refused, self._searches, self.note = 0, 0, ""
         self.step = Step.TRACKING
-        self._region = None
 
     def reset(self) -> None:
         """Begin anew: what is being searched is of no use any more."""
@@ -93,15 +95,31 @@ class Recovery:
         self._refused += 1
         if not self.is_on or self._refused < self._after_scans or not self._search.is_idle:
             return
-        if self.step in (Step.TRACKING, Step.FOUND):
-            self.step = Step.AROUND
-            self._region = Region(at, AROUND_M, any_yaw=False)
-        else:
-            self.step = Step.GLOBALLY
-            self._region = Region(at, self._radius_m, any_yaw=True)
+        if self.step is Step.FOUND:
+            self._searches = 0
+        self._region = self._next_region(at, guess)
+        self.step = Step.GLOBALLY if self._region.any_yaw else Step.AROUND
+        self._searches += 1
         self._refused = 0  # of the next search, which need not follow at once
         self._searched = _Scan(stamp_s, points, guess)
         self._search.begin(points, self._region)
+
+    def _next_region(self, at: Pose, guess: Pose | None) -> Region:
+        centres = [at]
+        if guess is not None and poses.distance_m(at, guess) > self._radius_m:
+            centres.append(guess)
+        regions = [
+            region
+            for centre in centres
+            for region in (
+                Region(centre, AROUND_M, any_yaw=False),
+                Region(centre, self._radius_m, any_yaw=True),
+            )
+        ]
+        if self._searches < len(regions):
+            return regions[self._searches]
+        wide = regions[1::2]
+        return wide[self._searches % len(wide)]
 
     def take(self, judge: PoseJudge) -> bool:
         """Let the judge go on from what was found meanwhile; tell whether it does."""
@@ -115,13 +133,13 @@ class Recovery:
         scan, self._searched = self._searched, None
         if scan is None or self.step is Step.TRACKING:  # found back without it
             return False
-        unclear = found.why_unclear(judge.level.of_map)
+        assert self._region is not None
+        unclear = found.why_unclear(judge.level, self._region)
         self.note = f"{self.step.value}: {unclear or 'clear'}"
         if unclear:
             return False
-        best = found.places[0].alignment
+        best = found.places[0]
         self.step = Step.FOUND
-        assert self._region is not None
         away_m = poses.distance_m(self._region.centre, best.T_map_sensor)
         self.note = (
             f"found a pose {away_m:.1f} m away, score {best.nearest_voxel_likelihood:.3f}, "

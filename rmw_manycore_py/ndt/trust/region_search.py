@@ -14,6 +14,7 @@ from rmw_manycore_py.ndt.matching.voxel_map import VoxelMap
 from rmw_manycore_py.ndt.trust.search import Found, Region, search
 
 SKETCH_ITERATIONS = 15
+NICENESS = 5
 
 
 class RegionSearch:
@@ -22,7 +23,7 @@ class RegionSearch:
     def __init__(self, options: MatcherOptions) -> None:
         self._options = options
         self._map: VoxelMap | None = None
-        self._helper = HelperProcess("pose search")
+        self._helper = HelperProcess("pose search", NICENESS)
         self._executor = ThreadPoolExecutor(1, "search", leave_real_time)
         self._running: Future[Found] | None = None
 
@@ -70,10 +71,10 @@ def search_in_map(
     voxel_map = VoxelMap.attach(shared_paths, only_pose, 0.0)
     matcher = SerialMatcher(only_pose)
     matcher.set_map(voxel_map)
-    return search(_sketcher(voxel_map, only_pose), matcher, scan, region)
+    return search(sketcher_of(voxel_map, only_pose), matcher, scan, region)
 
 
-def _sketcher(voxel_map: VoxelMap, options: MatcherOptions) -> SerialMatcher:
+def sketcher_of(voxel_map: VoxelMap, options: MatcherOptions) -> SerialMatcher:
     """Return a matcher to the coarsest level alone."""
     factor = options.coarse_levels[0] if options.coarse_levels else 1.0
     coarse = replace(

@@ -12,8 +12,9 @@ from collections import deque
 from statistics import median
 
 # `manycore bench ndt` chooses both anew, leaving each recording out in turn (docs/benchmarks.md).
-MAP_SHARE = 0.80  # of the score that the map's own points have
-DRIVE_SHARE = 0.955  # of the median of the last believed scores
+MAP_SHARE = 0.75  # of the score that the map's own points have
+DRIVE_SHARE = 0.90  # of the median of the last believed scores
+FIRST_SHARE = 0.90  # of the map's own score: the fit of a pose that no motion confirms
 
 FEWEST_SCORES = 5  # that tell the drive's median
 KEPT_SCORES = 20  # 2 s at 10 Hz: a level that follows the place, not a single scan
@@ -26,9 +27,15 @@ class ScoreLevel:
     map's own score nothing ever is.
     """
 
-    def __init__(self, map_share: float = MAP_SHARE, drive_share: float = DRIVE_SHARE) -> None:
+    def __init__(
+        self,
+        map_share: float = MAP_SHARE,
+        drive_share: float = DRIVE_SHARE,
+        first_share: float = FIRST_SHARE,
+    ) -> None:
         self._map_share = map_share
         self._drive_share = drive_share
+        self._first_share = first_share
         self._map_score = 0.0
         self._scores: deque[float] = deque(maxlen=KEPT_SCORES)
 
@@ -54,6 +61,11 @@ class ScoreLevel:
     def of_map(self) -> float:
         """Return the level that the map alone demands."""
         return self._map_share * self._map_score
+
+    @property
+    def of_first(self) -> float:
+        """Return the fit that a first pose needs to be believed without a search."""
+        return self._first_share * self._map_score
 
     @property
     def level(self) -> float:

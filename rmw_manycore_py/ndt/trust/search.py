@@ -18,11 +18,12 @@ from rmw_manycore_py.ndt.geometry import poses
 from rmw_manycore_py.ndt.geometry.arrays import Pose, ScanPoints
 from rmw_manycore_py.ndt.matching.alignment import Alignment
 from rmw_manycore_py.ndt.matching.matcher import Matcher
+from rmw_manycore_py.ndt.trust.score_level import ScoreLevel
 
 STEP_M = 3.0  # between places: levels of 4 m and 2 m find home from more than half its diagonal
 TURN_RAD = np.radians(30.0)
-SKETCH_POINTS = 1500
-FOLLOWED = 24  # of the grid's results, aligned with the whole scan
+SKETCH_POINTS = 600
+FOLLOWED = 16  # of the grid's results, aligned with the whole scan
 SAME_M, SAME_RAD = 1.0, np.radians(10.0)  # results nearer to each other are one place
 MARGIN = 0.05  # of the best fit, that the second best place must be worse by
 
@@ -56,22 +57,10 @@ class Region:
 
 
 @dataclass(frozen=True)
-class Place:
-    """Where the scan fits, and how well: the likelihood, less for points outside the map."""
-
-    alignment: Alignment
-
-    @property
-    def fit(self) -> float:
-        """Return what places are compared by."""
-        return self.alignment.nearest_voxel_likelihood * self.alignment.share_in_map
-
-
-@dataclass(frozen=True)
 class Found:
     """Places that differ, best first."""
 
-    places: tuple[Place, ...]
+    places: tuple[Alignment, ...]
 
     @property
     def margin(self) -> float:
@@ -81,18 +70,22 @@ class Found:
         best, second = (place.fit for place in self.places[:2])
         return (best - second) / best if best > 0.0 else 0.0
 
-    def why_unclear(self, level: float) -> str:
+    def why_unclear(self, level: ScoreLevel, region: Region) -> str:
         """Say what is wrong with the best place; "" where it stands out.
 
-        :param level: the score that it must reach.
+        In a small region the right place may be missing, and a wrong one be the best: there it must
+        fit as well as a first pose. In a large one the score that the map demands is enough.
         """
         if not self.places:
             return "the scan fits nowhere"
-        best = self.places[0].alignment
-        if not best.nearest_voxel_likelihood > level:
-            return f"the best score {best.nearest_voxel_likelihood:.3f} is below {level:.3f}"
+        best = self.places[0]
+        if not region.any_yaw and not best.fit > level.of_first:
+            return f"the best fit {best.fit:.3f} is below {level.of_first:.3f}"
+        score = best.nearest_voxel_likelihood
+        if not score > level.of_map:
+            return f"the best score {score:.3f} is below {level.of_map:.3f}"
         if self.margin < MARGIN:
-            other = self.places[1].alignment
+            other = self.places[1]
             apart_m = poses.distance_m(best.T_map_sensor, other.T_map_sensor)
             return f"{apart_m:.1f} m apart it fits as well, within {100 * self.margin:.1f} %"
         return ""
@@ -106,14 +99,14 @@ def search(sketcher: Matcher, matcher: Matcher, scan: ScanPoints, region: Region
     """
     sketch = scan[:: max(1, len(scan) // SKETCH_POINTS)]
     tried = [sketcher.align(sketch, T, only_pose=True) for T in region.grid()]
-    rough = _distinct([Place(one) for one in tried if not one.is_degenerate], 0.5 * SAME_M)
-    fine = [matcher.align(scan, one.alignment.T_map_sensor, only_pose=True) for one in rough]
-    return Found(tuple(_distinct([Place(one) for one in fine if not one.is_degenerate], SAME_M)))
+    rough = _distinct([one for one in tried if not one.is_degenerate], 0.5 * SAME_M)
+    fine = [matcher.align(scan, one.T_map_sensor, only_pose=True) for one in rough]
+    return Found(tuple(_distinct([one for one in fine if not one.is_degenerate], SAME_M)))
 
 
-def _distinct(places: Sequence[Place], apart_m: float) -> list[Place]:
+def _distinct(places: Sequence[Alignment], apart_m: float) -> list[Alignment]:
     """Return the best of each place, best first."""
-    kept: list[Place] = []
+    kept: list[Alignment] = []
     for place in sorted(places, key=lambda one: one.fit, reverse=True):
         if not any(_is_same(place, other, apart_m) for other in kept):
             kept.append(place)
@@ -122,7 +115,7 @@ def _distinct(places: Sequence[Place], apart_m: float) -> list[Place]:
     return kept
 
 
-def _is_same(a: Place, b: Place, apart_m: float) -> bool:
-    T_a, T_b = a.alignment.T_map_sensor, b.alignment.T_map_sensor
+def _is_same(a: Alignment, b: Alignment, apart_m: float) -> bool:
+    T_a, T_b = a.T_map_sensor, b.T_map_sensor
     near = poses.distance_m(T_a, T_b) < apart_m
     return near and poses.angle_rad(T_a, T_b) < SAME_RAD

@@ -7,6 +7,7 @@ and has a search look farther when scans are refused in a row (docs/design/ndt_t
 
 from __future__ import annotations
 
+import time
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Protocol
@@ -107,26 +108,21 @@ class AutowareTracking:
 
 
 class RobustTracking:
-    """Believes what score, its course and the motion agree on, and finds back by itself.
+    """Believes what score, its course and the motion agree on, and finds back by itself."""
 
-    :param now_s: time of the node's clock.
-    """
-
-    def __init__(
-        self, matcher: Matcher, parameters: MatcherParameters, own: OwnParameters, now_s: float
-    ) -> None:
+    def __init__(self, matcher: Matcher, parameters: MatcherParameters, own: OwnParameters) -> None:
         self._matcher = matcher
         self._p = parameters
-        self._judge = PoseJudge()
+        self._judge = PoseJudge(searches=own.recovery_after_scans > 0)
         self._recovery = Recovery(matcher.options, own.recovery_after_scans, own.recovery_radius_m)
         self._last_pose = LastPose(Path(own.last_pose_path)) if own.last_pose_path else None
-        self._is_activated = own.activated
         self.was_activated = False
-        left = self._last_pose.read(now_s, MAX_LEFT_S) if self._last_pose else None
+        left = self._last_pose.read(time.time(), MAX_LEFT_S) if self._last_pose else None
         if left is not None:
             at, self.was_activated = left
             self._judge.begin_at(at)
             self._recovery.hurry()
+        self._is_activated = own.activated or self.was_activated
 
     def track(self, scan: ScanAt, report: Diagnostics) -> Tracked:
         """Align and judge a scan; try again from where the vehicle should be."""
@@ -142,7 +138,7 @@ class RobustTracking:
         if verdict.is_believed:
             self._believe(scan, alignment)
         else:
-            expected = scan.guess if verdict.expected is None else verdict.expected.best
+            expected = scan.guess if verdict.expected is None else verdict.expected.poses[0]
             self._recovery.refused(scan.stamp_s, scan.points, scan.guess, expected)
         self._report_recovery(report)
         covariance = verdict.covariance(judgement.output_covariance(alignment, self._p))
@@ -173,22 +169,23 @@ class RobustTracking:
             self._last_pose.close()
 
     def _from_expectation(self, scan: ScanAt, before: Verdict) -> tuple[Alignment, Verdict] | None:
-        if before.expected is None:
-            return None
-        start = before.expected.best
-        is_near = poses.distance_m(start, scan.guess) < OTHER_M
-        if is_near and poses.angle_rad(start, scan.guess) < OTHER_RAD:
-            return None
-        alignment = self._matcher.align(scan.points, start, scan.regularization)
-        verdict = self._judge.judge(scan.stamp_s, alignment, scan.guess)
-        return (alignment, verdict) if verdict.is_believed else None
+        tried = [scan.guess]
+        for start in [] if before.expected is None else before.expected.poses:
+            if any(_is_near(start, other) for other in tried):
+                continue
+            tried.append(start)
+            alignment = self._matcher.align(scan.points, start, scan.regularization)
+            verdict = self._judge.judge(scan.stamp_s, alignment, scan.guess)
+            if verdict.is_believed:
+                return alignment, verdict
+        return None
 
     def _believe(self, scan: ScanAt, alignment: Alignment) -> None:
         self._judge.believe(scan.stamp_s, alignment, scan.guess)
         self._recovery.believed()
         if self._last_pose is not None:
             at = Believed(scan.stamp_s, alignment.T_map_sensor, scan.guess)
-            self._last_pose.write(at, self._is_activated)
+            self._last_pose.write(time.time(), at, self._is_activated)
 
     def _report(self, alignment: Alignment, verdict: Verdict, report: Diagnostics) -> None:
         report.value("iteration_num", alignment.iterations)
@@ -207,3 +204,7 @@ class RobustTracking:
             report.value("recovery_note", self._recovery.note)
         if self._recovery.step is not Step.TRACKING:
             report.note(f"recovery: {self._recovery.step.value}")
+
+
+def _is_near(T: Pose, other: Pose) -> bool:
+    return poses.distance_m(T, other) < OTHER_M and poses.angle_rad(T, other) < OTHER_RAD

@@ -1,0 +1,45 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""The question how many wrong poses are believed, at a small size and with judges that fail it."""
+
+from __future__ import annotations
+
+from itertools import islice
+
+import pytest
+
+from rmw_manycore_py.bench.ndt import trust, trust_worlds
+from rmw_manycore_py.bench.ndt.trust_cases import Case, cases_of
+from rmw_manycore_py.bench.summary import Result
+from rmw_manycore_py.ndt.trust.judge import PoseJudge, Verdict
+
+pytestmark = pytest.mark.unit
+
+
+@pytest.fixture(scope="module")
+def cases() -> dict[str, list[Case]]:
+    """Return results of a street and of one that repeats, each judged with the other's shares."""
+    simulated = islice(trust_worlds.simulated(6), 1, 3)
+    return {drive.name: cases_of(drive, 18) for drive in simulated}
+
+
+def answered(cases: dict[str, list[Case]]) -> dict[str, Result]:
+    results = trust.judged(cases, 60)
+    return {result.question: result for result in results if result.contender == trust.OURS}
+
+
+def test_no_wrong_pose_is_believed_and_no_right_one_refused(cases):
+    results = answered(cases)
+    assert len(results[trust.BELIEVED].samples) >= 40
+    assert len(results[trust.REFUSED].samples) >= 40
+    assert results[trust.BELIEVED].summary.largest == 0.0
+    assert results[trust.REFUSED].summary.mean <= 3.0
+    assert results[trust.FOUND_WRONG].summary.largest == 0.0
+
+
+def test_a_judge_that_believes_all_is_found_out(cases, monkeypatch):
+    def believe_all(judge: PoseJudge, stamp_s: float, alignment: object, guess: object) -> Verdict:
+        return Verdict("", True, 0.0, None)
+
+    assert any(case.is_wrong for case in cases["street that repeats every 12 m"])
+    monkeypatch.setattr(PoseJudge, "judge", believe_all)
+    assert answered(cases)[trust.BELIEVED].summary.mean == 100.0

@@ -1,0 +1,118 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Searching a pose in a process of its own, and the steps of a recovery."""
+
+from __future__ import annotations
+
+import os
+import signal
+from collections.abc import Iterator
+
+import numpy as np
+import pytest
+from ndt_world import errors, pose, scan_at, street
+from support import wait_until
+
+from rmw_manycore_py.ndt import MatcherOptions, VoxelMap
+from rmw_manycore_py.ndt.trust.judge import PoseJudge
+from rmw_manycore_py.ndt.trust.recovery import Recovery, Step
+
+pytestmark = pytest.mark.unit
+
+OPTIONS = MatcherOptions()
+TRUTH = pose(8.0, 1.0, 1.8, 0.0, 0.0, 0.3)  # near one end of the street, which tells the place
+
+
+@pytest.fixture(scope="module")
+def world() -> tuple[np.ndarray, VoxelMap]:
+    """Return a street with a tower that none of its periods has, and its map."""
+    rng = np.random.default_rng(2)
+    y, z = rng.uniform(4.0, 7.0, 4000), rng.uniform(0.0, 9.0, 4000)
+    tower = np.stack([rng.normal(12.0, 0.02, 4000), y, z], axis=1)
+    x = rng.uniform(12.0, 16.0, 4000)
+    side = np.stack([x, rng.normal(4.0, 0.02, 4000), z], axis=1)
+    points = np.concatenate([street(spacing_m=0.3), tower, side])
+    return points, VoxelMap.from_points(points, OPTIONS)
+
+
+@pytest.fixture
+def recovery(world: tuple[np.ndarray, VoxelMap]) -> Iterator[Recovery]:
+    recovery = Recovery(OPTIONS, after_scans=2, radius_m=10.0)
+    recovery.map_changed(world[1])
+    yield recovery
+    recovery.close()
+
+
+def judge_of(voxel_map: VoxelMap) -> PoseJudge:
+    judge = PoseJudge()
+    judge.level.map_changed(voxel_map.own_likelihood)
+    return judge
+
+
+def searched(recovery: Recovery, judge: PoseJudge, scan: np.ndarray, at: np.ndarray) -> bool:
+    """Let scans be refused until a search is over; tell whether it found a pose."""
+    for _ in range(2):
+        recovery.refused(1.0, scan, at, at)
+    assert recovery.step in (Step.AROUND, Step.GLOBALLY)
+    found: list[bool] = []
+
+    def is_over() -> bool:
+        before = recovery.note
+        found.append(recovery.take(judge))
+        return found[-1] or recovery.note != before
+
+    wait_until(is_over, "the search is over")
+    return found[-1]
+
+
+def test_a_place_near_by_is_found_around_the_last_pose(world, recovery):
+    points, voxel_map = world
+    judge = judge_of(voxel_map)
+    at = TRUTH.copy()
+    at[:2, 3] += (-2.5, 1.5)
+    assert searched(recovery, judge, scan_at(points, TRUTH), at)
+    assert recovery.step is Step.FOUND
+    distance_m, angle_deg = errors(judge.motion.last.T, TRUTH)
+    assert distance_m < 0.1
+    assert angle_deg < 1.0
+    recovery.believed()
+    assert recovery.step is Step.TRACKING
+
+
+def test_farther_off_and_turned_it_is_found_globally(world, recovery):
+    points, voxel_map = world
+    judge = judge_of(voxel_map)
+    at = TRUTH @ pose(8.0, 1.0, 0.0, 0.0, 0.0, 3.0)
+    assert not searched(recovery, judge, scan_at(points, TRUTH), at)
+    assert "searching around" in recovery.note
+    assert judge.motion.last is None
+    assert searched(recovery, judge, scan_at(points, TRUTH), at)
+    assert errors(judge.motion.last.T, TRUTH)[0] < 0.1
+
+
+def test_where_the_street_repeats_no_place_stands_out(recovery):
+    points = street(spacing_m=0.3)
+    voxel_map = VoxelMap.from_points(points, OPTIONS)
+    recovery.map_changed(voxel_map)
+    judge = judge_of(voxel_map)
+    middle = pose(38.0, 0.0, 1.8, 0.0, 0.0, 0.1)
+    scan = scan_at(points, middle, reach_m=18.0)
+    away = middle.copy()
+    away[0, 3] += 8.0  # half a period
+    searched(recovery, judge, scan, away)
+    assert not searched(recovery, judge, scan, away)
+    assert "as well" in recovery.note
+    assert judge.motion.last is None
+
+
+def test_a_search_that_is_killed_is_told_and_done_again(world, recovery):
+    points, voxel_map = world
+    scan, judge = scan_at(points, TRUTH), judge_of(voxel_map)
+    assert searched(recovery, judge, scan, TRUTH)
+    helper = recovery._search._helper
+    os.kill(helper.pid, signal.SIGSTOP)  # so that it is killed while it has the call
+    for _ in range(2):
+        recovery.refused(2.0, scan, TRUTH, TRUTH)
+    wait_until(helper._turn.locked, "the helper is called")
+    os.kill(helper.pid, signal.SIGKILL)
+    wait_until(lambda: not recovery.take(judge) and "ended" in recovery.note, "it is told")
+    assert searched(recovery, judge, scan, TRUTH) or searched(recovery, judge, scan, TRUTH)
