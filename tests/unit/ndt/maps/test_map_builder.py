@@ -1,12 +1,15 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Voxel maps that a thread builds."""
+"""Voxel maps that a process of its own builds."""
 
 from __future__ import annotations
+
+import os
+import signal
 
 import numpy as np
 import pytest
 
-from rmw_manycore_py.ndt import MatcherOptions
+from rmw_manycore_py.ndt import MatcherOptions, SerialMatcher, VoxelMap
 from rmw_manycore_py.ndt.maps.map_builder import MapBuilder
 
 pytestmark = pytest.mark.unit
@@ -33,3 +36,26 @@ def test_maps_are_built_one_after_the_other_and_problems_are_told():
     builder.submit(lambda: 1 // 0)
     assert take(builder).problem == "integer division or modulo by zero"
     builder.close()
+
+
+def test_a_map_outlives_the_process_that_built_it_and_is_what_it_would_be_here():
+    points = np.random.default_rng(1).uniform(0, 20, (20000, 3)).astype("f4")
+    options = MatcherOptions()
+    builder = MapBuilder(options)
+    builder.submit(lambda: points)
+    built = take(builder).voxel_map
+    helper = builder._helper.pid
+    assert helper is not None
+    os.kill(helper, signal.SIGKILL)
+    builder.submit(lambda: points)
+    again = take(builder)  # by another process, unless the kill came amid the call
+    builder.close()
+    here = VoxelMap.from_points(points, options)
+    assert built.own_likelihood == here.own_likelihood
+    assert again.voxel_map is not None or "map builder" in again.problem
+    found = []
+    for voxel_map in (built, here):
+        matcher = SerialMatcher(options)
+        matcher.set_map(voxel_map)
+        found.append(matcher.align(points[::5], np.eye(4)).T_map_sensor.tolist())
+    assert found[0] == found[1]
