@@ -17,7 +17,7 @@ from rmw_manycore_py.bench.ndt.trust_worlds import drives
 from rmw_manycore_py.bench.question import Question, Run
 from rmw_manycore_py.bench.summary import Goal, Result
 from rmw_manycore_py.ndt.geometry import poses
-from rmw_manycore_py.ndt.trust.score_level import ScoreLevel
+from rmw_manycore_py.ndt.trust.score_level import FIRST_SHARE, ScoreLevel
 from rmw_manycore_py.ndt.trust.search import Found, Region
 
 CASES = 1000  # right ones, and as many wrong ones
@@ -64,16 +64,20 @@ def measure(run: Run) -> list[Result]:
     return judged(cases, max(40, int(CASES * share)))
 
 
-def judged(cases: dict[str, list[Case]], count: int) -> list[Result]:
-    """Return the results of at most `count` right and wrong cases, as many of each drive."""
+def judged(cases: dict[str, list[Case]], count: int, searches: int = SEARCHES) -> list[Result]:
+    """Return the results of at most `count` right and wrong cases, as many of each drive.
+
+    :param searches: how many searches are done for each drive.
+    """
     shares = {
         name: chosen(
             [case for other, of_other in cases.items() if other != name for case in of_other]
         )
         for name in cases
     }
-    right = _picked([[c for c in all_ if c.is_right] for all_ in cases.values()], count)
-    wrong = _picked([[c for c in all_ if c.is_wrong] for all_ in cases.values()], count)
+    pools = [[case for case in all_ if _is_judged(case)] for all_ in cases.values()]
+    right = _picked([[case for case in pool if case.is_right] for pool in pools], count)
+    wrong = _picked([[case for case in pool if case.is_wrong] for pool in pools], count)
     mislead = {id(case): misleads(case, shares[case.drive]) for case in wrong}
     refuse = {id(case): is_refused(case, shares[case.drive]) for case in right}
     results = [
@@ -93,18 +97,23 @@ def judged(cases: dict[str, list[Case]], count: int) -> list[Result]:
             f"{REFUSED}: {name}": [refuse[id(case)] for case in right if case.drive == name],
         }
         results += [_share(question, OURS, is_so) for question, is_so in answers.items() if is_so]
-    return [*results, *_searches(wrong, shares)]
+    return [*results, *_searches(wrong, shares, searches)]
+
+
+def _is_judged(case: Case) -> bool:
+    """Tell whether a case counts: the first scans of a drive are starts, which AT_START tells."""
+    return bool(case.before) or not case.world.drive.is_drive
 
 
 def _without(name: str, cases: dict[str, list[Case]]) -> list[Case]:
     return [case for other, of_drive in cases.items() if other != name for case in of_drive]
 
 
-def _searches(wrong: Sequence[Case], shares: dict[str, Shares]) -> list[Result]:
+def _searches(wrong: Sequence[Case], shares: dict[str, Shares], searches: int) -> list[Result]:
     """Search where alignments led astray, globally around their guesses."""
     is_right, is_wrong = [], []
     for name in shares:
-        for case in [c for c in wrong if c.drive == name and _is_in_reach(c)][:SEARCHES]:
+        for case in [c for c in wrong if c.drive == name and _is_in_reach(c)][:searches]:
             region = Region(case.guess, GLOBAL_M, any_yaw=True)
             found = case.world.searched(case.scan, region)
             is_clear = not found.why_unclear(_level_of(case, shares[name]), region)
@@ -141,7 +150,7 @@ def chosen(cases: Sequence[Case]) -> Shares:
     return Shares(
         float(np.quantile(of_map, LEFT_BELOW)) - MAP_ROOM,
         float(np.quantile(of_drive, LEFT_BELOW)) - DRIVE_ROOM,
-        max(wrong) + FIRST_ROOM,
+        max(wrong, default=FIRST_SHARE - FIRST_ROOM) + FIRST_ROOM,
     )
 
 

@@ -22,15 +22,15 @@ def cases() -> dict[str, list[Case]]:
     return {drive.name: cases_of(drive, 18) for drive in simulated}
 
 
-def answered(cases: dict[str, list[Case]]) -> dict[str, Result]:
-    results = trust.judged(cases, 60)
+def answered(cases: dict[str, list[Case]], searches: int = 0) -> dict[str, Result]:
+    results = trust.judged(cases, 60, searches)
     return {result.question: result for result in results if result.contender == trust.OURS}
 
 
 def test_no_wrong_pose_is_believed_and_no_right_one_refused(cases):
-    results = answered(cases)
-    assert len(results[trust.BELIEVED].samples) >= 40
-    assert len(results[trust.REFUSED].samples) >= 40
+    results = answered(cases, searches=1)
+    assert len(results[trust.BELIEVED].samples) >= 20
+    assert len(results[trust.REFUSED].samples) >= 20
     assert results[trust.BELIEVED].summary.largest == 0.0
     assert results[trust.REFUSED].summary.mean <= 3.0
     assert results[trust.FOUND_WRONG].summary.largest == 0.0
