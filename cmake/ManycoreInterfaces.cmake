@@ -94,14 +94,15 @@ macro(manycore_interface_target target kind)
   target_link_libraries(${target} PRIVATE ${libraries} manycore_ros
     ${ros_prefix}/lib/librosidl_typesupport_c.so
     ${ros_prefix}/lib/librosidl_typesupport_introspection_c.so)
-  foreach(dependency action_msgs builtin_interfaces geometry_msgs rcl_interfaces service_msgs
-      std_msgs unique_identifier_msgs)
+  foreach(dependency action_msgs builtin_interfaces geometry_msgs rcl_interfaces sensor_msgs
+      service_msgs std_msgs unique_identifier_msgs)
     target_include_directories(${target} SYSTEM PRIVATE ${ros_prefix}/include/${dependency})
     target_link_libraries(${target} PRIVATE ${ros_prefix}/lib/lib${dependency}__rosidl_${kind}.so)
   endforeach()
 endmacro()
 
 foreach(package
-    autoware_internal_debug_msgs composition_interfaces tf2_msgs tier4_localization_msgs)
+    autoware_internal_debug_msgs autoware_internal_localization_msgs autoware_map_msgs
+    composition_interfaces tf2_msgs tier4_localization_msgs)
   manycore_interfaces(${package})
 endforeach()

@@ -41,6 +41,11 @@ class VoxelMap:
     """The normal distributions of points (N, 3) [m, map frame], in memory that workers share."""
 
     def __init__(self, points: NDArray[np.float64], options: MapOptions) -> None: ...
+    def point_scores(
+        self, points: NDArray[np.float32], pose: NDArray[np.float64], outlier_ratio: float
+    ) -> NDArray[np.float32]:
+        """Return of each point (N, 3) the best voxel's score (N,), NaN where it sees none."""
+
     @staticmethod
     def attach(shared_path: str) -> VoxelMap:
         """Return the map that another process named by `shared_path`; it outlives that process."""
@@ -101,6 +106,14 @@ class NewtonResult:
     @property
     def at(self) -> Derivatives:
         """The derivatives at this pose."""
+
+    @property
+    def first(self) -> Derivatives:
+        """The derivatives where the steps on the last map began."""
+
+    @property
+    def path(self) -> NDArray[np.float64]:
+        """The guess and the pose after each step, on all maps; (n, 4, 4), at most 64."""
 
 class SerialMatcher:
     """Matches scans (N, 3) [m, sensor frame] on the calling thread.

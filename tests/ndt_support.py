@@ -151,7 +151,7 @@ class Stack:
         """Wait until everything is connected."""
         ends = (self.maps, self.guesses, self.scans)
         spin_until(self.node, lambda: all(end.get_subscription_count() for end in ends))
-        spin_until(self.node, lambda: self.node.count_services("ndt_align_srv"))  # its last one
+        spin_until(self.node, lambda: self.node.count_services("ndt_align_tier4_srv"))  # its last
 
     def stamp(self) -> Any:
         """Return the present time."""

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 from autoware_internal_debug_msgs.msg import Float32Stamped, Int32Stamped
+from autoware_internal_localization_msgs.srv import PoseWithCovarianceStamped as AlignService
 from diagnostic_msgs.msg import DiagnosticStatus
 from geometry_msgs.msg import PoseArray, PoseWithCovarianceStamped, TransformStamped
 from ndt_support import (
@@ -30,10 +31,7 @@ from ndt_support import (
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from ros_support import spin_until
 from sensor_msgs.msg import PointCloud2
-from std_srvs.srv import SetBool
-from support import PATIENCE_S
 from tf2_msgs.msg import TFMessage
-from tier4_localization_msgs.srv import PoseWithCovarianceStamped as AlignService
 from visualization_msgs.msg import MarkerArray
 
 from rmw_manycore_py.ndt.geometry.poses import from_xyz_rpy, inverse, transform
@@ -71,7 +69,9 @@ def test_a_pose_and_all_that_belongs_to_it(matched):
     listen(TFMessage, "/tf")
     listen(MarkerArray, "ndt_marker")
     matched.be_sure()
-    while len(heard) < len(floats) + 5:
+    listen(PointCloud2, "voxel_score_points")
+    count = len(floats) + 6
+    while len(heard) < count:
         matched.pose_of(street_scan(), NEAR)
     heard.clear()
     matched.pose_of(street_scan(), NEAR)
@@ -79,8 +79,7 @@ def test_a_pose_and_all_that_belongs_to_it(matched):
     spin_until(
         matched.node,
         lambda: (
-            len(heard) == len(floats) + 5
-            and {stamp_of(message) for message in heard.values()} == {stamp_ns}
+            len(heard) == count and {stamp_of(message) for message in heard.values()} == {stamp_ns}
         ),
     )
 
@@ -95,9 +94,23 @@ def test_a_pose_and_all_that_belongs_to_it(matched):
     np.testing.assert_allclose(decode(heard["points_aligned"]), expected, atol=1e-3)
     assert heard["initial_to_result_distance"].data == pytest.approx(0.3, abs=0.1)
     assert heard["iteration_num"].data > 0
-    guess, result = heard["ndt_marker"].markers
+    scored = heard["voxel_score_points"]
+    assert [field.name for field in scored.fields] == ["x", "y", "z", "rgb"]
+    assert 0.8 * len(expected) < scored.width <= len(expected)
+    check_gain(matched.report_of(stamp_ns))
+    _, guess, *_, result = heard["ndt_marker"].markers
+    assert len(heard["ndt_marker"].markers) == 2 + heard["iteration_num"].data
     assert error_m(matrix_of(guess.pose)) == pytest.approx(0.3, abs=0.01)
     np.testing.assert_allclose(matrix_of(result.pose), T, atol=1e-9)
+
+
+def check_gain(report: DiagnosticStatus) -> None:
+    """Check that what the diagnostics say of the score before, after and between fits."""
+    values = {pair.key: pair.value for pair in report.values}
+    for name in ("transform_probability", "nearest_voxel_transformation_likelihood"):
+        gain = float(values[name]) - float(values[f"{name}_before"])
+        assert float(values[f"{name}_diff"]) == pytest.approx(gain)
+        assert gain > 0.0
 
 
 MADE_OF = {1: (), 2: ("multi_initial_pose", "multi_ndt_pose"), 3: ("multi_initial_pose",)}
@@ -328,42 +341,6 @@ def test_the_sensor_is_mounted_somewhere(matched):
     spin_until(matched.node, mounting.get_subscription_count)
     spin_until(matched.node, lambda: "TF" not in matched.report_of(matched.send(message)).message)
     assert error_m(matched.pose_of(message, NEAR)) < 0.1
-
-
-def test_activation_and_initial_pose(stack, start):
-    """Deactivated it gives no pose; ndt_align_srv finds the place from metres away, any yaw."""
-    start(matcher_command(activated="false"), cluster=2)
-    stack.wait_for_matcher()
-    stack.publish_map(street_map())
-    report = stack.report_of(stack.send(street_scan()))
-    assert "not activated" in report.message
-    align = stack.node.create_client(AlignService, "ndt_align_srv")
-    shown = []
-    stack.node.create_subscription(MarkerArray, "monte_carlo_initial_pose_marker", shown.append, 10)
-    assert align.wait_for_service(PATIENCE_S)
-    rough = from_xyz_rpy((TRUTH[0, 3] + 1.5, TRUTH[1, 3] - 1.0, TRUTH[2, 3]), (0.0, 0.0, 2.5))
-    spread = np.diag([1.0, 1.0, 0.01, 0.0001, 0.0001, 0.2])
-    request = AlignService.Request(
-        pose_with_covariance=pose_with_covariance(rough, spread, stack.stamp(), "map")
-    )
-    answer = align.call_async(request)
-    spin_until(stack.node, answer.done)
-    assert answer.result().success
-    assert answer.result().reliable
-    spin_until(stack.node, lambda: shown)
-    assert len(shown[0].markers) == 200
-    assert error_m(matrix_of(answer.result().pose_with_covariance.pose.pose)) < 0.1
-
-    trigger = stack.node.create_client(SetBool, "trigger_node_srv")
-    assert trigger.wait_for_service(PATIENCE_S)
-    answer = trigger.call_async(SetBool.Request(data=True))
-    spin_until(stack.node, answer.done)
-    assert error_m(stack.pose_of(street_scan(), NEAR)) < 0.1
-
-    request.pose_with_covariance.header.frame_id = "nowhere"
-    answer = align.call_async(request)
-    spin_until(stack.node, answer.done)
-    assert not answer.result().success
 
 
 @pytest.mark.parametrize(

@@ -27,16 +27,23 @@ MatchOptions options_of(const MatchOptions & options, const MapView & level, boo
 NewtonResult descend(
   const std::vector<MapView> & levels, Problem & problem, const Pose6 & guess,
   const EvaluateProblem & evaluate) {
-  NewtonResult result{Outcome::no_overlap, 0, guess, {}};
+  NewtonResult result;
+  result.pose = guess;
   uint32_t iterations = 0;
+  Path path;
+  path.add(guess);
   for (size_t i = 0; i < levels.size(); ++i) {
     problem.map = levels[i];
     const MatchOptions options = options_of(problem.options, levels[i], i + 1 == levels.size());
     result =
       maximise(result.pose, options, [&](const Pose6 & pose) { return evaluate(problem, pose); });
     iterations += result.iterations;
+    for (uint32_t step = 1; step < result.path.count; ++step) {
+      path.add(result.path.poses[step]);
+    }
   }
   result.iterations = iterations;
+  result.path = path;
   return result;
 }
 

@@ -37,8 +37,8 @@ Derivatives finish_pass(const Problem & problem, const TangentSums & sums, const
 /// Derivatives of a problem at a pose.
 using EvaluateProblem = std::function<Derivatives(const Problem &, const Pose6 &)>;
 
-/// Aligns level by level, coarsest first; problem.map is set to each. The iterations are those of
-/// all levels together.
+/// Aligns level by level, coarsest first; problem.map is set to each. Iterations and path are those
+/// of all levels together, the rest is the last level's.
 NewtonResult descend(
   const std::vector<MapView> & levels, Problem & problem, const Pose6 & guess,
   const EvaluateProblem & evaluate);

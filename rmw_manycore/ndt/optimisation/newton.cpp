@@ -68,7 +68,10 @@ Vector6 newton_step(const Matrix6 & hessian, const Vector6 & gradient) {
 
 NewtonResult maximise(
   const Pose6 & guess, const MatchOptions & options, const Evaluate & evaluate) {
-  NewtonResult result{Outcome::iteration_limit, 0, guess, evaluate(guess)};
+  NewtonResult result;
+  result.pose = guess;
+  result.at = result.first = evaluate(guess);
+  result.path.add(guess);
   TrustRegion trust_region;
   while (result.iterations < options.max_iterations) {
     if (result.at.pairs == 0) {
@@ -83,6 +86,7 @@ NewtonResult maximise(
                             ? trust_region.step(result, evaluate)
                             : step_along_newton(result, options, evaluate);
     ++result.iterations;
+    result.path.add(result.pose);
     if (length == 0) {
       result.outcome = Outcome::degenerate;
       return result;

@@ -1,6 +1,7 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 
@@ -17,11 +18,28 @@ enum class Outcome : uint32_t {
   degenerate,       ///< the derivatives say nothing: not finite, or all zero
 };
 
+/// The way of an alignment: its guess, and the pose after each step. Of steps beyond its capacity
+/// nothing is kept; an alignment takes about ten.
+struct Path {
+  static constexpr size_t capacity = 64;
+
+  std::array<Pose6, capacity> poses{};
+  uint32_t count = 0;
+
+  void add(const Pose6 & pose) {
+    if (count < capacity) {
+      poses[count++] = pose;
+    }
+  }
+};
+
 struct NewtonResult {
-  Outcome outcome;
-  uint32_t iterations;
-  Pose6 pose;
-  Derivatives at;  ///< this pose
+  Outcome outcome = Outcome::iteration_limit;
+  uint32_t iterations = 0;
+  Pose6 pose{};
+  Derivatives at{};     ///< this pose
+  Derivatives first{};  ///< where the steps began
+  Path path{};
 };
 
 /// Derivatives at a pose; the same for the same pose, bit for bit.

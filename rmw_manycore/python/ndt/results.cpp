@@ -4,6 +4,8 @@
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 
+#include <vector>
+
 #include "ndt/optimisation/newton.hpp"
 #include "python/ndt/bindings.hpp"
 #include "python/ndt/words.hpp"
@@ -25,6 +27,16 @@ nb::object pose(const NewtonResult & result) {
   return View<4, 4>(matrix.data(), {4, 4}).cast(nb::rv_policy::copy);
 }
 
+/// The poses of the path (n, 4, 4).
+nb::object path(const NewtonResult & result) {
+  std::vector<Pose4x4> matrices;
+  for (uint32_t i = 0; i < result.path.count; ++i) {
+    matrices.push_back(to_matrix(result.path.poses[i]));
+  }
+  using Poses = nb::ndarray<nb::numpy, const double, nb::shape<-1, 4, 4>, nb::c_contig>;
+  return Poses(matrices.data(), {matrices.size(), 4, 4}).cast(nb::rv_policy::copy);
+}
+
 }  // namespace
 
 void bind_results(nb::module_ & module) {
@@ -41,7 +53,9 @@ void bind_results(nb::module_ & module) {
     .def_prop_ro("outcome", word<NewtonResult>(&NewtonResult::outcome))
     .def_ro("iterations", &NewtonResult::iterations)
     .def_prop_ro("pose", &pose)
-    .def_ro("at", &NewtonResult::at);
+    .def_ro("at", &NewtonResult::at)
+    .def_ro("first", &NewtonResult::first)
+    .def_prop_ro("path", &path);
 }
 
 }  // namespace manycore::ndt::python

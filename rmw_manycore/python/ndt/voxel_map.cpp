@@ -5,6 +5,7 @@
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/string.h>
 
+#include "ndt/kernel/point_scores.hpp"
 #include "python/ndt/arrays.hpp"
 #include "python/ndt/bindings.hpp"
 
@@ -18,11 +19,26 @@ void init_voxel_map(VoxelMap * map, const DoublePoints & points, const MapOption
   new (map) VoxelMap(build_voxel_map(points.data(), points.shape(0), options));
 }
 
+nb::ndarray<nb::numpy, float, nb::ndim<1>> scores_of_points(
+  const VoxelMap & map, const FloatPoints & points, const PoseMatrix & pose, double outlier_ratio) {
+  const size_t count = points.shape(0);
+  auto * const scores = new float[count];
+  const nb::capsule owner(scores, [](void * p) noexcept { delete[] static_cast<float *>(p); });
+  {
+    const nb::gil_scoped_release released;
+    point_scores(map.view(), outlier_ratio, pose_from(pose), points.data(), count, scores);
+  }
+  return nb::ndarray<nb::numpy, float, nb::ndim<1>>(scores, {count}, owner);
+}
+
 }  // namespace
 
 void bind_voxel_map(nb::module_ & module) {
   nb::class_<VoxelMap>(module, "VoxelMap")
     .def("__init__", &init_voxel_map, nb::arg("points"), nb::arg("options"))
+    .def(
+      "point_scores", &scores_of_points, nb::arg("points"), nb::arg("pose"),
+      nb::arg("outlier_ratio"))
     .def_static(
       "attach",
       [](const std::string & shared_path) { return VoxelMap(SharedMemory::attach(shared_path)); },

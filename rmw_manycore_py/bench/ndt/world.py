@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rmw_manycore_py.ndt.recordings.recording import Recording, load_recording
-from rmw_manycore_py.ndt.simulation.drive import poses_along, record, scans_along
+from rmw_manycore_py.ndt.simulation.drive import poses_along, scans_along
 from rmw_manycore_py.ndt.simulation.lidar import Lidar
 from rmw_manycore_py.ndt.simulation.street import build_street
 
@@ -84,4 +84,4 @@ def _recording() -> tuple[Recording, str]:
     generator = np.random.default_rng(1)
     poses = poses_along(np.arange(0.0, 40.0, 2.0))
     scans = list(scans_along(build_street(40.0, generator), poses, Lidar(), generator))
-    return record(scans, poses, np.zeros(0), 1), "synthetic street"
+    return Recording(scans, poses, np.zeros(0), "synthetic street, seed 1"), "synthetic street"

@@ -7,7 +7,10 @@ import click
 
 from rmw_manycore_py.cli.common.group import LazyGroup
 
-VERBS = {verb: f"rmw_manycore_py.cli.ndt.{verb}:command" for verb in ("simulate", "map", "replay")}
+VERBS = {
+    verb: f"rmw_manycore_py.cli.ndt.{verb}:command"
+    for verb in ("simulate", "map", "replay", "overlay")
+}
 
 
 @click.group("ndt", cls=LazyGroup, commands_at=VERBS)

@@ -31,7 +31,7 @@ from rmw_manycore_py.ndt.recordings.opening import open_recording
     "--output",
     required=True,
     type=click.Path(path_type=Path),
-    help="A .pcd, .ply or .npz file; with --tile-size a directory.",
+    help="A .pcd, .ply or .npz file; with --tile-size a directory, which is made.",
 )
 @click.option(
     "--every",
@@ -74,13 +74,14 @@ def command(
     suffix: str,
 ) -> None:
     """Make a map of the scans of RECORDING and their poses."""
+    if not output.parent.is_dir():
+        raise click.UsageError(f"--output '{output}': there is no directory '{output.parent}'")
     drive = open_recording(recording, poses_path, topic, pose_topic)
     points = drive.accumulated(range(0, len(drive), every))
     if leaf_m > 0.0:
         points = voxel_centroids(points, (leaf_m,) * 3)
     with writing(output):
         if tile_m is None:
-            output.parent.mkdir(parents=True, exist_ok=True)
             write_points(output, points)
             click.echo(f"{output}: {len(points)} points")
         else:

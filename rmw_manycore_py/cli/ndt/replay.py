@@ -10,10 +10,9 @@ from pathlib import Path
 import click
 
 from rmw_manycore_py.cli.common.options import examples
-from rmw_manycore_py.cli.common.output_file import OutputFile, writing
 from rmw_manycore_py.cli.common.printing import new_table, print_json, print_table
 from rmw_manycore_py.cli.ndt.recording_options import recording_options
-from rmw_manycore_py.figures import load_figure
+from rmw_manycore_py.cli.ndt.replay_files import ReplayFiles, output_options
 from rmw_manycore_py.launch.processes.environment import enter_middleware, leave_middleware
 from rmw_manycore_py.ndt.geometry.arrays import Points
 from rmw_manycore_py.ndt.geometry.precision import why_coarse
@@ -25,7 +24,6 @@ from rmw_manycore_py.ndt.recordings.recording import Recording
 from rmw_manycore_py.ndt.replay.tally import Summary, Tally, as_json
 
 MAP_VOXEL_M = 0.2
-PICTURES = (".png", ".svg", ".pdf")
 
 
 @click.command(
@@ -34,6 +32,7 @@ PICTURES = (".png", ".svg", ".pdf")
         "manycore ndt replay build/street/drive.npz --plot replay.png",
         "manycore ndt replay drive.npz --rate 10 --voxel 0.5",
         "manycore ndt replay drive.npz --guess perturbed --offset 0.5 --turn 3",
+        "manycore ndt replay drive.npz --csv scans.csv --tum poses.tum --picture drive.png",
     ),
 )
 @click.argument("recording", type=click.Path(exists=True, path_type=Path))
@@ -102,13 +101,12 @@ PICTURES = (".png", ".svg", ".pdf")
     help="rmw_manycore plays from inside the platform.",
 )
 @click.option("--json", "as_json_", is_flag=True, help="Print the figures as JSON.")
-@click.option("--csv", "csv_path", type=OutputFile(), help="Write one line per scan.")
 @click.option(
-    "--plot",
-    "plot_path",
-    type=OutputFile(*PICTURES),
-    help=f"Draw map, path and error: {', '.join(PICTURES)}.",
+    "--pid",
+    type=click.IntRange(1),
+    help="Measure the CPU time of this process and its children, not what the matcher reports.",
 )
+@output_options
 def command(
     recording: Path,
     poses_path: Path | None,
@@ -130,16 +128,16 @@ def command(
     timeout_s: float,
     rmw: str,
     as_json_: bool,
-    csv_path: Path | None,
-    plot_path: Path | None,
+    pid: int | None,
+    **files: Path | None,
 ) -> None:
     """Play RECORDING to a scan matcher, as a laptop's stack outside of the platform would.
 
     Publishes pointcloud_map, ekf_pose_with_covariance and points_raw, takes ndt_pose, and reports
     error, latency and what was lost. The exit status is 1 if a scan was lost, late or diverged.
     """
-    if plot_path is not None:
-        load_figure()
+    outputs = ReplayFiles(**files)
+    outputs.check()
     _enter(rmw)
     from rmw_manycore_py.ndt.replay.guess_kinds import GuessKind
     from rmw_manycore_py.ndt.replay.session import run
@@ -156,29 +154,15 @@ def command(
     if points is not None and (warning := why_coarse(points)):
         click.echo(f"the map is coarse: {warning}", err=True)
     tally = Tally(deadline_ms)
-    run(drive, source, tally, points, voxel_m, rate_hz, waits, timeout_s)
+    run(drive, source, tally, points, voxel_m, rate_hz, waits, timeout_s, pid)
     summary = tally.summary()
     if complaint := tally.complaint():
         click.echo(f"of the first lost scan the matcher says: {complaint}", err=True)
     print_json({"guesses": made_of, **as_json(summary)}) if as_json_ else _print(
         summary, deadline_ms
     )
-    _write(tally, points, csv_path, plot_path)
+    outputs.write(tally, drive, points)  # after the figures, which no full disk shall take away
     sys.exit(0 if summary.is_good else 1)
-
-
-def _write(
-    tally: Tally, points: Points | None, csv_path: Path | None, plot_path: Path | None
-) -> None:
-    """Write the files that are wanted; after the figures, which no full disk shall take away."""
-    if csv_path is not None:
-        with writing(csv_path):
-            tally.write_csv(csv_path)
-    if plot_path is not None:
-        from rmw_manycore_py.ndt.replay.plot import plot
-
-        with writing(plot_path):
-            plot(tally, points, plot_path)
 
 
 def _enter(rmw: str) -> None:

@@ -7,22 +7,26 @@ from pathlib import Path
 
 import click
 import numpy as np
-from rich.progress import track
 
 from rmw_manycore_py.cli.common.options import examples
 from rmw_manycore_py.cli.common.output_file import writing
+from rmw_manycore_py.ndt.geometry.arrays import Points
 from rmw_manycore_py.ndt.geometry.poses import transform
 from rmw_manycore_py.ndt.geometry.thinning import voxel_centroids
 from rmw_manycore_py.ndt.maps.map_file import write_points
-from rmw_manycore_py.ndt.recordings.recording import save_recording
+from rmw_manycore_py.ndt.recordings.recording import DEFAULT_SCALE_M, INT16_MAX, save_recording
 from rmw_manycore_py.ndt.simulation.drive import (
+    Surroundings,
     drive_poses,
     mapping_poses,
     record,
     scans_along,
+    sweeps_along,
 )
 from rmw_manycore_py.ndt.simulation.lidar import Lidar
-from rmw_manycore_py.ndt.simulation.street import build_street
+from rmw_manycore_py.ndt.simulation.street import Street, build_street
+from rmw_manycore_py.ndt.simulation.traffic import Traffic
+from rmw_manycore_py.progress import tracked
 
 MAP_VOXEL_M = 0.2
 
@@ -32,6 +36,8 @@ MAP_VOXEL_M = 0.2
     epilog=examples(
         "manycore ndt simulate build/street",
         "manycore ndt simulate build/street --length 300 --speed 10",
+        "manycore ndt simulate build/street --beams 128 --azimuths 1800 --range 120",
+        "manycore ndt simulate build/street --traffic 6 --occlusion 0.3 --distortion",
     ),
 )
 @click.argument("directory", type=click.Path(file_okay=False, path_type=Path))
@@ -52,33 +58,100 @@ MAP_VOXEL_M = 0.2
     help="Metres per second.",
 )
 @click.option("--seed", type=click.IntRange(0), default=1, show_default=True, help="The street.")
-def command(directory: Path, length_m: float, speed_m_s: float, seed: int) -> None:
+@click.option(
+    "--beams",
+    type=click.IntRange(1, 256),
+    default=Lidar.rings,
+    show_default=True,
+    help="Rings of the LiDAR.",
+)
+@click.option(
+    "--azimuths",
+    type=click.IntRange(36, 8192),
+    default=Lidar.azimuths,
+    show_default=True,
+    help="Points of a ring.",
+)
+@click.option(
+    "--range",
+    "range_m",
+    type=click.FloatRange(5.0, 300.0),
+    default=Lidar.range_m,
+    show_default=True,
+    help="Metres that the LiDAR reaches.",
+)
+@click.option(
+    "--noise",
+    "noise_m",
+    type=click.FloatRange(0.0, 1.0),
+    default=Lidar.noise_m,
+    show_default=True,
+    help="Standard deviation of its distances, metres.",
+)
+@click.option(
+    "--traffic",
+    "cars",
+    type=click.IntRange(0, 20),
+    default=0,
+    show_default=True,
+    help="Cars that drive along, before and behind; they are not in the map.",
+)
+@click.option(
+    "--occlusion",
+    "hidden_share",
+    type=click.FloatRange(0.0, 0.9),
+    default=Lidar.hidden_share,
+    show_default=True,
+    help="Share of the view that the vehicle itself hides, behind.",
+)
+@click.option(
+    "--distortion",
+    is_flag=True,
+    help="Move while a scan is taken; drive.npz then has the time of each point.",
+)
+def command(
+    directory: Path,
+    length_m: float,
+    speed_m_s: float,
+    seed: int,
+    cars: int,
+    distortion: bool,
+    beams: int,
+    **lidar: float,
+) -> None:
     """Make a street up and drive along it with a LiDAR; write drive.npz and map.npz to DIRECTORY.
 
-    The map comes from a drive of its own, with other positions and other noise.
+    The map comes from a drive of its own, with other positions and other noise, without traffic.
     """
     with writing(directory):
         directory.mkdir(parents=True, exist_ok=True)
     generator = np.random.default_rng(seed)
-    street, lidar = build_street(length_m, generator), Lidar()
-
-    mapped = mapping_poses(length_m)
-    clouds = [
-        transform(pose, scan)
-        for pose, scan in zip(
-            mapped,
-            track(scans_along(street, mapped, lidar, generator), "map", len(mapped)),
-            strict=True,
-        )
-    ]
-    points = voxel_centroids(np.concatenate(clouds), (MAP_VOXEL_M,) * 3)
+    street, sensor = build_street(length_m, generator), Lidar(rings=beams, **lidar)  # type: ignore[arg-type]
+    points = _map_of(street, sensor, length_m, generator)
     with writing(directory / "map.npz"):
         write_points(directory / "map.npz", points)
 
     poses, stamps = drive_poses(length_m, speed_m_s)
-    driven = scans_along(street, poses, lidar, generator)
-    scans = list(track(driven, "drive", len(poses)))
+    traffic = Traffic.of(cars, generator) if cars else None
+    surroundings = Surroundings(street, sensor, traffic, speed_m_s if distortion else None)
+    driven = sweeps_along(surroundings, poses, stamps, generator)
+    scans = list(tracked(driven, "drive", len(poses)))
+    scale_m = max(DEFAULT_SCALE_M, (sensor.range_m + 10.0 * sensor.noise_m) / INT16_MAX)
+    note = f"synthetic street, seed {seed}"
     with writing(directory / "drive.npz"):
-        save_recording(directory / "drive.npz", record(scans, poses, stamps, seed))
+        save_recording(directory / "drive.npz", record(scans, poses, stamps, note), scale_m)
     click.echo(f"{directory / 'map.npz'}: {len(points)} points")
-    click.echo(f"{directory / 'drive.npz'}: {len(scans)} scans of about {len(scans[0])} points")
+    size = f"about {len(scans[0].points)} points"
+    click.echo(f"{directory / 'drive.npz'}: {len(scans)} scans of {size}")
+
+
+def _map_of(
+    street: Street, lidar: Lidar, length_m: float, generator: np.random.Generator
+) -> Points:
+    mapped = mapping_poses(length_m)
+    scans = scans_along(street, mapped, lidar, generator)
+    clouds = [
+        transform(pose, scan)
+        for pose, scan in zip(mapped, tracked(scans, "map", len(mapped)), strict=True)
+    ]
+    return voxel_centroids(np.concatenate(clouds), (MAP_VOXEL_M,) * 3)

@@ -14,6 +14,7 @@ Points: TypeAlias = NDArray[np.floating[Any]]  # (N, 3); single precision, or do
 ScanPoints: TypeAlias = NDArray[np.float32]  # (N, 3)
 Matrix: TypeAlias = NDArray[np.float64]  # of any shape
 Pose: TypeAlias = NDArray[np.float64]  # (4, 4)
+Poses: TypeAlias = NDArray[np.float64]  # (S, 4, 4)
 Matrix6: TypeAlias = NDArray[np.float64]  # (6, 6)
 
 ROTATION_TOLERANCE = 1e-3

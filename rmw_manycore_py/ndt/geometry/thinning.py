@@ -18,12 +18,12 @@ MAX_CELLS = 1 << 62
 def voxel_centroids(points: Points, voxel_m: tuple[float, float, float]) -> Points:
     """Return the mean of the points in each occupied voxel, as PCL's VoxelGrid does; same type.
 
-    `points` (N, 3) must be finite. Where voxels are too small for the cloud's extent to be
-    numbered with 62 bits, a ManycoreError says so.
+    `points` (N, 3 or more) must be finite; columns behind the third are means too. Where voxels
+    are too small for the cloud's extent to be numbered with 62 bits, a ManycoreError says so.
     """
     if len(points) == 0:
         return points
-    steps = np.floor(points / np.asarray(voxel_m, np.float64))
+    steps = np.floor(points[:, :3] / np.asarray(voxel_m, np.float64))
     steps -= steps.min(axis=0)
     if np.prod(steps.max(axis=0) + 1.0) > MAX_CELLS:
         raise ManycoreError(

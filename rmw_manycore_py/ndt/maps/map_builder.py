@@ -44,8 +44,10 @@ class MapBuilder:
     Thread-safe, but for `take`, which belongs to one thread.
     """
 
-    def __init__(self, options: MatcherOptions) -> None:
+    def __init__(self, options: MatcherOptions, built: Callable[[], None] = lambda: None) -> None:
+        """Start a thread; it calls `built` whenever there is something to take."""
         self._options = options
+        self._built = built
         self._helper = HelperProcess("map builder", NICENESS)
         self._executor = ThreadPoolExecutor(1, "map", leave_real_time)
         self._running: Future[BuiltMap] | None = None
@@ -61,26 +63,30 @@ class MapBuilder:
         """Build a map of the points that `read` returns, if it returns some."""
         with self._lock:
             if self._running is None:
-                self._running = self._executor.submit(self._build, read)
+                self._running = self._start(read)
             else:
                 self._waiting = read
 
-    def take(self, wait: bool = False) -> BuiltMap | None:
-        """Return what is finished, once; with `wait` also what is being built."""
+    def take(self) -> BuiltMap | None:
+        """Return what is finished, once."""
         running = self._running
-        if running is None or not (wait or running.done()):
+        if running is None or not running.done():
             return None
         built = running.result()
         with self._lock:
             waiting, self._waiting = self._waiting, None
-            again = waiting and self._executor.submit(self._build, waiting)
-            self._running = again
+            self._running = self._start(waiting) if waiting is not None else None
         return built
 
     def close(self) -> None:
         """End the process, and the thread with what it is doing."""
         self._helper.close()
         self._executor.shutdown(wait=True, cancel_futures=True)
+
+    def _start(self, read: Callable[[], Points | None]) -> Future[BuiltMap]:
+        running = self._executor.submit(self._build, read)
+        running.add_done_callback(lambda _: self._built())
+        return running
 
     def _build(self, read: Callable[[], Points | None]) -> BuiltMap:
         start = time.perf_counter()

@@ -28,6 +28,11 @@ class Tile:
     lower: tuple[float, float]
     upper: tuple[float, float]
 
+    @property
+    def is_everywhere(self) -> bool:
+        """Tell whether the extent is not known: a map of one file."""
+        return not np.isfinite(self.lower).all()
+
     def is_within(self, x: float, y: float, radius_m: float) -> bool:
         """Tell whether any of the extent lies within a radius."""
         dx = max(self.lower[0] - x, 0.0, x - self.upper[0])
@@ -55,29 +60,34 @@ class TiledMap:
         """Return the files within a radius of a place, without loading any."""
         return frozenset(tile.path for tile in self.tiles if tile.is_within(x, y, radius_m))
 
+    def tile_points(self, tile: Tile) -> Points:
+        """Return the points (N, 3) of one tile, kept or read; raises ManycoreError."""
+        return self._points_of(tile.path)
+
     def _points_of(self, path: Path) -> Points:
         loaded = self._loaded.get(path)
         return read_points(path, self.leaf_m) if loaded is None else loaded
 
 
-def open_map(path: Path, leaf_m: float = 0.0) -> TiledMap:
+def open_map(path: Path, leaf_m: float = 0.0, metadata: Path | None = None) -> TiledMap:
     """Return a map that is one file (its only tile, without limits) or a folder of them.
 
-    What is none, or cannot be read, is a ManycoreError.
+    :param metadata: the list of tiles, where it is not the one in the folder.
+    :raises ManycoreError: for what is none, or cannot be read.
     """
     try:
-        return _opened(path, leaf_m)
+        return _opened(path, leaf_m, metadata)
     except OSError as error:
         raise ManycoreError(f"map {path}: {error.strerror}", EXIT_BAD_INPUT) from error
 
 
-def _opened(path: Path, leaf_m: float) -> TiledMap:
+def _opened(path: Path, leaf_m: float, metadata: Path | None) -> TiledMap:
     if not path.is_dir():
         points = read_points(path, leaf_m)
         everywhere = Tile(path, (-np.inf, -np.inf), (np.inf, np.inf))
         return TiledMap((everywhere,), leaf_m, {path: points})
-    metadata = path / METADATA
-    tiles = _listed(metadata) if metadata.exists() else _measured(path)
+    listed = metadata or path / METADATA
+    tiles = _listed(listed, path) if metadata or listed.exists() else _measured(path)
     if not tiles:
         raise ManycoreError(f"map {path}: the folder has no PCD, PLY or npz file", EXIT_BAD_INPUT)
     return TiledMap(tuple(tiles), leaf_m)
@@ -85,7 +95,7 @@ def _opened(path: Path, leaf_m: float) -> TiledMap:
 
 def write_tiles(folder: Path, points: Points, size_m: float, suffix: str) -> int:
     """Write points as square tiles with Autoware's list of them; return their number."""
-    folder.mkdir(parents=True, exist_ok=True)
+    folder.mkdir(exist_ok=True)
     cells = np.floor(points[:, :2] / size_m).astype(int)
     table: dict[str, object] = {"x_resolution": size_m, "y_resolution": size_m}
     corners = np.unique(cells, axis=0)
@@ -97,7 +107,7 @@ def write_tiles(folder: Path, points: Points, size_m: float, suffix: str) -> int
     return len(corners)
 
 
-def _listed(metadata: Path) -> list[Tile]:
+def _listed(metadata: Path, folder: Path) -> list[Tile]:
     try:
         table = yaml.safe_load(metadata.read_text())
         size_x, size_y = float(table.pop("x_resolution")), float(table.pop("y_resolution"))
@@ -109,8 +119,7 @@ def _listed(metadata: Path) -> list[Tile]:
             EXIT_BAD_INPUT,
         ) from error
     tiles = [
-        Tile(metadata.parent / name, (x, y), (x + size_x, y + size_y))
-        for name, (x, y) in corners.items()
+        Tile(folder / name, (x, y), (x + size_x, y + size_y)) for name, (x, y) in corners.items()
     ]
     for tile in tiles:
         if not tile.path.is_file():

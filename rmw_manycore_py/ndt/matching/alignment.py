@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from rmw_manycore_py import _ndt
-from rmw_manycore_py.ndt.geometry.arrays import Matrix, Matrix6, Pose
+from rmw_manycore_py.ndt.geometry.arrays import Matrix, Matrix6, Pose, Poses
 from rmw_manycore_py.ndt.matching.options import MatcherOptions
 from rmw_manycore_py.words import Outcome
 
@@ -62,6 +62,9 @@ class Alignment:
     :param is_degenerate: nothing can be held of the pose: the score has no maximum there.
     :param xy_spread_m2: (2, 2) covariance of x and y by the score's curvature, times the number of
         points: large along a tunnel, whatever the scan's size.
+    :param first: the score where the steps on the finest map began; without a coarser one that is
+        the guess.
+    :param path: (n, 4, 4) the guess and the pose after each step, on all maps; at most 64.
     :param guesses_around: (4, 4) poses around the result that its covariance was made of, if any.
     :param results_around: (4, 4) what alignments from them reached, if there were such.
     """
@@ -74,6 +77,8 @@ class Alignment:
     nearest_voxel_likelihood: float
     converged: bool
     why: str
+    first: Score
+    path: Poses
     share_in_map: float = 0.0
     is_degenerate: bool = False
     xy_spread_m2: Matrix = field(default_factory=lambda: np.zeros((2, 2)))
@@ -107,6 +112,8 @@ class Alignment:
             nearest_voxel_likelihood=score.nearest_voxel_likelihood,
             converged=outcome == "converged",
             why=WHY[outcome],
+            first=Score.of(found.first),
+            path=found.path,
             share_in_map=score.points_in_map / max(found.at.scan_points, 1),
             is_degenerate=not is_maximum or ended == "no_overlap",
             xy_spread_m2=by_curvature[:2, :2] * found.at.scan_points,
@@ -120,8 +127,9 @@ class Alignment:
     @classmethod
     def refused(cls, guess: Pose | None, why: str, options: MatcherOptions) -> Alignment:
         """Return the answer to what cannot be aligned at all."""
+        pose = np.eye(4) if guess is None else guess.copy()
         return cls(
-            T_map_sensor=np.eye(4) if guess is None else guess.copy(),
+            T_map_sensor=pose,
             covariance=np.diag(options.fixed_pose_variances),
             iterations=0,
             score=0.0,
@@ -129,5 +137,7 @@ class Alignment:
             nearest_voxel_likelihood=0.0,
             converged=False,
             why=why,
+            first=Score(0.0, 0.0, 0.0, 0),
+            path=pose[None],
             is_degenerate=True,
         )

@@ -28,7 +28,7 @@ class Levelled:
     T_level_sensor: Pose
 
     def result(self, T_map_level: Pose) -> Pose:
-        """Return T_map_sensor (4, 4)."""
+        """Return T_map_sensor (4, 4), or (n, 4, 4) of several."""
         T_map_sensor: Pose = T_map_level @ self.T_level_sensor
         return T_map_sensor
 

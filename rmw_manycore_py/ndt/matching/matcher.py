@@ -7,7 +7,8 @@ from dataclasses import replace
 from types import TracebackType
 from typing import Protocol
 
-from numpy.typing import ArrayLike
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from rmw_manycore_py import _ndt
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
@@ -156,7 +157,11 @@ class Matcher:
             few = f"{points} finite points do not say where a scan fits"
             return Alignment.refused(guess, f"too few points: {few}", self.options)
         found = Alignment.of(result, self.options)
-        return replace(found, T_map_sensor=level.result(found.T_map_sensor))
+        return replace(
+            found,
+            T_map_sensor=level.result(found.T_map_sensor),
+            path=level.result(found.path),
+        )
 
     def _with_covariance(
         self,
@@ -195,6 +200,19 @@ class Matcher:
             return Score(0.0, 0.0, 0.0, 0)
         with translate_native_errors(CANNOT_WORK):
             return Score.of(self._native.evaluate(voxel_map.levels, scan, pose))
+
+    def point_scores(self, points: ArrayLike, T_map_sensor: ArrayLike) -> NDArray[np.float32]:
+        """Return for each of points (N, 3) at a pose (4, 4) the score of its best voxel (N,).
+
+        NaN where a point sees no voxel; the mean of the others is the likelihood of the nearest
+        voxels. On the calling thread alone, one point after the other: for pictures.
+        """
+        voxel_map = self._require_map()
+        scan = scan_points(points)
+        pose = pose_matrix(T_map_sensor)
+        if why_no_pose(pose):
+            return np.full(len(scan), np.nan, np.float32)
+        return voxel_map.finest.point_scores(scan, pose, self.options.outlier_ratio)
 
     def _require_map(self) -> VoxelMap:
         if self._map is None:

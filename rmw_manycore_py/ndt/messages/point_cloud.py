@@ -4,9 +4,11 @@
 from __future__ import annotations
 
 from array import array
-from typing import Any
+from collections.abc import Mapping, Sequence
+from typing import Any, TypeAlias
 
 import numpy as np
+import numpy.typing as npt
 
 from rmw_manycore_py.ndt.geometry.arrays import FARTHEST_M, Points
 from rmw_manycore_py.ndt.geometry.precision import needs_doubles
@@ -16,6 +18,8 @@ NUMBER_OF_DATATYPE = {1: "i1", 2: "u1", 3: "i2", 4: "u2", 5: "i4", 6: "u4", 7: "
 FLOAT32, FLOAT64 = 7, 8
 SINGLES = ("i1", "u1", "i2", "u2", "f4")  # fit into single precision
 AXES = ("x", "y", "z")
+
+Column: TypeAlias = npt.NDArray[Any]  # (N,)
 
 
 class CloudError(ValueError):
@@ -29,62 +33,100 @@ def decode(message: Any) -> Points:
     Points that are not finite, or beyond 1e9 m, are left out. They are doubles where the message
     has such. Raises CloudError.
     """
-    width, height = message.width, message.height
-    data = np.frombuffer(message.data, np.uint8)
-    if width == 0 or height == 0:
-        return np.zeros((0, 3), np.float32)
-    fields = _fields(message)
-    _check_extent(message, len(data), fields)
+    fields = [_number(message, name) for name in AXES] if _has_points(message) else []
     is_single = all(number.str[1:] in SINGLES for _, number in fields)
-    points = np.empty((height, width, 3), np.float32 if is_single else np.float64)
-    for axis, (offset, number) in enumerate(fields):
-        points[:, :, axis] = np.ndarray(
-            (height, width), number, data, offset, (message.row_step, message.point_step)
-        )
-    flat = points.reshape(-1, 3)
-    with np.errstate(invalid="ignore"):
-        is_place = (np.abs(flat) <= FARTHEST_M).all(axis=1)
+    flat: Points = _columns(message, fields, np.float32 if is_single else np.float64)
+    is_place = places(flat)
     return flat if is_place.all() else flat[is_place]
 
 
-def encode(points: Points, stamp: Any, frame_id: str) -> Any:
+def decode_with(message: Any, name: str) -> tuple[Points, Column]:
+    """Return what decode() does, and another field (N) of the same points. Raises CloudError."""
+    if not _has_points(message):
+        return np.zeros((0, 3), np.float32), np.zeros(0)
+    positions = _columns(message, [_number(message, axis) for axis in AXES], np.float64)
+    values = _columns(message, [_number(message, name)], np.float64)[:, 0]
+    is_place = places(positions)
+    return decode(message), values[is_place]
+
+
+def places(points: Points) -> npt.NDArray[np.bool_]:
+    """Tell which of points (N, 3) are finite and not beyond 1e9 m."""
+    with np.errstate(invalid="ignore"):
+        near: npt.NDArray[np.bool_] = np.abs(points) <= FARTHEST_M
+    is_place: npt.NDArray[np.bool_] = np.all(near, axis=1)
+    return is_place
+
+
+def encode(
+    points: Points, stamp: Any, frame_id: str, more: Mapping[str, Column] | None = None
+) -> Any:
     """Return a PointCloud2 of points (N, 3), unorganised.
 
     x, y and z are float32, as all programs take them, unless that rounds by more than a millimetre.
+
+    :param more: further fields (N) by their names, as float32.
     """
     from sensor_msgs.msg import PointCloud2, PointField
 
     datatype, number = (FLOAT64, "<f8") if needs_doubles(points) else (FLOAT32, "<f4")
     size = np.dtype(number).itemsize
-    message = PointCloud2(height=1, width=len(points), point_step=3 * size, is_dense=True)
+    message = PointCloud2(height=1, width=len(points), is_dense=True)
     message.header.stamp = stamp
     message.header.frame_id = frame_id
-    message.row_step = message.point_step * len(points)
     message.fields = [
         PointField(name=name, offset=size * axis, datatype=datatype, count=1)
         for axis, name in enumerate(AXES)
     ]
+    message.fields += [
+        PointField(name=name, offset=3 * size + 4 * index, datatype=FLOAT32, count=1)
+        for index, name in enumerate(more or ())
+    ]
+    message.point_step = 3 * size + 4 * len(more or ())
+    message.row_step = message.point_step * len(points)
     data = array("B")
-    data.frombytes(np.ascontiguousarray(points, number).tobytes())
+    data.frombytes(_bytes(np.ascontiguousarray(points, number), list((more or {}).values())))
     message.data = data
     return message
 
 
-def _fields(message: Any) -> list[tuple[int, np.dtype[Any]]]:
-    """Return offset and number type of x, y and z."""
-    order = ">" if message.is_bigendian else "<"
+def _bytes(points: Points, more: Sequence[Column]) -> bytes:
+    if not more:
+        return points.tobytes()
+    rows = [points.view(np.uint8)]
+    rows += [np.ascontiguousarray(one, "<f4")[:, None].view(np.uint8) for one in more]
+    return np.hstack(rows).tobytes()
+
+
+def _has_points(message: Any) -> bool:
+    return bool(message.width and message.height)
+
+
+def _columns(message: Any, fields: list[tuple[int, np.dtype[Any]]], number: Any) -> Any:
+    """Return fields (N, len(fields)) as numbers of a type."""
+    width, height = message.width, message.height
+    if not fields:
+        return np.zeros((0, 3), np.float32)
+    data = np.frombuffer(message.data, np.uint8)
+    _check_extent(message, len(data), fields)
+    values = np.empty((height, width, len(fields)), number)
+    strides = (message.row_step, message.point_step)
+    for index, (offset, kind) in enumerate(fields):
+        values[:, :, index] = np.ndarray((height, width), kind, data, offset, strides)
+    return values.reshape(-1, len(fields))
+
+
+def _number(message: Any, name: str) -> tuple[int, np.dtype[Any]]:
+    """Return offset and number type of a field."""
     by_name = {field.name: field for field in message.fields}
-    fields = []
-    for name in AXES:
-        field = by_name.get(name)
-        if field is None:
-            found = ", ".join(by_name) or "none"
-            raise CloudError(f"the cloud has no field '{name}'; its fields: {found}")
-        number = NUMBER_OF_DATATYPE.get(field.datatype)
-        if number is None:
-            raise CloudError(f"the field '{name}' has the unknown datatype {field.datatype}")
-        fields.append((field.offset, np.dtype(order + number)))
-    return fields
+    field = by_name.get(name)
+    if field is None:
+        found = ", ".join(by_name) or "none"
+        raise CloudError(f"the cloud has no field '{name}'; its fields: {found}")
+    number = NUMBER_OF_DATATYPE.get(field.datatype)
+    if number is None:
+        raise CloudError(f"the field '{name}' has the unknown datatype {field.datatype}")
+    return field.offset, np.dtype((">" if message.is_bigendian else "<") + number)
 
 
 def _check_extent(message: Any, size: int, fields: list[tuple[int, np.dtype[Any]]]) -> None:

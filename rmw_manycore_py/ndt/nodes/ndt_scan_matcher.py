@@ -13,24 +13,19 @@ from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from sensor_msgs.msg import PointCloud2
 from std_srvs.srv import SetBool
-from tier4_localization_msgs.srv import PoseWithCovarianceStamped as AlignService
 
+from rmw_manycore_py.cpu_time import tree_cpu_s
 from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.ndt.geometry import poses
 from rmw_manycore_py.ndt.geometry.arrays import Matrix, Points
-from rmw_manycore_py.ndt.matching.initial_pose import Particle, particles
+from rmw_manycore_py.ndt.geometry.deskewing import deskewed
+from rmw_manycore_py.ndt.matching.alignment import Alignment
 from rmw_manycore_py.ndt.matching.voxel_map import VoxelMap
-from rmw_manycore_py.ndt.messages.conversions import (
-    PoseError,
-    covariance_of,
-    matrix_of,
-    pose_with_covariance,
-    seconds,
-)
+from rmw_manycore_py.ndt.messages.conversions import seconds
+from rmw_manycore_py.ndt.nodes.scan_matcher.align_services import AlignParts, AlignServices
 from rmw_manycore_py.ndt.nodes.scan_matcher.cluster_memory import ClusterMemory
-from rmw_manycore_py.ndt.nodes.scan_matcher.cpu_time import tree_cpu_s
 from rmw_manycore_py.ndt.nodes.scan_matcher.diagnostics import Diagnostics
-from rmw_manycore_py.ndt.nodes.scan_matcher.frame_tree import FrameError, FrameTree
+from rmw_manycore_py.ndt.nodes.scan_matcher.frame_tree import FrameTree
 from rmw_manycore_py.ndt.nodes.scan_matcher.map_supply import MapSupply
 from rmw_manycore_py.ndt.nodes.scan_matcher.markers import PoseMarkers
 from rmw_manycore_py.ndt.nodes.scan_matcher.matcher_options import matcher_options
@@ -46,7 +41,8 @@ from rmw_manycore_py.ndt.nodes.scan_matcher.pose_inputs import PoseInputs
 from rmw_manycore_py.ndt.nodes.scan_matcher.real_time import schedule_in_real_time
 from rmw_manycore_py.ndt.nodes.scan_matcher.rejected import Rejected
 from rmw_manycore_py.ndt.nodes.scan_matcher.scan_inbox import ScanInbox
-from rmw_manycore_py.ndt.nodes.scan_matcher.scan_points import ScanPoints
+from rmw_manycore_py.ndt.nodes.scan_matcher.scan_points import Scan, ScanPoints
+from rmw_manycore_py.ndt.nodes.scan_matcher.steps import report_steps
 from rmw_manycore_py.ndt.nodes.scan_matcher.tracking import (
     AutowareTracking,
     RobustTracking,
@@ -58,7 +54,6 @@ from rmw_manycore_py.ndt.nodes.support.running import run_node
 
 MAP_UPDATE_PERIOD_S = 1.0
 SCAN_DEPTH = 5  # what arrives at once is counted where it is skipped, not lost in a queue
-SEED = 0
 
 
 class NdtScanMatcher(Node):
@@ -76,7 +71,9 @@ class NdtScanMatcher(Node):
         schedule_in_real_time(self._own.realtime_priority, self._matcher.worker_pids)
         self._tracking = self._make_tracking()
         self._memory = ClusterMemory(self, self._matcher)
-        self._map = MapSupply(options, self._p, self._own, self._match_to)
+        self._map = MapSupply(
+            self, options, self._p, self._own, self._match_to, lambda: self._thread.wake()
+        )
         self._frames = FrameTree()
         self._scan_points = ScanPoints(self._p, self._own, self._frames)
         self._is_activated = self._own.activated or self._tracking.was_activated
@@ -90,7 +87,6 @@ class NdtScanMatcher(Node):
             for name in (
                 "scan_matching_status",
                 "map_update_status",
-                "ndt_align_service_status",
                 "trigger_node_service_status",
             )
         }
@@ -105,6 +101,19 @@ class NdtScanMatcher(Node):
             rclpy.try_shutdown,
         )
         self._listen()
+        AlignServices(
+            self,
+            AlignParts(
+                self._p,
+                self._frames,
+                self._map,
+                self._thread,
+                self._take_new_map,
+                lambda: self._scan,
+                self._aligned_to,
+                self._markers.particles,
+            ),
+        )
 
     def _make_tracking(self) -> Tracking:
         if self._own.behaviour == "autoware":
@@ -118,7 +127,6 @@ class NdtScanMatcher(Node):
         self.create_subscription(PointCloud2, "pointcloud_map", self._map.on_message, kept)
         self._frames.listen(self)
         self.create_service(SetBool, "trigger_node_srv", self._on_trigger)
-        self.create_service(AlignService, "ndt_align_srv", self._on_align)
         self.create_timer(MAP_UPDATE_PERIOD_S, self._on_timer)
 
     def destroy_node(self) -> None:
@@ -133,7 +141,7 @@ class NdtScanMatcher(Node):
 
     def _on_guess(self, T_map_base: Matrix) -> None:
         self._map.vehicle_is_at(float(T_map_base[0, 3]), float(T_map_base[1, 3]))
-        self._thread.guesses_changed()
+        self._thread.wake()
 
     def _on_scan(self, message: Any) -> None:
         stamp_s = seconds(message.header.stamp)
@@ -175,12 +183,13 @@ class NdtScanMatcher(Node):
         start = time.perf_counter()
         stamp, stamp_s = message.header.stamp, seconds(message.header.stamp)
         report.value("topic_time_stamp", stamp_s)
-        points = self._scan_points.of(message, self._now_s(), report)
-        self._scan = points
+        scan = self._scan_points.of(message, self._now_s(), report)
+        self._scan = points = scan.points
         report.value("is_activated", self._is_activated)
         if not self._is_activated:
             raise Rejected("Node is not activated: call trigger_node_srv")
         guess = self._guess_at(stamp_s, report)
+        self._scan = points = self._deskewed(scan, stamp_s, guess, report)
         self._take_new_map()
         report.value("is_set_map_points", self._map.is_set)
         if not self._map.is_set:
@@ -193,6 +202,7 @@ class NdtScanMatcher(Node):
         alignment = tracked.alignment
         if not np.isfinite(alignment.T_map_sensor).all():
             raise Rejected(f"the alignment has no finite result: {alignment.why}")
+        report_steps(alignment, report)
         distance_m = poses.distance_m(guess.T, alignment.T_map_sensor)
         report.value("distance_initial_to_result", distance_m)
         if distance_m > self._p.result_distance_m:
@@ -205,7 +215,7 @@ class NdtScanMatcher(Node):
             report.warn(f"NDT exe time is too long (took {exe_time_ms:.1f} ms)")
         self._outputs.number("exe_time_ms", stamp, exe_time_ms)
         self._outputs.result(stamp, alignment, guess)
-        self._markers.alignment(stamp, guess.T, alignment.T_map_sensor)
+        self._markers.alignment(stamp, alignment.path)
         self._publish_clouds(stamp, points, alignment.T_map_sensor)
         return tracked.is_reliable
 
@@ -222,8 +232,23 @@ class NdtScanMatcher(Node):
         report.value("initial_pose_age", round(guess.age_s, 4))
         return guess
 
+    def _deskewed(
+        self, scan: Scan, stamp_s: float, guess: Interpolated, report: Diagnostics
+    ) -> Points:
+        """Return the points (N, 3) as seen at the scan's stamp, where their times are known."""
+        if scan.times_s is None:
+            return scan.points
+        motion = self._poses.guesses.motion_until(stamp_s, guess.T)
+        report.value("is_deskewed", motion is not None)
+        if motion is None:
+            report.note("not deskewed: the guesses before the scan do not tell the motion")
+            return scan.points
+        T, duration_s = motion
+        return deskewed(scan.points, scan.times_s / duration_s, T)
+
     def _publish_clouds(self, stamp: Any, points: Points, T_map_base: Matrix) -> None:
         self._outputs.cloud("points_aligned", stamp, points, T_map_base)
+        self._outputs.scored_cloud(stamp, points, T_map_base, self._matcher.point_scores)
         if not self._p.no_ground:
             return
         height_m = points @ T_map_base[2, :3]
@@ -247,9 +272,9 @@ class NdtScanMatcher(Node):
         finally:
             self._memory.give_back()
 
-    def _take_new_map(self, wait: bool = False) -> None:
+    def _take_new_map(self) -> None:
         """Swap in the map that was built meanwhile, if there is one."""
-        taken = self._map.take(wait)
+        taken = self._map.take()
         if taken is not None:
             voxel_map, points = taken
             built = f"{voxel_map.voxels} voxels, built in {self._map.duration_ms:.0f} ms"
@@ -257,7 +282,14 @@ class NdtScanMatcher(Node):
             if self._p.publish_loaded_map:
                 self._outputs.loaded_map(self.get_clock().now().to_msg(), points)
 
+    def _aligned_to(self, scan: Points, T_map_guess: Matrix) -> Alignment:
+        """Align from a guess, of which only the pose is wanted."""
+        self._memory.make_room_for_scan(len(scan))
+        return self._matcher.align(scan, T_map_guess, only_pose=True)
+
     def _on_timer(self) -> None:
+        if self._is_activated:
+            self._map.look_after_loader()
         self._thread.post(self._update_map)
 
     def _update_map(self) -> None:
@@ -279,7 +311,7 @@ class NdtScanMatcher(Node):
         report.value("service_call_time_stamp", seconds(now))
         self._is_activated = bool(request.data)
         self._thread.post(partial(self._tracking.activated, self._is_activated))
-        self._thread.guesses_changed()
+        self._thread.wake()
         if self._is_activated:
             self._poses.guesses.clear()
         response.success = True
@@ -288,71 +320,8 @@ class NdtScanMatcher(Node):
         report.publish(now)
         return response
 
-    def _on_align(self, request: Any, response: Any) -> Any:
-        self._thread.run(lambda: self._answer_align(request, response))
-        return response
-
-    def _answer_align(self, request: Any, response: Any) -> None:
-        report = self._diagnostics["ndt_align_service_status"]
-        report.clear()
-        now = self.get_clock().now().to_msg()
-        report.value("service_call_time_stamp", seconds(now))
-        try:
-            self._align(request.pose_with_covariance, response, report)
-        except (Rejected, ManycoreError, PoseError, FrameError) as why:
-            report.warn(f"ndt_align_srv failed: {why}")
-            response.success = False
-        report.value("is_succeed_service", bool(response.success))
-        report.publish(now)
-
-    def _align(self, guess: Any, response: Any, report: Diagnostics) -> None:
-        """Search around a pose for the likeliest one."""
-        T_map_frame = np.eye(4)
-        if guess.header.frame_id != self._p.map_frame:
-            T_map_frame = self._frames.lookup(self._p.map_frame, guess.header.frame_id)
-        report.value("is_succeed_transform_initial_pose", True)
-        T_map_base = T_map_frame @ matrix_of(guess.pose.pose)
-        covariance = covariance_of(guess)
-        if not np.isfinite(covariance).all():
-            raise Rejected("the covariance of the pose is not finite")
-        self._map.vehicle_is_at(float(T_map_base[0, 3]), float(T_map_base[1, 3]))
-        self._take_new_map(wait=True)
-        report.value("is_set_map_points", self._map.is_set)
-        if not self._map.is_set:
-            raise Rejected(f"there is no map yet: {self._map.what_is_missing()}")
-        report.value("is_set_sensor_points", self._scan is not None)
-        if self._scan is None:
-            raise Rejected("no scan has come yet: check points_raw")
-        best = self._best_particle(T_map_base, covariance)
-        report.value("best_particle_score", best.score)
-        if not np.isfinite(best.alignment.T_map_sensor).all():
-            raise Rejected("no alignment has a finite result")
-        response.success = True
-        response.reliable = best.score > self._p.least_nearest_voxel_likelihood
-        if not response.reliable:
-            report.warn(f"the best of {self._p.particles} results has a score of {best.score:.3f}")
-        response.pose_with_covariance = pose_with_covariance(
-            best.alignment.T_map_sensor, covariance, guess.header.stamp, self._p.map_frame
-        )
-
     def _now_s(self) -> float:
         return seconds(self.get_clock().now().to_msg())
-
-    def _best_particle(self, T_map_base: Matrix, covariance: Matrix) -> Particle:
-        scan = self._scan
-        assert scan is not None
-        self._memory.make_room_for_scan(len(scan))
-        found = particles(
-            lambda T: self._matcher.align(scan, T, only_pose=True),
-            T_map_base,
-            covariance,
-            self._p.particles,
-            self._p.startup_trials,
-            np.random.default_rng(SEED),
-        )
-        tried = list(found)
-        self._markers.particles(self.get_clock().now().to_msg(), tried)
-        return max(tried, key=lambda particle: particle.score)
 
 
 def main() -> None:

@@ -1,5 +1,8 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""`pointcloud_map_loader`: publishes a map from files, all of it or what is near the vehicle."""
+"""`pointcloud_map_loader`: a map from files, for all or by cells for those that ask.
+
+It publishes all of it, or what is near the vehicle, and serves cells as Autoware's map loader.
+"""
 
 from __future__ import annotations
 
@@ -20,6 +23,7 @@ from rmw_manycore_py.ndt.maps.map_area import MapArea
 from rmw_manycore_py.ndt.maps.map_tiles import open_map
 from rmw_manycore_py.ndt.messages.conversions import PoseError, matrix_of
 from rmw_manycore_py.ndt.messages.point_cloud import encode
+from rmw_manycore_py.ndt.nodes.map_cell_services import MapCellServices
 from rmw_manycore_py.ndt.nodes.support.declared import declare, parameter
 from rmw_manycore_py.ndt.nodes.support.running import run_node
 
@@ -29,7 +33,10 @@ class LoaderParameters:
     """Autoware's where it has them; metres."""
 
     whole: bool = parameter("enable_whole_load", True)
-    path: str = parameter("pcd_paths_or_directory", "")
+    partial: bool = parameter("enable_partial_load", True)
+    selected: bool = parameter("enable_selected_load", False)
+    paths: tuple[str, ...] = parameter("pcd_paths_or_directory", (), texts=True)
+    metadata: str = parameter("pcd_metadata_path", "")
     leaf_m: float = parameter("leaf_size", 0.0, least=0.0)
     map_frame: str = parameter("map_frame", "map")
     radius_m: float = parameter("map_radius", 150.0, above=0.0)
@@ -37,17 +44,25 @@ class LoaderParameters:
 
 
 class PointcloudMapLoader(Node):
-    """Publishes `pointcloud_map`, which late subscribers get too."""
+    """Publishes `pointcloud_map`, which late subscribers get too, and serves its cells."""
 
     def __init__(self) -> None:
         super().__init__("pointcloud_map_loader")
         self._p = declare(self, LoaderParameters)
-        if not self._p.path:
+        if len(self._p.paths) != 1:
             raise ManycoreError(
-                "parameter pcd_paths_or_directory: expected a map file or a folder of tiles",
+                "parameter pcd_paths_or_directory: expected a map file or a folder of tiles, found "
+                f"{', '.join(self._p.paths) or 'none'}",
                 EXIT_BAD_INPUT,
             )
-        tiles = open_map(Path(self._p.path).expanduser(), self._p.leaf_m)
+        # Autoware's launch files name a metadata file even where there is none.
+        metadata = Path(self._p.metadata).expanduser() if self._p.metadata else None
+        tiles = open_map(
+            Path(self._p.paths[0]).expanduser(),
+            self._p.leaf_m,
+            metadata if metadata is not None and metadata.is_file() else None,
+        )
+        MapCellServices(self, tiles, self._p.map_frame, self._p.partial, self._p.selected)
         kept = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
         self._publisher = self.create_publisher(PointCloud2, "pointcloud_map", kept)
         self._area = MapArea(tiles, self._p.radius_m, self._p.update_distance_m)

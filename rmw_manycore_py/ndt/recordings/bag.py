@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
-from rmw_manycore_py.ndt.geometry.arrays import Points
+from rmw_manycore_py.ndt.geometry.arrays import Matrix, Points
 from rmw_manycore_py.ndt.recordings.bag_poses import poses_of
 from rmw_manycore_py.ndt.recordings.connections import connections_of
 from rmw_manycore_py.ndt.recordings.matching import recorded
@@ -49,15 +49,33 @@ class BagScans:
         """Read a scan; a broken one is a ManycoreError."""
         from rmw_manycore_py.ndt.messages.point_cloud import CloudError, decode
 
-        at_ns = self.times_ns[index]
-        with _bad_bag(f"scan {index} of the bag"):
-            found = self.reader.messages(self.connections, start=at_ns, stop=at_ns + 1)
-            connection, _, data = next(iter(found))
-            message = self.reader.deserialize(data, connection.msgtype)
+        message = self.message(index)
         try:
             return decode(message)
         except CloudError as error:
             raise ManycoreError(f"scan {index} of the bag: {error}", EXIT_BAD_INPUT) from error
+
+    def message(self, index: int) -> Any:
+        """Read the message of a scan; a broken one is a ManycoreError."""
+        at_ns = self.times_ns[index]
+        with _bad_bag(f"scan {index} of the bag"):
+            found = self.reader.messages(self.connections, start=at_ns, stop=at_ns + 1)
+            connection, _, data = next(iter(found))
+            return self.reader.deserialize(data, connection.msgtype)
+
+
+@dataclass(frozen=True)
+class BagTimes:
+    """The times of the points in a bag whose clouds have a field for them."""
+
+    scans: BagScans
+    field: str
+
+    def __getitem__(self, index: int) -> Matrix:
+        """Read the times of a scan's points, in seconds after its stamp."""
+        from rmw_manycore_py.ndt.messages.point_times import decode_timed
+
+        return decode_timed(self.scans.message(index), self.field)[1]
 
 
 def open_bag(path: Path, poses_path: Path | None, topic: str, pose_topic: str) -> Recording:
@@ -74,14 +92,17 @@ def _recording_of(
     path: Path, closing: ExitStack, poses_path: Path | None, topic: str, pose_topic: str
 ) -> Recording:
     from rmw_manycore_py.ndt.messages.conversions import seconds
+    from rmw_manycore_py.ndt.messages.point_times import time_field
 
     reader = _opened(path)
     closing.callback(reader.close)
     connections = connections_of(path, reader, {CLOUD}, topic, "--topic")
-    stamps, times, frames = [], [], []
+    stamps, times, frames, fields = [], [], [], set()
     with _bad_bag(f"{path}: a broken bag"):
         for connection, at_ns, data in reader.messages(connections):
-            header = reader.deserialize(data, connection.msgtype).header
+            message = reader.deserialize(data, connection.msgtype)
+            header = message.header
+            fields.add(time_field(message))
             times.append(at_ns)
             stamps.append(seconds(header.stamp) or 1e-9 * at_ns)
             frames.append(header.frame_id)
@@ -90,7 +111,9 @@ def _recording_of(
         else:
             line, note = poses_of(path, reader, pose_topic, frames[0] if frames else "")
     scans = BagScans(reader, connections, tuple(times), closing)
-    return recorded(path, scans, len(times), np.array(stamps), line, note)
+    field = fields.pop() if len(fields) == 1 else None
+    point_times = None if field is None else BagTimes(scans, field)
+    return recorded(path, scans, len(times), np.array(stamps), line, note, point_times)
 
 
 @contextmanager

@@ -12,7 +12,19 @@ import numpy.typing as npt
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
 from rmw_manycore_py.ndt.geometry.arrays import Matrix, Points
 from rmw_manycore_py.ndt.recordings.pose_file import PoseLine
-from rmw_manycore_py.ndt.recordings.recording import Recording, Scans
+from rmw_manycore_py.ndt.recordings.recording import PointTimes, Recording, Scans
+
+
+@dataclass(frozen=True)
+class SomeTimes:
+    """The times of the points of some scans of all."""
+
+    times: PointTimes
+    indices: npt.NDArray[np.int64]
+
+    def __getitem__(self, index: int) -> Matrix:
+        """Return the times of a scan's points."""
+        return self.times[int(self.indices[index])]
 
 
 @dataclass(frozen=True)
@@ -28,7 +40,13 @@ class SomeScans:
 
 
 def recorded(
-    path: Path, scans: Scans, count: int, stamps_s: Matrix, poses: PoseLine, note: str = ""
+    path: Path,
+    scans: Scans,
+    count: int,
+    stamps_s: Matrix,
+    poses: PoseLine,
+    note: str = "",
+    point_times: PointTimes | None = None,
 ) -> Recording:
     """Return a recording of `count` scans, with the poses at their stamps or one pose for each.
 
@@ -43,13 +61,15 @@ def recorded(
     if len(poses.poses) == count:
         stamps = stamps_s if len(stamps_s) else poses.stamps
         if not len(stamps_s) or not len(poses.stamps):
-            return Recording(scans, poses.poses, stamps, _note(path, note))
+            return Recording(scans, poses.poses, stamps, _note(path, note), point_times)
     if len(stamps_s) and len(poses.stamps):
         known, T = poses.at(stamps_s)
         if len(known):
             left_out = count - len(known)
             lost = f"{left_out} of {count} scans have no pose" if left_out else ""
-            return Recording(SomeScans(scans, known), T, stamps_s[known], _note(path, note, lost))
+            some = None if point_times is None else SomeTimes(point_times, known)
+            said = _note(path, note, lost)
+            return Recording(SomeScans(scans, known), T, stamps_s[known], said, some)
         found = f"scans from {stamps_s[0]:.3f} to {stamps_s[-1]:.3f} s, poses from "
         found += f"{poses.stamps[0]:.3f} to {poses.stamps[-1]:.3f} s"
         raise ManycoreError(f"{path}: no scan has a pose near its time: {found}", EXIT_BAD_INPUT)

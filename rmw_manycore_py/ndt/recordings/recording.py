@@ -8,13 +8,14 @@
 | `offsets` | integer (S + 1) | scan i is `points[offsets[i]:offsets[i + 1]]` |
 | `poses` | (S, 4, 4) or (S, 3, 4) | T_map_sensor of each scan |
 | `stamps` | (S), empty or missing | seconds, or whatever `recordings.stamps` takes for them |
+| `times` | (N) floating point; may be missing | seconds from its scan's stamp to each point |
 | `note` | text; may be missing | where it came from |
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Protocol
 
@@ -58,6 +59,26 @@ class StoredScans:
         return metres
 
 
+class PointTimes(Protocol):
+    """The times (n) of the points of each scan, in seconds after its stamp."""
+
+    def __getitem__(self, index: int) -> Matrix:
+        """Return the times of a scan's points, of those that are not finite too."""
+        ...
+
+
+@dataclass(frozen=True)
+class StoredTimes:
+    """Times of all points, as StoredScans has the points."""
+
+    times_s: Matrix
+    offsets: npt.NDArray[np.int64]
+
+    def __getitem__(self, index: int) -> Matrix:
+        """Return the times of a scan's points."""
+        return self.times_s[self.offsets[index] : self.offsets[index + 1]].astype(np.float64)
+
+
 @dataclass(frozen=True)
 class Recording:
     """Scans of a drive; `poses` T_map_sensor (S, 4, 4), `stamps` (S) in seconds, or empty."""
@@ -66,6 +87,7 @@ class Recording:
     poses: Matrix
     stamps: Matrix
     note: str = ""
+    point_times: PointTimes | None = None
 
     def __len__(self) -> int:
         return len(self.poses)
@@ -75,6 +97,16 @@ class Recording:
         points = self.scans[index]
         finite = np.isfinite(points).all(axis=1)
         return points if finite.all() else points[finite]
+
+    def point_times_s(self, index: int) -> Matrix | None:
+        """Return the times (n) of what scan() returns, after its stamp; None if unknown."""
+        if self.point_times is None:
+            return None
+        return self.point_times[index][np.isfinite(self.scans[index]).all(axis=1)]
+
+    def stamp_s(self, index: int) -> float:
+        """Return the stamp of a scan; without stamps the time after the first."""
+        return float(self.stamps[index] if len(self.stamps) else self.times_s()[index])
 
     def times_s(self) -> Matrix:
         """Return the time of each scan after the first; even where there are no stamps."""
@@ -100,12 +132,15 @@ class Recording:
 
     def first(self, count: int | None) -> Recording:
         """Return the first scans only, None for all."""
-        return Recording(self.scans, self.poses[:count], self.stamps[:count], self.note)
+        return replace(self, poses=self.poses[:count], stamps=self.stamps[:count])
 
 
 def save_recording(path: Path, drive: Recording, scale_m: float = DEFAULT_SCALE_M) -> None:
     """Write a recording as npz, its points rounded to `scale_m`."""
     stored = stored_scans([drive.scan(index) for index in range(len(drive))], scale_m)
+    times = [drive.point_times_s(index) for index in range(len(drive))]
+    known = [one for one in times if one is not None]
+    more: dict[str, Any] = {"times": np.concatenate(known).astype(np.float32)} if known else {}
     np.savez_compressed(
         path,
         points=stored.points,
@@ -114,6 +149,7 @@ def save_recording(path: Path, drive: Recording, scale_m: float = DEFAULT_SCALE_
         poses=drive.poses,
         stamps=drive.stamps,
         note=drive.note,
+        **more,
     )
 
 
@@ -146,6 +182,7 @@ def load_recording(path: Path) -> Recording:
             rigid(poses),
             in_seconds(arrays.get("stamps", np.zeros(0))),
             str(arrays.get("note", "")),
+            StoredTimes(arrays["times"], arrays["offsets"]) if "times" in arrays else None,
         )
     except UNREADABLE as error:
         raise _bad(path, what_is_wrong(error)) from error
@@ -165,6 +202,7 @@ def _problem(arrays: dict[str, npt.NDArray[Any]]) -> str | None:
         (offsets.shape == (count + 1,), "offsets are not one more than poses"),
         (offsets.dtype.kind in "iu", "offsets are not whole numbers"),
         (stamps.shape in ((0,), (count,)), "stamps are neither empty nor one per pose"),
+        (_is_per_point(arrays.get("times"), points), "times are not one number per point"),
     ]
     for good, problem in checks:
         if not good:
@@ -174,6 +212,10 @@ def _problem(arrays: dict[str, npt.NDArray[Any]]) -> str | None:
     ):
         return "offsets do not increase within points"
     return None
+
+
+def _is_per_point(times: npt.NDArray[Any] | None, points: npt.NDArray[Any]) -> bool:
+    return times is None or (times.shape == points.shape[:1] and times.dtype.kind == "f")
 
 
 def _bad(path: Path, problem: str) -> ManycoreError:

@@ -7,14 +7,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from rich.console import Console
-from rich.progress import track
 
 from rmw_manycore_py.ndt.geometry import poses
 from rmw_manycore_py.ndt.geometry.arrays import Matrix
 from rmw_manycore_py.ndt.recordings.recording import Recording
 from rmw_manycore_py.ndt.replay import motion, prediction
 from rmw_manycore_py.ndt.replay.guess_source import Guesses, GuessSource, StackInputs
+from rmw_manycore_py.progress import tracked
 
 FIRST_OFF_M, FIRST_OFF_RAD = 0.3, 0.05  # how rough a first pose is, pointed at in RViz
 MADE_OF = {
@@ -60,8 +59,7 @@ class GuessKind:
             return Motions(reference)
         untold: list[str] = []
         found = motion.of_scans(drive, untold.append)
-        console = Console(stderr=True)
-        told = track(found, "motion", len(reference), console=console, transient=True)
+        told = tracked(found, "motion", len(reference))
         between = [
             theirs if own is None else own for own, theirs in zip(told, reference, strict=True)
         ]

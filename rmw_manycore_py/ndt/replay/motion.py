@@ -24,10 +24,9 @@ from rmw_manycore_py.ndt.recordings.recording import Recording
 VOXEL_M = 0.25  # scans are thinned to it, which leaves some ten thousand points
 # From a guess beside the truth an alignment finds back over ten degrees and two metres.
 TURNS_RAD = np.radians(np.arange(-60.0, 61.0, 15.0))
-# What LEAST_LIKELIHOOD was found for; turned guesses take long.
-OPTIONS = MatcherOptions(coarse_levels=(), voxel_covariance="autoware", max_iterations=100)
-# Of right motions 2.8 to 3.4, of wrong ones 1.6 to 2.7 and rarely more (docs/design/ndt_node.md).
-LEAST_LIKELIHOOD = 2.75
+OPTIONS = MatcherOptions()  # what the matcher is given by default, levels and all
+# Of right motions 2.68 and more, of wrong ones 2.54 and less (docs/design/ndt_node.md).
+LEAST_LIKELIHOOD = 2.6
 
 
 def of_reference(drive: Recording) -> Iterator[Matrix]:

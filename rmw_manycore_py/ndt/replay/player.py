@@ -11,15 +11,16 @@ import numpy as np
 import rclpy
 from builtin_interfaces.msg import Time
 from diagnostic_msgs.msg import DiagnosticArray
-from geometry_msgs.msg import PoseStamped
+from geometry_msgs.msg import PoseStamped, PoseWithCovarianceStamped
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from sensor_msgs.msg import PointCloud2
 
+from rmw_manycore_py.cpu_time import tree_cpu_s
 from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.ndt.geometry.arrays import Points
 from rmw_manycore_py.ndt.geometry.thinning import voxel_centroids
-from rmw_manycore_py.ndt.messages.conversions import matrix_of, nanoseconds
+from rmw_manycore_py.ndt.messages.conversions import covariance_of, matrix_of, nanoseconds
 from rmw_manycore_py.ndt.messages.point_cloud import encode
 from rmw_manycore_py.ndt.recordings.recording import Recording
 from rmw_manycore_py.ndt.replay.guess_source import MAP_FRAME, GuessSource, stamp_of
@@ -36,13 +37,23 @@ FOLLOW_UP_S = 1.0  # so long at least answers are waited for after the last scan
 class Player(Node):
     """Publishes map and scans as a laptop would, and measures what comes back."""
 
-    def __init__(self, drive: Recording, source: GuessSource, tally: Tally, voxel_m: float) -> None:
+    def __init__(
+        self,
+        drive: Recording,
+        source: GuessSource,
+        tally: Tally,
+        voxel_m: float,
+        pid: int | None = None,
+    ) -> None:
+        """Connect; the CPU time is that of a process, or what the matcher's diagnostics say."""
         super().__init__("ndt_replay")
         self._drive = drive
         self._source = source
         self._tally = tally
         self._voxel_m = voxel_m
-        self._waiting: dict[int, Played] = {}  # by stamp, ns
+        self._pid = pid
+        self._waiting: dict[int, Played] = {}  # by stamp, ns; of them there is no pose yet
+        self._played: dict[int, Played] = {}  # by stamp, ns
         self._warm_stamps: set[int] = set()
         self._is_warm = False
         self._times_s = drive.times_s()  # when each scan is played, after the first
@@ -51,6 +62,9 @@ class Player(Node):
         self._source.advertise(self)
         self._scans = self.create_publisher(PointCloud2, "points_raw", 5)
         self.create_subscription(PoseStamped, "ndt_pose", self._on_pose, 100)
+        self.create_subscription(
+            PoseWithCovarianceStamped, "ndt_pose_with_covariance", self._on_covariance, 100
+        )
         self.create_subscription(DiagnosticArray, "/diagnostics", self._on_diagnostics, 100)
 
     def publish_map(self, points: Points) -> None:
@@ -84,25 +98,42 @@ class Player(Node):
             stamp_ns = time.time_ns()
             guess = self._source.send(index, float(time_s), stamp_ns)
             self._spin_until(time.monotonic() + GUESS_LEAD_S)
-            row = Played(index, self._drive.poses[index], guess, time.monotonic())
+            recorded_s = self._drive.stamp_s(index)
+            row = Played(index, recorded_s, self._drive.poses[index], guess, time.monotonic())
             self._tally.rows.append(row)
-            self._waiting[stamp_ns] = row
+            self._waiting[stamp_ns] = self._played[stamp_ns] = row
+            self._note_cpu_time()
             self._send(stamp_ns, scan)
             report(row)
             if waits:
                 self._wait_for([stamp_ns])
         self._wait_for(list(self._waiting))
+        self._wait_for_reports()
+        self._note_cpu_time()
 
     def _wait_for(self, stamps_ns: Collection[int]) -> None:
         """Handle what arrives until these scans are answered, or late."""
         end = time.monotonic() + max(FOLLOW_UP_S, self._tally.deadline_ms / 1e3)
         self._spin_until(end, lambda: self._waiting.keys().isdisjoint(stamps_ns))
 
+    def _wait_for_reports(self) -> None:
+        """Handle diagnostics that come after their pose; where none come, wait for none."""
+        rows = self._tally.rows
+        if any(row.report for row in rows):
+            end = time.monotonic() + FOLLOW_UP_S
+            self._spin_until(end, lambda: all(row.report for row in rows))
+
+    def _note_cpu_time(self) -> None:
+        if self._pid is not None:
+            self._tally.cpu_s.append((time.monotonic(), tree_cpu_s(self._pid)))
+
     def _scan(self, index: int) -> Any:
-        points = self._drive.scan(index)
+        points, times_s = self._drive.scan(index), self._drive.point_times_s(index)
+        columns = points if times_s is None else np.column_stack([points, times_s])
         if self._voxel_m > 0.0:
-            points = voxel_centroids(points, (self._voxel_m,) * 3)
-        return encode(points, Time(), BASE_FRAME)
+            columns = voxel_centroids(columns, (self._voxel_m,) * 3)
+        more = {} if times_s is None else {"time": columns[:, 3]}
+        return encode(columns[:, :3], Time(), BASE_FRAME, more)
 
     def _send(self, stamp_ns: int, scan: Any) -> None:
         scan.header.stamp = stamp_of(stamp_ns)
@@ -120,13 +151,18 @@ class Player(Node):
         time_s = float(self._times_s[row.index])
         self._source.result(row.index, time_s, row.result)
 
+    def _on_covariance(self, message: Any) -> None:
+        row = self._played.get(nanoseconds(message.header.stamp))
+        if row is not None:
+            row.covariance = covariance_of(message)
+
     def _on_diagnostics(self, message: Any) -> None:
-        row = self._waiting.get(nanoseconds(message.header.stamp))
+        row = self._played.get(nanoseconds(message.header.stamp))
         for status in message.status:
-            if row is not None and status.name.endswith("scan_matching_status"):
-                row.complaint = status.message
             values = {pair.key: pair.value for pair in status.values}
-            if "cpu_time_s" in values and self._tally.rows:
+            if row is not None and status.name.endswith("scan_matching_status"):
+                row.reason, row.report = status.message, values
+            if self._pid is None and "cpu_time_s" in values and self._tally.rows:
                 self._tally.cpu_s.append((time.monotonic(), float(values["cpu_time_s"])))
 
     def _spin_until(self, deadline: float, done: Callable[[], bool] = lambda: False) -> None:

@@ -1,46 +1,110 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""A picture of a replay: map and path from above, error and latency over the scans."""
+"""A picture of a replay: map and path, and along the path errors, scores and latencies.
+
+Scans that got no pose are red: crosses on the map, stripes along the path.
+"""
 
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from rmw_manycore_py.figures import load_figure
-from rmw_manycore_py.ndt.geometry.arrays import Points
+from rmw_manycore_py.ndt.geometry.arrays import Matrix, Points
 from rmw_manycore_py.ndt.replay.tally import Tally
 
 MAP_POINTS = 30_000
+SCORES = {
+    "nearest_voxel_transformation_likelihood": ("nearest voxels", "tab:blue"),
+    "transform_probability": ("transform probability", "tab:green"),
+}
+GAP = "tab:red"
 
 
 def plot(tally: Tally, map_points: Points | None, path: Path) -> None:
     """Write the picture; the suffix of the path chooses its format."""
-    figure = load_figure()(figsize=(15, 5), layout="constrained")
-    axes = figure.subplots(1, 3)
+    figure = load_figure()(figsize=(15, 9), layout="constrained")
+    grid = figure.add_gridspec(3, 2, width_ratios=(1, 1.2))
+    _draw_map(figure, figure.add_subplot(grid[:, 0]), tally, map_points)
+    along_m = distances_m(tally)
+    panels = [figure.add_subplot(grid[row, 1]) for row in range(3)]
+    _draw_errors(panels[0], tally, along_m)
+    _draw_scores(panels[1], tally, along_m)
+    _draw_latencies(panels[2], tally, along_m)
+    for panel in panels:
+        _draw_gaps(panel, tally, along_m)
+    panels[-1].set_xlabel("along the path [m]")
+    figure.savefig(path, dpi=120)
+
+
+def distances_m(tally: Tally) -> Matrix:
+    """Return for each scan the way (S,) that the reference has come since the first one."""
+    places = np.array([row.reference[:3, 3] for row in tally.rows]).reshape(-1, 3)
+    steps = np.linalg.norm(np.diff(places, axis=0), axis=1)
+    return np.concatenate([np.zeros(min(len(places), 1)), np.cumsum(steps)])
+
+
+def _draw_map(figure: Any, axes: Any, tally: Tally, map_points: Points | None) -> None:
     if map_points is not None:
         shown = map_points[:: max(1, len(map_points) // MAP_POINTS)]
-        axes[0].scatter(shown[:, 0], shown[:, 1], s=0.2, c="0.75", rasterized=True)
+        axes.scatter(shown[:, 0], shown[:, 1], s=0.2, c="0.75", rasterized=True)
     reference = np.array([row.reference[:2, 3] for row in tally.rows])
-    answered = tally.answered()
-    found = np.array([row.result[:2, 3] for row in answered if row.result is not None])
-    axes[0].plot(*reference.T, color="black", linewidth=1, label="reference")
-    if len(found):
-        axes[0].plot(*found.T, "--", color="tab:red", linewidth=1, label="ndt_pose")
-    axes[0].set(xlabel="x [m]", ylabel="y [m]", title="map and path", aspect="equal")
-    axes[0].legend()
+    axes.plot(*reference.T, color="black", linewidth=1, label="reference")
+    found = [
+        (*row.result[:2, 3], row.error[0])
+        for row in tally.rows
+        if row.result is not None and row.error
+    ]
+    if found:
+        x, y, error_m = np.array(found).T
+        points = axes.scatter(x, y, c=error_m, s=8, cmap="viridis", label="ndt_pose", zorder=3)
+        figure.colorbar(points, ax=axes, label="error [m]", shrink=0.6)
+    lost = np.array([row.reference[:2, 3] for row in tally.rows if row.result is None])
+    if len(lost):
+        axes.plot(*lost.T, "x", color=GAP, label="no pose")
+    axes.set(xlabel="x [m]", ylabel="y [m]", title="map and path", aspect="equal")
+    axes.legend()
 
-    indices = [row.index for row in answered]
-    errors = np.array([row.error for row in answered]).reshape(-1, 2)
-    guesses = [(row.index, row.guess_error[0]) for row in tally.rows if row.guess_error]
-    if guesses:
-        axes[1].plot(*np.array(guesses).T, color="0.7", label="guess [m]")
-    axes[1].plot(indices, errors[:, 0], label="result [m]")
-    axes[1].plot(indices, errors[:, 1], label="result [degrees]")
-    axes[1].set(xlabel="scan", yscale="log", title="error")
-    axes[1].legend()
 
-    axes[2].plot(indices, [row.latency_ms for row in answered])
-    axes[2].axhline(tally.deadline_ms, color="tab:red", linewidth=1)
-    axes[2].set(xlabel="scan", ylabel="ms", title="end to end", ylim=0)
-    figure.savefig(path, dpi=120)
+def _draw_errors(axes: Any, tally: Tally, along_m: Matrix) -> None:
+    guesses = [error[0] if (error := row.guess_error) else np.nan for row in tally.rows]
+    errors = np.array([row.error or (np.nan, np.nan) for row in tally.rows]).reshape(-1, 2)
+    if np.isfinite(guesses).any():
+        axes.plot(along_m, guesses, color="0.7", label="guess [m]")
+    axes.plot(along_m, errors[:, 0], label="result [m]")
+    axes.plot(along_m, errors[:, 1], label="result [degrees]")
+    axes.set(title="error", yscale="log")
+    axes.legend(loc="upper right")
+
+
+def _draw_scores(axes: Any, tally: Tally, along_m: Matrix) -> None:
+    for name, (label, color) in SCORES.items():
+        axes.plot(along_m, _reported(tally, name), color=color, label=label)
+        before = _reported(tally, f"{name}_before")
+        axes.plot(along_m, before, ":", color=color, linewidth=1, label=f"{label}, before")
+    axes.set(title="scores")
+    axes.legend(loc="upper right")
+
+
+def _draw_latencies(axes: Any, tally: Tally, along_m: Matrix) -> None:
+    latencies = [np.nan if row.latency_ms is None else row.latency_ms for row in tally.rows]
+    axes.plot(along_m, latencies, label="end to end")
+    axes.plot(along_m, _reported(tally, "execution_time"), label="in the matcher")
+    axes.axhline(tally.deadline_ms, color="0.5", linewidth=1, label="deadline")
+    axes.set(title="latency", ylabel="ms", ylim=(0, None))
+    axes.legend(loc="upper right")
+
+
+def _draw_gaps(axes: Any, tally: Tally, along_m: Matrix) -> None:
+    """Mark the scans without a pose from the scan before to the one after."""
+    last = len(along_m) - 1
+    for index, row in enumerate(tally.rows):
+        if row.result is None:
+            start, end = along_m[max(index - 1, 0)], along_m[min(index + 1, last)]
+            axes.axvspan(start, end, color=GAP, alpha=0.3, linewidth=0)
+
+
+def _reported(tally: Tally, name: str) -> Matrix:
+    return np.array([float(row.report.get(name, "nan")) for row in tally.rows])

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The line that tells how a replay is going."""
+"""How a replay is going: a bar on a terminal, else a line now and then."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
 
 from rmw_manycore_py.ndt.replay.tally import Played, Tally
+from rmw_manycore_py.progress import ProgressLines
 
 
 class ReplayProgress:
@@ -14,12 +15,16 @@ class ReplayProgress:
 
     def __init__(self, tally: Tally, scans: int) -> None:
         self._tally = tally
+        console = Console(stderr=True)
+        self._lines = None if console.is_terminal else ProgressLines("scan", scans, console)
+        self._played = 0
         self._progress = Progress(
             TextColumn("scan"),
             MofNCompleteColumn(),
             BarColumn(),
             TextColumn("{task.description}"),
-            console=Console(stderr=True),
+            console=console,
+            disable=not console.is_terminal,
         )
         self._task = self._progress.add_task("", total=scans)
 
@@ -32,11 +37,16 @@ class ReplayProgress:
 
     def played(self, row: Played) -> None:
         """Show the scan as played."""
+        self._played += 1
+        text = self._text(row)
+        self._progress.update(self._task, advance=1, description=text)
+        if self._lines is not None:
+            self._lines.done(self._played, text)
+
+    def _text(self, row: Played) -> str:
         answered = [one for one in self._tally.rows[-5:] if one.error is not None]
-        text = ""
-        if answered and (error := answered[-1].error) is not None:
-            latency_ms = answered[-1].latency_ms or 0.0
-            text = f"error {error[0]:.3f} m {error[1]:.2f} deg, {latency_ms:.1f} ms"
-        waiting = row.result is None
-        missed = f"{self._tally.late()} late, {self._tally.lost() - waiting} lost"
-        self._progress.update(self._task, advance=1, description=f"{text}, {missed}")
+        missed = f"{self._tally.late()} late, {self._tally.lost() - (row.result is None)} lost"
+        if not answered or (error := answered[-1].error) is None:
+            return missed
+        latency_ms = answered[-1].latency_ms or 0.0
+        return f"error {error[0]:.3f} m {error[1]:.2f} deg, {latency_ms:.1f} ms, {missed}"

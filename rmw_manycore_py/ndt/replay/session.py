@@ -24,10 +24,14 @@ def run(
     rate_hz: float | None,
     waits: bool,
     timeout_s: float,
+    pid: int | None,
 ) -> None:
-    """Publish the map if there is one, wait for the matcher, play; all goes into the tally."""
+    """Publish the map if there is one, wait for the matcher, play; all goes into the tally.
+
+    :param pid: the process whose CPU time is wanted, None for the matcher's own word.
+    """
     rclpy.init()
-    player = Player(drive, source, tally, voxel_m)
+    player = Player(drive, source, tally, voxel_m, pid)
     try:
         if map_points is not None:
             player.publish_map(map_points)

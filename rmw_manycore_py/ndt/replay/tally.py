@@ -3,9 +3,7 @@
 
 from __future__ import annotations
 
-import csv
 from dataclasses import asdict, dataclass, field
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -18,15 +16,25 @@ DIVERGED_M, DIVERGED_DEG = 1.0, 10.0
 
 @dataclass
 class Played:
-    """A scan; errors are against the reference pose, latency from before sending to the pose."""
+    """A scan; errors are against the reference pose, latency from before sending to the pose.
+
+    :param stamp_s: the recording's.
+    :param guess: None where the stack on the platform makes it.
+    :param covariance: (6, 6) in the map frame.
+    :param reason: what the matcher's diagnostics say of the scan.
+    :param report: the values of its diagnostics.
+    """
 
     index: int
+    stamp_s: float
     reference: Matrix
-    guess: Matrix | None  # None: the stack on the platform makes it
+    guess: Matrix | None
     sent_s: float
     latency_ms: float | None = None
     result: Matrix | None = None
-    complaint: str = ""  # what the matcher's diagnostics say of it
+    covariance: Matrix | None = None
+    reason: str = ""
+    report: dict[str, str] = field(default_factory=dict)
 
     @property
     def guess_error(self) -> tuple[float, float] | None:
@@ -89,7 +97,13 @@ class Tally:
 
     def complaint(self) -> str:
         """Return what the matcher says of the first lost scan, "" for nothing."""
-        return next((row.complaint for row in self.rows if row.result is None), "")
+        return next((row.reason for row in self.rows if row.result is None), "")
+
+    def state(self, row: Played) -> str:
+        """Return what became of a scan, in a word."""
+        if row.result is None:
+            return "lost"
+        return "late" if (row.latency_ms or 0.0) > self.deadline_ms else "answered"
 
     def summary(self) -> Summary:
         """Return the figures."""
@@ -118,17 +132,6 @@ class Tally:
             latency_ms_max=_figure(latencies, 100),
             node_cpu_percent=self._cpu_percent(),
         )
-
-    def write_csv(self, path: Path) -> None:
-        """Write one line per scan."""
-        with path.open("w", newline="") as file:
-            writer = csv.writer(file)
-            writer.writerow(
-                ["scan", "guess_error_m", "guess_error_deg", "error_m", "error_deg", "latency_ms"]
-            )
-            for row in self.rows:
-                errors = [*(row.guess_error or ("", "")), *(row.error or ("", ""))]
-                writer.writerow([row.index, *errors, row.latency_ms])
 
     def _cpu_percent(self) -> float | None:
         """Return CPU time over wall time between the node's first and last report."""

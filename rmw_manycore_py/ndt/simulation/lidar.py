@@ -14,7 +14,10 @@ from rmw_manycore_py.ndt.simulation.street import Street
 
 @dataclass(frozen=True)
 class Lidar:
-    """What the sensor is like; the defaults are those of a common one with 32 rings."""
+    """What the sensor is like; the defaults are those of a common one with 32 rings.
+
+    :param hidden_share: of the azimuths, behind the sensor: what the vehicle itself hides.
+    """
 
     rings: int = 32
     azimuths: int = 600
@@ -22,11 +25,17 @@ class Lidar:
     highest_deg: float = 15.0
     range_m: float = 60.0
     noise_m: float = 0.02
+    hidden_share: float = 0.0
 
-    def directions(self) -> Matrix:
-        """Return unit vectors (rings * azimuths, 3) in the sensor frame."""
+    def azimuth_rad(self) -> Matrix:
+        """Return the azimuths (n,) that are seen, in the order in which they are measured."""
+        azimuth: Matrix = np.linspace(-np.pi, np.pi, self.azimuths, endpoint=False)
+        return azimuth[np.abs(azimuth) <= np.pi * (1.0 - self.hidden_share)]
+
+    def directions(self, azimuth: Matrix | None = None) -> Matrix:
+        """Return unit vectors (rings * n, 3) in the sensor frame, of all azimuths or some (n,)."""
         elevation = np.radians(np.linspace(self.lowest_deg, self.highest_deg, self.rings))
-        azimuth = np.linspace(-np.pi, np.pi, self.azimuths, endpoint=False)
+        azimuth = self.azimuth_rad() if azimuth is None else azimuth
         e, a = (grid.ravel() for grid in np.meshgrid(elevation, azimuth, indexing="ij"))
         return np.stack([np.cos(e) * np.cos(a), np.cos(e) * np.sin(a), np.sin(e)], axis=1)
 
@@ -35,9 +44,13 @@ class Lidar:
         street: Street,
         T_map_sensor: Matrix,
         generator: np.random.Generator,
+        azimuth: Matrix | None = None,
     ) -> Points:
-        """Return what the sensor sees from a pose: points (n, 3) in the sensor frame."""
-        directions = self.directions()
+        """Return what the sensor sees from a pose: points (n, 3) in the sensor frame.
+
+        :param azimuth: the azimuths (a,) to look at, None for all.
+        """
+        directions = self.directions(azimuth)
         rays = directions @ T_map_sensor[:3, :3].T
         range_m = _nearest_hits(street, T_map_sensor[:3, 3], rays, self.range_m)
         hit = range_m < self.range_m

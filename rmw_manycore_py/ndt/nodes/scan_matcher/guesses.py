@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections import deque
 from statistics import median
 
+from rmw_manycore_py.ndt.geometry import poses
 from rmw_manycore_py.ndt.geometry.arrays import Matrix
 from rmw_manycore_py.ndt.nodes.scan_matcher.pose_buffer import (
     Interpolated,
@@ -16,6 +17,8 @@ from rmw_manycore_py.ndt.nodes.scan_matcher.pose_buffer import (
 MAX_AGE_PERIODS = 1.5  # of the newest guess: one that belongs to the scan before, with some delay
 FIRST_PERIOD_S = 0.1  # of scans, until two have come
 PERIODS = 9  # whose median is the period
+MOTION_S = 0.4  # that the motion of a scan is seen over, where there are guesses so old
+MIN_MOTION_S = 0.05  # half a period of most LiDARs
 KEPT_S = 1.0  # guesses before a scan that still tell the motion
 
 
@@ -52,6 +55,18 @@ class Guesses:
             self._periods_s.append(stamp_s - self._last_scan_s)
             self._period_s = median(self._periods_s)
         self._last_scan_s = stamp_s
+
+    def motion_until(self, stamp_s: float, T: Matrix) -> tuple[Matrix, float] | None:
+        """Return the motion (4, 4) up to a pose at a time, and how long it took; None if unknown.
+
+        Where guesses follow results, a result that corrects its guess makes the next guess jump,
+        and that jump would count as motion: over several periods it counts little.
+        """
+        before = self._buffer.newest_before(stamp_s - MOTION_S)
+        before = before or self._buffer.oldest()
+        if before is None or not MIN_MOTION_S <= stamp_s - before.stamp_s <= KEPT_S:
+            return None
+        return poses.inverse(before.T) @ T, stamp_s - before.stamp_s
 
     def at(self, stamp_s: float) -> Interpolated:
         """Return the guess at a scan's time; raises NoPoseError."""

@@ -1,5 +1,8 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Where `ndt_scan_matcher` has its map from: a topic, or files of its own around the vehicle."""
+"""Where `ndt_scan_matcher` has its map from.
+
+Files around the vehicle (`map_path`); else a map loader, once one has answered; else a topic.
+"""
 
 from __future__ import annotations
 
@@ -7,6 +10,9 @@ from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 from typing import Any
+
+import numpy as np
+from rclpy.node import Node
 
 from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.ndt.geometry.arrays import Points
@@ -17,6 +23,7 @@ from rmw_manycore_py.ndt.matching.options import MatcherOptions
 from rmw_manycore_py.ndt.matching.voxel_map import VoxelMap
 from rmw_manycore_py.ndt.messages.point_cloud import decode
 from rmw_manycore_py.ndt.nodes.scan_matcher.diagnostics import Diagnostics
+from rmw_manycore_py.ndt.nodes.scan_matcher.map_loader_client import MapLoaderClient
 from rmw_manycore_py.ndt.nodes.scan_matcher.parameters import MatcherParameters, OwnParameters
 
 
@@ -25,19 +32,30 @@ class MapSupply:
 
     def __init__(
         self,
+        node: Node,
         options: MatcherOptions,
         parameters: MatcherParameters,
         own: OwnParameters,
         admit: Callable[[VoxelMap], None],
+        built: Callable[[], None],
     ) -> None:
-        """Prepare for maps; `admit` takes one over, or raises a ManycoreError that says why not."""
+        """Prepare for maps.
+
+        :param admit: takes a map over, or raises a ManycoreError that says why not.
+        :param built: called in any thread when there may be a map to take.
+        """
         self._p = parameters
         self._admit = admit
-        self._builder = MapBuilder(options)
+        self._builder = MapBuilder(options, built)
         self._area: MapArea | None = None
+        self._loader: MapLoaderClient | None = None
         if own.map_path:
             tiles = open_map(Path(own.map_path).expanduser(), own.map_leaf_m)
             self._area = MapArea(tiles, parameters.map_radius_m, parameters.update_distance_m)
+        else:
+            self._loader = MapLoaderClient(
+                node, parameters, self._builder.submit, lambda: self._builder.is_idle
+            )
         self._vehicle: tuple[float, float] | None = None
         self._problem = ""
         self._warning = ""
@@ -45,8 +63,8 @@ class MapSupply:
         self.is_set = False
 
     def on_message(self, message: Any) -> None:
-        """Take a map from the topic; the newest one holds."""
-        if self._area is None:
+        """Take a map from the topic; the newest one holds, until a map loader has answered."""
+        if self._loader is not None and not self._loader.has_answered:
             self._builder.submit(partial(self._points_of, message))
 
     def _points_of(self, message: Any) -> Points:
@@ -67,9 +85,33 @@ class MapSupply:
         if area.distance_m(x, y) > self._p.update_distance_m:
             self._builder.submit(partial(area.update, x, y))
 
-    def take(self, wait: bool = False) -> tuple[VoxelMap, Points] | None:
+    def look_after_loader(self) -> None:
+        """Ask the map loader where the vehicle has moved far enough. The executor's thread."""
+        if self._loader is None:
+            return
+        self._loader.forget_unanswered()
+        place = self._vehicle
+        if place is not None and self._centre_distance_m(*place) > self._p.update_distance_m:
+            self._loader.ask(*place)
+
+    async def update_around(self, x: float, y: float) -> None:
+        """Have the map around a place brought, and wait for what a map loader answers.
+
+        The executor's thread. What is to be built then is built when `is_settled` holds.
+        """
+        self.vehicle_is_at(x, y)
+        call = self._loader.ask(x, y) if self._loader is not None else None
+        if call is not None:
+            await call
+
+    @property
+    def is_settled(self) -> bool:
+        """Tell whether no map is being built or waits to be taken."""
+        return self._builder.is_idle
+
+    def take(self) -> tuple[VoxelMap, Points] | None:
         """Return a map that was built since the last call, and its points."""
-        built = self._builder.take(wait)
+        built = self._builder.take()
         if built is None:
             return None
         if built.voxel_map is None or built.points is None:
@@ -93,12 +135,26 @@ class MapSupply:
         self._problem = problem
         if self._area is not None:
             self._area.forget_tiles()
+        if self._loader is not None:
+            self._loader.forget_cells()
 
     def is_leaving(self, x: float, y: float) -> bool:
         """Tell whether the LiDAR sees beyond what is loaded."""
-        if self._area is None:
+        if not self._is_partial:
             return False
-        return self._area.distance_m(x, y) + self._p.lidar_radius_m > self._p.map_radius_m
+        return self._centre_distance_m(x, y) + self._p.lidar_radius_m > self._p.map_radius_m
+
+    @property
+    def _is_partial(self) -> bool:
+        """Tell whether the map is only what is around the vehicle."""
+        return self._area is not None or (self._loader is not None and self._loader.has_answered)
+
+    def _centre_distance_m(self, x: float, y: float) -> float:
+        """Return how far a place is from where the map was loaded; infinity before that."""
+        if self._area is not None:
+            return self._area.distance_m(x, y)
+        centre = self._loader.centre if self._loader is not None else None
+        return float("inf") if centre is None else float(np.hypot(x - centre[0], y - centre[1]))
 
     def what_is_missing(self) -> str:
         """Say why there is no map."""
@@ -106,7 +162,10 @@ class MapSupply:
             return self._problem
         if self._area is not None:
             return "it is being loaded, or ekf_pose_with_covariance says nothing of the place"
-        return "publish pointcloud_map or set the parameter map_path"
+        return (
+            "run a map loader that serves pcd_loader_service, publish pointcloud_map, or set the "
+            "parameter map_path"
+        )
 
     def report(self, diagnostics: Diagnostics) -> None:
         """Add the state of the map to a report."""
@@ -117,11 +176,17 @@ class MapSupply:
             diagnostics.error(f"the map cannot be used: {self._problem}")
         if self._warning:
             diagnostics.warn(f"the map is coarse: {self._warning}")
-        if self._area is not None and self._vehicle is not None:
-            distance_m = self._area.distance_m(*self._vehicle)
+        self.report_loader(diagnostics)
+        if self._is_partial and self._vehicle is not None:
+            distance_m = self._centre_distance_m(*self._vehicle)
             diagnostics.value("distance_last_update_position_to_current_position", distance_m)
             if self.is_set and self.is_leaving(*self._vehicle):
                 diagnostics.error("Dynamic map loading is not keeping up.")
+
+    def report_loader(self, diagnostics: Diagnostics) -> None:
+        """Add what became of the last call of the map loader."""
+        if self._loader is not None:
+            self._loader.report(diagnostics)
 
     def close(self) -> None:
         """End the building of maps."""

@@ -6,16 +6,18 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+import numpy as np
 from rclpy.node import Node
 from std_msgs.msg import ColorRGBA
 from visualization_msgs.msg import Marker, MarkerArray
 
-from rmw_manycore_py.ndt.geometry.arrays import Matrix
+from rmw_manycore_py.ndt.geometry.arrays import Matrix, Poses
 from rmw_manycore_py.ndt.matching.initial_pose import Particle
 from rmw_manycore_py.ndt.messages.conversions import pose_of
+from rmw_manycore_py.ndt.nodes.scan_matcher.colors import colors
 
 ARROW_M = (0.5, 0.1, 0.1)  # length, width, height
-GUESS, RESULT = ColorRGBA(r=0.5, g=0.5, b=0.5, a=1.0), ColorRGBA(r=0.0, g=0.8, b=0.2, a=1.0)
+STEPS_TO_RED = 15.0  # as in Autoware
 
 
 class PoseMarkers:
@@ -26,9 +28,14 @@ class PoseMarkers:
         self._alignment = node.create_publisher(MarkerArray, "ndt_marker", 10)
         self._particles = node.create_publisher(MarkerArray, "monte_carlo_initial_pose_marker", 10)
 
-    def alignment(self, stamp: Any, T_guess: Matrix, T_result: Matrix) -> None:
-        """Show guess and result of a scan."""
-        self._publish(self._alignment, stamp, [(T_guess, GUESS), (T_result, RESULT)])
+    def alignment(self, stamp: Any, path: Poses) -> None:
+        """Show the guess of a scan and the pose after each step, the redder the later."""
+        shares = colors(np.arange(1, len(path) + 1) / STEPS_TO_RED)
+        arrows = [
+            (T, ColorRGBA(r=red, g=green, b=blue, a=1.0))
+            for T, (red, green, blue) in zip(path, shares, strict=True)
+        ]
+        self._publish(self._alignment, stamp, arrows)
 
     def particles(self, stamp: Any, tried: Sequence[Particle]) -> None:
         """Show all results of a search, the redder the worse."""
@@ -43,10 +50,12 @@ class PoseMarkers:
     def _publish(self, publisher: Any, stamp: Any, arrows: Sequence[tuple[Matrix, Any]]) -> None:
         if publisher.get_subscription_count() == 0:
             return
-        message = MarkerArray()
+        # What an alignment of more steps has left is removed.
+        markers = [Marker(action=Marker.DELETEALL)]
         for index, (T, color) in enumerate(arrows):
             marker = Marker(ns="pose", id=index, type=Marker.ARROW, pose=pose_of(T), color=color)
-            marker.header.stamp, marker.header.frame_id = stamp, self._map_frame
             marker.scale.x, marker.scale.y, marker.scale.z = ARROW_M
-            message.markers.append(marker)
-        publisher.publish(message)
+            markers.append(marker)
+        for marker in markers:
+            marker.header.stamp, marker.header.frame_id = stamp, self._map_frame
+        publisher.publish(MarkerArray(markers=markers))

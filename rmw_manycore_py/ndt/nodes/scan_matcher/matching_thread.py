@@ -6,17 +6,21 @@ from __future__ import annotations
 import threading
 import time
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from functools import partial
 from typing import Any
 
 from rmw_manycore_py.ndt.nodes.scan_matcher.scan_inbox import ScanInbox, WaitingScan
 
 Job = Callable[[], None]
+# Work that is done bit by bit: yields False where it has to wait for `wake`.
+Steps = Iterator[bool]
 
 
 class MatchingThread:
     """Matches scans and runs jobs, one at a time; sleeps while there is nothing to do.
+
+    Long work is done in steps: one after each scan, and on while neither scan nor job waits.
 
     :param inbox: where scans wait.
     :param match: called with each scan that is taken.
@@ -41,6 +45,9 @@ class MatchingThread:
         self._failed = failed
         self._changed = threading.Condition()
         self._jobs: deque[Job] = deque()
+        self._steps: deque[Steps] = deque()
+        self._may_step = True  # there is more to do than when the last step had to wait
+        self._steps_turn = False  # else scans that come without end would keep steps from it
         self._closing = False
         self._failure: BaseException | None = None
         self._thread = threading.Thread(target=self._run, name="matching")
@@ -52,9 +59,10 @@ class MatchingThread:
             self._inbox.put(message, stamp_s, time.monotonic())
             self._changed.notify()
 
-    def guesses_changed(self) -> None:
-        """Look again whether a waiting scan has its guess. Any thread."""
+    def wake(self) -> None:
+        """Look again: a guess that a scan waits for may be there, or a map. Any thread."""
         with self._changed:
+            self._may_step = True
             self._changed.notify()
 
     def post(self, job: Job) -> None:
@@ -63,17 +71,12 @@ class MatchingThread:
             self._jobs.append(job)
             self._changed.notify()
 
-    def run(self, job: Job) -> None:
-        """Run a job and wait for its end; the job must not raise. Any other thread."""
-        done = threading.Event()
-
-        def run_and_tell() -> None:
-            job()
-            done.set()
-
-        self.post(run_and_tell)
-        while not done.wait(1.0) and self._thread.is_alive():
-            pass
+    def post_steps(self, steps: Steps) -> None:
+        """Run steps one by one, between scans and jobs; they must not raise. Any thread."""
+        with self._changed:
+            self._steps.append(steps)
+            self._may_step = True
+            self._changed.notify()
 
     def close(self) -> None:
         """End the thread after what it is doing; raises what ended it before."""
@@ -104,10 +107,27 @@ class MatchingThread:
             while not self._closing:
                 if self._jobs:
                     return self._inbox.take_skipped(), self._jobs.popleft()
+                can_step = bool(self._steps) and self._may_step
+                if can_step and self._steps_turn:
+                    return [], self._step
                 now_s = time.monotonic()
                 scan = self._inbox.take(now_s)
                 if scan is not None:
+                    self._steps_turn = True
                     return self._inbox.take_skipped(), partial(self._match, scan.message)
+                if can_step:
+                    return [], self._step
                 due_s = self._inbox.due_s()
                 self._changed.wait(None if due_s is None else max(due_s - now_s, 0.0))
             return [], None
+
+    def _step(self) -> None:
+        """Do a step of the oldest steps; where that has to wait, sleep until the next wake()."""
+        with self._changed:
+            steps = self._steps[0]
+            self._may_step = self._steps_turn = False
+        goes_on = next(steps, None)
+        with self._changed:
+            if goes_on is None:
+                self._steps.popleft()
+            self._may_step = self._may_step or goes_on is not False

@@ -3,12 +3,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
 from autoware_internal_debug_msgs.msg import Float32Stamped, Int32Stamped
 from geometry_msgs.msg import PoseArray, PoseStamped, PoseWithCovarianceStamped
+from numpy.typing import NDArray
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from sensor_msgs.msg import PointCloud2
@@ -24,6 +25,7 @@ from rmw_manycore_py.ndt.messages.conversions import (
     transform_stamped,
 )
 from rmw_manycore_py.ndt.messages.point_cloud import encode
+from rmw_manycore_py.ndt.nodes.scan_matcher.colors import packed_colors
 from rmw_manycore_py.ndt.nodes.scan_matcher.pose_buffer import Interpolated
 
 FLOATS = (
@@ -38,6 +40,7 @@ FLOATS = (
 )
 POSE_ARRAYS = ("multi_ndt_pose", "multi_initial_pose")
 CLOUDS = ("points_aligned", "points_aligned_no_ground")
+WORST_SCORE, BEST_SCORE = 1.0, 3.5  # of a point: blue and red, as in Autoware
 
 
 class MatcherOutputs:
@@ -59,6 +62,7 @@ class MatcherOutputs:
         self._floats = {name: node.create_publisher(Float32Stamped, name, 10) for name in FLOATS}
         self._pose_arrays = {n: node.create_publisher(PoseArray, n, 10) for n in POSE_ARRAYS}
         self._clouds = {name: node.create_publisher(PointCloud2, name, 10) for name in CLOUDS}
+        self._scored = node.create_publisher(PointCloud2, "voxel_score_points", 10)
         kept = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
         self._map = node.create_publisher(PointCloud2, "debug/loaded_pointcloud_map", kept)
 
@@ -103,6 +107,23 @@ class MatcherOutputs:
         if self._clouds[name].get_subscription_count() > 0:
             points = poses.transform(T_map_base, points_base.astype(np.float64))
             self._clouds[name].publish(encode(points, stamp, self._map_frame))
+
+    def scored_cloud(
+        self,
+        stamp: Any,
+        points_base: Points,
+        T_map_base: Matrix,
+        scores_of: Callable[[Points, Matrix], NDArray[np.float32]],
+    ) -> None:
+        """Publish points that see a voxel, coloured by their scores, if anybody listens."""
+        if self._scored.get_subscription_count() == 0:
+            return
+        scores = scores_of(points_base, T_map_base)
+        seen = np.isfinite(scores)
+        points = poses.transform(T_map_base, points_base[seen].astype(np.float64))
+        share = (scores[seen] - WORST_SCORE) / (BEST_SCORE - WORST_SCORE)
+        rgb = packed_colors(share)
+        self._scored.publish(encode(points, stamp, self._map_frame, {"rgb": rgb}))
 
     def _several(self, name: str, stamp: Any, several: Sequence[Matrix]) -> None:
         """Publish one of POSE_ARRAYS, if there are poses and anybody listens."""

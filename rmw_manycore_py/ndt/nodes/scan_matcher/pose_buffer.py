@@ -74,6 +74,16 @@ class PoseBuffer:
         with self._lock:
             return bool(self._poses) and self._poses[-1].stamp_s >= stamp_s
 
+    def newest_before(self, stamp_s: float) -> StampedPose | None:
+        """Return the newest pose that is not after a time, None without any."""
+        with self._lock:
+            return next((p for p in reversed(self._poses) if p.stamp_s <= stamp_s), None)
+
+    def oldest(self) -> StampedPose | None:
+        """Return the oldest pose there is."""
+        with self._lock:
+            return self._poses[0] if self._poses else None
+
     def newest_at(self, stamp_s: float) -> Interpolated | None:
         """Return the pose at a time as Autoware's node does: after the newest one, it holds.
 

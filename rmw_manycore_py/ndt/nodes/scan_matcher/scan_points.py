@@ -3,18 +3,31 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from rmw_manycore_py.ndt.geometry import poses
-from rmw_manycore_py.ndt.geometry.arrays import Points
+from rmw_manycore_py.ndt.geometry.arrays import Matrix, Points
 from rmw_manycore_py.ndt.messages.conversions import seconds
 from rmw_manycore_py.ndt.messages.point_cloud import CloudError, decode
+from rmw_manycore_py.ndt.messages.point_times import FIELDS, decode_timed, time_field
 from rmw_manycore_py.ndt.nodes.scan_matcher.diagnostics import Diagnostics
 from rmw_manycore_py.ndt.nodes.scan_matcher.frame_tree import FrameError, FrameTree
 from rmw_manycore_py.ndt.nodes.scan_matcher.parameters import MatcherParameters, OwnParameters
 from rmw_manycore_py.ndt.nodes.scan_matcher.rejected import Rejected
+
+
+@dataclass(frozen=True)
+class Scan:
+    """The points (N, 3) of a scan in the base frame.
+
+    :param times_s: (N) after the scan's stamp, None where they are not wanted or not there.
+    """
+
+    points: Points
+    times_s: Matrix | None = None
 
 
 class ScanPoints:
@@ -27,21 +40,23 @@ class ScanPoints:
         self._own = own
         self._frames = frames
 
-    def of(self, message: Any, now_s: float, report: Diagnostics) -> Points:
-        """Return the points (N, 3) of a scan in the base frame.
+    def of(self, message: Any, now_s: float, report: Diagnostics) -> Scan:
+        """Return a scan in the base frame, with times where it is to be deskewed.
 
         :param now_s: the node's clock.
         :raises Rejected: when the scan cannot be used.
         """
         report.value("sensor_points_size", message.width * message.height)
         try:
-            points = decode(message)
+            points, times_s = self._decoded(message, report)
         except CloudError as error:
             raise Rejected(str(error)) from error
         if len(points) == 0:
             raise Rejected("Sensor points is empty: it has no point that is finite")
         self._report_delay(now_s - seconds(message.header.stamp), report)
-        points = self._in_base(self._limited(points, report), message.header.frame_id, report)
+        step = self._step_to_limit(len(points), report)
+        times_s = None if times_s is None else times_s[::step]
+        points = self._in_base(points[::step], message.header.frame_id, report)
         farthest_m = float(np.sqrt(np.square(points, dtype=np.float64).sum(axis=1).max()))
         report.value("sensor_points_max_distance", round(farthest_m, 3))
         if farthest_m < self._p.required_distance_m:
@@ -49,7 +64,16 @@ class ScanPoints:
                 f"Max distance of sensor points = {farthest_m:.3f} m < "
                 f"{self._p.required_distance_m} m (sensor_points.required_distance)"
             )
-        return np.ascontiguousarray(points, np.float32)
+        return Scan(np.ascontiguousarray(points, np.float32), times_s)
+
+    def _decoded(self, message: Any, report: Diagnostics) -> tuple[Points, Matrix | None]:
+        if not self._own.deskew:
+            return decode(message), None
+        field = time_field(message)
+        if field is None:
+            report.warn(f"not deskewed: the cloud has none of the fields {', '.join(FIELDS)}")
+            return decode(message), None
+        return decode_timed(message, field)
 
     def _report_delay(self, delay_s: float, report: Diagnostics) -> None:
         report.value("sensor_points_delay_time_sec", round(delay_s, 4))
@@ -58,15 +82,16 @@ class ScanPoints:
         elif delay_s < -self._p.timeout_s:
             report.warn(f"sensor points are of a time {-delay_s:.2f} s ahead: check the clocks")
 
-    def _limited(self, points: Points, report: Diagnostics) -> Points:
-        if len(points) <= self._own.scan_limit:
-            return points
-        step = -(-len(points) // self._own.scan_limit)
+    def _step_to_limit(self, count: int, report: Diagnostics) -> int:
+        """Return n so that every nth of so many points is used."""
+        if count <= self._own.scan_limit:
+            return 1
+        step = -(-count // self._own.scan_limit)
         report.warn(
-            f"{len(points)} points are more than sensor_points.limit "
+            f"{count} points are more than sensor_points.limit "
             f"({self._own.scan_limit}): every {step}th is used; put a filter in front"
         )
-        return points[::step]
+        return step
 
     def _in_base(self, points: Points, frame: str, report: Diagnostics) -> Points:
         if frame == self._p.base_frame:

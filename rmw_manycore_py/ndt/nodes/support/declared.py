@@ -48,11 +48,12 @@ def parameter(name: str, default: Any, **limits: Any) -> Any:
     """Return the field of a parameter; the limits are those of Range, or `length` of a list.
 
     Numbers are finite, texts empty only where the default is; `whole` makes a list one of CPUs and
-    the like.
+    the like, `texts` one of texts, for which a text alone may stand.
     """
     length, whole = limits.pop("length", None), limits.pop("whole", False)
+    texts = limits.pop("texts", False)
     allowed = Range(**limits) if limits else None
-    metadata = {"name": name, "default": default, "allowed": allowed}
+    metadata = {"name": name, "default": default, "allowed": allowed, "texts": texts}
     return field(default=default, metadata={**metadata, "length": length, "whole": whole})
 
 
@@ -67,7 +68,10 @@ def declare(node: Node, kind: type[T]) -> T:
     for one in fields(kind):  # type: ignore[arg-type]
         name, default = one.metadata["name"], one.metadata["default"]
         value = _declared(node, name, default)
-        if isinstance(default, tuple):
+        if one.metadata["texts"]:
+            value = (value,) if isinstance(value, str) and value else value or ()
+            expected = _expected_texts(value)
+        elif isinstance(default, tuple):
             expected = _expected_list(value, one.metadata["length"], one.metadata["whole"])
         else:
             expected = _expected(value, default, one.metadata["allowed"])
@@ -115,6 +119,11 @@ def _expected_list(value: Any, length: int | None, whole: bool) -> str | None:
         return expected
     right = all(_is_number(one, whole) and np.isfinite(one) for one in value)
     return None if right and not (whole and any(one < 0 for one in value)) else expected
+
+
+def _expected_texts(value: Any) -> str | None:
+    right = isinstance(value, tuple) and all(isinstance(one, str) and one for one in value)
+    return None if right else "a text, or a list of texts that are not empty"
 
 
 def _is_number(value: Any, whole: bool = False) -> bool:

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import os
 import signal
+import threading
 
 import numpy as np
 import pytest
@@ -15,13 +16,21 @@ from rmw_manycore_py.ndt.maps.map_builder import MapBuilder
 pytestmark = pytest.mark.unit
 
 
-def take(builder: MapBuilder) -> object:
-    return builder.take(wait=True)
+class Taking:
+    """Takes maps once the builder says that there may be one."""
+
+    def __init__(self) -> None:
+        self.built = threading.Semaphore(0)
+
+    def __call__(self, builder: MapBuilder) -> object:
+        assert builder.is_idle or self.built.acquire(timeout=60.0)
+        return builder.take()
 
 
 def test_maps_are_built_one_after_the_other_and_problems_are_told():
     points = np.random.default_rng(1).uniform(0, 20, (20000, 3)).astype("f4")
-    builder = MapBuilder(MatcherOptions())
+    take = Taking()
+    builder = MapBuilder(MatcherOptions(), take.built.release)
     for source in (points, points[:0], points):
         builder.submit(lambda source=source: source)
     first, newest = take(builder), take(builder)
@@ -41,7 +50,8 @@ def test_maps_are_built_one_after_the_other_and_problems_are_told():
 def test_a_map_outlives_the_process_that_built_it_and_is_what_it_would_be_here():
     points = np.random.default_rng(1).uniform(0, 20, (20000, 3)).astype("f4")
     options = MatcherOptions()
-    builder = MapBuilder(options)
+    take = Taking()
+    builder = MapBuilder(options, take.built.release)
     builder.submit(lambda: points)
     built = take(builder).voxel_map
     helper = builder._helper.pid

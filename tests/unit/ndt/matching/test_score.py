@@ -135,3 +135,35 @@ def test_regularization_pulls_along_the_vehicle_only() -> None:
     moved = pulled[:2, 3] - free[:2, 3]
     assert moved @ ahead > 0.05
     assert abs(moved @ left) < abs(moved @ ahead) / 4
+
+
+@pytest.mark.parametrize("search", ["radius", "direct7", "direct1"])
+def test_scores_of_points_are_the_likelihood_of_the_nearest_voxels(search):
+    options = replace(MatcherOptions(), search=search, coarse_levels=())
+    matcher = SerialMatcher(options)
+    matcher.set_map(VoxelMap.from_points(WORLD, options))
+    scan = np.concatenate([SCAN, np.float32([[np.nan, 0, 0], [1e4, 0, 0]])])
+    scores = matcher.point_scores(scan, pose(*TRUE))
+    score = matcher.score(scan, pose(*TRUE))
+    seen = scores[np.isfinite(scores)]
+    assert np.isnan(scores[-2:]).all()
+    assert len(seen) == score.points_in_map
+    assert seen.mean() == pytest.approx(score.nearest_voxel_likelihood, rel=1e-5)
+
+
+def test_an_alignment_tells_its_way_and_where_the_score_began():
+    options = replace(MatcherOptions(), coarse_levels=())
+    matcher = SerialMatcher(options)
+    matcher.set_map(VoxelMap.from_points(WORLD, options))
+    guess = pose(40.3, 0.4, 1.8, 0.01, -0.02, 0.32)
+    found = matcher.align(SCAN, guess)
+    assert len(found.path) == 1 + found.iterations
+    np.testing.assert_allclose(found.path[0], guess, atol=1e-12)
+    np.testing.assert_array_equal(found.path[-1], found.T_map_sensor)
+    assert found.first == matcher.score(SCAN, guess)
+    assert found.score > found.first.score
+    steep = np.eye(4)
+    steep[:3, :3] = [[0, 0, -1], [0, 1, 0], [1, 0, 0]]  # looks up: aligned in a level frame
+    turned = matcher.align(SCAN @ steep[:3, :3], guess @ steep)
+    np.testing.assert_allclose(turned.path[0], guess @ steep, atol=1e-9)
+    np.testing.assert_allclose(turned.path[-1], turned.T_map_sensor, atol=1e-9)

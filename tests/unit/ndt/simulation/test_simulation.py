@@ -10,7 +10,9 @@ import pytest
 from click.testing import CliRunner
 
 from rmw_manycore_py.cli.main import cli
-from rmw_manycore_py.ndt.geometry.poses import from_xyz_rpy, transform
+from rmw_manycore_py.ndt import SerialMatcher, VoxelMap
+from rmw_manycore_py.ndt.geometry.deskewing import deskewed
+from rmw_manycore_py.ndt.geometry.poses import from_xyz_rpy, inverse, transform
 from rmw_manycore_py.ndt.geometry.thinning import voxel_centroids
 from rmw_manycore_py.ndt.maps.map_file import read_points
 from rmw_manycore_py.ndt.maps.map_tiles import open_map
@@ -103,9 +105,10 @@ def drive_in(directory: Path) -> Path:
     ("arguments", "status", "words"),
     [
         (["map", "drive.npz", "-o", "map.npz", "--leaf", "1e-9"], 2, "are too small for a cloud"),
-        (["map", "drive.npz", "-o", "drive.npz/map.npz"], 1, "cannot be written: "),
+        (["map", "drive.npz", "-o", "drive.npz/map.npz"], 2, "no directory 'drive.npz'"),
+        (["map", "drive.npz", "-o", "none/map.npz"], 2, "there is no directory 'none'"),
         (["map", "drive.npz", "-o", "a" * 300 + ".npz"], 1, "File name too long"),
-        (["map", "drive.npz", "-o", "drive.npz/tiles", "--tile-size", "20"], 1, "cannot be"),
+        (["map", "drive.npz", "-o", "drive.npz/tiles", "--tile-size", "20"], 2, "no directory"),
         (["simulate", "drive.npz/street"], 1, "cannot be written: "),
         (["replay", "drive.npz", "--csv", "none/x.csv"], 2, "there is no directory 'none'"),
         (["replay", "drive.npz", "--plot", "none/x.png"], 2, "there is no directory 'none'"),
@@ -128,3 +131,46 @@ def test_the_command_says_what_is_wrong(tmp_path):
     result = CliRunner().invoke(cli, arguments)
     assert result.exit_code == 2
     assert "no recording" in result.output
+
+
+def simulated(directory: Path, *options: str) -> Recording:
+    """Return a drive of two scans, and check that the command wrote it."""
+    arguments = ["ndt", "simulate", str(directory), "--length", "5", "--speed", "20"]
+    result = CliRunner().invoke(cli, [*arguments, "--azimuths", "90", "--beams", "8", *options])
+    assert result.exit_code == 0, result.output
+    return load_recording(directory / "drive.npz")
+
+
+def test_what_is_known_of_the_sensor_and_the_road_can_be_chosen(tmp_path):
+    near = simulated(tmp_path / "near", "--range", "20").scan(1)
+    assert 15.0 < np.linalg.norm(near, axis=1).max() < 20.5
+
+    hidden = simulated(tmp_path / "hidden", "--occlusion", "0.5").scan(1)
+    assert np.abs(np.degrees(np.arctan2(hidden[:, 1], hidden[:, 0]))).max() < 92.0
+
+    exact = simulated(tmp_path / "exact", "--noise", "0", "--traffic", "4")
+    assert exact.point_times_s(1) is None
+    ahead = exact.scan(1)
+    on_road = (np.abs(ahead[:, 1]) < 1.0) & (ahead[:, 2] > -1.4) & (np.abs(ahead[:, 0]) < 15.0)
+    assert on_road.any()
+    empty = simulated(tmp_path / "empty", "--noise", "0").scan(1)
+    assert not (
+        (np.abs(empty[:, 1]) < 1.0) & (empty[:, 2] > -1.4) & (np.abs(empty[:, 0]) < 15.0)
+    ).any()
+
+
+def test_a_scan_taken_while_driving_is_deskewed_by_its_times(tmp_path):
+    """Deskewed it fits the map of a standing LiDAR at the pose of its stamp, else it does not."""
+    finer = ("--azimuths", "240", "--beams", "16", "--distortion")
+    drive = simulated(tmp_path / "moving", *finer)
+    times_s = drive.point_times_s(1)
+    assert times_s is not None
+    assert (times_s.min() > 0.0) & (times_s.max() < 0.1)
+    matcher = SerialMatcher()
+    matcher.set_map(VoxelMap.from_points(read_points(tmp_path / "moving" / "map.npz")))
+    motion = inverse(drive.poses[1]) @ drive_poses(9.0, 20.0)[0][2]
+    likelihoods = [
+        matcher.score(points, drive.poses[1]).nearest_voxel_likelihood
+        for points in (drive.scan(1), deskewed(drive.scan(1), times_s / 0.1, motion))
+    ]
+    assert likelihoods[0] + 0.2 < likelihoods[1]

@@ -36,6 +36,20 @@ def driven(*stamps_s: float, newest_holds: bool = False) -> Guesses:
     return guesses
 
 
+def test_the_motion_is_seen_over_several_periods():
+    """So a jump of one guess counts little; without guesses so old it is that since the oldest."""
+    stamps_s = [i / 10 for i in range(11)]
+    found = driven(*stamps_s).motion_until(1.0, on_a_circle(1.0))
+    assert found is not None
+    motion, duration_s = found
+    assert duration_s == pytest.approx(0.4)
+    np.testing.assert_allclose(on_a_circle(0.6) @ motion, on_a_circle(1.0), atol=1e-9)
+    motion, duration_s = driven(0.9, 1.0).motion_until(1.0, on_a_circle(1.0))
+    assert duration_s == pytest.approx(0.1)
+    assert driven(0.98, 1.0).motion_until(1.0, on_a_circle(1.0)) is None
+    assert driven(1.0).motion_until(5.0, on_a_circle(5.0)) is None
+
+
 def test_autoware_rule_holds_the_newest_pose():
     buffer = PoseBuffer(1.0, 10.0)
     buffer.push(1.0, at(0.0))

@@ -7,7 +7,7 @@ The threads are real; that no interleaving of them loses a scan is not proven.
 from __future__ import annotations
 
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 import pytest
 
@@ -104,6 +104,13 @@ class Node:
             raise ValueError(name)
         self.matched.append(name)
 
+    def run(self, job: Callable[[], None]) -> None:
+        """Run a job on the thread, and wait for it."""
+        done = threading.Event()
+        self.thread.post(job)
+        self.thread.post(done.set)
+        assert done.wait(PATIENCE_S)
+
     def put(self, name: str, stamp_s: float) -> None:
         self.known.stamps_s.add(stamp_s)
         self.thread.put_scan(name, stamp_s)
@@ -126,28 +133,70 @@ def test_guesses_get_through_while_a_scan_is_matched(node):
     for stamp_s, name in enumerate("bcd", start=2):
         node.thread.put_scan(name, float(stamp_s))
         node.known.stamps_s.add(float(stamp_s))
-        node.thread.guesses_changed()
+        node.thread.wake()
     node.may_match.release()
     assert node.is_matching.acquire(timeout=PATIENCE_S)
     node.may_match.release()
-    node.thread.run(lambda: None)
+    node.run(lambda: None)
     assert node.matched == ["a", "d"]
     assert node.skipped == ["b", "c"]
 
 
 def test_a_guess_wakes_the_scan_that_waits_for_it(node):
     node.thread.put_scan("a", 1.0)
-    node.thread.run(lambda: None)
+    node.run(lambda: None)
     assert node.matched == []
     node.known.stamps_s.add(1.0)
-    node.thread.guesses_changed()
+    node.thread.wake()
     assert node.is_matching.acquire(timeout=PATIENCE_S)
 
 
 def test_jobs_run_between_scans_on_the_thread(node):
     found = []
-    node.thread.run(lambda: found.append(threading.current_thread().name))
+    node.run(lambda: found.append(threading.current_thread().name))
     assert found == ["matching"]
+
+
+def test_steps_and_scans_take_turns(node):
+    """A scan that comes while a step is done is matched before the next one, but only one is."""
+    order, in_step, may_end = [], threading.Event(), threading.Event()
+
+    def steps() -> Iterator[bool]:
+        order.append("step")
+        in_step.set()
+        assert may_end.wait(PATIENCE_S)
+        yield True
+        order.append(f"step after {len(node.matched)} scans")
+        done.set()
+
+    done = threading.Event()
+    node.thread.post_steps(steps())
+    assert in_step.wait(PATIENCE_S)
+    node.put("a", 1.0)
+    may_end.set()
+    assert node.is_matching.acquire(timeout=PATIENCE_S)
+    node.put("b", 2.0)
+    node.may_match.release()
+    assert done.wait(PATIENCE_S)
+    assert order == ["step", "step after 1 scans"]
+
+
+def test_steps_that_wait_sleep_until_they_are_woken(node):
+    taken, waits = [], threading.Semaphore(0)
+
+    def steps() -> Iterator[bool]:
+        for number in range(3):
+            taken.append(number)
+            waits.release()
+            yield False
+
+    node.thread.post_steps(steps())
+    for number in range(3):
+        assert waits.acquire(timeout=PATIENCE_S)
+        node.run(lambda: None)
+        node.run(lambda: None)
+        assert taken == list(range(number + 1))
+        node.thread.wake()
 
 
 def test_what_raises_after_the_end_of_the_context_is_no_failure(node):
@@ -164,6 +213,5 @@ def test_what_ends_the_thread_is_told_and_raised(node):
     node.put("broken", 1.0)
     node.may_match.release()
     assert node.failed.wait(PATIENCE_S)
-    node.thread.run(lambda: None)  # does not wait for a thread that has ended
     with pytest.raises(ValueError, match="broken"):
         node.thread.close()

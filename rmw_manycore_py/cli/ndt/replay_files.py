@@ -1,0 +1,76 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""The files that `manycore ndt replay` writes, and their options."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, TypeVar
+
+import click
+
+from rmw_manycore_py.cli.common.output_file import OutputFile, writing
+from rmw_manycore_py.figures import load_figure
+from rmw_manycore_py.ndt.geometry.arrays import Points
+from rmw_manycore_py.ndt.recordings.recording import Recording
+from rmw_manycore_py.ndt.replay.table import write_csv
+from rmw_manycore_py.ndt.replay.tally import Tally
+from rmw_manycore_py.ndt.replay.trajectories import write_kitti, write_tum
+
+PICTURES = (".png", ".svg", ".pdf")
+
+F = TypeVar("F", bound=Callable[..., Any])
+
+
+def output_options(command: F) -> F:
+    """Add the options whose values are the fields of ReplayFiles."""
+    pictures = ", ".join(PICTURES)
+    options = [
+        ("csv", (), "One line per scan: pose, covariance, scores, latency, what became of it."),
+        ("tum", (), "Poses as TUM has them; the reference beside it, as FILE-reference."),
+        ("kitti", (), "The same as KITTI has them: a line per scan, nan where it got no pose."),
+        ("plot", PICTURES, f"Draw map and path, errors, scores and latencies: {pictures}."),
+        ("picture", PICTURES, f"Draw map, path and a scan in three dimensions: {pictures}."),
+    ]
+    for name, suffixes, text in reversed(options):
+        option = click.option(f"--{name}", f"{name}_path", type=OutputFile(*suffixes), help=text)
+        command = option(command)
+    return command
+
+
+@dataclass(frozen=True)
+class ReplayFiles:
+    """Where what is written; None is not."""
+
+    csv_path: Path | None
+    tum_path: Path | None
+    kitti_path: Path | None
+    plot_path: Path | None
+    picture_path: Path | None
+
+    def check(self) -> None:
+        """Raise a ManycoreError, before the work, where pictures cannot be drawn."""
+        if self.plot_path is not None or self.picture_path is not None:
+            load_figure()
+
+    def write(self, tally: Tally, drive: Recording, points: Points | None) -> None:
+        """Write all that is wanted; `points` (N, 3) are the map's."""
+        for path, write in (
+            (self.csv_path, write_csv),
+            (self.tum_path, write_tum),
+            (self.kitti_path, write_kitti),
+        ):
+            if path is not None:
+                with writing(path):
+                    write(tally, path)
+        if self.plot_path is not None:
+            from rmw_manycore_py.ndt.replay.plot import plot
+
+            with writing(self.plot_path):
+                plot(tally, points, self.plot_path)
+        if self.picture_path is not None:
+            from rmw_manycore_py.ndt.replay.picture import draw
+
+            with writing(self.picture_path):
+                draw(tally, drive, points, self.picture_path)

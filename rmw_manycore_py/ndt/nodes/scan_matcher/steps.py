@@ -1,0 +1,52 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""What the steps of an alignment tell: how much the score gained, and whether they went in circles.
+
+As in Autoware; where a coarser map was aligned to before, the score before is the one that the
+finest map's steps began with.
+"""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+
+from rmw_manycore_py.ndt.geometry.arrays import Poses
+from rmw_manycore_py.ndt.matching.alignment import Alignment
+from rmw_manycore_py.ndt.nodes.scan_matcher.diagnostics import Diagnostics
+
+OPPOSITE = -0.9  # cosine between two steps
+MANY_OSCILLATIONS = 10
+
+
+def report_steps(alignment: Alignment, report: Diagnostics) -> None:
+    """Add oscillation and the scores before."""
+    oscillations = count_oscillations(alignment.path)
+    report.value("local_optimal_solution_oscillation_num", oscillations)
+    if oscillations > MANY_OSCILLATIONS:
+        report.warn("There is a possibility of oscillation in a local minimum")
+    scores = {
+        "transform_probability": (
+            alignment.first.transform_probability,
+            alignment.transform_probability,
+        ),
+        "nearest_voxel_transformation_likelihood": (
+            alignment.first.nearest_voxel_likelihood,
+            alignment.nearest_voxel_likelihood,
+        ),
+    }
+    for name, (before, after) in scores.items():
+        report.value(f"{name}_diff", after - before)
+        report.value(f"{name}_before", before)
+
+
+def count_oscillations(path: Poses) -> int:
+    """Return how many steps in a row led back where the step before came from, at most."""
+    most = count = 0
+    steps = np.diff(path[:, :3, 3], axis=0)
+    for before, step in pairwise(steps):
+        lengths = float(np.linalg.norm(before) * np.linalg.norm(step))
+        turned_back = lengths > 0.0 and float(before @ step) < OPPOSITE * lengths
+        count = count + 1 if turned_back else 0
+        most = max(most, count)
+    return most

@@ -1,0 +1,60 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""A replay as CSV: one line per scan, with all that is known of it."""
+
+from __future__ import annotations
+
+import csv
+from pathlib import Path
+
+from rmw_manycore_py.ndt.geometry import poses
+from rmw_manycore_py.ndt.replay.tally import Played, Tally
+
+AXES = ("x", "y", "z", "roll", "pitch", "yaw")
+UPPER = [(i, j) for i in range(6) for j in range(i, 6)]  # a covariance is symmetric
+# What the matcher's diagnostics say of a scan, by the names that its values have there.
+REPORTED = (
+    "transform_probability",
+    "transform_probability_before",
+    "nearest_voxel_transformation_likelihood",
+    "nearest_voxel_transformation_likelihood_before",
+    "iteration_num",
+    "local_optimal_solution_oscillation_num",
+    "execution_time",
+    "initial_pose_age",
+    "sensor_points_size",
+)
+COLUMNS = (
+    *("scan", "stamp_s", "state", "reason"),
+    *("x", "y", "z", "qx", "qy", "qz", "qw"),
+    *("guess_error_m", "guess_error_deg", "error_m", "error_deg", "latency_ms"),
+    *REPORTED,
+    *(f"cov_{AXES[i]}_{AXES[j]}" for i, j in UPPER),
+)
+
+
+def write_csv(tally: Tally, path: Path) -> None:
+    """Write the scans; a cell without a value is empty.
+
+    `state` is answered, late or lost, `reason` what the matcher's diagnostics say of a scan. Poses
+    and covariances are in the map frame (m, rad), stamps the recording's, `execution_time` in ms.
+    """
+    with path.open("w", newline="") as file:
+        writer = csv.writer(file)
+        writer.writerow(COLUMNS)
+        for row in tally.rows:
+            writer.writerow(_cells(row, tally))
+
+
+def _cells(row: Played, tally: Tally) -> list[object]:
+    pose: list[object] = [""] * 7
+    if row.result is not None:
+        pose = [*row.result[:3, 3], *poses.to_quaternion(row.result[:3, :3])]
+    covariance: list[object] = [""] * len(UPPER)
+    if row.covariance is not None:
+        covariance = [row.covariance[i, j] for i, j in UPPER]
+    reason = "" if row.reason == "OK" else row.reason
+    errors = [*(row.guess_error or ("", "")), *(row.error or ("", ""))]
+    reported = [row.report.get(name, "") for name in REPORTED]
+    state = tally.state(row)
+    head = [row.index, row.stamp_s, state, reason]
+    return [*head, *pose, *errors, row.latency_ms, *reported, *covariance]

@@ -1,0 +1,49 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""The poses of a replay as files that other tools read (evo, KITTI's and TUM's own)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+
+import numpy as np
+
+from rmw_manycore_py.ndt.geometry import poses
+from rmw_manycore_py.ndt.geometry.arrays import Matrix
+from rmw_manycore_py.ndt.replay.tally import Tally
+
+
+def reference_path(path: Path) -> Path:
+    """Return where the reference poses are written beside those found."""
+    return path.with_name(f"{path.stem}-reference{path.suffix}")
+
+
+def write_tum(tally: Tally, path: Path) -> None:
+    """Write `stamp x y z qx qy qz qw` of each answered scan, and the reference of all beside it."""
+    found = [(row.stamp_s, row.result) for row in tally.rows if row.result is not None]
+    _write(path, (_tum_line(stamp_s, T) for stamp_s, T in found))
+    known = ((row.stamp_s, row.reference) for row in tally.rows)
+    _write(reference_path(path), (_tum_line(stamp_s, T) for stamp_s, T in known))
+
+
+def write_kitti(tally: Tally, path: Path) -> None:
+    """Write the first three rows of T_map_sensor of each scan, and the reference beside it.
+
+    The format has no stamps but a line for each scan: one without an answer is a line of `nan`.
+    """
+    none = np.full((4, 4), np.nan)
+    found = (none if row.result is None else row.result for row in tally.rows)
+    _write(path, (_line(T[:3].ravel()) for T in found))
+    _write(reference_path(path), (_line(row.reference[:3].ravel()) for row in tally.rows))
+
+
+def _tum_line(stamp_s: float, T: Matrix) -> str:
+    return f"{stamp_s:.9f} {_line([*T[:3, 3], *poses.to_quaternion(T[:3, :3])])}"
+
+
+def _line(numbers: Iterable[float]) -> str:
+    return " ".join(f"{number:.9g}" for number in numbers)
+
+
+def _write(path: Path, lines: Iterable[str]) -> None:
+    path.write_text("".join(f"{line}\n" for line in lines))

@@ -1,0 +1,92 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Our matcher in the place of Autoware's: a prefix of its name, with launch and parameter files.
+
+The installed Autoware is a stand-in: a package with files of the shape that Autoware's have.
+"""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+from support import IS_MANYCORE, manycore_command
+
+pytestmark = [
+    pytest.mark.integration,
+    pytest.mark.skipif(not IS_MANYCORE, reason="manycore run is part of rmw_manycore"),
+]
+
+PACKAGE = "autoware_ndt_scan_matcher"
+LAUNCH_FILE = f"""\
+<launch>
+  <arg name="param_file" default="$(find-pkg-share {PACKAGE})/config/ndt_scan_matcher.param.yaml"/>
+  <arg name="input_pointcloud" default="points_raw"/>
+  <arg name="node_name" default="ndt_scan_matcher"/>
+  <node pkg="{PACKAGE}" exec="{PACKAGE}_node" name="$(var node_name)" output="both">
+    <remap from="points_raw" to="$(var input_pointcloud)"/>
+    <param from="$(var param_file)"/>
+  </node>
+</launch>
+"""
+PARAMETERS = """\
+/**:
+  ros__parameters:
+    ndt: {resolution: 3.0, num_threads: 2}
+"""
+
+
+@pytest.fixture
+def autoware(tmp_path: Path) -> Path:
+    """Return a prefix in which Autoware's package is installed."""
+    prefix = tmp_path / "autoware"
+    share = prefix / "share" / PACKAGE
+    files = {
+        share / "package.xml": f"<package><name>{PACKAGE}</name></package>",
+        share / "launch" / "ndt_scan_matcher.launch.xml": LAUNCH_FILE,
+        share / "config" / "ndt_scan_matcher.param.yaml": PARAMETERS,
+        prefix / "share/ament_index/resource_index/packages" / PACKAGE: "",
+        prefix / "lib" / PACKAGE / f"{PACKAGE}_node": "#!/bin/sh\necho Autoware's own\n",
+    }
+    for path, text in files.items():
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text)
+    (prefix / "lib" / PACKAGE / f"{PACKAGE}_node").chmod(0o755)
+    return prefix
+
+
+def test_the_launch_file_starts_our_node(start, platform, tmp_path, autoware):
+    """Unmodified, with Autoware's parameter file; where the overlay is not sourced, Autoware's."""
+    overlay = tmp_path / "overlay"
+    sourced = {"AMENT_PREFIX_PATH": str(autoware)}
+    for _ in range(2):  # again over what is there
+        made = start(manycore_command("ndt", "overlay", overlay), **sourced)
+        assert made.wait() == 0, made
+        assert f"launch and parameter files of {autoware}" in made.output
+    launch_file = overlay / "share" / PACKAGE / "launch" / "ndt_scan_matcher.launch.xml"
+    mapfile = tmp_path / "map.yaml"
+    mapfile.write_text(
+        f"launch_path: {launch_file}\nnodes:\n  ndt_scan_matcher: {{cluster: 1, core: 1}}\n"
+    )
+    assert os.path.samefile(launch_file, autoware / launch_file.relative_to(overlay))
+    line = f'. {overlay}/setup.sh && exec "$@"'
+    run = start(["sh", "-c", line, "sh", *manycore_command("run", mapfile)], **sourced)
+    run.wait_for("ndt_scan_matcher started")
+    ask = manycore_command("param", "get", "/ndt_scan_matcher", "ndt.resolution")
+    answers = []
+    while not answers or answers[-1].wait() != 0:  # until the node has come up
+        assert run.is_running(), run
+        answers.append(start(ask))
+    assert "3.0" in answers[-1].output
+    assert "Autoware's own" not in run.output
+    assert run.stop() == 0, run
+
+
+def test_without_autoware_there_is_no_launch_file(start, tmp_path):
+    made = start(manycore_command("ndt", "overlay", tmp_path / "overlay"))
+    assert made.wait() == 0, made
+    assert "no Autoware is sourced" in made.output
+    assert not (tmp_path / "overlay" / "share" / PACKAGE / "launch").exists()
+    missing = start(manycore_command("ndt", "overlay", tmp_path / "none" / "overlay"))
+    assert missing.wait() == 2
+    assert "there is no directory" in missing.output

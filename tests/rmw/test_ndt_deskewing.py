@@ -1,0 +1,55 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Scans that were taken while the vehicle moved, with the times of their points."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from builtin_interfaces.msg import Time
+from ndt_support import COVARIANCE, LIDAR, TRUTH, error_m, matcher_command, street_map
+from ros_support import spin_until
+
+from rmw_manycore_py.ndt.messages.conversions import nanoseconds, pose_with_covariance
+from rmw_manycore_py.ndt.messages.point_cloud import encode
+from rmw_manycore_py.ndt.simulation.drive import Surroundings, poses_along
+from rmw_manycore_py.ndt.simulation.street import build_street
+
+X_M, SPEED_M_S = 5.0, 20.0
+OK = b"\x00"
+
+
+def result_of(stack: Any, cloud: Any) -> tuple[np.ndarray, Any]:
+    """Send a scan with the guesses of a drive, exact ones; return its pose and its diagnostics."""
+    stamp = stack.stamp()
+    stamp_ns = nanoseconds(stamp)
+    for before_s in (0.2, 0.1, 0.0):
+        T = poses_along([X_M - SPEED_M_S * before_s])[0]
+        time_ns = stamp_ns - round(1e9 * before_s)
+        at = Time(sec=time_ns // 10**9, nanosec=time_ns % 10**9)
+        stack.guesses.publish(pose_with_covariance(T, COVARIANCE, at, "map"))
+    cloud.header.stamp = stamp
+    stack.scans.publish(cloud)
+    report = stack.report_of(stamp_ns)
+    spin_until(stack.node, lambda: stamp_ns in stack.poses)
+    return stack.poses[stamp_ns], report
+
+
+def test_motion_is_taken_out_where_the_points_have_times(stack, start):
+    start(matcher_command(sensor_points__deskew="true"), cluster=2)
+    stack.wait_for_matcher()
+    stack.publish_map(street_map())
+    street = build_street(10.0, np.random.default_rng(1))
+    moving = Surroundings(street, LIDAR, speed_m_s=SPEED_M_S)
+    sweep = moving.scan(TRUTH, X_M / SPEED_M_S, np.random.default_rng(2))
+    plain = encode(sweep.points, Time(), "base_link")
+    stack.pose_of(encode(sweep.points, Time(), "base_link", {"time": np.zeros(len(sweep.points))}))
+
+    skewed, report = result_of(stack, plain)
+    assert "not deskewed: the cloud has none of the fields time_stamp" in report.message
+    assert error_m(skewed) > 0.5
+
+    timed = encode(sweep.points, Time(), "base_link", {"time": sweep.times_s})
+    found, report = result_of(stack, timed)
+    assert {p.key: p.value for p in report.values}["is_deskewed"] == "True"
+    assert error_m(found) < 0.05
