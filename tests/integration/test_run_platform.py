@@ -99,7 +99,9 @@ def test_a_platform_runs_once(start, platform) -> None:
     second = start(manycore_command("run", TALKER_LISTENER))
     assert second.wait() == 1
     assert re.search(
-        f"platform '{platform}' is running already; .*; on it: .*talker \\(\\d+\\)", second.output
+        f"platform '{platform}' is running already: .*talker_listener.yaml, pid \\d+; "
+        f"`manycore stop --platform {platform}` stops it",
+        second.output,
     )
     first.wait_for(HEARD)
     assert first.stop() == 0

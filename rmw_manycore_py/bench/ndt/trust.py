@@ -52,7 +52,7 @@ class Shares:
 
 def measure(run: Run) -> list[Result]:
     """Return shares of results that are judged wrongly."""
-    if not run.wants(f"{QUESTION.name}: {OURS}"):
+    if not run.wants(QUESTION.name):
         return []
     share = min(1.0, run.share)
     scans, wanted = max(6, int(SCANS * share)), max(12, int(2 * SCANS * share))
