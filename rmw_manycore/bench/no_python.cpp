@@ -4,8 +4,10 @@
 // calls them. Linked with its symbols exported.
 #define FOR_THE_LOADER extern "C" __attribute__((visibility("default")))
 
+// NOLINTBEGIN(readability-identifier-naming): the interpreter's names
 FOR_THE_LOADER void * PyExc_RuntimeError;
-FOR_THE_LOADER long _Py_TrueStruct[4];  // NOLINT: the interpreter's name
+FOR_THE_LOADER long _Py_TrueStruct[4];
 
 void * PyExc_RuntimeError = nullptr;
-long _Py_TrueStruct[4] = {};  // NOLINT
+long _Py_TrueStruct[4] = {};
+// NOLINTEND(readability-identifier-naming)
