@@ -213,7 +213,7 @@ void wait_for_anything(Context & context, Fleet & fleet, rcl_guard_condition_t &
   check(rcl_wait_set_add_guard_condition(&wait_set, &end, nullptr), "rcl_wait_set_add");
   check(rcl_wait(&wait_set, -1), "rcl_wait");
   if (wait_set.guard_conditions[0] == nullptr) {
-    throw std::runtime_error("a node of the fleet was told of something that nobody sent");
+    throw std::runtime_error("a node of the fleet woke up, and nothing was sent to it");
   }
   check(rcl_wait_set_fini(&wait_set), "rcl_wait_set_fini");
 }

@@ -126,7 +126,8 @@ def command(
     with writing(directory):
         directory.mkdir(parents=True, exist_ok=True)
     generator = np.random.default_rng(seed)
-    street, sensor = build_street(length_m, generator), Lidar(rings=beams, **lidar)  # type: ignore[arg-type]
+    street = build_street(length_m, generator)
+    sensor = Lidar(rings=beams, **lidar)  # type: ignore[arg-type]
     points = _map_of(street, sensor, length_m, generator)
     with writing(directory / "map.npz"):
         write_points(directory / "map.npz", points)
