@@ -96,7 +96,7 @@ const Role closes_many("closes_many", [](Lines &, const Arguments & arguments) {
 const Role reaps("reaps", [](Lines &, const Arguments & arguments) {
   Registry registry(PlatformPaths::of(arguments.at(0)));
   begin_steps();
-  reap_dead(registry);
+  reap_dead(registry, 1);
   {
     const Registry::Lock lock(registry);
     closing::sweep(registry);

@@ -244,12 +244,16 @@ void leave_registry(Registry & registry, uint32_t process) {
   registry.processes().give_back(process);
 }
 
-uint32_t reap_dead(Registry & registry) {
+uint32_t reap_dead(Registry & registry, uint32_t cluster) {
   uint32_t dead = 0;
-  for (uint32_t slot = 0; slot < registry.processes().high_water(); ++slot) {
-    // First without the lock: it waits until the last thread of the dead is gone.
-    if (is_dead(registry, slot) && reap(registry, slot)) {
-      ++dead;
+  for (const bool own : {true, false}) {
+    for (uint32_t slot = 0; slot < registry.processes().high_water(); ++slot) {
+      // First without the lock: it waits until the last thread of the dead is gone.
+      if (
+        (registry.processes()[slot].cluster == cluster) == own && is_dead(registry, slot) &&
+        reap(registry, slot)) {
+        ++dead;
+      }
     }
   }
   return dead;

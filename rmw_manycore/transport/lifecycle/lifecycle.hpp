@@ -54,9 +54,10 @@ std::vector<std::string> remove_platform(const PlatformPaths & paths);
 void note_removal(Registry & registry) noexcept;
 
 /// Closes what dead processes left behind, and makes their places free; their endpoints' memory
-/// goes with closing::sweep(). Takes the registry lock anew for each piece. Returns the number of
-/// the dead.
-uint32_t reap_dead(Registry & registry);
+/// goes with closing::sweep(). Takes the registry lock anew for each piece. The dead of the
+/// caller's `cluster` go first: several reapers then do not all begin with the same process.
+/// Returns the number of the dead.
+uint32_t reap_dead(Registry & registry, uint32_t cluster);
 
 /// Under the registry lock: gives back the place of a process whose endpoints are closed, and its
 /// nodes.

@@ -168,7 +168,7 @@ bool Reaper::watch_and_reap() {
     const Registry::Lock lock(registry_);
     watch_members();
   }
-  const uint32_t dead = reap_dead(registry_);
+  const uint32_t dead = reap_dead(registry_, cluster_);
   {
     const Registry::Lock lock(registry_);
     closing::sweep(registry_);

@@ -17,10 +17,19 @@
 namespace manycore::closing {
 namespace {
 
-/// Each takes about half a microsecond under the registry lock.
-constexpr uint32_t entries_at_a_time = 64;
-/// Each may be a cache miss.
-constexpr uint32_t slots_at_a_time = 512;
+/// How much is closed before the registry lock is given back: well under 100 us of work.
+class Piece {
+public:
+  bool is_done() const noexcept { return steps_left_ <= 0; }
+  /// A slot or an entry was looked at, which may be a cache miss.
+  void look() noexcept { --steps_left_; }
+  /// A match was undone, which takes about half a microsecond.
+  void undo() noexcept { steps_left_ -= steps_of_match; }
+
+private:
+  static constexpr int steps_of_match = 32;
+  int steps_left_ = 64 * steps_of_match;
+};
 
 void count_unmatched(Registry & registry, EndpointEntry & entry) {
   if (entry.matched_current.load() != 0) {
@@ -31,9 +40,6 @@ void count_unmatched(Registry & registry, EndpointEntry & entry) {
 
 void undo_match(Registry & registry, SourceEntry & source) {
   const SourceState state = source.state.load();
-  if (state == SourceState::free) {
-    return;
-  }
   const uint32_t publisher = source.topic_dsm_endpoint.load();
   if (
     state == SourceState::active && topic_dsm_of(registry, source) != nullptr &&
@@ -47,22 +53,26 @@ void undo_match(Registry & registry, SourceEntry & source) {
 /// Undoes some matches; true when none is left. `closed_before` moves after each, so a process that
 /// dies half way leaves at most one to be undone once more: its source is `revoked` then, and its
 /// reader may still be on the reader table.
-bool close_some_of_subscription(Registry & registry, EndpointEntry & entry) {
+bool close_some_of_subscription(Registry & registry, EndpointEntry & entry, Piece & piece) {
   Cluster * const cluster = registry.reach(entry.block.cluster());
   auto * const header = registry.reach<SubscriptionHeader>(entry.block);
   if (cluster == nullptr || header == nullptr) {
     return true;
   }
-  const uint32_t end = header->closed_before + entries_at_a_time;
   bool stopped = false;
   source_table(*cluster, *header)
     .visit(header->closed_before, [&](SourceEntry & source, uint32_t index) {
-      stopped = index >= end;
-      if (!stopped) {
-        undo_match(registry, source);
-        header->closed_before = index + 1;
+      stopped = piece.is_done();
+      if (stopped) {
+        return true;
       }
-      return stopped;
+      piece.look();
+      if (source.state.load() != SourceState::free) {
+        undo_match(registry, source);
+        piece.undo();
+      }
+      header->closed_before = index + 1;
+      return false;
     });
   return !stopped;
 }
@@ -98,7 +108,7 @@ void tell_of_end(
 
 /// Tells some readers; true when all know. `closed_before` moves after each: what is counted down
 /// for a reader may not be counted down again.
-bool close_some_of_publisher(Registry & registry, EndpointEntry & entry, bool died) {
+bool close_some_of_publisher(Registry & registry, EndpointEntry & entry, bool died, Piece & piece) {
   Cluster * const cluster = registry.reach(entry.block.cluster());
   auto * const dsm = registry.reach<TopicDsmHeader>(entry.block);
   if (cluster == nullptr || dsm == nullptr) {
@@ -110,20 +120,21 @@ bool close_some_of_publisher(Registry & registry, EndpointEntry & entry, bool di
   if (dsm->orphan.load() != 0) {
     return true;
   }
-  const uint32_t end = dsm->closed_before + entries_at_a_time;
   bool stopped = false;
   visit_reader_table(
     *cluster, *dsm,
     [&](ReaderEntry & reader_entry, uint32_t index) {
-      stopped = index >= end;
+      stopped = piece.is_done();
       if (stopped) {
         return true;
       }
+      piece.look();
       if (reader_entry.active.load(std::memory_order_acquire) != 0) {
         const std::optional<OrphanReader> reader = follow(registry, *cluster, *dsm, reader_entry);
         if (reader && registry.endpoints().is_live(reader->endpoint_slot)) {
           tell_of_end(registry, entry, *reader, died);
         }
+        piece.undo();
       }
       dsm->closed_before = index + 1;
       return false;
@@ -259,9 +270,7 @@ void wake_reaper(Registry & registry, uint32_t process) {
   registry.clusters().at(registry.processes()[process].cluster).wake_reaper();
 }
 
-}  // namespace
-
-bool close_some(Registry & registry, uint32_t endpoint, bool died) {
+bool close_within(Registry & registry, uint32_t endpoint, bool died, Piece & piece) {
   EndpointEntry & entry = registry.endpoints()[endpoint];
   if (entry.slot.state.load() == SlotState::live) {
     entry.slot.state.store(SlotState::closing);
@@ -269,33 +278,41 @@ bool close_some(Registry & registry, uint32_t endpoint, bool died) {
     ++registry.header().closing_count;
   }
   const bool done = entry.kind == EndpointKind::publisher
-                      ? close_some_of_publisher(registry, entry, died)
-                      : close_some_of_subscription(registry, entry);
+                      ? close_some_of_publisher(registry, entry, died, piece)
+                      : close_some_of_subscription(registry, entry, piece);
   if (done && entry.slot.state.load() == SlotState::closing) {
     entry.slot.state.store(SlotState::closed);
   }
   return done;
 }
 
+}  // namespace
+
+bool close_some(Registry & registry, uint32_t endpoint, bool died) {
+  Piece piece;
+  return close_within(registry, endpoint, died, piece);
+}
+
 bool EndpointsOfProcess::close_some() {
-  const uint32_t end = std::min(next_ + slots_at_a_time, registry_.endpoints().high_water());
-  for (; next_ < end; ++next_) {
+  Piece piece;
+  for (; next_ < registry_.endpoints().high_water(); ++next_) {
+    if (piece.is_done()) {
+      return false;
+    }
+    piece.look();
     const EndpointEntry & entry = registry_.endpoints()[next_];
     if (entry.process != process_ || entry.slot.state.load() == SlotState::free) {
       continue;
     }
     try {
-      if (!closing::close_some(registry_, next_, died_)) {
+      if (!close_within(registry_, next_, died_, piece)) {
         return false;
       }
     } catch (const OutOfReach & error) {
       obstacle_.emplace(error);
-      continue;
     }
-    ++next_;
-    return false;
   }
-  return next_ >= registry_.endpoints().high_water();
+  return true;
 }
 
 void EndpointsOfProcess::require_all_closed() {
