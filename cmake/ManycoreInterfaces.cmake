@@ -109,6 +109,6 @@ endmacro()
 
 foreach(package
     autoware_internal_debug_msgs autoware_internal_localization_msgs autoware_map_msgs
-    composition_interfaces tf2_msgs tier4_localization_msgs)
+    composition_interfaces manycore_reference_msgs tf2_msgs tier4_localization_msgs)
   manycore_interfaces(${package})
 endforeach()

@@ -1,0 +1,39 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Runs one node of the reference system; its parameters say which.
+
+python -m rmw_manycore_py.reference_system --ros-args -r __node:=PointsTransformerFront \
+    -p kind:=transform -p inputs:="[FrontLidarDriver]"
+"""
+
+import sys
+from contextlib import suppress
+
+import rclpy
+from rclpy.executors import ExternalShutdownException
+from rclpy.node import Node
+
+from rmw_manycore_py.errors import ManycoreError
+from rmw_manycore_py.reference_system.kinds import KINDS
+from rmw_manycore_py.reference_system.settings import read_settings
+
+
+def main() -> int:
+    """Run the node until it is interrupted."""
+    rclpy.init()
+    with suppress(KeyboardInterrupt, ExternalShutdownException):
+        node = Node("reference_node")
+        try:
+            settings = read_settings(node, KINDS)
+        except ManycoreError as error:
+            print(f"{node.get_name()}: {error}", file=sys.stderr)
+            return error.exit_status
+        kind = KINDS[settings.kind](node, settings)
+        try:
+            rclpy.spin(node)
+        finally:
+            kind.say_losses()
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

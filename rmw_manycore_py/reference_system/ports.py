@@ -1,0 +1,101 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Inputs and outputs of a node: what is noted of each message that passes them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from rclpy.callback_groups import CallbackGroup
+from rclpy.node import Node
+from rclpy.qos import HistoryPolicy, QoSProfile
+
+from rmw_manycore_py.reference_system.payload import RESULT, check_payload, write_payload
+from rmw_manycore_py.reference_system.sample import (
+    Gaps,
+    add_record,
+    merge_records,
+    now_ns,
+    sequence_of,
+)
+from rmw_manycore_py.reference_system.settings import KEEP_ALL, Settings
+
+NS_PER_S = 1e9
+# Losses are said at most so often, so that saying them costs a flooded node little.
+LOSSES_SAID_EVERY_NS = 0.1 * NS_PER_S
+
+
+def qos(depth: int) -> QoSProfile:
+    """Return reliable QoS that keeps so many messages, 0 for all."""
+    if depth == KEEP_ALL:
+        return QoSProfile(history=HistoryPolicy.KEEP_ALL)
+    return QoSProfile(depth=depth)
+
+
+class Input:
+    """A subscription; `missed` follows the messages that the node works on, `lost` all of them."""
+
+    def __init__(
+        self,
+        node: Node,
+        settings: Settings,
+        topic: str,
+        callback: Callable[[Input, Any], None],
+        group: CallbackGroup | None,
+    ) -> None:
+        self.cached: Any = None
+        self._topic = topic
+        self._checked = settings.checked
+        self._callback = callback
+        self._processed = Gaps()
+        self._received = Gaps()
+        self._lost = 0
+        self._said_ns = 0
+        node.create_subscription(
+            settings.message, topic, self._receive, qos(settings.depth), callback_group=group
+        )
+
+    def _receive(self, message: Any) -> None:
+        self._lost += self._received.before(sequence_of(message))
+        if self._lost and now_ns() > self._said_ns + LOSSES_SAID_EVERY_NS:
+            self.say_losses()
+        if self._checked:
+            check_payload(message, self._topic)
+        self._callback(self, message)
+
+    def missed(self, message: Any) -> int:
+        """Return how many messages the node has not worked on since the one before."""
+        return self._processed.before(sequence_of(message))
+
+    def say_losses(self) -> None:
+        """Print how many messages of the topic never arrived, unless all did."""
+        if self._lost:
+            self._said_ns = now_ns()
+            print(f"lost {self._lost} of {self._topic} at {self._said_ns}", flush=True)
+            self._lost = 0
+
+
+class Output:
+    """A publisher with the one message that it publishes again and again."""
+
+    def __init__(self, node: Node, settings: Settings, topic: str) -> None:
+        self._name = node.get_name()
+        self._checked = settings.checked
+        self._message = settings.message()
+        self._sequence = 0
+        self._publisher = node.create_publisher(settings.message, topic, qos(settings.depth))
+
+    def publish(
+        self, timestamp_ns: int, sources: Sequence[Any] = (), missed: int = 0, result: int = 0
+    ) -> None:
+        """Publish the records of all sources, and one of this node behind them."""
+        message = self._message
+        message.size = 0
+        for source in sources:
+            merge_records(message, source)
+        add_record(message, self._name, timestamp_ns, self._sequence, missed)
+        message.data[RESULT] = result
+        if self._checked:
+            write_payload(message, self._sequence)
+        self._sequence += 1
+        self._publisher.publish(message)
