@@ -1,0 +1,54 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#include "bench/reference/interruption.hpp"
+
+#include <pthread.h>
+
+#include <atomic>
+#include <csignal>
+
+namespace manycore::bench::reference {
+
+namespace {
+
+std::atomic<bool> interrupted = false;
+
+sigset_t interruptions() {
+  sigset_t signals;
+  sigemptyset(&signals);
+  sigaddset(&signals, SIGINT);
+  sigaddset(&signals, SIGTERM);
+  return signals;
+}
+
+}  // namespace
+
+void block_interruptions() {
+  const sigset_t signals = interruptions();
+  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+}
+
+bool is_interrupted() { return interrupted; }
+
+Interruption::Interruption(RclContext & context) {
+  check_rcl(
+    rcl_guard_condition_init(
+      &guard_condition_, &context.get(), rcl_guard_condition_get_default_options()),
+    "rcl_guard_condition_init");
+  waiter_ = std::thread([this] {
+    const sigset_t signals = interruptions();
+    int signal = 0;
+    sigwait(&signals, &signal);
+    interrupted = true;
+    report_rcl(rcl_trigger_guard_condition(&guard_condition_));
+  });
+}
+
+Interruption::~Interruption() {
+  if (!interrupted) {
+    pthread_kill(waiter_.native_handle(), SIGTERM);
+  }
+  waiter_.join();
+  report_rcl(rcl_guard_condition_fini(&guard_condition_));
+}
+
+}  // namespace manycore::bench::reference
