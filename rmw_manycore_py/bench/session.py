@@ -6,6 +6,7 @@ from __future__ import annotations
 import itertools
 import json
 import os
+import signal
 import subprocess
 import sys
 import tempfile
@@ -49,6 +50,11 @@ def program_path(name: str) -> Path:
     return path
 
 
+def native_command(program: str, **arguments: object) -> list[str | Path]:
+    """Return the command line of a native bench program."""
+    return [program_path(program), *(f"{key}={value}" for key, value in arguments.items())]
+
+
 def usable_cpus() -> tuple[int, int]:
     """Return the two CPUs of the parties; they are one where the machine has no more."""
     cpus = sorted(os.sched_getaffinity(0))
@@ -70,8 +76,16 @@ class Process:
     """A started process that says `ready` when it is, and ends with a line of JSON."""
 
     def __init__(
-        self, name: str, command: Sequence[str | Path], env: dict[str, str], cpus: Sequence[int]
+        self,
+        name: str,
+        command: Sequence[str | Path],
+        env: dict[str, str],
+        cpus: Sequence[int],
+        *,
+        output: IO[str] | None = None,
+        patience_s: float = PATIENCE_S,
     ) -> None:
+        """`output`: takes what the process prints, which then says nothing here."""
         self._name = name
         self._errors = tempfile.TemporaryFile("w+")  # noqa: SIM115
         with pinned_to(cpus):
@@ -81,11 +95,11 @@ class Process:
                 env=env,
                 text=True,
                 stdin=subprocess.PIPE,
-                stdout=subprocess.PIPE,
+                stdout=subprocess.PIPE if output is None else output,
                 stderr=self._errors,
                 preexec_fn=dies_with_this_process(),
             )
-        self._end_of_patience = threading.Timer(PATIENCE_S, self._process.kill)
+        self._end_of_patience = threading.Timer(patience_s, self._process.kill)
         self._end_of_patience.start()
 
     @property
@@ -109,7 +123,7 @@ class Process:
 
     def finish(self) -> dict[str, Any]:
         """Return what the process found, once it has ended well."""
-        output, _ = self._process.communicate()
+        output = self._process.communicate()[0] or ""
         if self._process.returncode != 0:
             self._errors.seek(0)
             raise ManycoreError(
@@ -119,6 +133,16 @@ class Process:
         lines = [line for line in output.splitlines() if line.startswith("{")]
         result: dict[str, Any] = json.loads(lines[-1]) if lines else {}
         return result
+
+    def raise_if_failed(self) -> None:
+        """Raise the error of a process that has ended before it should."""
+        if self._process.poll() is not None:
+            self.finish()
+            raise ManycoreError(f"{self._name}: {self._process.args!r} has ended early")
+
+    def interrupt(self) -> None:
+        """Send the SIGINT that ends nodes."""
+        self._process.send_signal(signal.SIGINT)
 
     def close(self) -> None:
         """End the process, whatever it is doing, and close our ends of its pipes."""
@@ -138,10 +162,14 @@ def _close(stream: IO[str] | None) -> None:
 class Session:
     """One middleware with a platform and a ROS domain of its own, for one measurement."""
 
-    def __init__(self, middleware: Middleware, cpus: tuple[int, int]) -> None:
+    def __init__(
+        self, middleware: Middleware, cpus: Sequence[int], patience_s: float = PATIENCE_S
+    ) -> None:
+        """Prepare parties that have the CPUs in turn; after `patience_s` each is killed."""
         self.middleware = middleware
         self.platform = f"bench-{os.getpid()}-{next(_numbers)}"
         self._cpus = cpus
+        self._patience_s = patience_s
         self._stack = ExitStack()
         # Fast DDS takes its ports from the domain; above 100 they reach into those of clients.
         self.domain = (os.getpid() + next(_numbers)) % 100 + 1
@@ -155,27 +183,38 @@ class Session:
 
     def native(self, program: str, party: int, **arguments: object) -> Process:
         """Start a native program as a party, on its CPU and in its cluster."""
-        words = [f"{key}={value}" for key, value in arguments.items()]
-        return self._start([program_path(program), *words], party)
+        return self.start(native_command(program, **arguments), party)
 
     def python(self, module: str, party: int, *arguments: object, by_hand: bool = False) -> Process:
         """Start an rclpy program as a party; by hand means without the library path set."""
         command = own_program(f"{NODES}.{module}", *map(str, arguments))
-        return self._start(command, party, with_library_path=not by_hand)
+        return self.start(command, party, with_library_path=not by_hand)
 
     def module(self, name: str, party: int, *arguments: object) -> Process:
         """Start any module of ours as a party."""
-        return self._start(own_program(name, *map(str, arguments)), party)
+        return self.start(own_program(name, *map(str, arguments)), party)
 
-    def _start(
-        self, command: Sequence[str | Path], party: int, with_library_path: bool = True
+    def start(
+        self,
+        command: Sequence[str | Path],
+        party: int,
+        with_library_path: bool = True,
+        output: IO[str] | None = None,
     ) -> Process:
+        """Start any command as a party; `output` takes what it prints."""
         cpu = self._cpus[party % len(self._cpus)]
         environment = self._environment(party)
         if with_library_path:
             environment["LD_LIBRARY_PATH"] = os.pathsep.join(library_path(self.middleware))
             environment[WHEELS_BOOTSTRAPPED] = "1"
-        process = Process(self.middleware.name, command, environment, [cpu])
+        process = Process(
+            self.middleware.name,
+            command,
+            environment,
+            [cpu],
+            output=output,
+            patience_s=self._patience_s,
+        )
         self._stack.callback(process.close)
         return process
 

@@ -1,0 +1,93 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""What the reference system takes: all figures of all setups, the contenders in turns."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from rmw_manycore_py.bench.question import Question, Run
+from rmw_manycore_py.bench.reference.goals import goals, question
+from rmw_manycore_py.bench.reference.setups import Contender, Setup, Wanted, setups
+from rmw_manycore_py.bench.reference.system import Found, run_system
+from rmw_manycore_py.bench.session import PATIENCE_S, Process
+from rmw_manycore_py.bench.summary import Result
+
+MIN_DURATION_S = 4.0
+LOAD = "while True: pass"
+
+
+def reference_question(wanted: Wanted, texts: Path | None) -> Question:
+    """Return the question; the command node's text goes to a directory where one is given."""
+
+    def measure(run: Run) -> list[Result]:
+        return [r for setup in setups(wanted) for r in _take_turns(run, wanted, setup, texts)]
+
+    return Question(
+        f"reference system, {wanted.nodes}, {wanted.message}, {wanted.crunch_ms:g} ms",
+        measure,
+        goals(wanted),
+        "as in the mapfile autoware_reference; the load beside is on the last CPU",
+    )
+
+
+def _take_turns(run: Run, wanted: Wanted, setup: Setup, texts: Path | None) -> list[Result]:
+    collected: dict[tuple[str, str], Result] = {}
+    for turn in range(run.rounds):
+        for name, contender in setup.contenders.items():
+            if not run.wants(f"{setup.name}: {name}"):
+                continue
+            run.note(f"{setup.name}, round {turn + 1} of {run.rounds}: {name}")
+            found = _run(run, wanted, setup, contender)
+            for kpi in setup.figures(found):
+                asked = question(kpi.name, setup.name)
+                before = collected.get((asked, name))
+                samples = (*(before.samples if before else ()), *kpi.samples)
+                collected[asked, name] = Result(
+                    asked, name, kpi.unit, samples, kpi.higher_is_better
+                )
+            if texts:
+                _save(texts, wanted, setup, contender, name, found)
+    return list(collected.values())
+
+
+def _run(run: Run, wanted: Wanted, setup: Setup, contender: Contender) -> Found:
+    duration_s = max(setup.duration_s * run.share, MIN_DURATION_S)
+    with _load_beside(setup.is_beside_a_load, duration_s):
+        return run_system(
+            wanted.nodes, contender.middleware, contender.system, setup.load, duration_s
+        )
+
+
+@contextmanager
+def _load_beside(wanted: bool, duration_s: float) -> Iterator[None]:
+    """Keep the last CPU busy meanwhile."""
+    if not wanted:
+        yield
+        return
+    load = Process(
+        "load beside",
+        [sys.executable, "-c", LOAD],
+        dict(os.environ),
+        [max(os.sched_getaffinity(0))],
+        patience_s=PATIENCE_S + duration_s,
+    )
+    try:
+        yield
+    finally:
+        load.close()
+
+
+def _save(
+    texts: Path, wanted: Wanted, setup: Setup, contender: Contender, name: str, found: Found
+) -> None:
+    """Write what upstream's report scripts read, at the place where they look for it."""
+    rmw = contender.middleware.variables["RMW_IMPLEMENTATION"]
+    run_name = f"{name}, {wanted.nodes}, {wanted.message}, {setup.name}".replace(" ", "_")
+    directory = texts / f"{round(found.window_s)}s" / rmw / run_name
+    directory.mkdir(parents=True, exist_ok=True)
+    text = f"RMW Implementation: {rmw}\n{found.text}"
+    (directory / "std_output.log").write_text(text)
