@@ -16,7 +16,7 @@ from rmw_manycore_py.bench.reference.graph import (
     with_hot_path_split,
 )
 from rmw_manycore_py.bench.reference.kpis import Kpi, kpis, throughput
-from rmw_manycore_py.bench.reference.system import Found, Load, Nodes
+from rmw_manycore_py.bench.reference.system import KEEP_ALL, Found, Load, Nodes
 from rmw_manycore_py.scheduling import refusal
 
 MESSAGES = {
@@ -35,8 +35,6 @@ SPLIT = "hot path split over the clusters"
 BESIDE_A_LOAD = "beside a load"
 WITHOUT_PAUSE = "cycles 0"
 MAPPED = "mappings"
-# Without a pause no history of one message can be complete: so all are kept, and senders wait.
-KEEP_ALL = 0
 REPORT_PERIOD_MS = 100
 THROUGHPUT_S = 10.0
 
@@ -104,6 +102,7 @@ def _beside_a_load(wanted: Wanted, system: tuple[Member, ...], payload: str) -> 
 
 
 def _without_pause(wanted: Wanted, system: tuple[Member, ...], payload: str) -> Setup:
+    """Sensors and planner publish at once again; nothing gives way, so they wait for the others."""
     unpaused = tuple(replace(member, period_ms=0) for member in system)
     load = replace(
         wanted.load(payload), crunch_ms=0.0, depth=KEEP_ALL, report_period_ms=REPORT_PERIOD_MS

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Literal
 
 from rmw_manycore_program import own_program
+from rmw_manycore_py._transport import Configurator, TopicConfiguration
 from rmw_manycore_py.bench.contenders import Middleware
 from rmw_manycore_py.bench.idle import cpu_ns
 from rmw_manycore_py.bench.reference.graph import Member
@@ -27,6 +28,10 @@ LAST = "VehicleDBWSystem"
 # After the first output, until processes have done what they do once.
 SETTLED_AFTER_S = 3.0
 LOOK_AGAIN_AFTER_S = 0.02
+# What publishers that keep all may be ahead of their subscribers; beside each a header.
+KEEP_ALL = 0
+KEPT_MESSAGES = 16
+RECORD_BYTES = 128
 US_PER_MS = 1e3
 NS_PER_S = 1e9
 
@@ -40,6 +45,11 @@ class Load:
     crunch_ms: float = 0.0
     depth: int = 1
     report_period_ms: int = 0
+
+    @property
+    def message_bytes(self) -> int:
+        """The size of a message, which its type is named after."""
+        return int("".join(filter(str.isdigit, self.message))) * 1024
 
 
 @dataclass(frozen=True)
@@ -70,6 +80,8 @@ def run_system(
     with ExitStack() as stack:
         directory = Path(stack.enter_context(tempfile.TemporaryDirectory()))
         session = stack.enter_context(Session(placed, cpus, patience_s))
+        if middleware.is_manycore and load.depth == KEEP_ALL:
+            stack.enter_context(_bounded_platform(session, system, load))
         started_ns = time.time_ns()
         processes = [
             _start(session, nodes, party, member, load, directory)
@@ -84,6 +96,29 @@ def run_system(
         for process in processes:
             process.finish()
         return _found(directory, first_ns - started_ns, outside)
+
+
+def _bounded_platform(session: Session, system: Sequence[Member], load: Load) -> Configurator:
+    """Create the platform with topic DSMs of a fixed size, at which publishers that keep all wait.
+
+    Others grow up to the SMEM. Fast DDS keeps up to 5,000 messages of a topic.
+    """
+    return Configurator(
+        session.platform,
+        clusters=max(member.cluster for member in system),
+        cores_per_cluster=len(system) + 1,
+        smem_bytes=0,
+        host_cpu_of_receive_thread={},
+        topics=[
+            TopicConfiguration(
+                f"/{topic}",
+                id=number,
+                dsm_size_bytes=KEPT_MESSAGES * (load.message_bytes + RECORD_BYTES),
+                receiver_clusters=sum({1 << (m.cluster - 1) for m in system if topic in m.inputs}),
+            )
+            for number, topic in enumerate((t for m in system for t in m.outputs), start=1)
+        ],
+    )
 
 
 @dataclass
