@@ -3,20 +3,41 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from contextlib import suppress
+from dataclasses import asdict
 from pathlib import Path
 
 import click
 
 from rmw_manycore_py.cli.common.mapfile_argument import mapfile_argument
 from rmw_manycore_py.cli.common.options import examples, json_option
-from rmw_manycore_py.cli.common.printing import print_json, print_notices
+from rmw_manycore_py.cli.common.printing import new_table, print_json, print_notices, print_table
 from rmw_manycore_py.create import create
+from rmw_manycore_py.create.figure import (
+    FILE,
+    LINE,
+    MAX_NODES,
+    PAPERS_REDUCTION,
+    Dot,
+    by_hand,
+    dot_of,
+    draw,
+)
+from rmw_manycore_py.errors import ManycoreError
+from rmw_manycore_py.figures import load_figure
 from rmw_manycore_py.mapfile import as_data
+from rmw_manycore_py.mapfile.installed import installed_mapfiles
 from rmw_manycore_py.mapfile.placing.show import rules_in_words
 from rmw_manycore_py.topology import as_host_cpu, host_cpu_text
 
+_EXAMPLES = examples(
+    "manycore create talker_listener -o generated",
+    "manycore create autoware_reference -o generated --report",
+)
 
-@click.command("create", epilog=examples("manycore create talker_listener -o generated"))
+
+@click.command("create", epilog=_EXAMPLES)
 @mapfile_argument()
 @click.option(
     "-o",
@@ -26,10 +47,19 @@ from rmw_manycore_py.topology import as_host_cpu, host_cpu_text
     type=click.Path(file_okay=False, path_type=Path),
     help="Directory to write to; it may be one that create wrote before.",
 )
+@click.option(
+    "--report",
+    "with_figure",
+    is_flag=True,
+    help="Show how many lines mapfiles save: a table, and Fig. 12 of ROS-lite2 in DIRECTORY.",
+)
 @json_option
-def command(mapfile: Path, directory: Path, as_json: bool) -> None:
+def command(mapfile: Path, directory: Path, with_figure: bool, as_json: bool) -> None:
     """Write the topic table, launch scripts, parameter files and memory use of MAPFILE."""
+    if with_figure:
+        load_figure()
     report = create(mapfile, directory)
+    dots = _draw_figure(mapfile, directory) if with_figure else []
     if as_json:
         data = as_data(report.placement)
         print_json(
@@ -41,6 +71,7 @@ def command(mapfile: Path, directory: Path, as_json: bool) -> None:
                 "delta_loc": report.delta_loc,
                 "bridge": data["bridge"],
                 "nodes": data["nodes"],
+                "figure": [{**asdict(dot), "reduction": dot.reduction} for dot in dots],
             }
         )
         return
@@ -54,3 +85,35 @@ def command(mapfile: Path, directory: Path, as_json: bool) -> None:
     if bridge := report.placement.bridge:
         cpus = host_cpu_text(as_host_cpu(bridge.host_cpus))
         click.echo(f"bridge: {len(bridge.routes)} routes, host CPU {cpus}")
+    if dots:
+        _print_figure(dots, directory / FILE)
+
+
+def _draw_figure(mapfile: Path, directory: Path) -> list[Dot]:
+    """Draw the installed mapfiles and this one; those that are not valid here are left out."""
+    dots = [dot_of(mapfile)]
+    for installed in installed_mapfiles().values():
+        if not installed.samefile(mapfile):
+            with suppress(ManycoreError):
+                dots.append(dot_of(installed))
+    draw(dots, directory / FILE)
+    return dots
+
+
+def _print_figure(dots: Sequence[Dot], file: Path) -> None:
+    table = new_table("mapfile", "#nodes", "#lines by hand", "#lines of it", "#less")
+    for dot in dots:
+        table.add_row(
+            dot.name,
+            str(dot.nodes),
+            str(dot.delta_loc),
+            str(dot.written_lines),
+            f"{dot.reduction:.0%}",
+        )
+    click.echo()
+    print_table(table)
+    click.echo(
+        f"{LINE}: {by_hand()[-1]:,} lines for {MAX_NODES} nodes. "
+        f"ROS-lite2 reports {PAPERS_REDUCTION:.0%} less for its set of nodes."
+    )
+    click.echo(file)

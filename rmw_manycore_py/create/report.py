@@ -35,11 +35,14 @@ class CreateReport:
         )
 
 
+def estimated_loc(nodes: int, parameters: int, topics: int) -> int:
+    """Return N (10 + N_p + 6 N_t): the lines of so many nodes, each with so much (V-A)."""
+    return nodes * (_LINES_PER_NODE + parameters + _LINES_PER_TOPIC * topics)
+
+
 def delta_loc(nodes: Iterable[PlacedNode]) -> int:
     """Return the sum over the nodes of 10 + N_p + 6 N_t (ROS-lite2, section V-A)."""
-    return sum(
-        _LINES_PER_NODE + _parameters(node) + _LINES_PER_TOPIC * _topics(node) for node in nodes
-    )
+    return sum(estimated_loc(1, _parameters(node), _topics(node)) for node in nodes)
 
 
 def _parameters(node: PlacedNode) -> int:

@@ -19,7 +19,7 @@ LAYERS = [
     ("rmw_manycore_executor", "rmw_manycore_hook", "rmw_manycore_interfaces"),
     ("rmw_manycore_program", "rmw_manycore_py", ".errors", ".examples", ".words"),
     ("._transport", "._ndt"),
-    ("._ndt_bench", ".native_errors", ".qos"),
+    ("._ndt_bench", ".native_errors", ".qos", ".reference_system"),
     (".trace",),
     (".trace.files",),
     (".cpu_time", ".figures", ".parent_death", ".progress", ".ros", ".readiness"),
@@ -39,7 +39,7 @@ LAYERS = [
     (".ndt.nodes.scan_matcher",),
     (".ndt.nodes",),
     (".bench", ".bench.nodes"),
-    (".bench.ndt", ".bench.scale"),
+    (".bench.ndt", ".bench.reference", ".bench.scale"),
     (".cli.common", ".cli.topic.meters"),
     (".cli.doctor.report",),
     (
