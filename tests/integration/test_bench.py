@@ -138,3 +138,13 @@ def test_a_plot_needs_a_place() -> None:
 def test_bridge() -> None:
     report = run_bench("bridge", *BRIDGE)
     assert {result["contender"] for result in report["results"]} >= {"bridged", FAST_DDS_AND_OURS}
+
+
+def test_the_reference_system_is_measured_and_loses_nothing_where_all_is_kept() -> None:
+    parts = only("checked: manycore", "untouched, cycles 0: manycore")
+    rows = {row["question"]: row for row in run_bench("reference", *parts)["results"]}
+    assert rows["memory per node, PSS, checked"]["samples"] == 24
+    for figure in ("CPU of all nodes", "start to the first output", "hot path"):
+        assert rows[f"{figure}, checked"]["median"] > 0
+    assert rows["lost messages, untouched, cycles 0"]["largest"] == 0
+    assert rows["messages through the hot path, untouched, cycles 0"]["median"] > 0

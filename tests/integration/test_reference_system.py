@@ -1,0 +1,82 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""The 24 nodes of the Autoware reference system, run from their mapfile."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+import reference_system as described
+import yaml
+from support import IS_MANYCORE, MAPFILES, Program, leftovers, manycore_command
+
+from rmw_manycore_py import _transport
+from rmw_manycore_py.bench.reference.text import losses_in, reports_in
+
+pytestmark = [
+    pytest.mark.integration,
+    pytest.mark.skipif(not IS_MANYCORE, reason="a mapfile is about rmw_manycore"),
+]
+
+DURATION_S = 10
+# Here others use the CPUs as well: what is kept for a node is enough for seconds without one.
+PATIENT = {"depth": 100, "crunch_ms": 0.0, "payload": "checked"}
+MESSAGE = "manycore_reference_msgs/msg/Message4kb"
+COMMAND = "VehicleDBWSystem"
+
+
+@pytest.fixture
+def mapfile(tmp_path: Path) -> Path:
+    """Return the mapfile, for nodes that are patient."""
+    data = yaml.safe_load((MAPFILES / "autoware_reference.yaml").read_text())
+    for node in data["nodes"].values():
+        node["parameters"] = {**node["parameters"], **PATIENT}
+    path = tmp_path / "patient.yaml"
+    path.write_text(yaml.safe_dump(data))
+    return path
+
+
+def output_of(run: Program, node: str) -> str:
+    """Return what a node printed, without the prefix of its lines."""
+    parts = (line.split(" | ", 1) for line in run.lines if " | " in line)
+    return "\n".join(part[1] for part in parts if part[0].strip() == node)
+
+
+def endpoints(platform: str) -> tuple[described.Edges, described.Edges, set[str]]:
+    """Return who publishes, who subscribes and what, of the reference system's topics."""
+    with _transport.Platform(platform) as view:
+        ours = [e for e in view.endpoints() if e.type.startswith("manycore_reference_msgs/")]
+    edges: dict[str, described.Edges] = {"publisher": set(), "subscription": set()}
+    for endpoint in ours:
+        edges[endpoint.kind].add((endpoint.node_name, endpoint.topic.strip("/")))
+    return edges["publisher"], edges["subscription"], {endpoint.type for endpoint in ours}
+
+
+def test_24_nodes_run_for_ten_seconds_and_lose_nothing(
+    start: Callable[..., Program], mapfile: Path, platform: str
+) -> None:
+    run = start(manycore_command("run", mapfile, "--duration", str(DURATION_S)))
+    run.wait_for(rf"^{COMMAND} +\| +behavior planner period: ", timeout_s=120)
+    assert endpoints(platform) == (described.publishers(), described.subscriptions(), {MESSAGE})
+    with _transport.Platform(platform) as view:
+        nodes = [process for process in view.processes() if process.core is not None]
+        pinned = [os.sched_getaffinity(process.pid) for process in nodes]
+        lost = {e.topic: e.counters.lost for e in view.endpoints() if e.counters.lost}
+    assert len({(process.cluster, process.core) for process in nodes}) == 24
+    assert {len(cpus) for cpus in pinned} == {1}
+    assert lost == {}
+    assert run.wait(timeout_s=120) == 0
+    assert leftovers(platform) == []
+    for node in (*described.TRANSFORMS, *described.FUSIONS, described.CYCLIC, COMMAND):
+        assert losses_in(output_of(run, node)) == [], node
+    last = reports_in(output_of(run, COMMAND))[-1]
+    assert set(last.sequences) == {
+        *described.SENSORS,
+        *described.TRANSFORMS,
+        *described.FUSIONS,
+        described.CYCLIC,
+        described.INTERSECTION,
+    } - {"EuclideanClusterSettings"}
+    assert last.statistics["hot path drops"] == 0
