@@ -9,15 +9,10 @@ from typing import Any
 from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.mapfile import PlacedNode, check
 from rmw_manycore_py.mapfile.installed import find_mapfile
+from rmw_manycore_py.reference_system.sample_path import HOT_PATH, PLANNER
 from rmw_manycore_py.scheduling import Scheduling
 
 MAPFILE = "autoware_reference"
-HOT_PATH = (
-    *("FrontLidarDriver", "RearLidarDriver", "PointsTransformerFront", "PointsTransformerRear"),
-    *("PointCloudFusion", "RayGroundFilter", "EuclideanClusterDetector"),
-    "ObjectCollisionEstimator",
-)
-PLANNER = "BehaviorPlanner"
 # The priorities that upstream's benches give them.
 REAL_TIME = {**dict.fromkeys(HOT_PATH, Scheduling("fifo", 1)), PLANNER: Scheduling("fifo", 30)}
 

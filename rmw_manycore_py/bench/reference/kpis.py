@@ -7,9 +7,9 @@ import statistics
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from rmw_manycore_py.bench.reference.graph import HOT_PATH, PLANNER
 from rmw_manycore_py.bench.reference.system import Found
 from rmw_manycore_py.bench.reference.text import Report, values
+from rmw_manycore_py.reference_system.sample_path import HOT_PATH_SINK, PLANNER
 
 HOT_PATH_LATENCY = "hot path"
 HOT_PATH_WORST = "hot path, worst"
@@ -73,10 +73,9 @@ def lost(found: Found) -> int:
 
 def _rate(reports: Sequence[Report]) -> float:
     """Return the outputs a second of the hot path's last node, by its own records."""
-    sink = HOT_PATH[-1]
-    seen = [report for report in reports if sink in report.sequences]
+    seen = [report for report in reports if HOT_PATH_SINK in report.sequences]
     if len(seen) < 2:
         return 0.0
     first, last = seen[0], seen[-1]
-    count = last.sequences[sink] - first.sequences[sink]
-    return count * NS_PER_S / max(last.stamps_ns[sink] - first.stamps_ns[sink], 1)
+    count = last.sequences[HOT_PATH_SINK] - first.sequences[HOT_PATH_SINK]
+    return count * NS_PER_S / max(last.stamps_ns[HOT_PATH_SINK] - first.stamps_ns[HOT_PATH_SINK], 1)
