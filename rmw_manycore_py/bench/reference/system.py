@@ -91,6 +91,8 @@ def run_system(
         time.sleep(SETTLED_AFTER_S)
         with _measured([p.pid for p in processes], session) as outside:
             time.sleep(window_s)
+            for process in processes:
+                process.raise_if_failed()
         for process in processes:
             process.interrupt()
         for process in processes:
