@@ -21,8 +21,10 @@ pytestmark = [
 ]
 
 DURATION_S = 10
-# Here others use the CPUs as well: what is kept for a node is enough for seconds without one.
-PATIENT = {"depth": 100, "crunch_ms": 0.0, "payload": "checked"}
+# Here others use the CPUs as well: what is kept for a node is enough for a second without one.
+PATIENT = {"depth": 40, "crunch_ms": 0.0, "payload": "checked"}
+# Room for it: a topic DSM that grows meanwhile needs the lock that starting nodes take.
+TOPIC_DSM_BYTES = 50 * (4096 + 128)
 MESSAGE = "manycore_reference_msgs/msg/Message4kb"
 COMMAND = "VehicleDBWSystem"
 
@@ -33,6 +35,10 @@ def mapfile(tmp_path: Path) -> Path:
     data = yaml.safe_load((MAPFILES / "autoware_reference.yaml").read_text())
     for node in data["nodes"].values():
         node["parameters"] = {**node["parameters"], **PATIENT}
+    topics = {f"/{topic}" for _, topic in described.publishers()}
+    data["topics"] = {
+        topic: {"type": MESSAGE, "topic_dsm_size": TOPIC_DSM_BYTES} for topic in sorted(topics)
+    }
     path = tmp_path / "patient.yaml"
     path.write_text(yaml.safe_dump(data))
     return path

@@ -28,8 +28,8 @@ LAST = "VehicleDBWSystem"
 # After the first output, until processes have done what they do once.
 SETTLED_AFTER_S = 3.0
 LOOK_AGAIN_AFTER_S = 0.02
-# What publishers that keep all may be ahead of their subscribers; beside each a header.
 KEEP_ALL = 0
+# The topic DSM of each topic holds so many messages; beside each is a header.
 KEPT_MESSAGES = 16
 RECORD_BYTES = 128
 US_PER_MS = 1e3
@@ -80,8 +80,8 @@ def run_system(
     with ExitStack() as stack:
         directory = Path(stack.enter_context(tempfile.TemporaryDirectory()))
         session = stack.enter_context(Session(placed, cpus, patience_s))
-        if middleware.is_manycore and load.depth == KEEP_ALL:
-            stack.enter_context(_bounded_platform(session, system, load))
+        if middleware.is_manycore:
+            stack.enter_context(_platform(session, system, load))
         started_ns = time.time_ns()
         processes = [
             _start(session, nodes, party, member, load, directory)
@@ -100,10 +100,11 @@ def run_system(
         return _found(directory, first_ns - started_ns, outside)
 
 
-def _bounded_platform(session: Session, system: Sequence[Member], load: Load) -> Configurator:
-    """Create the platform with topic DSMs of a fixed size, at which publishers that keep all wait.
+def _platform(session: Session, system: Sequence[Member], load: Load) -> Configurator:
+    """Create the platform, with topic DSMs of a fixed size as a mapfile gives them.
 
-    Others grow up to the SMEM. Fast DDS keeps up to 5,000 messages of a topic.
+    One that grows takes the registry's lock for it, which a publisher may not get on a machine that
+    is busy with starting 24 nodes; and where all is kept it grows until the SMEM is full.
     """
     return Configurator(
         session.platform,
