@@ -109,6 +109,7 @@ install_for_tests() {
   install_packages $(missing_for_tests)
   install_extra ndt
   install_extra trace
+  install_extra record
   touch .venv/tests
 }
 

@@ -10,7 +10,10 @@ from rmw_manycore_py.cli.common.options import hidden_group_option
 
 VERBS = {
     verb: f"rmw_manycore_py.cli.topic.{verb}:command"
-    for verb in ("list", "info", "type", "find", "echo", "pub", "hz", "bw", "delay")
+    for verb in (
+        *("list", "info", "type", "find", "echo", "pub", "hz", "bw", "delay"),
+        *("record", "play"),
+    )
 }
 
 

@@ -32,7 +32,7 @@ class OutsideListener:
         raw: bool,
         qos: QosOptions,
     ) -> None:
-        _leave_middleware()
+        leave_middleware()
         self._topic, self._type_name = expand(topic, "/"), type_name
         self._heard, self._raw, self._qos = heard, raw, qos
         self._over = False
@@ -76,7 +76,7 @@ class OutsideListener:
         )
 
 
-def _leave_middleware() -> None:
+def leave_middleware() -> None:
     """Restart this program with Fast DDS loaded, unless it has been told to use that."""
     if os.environ.get("RMW_IMPLEMENTATION") != OUTSIDE_IMPLEMENTATION:
         restart(outside_environment())

@@ -1,0 +1,138 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""`manycore topic record`, with the options of `ros2 bag record`."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import click
+
+from rmw_manycore_py.cli.common.completion import complete_message_types, complete_topics
+from rmw_manycore_py.cli.common.options import examples, platform_option
+from rmw_manycore_py.cli.topic.outside import leave_middleware
+from rmw_manycore_py.cli.topic.selection_options import (
+    exclude_option,
+    exclude_regex_option,
+    full_names,
+    nothing_chosen,
+    regex_option,
+)
+from rmw_manycore_py.recording.library import require_library
+from rmw_manycore_py.recording.selection import Selection
+
+_MAX_CACHE_BYTES = 100 << 20  # as rosbag2
+# So many messages of a topic wait for the recorder while others have the CPU; more where publishers
+# keep more.
+_DEPTH = 100
+
+
+@click.command(
+    "record",
+    epilog=examples(
+        "manycore topic record /chatter /pose",
+        "manycore topic record -o drive.mcap '/camera/**' --compression zstd",
+        "manycore topic record --all --exclude-topics /rosout",
+        "manycore topic record --outside -e '^/lidar' --duration 60",
+    ),
+)
+@click.argument("topics", nargs=-1, shell_complete=complete_topics)
+@click.option("-a", "--all", "everything", is_flag=True, help="All topics that are not hidden.")
+@regex_option
+@click.option(
+    "--topic-types",
+    "types",
+    metavar="TYPE",
+    multiple=True,
+    shell_complete=complete_message_types,
+    help="Topics of this type; may be repeated.",
+)
+@exclude_option
+@exclude_regex_option
+@click.option("--include-hidden-topics", "hidden", is_flag=True, help="Also hidden ones.")
+@click.option(
+    "-o",
+    "--output",
+    type=click.Path(path_type=Path),
+    show_default="rosbag2_<date>-<time>",
+    help="A file that ends in .mcap, or a folder as `ros2 bag record` makes it.",
+)
+@click.option("--force", is_flag=True, help="Replace the recording that is there.")
+@click.option(
+    "--duration",
+    "duration_s",
+    type=click.FloatRange(min=0, min_open=True),
+    metavar="S",
+    help="End after S seconds.",
+)
+@click.option(
+    "--compression",
+    type=click.Choice(("none", "lz4", "zstd")),
+    default="none",
+    show_default=True,
+    help="Of chunks.",
+)
+@click.option(
+    "--max-cache-size",
+    "cache_bytes",
+    metavar="BYTES",
+    type=click.IntRange(0),
+    default=_MAX_CACHE_BYTES,
+    show_default=True,
+    help="Messages that wait for the disk take so much memory at most.",
+)
+@click.option(
+    "--depth",
+    metavar="N",
+    type=click.IntRange(1),
+    default=_DEPTH,
+    show_default=True,
+    help="Messages of a topic that may wait to be taken, at least.",
+)
+@click.option("--outside", is_flag=True, help="Record in the DDS domain $ROS_DOMAIN_ID instead.")
+@click.option("--json", "as_json", is_flag=True, help="Print what was recorded as JSON.")
+@platform_option
+def command(
+    topics: tuple[str, ...],
+    everything: bool,
+    regex: re.Pattern[str] | None,
+    types: tuple[str, ...],
+    excluded: tuple[str, ...],
+    exclude_regex: re.Pattern[str] | None,
+    hidden: bool,
+    output: Path | None,
+    force: bool,
+    duration_s: float | None,
+    compression: str,
+    cache_bytes: int,
+    depth: int,
+    outside: bool,
+    as_json: bool,
+    platform: str,
+) -> None:
+    """Record TOPICS in MCAP, for Foxglove, PlotJuggler, `ros2 bag` and `manycore topic play`.
+
+    TOPICS are names, or patterns: * stands for anything within a part of a name, ** for any
+    number of parts. Topics that appear later are recorded, too. Ends with Ctrl-C; what a kill
+    leaves can be read. Lost messages are counted.
+    """
+    if not (topics or everything or regex or types):
+        raise nothing_chosen()
+    require_library()
+    if outside:
+        leave_middleware()
+    from rmw_manycore_py.cli.topic.recording_session import Settings, record
+    from rmw_manycore_py.recording.target import Target, default_target
+
+    selection = Selection(
+        names=full_names(topics),
+        regex=regex,
+        types=types,
+        all=everything,
+        excluded=full_names(excluded),
+        exclude_regex=exclude_regex,
+        hidden=hidden,
+    )
+    target = Target(output or default_target())
+    settings = Settings(selection, target, force, duration_s, compression, cache_bytes, depth)
+    record(None if outside else platform, settings, as_json=as_json)

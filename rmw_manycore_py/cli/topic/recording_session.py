@@ -1,0 +1,141 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""A recording from its begin to Ctrl-C, and what is said of it."""
+
+from __future__ import annotations
+
+import os
+import selectors
+import time
+from dataclasses import dataclass
+from typing import Any
+
+import click
+
+from rmw_manycore_py.cli.common.printing import counted, print_json, size_text
+from rmw_manycore_py.cli.topic.status_line import StatusLine
+from rmw_manycore_py.recording.output import Output
+from rmw_manycore_py.recording.record.recorder import Recorder
+from rmw_manycore_py.recording.record.side import Side
+from rmw_manycore_py.recording.record.writing import WritingThread
+from rmw_manycore_py.recording.selection import Selection
+from rmw_manycore_py.recording.target import Target
+from rmw_manycore_py.signals import signal_inbox
+
+
+@dataclass(frozen=True)
+class Settings:
+    """What to record, and how."""
+
+    selection: Selection
+    target: Target
+    force: bool
+    duration_s: float | None
+    compression: str
+    cache_bytes: int
+    depth: int
+
+
+def record(platform: str | None, settings: Settings, *, as_json: bool) -> None:
+    """Record on a platform, or outside where it is None, until told to stop."""
+    line = StatusLine(quiet=as_json)
+    began_s = time.monotonic()
+    side = _side(platform)
+    try:
+        settings.target.prepare(force=settings.force)
+        output = Output(settings.target.file, settings.compression)
+        writing = WritingThread(output, settings.cache_bytes)
+        recorder = Recorder(side, settings.selection, writing, settings.depth, line.say)
+        line.say(f"writing {settings.target.file}; Ctrl-C ends")
+        try:
+            _run(recorder, output, settings.duration_s, line)
+        finally:
+            line.clear()
+            found = writing.finish(recorder.rows)
+    finally:
+        side.close()
+    settings.target.describe(found)
+    _report(settings.target, output, recorder, time.monotonic() - began_s, as_json)
+
+
+def _side(platform: str | None) -> Side:
+    if platform is None:
+        from rmw_manycore_py.recording.record.outside import Outside
+
+        return Outside()
+    from rmw_manycore_py.recording.record.inside import Inside
+
+    return Inside(platform)
+
+
+def _run(recorder: Recorder, output: Output, duration_s: float | None, line: StatusLine) -> None:
+    """Let the recorder work until a signal comes, the time is over, or it fails."""
+    began_s = time.monotonic()
+    ended = os.eventfd(0)
+    with signal_inbox() as inbox, selectors.DefaultSelector() as selector:
+        selector.register(inbox, selectors.EVENT_READ)
+        selector.register(ended, selectors.EVENT_READ)
+        recorder.start(lambda: os.eventfd_write(ended, 1))
+        try:
+            while not selector.select(_pause_s(line, began_s, duration_s)):
+                spent_s = time.monotonic() - began_s
+                if duration_s is not None and spent_s >= duration_s:
+                    break
+                line.show(_progress(recorder, output, spent_s))
+        finally:
+            recorder.stop()
+    os.close(ended)
+    if recorder.failure is not None:
+        raise recorder.failure
+
+
+def _pause_s(line: StatusLine, began_s: float, duration_s: float | None) -> float | None:
+    pauses = [] if line.period_s is None else [line.period_s]
+    if duration_s is not None:
+        pauses.append(max(began_s + duration_s - time.monotonic(), 0))
+    return min(pauses, default=None)
+
+
+def _progress(recorder: Recorder, output: Output, spent_s: float) -> str:
+    rows = recorder.rows
+    parts = [
+        f"recording {spent_s:.1f} s",
+        counted(len(rows), "topic"),
+        counted(sum(row.messages for row in rows), "message"),
+        size_text(output.size_bytes),
+    ]
+    if lost := sum(recorder.losses.values()):
+        parts.append(f"{lost} lost")
+    return " | ".join(parts)
+
+
+def _report(
+    target: Target, output: Output, recorder: Recorder, spent_s: float, as_json: bool
+) -> None:
+    if as_json:
+        print_json(_facts(target, output, recorder, spent_s))
+        return
+    for topic, count in sorted(recorder.losses.items()):
+        click.echo(f"lost: {counted(count, 'message')} of {topic}", err=True)
+    click.echo(
+        f"{target.path}: {counted(output.messages, 'message')} of "
+        f"{counted(len(recorder.rows), 'topic')}, {size_text(output.size_bytes)} in {spent_s:.1f} s"
+    )
+
+
+def _facts(target: Target, output: Output, recorder: Recorder, spent_s: float) -> dict[str, Any]:
+    return {
+        "path": str(target.path),
+        "file": str(target.file),
+        "messages": output.messages,
+        "size": output.size_bytes,
+        "duration_s": spent_s,
+        "topics": [
+            {
+                "name": row.name,
+                "type": row.type,
+                "messages": row.messages,
+                "lost": recorder.losses.get(row.name, 0),
+            }
+            for row in recorder.rows
+        ],
+    }

@@ -1,0 +1,49 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""How a recording or a playback is going: one line on a terminal, else a line now and then."""
+
+from __future__ import annotations
+
+import sys
+import time
+
+LINE_PERIOD_S = 10.0
+TERMINAL_PERIOD_S = 0.2
+_CLEAR = "\r\x1b[K"
+
+
+class StatusLine:
+    """Writes to standard error, below what is said once."""
+
+    def __init__(self, *, quiet: bool = False) -> None:
+        self._quiet = quiet
+        self._is_terminal = sys.stderr.isatty()
+        self._said_s = time.monotonic()
+
+    @property
+    def period_s(self) -> float | None:
+        """Return how often to show, None = never."""
+        if self._quiet:
+            return None
+        return TERMINAL_PERIOD_S if self._is_terminal else LINE_PERIOD_S
+
+    def show(self, text: str) -> None:
+        """Show how it is going, unless that was done shortly before."""
+        now_s = time.monotonic()
+        if self.period_s is None or now_s - self._said_s < self.period_s:
+            return
+        self._said_s = now_s
+        self._write(f"{_CLEAR}{text}" if self._is_terminal else f"{text}\n")
+
+    def say(self, text: str) -> None:
+        """Say something that stays."""
+        if not self._quiet:
+            self._write(f"{_CLEAR}{text}\n" if self._is_terminal else f"{text}\n")
+
+    def clear(self) -> None:
+        """Leave the line empty."""
+        if self._is_terminal and not self._quiet:
+            self._write(_CLEAR)
+
+    def _write(self, text: str) -> None:
+        sys.stderr.write(text)
+        sys.stderr.flush()

@@ -1,0 +1,16 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""The library that reads and writes MCAP, which an extra installs."""
+
+from __future__ import annotations
+
+from rmw_manycore_py.errors import ManycoreError
+
+
+def require_library() -> None:
+    """Say how to get the library, where it is not installed."""
+    try:
+        import mcap.writer  # noqa: F401
+    except ImportError as error:
+        raise ManycoreError(
+            f"recordings need the library mcap ({error}): pip install 'rmw-manycore[record]'"
+        ) from error

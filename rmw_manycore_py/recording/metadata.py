@@ -1,0 +1,137 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""What rosbag2 keeps of a recording beside its messages: metadata.yaml, and a copy in the file."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from rmw_manycore_py._transport import Qos
+from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
+from rmw_manycore_py.recording.definitions import NO_SCHEMA, Schema
+from rmw_manycore_py.recording.offers import profiles_of
+from rmw_manycore_py.recording.plain_yaml import dump
+
+FILE_NAME = "metadata.yaml"
+_ROOT = "rosbag2_bagfile_information"
+_VERSION = 9
+_DISTRO = "jazzy"  # of the wheels
+
+
+@dataclass
+class TopicRow:
+    """A topic of a recording, and how many messages it has."""
+
+    name: str
+    type: str
+    type_hash: str = ""
+    schema: Schema = NO_SCHEMA
+    offers: list[Qos] = field(default_factory=list)
+    encoding: str = "cdr"
+    messages: int = 0
+
+    def add_offers(self, offers: Iterable[Qos]) -> None:
+        """Note what publishers offer; each offer is there once."""
+        self.offers += [offer for offer in _distinct(offers) if offer not in self.offers]
+
+
+@dataclass(frozen=True)
+class Span:
+    """How many messages there are, and when the first and the last were recorded (ns)."""
+
+    messages: int
+    start_ns: int
+    end_ns: int
+
+    @property
+    def duration_ns(self) -> int:
+        """Return the time between the first and the last message."""
+        return self.end_ns - self.start_ns
+
+
+def information(file_name: str, rows: Sequence[TopicRow], span: Span) -> dict[str, Any]:
+    """Return what rosbag2 writes of a recording in one file."""
+    start = {"nanoseconds_since_epoch": span.start_ns}
+    duration = {"nanoseconds": span.duration_ns}
+    return {
+        "version": _VERSION,
+        "storage_identifier": "mcap",
+        "duration": duration,
+        "starting_time": start,
+        "message_count": span.messages,
+        "topics_with_message_count": [_topic(row) for row in rows],
+        "compression_format": "",
+        "compression_mode": "",
+        "relative_file_paths": [file_name],
+        "files": [
+            {
+                "path": file_name,
+                "starting_time": start,
+                "duration": duration,
+                "message_count": span.messages,
+            }
+        ],
+        "custom_data": {},
+        "ros_distro": os.environ.get("ROS_DISTRO") or _DISTRO,
+    }
+
+
+def _topic(row: TopicRow) -> dict[str, Any]:
+    metadata = {
+        "name": row.name,
+        "type": row.type,
+        "serialization_format": row.encoding,
+        "offered_qos_profiles": profiles_of(row.offers),
+        "type_description_hash": row.type_hash,
+    }
+    return {"topic_metadata": metadata, "message_count": row.messages}
+
+
+def text_of(found: dict[str, Any]) -> str:
+    """Return it as rosbag2 writes it into the recording itself."""
+    return dump(found)
+
+
+def write_metadata(folder: Path, found: dict[str, Any]) -> None:
+    """Write metadata.yaml, whole or not at all."""
+    path = folder / FILE_NAME
+    temporary = path.with_suffix(".yaml.part")
+    temporary.write_text(dump({_ROOT: found}))
+    temporary.rename(path)
+
+
+def read_metadata(folder: Path) -> dict[str, Any] | None:
+    """Return what metadata.yaml says; None where it is missing, as beside unfinished recordings.
+
+    :raises ManycoreError: when it is no metadata.yaml of rosbag2.
+    """
+    path = folder / FILE_NAME
+    try:
+        found = yaml.safe_load(path.read_text())[_ROOT]
+        if not isinstance(found["relative_file_paths"], list):
+            raise TypeError("relative_file_paths")
+    except FileNotFoundError:
+        return None
+    except OSError as error:
+        raise ManycoreError(f"{path}: cannot be read: {error.strerror}", EXIT_BAD_INPUT) from error
+    except (yaml.YAMLError, UnicodeDecodeError, KeyError, TypeError) as error:
+        raise ManycoreError(
+            f"{path}: expected '{_ROOT}' with 'relative_file_paths', as rosbag2 writes it, found "
+            f"something else ({error!r}); without this file the recording is read by itself",
+            EXIT_BAD_INPUT,
+        ) from error
+    assert isinstance(found, dict)
+    return found
+
+
+def _distinct(offers: Iterable[Qos]) -> list[Qos]:
+    found: list[Qos] = []
+    for offer in offers:
+        if offer not in found:
+            found.append(offer)
+    return found

@@ -1,0 +1,138 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""A recording that is being written: MCAP in chunks, each whole on the disk before the next."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import Any
+
+from mcap.writer import CompressionType, Writer
+
+from rmw_manycore_py.errors import ManycoreError
+from rmw_manycore_py.recording.definitions import Schema
+from rmw_manycore_py.recording.metadata import Span, TopicRow, information, text_of
+from rmw_manycore_py.recording.offers import profiles_text
+
+COMPRESSIONS = ("none", "lz4", "zstd")
+# The largest part of a recording that reading one message takes into memory.
+CHUNK_BYTES = 1 << 20
+_SEQUENCE_MASK = 0xFFFFFFFF
+
+
+class Output:
+    """Writes messages; `flush` ends a chunk, and what a kill leaves are whole chunks."""
+
+    def __init__(self, path: Path, compression: str = "none") -> None:
+        """Create the file; it must not be there.
+
+        :raises ManycoreError: when it cannot be created.
+        """
+        self.path = path
+        self._file = _ChunkFile(path)
+        self._writer = Writer(
+            self._file,  # type: ignore[arg-type]
+            chunk_size=CHUNK_BYTES,
+            compression=CompressionType[compression.upper()],
+        )
+        self._channels: dict[str, int] = {}
+        self._schemas: dict[tuple[str, Schema], int] = {}
+        self._start_ns, self._end_ns, self.messages = 0, 0, 0
+        self._writer.start("ros2")
+
+    def write(
+        self, row: TopicRow, recorded_ns: int, published_ns: int, number: int, data: bytes
+    ) -> None:
+        """Write a message of a topic."""
+        channel = self._channels.get(row.name)
+        if channel is None:
+            channel = self._add(row)
+        size_before = self._file.tell()
+        self._writer.add_message(channel, recorded_ns, data, published_ns, number & _SEQUENCE_MASK)
+        if self._file.tell() != size_before:  # the chunk was full
+            self._file.flush()
+        row.messages += 1
+        self._start_ns = min(self._start_ns, recorded_ns) if self.messages else recorded_ns
+        self._end_ns = max(self._end_ns, recorded_ns)
+        self.messages += 1
+
+    def _add(self, row: TopicRow) -> int:
+        metadata = {
+            "offered_qos_profiles": profiles_text(row.offers),
+            "topic_type_hash": row.type_hash,
+        }
+        channel = self._writer.register_channel(row.name, row.encoding, self._schema(row), metadata)
+        self._channels[row.name] = channel
+        return channel
+
+    def _schema(self, row: TopicRow) -> int:
+        key = row.type, row.schema
+        if key not in self._schemas:
+            self._schemas[key] = self._writer.register_schema(
+                row.type, row.schema.encoding, row.schema.text.encode()
+            )
+        return self._schemas[key]
+
+    def flush(self) -> None:
+        """Write what was not written yet."""
+        self._writer.flush()
+
+    @property
+    def size_bytes(self) -> int:
+        """Return how large the file is by now."""
+        return self._file.tell()
+
+    def finish(self, rows: list[TopicRow]) -> dict[str, Any]:
+        """Write topics without messages, and the index; return what metadata.yaml says."""
+        for row in rows:
+            if row.name not in self._channels:
+                self._add(row)
+        span = Span(self.messages, self._start_ns, self._end_ns)
+        found = information(self.path.name, rows, span)
+        self._writer.flush()
+        self._writer.add_metadata("rosbag2", {"serialized_metadata": text_of(found)})
+        self._writer.finish()
+        self._file.close()
+        return found
+
+    def give_up(self) -> None:
+        """Cut off what was begun last, after a failed write; whole chunks stay."""
+        self._file.cut()
+        self._file.close()
+
+
+class _ChunkFile:
+    """A file for `Writer`: all of a write, or an error after which `cut` undoes the chunk."""
+
+    def __init__(self, path: Path) -> None:
+        try:
+            self._descriptor = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o644)
+        except OSError as error:
+            raise ManycoreError(f"{path}: cannot be written: {error.strerror}") from error
+        self._size = self._whole = 0
+
+    def write(self, data: bytes) -> int:
+        """Write all of the data."""
+        left = memoryview(data)
+        while left:
+            written = os.write(self._descriptor, left)
+            left = left[written:]
+            self._size += written
+        return self._size
+
+    def tell(self) -> int:
+        """Return where the next write goes."""
+        return self._size
+
+    def flush(self) -> None:
+        """Note that what is there is whole."""
+        self._whole = self._size
+
+    def cut(self) -> None:
+        """Forget what was written since the last flush."""
+        os.ftruncate(self._descriptor, self._whole)
+        self._size = self._whole
+
+    def close(self) -> None:
+        """Close the file."""
+        os.close(self._descriptor)

@@ -1,0 +1,122 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""The side of a DDS domain: rclpy on Fast DDS, and its serialized messages."""
+
+from __future__ import annotations
+
+import ctypes
+import os
+from typing import Any
+
+from rclpy.event_handler import SubscriptionEventCallbacks
+
+from rmw_manycore_bridge import types
+from rmw_manycore_bridge.outside import Outside as Domain
+from rmw_manycore_bridge.policies import from_rclpy, to_rclpy
+from rmw_manycore_bridge.rcl import RawReader
+from rmw_manycore_py._transport import Qos
+from rmw_manycore_py.recording.record.side import Ears, Heard, Offer
+from rmw_manycore_py.ros.domain import ros_domain
+
+
+class Outside:
+    """Sleeps on a wait set, woken by messages and by changes of the domain's graph."""
+
+    def __init__(self) -> None:
+        self._domain = Domain(
+            ros_domain(), f"_manycore_record_{os.getpid()}", self._changed, lambda _: False
+        )
+        self.stale = True
+
+    def _changed(self) -> None:
+        self.stale = True
+
+    def offers(self) -> dict[str, list[Offer]]:
+        """Return the publishers there are, by topic."""
+        return {
+            topic: [_offer(publisher) for publisher in self._domain.publishers(topic)]
+            for topic in self._domain.published(lambda _: True)
+        }
+
+    def subscribe(self, topic: str, offer: Offer, request: Qos, heard: Heard) -> Ears:
+        """Subscribe to a topic.
+
+        :raises ImportError: when its type is not installed.
+        """
+        return _OutsideEars(self._domain, topic, types.load(offer.type), request, heard)
+
+    def turn(self) -> None:
+        """Hand on what has arrived; sleep until there is something, or publishers come or go."""
+        self._domain.turn(None)
+
+    def wake(self) -> None:
+        """End the present or the next sleep."""
+        self._domain.wake()
+
+    def close(self) -> None:
+        """Leave the domain."""
+        self._domain.close()
+
+
+def _offer(publisher: Any) -> Offer:
+    text = str(publisher.topic_type_hash)
+    type_hash = text if text.startswith("RIHS01_") else ""
+    return Offer(publisher.topic_type, type_hash, from_rclpy(publisher.qos_profile))
+
+
+class _OutsideEars:
+    """A subscription in the domain."""
+
+    kind = "subscription"
+
+    def __init__(
+        self, domain: Domain, topic: str, message_type: Any, request: Qos, heard: Heard
+    ) -> None:
+        self._domain, self._heard = domain, heard
+        self.entity: Any = domain.node.create_subscription(
+            message_type,
+            topic,
+            _never_called,
+            to_rclpy(request),
+            raw=True,
+            event_callbacks=SubscriptionEventCallbacks(use_default_callbacks=False),
+        )
+        self._reader = RawReader(self.entity)
+        self._last: dict[bytes, int] = {}  # numbers, by publisher
+        self._lost = 0
+        domain.readers.append(self)
+
+    def pump_outside(self) -> None:
+        """Hand on what has arrived."""
+        self.take_all()
+
+    def take_all(self) -> None:
+        """Hand on all that has arrived."""
+        reader = self._reader
+        while self.entity is not None and reader.take():
+            info = reader.info
+            publisher, number = info.publisher, int(info.publication_sequence_number)
+            self._count_gap(publisher, number)
+            data = ctypes.string_at(reader.address, reader.size)
+            self._heard(data, int(info.source_timestamp), publisher, number)
+
+    def _count_gap(self, publisher: bytes, number: int) -> None:
+        last = self._last.get(publisher)
+        if last is not None and number > last + 1:
+            self._lost += number - last - 1
+        self._last[publisher] = max(number, last or 0)
+
+    def lost(self) -> int:
+        """Return how many messages are missing between those that came."""
+        return self._lost
+
+    def close(self) -> None:
+        """End the subscription."""
+        if self.entity is not None:
+            self._domain.readers.remove(self)
+            self._reader.close()
+            self._domain.node.destroy_subscription(self.entity)
+            self.entity = None
+
+
+def _never_called(*_: Any) -> None:
+    """Stand in where rclpy wants a callback: messages are taken from the subscription itself."""

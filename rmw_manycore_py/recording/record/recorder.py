@@ -1,0 +1,132 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""A recorder: subscribes to chosen topics as publishers come, and has what it takes written."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable, Sequence
+
+from rmw_manycore_bridge import types
+from rmw_manycore_py.recording.definitions import NO_SCHEMA, schema_of
+from rmw_manycore_py.recording.metadata import TopicRow
+from rmw_manycore_py.recording.record.side import Offer, Side
+from rmw_manycore_py.recording.record.topic import RecordedTopic
+from rmw_manycore_py.recording.record.writing import WritingThread
+from rmw_manycore_py.recording.selection import Selection
+
+_COUNT_PERIOD_S = 0.5
+
+Tell = Callable[[str], None]
+
+
+class Recorder:
+    """Takes messages in a thread of its own."""
+
+    def __init__(
+        self, side: Side, selection: Selection, writing: WritingThread, depth: int, tell: Tell
+    ) -> None:
+        """Begin.
+
+        :param depth: the least number of messages of a topic that may wait to be taken.
+        :param tell: called with what a user has to know, once for each topic.
+        """
+        self._side, self._selection, self._depth = side, selection, depth
+        self._writing, self._tell = writing, tell
+        self._topics: dict[str, RecordedTopic] = {}
+        self._refused: set[str] = set()
+        self._stopping = False
+        self.losses: dict[str, int] = {}  # of topics of which messages were lost
+        self.failure: BaseException | None = None
+        self._ended: Callable[[], None] = lambda: None
+        self._thread = threading.Thread(target=self._run, name="taking")
+
+    def start(self, ended: Callable[[], None]) -> None:
+        """Record from now on; `ended` is called when that fails."""
+        self._ended = ended
+        self._thread.start()
+
+    def stop(self) -> None:
+        """Take what has arrived by now, and nothing more."""
+        self._stopping = True
+        self._side.wake()
+        self._thread.join()
+
+    @property
+    def rows(self) -> list[TopicRow]:
+        """Return the topics that are recorded."""
+        return [topic.row for topic in list(self._topics.values())]
+
+    def _count_losses(self) -> None:
+        found = {name: topic.lost() for name, topic in self._topics.items()}
+        self.losses = {name: count for name, count in found.items() if count}
+
+    def _run(self) -> None:
+        counted_s = 0.0
+        try:
+            while not self._stopping and self._writing.failure is None:
+                if self._side.stale:
+                    self._side.stale = False
+                    self._follow()
+                self._side.turn()
+                if time.monotonic() - counted_s >= _COUNT_PERIOD_S:
+                    counted_s = time.monotonic()
+                    self._count_losses()
+            for topic in self._topics.values():
+                topic.take_all()
+        except BaseException as error:
+            self.failure = error
+        finally:
+            for topic in self._topics.values():
+                topic.close()
+            self._count_losses()
+            self._ended()
+
+    def _follow(self) -> None:
+        """Subscribe to what is new, and as publishers offer it by now."""
+        for name, offers in self._side.offers().items():
+            types = sorted({offer.type for offer in offers})
+            if not self._selection.takes(name, types[0]):
+                continue
+            if len(types) > 1 or self._clashes(name, types[0]):
+                self._refuse(name, f"has several types, {self._all_types(name, types)}")
+            else:
+                self._record(name, offers)
+
+    def _clashes(self, name: str, type_name: str) -> bool:
+        return name in self._topics and self._topics[name].row.type != type_name
+
+    def _all_types(self, name: str, types: Sequence[str]) -> str:
+        known = {self._topics[name].row.type} if name in self._topics else set()
+        return " and ".join(sorted({*types, *known}))
+
+    def _record(self, name: str, offers: list[Offer]) -> None:
+        topic = self._topics.get(name)
+        if topic is None:
+            topic = self._begin(name, offers[0])
+        try:
+            topic.follow(offers, self._depth)
+        except ImportError as error:
+            self._refuse(name, f"cannot be recorded: {error}; manycore interface build PATH")
+            return
+        if name not in self._topics:
+            self._topics[name] = topic
+            self._tell(f"recording {name} ({topic.row.type})")
+
+    def _begin(self, name: str, offer: Offer) -> RecordedTopic:
+        schema = schema_of(offer.type)
+        if offer.type_hash and types.hash_of(offer.type) not in ("", offer.type_hash):
+            schema = NO_SCHEMA  # the installed definition is that of another type
+        if schema is NO_SCHEMA:
+            self._tell(
+                f"{name}: its type {offer.type} is not installed as its publisher has it: recorded "
+                "without the definition, which viewers need; manycore interface build PATH"
+            )
+        row = TopicRow(name, offer.type, offer.type_hash, schema)
+        return RecordedTopic(row, self._side, self._writing, self._tell)
+
+    def _refuse(self, name: str, reason: str) -> None:
+        """Say once why a topic, or a publisher of it, is left out."""
+        if name not in self._refused:
+            self._refused.add(name)
+            self._tell(f"{name} {reason}: not recorded")

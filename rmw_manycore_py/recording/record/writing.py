@@ -1,0 +1,120 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""The thread that writes, so that a slow disk does not keep messages from being taken."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections import deque
+from dataclasses import dataclass
+from typing import Any
+
+from rmw_manycore_py.errors import ManycoreError
+from rmw_manycore_py.recording.metadata import TopicRow
+from rmw_manycore_py.recording.output import Output
+
+# A kill loses what was taken in this time at most.
+FLUSH_PERIOD_S = 0.5
+
+
+@dataclass(frozen=True)
+class Taken:
+    """A message that was taken from a topic."""
+
+    row: TopicRow
+    recorded_ns: int
+    published_ns: int
+    number: int
+    data: bytes
+
+
+class WritingThread:
+    """Writes messages in the order in which they are given to it."""
+
+    _end = object()
+
+    def __init__(self, output: Output, max_cache_bytes: int) -> None:
+        self._output = output
+        self._max_cache_bytes = max_cache_bytes
+        self._waiting: deque[Taken] = deque()
+        self._waiting_bytes = 0
+        self._ending = False
+        self._changed = threading.Condition()
+        self.failure: OSError | None = None
+        self._thread = threading.Thread(target=self._run, name="writing")
+        self._thread.start()
+
+    def write(self, taken: Taken) -> None:
+        """Have a message written; waits while the cache is full.
+
+        After a failure nothing is written any more.
+        """
+        with self._changed:
+            while self._waiting_bytes > self._max_cache_bytes and self.failure is None:
+                self._changed.wait()
+            if self.failure is None:
+                self._waiting.append(taken)
+                self._waiting_bytes += len(taken.data)
+                self._changed.notify_all()
+
+    @property
+    def waiting_bytes(self) -> int:
+        """Return how much is in the cache."""
+        return self._waiting_bytes
+
+    def finish(self, rows: list[TopicRow]) -> dict[str, Any]:
+        """Write what waits, and the index; return what metadata.yaml says.
+
+        :raises ManycoreError: when writing has failed; the file has whole chunks up to then.
+        """
+        with self._changed:
+            self._ending = True
+            self._changed.notify_all()
+        self._thread.join()
+        try:
+            if self.failure is None:
+                return self._output.finish(rows)
+        except OSError as error:
+            self.failure = error
+        self._output.give_up()
+        raise ManycoreError(
+            f"{self._output.path}: cannot be written: {self.failure.strerror}; it holds about "
+            f"{self._output.messages} messages up to then, without an index: "
+            f"manycore bag info {self._output.path}"
+        ) from self.failure
+
+    def _run(self) -> None:
+        flush_s: float | None = None  # when the chunk that is being filled has to be on the disk
+        try:
+            while (taken := self._next(flush_s)) is not self._end:
+                if isinstance(taken, Taken):
+                    self._write(taken)
+                    flush_s = flush_s or time.monotonic() + FLUSH_PERIOD_S
+                if flush_s is not None and time.monotonic() >= flush_s:
+                    self._output.flush()
+                    flush_s = None
+        except OSError as error:
+            with self._changed:
+                self.failure = error
+                self._waiting.clear()
+                self._changed.notify_all()
+
+    def _next(self, until_s: float | None) -> Taken | object | None:
+        """Return the next message, the end after the last one, None where `until_s` comes first."""
+        with self._changed:
+            while not self._waiting:
+                if self._ending:
+                    return self._end
+                left_s = None if until_s is None else until_s - time.monotonic()
+                if left_s is not None and left_s <= 0:
+                    return None
+                self._changed.wait(left_s)
+            return self._waiting.popleft()
+
+    def _write(self, taken: Taken) -> None:
+        self._output.write(
+            taken.row, taken.recorded_ns, taken.published_ns, taken.number, taken.data
+        )
+        with self._changed:
+            self._waiting_bytes -= len(taken.data)
+            self._changed.notify_all()
