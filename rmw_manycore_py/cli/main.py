@@ -31,6 +31,7 @@ VERBS = {
     "lifecycle": "rmw_manycore_py.cli.lifecycle:command",
     "interface": "rmw_manycore_py.cli.interface:command",
     "component": "rmw_manycore_py.cli.component:command",
+    "bag": "rmw_manycore_py.cli.bag:command",
     "clean": "rmw_manycore_py.cli.clean:command",
     "doctor": "rmw_manycore_py.cli.doctor:command",
     "env": "rmw_manycore_py.cli.env:command",

@@ -44,7 +44,7 @@ LAYERS = [
     (".cli.common", ".cli.topic.meters"),
     (".cli.doctor.report",),
     (
-        *(".cli.action", ".cli.bench", ".cli.bridge", ".cli.component", ".cli.doctor"),
+        *(".cli.action", ".cli.bag", ".cli.bench", ".cli.bridge", ".cli.component", ".cli.doctor"),
         *(".cli.interface", ".cli.lifecycle", ".cli.map", ".cli.ndt", ".cli.node", ".cli.param"),
         *(".cli.service", ".cli.top", ".cli.topic", ".cli.trace"),
     ),

@@ -1,0 +1,64 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""The keys of a player on a terminal, those of `ros2 bag play`."""
+
+from __future__ import annotations
+
+import os
+import sys
+import termios
+import tty
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from rmw_manycore_py.recording.play.position import Position
+
+HELP = "space: pause; right: next message; up, down: faster, slower; Ctrl-C: end"
+_ARROWS = {"A": "up", "B": "down", "C": "right"}
+
+
+def press(position: Position, typed: str) -> None:
+    """Do what keys stand for; others are passed over."""
+    for key in _keys(typed):
+        if key == " ":
+            position.toggle_pause()
+        elif key == "right":
+            position.step()
+        elif key == "up":
+            position.faster()
+        elif key == "down":
+            position.slower()
+
+
+def _keys(typed: str) -> Iterator[str]:
+    """Yield keys; a terminal sends an arrow as ESC [ and a letter, or as ESC O and a letter."""
+    rest = typed
+    while rest:
+        if rest[:2] in ("\x1b[", "\x1bO"):
+            yield _ARROWS.get(rest[2:3], "")
+            rest = rest[3:]
+        else:
+            yield rest[0]
+            rest = rest[1:]
+
+
+@contextmanager
+def single_keys(*, wanted: bool) -> Iterator[int | None]:
+    """Yield the descriptor that keys come from, one by one and unseen; None without a terminal."""
+    descriptor = sys.stdin.fileno() if sys.stdin is not None else -1
+    if not wanted or not _is_ours(descriptor):
+        yield None
+        return
+    before = termios.tcgetattr(descriptor)
+    tty.setcbreak(descriptor, termios.TCSADRAIN)
+    try:
+        yield descriptor
+    finally:
+        termios.tcsetattr(descriptor, termios.TCSADRAIN, before)
+
+
+def _is_ours(descriptor: int) -> bool:
+    """Tell whether it is a terminal that this process may use: a job in the background may not."""
+    try:
+        return os.isatty(descriptor) and os.tcgetpgrp(descriptor) == os.getpgrp()
+    except OSError:
+        return False

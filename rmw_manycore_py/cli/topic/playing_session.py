@@ -1,0 +1,129 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""A playback from its begin to its end or Ctrl-C, and what is said of it."""
+
+from __future__ import annotations
+
+import os
+import selectors
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import click
+import numpy as np
+
+from rmw_manycore_py.cli.common.printing import counted, print_json, print_notices
+from rmw_manycore_py.cli.topic.play_keys import HELP, press, single_keys
+from rmw_manycore_py.cli.topic.status_line import StatusLine
+from rmw_manycore_py.recording.play.player import Player, Tally
+from rmw_manycore_py.recording.play.position import Position
+from rmw_manycore_py.recording.play.program import Program
+from rmw_manycore_py.recording.play.stage import Stage
+from rmw_manycore_py.recording.recording import Recording
+from rmw_manycore_py.signals import signal_inbox
+
+_NS_PER_S = 1_000_000_000
+_NS_PER_MS = 1_000_000
+
+
+@dataclass(frozen=True)
+class Settings:
+    """What to play, and how."""
+
+    path: Path
+    program: Program
+    rate: float
+    loops: bool
+    clock_hz: float | None
+    delay_s: float
+    paused: bool
+    keyless: bool
+
+
+def play(platform: str | None, settings: Settings, *, as_json: bool) -> None:
+    """Play to a platform, or outside where it is None, until the end or until told to stop."""
+    with Recording(settings.path) as recording:
+        print_notices(recording.faults)
+        stage = _stage(platform)
+        try:
+            position = Position(settings.rate, paused=settings.paused)
+            player = Player(
+                recording,
+                stage,
+                settings.program,
+                position,
+                loops=settings.loops,
+                delay_s=settings.delay_s,
+                clock_hz=settings.clock_hz,
+            )
+            _run(player, position, settings, StatusLine(quiet=as_json))
+        finally:
+            stage.close()
+    _report(player.tally, as_json)
+
+
+def _stage(platform: str | None) -> Stage:
+    if platform is None:
+        from rmw_manycore_py.recording.play.outside import Outside
+
+        return Outside()
+    from rmw_manycore_py.recording.play.inside import Inside
+
+    return Inside(platform)
+
+
+def _run(player: Player, position: Position, settings: Settings, line: StatusLine) -> None:
+    ended = os.eventfd(0)
+    with (
+        signal_inbox() as inbox,
+        selectors.DefaultSelector() as selector,
+        single_keys(wanted=not settings.keyless) as typing,
+    ):
+        selector.register(inbox, selectors.EVENT_READ, "end")
+        selector.register(ended, selectors.EVENT_READ, "end")
+        try:
+            if typing is not None:
+                selector.register(typing, selectors.EVENT_READ, "keys")
+                line.say(HELP)
+            player.start(lambda: os.eventfd_write(ended, 1))
+            while True:
+                events = [key.data for key, _ in selector.select(line.period_s)]
+                if "end" in events:
+                    break
+                if "keys" in events and typing is not None:
+                    press(position, os.read(typing, 1024).decode(errors="replace"))
+                line.show(_progress(player, position))
+        finally:
+            player.stop()
+            line.clear()
+    os.close(ended)
+    if player.failure is not None:
+        raise player.failure
+
+
+def _progress(player: Player, position: Position) -> str:
+    at_s = max(position.at_ns() - player.start_ns, 0) / _NS_PER_S
+    whole_s = (player.end_ns - player.start_ns) / _NS_PER_S
+    parts = [
+        f"{'paused at' if position.is_paused else 'playing'} {min(at_s, whole_s):.1f} s "
+        f"of {whole_s:.1f} s",
+        f"rate {position.rate:.3g}",
+        counted(player.tally.messages, "message"),
+    ]
+    return " | ".join(parts)
+
+
+def _report(tally: Tally, as_json: bool) -> None:
+    facts: dict[str, Any] = {"messages": tally.messages}
+    if tally.late_ns:
+        median, p99 = np.percentile(np.array(tally.late_ns) / _NS_PER_MS, (50, 99))
+        facts.update(late_ms_p50=float(median), late_ms_p99=float(p99))
+    if as_json:
+        print_json(facts)
+        return
+    text = f"played {counted(tally.messages, 'message')}"
+    if tally.late_ns:
+        text += (
+            f"; late by {facts['late_ms_p50']:.2f} ms (p50), {facts['late_ms_p99']:.2f} ms (p99)"
+        )
+    click.echo(text)

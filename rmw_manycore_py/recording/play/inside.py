@@ -1,0 +1,47 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""The platform as a stage: a member process without ROS."""
+
+from __future__ import annotations
+
+import os
+
+from rmw_manycore_py import _transport
+from rmw_manycore_py._transport import Qos
+from rmw_manycore_py.native_errors import translate_native_errors
+from rmw_manycore_py.recording.place import own_cluster
+from rmw_manycore_py.recording.play.stage import Voice
+
+
+class Inside:
+    """Types need not be installed: messages are published as they were recorded."""
+
+    def __init__(self, platform: str) -> None:
+        with translate_native_errors():
+            label = f"_manycore_play_{os.getpid()}"
+            self._process = _transport.Process(platform, own_cluster(), None, label)
+
+    def types_of(self, topic: str) -> dict[str, str]:
+        """Return the types that others have of a topic, each with its hash, "" if unknown."""
+        with translate_native_errors():
+            endpoints = self._process.endpoints_of(topic)
+        return {e.type: e.type_hash for e in endpoints if e.role == "topic"}
+
+    def publisher(self, topic: str, type_name: str, type_hash: str, qos: Qos) -> Voice:
+        """Return a publisher."""
+        with translate_native_errors(topic):
+            return _InsideVoice(
+                topic, self._process.publisher(topic, type_name, qos, type_hash=type_hash)
+            )
+
+    def close(self) -> None:
+        """Leave; what was published is with its subscriptions."""
+        self._process.close()
+
+
+class _InsideVoice:
+    def __init__(self, topic: str, publisher: _transport.Publisher) -> None:
+        self._topic, self._publisher = topic, publisher
+
+    def publish(self, data: bytes) -> None:
+        with translate_native_errors(self._topic):
+            self._publisher.publish(data)

@@ -1,0 +1,63 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""A DDS domain as a stage: rclpy on Fast DDS, and its serialized messages."""
+
+from __future__ import annotations
+
+import os
+from typing import Any
+
+from rclpy.duration import Duration
+from rclpy.event_handler import PublisherEventCallbacks
+
+from rmw_manycore_bridge import types
+from rmw_manycore_bridge.outside import Outside as Domain
+from rmw_manycore_bridge.policies import to_rclpy
+from rmw_manycore_py._transport import Qos
+from rmw_manycore_py.recording.play.stage import Voice
+from rmw_manycore_py.ros.domain import ros_domain
+
+# How long reliable subscribers are waited for at the end; those that stand still get no more.
+_PATIENCE = Duration(seconds=1)
+
+
+class Outside:
+    """Needs the types of what it plays."""
+
+    def __init__(self) -> None:
+        name = f"_manycore_play_{os.getpid()}"
+        self._domain = Domain(ros_domain(), name, lambda: None, lambda _: False)
+        self._publishers: list[Any] = []
+
+    def types_of(self, topic: str) -> dict[str, str]:
+        """Return the types that others have of a topic, as far as they are known by now."""
+        others = [*self._domain.publishers(topic), *self._domain.subscriptions(topic)]
+        return {other.topic_type: _hash_text(other) for other in others}
+
+    def publisher(self, topic: str, type_name: str, type_hash: str, qos: Qos) -> Voice:
+        """Return a publisher.
+
+        :raises ImportError: when its type is not installed, or is another one by its hash.
+        """
+        installed = types.hash_of(type_name)
+        if installed and type_hash not in ("", installed):
+            raise ImportError(f"{type_name} is another one here: {installed}, not {type_hash}")
+        publisher = self._domain.node.create_publisher(
+            types.load(type_name),
+            topic,
+            to_rclpy(qos),
+            event_callbacks=PublisherEventCallbacks(use_default_callbacks=False),
+        )
+        self._publishers.append(publisher)
+        voice: Voice = publisher  # rclpy's publishers take serialized messages, too
+        return voice
+
+    def close(self) -> None:
+        """Leave, once reliable subscribers have what was published."""
+        for publisher in self._publishers:
+            publisher.wait_for_all_acked(_PATIENCE)
+        self._domain.close()
+
+
+def _hash_text(endpoint: Any) -> str:
+    text = str(endpoint.topic_type_hash)
+    return text if text.startswith("RIHS01_") else ""

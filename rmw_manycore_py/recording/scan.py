@@ -1,0 +1,100 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""What is in a file without an index: one that was not finished, or was written without."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import IO, Any
+
+from mcap.exceptions import EndOfFile
+from mcap.records import Channel, Chunk, ChunkIndex, DataEnd, Footer, Message, Schema, Statistics
+from mcap.stream_reader import StreamReader, breakup_chunk
+from mcap.summary import Summary
+
+from rmw_manycore_py.errors import what_is_wrong
+
+
+@dataclass(frozen=True)
+class Scanned:
+    """What was found up to the end, or up to where a file is cut off or damaged."""
+
+    summary: Summary
+    end: int  # offset of the first byte that is not part of it
+    fault: str  # "" where the file is whole up to there
+
+
+def scan(file: IO[bytes], size_bytes: int) -> Scanned:
+    """Read a file from its begin, and index the chunks that are whole."""
+    scanner = _Scanner()
+    end = fault = None
+    file.seek(0)
+    try:
+        reader = StreamReader(file, emit_chunks=True, record_size_limit=size_bytes)
+        for record in reader.records:
+            if isinstance(record, (DataEnd, Footer)):
+                break
+            scanner.add(record, end or 0, file.tell())
+            end = file.tell()
+    except EndOfFile:
+        fault = "it was not finished"
+    except Exception as error:  # the library and its decoders promise no class of errors
+        fault = f"it is damaged behind byte {end or 0} ({what_is_wrong(error)})"
+    return Scanned(scanner.summary, end or 0, fault or "")
+
+
+class _Scanner:
+    def __init__(self) -> None:
+        self.summary = Summary()
+        self._counts: dict[int, int] = {}
+        self._start_ns: int | None = None
+        self._end_ns = 0
+        self._count()
+
+    def add(self, record: Any, start: int, end: int) -> None:
+        """Note a record that lies between two offsets."""
+        if isinstance(record, Chunk):
+            inner = breakup_chunk(record, validate_crc=True)
+            for one in inner:
+                self._add(one)
+            self.summary.chunk_indexes.append(_index(record, start, end))
+        else:
+            self._add(record)
+        self._count()
+
+    def _add(self, record: Any) -> None:
+        if isinstance(record, Schema):
+            self.summary.schemas[record.id] = record
+        elif isinstance(record, Channel):
+            self.summary.channels[record.id] = record
+        elif isinstance(record, Message):
+            self._counts[record.channel_id] = self._counts.get(record.channel_id, 0) + 1
+            at_ns = record.log_time
+            self._start_ns = at_ns if self._start_ns is None else min(self._start_ns, at_ns)
+            self._end_ns = max(self._end_ns, at_ns)
+
+    def _count(self) -> None:
+        self.summary.statistics = Statistics(
+            attachment_count=0,
+            channel_count=len(self.summary.channels),
+            channel_message_counts=self._counts,
+            chunk_count=len(self.summary.chunk_indexes),
+            message_count=sum(self._counts.values()),
+            message_start_time=self._start_ns or 0,
+            message_end_time=self._end_ns,
+            metadata_count=0,
+            schema_count=len(self.summary.schemas),
+        )
+
+
+def _index(chunk: Chunk, start: int, end: int) -> ChunkIndex:
+    return ChunkIndex(
+        chunk_length=end - start,
+        chunk_start_offset=start,
+        compression=chunk.compression,
+        compressed_size=len(chunk.data),
+        message_end_time=chunk.message_end_time,
+        message_index_length=0,
+        message_index_offsets={},
+        message_start_time=chunk.message_start_time,
+        uncompressed_size=chunk.uncompressed_size,
+    )
