@@ -23,9 +23,7 @@ _SERVICE_EVENT = "/_service_event"
 
 @click.command(
     "info",
-    epilog=examples(
-        "manycore bag info drive.mcap", "manycore bag info rosbag2_2026_05_04-10_12_30"
-    ),
+    epilog=examples("manycore bag info drive.mcap", "manycore bag info rosbag2_2026_05_04"),
 )
 @click.argument("path", metavar="RECORDING", type=click.Path(exists=True, path_type=Path))
 @click.option("-t", "--topic-name", "names_only", is_flag=True, help="Show the topics' names only.")
