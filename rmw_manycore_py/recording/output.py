@@ -9,7 +9,7 @@ from typing import Any
 
 from mcap.writer import CompressionType, Writer
 
-from rmw_manycore_py.errors import ManycoreError
+from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
 from rmw_manycore_py.recording.definitions import Schema
 from rmw_manycore_py.recording.metadata import Span, TopicRow, information, text_of
 from rmw_manycore_py.recording.offers import profiles_text
@@ -38,7 +38,11 @@ class Output:
         self._channels: dict[str, int] = {}
         self._schemas: dict[tuple[str, Schema], int] = {}
         self._start_ns, self._end_ns, self.messages = 0, 0, 0
-        self._writer.start("ros2")
+        try:
+            self._writer.start("ros2")
+        except OSError as error:
+            self._file.close()
+            raise _unwritable(path, error) from error
 
     def write(
         self, row: TopicRow, recorded_ns: int, published_ns: int, number: int, data: bytes
@@ -101,6 +105,10 @@ class Output:
         self._file.close()
 
 
+def _unwritable(path: Path, error: OSError) -> ManycoreError:
+    return ManycoreError(f"{path}: cannot be written: {error.strerror}", EXIT_BAD_INPUT)
+
+
 class _ChunkFile:
     """A file for `Writer`: all of a write, or an error after which `cut` undoes the chunk."""
 
@@ -108,7 +116,7 @@ class _ChunkFile:
         try:
             self._descriptor = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o644)
         except OSError as error:
-            raise ManycoreError(f"{path}: cannot be written: {error.strerror}") from error
+            raise _unwritable(path, error) from error
         self._size = self._whole = 0
 
     def write(self, data: bytes) -> int:

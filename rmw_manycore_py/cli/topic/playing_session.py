@@ -3,8 +3,10 @@
 
 from __future__ import annotations
 
+import json
 import os
 import selectors
+from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -12,7 +14,8 @@ from typing import Any
 import click
 import numpy as np
 
-from rmw_manycore_py.cli.common.printing import counted, print_json, print_notices
+from rmw_manycore_py.cli.common.printing import counted, print_notices
+from rmw_manycore_py.cli.topic.alarm import Alarm
 from rmw_manycore_py.cli.topic.play_keys import HELP, press, single_keys
 from rmw_manycore_py.cli.topic.status_line import StatusLine
 from rmw_manycore_py.recording.play.player import Player, Tally
@@ -42,23 +45,19 @@ class Settings:
 
 def play(platform: str | None, settings: Settings, *, as_json: bool) -> None:
     """Play to a platform, or outside where it is None, until the end or until told to stop."""
-    with Recording(settings.path) as recording:
+    with Recording(settings.path) as recording, closing(_stage(platform)) as stage:
         print_notices(recording.faults)
-        stage = _stage(platform)
-        try:
-            position = Position(settings.rate, paused=settings.paused)
-            player = Player(
-                recording,
-                stage,
-                settings.program,
-                position,
-                loops=settings.loops,
-                delay_s=settings.delay_s,
-                clock_hz=settings.clock_hz,
-            )
-            _run(player, position, settings, StatusLine(quiet=as_json))
-        finally:
-            stage.close()
+        position = Position(settings.rate, paused=settings.paused)
+        player = Player(
+            recording,
+            stage,
+            settings.program,
+            position,
+            loops=settings.loops,
+            delay_s=settings.delay_s,
+            clock_hz=settings.clock_hz,
+        )
+        _run(player, position, settings, StatusLine(quiet=as_json))
     _report(player.tally, as_json)
 
 
@@ -73,8 +72,8 @@ def _stage(platform: str | None) -> Stage:
 
 
 def _run(player: Player, position: Position, settings: Settings, line: StatusLine) -> None:
-    ended = os.eventfd(0)
     with (
+        closing(Alarm()) as ended,
         signal_inbox() as inbox,
         selectors.DefaultSelector() as selector,
         single_keys(wanted=not settings.keyless) as typing,
@@ -85,7 +84,7 @@ def _run(player: Player, position: Position, settings: Settings, line: StatusLin
             if typing is not None:
                 selector.register(typing, selectors.EVENT_READ, "keys")
                 line.say(HELP)
-            player.start(lambda: os.eventfd_write(ended, 1))
+            player.start(ended.ring)
             while True:
                 events = [key.data for key, _ in selector.select(line.period_s)]
                 if "end" in events:
@@ -96,7 +95,6 @@ def _run(player: Player, position: Position, settings: Settings, line: StatusLin
         finally:
             player.stop()
             line.clear()
-    os.close(ended)
     if player.failure is not None:
         raise player.failure
 
@@ -119,7 +117,7 @@ def _report(tally: Tally, as_json: bool) -> None:
         median, p99 = np.percentile(np.array(tally.late_ns) / _NS_PER_MS, (50, 99))
         facts.update(late_ms_p50=float(median), late_ms_p99=float(p99))
     if as_json:
-        print_json(facts)
+        click.echo(json.dumps(facts))
         return
     text = f"played {counted(tally.messages, 'message')}"
     if tally.late_ns:

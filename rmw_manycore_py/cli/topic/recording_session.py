@@ -3,15 +3,18 @@
 
 from __future__ import annotations
 
-import os
+import json
 import selectors
 import time
+from collections.abc import Callable
+from contextlib import closing
 from dataclasses import dataclass
 from typing import Any
 
 import click
 
-from rmw_manycore_py.cli.common.printing import counted, print_json, size_text
+from rmw_manycore_py.cli.common.printing import counted, size_text
+from rmw_manycore_py.cli.topic.alarm import Alarm
 from rmw_manycore_py.cli.topic.status_line import StatusLine
 from rmw_manycore_py.recording.output import Output
 from rmw_manycore_py.recording.record.recorder import Recorder
@@ -39,20 +42,29 @@ def record(platform: str | None, settings: Settings, *, as_json: bool) -> None:
     """Record on a platform, or outside where it is None, until told to stop."""
     line = StatusLine(quiet=as_json)
     began_s = time.monotonic()
-    side = _side(platform)
-    try:
+    with signal_inbox() as inbox, closing(_side(platform)) as side, closing(Alarm()) as ended:
         settings.target.prepare(force=settings.force)
         output = Output(settings.target.file, settings.compression)
-        writing = WritingThread(output, settings.cache_bytes)
+        writing = WritingThread(output, settings.cache_bytes, ended.ring)
         recorder = Recorder(side, settings.selection, writing, settings.depth, line.say)
         line.say(f"writing {settings.target.file}; Ctrl-C ends")
         try:
-            _run(recorder, output, settings.duration_s, line)
+            recorder.start(ended.ring)
+            with selectors.DefaultSelector() as selector:
+                selector.register(inbox, selectors.EVENT_READ)
+                selector.register(ended, selectors.EVENT_READ)
+                _wait(
+                    selector,
+                    settings.duration_s,
+                    line,
+                    lambda: _progress(recorder, output, began_s),
+                )
         finally:
+            recorder.stop()
             line.clear()
             found = writing.finish(recorder.rows)
-    finally:
-        side.close()
+    if recorder.failure is not None:
+        raise recorder.failure
     settings.target.describe(found)
     _report(settings.target, output, recorder, time.monotonic() - began_s, as_json)
 
@@ -67,25 +79,18 @@ def _side(platform: str | None) -> Side:
     return Inside(platform)
 
 
-def _run(recorder: Recorder, output: Output, duration_s: float | None, line: StatusLine) -> None:
-    """Let the recorder work until a signal comes, the time is over, or it fails."""
+def _wait(
+    selector: selectors.BaseSelector,
+    duration_s: float | None,
+    line: StatusLine,
+    progress: Callable[[], str],
+) -> None:
+    """Show how it goes until a signal comes, the time is over, or the recorder ends."""
     began_s = time.monotonic()
-    ended = os.eventfd(0)
-    with signal_inbox() as inbox, selectors.DefaultSelector() as selector:
-        selector.register(inbox, selectors.EVENT_READ)
-        selector.register(ended, selectors.EVENT_READ)
-        recorder.start(lambda: os.eventfd_write(ended, 1))
-        try:
-            while not selector.select(_pause_s(line, began_s, duration_s)):
-                spent_s = time.monotonic() - began_s
-                if duration_s is not None and spent_s >= duration_s:
-                    break
-                line.show(_progress(recorder, output, spent_s))
-        finally:
-            recorder.stop()
-    os.close(ended)
-    if recorder.failure is not None:
-        raise recorder.failure
+    while not selector.select(_pause_s(line, began_s, duration_s)):
+        if duration_s is not None and time.monotonic() - began_s >= duration_s:
+            return
+        line.show(progress())
 
 
 def _pause_s(line: StatusLine, began_s: float, duration_s: float | None) -> float | None:
@@ -95,10 +100,10 @@ def _pause_s(line: StatusLine, began_s: float, duration_s: float | None) -> floa
     return min(pauses, default=None)
 
 
-def _progress(recorder: Recorder, output: Output, spent_s: float) -> str:
+def _progress(recorder: Recorder, output: Output, began_s: float) -> str:
     rows = recorder.rows
     parts = [
-        f"recording {spent_s:.1f} s",
+        f"recording {time.monotonic() - began_s:.1f} s",
         counted(len(rows), "topic"),
         counted(sum(row.messages for row in rows), "message"),
         size_text(output.size_bytes),
@@ -112,7 +117,7 @@ def _report(
     target: Target, output: Output, recorder: Recorder, spent_s: float, as_json: bool
 ) -> None:
     if as_json:
-        print_json(_facts(target, output, recorder, spent_s))
+        click.echo(json.dumps(_facts(target, output, recorder, spent_s)))
         return
     for topic, count in sorted(recorder.losses.items()):
         click.echo(f"lost: {counted(count, 'message')} of {topic}", err=True)

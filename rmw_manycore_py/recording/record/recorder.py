@@ -85,20 +85,25 @@ class Recorder:
     def _follow(self) -> None:
         """Subscribe to what is new, and as publishers offer it by now."""
         for name, offers in self._side.offers().items():
-            types = sorted({offer.type for offer in offers})
-            if not self._selection.takes(name, types[0]):
+            if not self._selection.takes(name, offers[0].type):
                 continue
-            if len(types) > 1 or self._clashes(name, types[0]):
-                self._refuse(name, f"has several types, {self._all_types(name, types)}")
+            types = self._types_of(name, offers)
+            if len(types) > 1:
+                self._refuse(name, f"has several types, {' and '.join(types)}")
             else:
                 self._record(name, offers)
 
-    def _clashes(self, name: str, type_name: str) -> bool:
-        return name in self._topics and self._topics[name].row.type != type_name
-
-    def _all_types(self, name: str, types: Sequence[str]) -> str:
-        known = {self._topics[name].row.type} if name in self._topics else set()
-        return " and ".join(sorted({*types, *known}))
+    def _types_of(self, name: str, offers: Sequence[Offer]) -> list[str]:
+        """Return the types of a topic by now; with hashes, where one has several definitions."""
+        found = {(offer.type, offer.type_hash) for offer in offers}
+        if name in self._topics:
+            row = self._topics[name].row
+            found.add((row.type, row.type_hash))
+        names = sorted({type_name for type_name, _ in found})
+        hashes = sorted({type_hash for _, type_hash in found if type_hash})
+        if len(names) > 1 or len(hashes) < 2:
+            return names
+        return [f"{names[0]} ({type_hash})" for type_hash in hashes]
 
     def _record(self, name: str, offers: list[Offer]) -> None:
         topic = self._topics.get(name)
@@ -107,7 +112,7 @@ class Recorder:
         try:
             topic.follow(offers, self._depth)
         except ImportError as error:
-            self._refuse(name, f"cannot be recorded: {error}; manycore interface build PATH")
+            self._refuse(name, f"({error}; manycore interface build PATH)")
             return
         if name not in self._topics:
             self._topics[name] = topic
@@ -129,4 +134,4 @@ class Recorder:
         """Say once why a topic, or a publisher of it, is left out."""
         if name not in self._refused:
             self._refused.add(name)
-            self._tell(f"{name} {reason}: not recorded")
+            self._tell(f"not recorded: {name} {reason}")

@@ -6,6 +6,7 @@ from __future__ import annotations
 import threading
 import time
 from collections import deque
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -33,8 +34,9 @@ class WritingThread:
 
     _end = object()
 
-    def __init__(self, output: Output, max_cache_bytes: int) -> None:
-        self._output = output
+    def __init__(self, output: Output, max_cache_bytes: int, failed: Callable[[], None]) -> None:
+        """Start; `failed` is called when nothing can be written any more."""
+        self._output, self._failed = output, failed
         self._max_cache_bytes = max_cache_bytes
         self._waiting: deque[Taken] = deque()
         self._waiting_bytes = 0
@@ -56,11 +58,6 @@ class WritingThread:
                 self._waiting.append(taken)
                 self._waiting_bytes += len(taken.data)
                 self._changed.notify_all()
-
-    @property
-    def waiting_bytes(self) -> int:
-        """Return how much is in the cache."""
-        return self._waiting_bytes
 
     def finish(self, rows: list[TopicRow]) -> dict[str, Any]:
         """Write what waits, and the index; return what metadata.yaml says.
@@ -98,6 +95,7 @@ class WritingThread:
                 self.failure = error
                 self._waiting.clear()
                 self._changed.notify_all()
+            self._failed()
 
     def _next(self, until_s: float | None) -> Taken | object | None:
         """Return the next message, the end after the last one, None where `until_s` comes first."""

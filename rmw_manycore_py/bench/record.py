@@ -1,0 +1,106 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Does a recorder keep up, and a player keep time? Without a peer: rosbag2 is not on PyPI."""
+
+from __future__ import annotations
+
+import os
+import signal
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+from rmw_manycore_py.bench.contenders import INSIDE, MIB
+from rmw_manycore_py.bench.question import Question, Run
+from rmw_manycore_py.bench.session import Process, Session
+from rmw_manycore_py.bench.summary import Goal, Result
+from rmw_manycore_py.recording.library import require_library
+from rmw_manycore_py.recording.recording import Recording
+
+TOPIC = "/bench"
+SECONDS = 20.0
+_CLI = "rmw_manycore_py.cli"
+_LOST, _LATE, _RATE = "messages lost by the recorder", "lateness of the player", "recorded"
+_MEDIAN, _P99 = "median", "p99"
+
+
+@dataclass(frozen=True)
+class Stream:
+    """Messages of a size at a rate."""
+
+    name: str
+    size_bytes: int
+    rate_hz: int
+
+
+LARGE = Stream("1 MiB at 100 Hz", MIB, 100)
+MIDDLE = Stream("64 KiB at 1600 Hz", MIB // 16, 1600)
+SMALL = Stream("100 B at 1000 Hz", 100, 1000)
+STREAMS = (LARGE, MIDDLE, SMALL)
+
+
+def measure(run: Run) -> list[Result]:
+    """Record each stream, and play what was recorded."""
+    require_library()
+    return [
+        result for stream in STREAMS if run.wants(stream.name) for result in _measure(run, stream)
+    ]
+
+
+def _measure(run: Run, stream: Stream) -> list[Result]:
+    lost, rates, medians, p99s = [], [], [], []
+    for turn in range(run.rounds):
+        with tempfile.TemporaryDirectory() as directory:
+            file = Path(directory, "bench.mcap")
+            run.note(f"record, round {turn + 1} of {run.rounds}: {stream.name}")
+            sent, bytes_per_s = _record(run, stream, file)
+            with Recording(file) as recording:
+                lost.append(float(sent - recording.span.messages))
+            rates.append(bytes_per_s / 1e6)
+            run.note(f"play, round {turn + 1} of {run.rounds}: {stream.name}")
+            median_ms, p99_ms = _play(run, file)
+            medians.append(median_ms)
+            p99s.append(p99_ms)
+    return [
+        Result(_LOST, stream.name, "count", tuple(lost)),
+        Result(_RATE, stream.name, "MB/s", tuple(rates), higher_is_better=True),
+        Result(_LATE, f"{stream.name}, {_MEDIAN}", "ms", tuple(medians)),
+        Result(_LATE, f"{stream.name}, {_P99}", "ms", tuple(p99s)),
+    ]
+
+
+def _record(run: Run, stream: Stream, file: Path) -> tuple[int, float]:
+    """Return how many messages were published, and how many bytes per second."""
+    count = run.iterations(int(SECONDS * stream.rate_hz))
+    with Session(INSIDE, run.cpus) as session, _verb(session, "record", TOPIC, "-o", file):
+        source = session.python("steady", 0, TOPIC, stream.size_bytes, stream.rate_hz, count)
+        found = source.finish()
+    return int(found["sent"]), float(found["bytes_per_s"])
+
+
+@contextmanager
+def _verb(session: Session, *words: object) -> Iterator[Process]:
+    """Run a verb of `manycore topic` until the block ends, then interrupt it."""
+    process = session.module(_CLI, 1, "topic", *words)
+    yield process
+    os.kill(process.pid, signal.SIGINT)
+    process.finish()
+
+
+def _play(run: Run, file: Path) -> tuple[float, float]:
+    """Return by how many ms messages were published late: median and 99th percentile."""
+    with Session(INSIDE, run.cpus) as session:
+        found = session.module(_CLI, 0, "topic", "play", file, "--json").finish()
+    return float(found["late_ms_p50"]), float(found["late_ms_p99"])
+
+
+QUESTION = Question(
+    "record",
+    measure,
+    (
+        *(Goal(_LOST, stream.name, "within", 0, statistic="largest") for stream in STREAMS),
+        *(Goal(_LATE, f"{stream.name}, {_MEDIAN}", "within", 0.5) for stream in STREAMS),
+    ),
+    "publisher and player on the first CPU, recorder on the second, files in $TMPDIR",
+)
