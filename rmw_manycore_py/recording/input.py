@@ -13,14 +13,13 @@ from mcap.reader import SeekingReader
 from mcap.records import Channel, Message, Metadata, Statistics
 from mcap.stream_reader import StreamReader
 from mcap.summary import Summary
+from mcap.writer import MCAP0_MAGIC
 
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError, what_is_wrong
 from rmw_manycore_py.recording.definitions import Schema as Definition
 from rmw_manycore_py.recording.metadata import Span, TopicRow
 from rmw_manycore_py.recording.offers import offers_in
 from rmw_manycore_py.recording.scan import Scanned, scan
-
-_MAGIC = b"\x89MCAP0\r\n"
 
 
 class Recorded(NamedTuple):
@@ -55,11 +54,12 @@ class Input:
             raise
 
     def _check_magic(self) -> None:
-        found = self._file.read(len(_MAGIC))
-        if found != _MAGIC:
+        found = self._file.read(len(MCAP0_MAGIC))
+        if found != MCAP0_MAGIC:
             what = "an empty file" if not found else f"{found!r}"
             raise ManycoreError(
-                f"{self.path}: expected an MCAP file, which begins with {_MAGIC!r}, found {what}",
+                f"{self.path}: expected an MCAP file, which begins with {MCAP0_MAGIC!r}, found "
+                f"{what}",
                 EXIT_BAD_INPUT,
             )
 

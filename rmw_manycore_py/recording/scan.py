@@ -3,15 +3,18 @@
 
 from __future__ import annotations
 
+import os
 from dataclasses import dataclass
 from typing import IO, Any
 
-from mcap.exceptions import EndOfFile
 from mcap.records import Channel, Chunk, ChunkIndex, DataEnd, Footer, Message, Schema, Statistics
 from mcap.stream_reader import StreamReader, breakup_chunk
 from mcap.summary import Summary
+from mcap.writer import MCAP0_MAGIC
 
 from rmw_manycore_py.errors import what_is_wrong
+
+_UNFINISHED = "it was not finished"
 
 
 @dataclass(frozen=True)
@@ -27,6 +30,9 @@ def scan(file: IO[bytes], size_bytes: int) -> Scanned:
     """Read a file from its begin, and index the chunks that are whole."""
     scanner = _Scanner()
     end = fault = None
+    file.seek(-len(MCAP0_MAGIC), os.SEEK_END)
+    if file.read() != MCAP0_MAGIC:
+        fault = _UNFINISHED
     file.seek(0)
     try:
         reader = StreamReader(file, emit_chunks=True, record_size_limit=size_bytes)
@@ -35,10 +41,10 @@ def scan(file: IO[bytes], size_bytes: int) -> Scanned:
                 break
             scanner.add(record, end or 0, file.tell())
             end = file.tell()
-    except EndOfFile:
-        fault = "it was not finished"
     except Exception as error:  # the library and its decoders promise no class of errors
-        fault = f"it is damaged behind byte {end or 0} ({what_is_wrong(error)})"
+        fault = _UNFINISHED
+        if file.tell() < size_bytes:
+            fault = f"it is damaged behind byte {end or 0} ({what_is_wrong(error)})"
     return Scanned(scanner.summary, end or 0, fault or "")
 
 

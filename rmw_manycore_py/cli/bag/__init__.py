@@ -3,7 +3,10 @@
 
 from __future__ import annotations
 
+from copy import copy
+
 import click
+from typing_extensions import override
 
 from rmw_manycore_py.cli.common.group import LazyGroup
 
@@ -14,6 +17,17 @@ VERBS = {
 }
 
 
-@click.group("bag", cls=LazyGroup, commands_at=VERBS)
+class _Aliases(LazyGroup):
+    """Shows the examples of verbs of `manycore topic` under its own name."""
+
+    @override
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        command = copy(super().get_command(ctx, cmd_name))
+        if command is not None and command.epilog:
+            command.epilog = command.epilog.replace("manycore topic", "manycore bag")
+        return command
+
+
+@click.group("bag", cls=_Aliases, commands_at=VERBS)
 def command() -> None:
     """Look at recordings; `record` and `play` are those of `manycore topic`."""

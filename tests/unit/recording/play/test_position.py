@@ -1,0 +1,84 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""The time of a player, by a clock that the test moves."""
+
+from __future__ import annotations
+
+import threading
+
+import pytest
+
+from rmw_manycore_py.recording.play.position import Position
+
+pytestmark = pytest.mark.unit
+
+S = 1_000_000_000
+
+
+class Watch:
+    def __init__(self) -> None:
+        self.now_ns = 5 * S
+
+    def __call__(self) -> int:
+        return self.now_ns
+
+
+@pytest.fixture
+def watch() -> Watch:
+    return Watch()
+
+
+def test_it_runs_at_its_rate(watch: Watch) -> None:
+    position = Position(2.0, paused=False, now_ns=watch)
+    position.jump(100 * S)
+    watch.now_ns += 3 * S
+    assert position.at_ns() == 106 * S
+    assert position.wait_until(104 * S) == 1 * S  # late by a second of real time
+
+
+def test_it_stands_while_paused(watch: Watch) -> None:
+    position = Position(1.0, paused=True, now_ns=watch)
+    watch.now_ns += S
+    assert position.at_ns() == 0
+    position.toggle_pause()
+    watch.now_ns += S
+    position.toggle_pause()
+    watch.now_ns += S
+    assert (position.at_ns(), position.is_paused) == (S, True)
+
+
+def test_the_rate_changes_from_here_on(watch: Watch) -> None:
+    position = Position(1.0, paused=False, now_ns=watch)
+    watch.now_ns += 10 * S
+    position.faster()
+    assert position.at_ns() == 10 * S
+    assert position.rate == pytest.approx(1.1)
+    position.slower()
+    assert position.rate == pytest.approx(1.0)
+
+
+def test_a_step_goes_to_the_next_message(watch: Watch) -> None:
+    position = Position(1.0, paused=True, now_ns=watch)
+    position.step()
+    assert position.wait_until(7 * S) == 0
+    assert position.at_ns() == 7 * S
+
+
+def test_a_step_counts_only_while_paused(watch: Watch) -> None:
+    position = Position(1.0, paused=False, now_ns=watch)
+    position.step()
+    position.toggle_pause()
+    waiting = threading.Thread(target=position.wait_until, args=(S,))
+    waiting.start()
+    position.stop()
+    waiting.join()
+    assert position.at_ns() == 0
+
+
+def test_stopping_ends_the_wait(watch: Watch) -> None:
+    position = Position(1.0, paused=True, now_ns=watch)
+    found: list[int | None] = [0]
+    waiting = threading.Thread(target=lambda: found.append(position.wait_until(S)))
+    waiting.start()
+    position.stop()
+    waiting.join()
+    assert found == [0, None]

@@ -1,0 +1,227 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Files that are whole, cut off and damaged, and folders of rosbag2."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+
+import pytest
+from bag_support import Bag
+from mcap.writer import CompressionType, IndexType, Writer
+from recordings import START_NS, STRING, string_row, text_in, text_message, write_texts
+
+from rmw_manycore_py._transport import Qos
+from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
+from rmw_manycore_py.recording.metadata import write_metadata
+from rmw_manycore_py.recording.output import Output
+from rmw_manycore_py.recording.recording import Recording
+from rmw_manycore_py.recording.target import Target
+
+pytestmark = [pytest.mark.unit, pytest.mark.needs("rosbags", "mcap")]
+
+TEXTS = [("/a", 0.1 * n, f"text {n}") for n in range(12)]
+
+
+def texts_of(recording: Recording, *topics: str) -> list[str]:
+    return [text_in(m.data) for m in recording.messages(topics or {"/a"})]
+
+
+@pytest.mark.parametrize("compression", ["none", "lz4", "zstd"])
+def test_what_is_written_is_read(tmp_path: Path, compression: str) -> None:
+    path = write_texts(tmp_path / "a.mcap", TEXTS, compression=compression, each=5)
+    with Recording(path) as recording:
+        assert texts_of(recording) == [text for _, _, text in TEXTS]
+        assert recording.faults == []
+        (row,) = recording.topics
+        assert (row.name, row.type, row.messages, row.offers) == ("/a", STRING, 12, [Qos()])
+        span = recording.span
+        assert (span.messages, span.start_ns) == (12, START_NS)
+        assert recording.distro == "jazzy"
+        late = recording.messages({"/a"}, START_NS + 1_000_000_000)
+        assert [text_in(message.data) for message in late] == ["text 10", "text 11"]
+
+
+def test_messages_come_in_the_order_of_their_times(tmp_path: Path) -> None:
+    texts = [("/a", 0.3, "c"), ("/b", 0.1, "a"), ("/a", 0.2, "b")]
+    with Recording(write_texts(tmp_path / "a.mcap", texts, each=2)) as recording:
+        assert texts_of(recording, "/a", "/b") == ["a", "b", "c"]
+        assert texts_of(recording, "/b") == ["a"]
+
+
+@pytest.mark.parametrize("compression", ["none", "zstd"])
+def test_a_file_may_be_cut_off_anywhere(tmp_path: Path, compression: str) -> None:
+    """Each cut leaves the messages of the chunks before it."""
+    whole = write_texts(tmp_path / "a.mcap", TEXTS, compression=compression, each=3).read_bytes()
+    cut, found = tmp_path / "cut.mcap", set()
+    for size in range(len(whole) - 1, 8, -7):
+        cut.write_bytes(whole[:size])
+        with Recording(cut) as recording:
+            texts = texts_of(recording)
+            assert texts == [text for _, _, text in TEXTS[: len(texts)]]
+            assert recording.span.messages == len(texts)
+            found.add(len(texts))
+            assert [fault for fault in recording.faults if "not finished" in fault]
+    assert found == {0, 3, 6, 9, 12}
+
+
+def test_a_file_without_chunks_may_be_cut_off(tmp_path: Path) -> None:
+    path = tmp_path / "a.mcap"
+    write_foreign(path, use_chunking=False)
+    data = path.read_bytes()
+    with Recording(path) as recording:
+        assert len(texts_of(recording)) == 12
+    path.write_bytes(data[: data.index(b"text 7") + 3])
+    with Recording(path) as recording:
+        assert texts_of(recording) == [f"text {n}" for n in range(7)]
+        assert "not finished" in recording.faults[0]
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        {"compression": CompressionType.LZ4},
+        {"compression": CompressionType.ZSTD},
+        {"index_types": IndexType.NONE},
+        {"use_statistics": False},
+        {"repeat_channels": False, "repeat_schemas": False},
+    ],
+)
+def test_files_of_other_writers_are_read(tmp_path: Path, options: dict[str, object]) -> None:
+    write_foreign(tmp_path / "a.mcap", **options)
+    with Recording(tmp_path / "a.mcap") as recording:
+        assert len(texts_of(recording)) == 12
+        assert recording.faults == []
+        assert recording.span.messages == 12
+
+
+def write_foreign(path: Path, **options: object) -> None:
+    """Write TEXTS with the library alone."""
+    with path.open("wb") as file:
+        writer = Writer(file, chunk_size=100, **options)  # type: ignore[arg-type]
+        writer.start("ros2")
+        schema = writer.register_schema(STRING, "ros2msg", b"string data")
+        channel = writer.register_channel("/a", "cdr", schema)
+        for _, at_s, text in TEXTS:
+            at_ns = START_NS + round(at_s * 1e9)
+            writer.add_message(channel, at_ns, text_message(text), at_ns)
+        writer.finish()
+
+
+def test_a_folder_of_another_rosbag2_writer_is_read(tmp_path: Path) -> None:
+    with Bag(tmp_path / "bag", "mcap", "storage") as bag:
+        for number in range(3):
+            bag.write("/a", bag.make("std_msgs/String", f"text {number}"), number)
+    with Recording(tmp_path / "bag") as recording:
+        assert texts_of(recording) == ["text 0", "text 1", "text 2"]
+
+
+def test_a_folder_with_several_files_is_one_recording(tmp_path: Path) -> None:
+    write_texts(tmp_path / "x_0.mcap", TEXTS[:5])
+    write_texts(tmp_path / "x_1.mcap", TEXTS[5:])
+    with Recording(tmp_path) as recording:
+        assert texts_of(recording) == [text for _, _, text in TEXTS]
+        assert recording.span.messages == 12
+        assert recording.topics[0].messages == 12
+
+
+def refusal(path: Path) -> str:
+    with pytest.raises(ManycoreError) as caught, Recording(path) as recording:
+        texts_of(recording)
+    assert caught.value.exit_status == EXIT_BAD_INPUT
+    return str(caught.value)
+
+
+def test_what_is_no_recording_is_refused(tmp_path: Path) -> None:
+    file = tmp_path / "a.mcap"
+    for content, found in ((b"", "an empty file"), (b"#ROSBAG V2.0\n", "ROSBAG")):
+        file.write_bytes(content)
+        assert "expected an MCAP file" in refusal(file)
+        assert found in refusal(file)
+    assert "neither" in refusal(tmp_path.parent / tmp_path.name / ".." / "..")
+    (tmp_path / "b").mkdir()
+    (tmp_path / "b" / "metadata.yaml").write_text("a: 1")
+    assert "rosbag2_bagfile_information" in refusal(tmp_path / "b")
+    assert "rosbags-convert" in refusal(tmp_path / "old.db3")
+    assert "zstd -d" in refusal(tmp_path / "a.mcap.zstd")
+
+
+def test_a_missing_file_of_a_folder_is_named(tmp_path: Path) -> None:
+    folder = tmp_path / "bag"
+    folder.mkdir()
+    write_metadata(folder, {"relative_file_paths": ["bag_0.mcap"]})
+    assert "bag_0.mcap: cannot be read: No such file" in refusal(folder)
+
+
+def test_a_damaged_chunk_is_said(tmp_path: Path) -> None:
+    path = write_texts(tmp_path / "a.mcap", TEXTS, each=3)
+    data = bytearray(path.read_bytes())
+    data[data.index(b"text 7")] ^= 1
+    path.write_bytes(data)
+    assert "is damaged" in refusal(path)
+    path.write_bytes(data[: data.index(b"text 10")])  # without an index as well
+    with Recording(path) as recording:
+        assert len(texts_of(recording)) == 6
+        assert "damaged behind byte" in recording.faults[0]
+
+
+@pytest.mark.parametrize("step", range(4))
+def test_no_damage_leads_to_another_error(tmp_path: Path, step: int) -> None:
+    """Flip a bit of each byte in turn."""
+    whole = write_texts(tmp_path / "a.mcap", TEXTS, each=6).read_bytes()
+    path = tmp_path / "b.mcap"
+    for place in range(step, len(whole), 4):
+        data = bytearray(whole)
+        data[place] ^= 0x10
+        path.write_bytes(data)
+        try:
+            with Recording(path) as recording:
+                texts_of(recording)
+        except ManycoreError:
+            pass
+
+
+def test_a_topic_without_messages_is_there(tmp_path: Path) -> None:
+    output = Output(tmp_path / "a.mcap")
+    output.finish([string_row("/quiet")])
+    with Recording(tmp_path / "a.mcap") as recording:
+        assert [(row.name, row.messages) for row in recording.topics] == [("/quiet", 0)]
+
+
+def test_a_failed_write_leaves_whole_chunks(tmp_path: Path) -> None:
+    path = tmp_path / "a.mcap"
+    output, row = Output(path), string_row("/a")
+    output.write(row, 1, 1, 1, text_message("first"))
+    output.flush()
+    size = path.stat().st_size
+    output.write(row, 2, 2, 2, text_message("second"))
+    output._writer.flush()  # on the disk, but not noted as whole
+    output.give_up()
+    assert path.stat().st_size >= size
+    with Recording(path) as recording:
+        assert texts_of(recording)[0] == "first"
+
+
+class TestTarget:
+    def test_a_suffix_makes_a_file_else_a_folder(self, tmp_path: Path) -> None:
+        assert Target(tmp_path / "a.mcap").file == tmp_path / "a.mcap"
+        assert Target(tmp_path / "a").file == tmp_path / "a" / "a_0.mcap"
+
+    def test_what_is_there_is_replaced_only_by_force(self, tmp_path: Path) -> None:
+        target = Target(tmp_path / "a")
+        target.prepare(force=False)
+        target.file.touch()
+        with pytest.raises(ManycoreError, match="is there already"):
+            target.prepare(force=False)
+        target.prepare(force=True)
+        assert list(target.path.iterdir()) == []
+
+    def test_force_removes_recordings_only(self, tmp_path: Path) -> None:
+        precious = tmp_path / "a" / "thesis.txt"
+        precious.parent.mkdir()
+        precious.touch()
+        for path in (tmp_path / "a", precious):
+            with pytest.raises(ManycoreError, match="no recording alone"):
+                Target(path).prepare(force=True)
+        assert precious.is_file()
+        shutil.rmtree(precious.parent)
