@@ -144,7 +144,7 @@ class Input:
                     topics, starting_at=start_ns, ending_before=end_ns
                 ):
                     yield Recorded(channel.topic, message.log_time, message.data)
-            else:
+            elif self.span.messages:
                 yield from self._in_file_order(topics, start_ns, end_ns)
 
     def _in_file_order(

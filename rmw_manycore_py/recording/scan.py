@@ -7,6 +7,7 @@ import os
 from dataclasses import dataclass
 from typing import IO, Any
 
+from mcap.exceptions import RecordLengthLimitExceeded
 from mcap.records import Channel, Chunk, ChunkIndex, DataEnd, Footer, Message, Schema, Statistics
 from mcap.stream_reader import StreamReader, breakup_chunk
 from mcap.summary import Summary
@@ -41,6 +42,8 @@ def scan(file: IO[bytes], size_bytes: int) -> Scanned:
                 break
             scanner.add(record, end or 0, file.tell())
             end = file.tell()
+    except RecordLengthLimitExceeded:  # a record that would be longer than the file
+        fault = _UNFINISHED
     except Exception as error:  # the library and its decoders promise no class of errors
         fault = _UNFINISHED
         if file.tell() < size_bytes:

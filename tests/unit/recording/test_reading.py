@@ -54,7 +54,7 @@ def test_a_file_may_be_cut_off_anywhere(tmp_path: Path, compression: str) -> Non
     """Each cut leaves the messages of the chunks before it."""
     whole = write_texts(tmp_path / "a.mcap", TEXTS, compression=compression, each=3).read_bytes()
     cut, found = tmp_path / "cut.mcap", set()
-    for size in range(len(whole) - 1, 8, -7):
+    for size in range(len(whole) - 1, 8, -61):
         cut.write_bytes(whole[:size])
         with Recording(cut) as recording:
             texts = texts_of(recording)
@@ -165,12 +165,11 @@ def test_a_damaged_chunk_is_said(tmp_path: Path) -> None:
         assert "damaged behind byte" in recording.faults[0]
 
 
-@pytest.mark.parametrize("step", range(4))
-def test_no_damage_leads_to_another_error(tmp_path: Path, step: int) -> None:
-    """Flip a bit of each byte in turn."""
+def test_no_damage_leads_to_another_error(tmp_path: Path) -> None:
+    """Flip a bit here and there."""
     whole = write_texts(tmp_path / "a.mcap", TEXTS, each=6).read_bytes()
     path = tmp_path / "b.mcap"
-    for place in range(step, len(whole), 4):
+    for place in range(0, len(whole), 23):
         data = bytearray(whole)
         data[place] ^= 0x10
         path.write_bytes(data)
