@@ -37,9 +37,11 @@ class Output:
         )
         self._channels: dict[str, int] = {}
         self._schemas: dict[tuple[str, Schema], int] = {}
-        self._start_ns, self._end_ns, self.messages = 0, 0, 0
+        self._start_ns, self._end_ns = 0, 0
+        self.messages = self.whole_messages = 0  # in all, and in chunks that are on the disk
         try:
             self._writer.start("ros2")
+            self._writer.flush()
         except OSError as error:
             self._file.close()
             raise _unwritable(path, error) from error
@@ -51,10 +53,10 @@ class Output:
         channel = self._channels.get(row.name)
         if channel is None:
             channel = self._add(row)
-        size_before = self._file.tell()
-        self._writer.add_message(channel, recorded_ns, data, published_ns, number & _SEQUENCE_MASK)
-        if self._file.tell() != size_before:  # the chunk was full
+        if self._file.tell() != self._file.whole:  # the last message filled a chunk
             self._file.flush()
+            self.whole_messages = self.messages
+        self._writer.add_message(channel, recorded_ns, data, published_ns, number & _SEQUENCE_MASK)
         row.messages += 1
         self._start_ns = min(self._start_ns, recorded_ns) if self.messages else recorded_ns
         self._end_ns = max(self._end_ns, recorded_ns)
@@ -80,6 +82,7 @@ class Output:
     def flush(self) -> None:
         """Write what was not written yet."""
         self._writer.flush()
+        self.whole_messages = self.messages
 
     @property
     def size_bytes(self) -> int:
@@ -117,7 +120,7 @@ class _ChunkFile:
             self._descriptor = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o644)
         except OSError as error:
             raise _unwritable(path, error) from error
-        self._size = self._whole = 0
+        self._size = self.whole = 0
 
     def write(self, data: bytes) -> int:
         """Write all of the data."""
@@ -134,12 +137,12 @@ class _ChunkFile:
 
     def flush(self) -> None:
         """Note that what is there is whole."""
-        self._whole = self._size
+        self.whole = self._size
 
     def cut(self) -> None:
         """Forget what was written since the last flush."""
-        os.ftruncate(self._descriptor, self._whole)
-        self._size = self._whole
+        os.ftruncate(self._descriptor, self.whole)
+        self._size = self.whole
 
     def close(self) -> None:
         """Close the file."""

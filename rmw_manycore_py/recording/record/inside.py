@@ -90,11 +90,6 @@ class _InsideEars:
         self._heard, self._among = heard, among
         self._lost = 0
 
-    def take_all(self) -> None:
-        """Hand on all that has arrived."""
-        while self.take(_BATCH):
-            pass
-
     def take(self, limit: int) -> bool:
         """Hand on so many messages at most; tell whether there may be more."""
         for _ in range(limit):

@@ -17,6 +17,9 @@ from rmw_manycore_py._transport import Qos
 from rmw_manycore_py.recording.record.side import Ears, Heard, Offer
 from rmw_manycore_py.ros.domain import ros_domain
 
+# So many messages of one topic are taken before another has its turn.
+_BATCH = 64
+
 
 class Outside:
     """Sleeps on a wait set, woken by messages and by changes of the domain's graph."""
@@ -86,18 +89,21 @@ class _OutsideEars:
         domain.readers.append(self)
 
     def pump_outside(self) -> None:
-        """Hand on what has arrived."""
-        self.take_all()
+        """Hand on what has arrived; for more than that the wait set does not sleep."""
+        self.take(_BATCH)
 
-    def take_all(self) -> None:
-        """Hand on all that has arrived."""
+    def take(self, limit: int) -> bool:
+        """Hand on so many messages at most; tell whether there may be more."""
         reader = self._reader
-        while self.entity is not None and reader.take():
+        for _ in range(limit):
+            if self.entity is None or not reader.take():
+                return False
             info = reader.info
             publisher, number = info.publisher, int(info.publication_sequence_number)
             self._count_gap(publisher, number)
             data = ctypes.string_at(reader.address, reader.size)
             self._heard(data, int(info.source_timestamp), publisher, number)
+        return True
 
     def _count_gap(self, publisher: bytes, number: int) -> None:
         last = self._last.get(publisher)

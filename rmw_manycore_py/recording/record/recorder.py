@@ -73,7 +73,7 @@ class Recorder:
                     counted_s = time.monotonic()
                     self._count_losses()
             for topic in self._topics.values():
-                topic.take_all()
+                topic.take_rest()
         except BaseException as error:
             self.failure = error
         finally:
@@ -108,7 +108,7 @@ class Recorder:
     def _record(self, name: str, offers: list[Offer]) -> None:
         topic = self._topics.get(name)
         if topic is None:
-            topic = self._begin(name, offers[0])
+            topic = self._new_topic(name, offers[0])
         try:
             topic.follow(offers, self._depth)
         except ImportError as error:
@@ -117,16 +117,17 @@ class Recorder:
         if name not in self._topics:
             self._topics[name] = topic
             self._tell(f"recording {name} ({topic.row.type})")
+            if topic.row.schema is NO_SCHEMA:
+                self._tell(
+                    f"{name}: type {topic.row.type} is not installed as its publisher has it: "
+                    "recorded without the definition, which viewers need; manycore interface build "
+                    "PATH"
+                )
 
-    def _begin(self, name: str, offer: Offer) -> RecordedTopic:
+    def _new_topic(self, name: str, offer: Offer) -> RecordedTopic:
         schema = schema_of(offer.type)
         if offer.type_hash and types.hash_of(offer.type) not in ("", offer.type_hash):
             schema = NO_SCHEMA  # the installed definition is that of another type
-        if schema is NO_SCHEMA:
-            self._tell(
-                f"{name}: its type {offer.type} is not installed as its publisher has it: recorded "
-                "without the definition, which viewers need; manycore interface build PATH"
-            )
         row = TopicRow(name, offer.type, offer.type_hash, schema)
         return RecordedTopic(row, self._side, self._writing, self._tell)
 

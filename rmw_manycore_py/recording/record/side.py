@@ -27,8 +27,8 @@ Heard = Callable[[bytes, int, bytes, int], None]
 class Ears(Protocol):
     """A subscription."""
 
-    def take_all(self) -> None:
-        """Hand on all that has arrived."""
+    def take(self, limit: int) -> bool:
+        """Hand on so many messages at most; tell whether there may be more."""
 
     def lost(self) -> int:
         """Return how many messages are known to be lost."""

@@ -47,10 +47,10 @@ class RecordedTopic:
         self._last[publisher] = number
         self._writing.write(Taken(self.row, time.time_ns(), published_ns, number, data))
 
-    def take_all(self) -> None:
-        """Take all that has arrived."""
-        if self._ears is not None:
-            self._ears.take_all()
+    def take_rest(self) -> None:
+        """Take what has arrived by now: no more than the subscription keeps."""
+        if self._ears is not None and self._request is not None:
+            self._ears.take(self._request.depth)
 
     def lost(self) -> int:
         """Return how many messages are known to be lost."""
@@ -63,7 +63,7 @@ class RecordedTopic:
 
     def _leave(self) -> None:
         if self._ears is not None:
-            self._ears.take_all()
+            self.take_rest()
             self._ears.close()
             self._lost_before += self._ears.lost()
             self._ears = None

@@ -75,8 +75,8 @@ class WritingThread:
             self.failure = error
         self._output.give_up()
         raise ManycoreError(
-            f"{self._output.path}: cannot be written: {self.failure.strerror}; it holds about "
-            f"{self._output.messages} messages up to then, without an index: "
+            f"{self._output.path}: cannot be written: {self.failure.strerror}; it holds "
+            f"{self._output.whole_messages} messages up to then, without an index: "
             f"manycore bag info {self._output.path}"
         ) from self.failure
 

@@ -1,0 +1,170 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""`manycore topic record` and `play`, with real nodes, inside and outside, and after a kill."""
+
+from __future__ import annotations
+
+import json
+import re
+import signal
+from pathlib import Path
+from typing import Any
+
+import pytest
+from bridging import OUTSIDE
+from mcap.reader import make_reader
+from mcap_ros2.decoder import DecoderFactory
+from recordings import text_in, write_texts
+from ros_support import announce, peer_node, spin_until, type_of
+from rosbags.highlevel import AnyReader
+from speakers import hear, qos, say
+from support import IS_MANYCORE, manycore_command, peer_command, wait_until
+
+from rmw_manycore_py.recording.recording import Recording
+
+pytestmark = [
+    pytest.mark.integration,
+    pytest.mark.skipif(not IS_MANYCORE, reason="records on a platform"),
+    pytest.mark.needs("mcap", "mcap_ros2", "rosbags"),
+]
+
+LATCHED = {"durability": "transient_local", "depth": 3}
+BEST_EFFORT = {"reliability": "best_effort"}
+
+
+def texts_of(path: Path, topic: str) -> list[str]:
+    with Recording(path) as recording:
+        return [text_in(message.data) for message in recording.messages({topic})]
+
+
+@pytest.fixture(params=[{}, OUTSIDE], ids=["inside", "outside"])
+def place(request: pytest.FixtureRequest) -> dict[str, str]:
+    return request.param
+
+
+def options(place: dict[str, str]) -> list[str]:
+    return ["--outside"] if place else []
+
+
+def record_command(path: Path, *words: str) -> list[Any]:
+    return manycore_command("topic", "record", "-o", path, *words)
+
+
+def test_other_readers_read_what_was_recorded(start, tmp_path, place) -> None:
+    """Latched and fleeting topics, of publishers that come before and after the recorder."""
+    bag = tmp_path / "bag"
+    start(peer_command(say, "/map", LATCHED, None, "first", "second"), **place).wait_for("said")
+    recorder = start(record_command(bag, "--all", *options(place)))
+    recorder.wait_for(r"^recording /map \(std_msgs/msg/String\)")
+    start(peer_command(say, "/news", BEST_EFFORT, 0.02), **place)
+    recorder.wait_for("^recording /news")
+    file = bag / "bag_0.mcap"
+    wait_until(lambda: file.stat().st_size > 4096, "messages are on the disk")
+    assert recorder.stop() == 0, recorder
+    assert re.search(r"bag: \d+ messages of \d+ topics?, ", recorder.output), recorder
+
+    with file.open("rb") as stream:
+        decoded = make_reader(stream, decoder_factories=[DecoderFactory()])
+        messages = [m.decoded_message for m in decoded.iter_decoded_messages(topics=["/map"])]
+    assert [message.data for message in messages] == ["first", "second"]
+    with AnyReader([bag]) as reader:
+        found = {c.topic: c for c in reader.connections}
+        (offer,) = found["/map"].ext.offered_qos_profiles
+        assert (offer.durability.name, offer.reliability.name) == ("TRANSIENT_LOCAL", "RELIABLE")
+        (offer,) = found["/news"].ext.offered_qos_profiles
+        assert (offer.durability.name, offer.reliability.name) == ("VOLATILE", "BEST_EFFORT")
+        heard = [
+            reader.deserialize(data, connection.msgtype).data
+            for connection, _, data in reader.messages([found["/news"]])
+        ]
+    assert len(heard) > 5
+    assert all(text.startswith("again ") for text in heard)
+
+
+def test_a_player_offers_what_was_recorded(start, tmp_path, place) -> None:
+    """A late subscriber hears what was latched; a best-effort topic is heard as such."""
+    bag = tmp_path / "bag.mcap"
+    speaker = start(peer_command(say, "/map", LATCHED, None, "first", "second"), **place)
+    recorder = start(record_command(bag, "/map", *options(place)))
+    recorder.wait_for("^recording /map")
+    wait_until(lambda: texts_of(bag, "/map") == ["first", "second"], "they are on the disk")
+    recorder.stop()
+    speaker.kill()
+    # The second one comes much later, and the player is there until then.
+    play = ["topic", "play", bag, "--remap", "/map:=/old_map", "--rate", "0.01", "--loop"]
+    start(manycore_command(*play, "--delay", "0.01", *options(place)))
+    hearer = start(peer_command(hear, "/old_map", LATCHED), **place)
+    hearer.wait_for("^heard first")
+
+
+def test_a_killed_recorder_leaves_what_can_be_read_and_played(start, tmp_path) -> None:
+    bag = tmp_path / "bag"
+    start(peer_command(say, "/news", {}, 0.01))
+    recorder = start(record_command(bag, "/news"))
+    file = bag / "bag_0.mcap"
+    wait_until(lambda: file.exists() and file.stat().st_size > 8192, "some is on the disk")
+    recorder.signal(signal.SIGKILL)
+    recorder.wait()
+    texts = texts_of(bag, "/news")
+    assert len(texts) > 10
+    info = start(manycore_command("bag", "info", bag))
+    assert info.wait() == 0
+    assert f"Messages:          {len(texts)}" in info.lines
+    assert "it was not finished" in info.output
+    hearer = start(peer_command(hear, "/again", {"depth": 1000}))
+    hearer.wait_for("listening")
+    play = ["topic", "play", bag, "--rate", "100", "--remap", "/news:=/again", "--json"]
+    player = start(manycore_command(*play))
+    assert player.wait() == 0
+    assert json.loads(player.lines[-1])["messages"] == len(texts)
+    assert [hearer.wait_for("^heard (again .*) ").group(1) for _ in texts] == texts
+
+
+def test_a_publisher_that_offers_less_is_heard_too(start, tmp_path) -> None:
+    """The recorder subscribes anew; nothing is lost or doubled meanwhile."""
+    bag = tmp_path / "bag.mcap"
+    start(peer_command(say, "/news", {"depth": 1000}, 0.01, "first"))
+    recorder = start(record_command(bag, "/news"))
+    recorder.wait_for("^recording /news")
+    start(peer_command(say, "/news", {**BEST_EFFORT, "depth": 1000}, 0.01))
+    recorder.wait_for("some publishers offer best effort")
+
+    def publishers() -> int:
+        return bag.stat().st_size
+
+    before = publishers()
+    wait_until(lambda: publishers() > before + 16384, "both are recorded")
+    recorder.stop()
+    texts = texts_of(bag, "/news")
+    assert len(set(texts)) == len(texts)
+    with Recording(bag) as recording:
+        assert {q.reliability for q in recording.topics[0].offers} >= {"reliable"}
+    assert "lost" not in recorder.output
+
+
+def test_a_player_keeps_order_and_rate_and_tells_the_time(start, tmp_path) -> None:
+    """Steps of a clock of its own, and the recorded part between offset and duration."""
+    bag = write_texts(tmp_path / "a.mcap", [("/a", 1.0 * n, f"text {n}") for n in range(8)], each=2)
+    clock = start(peer_command(hear_clock))
+    clock.wait_for("listening")
+    hearer = start(peer_command(hear, "/a", {}))
+    hearer.wait_for("listening")
+    words = ["--rate", "20", "--start-offset", "2", "--duration", "3", "--clock", "100"]
+    player = start(manycore_command("topic", "play", bag, *words))
+    assert player.wait() == 0
+    assert player.lines[-1].startswith("played 4 messages; late by")
+    for number in range(2, 6):
+        assert hearer.wait_for("^heard (.*) ").group(1) == f"text {number}"
+    clock.wait_for(r"clock 1700000002\.")
+    clock.wait_for(r"clock 170000000[345]\.")
+
+
+def hear_clock() -> None:
+    with peer_node("hearer") as node:
+        node.create_subscription(
+            type_of("rosgraph_msgs/msg/Clock"),
+            "/clock",
+            lambda m: announce(f"clock {m.clock.sec}.{m.clock.nanosec:09}"),
+            qos(BEST_EFFORT),
+        )
+        announce("listening")
+        spin_until(node, lambda: False, 1e6)

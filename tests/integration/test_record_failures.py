@@ -1,0 +1,147 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""What can go wrong with recordings: full disks, types that clash or are missing, wrong words."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+
+import pytest
+from recordings import string_row, text_message, write_texts
+from ros_support import peer_node, spin_until, type_of
+from support import IS_MANYCORE, manycore_command, peer_command, wait_until
+
+from rmw_manycore_py._transport import Process, Qos
+from rmw_manycore_py.errors import EXIT_BAD_INPUT
+from rmw_manycore_py.recording.output import Output
+from rmw_manycore_py.recording.recording import Recording
+
+pytestmark = [
+    pytest.mark.integration,
+    pytest.mark.skipif(not IS_MANYCORE, reason="records on a platform"),
+    pytest.mark.needs("mcap"),
+]
+
+ON_SMALL_DISK = """
+mount -t tmpfs -o size=3m tmpfs "$0" && "$@"
+status=$?
+"$1" bag info "$0"/*.mcap
+exit $status
+"""
+
+
+def on_small_disk(directory: object, *command: object) -> list[str]:
+    """Return a command whose directory is a small disk, and that shows what is on it then."""
+    return ["unshare", "--mount", "sh", "-c", ON_SMALL_DISK, str(directory), *map(str, command)]
+
+
+def can_mount(directory: object = "/mnt") -> bool:
+    if os.getuid() != 0:
+        return False
+    command = ["unshare", "--mount", "mount", "-t", "tmpfs", "tmpfs", str(directory)]
+    return subprocess.run(command, capture_output=True).returncode == 0
+
+
+@pytest.mark.skipif(not can_mount(), reason="needs root and a mount namespace")
+def test_a_full_disk_ends_the_recording_and_spares_what_is_there(start, tmp_path) -> None:
+    start(peer_command(say_large, "/large"))
+    record = manycore_command("topic", "record", "/large", "-o", tmp_path / "a.mcap")
+    recorder = start(on_small_disk(tmp_path, *record))
+    assert recorder.wait() == 1, recorder
+    held = recorder.wait_for(
+        r"a\.mcap: cannot be written: No space left on device; it holds (\d+) messages"
+    )
+    assert int(held.group(1)) > 10
+    recorder.wait_for(rf"^Messages: +{held.group(1)}$")
+
+
+def say_large(topic: str) -> None:
+    with peer_node("speaker") as node:
+        message = type_of("std_msgs/msg/String")(data=65536 * "x")
+        publisher = node.create_publisher(type(message), topic, 10)
+        node.create_timer(0.01, lambda: publisher.publish(message))
+        spin_until(node, lambda: False, 1e6)
+
+
+def test_what_is_there_is_not_overwritten(start, tmp_path) -> None:
+    bag = write_texts(tmp_path / "a.mcap", [("/a", 0, "precious")])
+    for path, complaint in (
+        (bag, "is there already"),
+        (tmp_path / "nix" / "b.mcap", "No such file or directory"),
+        (tmp_path / "nix" / "b", "No such file or directory"),
+    ):
+        recorder = start(manycore_command("topic", "record", "/a", "-o", path))
+        assert recorder.wait() == EXIT_BAD_INPUT
+        assert complaint in recorder.output, recorder
+    with Recording(bag) as recording:
+        assert recording.span.messages == 1
+
+
+def test_nothing_to_record_is_said(start, tmp_path) -> None:
+    recorder = start(manycore_command("topic", "record", "-o", tmp_path / "a.mcap"))
+    assert recorder.wait() == EXIT_BAD_INPUT
+    assert "which topics?" in recorder.output
+    assert not (tmp_path / "a.mcap").exists()
+
+
+def test_a_type_without_definition_is_recorded_and_played_inside(start, platform, tmp_path) -> None:
+    bag = tmp_path / "a.mcap"
+    with Process(platform, label="strange") as process:
+        publisher = process.publisher("/strange", "nix_msgs/msg/Nix", Qos())
+        recorder = start(manycore_command("topic", "record", "/strange", "-o", bag))
+        recorder.wait_for("type nix_msgs/msg/Nix is not installed.*manycore interface build")
+        wait_until(publisher.matched, "the recorder listens")
+        publisher.publish(b"\0\1\0\0abcd")
+        wait_until(lambda: bag.stat().st_size > 300, "it is on the disk")
+        recorder.stop()
+        del publisher
+    player = start(manycore_command("topic", "play", bag))
+    assert player.wait() == 0, player
+    outside = start(manycore_command("topic", "play", bag, "--outside"))
+    assert outside.wait() == 1
+    assert "nix_msgs" in outside.output
+    assert "manycore interface build" in outside.output
+
+
+def test_a_topic_with_two_types_is_left_out(start, platform, tmp_path) -> None:
+    with Process(platform, label="strange") as process:
+        publishers = [
+            process.publisher("/a", f"std_msgs/msg/{name}", Qos()) for name in ("String", "Int8")
+        ]
+        recorder = start(manycore_command("topic", "record", "--all", "-o", tmp_path / "a.mcap"))
+        recorder.wait_for(
+            "not recorded: /a has several types, std_msgs/msg/Int8 and std_msgs/msg/String"
+        )
+        assert recorder.stop() == 0
+        del publishers
+
+
+@pytest.mark.parametrize("kind", ["type", "definition"])
+def test_a_player_does_not_play_to_another_type(start, platform, tmp_path, kind) -> None:
+    bag = tmp_path / "a.mcap"
+    output, row = Output(bag), string_row("/a", type_hash="RIHS01_" + 64 * "1")
+    output.write(row, 1, 1, 1, text_message("x"))
+    output.finish([row])
+    type_name = "std_msgs/msg/Int8" if kind == "type" else "std_msgs/msg/String"
+    with Process(platform, label="strange") as process:
+        subscription = process.subscription("/a", type_name, Qos(), type_hash="RIHS01_" + 64 * "2")
+        player = start(manycore_command("topic", "play", bag))
+        assert player.wait() == 1
+        assert "another definition" in player.output or "std_msgs/msg/Int8 here" in player.output
+        assert "--exclude-topics /a" in player.output
+        del subscription
+
+
+def test_a_wrong_wish_of_a_player_is_said(start, tmp_path) -> None:
+    bag = write_texts(tmp_path / "a.mcap", [("/a", 0, "x"), ("/a", 1, "y")])
+    for words, complaint in (
+        (["--topics", "/b"], "expected the topic /b, found /a"),
+        (["--exclude-topics", "/a"], "no topic is left"),
+        (["--start-offset", "2"], "is 1.000 s long"),
+        (["--remap", "/a"], "expected OLD:=NEW, found '/a'"),
+        (["--regex", "("], "is no regular expression"),
+        (["--rate", "0"], "--rate"),
+    ):
+        player = start(manycore_command("topic", "play", bag, *words))
+        assert player.wait() == EXIT_BAD_INPUT, player
+        assert complaint in player.output, player
