@@ -25,7 +25,8 @@ def text_message(text: str) -> bytes:
 
 def text_in(data: bytes) -> str:
     """Return the text of a std_msgs/msg/String in CDR."""
-    return data[8:-1].decode()
+    size = int.from_bytes(data[4:8], "little")  # Fast DDS has padding behind it
+    return data[8 : 7 + size].decode()
 
 
 def string_row(name: str, *offers: Qos, **more: Any) -> TopicRow:

@@ -58,7 +58,7 @@ def test_other_readers_read_what_was_recorded(start, tmp_path, place) -> None:
     start(peer_command(say, "/news", BEST_EFFORT, 0.02), **place)
     recorder.wait_for("^recording /news")
     file = bag / "bag_0.mcap"
-    wait_until(lambda: file.stat().st_size > 4096, "messages are on the disk")
+    wait_until(lambda: len(texts_of(file, "/news")) > 5, "messages are on the disk")
     assert recorder.stop() == 0, recorder
     assert re.search(r"bag: \d+ messages of \d+ topics?, ", recorder.output), recorder
 
@@ -101,7 +101,7 @@ def test_a_killed_recorder_leaves_what_can_be_read_and_played(start, tmp_path) -
     start(peer_command(say, "/news", {}, 0.01))
     recorder = start(record_command(bag, "/news"))
     file = bag / "bag_0.mcap"
-    wait_until(lambda: file.exists() and file.stat().st_size > 8192, "some is on the disk")
+    wait_until(lambda: file.exists() and file.stat().st_size > 4096, "some is on the disk")
     recorder.signal(signal.SIGKILL)
     recorder.wait()
     texts = texts_of(bag, "/news")
@@ -127,12 +127,8 @@ def test_a_publisher_that_offers_less_is_heard_too(start, tmp_path) -> None:
     recorder.wait_for("^recording /news")
     start(peer_command(say, "/news", {**BEST_EFFORT, "depth": 1000}, 0.01))
     recorder.wait_for("some publishers offer best effort")
-
-    def publishers() -> int:
-        return bag.stat().st_size
-
-    before = publishers()
-    wait_until(lambda: publishers() > before + 16384, "both are recorded")
+    size = bag.stat().st_size
+    wait_until(lambda: bag.stat().st_size > size + 8192, "both are recorded")
     recorder.stop()
     texts = texts_of(bag, "/news")
     assert len(set(texts)) == len(texts)
