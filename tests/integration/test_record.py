@@ -120,17 +120,19 @@ def test_a_killed_recorder_leaves_what_can_be_read_and_played(start, tmp_path) -
 
 
 def test_a_publisher_that_offers_less_is_heard_too(start, tmp_path) -> None:
-    """The recorder subscribes anew; nothing is lost or doubled meanwhile."""
+    """The recorder subscribes anew; nothing is lost, and what was latched comes once."""
     bag = tmp_path / "bag.mcap"
-    start(peer_command(say, "/news", {"depth": 1000}, 0.01, "first"))
+    kept = {"durability": "transient_local", "depth": 1000}
+    start(peer_command(say, "/news", kept, 0.01, "first"))
     recorder = start(record_command(bag, "/news"))
     recorder.wait_for("^recording /news")
-    start(peer_command(say, "/news", {**BEST_EFFORT, "depth": 1000}, 0.01))
+    start(peer_command(say, "/news", {**BEST_EFFORT, **kept}, 0.01))
     recorder.wait_for("some publishers offer best effort")
     size = bag.stat().st_size
     wait_until(lambda: bag.stat().st_size > size + 8192, "both are recorded")
     recorder.stop()
     texts = texts_of(bag, "/news")
+    assert texts[0] == "first"
     assert len(set(texts)) == len(texts)
     with Recording(bag) as recording:
         assert {q.reliability for q in recording.topics[0].offers} >= {"reliable"}
