@@ -4,8 +4,8 @@
 //   trace_site events=N rounds=N
 //
 // Prints picoseconds for each event: of a site while nothing is traced, beyond the same loop
-// without one (`samples_ns`, named for all programs), and while it is (`on_ps`); and how many of
-// the events of all rounds were lost.
+// without one (`samples_ns`, named for all programs), and while it is (`on_ps`), both as CPU time
+// of the thread; and how many of the events of all rounds were lost.
 #include <algorithm>
 
 #include "bench/program.hpp"
@@ -25,12 +25,12 @@ void barrier() noexcept { asm volatile("" ::: "memory"); }
 
 template<typename Body>
 int64_t ps_for_each(uint64_t events, Body body) {
-  const int64_t start_ns = monotonic_ns();
+  const int64_t start_ns = clock_ns(CLOCK_THREAD_CPUTIME_ID);
   for (uint64_t i = 0; i < events; ++i) {
     body(i);
     barrier();
   }
-  return (monotonic_ns() - start_ns) * ps_per_ns / static_cast<int64_t>(events);
+  return (clock_ns(CLOCK_THREAD_CPUTIME_ID) - start_ns) * ps_per_ns / static_cast<int64_t>(events);
 }
 
 void run(const bench::Arguments & arguments) {

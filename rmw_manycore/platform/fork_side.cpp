@@ -3,19 +3,11 @@
 
 #include <pthread.h>
 
-#include <atomic>
-
 namespace manycore {
-namespace {
 
-std::atomic<uint32_t> forks{0};
+std::atomic<uint32_t> ForkSide::forks_{0};
 
 /// Before main(): a fork that nothing of this library knows of has to be counted, too.
-const int registered =
-  pthread_atfork(nullptr, nullptr, [] { forks.fetch_add(1, std::memory_order_relaxed); });
-
-}  // namespace
-
-uint32_t ForkSide::forks_before() noexcept { return forks.load(std::memory_order_relaxed); }
+const int ForkSide::registered_ = pthread_atfork(nullptr, nullptr, [] { count_fork(); });
 
 }  // namespace manycore

@@ -1,6 +1,7 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 
 namespace manycore {
@@ -9,14 +10,17 @@ namespace manycore {
 /// but threads, locks and memberships stay with the parent.
 class ForkSide {
 public:
-  ForkSide() noexcept : made_in_(forks_before()) {}
+  ForkSide() noexcept : made_in_(forks_.load(std::memory_order_relaxed)) {}
 
   /// True in a child of the process that made this.
-  bool is_inherited() const noexcept { return made_in_ != forks_before(); }
+  bool is_inherited() const noexcept { return made_in_ != forks_.load(std::memory_order_relaxed); }
 
 private:
+  static void count_fork() noexcept { forks_.fetch_add(1, std::memory_order_relaxed); }
+  static const int registered_;
+
   /// Forks between the first process and this one.
-  static uint32_t forks_before() noexcept;
+  static std::atomic<uint32_t> forks_;
 
   uint32_t made_in_;
 };

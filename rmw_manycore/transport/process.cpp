@@ -120,7 +120,9 @@ Process::Impl::Impl(const Placement & placement_) : Impl(placement_, JoinOnly{})
   waiters = std::make_unique<Waiters>(registry->processes()[slot].wake, placement.wait_mode);
   graph = std::make_unique<Graph>(*registry);
   watcher = std::make_unique<ReceiveThreadWatcher>(*registry, placement.cluster);
-  registry->tracer().follow(registry->processes()[slot].trace, identity_of(*registry, slot));
+  registry->tracer().follow(
+    registry->processes()[slot].trace, identity_of(*registry, slot),
+    registry->clusters().at(placement.cluster).header());
   registry->tracer().note(TraceKind::join);
 }
 

@@ -202,7 +202,7 @@ private:
      }},
     {"use_up_descriptors",
      [this](Words &) {
-       wait_until("its receive thread is watched", [] { return watches_receive_thread(getpid()); });
+       wait_until("its receive thread is watched", [] { return has_pidfds(getpid()); });
        no_descriptors_ = std::make_unique<NoDescriptors>();
        return "ok";
      }},

@@ -82,7 +82,7 @@ bool is_running(pid_t pid) {
   return any_thread(pid, [](char state) { return state != 'Z' && state != 'X'; });
 }
 
-bool watches_receive_thread(pid_t pid) {
+bool has_pidfds(pid_t pid) {
   for (const auto & entry :
        std::filesystem::directory_iterator("/proc/" + std::to_string(pid) + "/fd")) {
     std::error_code gone;

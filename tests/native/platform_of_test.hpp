@@ -77,7 +77,7 @@ private:
 bool is_running(pid_t pid);
 
 /// True once the watcher of a process sleeps on its receive thread, and opens nothing any more.
-bool watches_receive_thread(pid_t pid);
+bool has_pidfds(pid_t pid);
 
 /// While it lives, this process can open no file.
 class NoDescriptors {

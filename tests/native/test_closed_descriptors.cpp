@@ -49,7 +49,7 @@ const Role daemon_publisher("daemon", [](Lines & test, const Arguments & argumen
   auto process = Process::join(placement);
   auto publisher = process->create_publisher(on_topic("/x", keep_last(10)));
   wait_until("a match", [&] { return publisher->matched().current == 1; });
-  wait_until("its receive thread is watched", [] { return watches_receive_thread(getpid()); });
+  wait_until("its receive thread is watched", [] { return has_pidfds(getpid()); });
   take_over_descriptors(arguments.at(1));
   publish(*publisher, 1);
   publish(*publisher, 2, large_bytes);

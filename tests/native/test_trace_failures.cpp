@@ -77,7 +77,7 @@ TEST_CASE("a damaged trace file is refused with its name, and costs no one else 
 TEST_CASE("a process without descriptors loses its events, and counts them") {
   Fixture f;
   {
-    wait_until("its receive thread is watched", [] { return watches_receive_thread(getpid()); });
+    wait_until("its receive thread is watched", [] { return has_pidfds(getpid()); });
     start_trace(f.registry(), {});
     const NoDescriptors none;
     f.talk(1, 3);

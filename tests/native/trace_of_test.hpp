@@ -6,6 +6,7 @@
 #include <map>
 
 #include "messages.hpp"
+#include "patience.hpp"
 #include "platform_of_test.hpp"
 #include "transport/lifecycle/trace_control.hpp"
 #include "transport/lifecycle/trace_saver.hpp"
@@ -64,6 +65,15 @@ struct Saved {
     }
   }
 
+  /// Events of what the test does, kept or lost, but not of what comes with time.
+  uint64_t of_sites() const {
+    uint64_t count = events + lost;
+    for (const TraceKind kind : {TraceKind::cpu, TraceKind::smem}) {
+      count -= of_kind.count(kind) != 0 ? of_kind.at(kind) : 0;
+    }
+    return count;
+  }
+
   std::map<TraceKind, uint64_t> of_kind;
   std::map<Record, int> writes;
   std::map<Record, int64_t> written_ns;
@@ -78,6 +88,9 @@ struct Saved {
 /// A publisher and a subscription of this process, in two clusters' reach of a test.
 struct Fixture {
   explicit Fixture(const Qos & qos = keep_last(100)) {
+    // Or it would join later, and be traced then, now and again.
+    wait_until(
+      "a receive thread that is at work", [&] { return has_pidfds(platform.receive_thread(1)); });
     publisher = process->create_publisher(on_topic("/x", qos));
     subscription = process->create_subscription(on_topic("/x", qos));
   }

@@ -42,12 +42,19 @@ enum class TraceKind : uint16_t {
   request,     ///< a request is written or claimed; value: the client's number
   reply,       ///< the same of a reply
   lost,        ///< value: how many
-  expired,     ///< the record's number
+  expired,     ///< value: publisher
   refused,     ///< a publish failed
   blocked,     ///< RELIABLE + KEEP_ALL: the publisher starts to wait
   match,       ///< value: the other endpoint
   join,        ///< of the process
   leave,       ///< of the process
+  cpu,         ///< value: CPU time that the process has used, in ns
+  smem,        ///< number: cluster; value: bytes of its SMEM that are used
+  bridge_in,   ///< before a message from outside is published; value: its age in ns
+  bridge_out,  ///< the message that is claimed was published outside
+  align,       ///< a scan was matched; number: begin, value: end, both of CLOCK_MONOTONIC
+  resume,      ///< goes on with what thread `endpoint` of the process did at time `number`
+  pass,        ///< as `align`, of a worker's share of a pass; endpoint: worker; incarnation: pass
 };
 
 /// Slot and incarnation of an endpoint in one word.
@@ -141,8 +148,9 @@ struct TraceControl {
   std::atomic<uint32_t> files;        ///< made so far; their names count
   std::atomic<uint64_t> unplaced;     ///< events of processes that could make no file
   std::atomic<uint64_t> unplaced_saved;
+  std::atomic<int64_t> unsaved_since_ns;  ///< start of the last trace; 0 = it is stopped and saved
   TraceSwitch receive_threads[max_clusters];  ///< index cluster - 1
 };
-static_assert(sizeof(TraceControl) == 296);
+static_assert(sizeof(TraceControl) == 304);
 
 }  // namespace manycore

@@ -37,7 +37,8 @@ void serve(const std::string & platform, uint32_t id, Daemon & daemon) {
   identity.cluster = id;
   identity.host_cpu = host_cpu;
   identity.label = "receive thread";
-  registry.tracer().follow(registry.header().trace.receive_threads[id - 1], identity);
+  registry.tracer().follow(
+    registry.header().trace.receive_threads[id - 1], identity, cluster.header());
   registry.tracer().note(TraceKind::join);
   ReceiveThread receive_thread(registry, id);
   if (replaces) {

@@ -63,7 +63,12 @@ void require_stopped(const Registry & registry) {
 
 void require_saved(Registry & registry) {
   const TraceState state = trace_state(registry);
-  if (state.pending != 0 || state.lost != 0) {
+  if (state.pending == 0 && state.lost == 0) {
+    return;
+  }
+  if (registry.header().trace.unsaved_since_ns.load() == 0) {
+    discard_trace(registry);  // what a thread was writing when the last one was stopped and saved
+  } else {
     throw Error(
       ErrorCode::invalid_argument,
       "an earlier trace was not saved (" + std::to_string(state.pending) + " events, " +
@@ -127,7 +132,9 @@ void start_trace(Registry & registry, const TraceSelection & selection) {
   TraceControl & control = registry.header().trace;
   control.events_log2.store(events_log2);
   control.clusters.store(clusters);
-  control.started_ns.store(monotonic_ns());
+  const int64_t now_ns = monotonic_ns();
+  control.unsaved_since_ns.store(now_ns);
+  control.started_ns.store(now_ns);
   for (uint32_t cluster = 1; cluster <= max_clusters; ++cluster) {
     const bool chosen = (clusters >> (cluster - 1) & 1) != 0;
     control.receive_threads[cluster - 1].store(chosen ? TraceScope::all : TraceScope::off);

@@ -44,6 +44,8 @@ TraceSaver::TraceSaver(Registry & registry) : registry_(registry) {
       ErrorCode::timeout, "another process is saving the trace of this platform; wait for its end");
   }
   const TraceControl & control = registry.header().trace;
+  // Before the events are read: they are all, but for what threads are writing just now.
+  stopped_trace_ns_ = control.started_ns.load() == 0 ? control.unsaved_since_ns.load() : 0;
   unplaced_total_ = control.unplaced.load();
   unplaced_ = unplaced_total_ - control.unplaced_saved.load();
   for (const std::string & path : trace_files(registry.paths())) {
@@ -83,7 +85,11 @@ bool TraceSaver::is_writer_alive(const TraceFileHeader & header) const {
 
 /// A file whose process had ended before it was read has nothing more to come.
 void TraceSaver::finish() noexcept {
-  registry_.header().trace.unplaced_saved.store(unplaced_total_);
+  TraceControl & control = registry_.header().trace;
+  control.unplaced_saved.store(unplaced_total_);
+  if (stopped_trace_ns_ != 0) {  // and if no other one was started since
+    control.unsaved_since_ns.compare_exchange_strong(stopped_trace_ns_, 0);
+  }
   for (size_t i = 0; i < readers_.size(); ++i) {
     readers_[i].free_read();
     if (!processes_[i].alive && readers_[i].is_drained()) {

@@ -50,6 +50,8 @@ private:
   std::vector<ProcessTrace> processes_;
   uint64_t unplaced_total_ = 0;
   uint64_t unplaced_ = 0;
+  int64_t stopped_trace_ns_ =
+    0;  ///< start of the trace, if it was stopped before its events were read
 };
 
 /// Throws away what was recorded and not saved. Throws as TraceSaver.

@@ -6,24 +6,21 @@
 #include "platform/error.hpp"
 
 namespace manycore {
-namespace {
 
-ProcessEntry & entry_of(Registry & registry, pid_t pid) {
+uint32_t process_of(Registry & registry, pid_t pid) {
   for (uint32_t slot = 0; slot < registry.processes().high_water(); ++slot) {
     if (registry.processes().is_live(slot) && registry.processes()[slot].pid == pid) {
-      return registry.processes()[slot];
+      return slot;
     }
   }
   throw Error(
     ErrorCode::invalid_argument, "process " + std::to_string(pid) + " is not on the platform");
 }
 
-}  // namespace
-
 // A death between the two counts leaves the lock to the next owner, who adds up the entries' anew.
 void charge_smem(Registry & registry, pid_t pid, uint64_t size_bytes) {
   const Registry::Lock lock(registry);
-  ProcessEntry & entry = entry_of(registry, pid);
+  ProcessEntry & entry = registry.processes()[process_of(registry, pid)];
   registry.clusters().at(entry.cluster).charge(entry.charged_bytes, size_bytes);
   entry.charged_bytes = size_bytes;
 }

@@ -9,6 +9,9 @@
 
 namespace manycore {
 
+/// Slot of process `pid`. Throws Error{invalid_argument} when it is not on the platform.
+uint32_t process_of(Registry & registry, pid_t pid);
+
 /// Counts memory that process `pid` shares with its helpers as SMEM of its cluster, instead of what
 /// it had counted before. Its end gives it back, however it ends. Throws Error{no_space}, with the
 /// old count left, and Error{invalid_argument} when the process is not on the platform.

@@ -71,7 +71,8 @@ std::optional<Claim> Subscription::claim() {
         continue;
       case Source::ClaimResult::expired:
         impl.counts.count_expired();
-        impl.registry.tracer().note(TraceKind::expired, impl.slot, candidate->number);
+        impl.registry.tracer().note(
+          TraceKind::expired, impl.slot, candidate->number, endpoint_in(source.publisher()));
         continue;
       case Source::ClaimResult::not_ours:
         continue;

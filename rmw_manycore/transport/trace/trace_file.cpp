@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <cstring>
 
 #include "platform/error.hpp"
@@ -18,16 +19,29 @@ constexpr uint64_t step_bytes = 256 << 10;
 /// Of the file system: what a trace leaves to messages and control blocks.
 constexpr uint64_t share_left = 8;
 
+/// Of a file that is not complete: savers do not look for it.
+std::string hidden(const std::string & path) {
+  const size_t name = path.rfind('/') + 1;
+  return path.substr(0, name) + "." + path.substr(name);
+}
+
 }  // namespace
 
 TraceFile::TraceFile(const std::string & path, const TraceIdentity & identity, uint32_t events_log2)
-: memory_(SharedMemory::create(path, trace_file_bytes(events_log2))) {
+: memory_(SharedMemory::create(hidden(path), trace_file_bytes(events_log2))) {
   try {
     memory_.reserve(0, trace_names_offset);
+    describe(identity, events_log2);
+    if (rename(memory_.path().c_str(), path.c_str()) != 0) {
+      throw_errno("cannot rename " + memory_.path());
+    }
   } catch (...) {
-    unlink(path.c_str());
+    unlink(memory_.path().c_str());
     throw;
   }
+}
+
+void TraceFile::describe(const TraceIdentity & identity, uint32_t events_log2) const noexcept {
   TraceFileHeader & head = header();
   head.segment.version = layout_version;
   head.segment.cluster = identity.cluster;
@@ -105,10 +119,6 @@ std::optional<TraceRingWriter> TraceFile::add_ring() noexcept {
     head.ring_count.store(index + 1, std::memory_order_release);
   }
   return TraceRingWriter(*ring, &memory_.at<TraceEvent>(ring->offset), head.events_log2);
-}
-
-void TraceFile::push(TraceRingWriter & ring, const TraceEvent & event) noexcept {
-  ring.push(event, [&](uint64_t backed) { return back(ring.ring(), backed); });
 }
 
 void TraceFile::add_name(const TraceName & name) noexcept {

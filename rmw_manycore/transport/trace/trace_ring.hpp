@@ -21,15 +21,22 @@ public:
   /// `back(first)` makes memory for events from `first` on, and returns how many have some then.
   template<typename Back>
   void push(const TraceEvent & event, Back back) noexcept {
+    if (!try_push(event, back)) {
+      ring_->lost.store(ring_->lost.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
+    }
+  }
+  /// False where there is no room; not counted as lost.
+  template<typename Back>
+  bool try_push(const TraceEvent & event, Back back) noexcept {
     if (written_ - read_ >= capacity_) {
       read_ = ring_->read.load(std::memory_order_acquire);
     }
     if (written_ - read_ >= capacity_ || (written_ >= ring_->backed && !grow(back))) {
-      ring_->lost.store(ring_->lost.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
-      return;
+      return false;
     }
     events_[written_ & (capacity_ - 1)] = event;
     ring_->written.store(++written_, std::memory_order_release);
+    return true;
   }
 
   TraceRing & ring() const noexcept { return *ring_; }

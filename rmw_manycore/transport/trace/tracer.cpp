@@ -10,56 +10,68 @@
 #include "platform/error.hpp"
 
 namespace manycore {
+
+/// What a thread writes to, of one platform.
+struct ThreadRing {
+  uint64_t tracer;
+  std::shared_ptr<TraceFile> file;  ///< keeps the memory while the thread lives
+  TraceRingWriter writer;
+};
+
 namespace {
 
 constexpr TraceSwitch never{TraceScope::off};
 
+/// The ring that a thread used last. Plain data, found without a call: a site that is on costs less
+/// than a look at the clock.
+struct LastRing {
+  uint64_t tracer;
+  ThreadRing * ring;
+  bool is_ending;  ///< the thread's rings are gone, other things of it may still be noted
+};
+[[gnu::tls_model("initial-exec")]] thread_local LastRing last_ring{};
+
 /// A thread's rings, one for each platform it serves.
 class ThreadRings {
 public:
-  struct Ring {
-    uint64_t tracer;
-    std::shared_ptr<TraceFile> file;  ///< keeps the memory while the thread lives
-    TraceRingWriter writer;
-  };
-
   ~ThreadRings() {
-    for (Ring & ring : rings_) {
+    last_ring = {0, nullptr, true};
+    for (ThreadRing & ring : rings_) {
       end(ring);
     }
   }
 
-  Ring * find(uint64_t tracer) noexcept {
-    if (last_ != nullptr && last_->tracer == tracer) {
-      return last_;
-    }
+  ThreadRing * find(uint64_t tracer) noexcept {
     const auto found = std::find_if(
-      rings_.begin(), rings_.end(), [&](const Ring & ring) { return ring.tracer == tracer; });
-    last_ = found == rings_.end() ? nullptr : &*found;
-    return last_;
+      rings_.begin(), rings_.end(), [&](const ThreadRing & ring) { return ring.tracer == tracer; });
+    return found == rings_.end() ? nullptr : remember(*found);
   }
 
-  Ring * add(Ring && fresh) {
-    last_ = nullptr;
+  ThreadRing * add(ThreadRing && fresh) {
+    last_ring = {};
     // Those of platforms that the process has left.
-    const auto gone = std::remove_if(
-      rings_.begin(), rings_.end(), [](const Ring & ring) { return ring.file.use_count() == 1; });
+    const auto gone = std::remove_if(rings_.begin(), rings_.end(), [](const ThreadRing & ring) {
+      return ring.file.use_count() == 1;
+    });
     std::for_each(gone, rings_.end(), end);
     rings_.erase(gone, rings_.end());
     rings_.push_back(std::move(fresh));
-    last_ = &rings_.back();
-    return last_;
+    return remember(rings_.back());
   }
 
 private:
-  static void end(Ring & ring) noexcept {
+  static ThreadRing * remember(ThreadRing & ring) noexcept {
+    last_ring = {ring.tracer, &ring, false};
+    return &ring;
+  }
+
+  static void end(ThreadRing & ring) noexcept {
     if (ring.file != nullptr && !ring.file->is_inherited()) {
       ring.writer.ring().state.store(TraceRingState::ended, std::memory_order_release);
     }
   }
 
-  std::vector<Ring> rings_;
-  Ring * last_ = nullptr;
+  std::vector<ThreadRing> rings_;
 };
 
 thread_local ThreadRings thread_rings;
@@ -87,10 +99,12 @@ Tracer::Tracer(const SharedMemory & registry, std::string directory)
 
 Tracer::~Tracer() = default;
 
-void Tracer::follow(const TraceSwitch & by, const TraceIdentity & identity) {
+void Tracer::follow(
+  const TraceSwitch & by, const TraceIdentity & identity, const ClusterHeader & cluster) {
   const std::lock_guard<std::mutex> lock(mutex_);
   identity_ = identity;
   identity_.platform_nonce = header().segment.platform_nonce;
+  cluster_.store(&cluster, std::memory_order_relaxed);
   switch_.store(&by, std::memory_order_relaxed);
 }
 
@@ -109,7 +123,7 @@ void Tracer::record(TraceKind kind, uint32_t endpoint, uint64_t number, uint64_t
     return;
   }
   TraceEvent event{monotonic_ns(), number, value, endpoint, 0, kind};
-  TraceRingWriter * const ring = ring_of_this_thread();
+  ThreadRing * const ring = ring_of_this_thread();
   if (ring == nullptr) {
     return;
   }
@@ -120,10 +134,34 @@ void Tracer::record(TraceKind kind, uint32_t endpoint, uint64_t number, uint64_t
     const uint32_t incarnation = entry->slot.incarnation.load(std::memory_order_relaxed);
     event.incarnation = static_cast<uint16_t>(incarnation);
     if ((*described_)[endpoint].load(std::memory_order_relaxed) != incarnation) {
-      describe(endpoint, incarnation);
+      describe(*ring->file, endpoint, incarnation);
     }
   }
-  thread_rings.find(id_)->file->push(*ring, event);
+  ring->file->push(ring->writer, event);
+  if (ring->file->is_sample_due(event.time_ns)) {
+    sample(*ring, event.time_ns);
+  }
+}
+
+void Tracer::note_other(
+  TraceKind kind, uint32_t index, uint16_t step, uint64_t number, uint64_t value) noexcept {
+  if (!is_on() || side_.is_inherited()) {
+    return;
+  }
+  if (ThreadRing * const ring = ring_of_this_thread()) {
+    ring->file->push(ring->writer, {monotonic_ns(), number, value, index, step, kind});
+  }
+}
+
+void Tracer::sample(ThreadRing & ring, int64_t time_ns) noexcept {
+  const auto cpu_ns = static_cast<uint64_t>(clock_ns(CLOCK_PROCESS_CPUTIME_ID));
+  ring.file->push_sample(ring.writer, {time_ns, 0, cpu_ns, nothing, 0, TraceKind::cpu});
+  if (const ClusterHeader * const cluster = cluster_.load(std::memory_order_relaxed)) {
+    const uint64_t used_bytes = cluster->used_bytes.load(std::memory_order_relaxed) +
+                                cluster->charged_bytes.load(std::memory_order_relaxed);
+    ring.file->push_sample(
+      ring.writer, {time_ns, cluster->segment.cluster, used_bytes, nothing, 0, TraceKind::smem});
+  }
 }
 
 /// Where only some nodes are traced: theirs, and what they do to other processes' endpoints.
@@ -139,12 +177,19 @@ bool Tracer::is_wanted(const EndpointEntry & endpoint) const noexcept {
   return node.traced.load(std::memory_order_relaxed) != 0;
 }
 
-TraceRingWriter * Tracer::ring_of_this_thread() noexcept {
-  ThreadRings::Ring * const known = thread_rings.find(id_);
-  return known != nullptr ? &known->writer : add_ring();
+ThreadRing * Tracer::ring_of_this_thread() noexcept {
+  if (__builtin_expect(last_ring.tracer == id_, 1)) {
+    return last_ring.ring;
+  }
+  if (last_ring.is_ending) {
+    header().trace.unplaced.fetch_add(1, std::memory_order_relaxed);
+    return nullptr;
+  }
+  ThreadRing * const known = thread_rings.find(id_);
+  return known != nullptr ? known : add_ring();
 }
 
-TraceRingWriter * Tracer::add_ring() noexcept {
+ThreadRing * Tracer::add_ring() noexcept {
   const std::shared_ptr<TraceFile> file = this->file();
   if (file == nullptr) {
     header().trace.unplaced.fetch_add(1, std::memory_order_relaxed);
@@ -152,7 +197,7 @@ TraceRingWriter * Tracer::add_ring() noexcept {
   }
   try {
     if (const std::optional<TraceRingWriter> ring = file->add_ring()) {
-      return &thread_rings.add({id_, file, *ring})->writer;
+      return thread_rings.add({id_, file, *ring});
     }
   } catch (const std::bad_alloc &) {
     // Counted below; the ring stays unused.
@@ -185,7 +230,7 @@ std::shared_ptr<TraceFile> Tracer::file() noexcept {
   return file_;
 }
 
-void Tracer::describe(uint32_t endpoint, uint32_t incarnation) noexcept {
+void Tracer::describe(TraceFile & file, uint32_t endpoint, uint32_t incarnation) noexcept {
   (*described_)[endpoint].store(incarnation, std::memory_order_relaxed);
   const EndpointEntry & entry = *endpoint_at(endpoint);
   TraceName name{};
@@ -207,7 +252,7 @@ void Tracer::describe(uint32_t endpoint, uint32_t incarnation) noexcept {
   } catch (const std::bad_alloc &) {
     return;
   }
-  thread_rings.find(id_)->file->add_name(name);
+  file.add_name(name);
 }
 
 }  // namespace manycore

@@ -6,10 +6,19 @@
 #include <mutex>
 #include <string>
 
+#include "transport/layout/cluster_layout.hpp"
 #include "transport/layout/registry_layout.hpp"
 #include "transport/trace/trace_file.hpp"
 
 namespace manycore {
+
+#ifdef MANYCORE_WITHOUT_TRACE_SITES
+constexpr bool has_trace_sites = false;
+#else
+constexpr bool has_trace_sites = true;
+#endif
+
+struct ThreadRing;
 
 /// Records what this process does on one platform, while it is traced. See docs/design/trace.md.
 /// Thread-safe.
@@ -21,8 +30,9 @@ public:
   Tracer(const Tracer &) = delete;
   Tracer & operator=(const Tracer &) = delete;
 
-  /// From here on this process is traced as `by` says.
-  void follow(const TraceSwitch & by, const TraceIdentity & identity);
+  /// From here on this process is traced as `by` says; `cluster` is its own.
+  void follow(
+    const TraceSwitch & by, const TraceIdentity & identity, const ClusterHeader & cluster);
   /// Ends what follow() began: `by` may now be another process's.
   void unfollow() noexcept;
 
@@ -33,21 +43,27 @@ public:
       record(kind, endpoint, number, value);
     }
   }
+  /// An event that is no endpoint's: index and step stand in the place of slot and incarnation.
+  void note_other(
+    TraceKind kind, uint32_t index, uint16_t step, uint64_t number, uint64_t value) noexcept;
   bool is_on() const noexcept {
-    return switch_.load(std::memory_order_relaxed)->load(std::memory_order_relaxed) !=
-           TraceScope::off;
+    return has_trace_sites &&
+           switch_.load(std::memory_order_relaxed)->load(std::memory_order_relaxed) !=
+             TraceScope::off;
   }
 
 private:
   [[gnu::noinline, gnu::cold]] void record(
     TraceKind kind, uint32_t endpoint, uint64_t number, uint64_t value) noexcept;
   /// The calling thread's; nullptr where none is to be had, which is counted.
-  TraceRingWriter * ring_of_this_thread() noexcept;
-  TraceRingWriter * add_ring() noexcept;
+  ThreadRing * ring_of_this_thread() noexcept;
+  ThreadRing * add_ring() noexcept;
   /// The process's file, made at its first event; nullptr when it cannot be made.
   std::shared_ptr<TraceFile> file() noexcept;
   bool is_wanted(const EndpointEntry & endpoint) const noexcept;
-  void describe(uint32_t endpoint, uint32_t incarnation) noexcept;
+  void describe(TraceFile & file, uint32_t endpoint, uint32_t incarnation) noexcept;
+  /// Notes what the process and its cluster use.
+  void sample(ThreadRing & ring, int64_t time_ns) noexcept;
 
   RegistryHeader & header() const noexcept { return registry_.at<RegistryHeader>(0); }
   EndpointEntry * endpoint_at(uint32_t slot) const noexcept;
@@ -59,6 +75,7 @@ private:
   std::atomic<const TraceSwitch *> switch_;
   std::mutex mutex_;  ///< of identity_ and file_
   TraceIdentity identity_;
+  std::atomic<const ClusterHeader *> cluster_{nullptr};
   std::shared_ptr<TraceFile> file_;
   uint64_t failures_ = 0;
   /// By endpoint slot: the incarnation whose name is in the file.
