@@ -12,7 +12,7 @@ TESTS_ALONE := -DMANYCORE_BUILD_RMW=OFF -DMANYCORE_BUILD_PYTHON=OFF -DMANYCORE_B
 NATIVE_SOURCES := $(shell find CMakeLists.txt cmake startup rmw_manycore \
 	-type f -not -name '*.md')
 
-.PHONY: help setup demo wheel test test-native stress soak sanitize fuzz bench lint tidy docs clean
+.PHONY: help setup demo wheel test test-native stress soak sanitize fuzz bench lint tidy docs pictures clean
 
 help:  ## this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -71,6 +71,12 @@ tidy: setup  ## clang-tidy with the checks of .clang-tidy
 
 docs: setup  ## the documentation as HTML in build/docs, links checked
 	$(VENV)/mkdocs build --quiet --strict --site-dir build/docs
+
+pictures: setup  ## the pictures of docs/where_does_the_time_go.md, from a trace of an example
+	mkdir -p build docs/pictures
+	$(VENV)/manycore run image_pipeline --duration 10 --trace build/pictures.json >/dev/null
+	$(VENV)/manycore trace draw build/pictures.json -o docs/pictures/trace_message.png
+	$(VENV)/manycore trace latency build/pictures.json --plot docs/pictures/trace_chains.png
 
 clean:  ## remove everything that was built
 	rm -rf build .venv

@@ -155,6 +155,9 @@ class WorkerGroup:
         """Return what is shared with the workers beside the map, for scans of `points` points."""
 
     def pids(self) -> list[int]: ...
+    def passes(self) -> list[tuple[int, int, int, int]]:
+        """Return worker, pass, begin and end [ns, CLOCK_MONOTONIC] of the last answer's passes."""
+
     def busy_ns(self) -> list[float]:
         """Return how long each worker was busy in the last job."""
 

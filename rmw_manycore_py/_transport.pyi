@@ -242,6 +242,24 @@ def platform_directory(name: str) -> str:
 def clean(name: str) -> list[str]:
     """Remove what a dead platform left and return the paths; PlatformError while it lives."""
 
+class OwnTracer:
+    """Notes what this process does beside its nodes, while its platform traces it.
+
+    Times are those of CLOCK_MONOTONIC. PlatformError where the process has no node yet.
+    """
+
+    def __init__(self, platform: str) -> None: ...
+    @property
+    def is_on(self) -> bool: ...
+    def resume(self, tid: int, at_ns: int) -> None:
+        """Note that this thread goes on with what another one did at a time, in a callback."""
+
+    def align(self, begin_ns: int, end_ns: int) -> None:
+        """Note that a scan was matched."""
+
+    def run_pass(self, begin_ns: int, end_ns: int, worker: int, number: int) -> None:
+        """Note a worker's share of a pass."""
+
 def charge_smem(platform: str, size_bytes: int) -> None:
     """Count `size_bytes` of this process, outside the segment, as SMEM of its cluster.
 
@@ -362,6 +380,9 @@ class Subscription:
 
     def claim(self) -> Claim | None:
         """Return the next record without a copy."""
+
+    def note_bridged(self) -> None:
+        """Note, for traces, that the claimed message was published outside."""
 
     def has_data(self) -> bool: ...
     def matched(self) -> int:

@@ -135,6 +135,8 @@ class OutwardTopic(Topic):
         """Publish outside; rmw cannot publish with another time than now."""
         assert self._writer is not None
         self._writer.publish(address, size)
+        if self._subscription is not None:
+            self._subscription.note_bridged()
 
     def _count_lost(self, subscription: _transport.Subscription) -> None:
         lost = subscription.lost()

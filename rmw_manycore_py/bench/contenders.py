@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Literal
 
 Wait = Literal["block", "adaptive", "spin"]
@@ -46,6 +47,7 @@ class Middleware:
     variables: dict[str, str] = field(default_factory=dict, hash=False)
     profile: str | None = None
     clusters: tuple[int, ...] = (1,)
+    library: Path | None = None  # directory of another librmw_manycore.so than the installed one
 
     @property
     def is_manycore(self) -> bool:

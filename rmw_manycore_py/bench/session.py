@@ -267,7 +267,8 @@ def library_path(middleware: Middleware) -> list[str]:
     libraries = [prefix / "lib", *sorted(prefix.glob("lib/python*/site-packages/ros_*.libs"))]
     given = plain_environment(os.environ, sys.prefix).get("LD_LIBRARY_PATH", "").split(os.pathsep)
     standin = [native_directory() / "standin"] if middleware.is_manycore else []
-    return [str(path) for path in [*standin, *libraries, *given] if str(path)]
+    other = [middleware.library] if middleware.library else []
+    return [str(path) for path in [*other, *standin, *libraries, *given] if str(path)]
 
 
 def run_peer(peer: Peer, cpus: tuple[int, int], **arguments: object) -> dict[str, Any]:

@@ -7,19 +7,23 @@ callback (communication), and a node has it from there to its own call of publis
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from collections import defaultdict
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 
 from rmw_manycore_py.trace.events import (
     EndpointId,
     Kind,
     RecordId,
-    Thread,
+    Row,
+    ThreadId,
     Trace,
     endpoint_id,
     endpoint_in,
 )
+from rmw_manycore_py.trace.matching import Matching, Matchings
 
 Chain = tuple[str, ...]  # topics, from the first to the last
 MAX_LENGTH = 32  # topics of a chain
@@ -31,7 +35,8 @@ class Arrival:
 
     record: RecordId
     node: str
-    callback_ns: int
+    callback_ns: int  # where the node is the bridge, it has the message from then on
+    bridged_ns: int | None = None  # DDS has it
 
 
 @dataclass(frozen=True)
@@ -42,6 +47,9 @@ class Passage:
     callback_ns: tuple[int, ...]
     nodes: tuple[str, ...]  # that took it
     first: RecordId
+    matching_ns: tuple[Matching | None, ...]  # of each hop through a node
+    age_ns: int | None  # when the first topic's bridge published it, since it was outside
+    bridged_ns: int | None  # when the last node, a bridge, was done with it
 
 
 class Messages:
@@ -49,11 +57,16 @@ class Messages:
 
     def __init__(self, trace: Trace) -> None:
         self._trace = trace
+        self._matchings = Matchings(trace)
         self.published_ns: dict[RecordId, int] = {}
         self.causes: dict[RecordId, Arrival] = {}
         self.arrivals: dict[str, list[Arrival]] = defaultdict(list)  # by topic
-        for _, thread in trace.threads():
-            self._follow(thread)
+        self._ages_ns: dict[RecordId, int] = {}  # of what the bridge brought
+        self._threads: dict[RecordId, ThreadId] = {}  # that published
+        threads = {key: events.tolist() for key, events in trace.threads_by_id().items()}
+        self._of_thread = {key: self._arrivals_in(rows) for key, rows in threads.items()}
+        for key, rows in threads.items():
+            self._follow(key, rows)
         for arrivals in self.arrivals.values():
             arrivals.sort(key=lambda arrival: arrival.callback_ns)
 
@@ -61,25 +74,56 @@ class Messages:
         named = self._trace.endpoints.get(endpoint)
         return named is not None and named.role == "topic"
 
-    def _follow(self, thread: Thread) -> None:
+    def _arrivals_in(self, rows: list[Row]) -> list[tuple[int, Arrival]]:
+        """Return what a thread took, with the times at which each take was over."""
+        found = []
+        claimed_ns = 0
+        bridged_ns: int | None = None
+        for time_ns, number, value, slot, incarnation, kind in rows:
+            endpoint = endpoint_id(slot, incarnation)
+            if kind == Kind.CLAIM:
+                claimed_ns, bridged_ns = time_ns, None
+            elif kind == Kind.BRIDGE_OUT:
+                bridged_ns = time_ns
+            elif kind == Kind.RELEASE and self._is_of_topic(endpoint):
+                record = (endpoint_in(value), number)
+                begin_ns = time_ns if bridged_ns is None else claimed_ns
+                arrival = Arrival(record, self._trace.node_of(endpoint), begin_ns, bridged_ns)
+                self.arrivals[self._trace.topic_of(endpoint)].append(arrival)
+                found.append((time_ns, arrival))
+        return found
+
+    def _follow(self, thread: ThreadId, rows: list[Row]) -> None:
+        arrivals = iter(self._of_thread[thread])
         current: Arrival | None = None
         begin_ns: int | None = None
-        for time_ns, number, value, slot, incarnation, kind in thread.events.tolist():
+        age_ns: int | None = None
+        for time_ns, number, value, slot, incarnation, kind in rows:
             endpoint = endpoint_id(slot, incarnation)
             if kind in (Kind.WAIT_BEGIN, Kind.CLAIM):
                 current = None
             elif kind == Kind.RELEASE and self._is_of_topic(endpoint):
-                record = (endpoint_in(value), number)
-                current = Arrival(record, self._trace.node_of(endpoint), time_ns)
-                self.arrivals[self._trace.topic_of(endpoint)].append(current)
+                _, current = next(arrivals)
+            elif kind == Kind.RESUME:
+                current = self._arrival_before((*thread[:2], slot), number)
+            elif kind == Kind.BRIDGE_IN:
+                age_ns = value
             elif kind == Kind.PUBLISH_BEGIN:
                 begin_ns = time_ns
             elif kind == Kind.WRITE and self._is_of_topic(endpoint):
                 record = (endpoint, number)
                 self.published_ns[record] = time_ns if begin_ns is None else begin_ns
-                begin_ns = None
+                self._threads[record] = thread
+                if age_ns is not None:
+                    self._ages_ns[record] = age_ns
+                begin_ns = age_ns = None
                 if current is not None and current.node == self._trace.node_of(endpoint):
                     self.causes[record] = current
+
+    def _arrival_before(self, thread: ThreadId, time_ns: int) -> Arrival | None:
+        arrivals = self._of_thread.get(thread, [])
+        at = bisect_right(arrivals, time_ns, key=lambda arrival: arrival[0])
+        return arrivals[at - 1][1] if at else None
 
     def topic_of(self, record: RecordId) -> str:
         """Return the topic that a message was published on."""
@@ -133,4 +177,12 @@ class Messages:
             tuple(arrival.callback_ns for arrival in arrivals),
             tuple(arrival.node for arrival in arrivals),
             arrivals[0].record,
+            tuple(self._matching(before, after) for before, after in pairwise(arrivals)),
+            self._ages_ns.get(arrivals[0].record),
+            last.bridged_ns,
         )
+
+    def _matching(self, before: Arrival, after: Arrival) -> Matching | None:
+        """Return what a node did of scan matching between a take and its publish."""
+        thread = self._threads[after.record]
+        return self._matchings.between(thread, before.callback_ns, self.published_ns[after.record])

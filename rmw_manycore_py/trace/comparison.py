@@ -35,10 +35,11 @@ def compare(before: Sequence[ChainLatency], after: Sequence[ChainLatency]) -> li
     for one in after:
         other = known.get((one.chain, one.nodes))
         if other is not None:
+            old_parts = {part.name: part for part in other.parts if part.samples_us}
             changes += [
-                _change(one.name, old, new)
-                for old, new in zip(other.parts, one.parts, strict=True)
-                if old.samples_us and new.samples_us
+                _change(one.name, old_parts[new.name], new)
+                for new in one.parts
+                if new.samples_us and new.name in old_parts
             ]
     return changes
 

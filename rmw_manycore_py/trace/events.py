@@ -6,12 +6,13 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from enum import IntEnum
-from typing import Any
+from typing import Any, overload
 
 import numpy as np
 from numpy.typing import NDArray
 
 Events = NDArray[Any]  # of EVENT
+Ids = NDArray[np.uint64]  # of endpoints
 
 # As TraceEvent of rmw_manycore/transport/layout/trace_layout.hpp.
 EVENT = np.dtype(
@@ -25,6 +26,7 @@ EVENT = np.dtype(
     ]
 )
 NO_ENDPOINT = 0xFFFFFFFF
+NO_ID = 0xFFFF_FFFF_FFFF_FFFF  # in the place of an EndpointId
 _ID_MASK = 0xFFFF_FFFF_FFFF  # 16 bits of the incarnation, as events have them
 
 
@@ -52,9 +54,18 @@ class Kind(IntEnum):
     MATCH = 19
     JOIN = 20
     LEAVE = 21
+    CPU = 22
+    SMEM = 23
+    BRIDGE_IN = 24
+    BRIDGE_OUT = 25
+    ALIGN = 26
+    RESUME = 27
+    PASS = 28
 
 
 EndpointId = int
+ThreadId = tuple[int, int, int]  # cluster, pid, tid
+Row = tuple[int, int, int, int, int, int]  # time, number, value, endpoint, incarnation, kind
 RecordId = tuple[EndpointId, int]  # publisher and number: one of its kind on a platform
 
 
@@ -63,9 +74,24 @@ def endpoint_id(slot: int, incarnation: int) -> EndpointId:
     return (incarnation & 0xFFFF) << 32 | slot
 
 
-def endpoint_in(value: int) -> EndpointId:
-    """Return the endpoint that an event's value names."""
-    return value & _ID_MASK
+@overload
+def endpoint_in(value: int) -> EndpointId: ...
+@overload
+def endpoint_in(value: Ids) -> Ids: ...
+def endpoint_in(value: int | Ids) -> EndpointId | Ids:
+    """Return the endpoint that an event's value names, or those of a column."""
+    if isinstance(value, int):
+        return value & _ID_MASK
+    ids: Ids = value & np.uint64(_ID_MASK)
+    return ids
+
+
+def endpoint_ids(events: Events) -> Ids:
+    """Return the endpoint of each event, or NO_ID."""
+    slots = events["endpoint"].astype(np.uint64)
+    ids = slots | events["incarnation"].astype(np.uint64) << np.uint64(32)
+    found: Ids = np.where(slots == NO_ENDPOINT, np.uint64(NO_ID), ids)
+    return found
 
 
 @dataclass(frozen=True)
@@ -133,6 +159,22 @@ class Trace:
             + sum(process.unplaced for process in self.processes)
             + sum(thread.lost for _, thread in self.threads())
         )
+
+    def threads_by_id(self) -> dict[ThreadId, Events]:
+        """Return the events of each thread in their order.
+
+        A thread has a ring for its nodes, and another one for what it notes beside them.
+        """
+        found: dict[ThreadId, Events] = {}
+        for process, thread in self.threads():
+            key = (process.cluster, process.pid, thread.tid)
+            known = found.get(key)
+            if known is None:
+                found[key] = thread.events
+            else:
+                both = np.concatenate([known, thread.events])
+                found[key] = both[np.argsort(both["time_ns"], kind="stable")]
+        return found
 
     def topic_of(self, endpoint: EndpointId) -> str:
         """Return the topic of an endpoint, or its number where it has no name."""

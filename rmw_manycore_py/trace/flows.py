@@ -3,98 +3,110 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rmw_manycore_py.trace.events import (
-    EndpointId,
+    EVENT,
     Events,
+    Ids,
     Kind,
     Process,
-    RecordId,
     Thread,
     Trace,
-    endpoint_id,
+    endpoint_ids,
     endpoint_in,
 )
+from rmw_manycore_py.trace.pairs import Indices, first_of
 
+NO_THREAD = -1
 
-class Place(NamedTuple):
-    """A moment in a thread."""
-
-    thread: int  # index among the trace's threads
-    time_ns: int
-
-
-class Flow(NamedTuple):
-    """One take of one message."""
-
-    record: RecordId
-    subscription: EndpointId
-    write: Place
-    receive: Place | None  # where the receive thread has it, between clusters
-    claim: Place
+# One take of one message. Threads are indices among the trace's threads.
+FLOW = np.dtype(
+    [
+        ("publisher", "<u8"),  # with `number`: the record
+        ("number", "<u8"),
+        ("subscription", "<u8"),
+        ("write_thread", "<i4"),
+        ("write_ns", "<i8"),
+        ("receive_thread", "<i4"),  # NO_THREAD where no receive thread told the subscription
+        ("receive_ns", "<i8"),
+        ("claim_thread", "<i4"),
+        ("claim_ns", "<i8"),
+    ]
+)
 
 
 @dataclass(frozen=True)
 class Flows:
     """All flows of a trace, and the number of takes whose publish is not in it."""
 
-    flows: tuple[Flow, ...]
+    flows: NDArray[Any]  # of FLOW
     without_publish: int
+
+
+class _Column(NamedTuple):
+    """All events of a kind, with the records they are about."""
+
+    events: Events
+    threads: NDArray[np.int32]
+    clusters: NDArray[np.uint64]
+    record: tuple[Ids, NDArray[np.uint64]]  # publishers and numbers
 
 
 def flows_of(trace: Trace) -> Flows:
     """Return exactly one flow for each take whose publish is in the trace."""
-    threads = list(trace.threads())
-    writes: dict[RecordId, Place] = {}
-    receives: dict[tuple[RecordId, int], Place] = {}
-    for index, (process, thread) in enumerate(threads):
-        for event in _of_kind(thread, Kind.WRITE):
-            writes[_record(event)] = Place(index, event[0])
-        for event in _of_kind(thread, Kind.RECEIVE):
-            # The first one: a receive thread may look twice, when its readers change meanwhile.
-            receives.setdefault((_record(event), process.cluster), Place(index, event[0]))
-    found = []
-    without_publish = 0
-    for index, (process, thread) in enumerate(threads):
-        for event in _of_kind(thread, Kind.CLAIM):
-            record = (endpoint_in(event[2]), event[1])
-            write = writes.get(record)
-            if write is None:
-                without_publish += 1
-                continue
-            claim = Place(index, event[0])
-            receive = receives.get((record, process.cluster))
-            # A reader that looked for itself was not told by the receive thread.
-            told = receive is not None and receive.time_ns <= claim.time_ns
-            found.append(
-                Flow(
-                    record,
-                    endpoint_id(event[3], event[4]),
-                    write,
-                    receive if told else None,
-                    claim,
-                )
-            )
-    return Flows(tuple(found), without_publish)
+    writes = _column(trace, Kind.WRITE, endpoint_ids)
+    receives = _column(trace, Kind.RECEIVE, endpoint_ids)
+    claims = _column(trace, Kind.CLAIM, lambda events: endpoint_in(events["value"]))
+    write = first_of(writes.record, claims.record)
+    found = write >= 0
+    write = write[found]
+    flows = np.zeros(len(write), FLOW)
+    flows["publisher"], flows["number"] = (key[found] for key in claims.record)
+    flows["subscription"] = endpoint_ids(claims.events[found])
+    flows["claim_thread"] = claims.threads[found]
+    flows["claim_ns"] = claims.events["time_ns"][found]
+    flows["write_thread"] = writes.threads[write]
+    flows["write_ns"] = writes.events["time_ns"][write]
+    # The first one: a receive thread may look twice, when its readers change meanwhile.
+    receive = first_of((*receives.record, receives.clusters), (*claims.record, claims.clusters))
+    _add_receives(flows, receives, receive[found])
+    return Flows(flows, int((~found).sum()))
 
 
-def _of_kind(thread: Thread, kind: Kind) -> list[tuple[int, int, int, int, int, int]]:
-    events: list[tuple[int, int, int, int, int, int]] = thread.events[
-        thread.events["kind"] == kind
-    ].tolist()
-    return events
+def _add_receives(flows: NDArray[Any], receives: _Column, receive: Indices) -> None:
+    """Leave out those of readers that looked for themselves before they were told."""
+    flows["receive_thread"] = NO_THREAD
+    told = np.flatnonzero(receive >= 0)
+    told = told[receives.events["time_ns"][receive[told]] <= flows["claim_ns"][told]]
+    flows["receive_thread"][told] = receives.threads[receive[told]]
+    flows["receive_ns"][told] = receives.events["time_ns"][receive[told]]
 
 
-def _record(event: tuple[int, int, int, int, int, int]) -> RecordId:
-    return endpoint_id(event[3], event[4]), event[1]
+def _column(trace: Trace, kind: Kind, publishers: Callable[[Events], Ids]) -> _Column:
+    found = [(p, t.events[t.events["kind"] == kind]) for p, t in trace.threads()]
+    events = joined([own for _, own in found])
+    counts = [len(own) for _, own in found]
+    clusters = np.array([process.cluster for process, _ in found], np.uint64)
+    return _Column(
+        events,
+        np.repeat(np.arange(len(found), dtype=np.int32), counts),
+        np.repeat(clusters, counts),
+        (publishers(events), events["number"]),
+    )
+
+
+def joined(parts: Sequence[Events]) -> Events:
+    """Return the events of several threads, one after the other."""
+    return np.concatenate([*parts, np.empty(0, EVENT)])
 
 
 def merged(threads: list[tuple[Process, Thread]], kinds: tuple[Kind, ...]) -> Events:
     """Return the events of these kinds of all threads, in the order of their times."""
-    parts = [thread.events[np.isin(thread.events["kind"], kinds)] for _, thread in threads]
-    events: Events = np.concatenate(parts) if parts else np.empty(0)
-    return events[np.argsort(events["time_ns"], kind="stable")] if len(events) else events
+    events = joined([t.events[np.isin(t.events["kind"], kinds)] for _, t in threads])
+    return events[np.argsort(events["time_ns"], kind="stable")]

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from rmw_manycore_py.trace.chains import Chain, Messages, Passage
+from rmw_manycore_py.trace.matching import Matching
 
 _NS_PER_US = 1000
 _Z_95 = 1.96
@@ -55,7 +56,7 @@ class ChainLatency:
 
     chain: Chain
     nodes: tuple[str, ...]
-    parts: tuple[Part, ...]  # communication and node in turns, `total`, `reaction`, `data age`
+    parts: tuple[Part, ...]  # communication and node in turns, with what they hold; then the whole
 
     @property
     def name(self) -> str:
@@ -84,17 +85,39 @@ def latencies(messages: Messages, chains: Sequence[Chain]) -> list[ChainLatency]
 
 
 def _latency(chain: Chain, nodes: tuple[str, ...], passages: list[Passage]) -> ChainLatency:
-    parts = []
+    ages = [p.age_ns for p in passages if p.age_ns is not None]
+    parts = [_part(f"bridge in {chain[0]}", ages)] if len(ages) == len(passages) else []
     for i, topic in enumerate(chain):
         came = [p.callback_ns[i] - p.published_ns[i] for p in passages]
         parts.append(_part(f"communication {topic}", came))
         if i + 1 < len(chain):
             worked = [p.published_ns[i + 1] - p.callback_ns[i] for p in passages]
             parts.append(_part(f"node {nodes[i]}", worked))
-    parts.append(_part("total", [p.callback_ns[-1] - p.published_ns[0] for p in passages]))
+            parts += _matching(nodes[i], [p.matching_ns[i] for p in passages])
+    left = [p.bridged_ns - p.callback_ns[-1] for p in passages if p.bridged_ns is not None]
+    if len(left) == len(passages):
+        parts.append(_part(f"bridge out {chain[-1]}", left))
+    parts.append(_part("total", [_total_ns(p) for p in passages]))
     parts.append(_part("reaction", _reactions_ns(passages)))
     parts.append(_part("data age", _ages_ns(passages)))
     return ChainLatency(chain, nodes, tuple(parts))
+
+
+def _matching(node: str, matchings: Sequence[Matching | None]) -> list[Part]:
+    """Return what of a node's time was scan matching."""
+    known = [one for one in matchings if one is not None]
+    if not known:
+        return []
+    return [
+        _part(f"NDT alignment {node}", [one.alignment_ns for one in known]),
+        _part(f"NDT workers {node}", [one.workers_ns for one in known]),
+    ]
+
+
+def _total_ns(passage: Passage) -> int:
+    """Return the sum of communication, node and bridge."""
+    end_ns = passage.callback_ns[-1] if passage.bridged_ns is None else passage.bridged_ns
+    return end_ns - passage.published_ns[0] + (passage.age_ns or 0)
 
 
 def _part(name: str, samples_ns: list[int]) -> Part:

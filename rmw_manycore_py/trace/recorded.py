@@ -10,7 +10,16 @@ import numpy as np
 
 from rmw_manycore_py import _transport
 from rmw_manycore_py.native_errors import translate_native_errors
-from rmw_manycore_py.trace.events import EVENT, Endpoint, Process, Thread, Trace, endpoint_id
+from rmw_manycore_py.trace.events import (
+    EVENT,
+    Endpoint,
+    Kind,
+    Process,
+    Thread,
+    Trace,
+    endpoint_id,
+)
+from rmw_manycore_py.trace.pairs import split_by
 
 _ROLES = ("topic", "request", "reply")
 
@@ -62,11 +71,20 @@ def _process_of(process: _transport.ProcessTrace) -> Process:
         label=process.label,
         is_receive_thread=process.process is None,
         is_alive=process.alive,
-        threads=tuple(
-            Thread(t.tid, t.name, np.frombuffer(t.events, EVENT), t.lost) for t in process.threads
-        ),
+        threads=tuple(thread for t in process.threads for thread in _threads_of(t)),
         unplaced=process.unplaced,
     )
+
+
+def _threads_of(thread: _transport.ThreadTrace) -> Iterator[Thread]:
+    """Yield a thread, and one for each worker that it noted the passes of."""
+    events = np.frombuffer(thread.events, EVENT)
+    is_pass = events["kind"] == Kind.PASS
+    yield Thread(thread.tid, thread.name, events[~is_pass], thread.lost)
+    passes = events[is_pass]
+    for own in split_by(passes["endpoint"]):
+        worker = int(passes["endpoint"][own[0]])
+        yield Thread(-1 - worker, f"NDT worker {worker}", passes[own], 0)
 
 
 def _unless_negative(number: int) -> int | None:

@@ -1,192 +1,273 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What a thread did when: its events as spans of time."""
+"""What a thread did when: its events as spans of time, column by column."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from types import MappingProxyType
-from typing import Any, NamedTuple
+from collections.abc import Sequence
+from enum import IntEnum
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
 
 from rmw_manycore_py.trace.events import (
-    NO_ENDPOINT,
+    NO_ID,
+    EndpointId,
+    Events,
     Kind,
-    RecordId,
     Thread,
     Trace,
-    endpoint_id,
+    endpoint_ids,
     endpoint_in,
 )
+from rmw_manycore_py.trace.pairs import Indices, by_key, in_turns, next_of
 
-Row = tuple[int, int, int, int, int, int]  # time, number, value, endpoint, incarnation, kind
-_NOTHING: Mapping[str, Any] = MappingProxyType({})
-_UNKNOWN: Mapping[str, Any] = MappingProxyType({"end": "unknown"})
+Slices = NDArray[Any]  # of SLICE
+
+
+class What(IntEnum):
+    """What a span of time is of."""
+
+    WAIT = 0
+    SERIALIZE = 1
+    PUBLISH = 2
+    REFUSED = 3
+    TAKE = 4
+    CALLBACK = 5
+    RECEIVE = 6
+    LOST = 7
+    EXPIRED = 8
+    BLOCKED = 9
+    MATCH = 10
+    JOIN = 11
+    LEAVE = 12
+    BRIDGE_OUT = 13
+    BRIDGE_IN = 14
+    ALIGN = 15
+    PASS = 16
+
+
+# Category for viewers, and the begin of the name; the topic follows.
+_WORDS = {
+    What.WAIT: ("wait", "wait"),
+    What.SERIALIZE: ("serialize", "serialize"),
+    What.PUBLISH: ("publish", "publish"),
+    What.REFUSED: ("publish", "refused publish"),
+    What.TAKE: ("take", "take"),
+    What.CALLBACK: ("callback", "callback"),
+    What.RECEIVE: ("receive", "receive"),
+    What.LOST: ("event", "lost"),
+    What.EXPIRED: ("event", "expired"),
+    What.BLOCKED: ("event", "blocked"),
+    What.MATCH: ("event", "match"),
+    What.JOIN: ("event", "process joined"),
+    What.LEAVE: ("event", "process left"),
+    What.BRIDGE_OUT: ("bridge", "bridge out"),
+    What.BRIDGE_IN: ("bridge", "bridge in"),
+    What.ALIGN: ("ndt", "NDT alignment"),
+    What.PASS: ("ndt", "NDT pass"),
+}
+# What viewers show of a slice: a word, and the field of SLICE.
+ARGUMENTS = {
+    What.PUBLISH: (("bytes", "value"), ("number", "number")),
+    What.REFUSED: (("bytes", "value"),),
+    What.TAKE: (("number", "number"),),
+    What.RECEIVE: (("number", "number"),),
+    What.LOST: (("count", "value"),),
+    What.BRIDGE_OUT: (("number", "number"),),
+    What.BRIDGE_IN: (("age_ns", "value"), ("number", "number")),
+    What.PASS: (("pass", "number"),),
+}
 _INSTANTS = {
-    Kind.LOST: "lost",
-    Kind.EXPIRED: "expired",
-    Kind.BLOCKED: "blocked",
-    Kind.MATCH: "match",
-    Kind.JOIN: "process joined",
-    Kind.LEAVE: "process left",
+    Kind.LOST: What.LOST,
+    Kind.EXPIRED: What.EXPIRED,
+    Kind.BLOCKED: What.BLOCKED,
+    Kind.MATCH: What.MATCH,
+    Kind.JOIN: What.JOIN,
+    Kind.LEAVE: What.LEAVE,
 }
 
+SLICE = np.dtype(
+    [
+        ("begin_ns", "<i8"),
+        ("end_ns", "<i8"),  # where it is unknown, when the thread was last seen
+        ("what", "<u1"),
+        ("is_instant", "?"),
+        ("is_end_known", "?"),
+        ("endpoint", "<u8"),  # that acts, or NO_ID
+        ("publisher", "<u8"),  # with `number`: the record of a publish, receive, take or callback
+        ("number", "<u8"),
+        ("value", "<u8"),  # bytes of a publish, how many were lost
+    ]
+)
 
-class Slice(NamedTuple):
-    """A span of a thread's time; a tuple, as there are hundreds of thousands of them."""
 
-    name: str
-    category: str
-    begin_ns: int
-    end_ns: int  # where it is unknown, when the thread was last seen
-    arguments: Mapping[str, Any] = _NOTHING
-    record: RecordId | None = None  # of a publish, receive, take or callback
-    is_instant: bool = False
+def category_of(what: int) -> str:
+    """Return the category that viewers show."""
+    return _WORDS[What(what)][0]
 
 
-def slices_of(trace: Trace, thread: Thread) -> list[Slice]:
-    """Return the spans of a thread, in the order of their ends."""
-    spans = _Spans(trace, bool((thread.events["kind"] == Kind.WAIT_BEGIN).any()))
-    spans.follow(thread.events.tolist())
-    return spans.slices
+def name_of(trace: Trace, what: int, endpoint: EndpointId) -> str:
+    """Return the name that viewers show."""
+    word = _WORDS[What(what)][1]
+    return word if endpoint == NO_ID else f"{word} {trace.topic_of(endpoint)}"
+
+
+def slices_of(thread: Thread) -> Slices:
+    """Return the spans of a thread, in the order of their begins; those around others first."""
+    events = thread.events
+    if not len(events):
+        return np.empty(0, SLICE)
+    spans = _Spans(events)
+    found = np.concatenate(
+        [
+            *spans.waits(),
+            spans.serializing(),
+            *spans.publishes(),
+            *spans.takes(),
+            *spans.callbacks(),
+            spans.receives(),
+            *spans.bridged(),
+            *spans.matching(),
+            *spans.instants(),
+        ]
+    )
+    return found[np.lexsort((-found["end_ns"], found["begin_ns"]))]
 
 
 class _Spans:
-    """Goes through the events of a thread once."""
+    """The spans of a thread's events, one sort after the other."""
 
-    def __init__(self, trace: Trace, waits: bool) -> None:
-        self.slices: list[Slice] = []
-        self._trace = trace
-        self._waits = waits  # a thread of a pool that never waits shows no end of its callbacks
-        self._waiting: Row | None = None
-        self._publishing: Row | None = None
-        self._serializing: Row | None = None
-        self._written: Row | None = None  # of the publish that is going on
-        self._callback: tuple[Row, RecordId] | None = None  # since its take was over
-        self._claims: dict[RecordId, Row] = {}
-        self._received: Row | None = None
-        self._last_ns = 0
-        self._names: dict[tuple[str, int, int], str] = {}
-        self._handlers: dict[int, Callable[[Row], None]] = {
-            **dict.fromkeys(map(int, _INSTANTS), self._instant),
-            Kind.PUBLISH_BEGIN: self._begin_publish,
-            Kind.SERIALIZE_BEGIN: self._begin_serialize,
-            Kind.WRITE: self._end_serialize,
-            Kind.PUBLISH_END: self._end_publish,
-            Kind.REFUSED: self._end_publish,
-            Kind.RECEIVE: self._receive,
-            Kind.WAIT_BEGIN: self._begin_wait,
-            Kind.WAIT_END: self._end_wait,
-            Kind.CLAIM: self._claim,
-            Kind.RELEASE: self._release,
-        }
+    def __init__(self, events: Events) -> None:
+        self._events = events
+        self._kinds = events["kind"]
+        self._times = events["time_ns"]
+        self._ids = endpoint_ids(events)
+        self._last = len(events) - 1
 
-    def follow(self, rows: list[Row]) -> None:
-        """Take all events, then end what was going on when the trace ended."""
-        find = self._handlers.get
-        for row in rows:
-            handler = find(row[5])
-            if handler is not None:
-                handler(row)
-            self._last_ns = row[0]
-        self._finish()
+    def _at(self, *kinds: Kind) -> Indices:
+        return np.flatnonzero(np.isin(self._kinds, kinds))
 
-    def _finish(self) -> None:
-        self._end_callback(self._last_ns, known=False)
-        self._end_receive()
-        for record, claim in self._claims.items():
-            self._unfinished(self._name("take ", claim), "take", claim, record)
-        begin = self._publishing or self._written
-        if begin is not None:
-            written = self._written and (self._endpoint(self._written), self._written[1])
-            self._unfinished(self._name("publish ", begin), "publish", begin, written)
-        if self._waiting is not None:
-            self._unfinished("wait", "wait", self._waiting, None)
+    def _spans(self, what: What, begins: Indices, ends: Indices, *, known: bool = True) -> Slices:
+        found = np.zeros(len(begins), SLICE)
+        found["what"] = what
+        found["begin_ns"] = self._times[begins]
+        found["end_ns"] = self._times[ends]
+        found["is_end_known"] = known
+        found["endpoint"] = found["publisher"] = NO_ID
+        return found
 
-    def _unfinished(self, name: str, category: str, begin: Row, record: RecordId | None) -> None:
-        self.slices.append(Slice(name, category, begin[0], self._last_ns, _UNKNOWN, record))
+    def _unfinished(self, what: What, begins: Indices) -> Slices:
+        return self._spans(what, begins, np.full(len(begins), self._last), known=False)
 
-    @staticmethod
-    def _endpoint(row: Row) -> int:
-        return endpoint_id(row[3], row[4])
+    def waits(self) -> Sequence[Slices]:
+        begins, ends, open_begin = in_turns(self._at(Kind.WAIT_BEGIN), self._at(Kind.WAIT_END))
+        return self._spans(What.WAIT, begins, ends), self._unfinished(What.WAIT, open_begin)
 
-    def _name(self, what: str, row: Row) -> str:
-        key = (what, row[3], row[4])
-        name = self._names.get(key)
-        if name is None:
-            on = "" if row[3] == NO_ENDPOINT else self._trace.topic_of(self._endpoint(row))
-            name = self._names[key] = f"{what}{on}".rstrip()
-        return name
+    def serializing(self) -> Slices:
+        begins, ends, _ = in_turns(self._at(Kind.SERIALIZE_BEGIN), self._at(Kind.WRITE))
+        return self._spans(What.SERIALIZE, begins, ends)
 
-    def _instant(self, row: Row) -> None:
-        name = self._name(f"{_INSTANTS[Kind(row[5])]} ", row)
-        arguments = {"count": row[2]} if row[5] == Kind.LOST else _NOTHING
-        self.slices.append(Slice(name, "event", row[0], row[0], arguments, None, True))
+    def publishes(self) -> Sequence[Slices]:
+        """Each from its begin; where the trace was switched on in between, from its write."""
+        ends = self._at(Kind.PUBLISH_END, Kind.REFUSED)
+        begins, ended, open_begin = in_turns(self._at(Kind.PUBLISH_BEGIN), ends)
+        writes, late_ends, open_write = in_turns(self._at(Kind.WRITE), ends)
+        late = ~np.isin(late_ends, ended)
+        begins = np.concatenate([begins, writes[late]])
+        ended = np.concatenate([ended, late_ends[late]])
+        refused = self._kinds[ended] == Kind.REFUSED
+        unfinished = self._unfinished(What.PUBLISH, open_begin if len(open_begin) else open_write)
+        unfinished["value"] = self._events["value"][open_begin if len(open_begin) else open_write]
+        if len(open_write):
+            self._name_record(unfinished, open_write, self._ids[open_write])
+        elif len(open_begin):
+            unfinished["endpoint"] = self._ids[open_begin]
+        done = self._publish(What.PUBLISH, begins[~refused], ended[~refused])
+        self._name_record(done, ended[~refused], done["endpoint"])
+        return done, self._publish(What.REFUSED, begins[refused], ended[refused]), unfinished
 
-    def _begin_publish(self, row: Row) -> None:
-        self._publishing = row
+    def _publish(self, what: What, begins: Indices, ends: Indices) -> Slices:
+        found = self._spans(what, begins, ends)
+        found["endpoint"] = self._ids[ends]
+        found["value"] = self._events["value"][begins]
+        return found
 
-    def _begin_serialize(self, row: Row) -> None:
-        self._serializing = row
+    def _name_record(self, slices: Slices, at: Indices, publishers: NDArray[np.uint64]) -> None:
+        slices["endpoint"] = self._ids[at]
+        slices["publisher"] = publishers
+        slices["number"] = self._events["number"][at]
 
-    def _end_serialize(self, row: Row) -> None:
-        self._written = row
-        begin, self._serializing = self._serializing, None
-        if begin is not None:
-            self.slices.append(Slice("serialize", "serialize", begin[0], row[0]))
+    def _name_taken(self, slices: Slices, at: Indices) -> None:
+        self._name_record(slices, at, endpoint_in(self._events["value"][at]))
 
-    def _end_publish(self, row: Row) -> None:
-        # Without a begin, the trace was switched on in between.
-        begin = self._publishing or self._written
-        self._publishing = self._written = None
-        if begin is None:
-            return
-        if row[5] == Kind.REFUSED:
-            name, record = self._name("refused publish ", row), None
-        else:
-            name, record = self._name("publish ", row), (self._endpoint(row), row[1])
-        arguments = {"bytes": begin[2], "number": row[1]}
-        self.slices.append(Slice(name, "publish", begin[0], row[0], arguments, record))
+    def takes(self) -> Sequence[Slices]:
+        """Each claim with the release of the same record: a thread may hold several."""
+        at = self._at(Kind.CLAIM, Kind.RELEASE)
+        records = endpoint_in(self._events["value"][at]), self._events["number"][at]
+        is_begin = self._kinds[at] == Kind.CLAIM
+        begins, ends, open_begins = by_key(records, at, is_begin)
+        done, unfinished = (
+            self._spans(What.TAKE, begins, ends),
+            self._unfinished(What.TAKE, open_begins),
+        )
+        self._name_taken(done, begins)
+        self._name_taken(unfinished, open_begins)
+        return done, unfinished
 
-    def _begin_wait(self, row: Row) -> None:
-        self._end_callback(row[0])
-        self._waiting = row
+    def callbacks(self) -> Sequence[Slices]:
+        """From the end of each take to the thread's next take or wait.
 
-    def _end_wait(self, row: Row) -> None:
-        begin, self._waiting = self._waiting, None
-        if begin is not None:
-            self.slices.append(Slice("wait", "wait", begin[0], row[0]))
+        A thread of a pool never waits: it shows no end, but when it was last seen before that.
+        """
+        releases = self._at(Kind.RELEASE)
+        begins, ends, open_begin = in_turns(releases, self._at(Kind.WAIT_BEGIN, Kind.CLAIM))
+        waits = bool((self._kinds == Kind.WAIT_BEGIN).any())
+        done = self._spans(What.CALLBACK, begins, ends if waits else ends - 1, known=waits)
+        unfinished = self._unfinished(What.CALLBACK, open_begin)
+        self._name_taken(done, begins)
+        self._name_taken(unfinished, open_begin)
+        return done, unfinished
 
-    def _claim(self, row: Row) -> None:
-        self._end_callback(row[0])
-        self._claims[endpoint_in(row[2]), row[1]] = row
+    def receives(self) -> Slices:
+        """Each to the last event before the next one."""
+        at = self._at(Kind.RECEIVE)
+        found = self._spans(What.RECEIVE, at, next_of(at, len(self._events)) - 1)
+        self._name_record(found, at, self._ids[at])
+        return found
 
-    def _release(self, row: Row) -> None:
-        record = (endpoint_in(row[2]), row[1])
-        claim = self._claims.pop(record, None)
-        if claim is not None:
-            name = self._name("take ", row)
-            arguments = {"number": row[1]}
-            self.slices.append(Slice(name, "take", claim[0], row[0], arguments, record))
-        self._callback = (row, record)
+    def bridged(self) -> Sequence[Slices]:
+        """Outwards: from the claim until DDS has the message. Inwards: until it is published."""
+        at = self._at(Kind.BRIDGE_OUT, Kind.RELEASE)
+        claims, ends, _ = in_turns(self._at(Kind.CLAIM), at)
+        is_out = self._kinds[ends] == Kind.BRIDGE_OUT
+        outwards = self._spans(What.BRIDGE_OUT, claims[is_out], ends[is_out])
+        self._name_taken(outwards, claims[is_out])
+        begins, ends, _ = in_turns(self._at(Kind.BRIDGE_IN), self._at(Kind.PUBLISH_END))
+        inwards = self._spans(What.BRIDGE_IN, begins, ends)
+        self._name_record(inwards, ends, self._ids[ends])
+        inwards["value"] = self._events["value"][begins]
+        return outwards, inwards
 
-    def _end_callback(self, time_ns: int, known: bool = True) -> None:
-        if self._callback is None:
-            return
-        (begin, record), self._callback = self._callback, None
-        known = known and self._waits
-        end_ns = time_ns if known else max(self._last_ns, begin[0])
-        arguments = _NOTHING if known else _UNKNOWN
-        name = self._name("callback ", begin)
-        self.slices.append(Slice(name, "callback", begin[0], end_ns, arguments, record))
+    def matching(self) -> Sequence[Slices]:
+        """Alignments, and passes of workers: such an event is noted when all is over."""
+        found = []
+        for kind, what in ((Kind.ALIGN, What.ALIGN), (Kind.PASS, What.PASS)):
+            at = self._at(kind)
+            spans = self._spans(what, at, at)
+            spans["begin_ns"] = self._events["number"][at]
+            spans["end_ns"] = self._events["value"][at]
+            spans["number"] = self._events["incarnation"][at]
+            found.append(spans)
+        return found
 
-    def _receive(self, row: Row) -> None:
-        self._end_receive()
-        self._received = row
+    def instants(self) -> Sequence[Slices]:
+        return [self._instant(what, self._at(kind)) for kind, what in _INSTANTS.items()]
 
-    def _end_receive(self) -> None:
-        if self._received is not None:
-            row, self._received = self._received, None
-            record = (self._endpoint(row), row[1])
-            end_ns = max(self._last_ns, row[0])
-            arguments = {"number": row[1]}
-            name = self._name("receive ", row)
-            self.slices.append(Slice(name, "receive", row[0], end_ns, arguments, record))
+    def _instant(self, what: What, at: Indices) -> Slices:
+        found = self._spans(what, at, at)
+        found["is_instant"] = True
+        found["endpoint"] = self._ids[at]
+        if what == What.LOST:
+            found["value"] = self._events["value"][at]
+        return found

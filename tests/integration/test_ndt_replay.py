@@ -21,6 +21,10 @@ import pytest
 import yaml
 from support import IS_MANYCORE, MAPFILES, PATIENCE_S, REPOSITORY, Program, manycore_command
 
+from rmw_manycore_py.trace.chains import Messages
+from rmw_manycore_py.trace.files import load
+from rmw_manycore_py.trace.latency import latencies
+
 pytestmark = [
     pytest.mark.integration,
     pytest.mark.skipif(not IS_MANYCORE, reason="the bridge is part of rmw_manycore"),
@@ -75,6 +79,34 @@ def test_every_scan_of_a_drive_is_answered(start, offload, street, tmp_path):
     assert len((tmp_path / "scans.csv").read_text().splitlines()) == 11
     assert "Traceback" not in offload.output
     assert offload.stop() == 0, offload
+
+
+def test_a_trace_shows_bridge_alignments_and_workers_in_a_chain(start, platform, street, tmp_path):
+    path = tmp_path / "trace.json"
+    run = start(manycore_command("run", MAPFILES / "ndt_offload.yaml", "--trace", path))
+    run.wait_for("ndt_scan_matcher started")
+    assert replayed(start, street / "drive.npz")["answered"] == 10
+    assert run.stop() == 0, run
+    trace = load(path)
+    messages = Messages(trace)
+    (pose,) = latencies(messages, [("/points_raw", "/ndt_pose")])
+    expected = [
+        "bridge in",
+        "communication",
+        "node",
+        "NDT alignment",
+        "communication",
+        "bridge out",
+    ]
+    if len(os.sched_getaffinity(0)) > 1:
+        expected.insert(4, "NDT workers")
+    names = [part.name.rsplit(" ", 1)[0] for part in pose.parts[:-3]]
+    assert names == expected
+    (count,) = {len(part.samples_us) for part in pose.parts[:-3]}
+    assert count >= 10  # the first scan is sent until the matcher is there
+    aligned = next(part for part in pose.parts if part.name.startswith("NDT alignment"))
+    node = next(part for part in pose.parts if part.name.startswith("node"))
+    assert all(0 < a < n for a, n in zip(aligned.samples_us, node.samples_us, strict=True))
 
 
 def test_who_waits_loses_no_scan(start, offload, street):

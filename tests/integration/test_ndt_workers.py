@@ -8,6 +8,7 @@ import signal
 import subprocess
 import sys
 import threading
+import time
 from collections.abc import Callable
 from itertools import cycle
 from pathlib import Path
@@ -83,6 +84,20 @@ def test_each_worker_is_a_process_on_its_cpu() -> None:
         for pid, cpu in zip(pids, [CPUS[0], CPUS[1 % len(CPUS)]], strict=True):
             assert os.sched_getaffinity(pid) == {cpu}
     wait_until(lambda: all(has_ended(pid) for pid in pids), "the workers end with the matcher")
+
+
+def test_passes_of_each_worker_lie_in_the_alignment() -> None:
+    with workers(3) as matcher:
+        begin_ns = time.monotonic_ns()
+        matcher.align(SCAN, GUESS, only_pose=True)
+        end_ns = time.monotonic_ns()
+        found = matcher.passes()
+    by_worker = [[row[1:] for row in found if row[0] == worker] for worker in range(3)]
+    assert len({len(rows) for rows in by_worker}) == 1
+    for rows in by_worker:
+        assert [number for number, _, _ in rows] == list(range(len(rows)))
+        times = [time_ns for _, *span in rows for time_ns in span]
+        assert [begin_ns, *times, end_ns] == sorted([begin_ns, *times, end_ns])
 
 
 @pytest.mark.parametrize("end", [signal.SIGKILL, signal.SIGTERM])

@@ -11,11 +11,13 @@ from collections import defaultdict
 import pytest
 from forked import forked_example, forked_manycore
 from processes import kill, receive_threads_of
+from speakers import hear as hear_topic
+from speakers import say
 from support import IS_MANYCORE, MAPFILES, PLATFORMS, entries, manycore_command, wait_until
 
 from rmw_manycore_py.trace.events import Kind
 from rmw_manycore_py.trace.files import load
-from rmw_manycore_py.trace.flows import flows_of
+from rmw_manycore_py.trace.flows import NO_THREAD, flows_of
 
 pytestmark = [
     pytest.mark.integration,
@@ -56,11 +58,11 @@ def check_flows(trace) -> int:
     claims = sum(int((t.events["kind"] == Kind.CLAIM).sum()) for _, t in trace.threads())
     flows = flows_of(trace)
     assert len(flows.flows) + flows.without_publish == claims
-    takes = {(flow.subscription, flow.record) for flow in flows.flows}
+    takes = set(flows.flows[["subscription", "publisher", "number"]].tolist())
     assert len(takes) == len(flows.flows)
     for flow in flows.flows:
-        times = [flow.write.time_ns, flow.claim.time_ns]
-        times[1:1] = [flow.receive.time_ns] if flow.receive else []
+        times = [flow["write_ns"], flow["claim_ns"]]
+        times[1:1] = [flow["receive_ns"]] if flow["receive_thread"] != NO_THREAD else []
         assert times == sorted(times)
     return len(flows.flows)
 
@@ -100,8 +102,9 @@ def test_a_run_is_traced_from_beginning_to_end(start, tmp_path) -> None:
     assert flows_of(trace).without_publish == 0
     assert check_flows(trace) >= 3
     check_drawn(path)
-    chatter = [f for f in flows_of(trace).flows if trace.topic_of(f.record[0]) == "/chatter"]
-    assert all(flow.receive for flow in chatter)
+    for flow in flows_of(trace).flows:
+        if trace.topic_of(int(flow["publisher"])) == "/chatter":
+            assert flow["receive_thread"] != NO_THREAD
 
 
 def test_a_trace_is_started_stopped_saved_and_evaluated(talking, manycore, tmp_path) -> None:
@@ -145,6 +148,32 @@ def test_killed_nodes_and_receive_threads_leave_their_events(
     assert {process.is_receive_thread for process in gone} == {True, False}
     assert len(entries(PLATFORMS / platform, "trace-*")) == files - len(gone)
     second.stop()
+
+
+def test_bridged_hops_are_parts_of_chains(bridge, manycore, tmp_path) -> None:
+    bridge.run(bridge.route("inward", "/news"), bridge.route("outward", "/a"))
+    bridge.outside(say, "/news", {}, 0.05)
+    bridge.inside(say, "/a", {}, 0.05)
+    hearers = (bridge.inside(hear_topic, "/news", {}), bridge.outside(hear_topic, "/a", {}))
+    for hearer in hearers:
+        hearer.wait_for("^heard again")
+    manycore("trace", "start")
+    for hearer in hearers:
+        hearer.skip_output()
+        for _ in range(3):
+            hearer.wait_for("^heard again")
+    live = json.loads(manycore("trace", "latency", "--live", "--json"))
+    manycore("trace", "stop")
+    manycore("trace", "save", "-o", tmp_path / "trace.json")
+    saved = json.loads(manycore("trace", "latency", tmp_path / "trace.json", "--json"))
+    for chains in (live, saved):  # looking at it took nothing away
+        parts = {one["chain"][0]: one["parts"] for one in chains}
+        assert [part["part"] for part in parts["/news"][:2]] == [
+            "bridge in /news",
+            "communication /news",
+        ]
+        assert [part["part"] for part in parts["/a"][:2]] == ["communication /a", "bridge out /a"]
+        assert all(part["count"] >= 1 for topic in parts for part in parts[topic][:2])
 
 
 def test_what_is_lost_is_told(talking, manycore, tmp_path) -> None:

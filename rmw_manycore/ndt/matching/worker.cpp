@@ -125,6 +125,7 @@ std::optional<TangentSums> Worker::pass(const Problem & problem, const Pose6 & p
   const float d2 = kernel_d2(problem);
   auto & bins = session_.bins[pass_ % 2];
   const uint64_t ticket = ticket_of(job_, ++pass_);
+  const int64_t begin_ns = monotonic_ns();
   const uint32_t workers = session_.workers;
   // First the own share, then what others, disturbed on their CPUs, have not begun.
   for (uint32_t i = 0; i < workers; ++i) {
@@ -133,10 +134,19 @@ std::optional<TangentSums> Worker::pass(const Problem & problem, const Pose6 & p
       bins[*bin] = kernel_.pass(problem.map, problem.scan, at, d2, *bin);
     }
   }
+  log(begin_ns);
   if (!wait_for_all(ticket)) {
     return std::nullopt;
   }
   return add_bins(bins);
+}
+
+void Worker::log(int64_t begin_ns) noexcept {
+  WorkerLog & log = session_.logs[index_];
+  log.passes = pass_;
+  if (pass_ <= max_kept_passes) {
+    log.kept[pass_ - 1] = {begin_ns, monotonic_ns()};
+  }
 }
 
 bool Worker::wait_for_all(uint64_t ticket) {

@@ -30,6 +30,8 @@ private:
   void do_job(uint32_t job);
   /// The sums of all bins at a pose; empty when the job is aborted.
   std::optional<TangentSums> pass(const Problem & problem, const Pose6 & pose);
+  /// Keeps when the share of the present pass was done.
+  void log(int64_t begin_ns) noexcept;
   bool wait_for_all(uint64_t ticket);
 
   SharedMemory memory_;

@@ -133,6 +133,15 @@ std::vector<double> WorkerGroup::busy_ns() const {
   return out;
 }
 
+std::vector<std::vector<WorkerPass>> WorkerGroup::passes() const {
+  std::vector<std::vector<WorkerPass>> out;
+  for (size_t i = 0; i < workers_.size(); ++i) {
+    const WorkerLog & log = session_.logs[i];
+    out.emplace_back(log.kept.begin(), log.kept.begin() + std::min(log.passes, max_kept_passes));
+  }
+  return out;
+}
+
 NewtonResult WorkerGroup::run_job() {
   for (int i = 0; i < most_attempts; ++i) {
     replace_ended_workers();

@@ -33,6 +33,8 @@ public:
   std::vector<int> pids() const;
   /// Time each worker was busy in the last job.
   std::vector<double> busy_ns() const;
+  /// When each worker worked for each pass of the last job, as far as kept. Not while one runs.
+  std::vector<std::vector<WorkerPass>> passes() const;
   uint64_t replaced() const noexcept { return replaced_; }
   /// Memory shared with the workers, beside the map, once a scan of `points` points was aligned.
   uint64_t memory_bytes(size_t points) const noexcept;

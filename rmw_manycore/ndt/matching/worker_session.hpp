@@ -45,6 +45,20 @@ struct alignas(64) WorkerLine {
 };
 static_assert(sizeof(WorkerLine) == 64 && std::atomic<uint64_t>::is_always_lock_free);
 
+/// When a worker worked for a pass, CLOCK_MONOTONIC.
+struct WorkerPass {
+  int64_t begin_ns;
+  int64_t end_ns;
+};
+/// Passes of an alignment that are kept: more than one takes, but for options out of the ordinary.
+constexpr uint32_t max_kept_passes = 256;
+
+/// What a worker did in the last job; written by it, read once the job is over.
+struct WorkerLog {
+  uint32_t passes;  ///< in all, also those that are not kept
+  std::array<WorkerPass, max_kept_passes> kept;
+};
+
 /// A pass of a job; greater than all before it.
 inline uint64_t ticket_of(uint32_t job, uint32_t pass) { return (uint64_t{job} << 24) + pass; }
 inline uint32_t job_of(uint64_t ticket) { return static_cast<uint32_t>(ticket >> 24); }
@@ -91,6 +105,7 @@ struct Session {
   NewtonResult result;  ///< written by worker 0
   std::array<WorkerLine, most_workers> lines;
   std::array<Share, most_workers> shares;
+  std::array<WorkerLog, most_workers> logs;
   /// Of even and odd passes: who is ahead by one must not overwrite what others still add up.
   alignas(64) TangentSums bins[2][bin_count];
 };

@@ -3,7 +3,10 @@
 
 #include <nanobind/nanobind.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
+
+#include <tuple>
 
 #include "ndt/matching/serial_matcher.hpp"
 #include "ndt/matching/worker_group.hpp"
@@ -22,6 +25,18 @@ void prepare(Group & group, const Levels & maps) {
   group.matcher().prepare(maps);
 }
 
+/// (worker, pass, begin, end) of the last answer; times in ns.
+std::vector<std::tuple<size_t, size_t, int64_t, int64_t>> passes(Group & group) {
+  std::vector<std::tuple<size_t, size_t, int64_t, int64_t>> rows;
+  const auto workers = group.matcher().passes();
+  for (size_t worker = 0; worker < workers.size(); ++worker) {
+    for (size_t pass = 0; pass < workers[worker].size(); ++pass) {
+      rows.emplace_back(worker, pass, workers[worker][pass].begin_ns, workers[worker][pass].end_ns);
+    }
+  }
+  return rows;
+}
+
 }  // namespace
 
 void bind_matchers(nb::module_ & module) {
@@ -37,6 +52,7 @@ void bind_matchers(nb::module_ & module) {
       [](Group & group, size_t points) { return group.matcher().memory_bytes(points); },
       nb::arg("points"))
     .def("pids", [](Group & group) { return group.matcher().pids(); })
+    .def("passes", &passes)
     .def("busy_ns", [](Group & group) { return group.matcher().busy_ns(); })
     .def("replaced", [](Group & group) { return group.matcher().replaced(); });
 }

@@ -4,6 +4,7 @@
 #include <nanobind/nanobind.h>
 #include <nanobind/stl/optional.h>
 
+#include <algorithm>
 #include <cstring>
 #include <utility>
 
@@ -41,6 +42,11 @@ uint64_t BoundPublisher::publish(
 
 uint64_t BoundPublisher::publish_from(
   uintptr_t address, size_t size, std::optional<int64_t> source_timestamp_ns) {
+  if (source_timestamp_ns) {
+    const auto slot = static_cast<uint32_t>(endpoint_in(publisher_->gid()));
+    const int64_t age_ns = std::max<int64_t>(realtime_ns() - *source_timestamp_ns, 0);
+    process_->tracer().note(TraceKind::bridge_in, slot, 0, static_cast<uint64_t>(age_ns));
+  }
   return send(reinterpret_cast<const void *>(address), size, source_timestamp_ns, {});
 }
 

@@ -30,6 +30,11 @@ std::unique_ptr<BoundClaim> BoundSubscription::claim() {
   return claim ? std::make_unique<BoundClaim>(std::move(*claim)) : nullptr;
 }
 
+void BoundSubscription::note_bridged() {
+  const auto slot = static_cast<uint32_t>(endpoint_in(subscription_->gid()));
+  process_->tracer().note(TraceKind::bridge_out, slot);
+}
+
 nb::bytes BoundSubscription::gid() const { return to_bytes(subscription_->gid()); }
 
 void bind_subscription(nb::module_ & module) {
@@ -45,6 +50,7 @@ void bind_subscription(nb::module_ & module) {
     .def("release", &BoundClaim::release);
   nb::class_<BoundSubscription>(module, "Subscription")
     .def("claim", &BoundSubscription::claim)
+    .def("note_bridged", &BoundSubscription::note_bridged)
     .def_prop_ro("gid", &BoundSubscription::gid)
     .def("has_data", &BoundSubscription::has_data)
     .def("matched", &BoundSubscription::matched)

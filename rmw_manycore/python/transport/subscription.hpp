@@ -38,6 +38,8 @@ public:
   BoundSubscription(std::shared_ptr<Process> process, const EndpointSpec & spec);
 
   std::unique_ptr<BoundClaim> claim();
+  /// For traces: what is claimed was published outside.
+  void note_bridged();
   nanobind::bytes gid() const;
   uint64_t matched() const { return subscription_->matched().current; }
   uint64_t lost() const { return subscription_->lost(); }

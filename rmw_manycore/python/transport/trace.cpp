@@ -6,6 +6,8 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
+#include <unistd.h>
+
 #include <memory>
 
 #include "python/context.hpp"
@@ -13,6 +15,7 @@
 #include "python/transport/text.hpp"
 #include "transport/lifecycle/trace_control.hpp"
 #include "transport/lifecycle/trace_saver.hpp"
+#include "transport/registry/smem_charge.hpp"
 
 namespace nb = nanobind;
 
@@ -61,6 +64,31 @@ private:
 
   Registry registry_;
   std::unique_ptr<TraceSaver> saver_;
+};
+
+/// Notes what this process does beside its nodes: it is traced as they are.
+class OwnTracer {
+public:
+  explicit OwnTracer(const std::string & platform)
+  : registry_(PlatformPaths::of(platform)), slot_(process_of(registry_, getpid())) {
+    const ProcessEntry & entry = registry_.processes()[slot_];
+    registry_.tracer().follow(
+      entry.trace, identity_of(registry_, slot_), registry_.clusters().at(entry.cluster).header());
+  }
+  bool is_on() { return registry_.tracer().is_on(); }
+  void resume(uint32_t tid, uint64_t at_ns) {
+    registry_.tracer().note_other(TraceKind::resume, tid, 0, at_ns, 0);
+  }
+  void align(uint64_t begin_ns, uint64_t end_ns) {
+    registry_.tracer().note_other(TraceKind::align, nothing, 0, begin_ns, end_ns);
+  }
+  void pass(uint64_t begin_ns, uint64_t end_ns, uint32_t worker, uint16_t number) {
+    registry_.tracer().note_other(TraceKind::pass, worker, number, begin_ns, end_ns);
+  }
+
+private:
+  Registry registry_;
+  uint32_t slot_;
 };
 
 nb::bytes events_of(const ThreadTrace & thread) {
@@ -127,6 +155,14 @@ void bind_trace(nb::module_ & module) {
     nb::arg("nodes"), nb::arg("events"), nb::arg("discard"));
   module.def("stop_trace", &stop, nb::arg("platform"));
   module.def("trace_state", &state, nb::arg("platform"));
+  nb::class_<OwnTracer>(module, "OwnTracer")
+    .def(nb::init<const std::string &>(), nb::arg("platform"))
+    .def_prop_ro("is_on", &OwnTracer::is_on)
+    .def("resume", &OwnTracer::resume, nb::arg("tid"), nb::arg("at_ns"))
+    .def("align", &OwnTracer::align, nb::arg("begin_ns"), nb::arg("end_ns"))
+    .def(
+      "run_pass", &OwnTracer::pass, nb::arg("begin_ns"), nb::arg("end_ns"), nb::arg("worker"),
+      nb::arg("number"));
   nb::class_<BoundSaver> bound(module, "TraceSaver");
   bound.def(nb::init<const std::string &>(), nb::arg("platform"))
     .def_prop_ro("processes", &BoundSaver::processes)

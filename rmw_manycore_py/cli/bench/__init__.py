@@ -8,8 +8,8 @@ import click
 from rmw_manycore_py.cli.common.group import LazyGroup
 
 _NAMES = (
-    *("all", "bridge", "idle", "memory", "ndt", "rclpy", "record", "reference", "rmw", "scale"),
-    *("startup", "trace"),
+    *("all", "bridge", "idle", "memory", "ndt", "pairs", "rclpy", "record", "reference", "rmw"),
+    *("scale", "startup", "trace"),
 )
 VERBS = {verb: f"rmw_manycore_py.cli.bench.{verb}:command" for verb in _NAMES}
 

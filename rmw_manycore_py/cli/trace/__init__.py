@@ -10,7 +10,7 @@ from rmw_manycore_py.cli.common.options import examples
 
 VERBS = {
     verb: f"rmw_manycore_py.cli.trace.{verb}:command"
-    for verb in ("start", "stop", "status", "save", "latency", "compare")
+    for verb in ("start", "stop", "status", "save", "latency", "draw", "compare")
 }
 
 

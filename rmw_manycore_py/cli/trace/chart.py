@@ -10,7 +10,7 @@ from rmw_manycore_py.cli.common.output_file import writing
 from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.trace.latency import ChainLatency
 
-_HOPS = ("communication", "node")
+_HOPS = ("bridge", "communication", "node")
 
 
 def plot(chains: Sequence[ChainLatency], path: Path) -> None:

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import time
+from collections.abc import Callable
 from dataclasses import replace
 from types import TracebackType
 from typing import Protocol
@@ -69,6 +71,8 @@ class Matcher:
         self.options = options
         self._native = native
         self._map: VoxelMap | None = None
+        # Called after each alignment with its begin [ns, CLOCK_MONOTONIC].
+        self.on_aligned: Callable[[int], None] | None = None
 
     def __enter__(self) -> Matcher:
         return self
@@ -100,6 +104,10 @@ class Matcher:
     @property
     def worker_pids(self) -> list[int]:
         """Return the process ids of the workers, of which the calling thread needs none."""
+        return []
+
+    def passes(self) -> list[tuple[int, int, int, int]]:
+        """Return worker, pass, begin and end [ns, CLOCK_MONOTONIC] of the last answer's passes."""
         return []
 
     def shared_bytes(
@@ -148,8 +156,11 @@ class Matcher:
         self, voxel_map: VoxelMap, scan: ScanPoints, guess: Pose, position: Position | None
     ) -> Alignment:
         level = levelled(scan, guess)
+        begin_ns = time.monotonic_ns()
         with translate_native_errors(CANNOT_WORK):
             result = self._native.align(voxel_map.levels, level.points, level.guess, position)
+        if self.on_aligned is not None:
+            self.on_aligned(begin_ns)
         points = result.at.scan_points
         if points == 0:
             return Alignment.refused(guess, "the scan has no finite point", self.options)

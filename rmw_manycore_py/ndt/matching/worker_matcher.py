@@ -66,6 +66,10 @@ class WorkerMatcher(Matcher):
         """Return how many workers had to be replaced so far."""
         return self._require_group().replaced()
 
+    def passes(self) -> list[tuple[int, int, int, int]]:
+        """Return worker, pass, begin and end [ns, CLOCK_MONOTONIC] of the last answer's passes."""
+        return self._require_group().passes()
+
     @property
     def busy_ns(self) -> list[float]:
         """Return how long each worker worked for the last answer, without waiting for others."""

@@ -31,6 +31,7 @@ from rmw_manycore_py.ndt.nodes.scan_matcher.markers import PoseMarkers
 from rmw_manycore_py.ndt.nodes.scan_matcher.matcher_options import matcher_options
 from rmw_manycore_py.ndt.nodes.scan_matcher.matchers import make_matcher
 from rmw_manycore_py.ndt.nodes.scan_matcher.matching_thread import MatchingThread
+from rmw_manycore_py.ndt.nodes.scan_matcher.matching_trace import MatchingTrace
 from rmw_manycore_py.ndt.nodes.scan_matcher.outputs import MatcherOutputs
 from rmw_manycore_py.ndt.nodes.scan_matcher.parameters import MatcherParameters, OwnParameters
 from rmw_manycore_py.ndt.nodes.scan_matcher.pose_buffer import (
@@ -71,6 +72,7 @@ class NdtScanMatcher(Node):
         schedule_in_real_time(self._own.realtime_priority, self._matcher.worker_pids)
         self._tracking = self._make_tracking()
         self._memory = ClusterMemory(self, self._matcher)
+        self._trace = MatchingTrace(self, self._matcher)
         self._map = MapSupply(
             self, options, self._p, self._own, self._match_to, lambda: self._thread.wake()
         )
@@ -146,12 +148,14 @@ class NdtScanMatcher(Node):
     def _on_scan(self, message: Any) -> None:
         stamp_s = seconds(message.header.stamp)
         self._poses.guesses.note_scan(stamp_s)
+        self._trace.arrived(message)
         self._thread.put_scan(message, stamp_s)
 
     def _need_not_wait(self, stamp_s: float) -> bool:
         return not self._is_activated or self._poses.guesses.is_there(stamp_s)
 
     def _on_skipped(self, message: Any) -> None:
+        self._trace.skipped(message)
         self._skipped += 1
         report = self._diagnostics["scan_matching_status"]
         report.clear()
@@ -161,6 +165,7 @@ class NdtScanMatcher(Node):
         report.publish(message.header.stamp)
 
     def _on_turn_of_scan(self, message: Any) -> None:
+        self._trace.resume(message)
         report = self._diagnostics["scan_matching_status"]
         report.clear()
         try:

@@ -4,18 +4,24 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any, BinaryIO
 
+import numpy as np
+from numpy.typing import NDArray
+
+from rmw_manycore_py.trace.counters import counters_of
 from rmw_manycore_py.trace.events import Process, Trace
 from rmw_manycore_py.trace.files.embedded import from_text, to_text, wrong
-from rmw_manycore_py.trace.files.tracks import core_name, counters_of, process_name
-from rmw_manycore_py.trace.flows import Flow, flows_of
-from rmw_manycore_py.trace.slices import Slice, slices_of
+from rmw_manycore_py.trace.flows import flows_of
+from rmw_manycore_py.trace.names import core_name, process_name
+from rmw_manycore_py.trace.pairs import groups_of, split_by
+from rmw_manycore_py.trace.slices import ARGUMENTS, Slices, category_of, name_of, slices_of
 
 _KEY = "manycore"
-_PIECE = 2000  # lines written at a time
+_US = "%d.%03d"  # a time in microseconds, as two numbers
+_SORT = ("what", "endpoint", "is_end_known")  # slices of one sort differ in numbers only
 _CORES = 1000  # more than a cluster has
 
 
@@ -23,16 +29,11 @@ def write(trace: Trace, file: BinaryIO) -> None:
     """Write slices, flows and counters, and the events themselves for `read`."""
     file.write(f'{{"{_KEY}": {json.dumps(to_text(trace))},\n'.encode())
     file.write(b'"displayTimeUnit": "ns",\n"traceEvents": [\n')
-    piece: list[str] = []
     separator = ""
-    for line in _lines(trace):
-        piece.append(line)
-        if len(piece) == _PIECE:
-            file.write((separator + ",\n".join(piece)).encode())
+    for lines in _pieces(trace):
+        if lines:
+            file.write((separator + ",\n".join(lines)).encode())
             separator = ",\n"
-            piece.clear()
-    if piece:
-        file.write((separator + ",\n".join(piece)).encode())
     file.write(b"\n]}\n")
 
 
@@ -48,28 +49,24 @@ def read(content: bytes, path: Path) -> Trace:
     return from_text(text, path)
 
 
-def _lines(trace: Trace) -> Iterator[str]:
-    ids: list[tuple[int, int]] = []  # of each thread: pid and tid for the viewer
+def _pieces(trace: Trace) -> Iterator[list[str]]:
+    """Yield lines; viewers take them in any order."""
+    places: list[str] = []  # of threads, as the viewer is told them
     for pid, process in enumerate(trace.processes, 1):
-        yield from _process_lines(trace, pid, process)
+        yield list(_process_lines(trace, pid, process))
         for thread in process.threads:
-            ids.append((pid, thread.tid))
+            places.append(f'"pid":{pid},"tid":{thread.tid}')
             name = f"{thread.name} ({thread.tid})"
-            yield _metadata("thread_name", pid, thread.tid, {"name": name})
-    names = _Texts()
-    for (pid, tid), (_, thread) in zip(ids, trace.threads(), strict=True):
-        place = f'"pid":{pid},"tid":{tid}'
-        for one in slices_of(trace, thread):
-            yield _slice_line(one, place, names)
-    for number, flow in enumerate(flows_of(trace).flows, 1):
-        yield from _flow_lines(number, flow, ids)
+            yield [_metadata("thread_name", pid, thread.tid, {"name": name})]
+    for place, (_, thread) in zip(places, trace.threads(), strict=True):
+        yield from _slices(trace, slices_of(thread), place)
+    yield from _flows(flows_of(trace).flows, places)
     for counter in counters_of(trace):
-        text = names.of(counter.name)
-        for time_ns, value in counter.samples:
-            yield (
-                f'{{"ph":"C","pid":0,"name":{text},"ts":{time_ns / 1000:.3f},'
-                f'"args":{{"value":{value:g}}}}}'
-            )
+        template = (
+            f'{{"ph":"C","pid":0,"name":{_quoted(counter.name)},"ts":{_US},'
+            '"args":{"value":%.12g}}'
+        )
+        yield filled(template, *in_us(counter.times_ns), counter.values)
 
 
 def _process_lines(trace: Trace, pid: int, process: Process) -> Iterator[str]:
@@ -85,40 +82,58 @@ def _metadata(kind: str, pid: int, tid: int, arguments: dict[str, Any]) -> str:
     return json.dumps({"ph": "M", "name": kind, "pid": pid, "tid": tid, "args": arguments})
 
 
-class _Texts:
-    """Names as JSON, each made once."""
-
-    def __init__(self) -> None:
-        self._known: dict[str, str] = {}
-
-    def of(self, name: str) -> str:
-        text = self._known.get(name)
-        if text is None:
-            text = self._known[name] = json.dumps(name)
-        return text
+def filled(template: str, *columns: NDArray[Any]) -> list[str]:
+    """Return the template with the values of each row."""
+    rows = zip(*(column.tolist() for column in columns), strict=True)
+    return list(map(template.__mod__, rows))
 
 
-def _slice_line(one: Slice, place: str, names: _Texts) -> str:
-    name, category, begin_ns, end_ns, values, _, is_instant = one
-    # Numbers, and words of ours that need no escape.
-    arguments = ",".join(
-        [f'"{k}":{v}' if type(v) is int else f'"{k}":"{v}"' for k, v in values.items()]
+def in_us(times_ns: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any]]:
+    """Return the two numbers of `_US`."""
+    return times_ns // 1000, times_ns % 1000
+
+
+def _quoted(name: str) -> str:
+    return json.dumps(name).replace("%", "%%")
+
+
+def _slices(trace: Trace, slices: Slices, place: str) -> Iterator[list[str]]:
+    """Yield the lines of all slices that differ in numbers only."""
+    sorts = groups_of(tuple(slices[key] for key in _SORT))
+    for own in split_by(sorts):
+        yield _slice_lines(trace, slices[own], place)
+
+
+def _slice_lines(trace: Trace, slices: Slices, place: str) -> list[str]:
+    one = slices[0]
+    name = _quoted(name_of(trace, int(one["what"]), int(one["endpoint"])))
+    columns = [*in_us(slices["begin_ns"])]
+    kind = '"ph":"i","s":"t"'
+    if not one["is_instant"]:
+        kind = f'"ph":"X","dur":{_US}'
+        columns[:0] = in_us(slices["end_ns"] - slices["begin_ns"])
+    keys = ARGUMENTS.get(one["what"], ())
+    columns += [slices[field] for _, field in keys]
+    arguments = [f'"{key}":%d' for key, _ in keys]
+    if not one["is_end_known"]:
+        arguments.append('"end":"unknown"')
+    return filled(
+        f'{{{kind},"ts":{_US},"name":{name},"cat":"{category_of(int(one["what"]))}",{place},'
+        f'"args":{{{",".join(arguments)}}}}}',
+        *columns,
     )
-    kind = '"i","s":"t"' if is_instant else f'"X","dur":{(end_ns - begin_ns) / 1000:.3f}'
-    return (
-        f'{{"ph":{kind},"name":{names.of(name)},"cat":"{category}",{place},'
-        f'"ts":{begin_ns / 1000:.3f},"args":{{{arguments}}}}}'
-    )
 
 
-def _flow_lines(number: int, flow: Flow, ids: list[tuple[int, int]]) -> Iterator[str]:
-    places = (("s", flow.write), ("t", flow.receive), ("f", flow.claim))
-    for phase, place in places:
-        if place is not None:
-            pid, tid = ids[place.thread]
-            # To the slice around this moment, not to the next one.
-            bound = ',"bp":"e"' if phase == "f" else ""
-            yield (
-                f'{{"ph":"{phase}","id":{number},"name":"message","cat":"message",'
-                f'"pid":{pid},"tid":{tid},"ts":{place.time_ns / 1000:.3f}{bound}}}'
+def _flows(flows: NDArray[Any], places: Sequence[str]) -> Iterator[list[str]]:
+    numbers = np.arange(1, len(flows) + 1)
+    for phase, step in (("s", "write"), ("t", "receive"), ("f", "claim")):
+        # To the slice around this moment, not to the next one.
+        bound = ',"bp":"e"' if phase == "f" else ""
+        for thread, place in enumerate(places):
+            own = flows[f"{step}_thread"] == thread
+            yield filled(
+                f'{{"ph":"{phase}","id":%d,"name":"message","cat":"message",{place},'
+                f'"ts":{_US}{bound}}}',
+                numbers[own],
+                *in_us(flows[f"{step}_ns"][own]),
             )

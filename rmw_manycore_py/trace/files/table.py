@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import csv
-import io
 import json
 from collections.abc import Iterator
 from pathlib import Path
@@ -13,40 +12,57 @@ from typing import BinaryIO
 import numpy as np
 
 from rmw_manycore_py.errors import what_is_wrong
-from rmw_manycore_py.trace.events import EVENT, NO_ENDPOINT, Kind, Trace, endpoint_id
+from rmw_manycore_py.trace.events import (
+    EVENT,
+    NO_ENDPOINT,
+    Kind,
+    Process,
+    Thread,
+    Trace,
+    endpoint_id,
+)
 from rmw_manycore_py.trace.files.embedded import header_of, parsed_header, with_events, wrong
+from rmw_manycore_py.trace.pairs import groups_of, split_by
 
 _MARK = "# manycore trace "
 _COLUMNS = (
     *("time_ns", "kind", "cluster", "core", "pid", "tid", "node", "topic"),
     *("endpoint", "incarnation", "number", "value"),
 )
+_PIECE = 100_000  # events written at a time
 _NAMES = {kind.value: kind.name.lower() for kind in Kind}
+_OF_NO_ENDPOINT = (Kind.RESUME, Kind.PASS)  # have something else in its place
 _NUMBERS = {name: number for number, name in _NAMES.items()}
 
 
 def write(trace: Trace, file: BinaryIO) -> None:
     """Write a comment with the header, the columns' names, and the events, thread after thread."""
-    text = io.TextIOWrapper(file, encoding="utf-8", newline="")
-    text.write(f"{_MARK}{json.dumps(header_of(trace))}\n{','.join(_COLUMNS)}\n")
+    file.write(f"{_MARK}{json.dumps(header_of(trace))}\n{','.join(_COLUMNS)}\n".encode())
     for process, thread in trace.threads():
-        core = "" if process.core is None else str(process.core)
-        place = f"{process.cluster},{core},{process.pid},{thread.tid}"
-        names: dict[tuple[int, int], str] = {}
-        for time_ns, number, value, slot, incarnation, kind in thread.events.tolist():
-            name = names.get((slot, incarnation))
-            if name is None:
-                name = names[slot, incarnation] = _names_of(trace, slot, incarnation)
-            kind_name = _NAMES.get(kind, kind)
-            text.write(
-                f"{time_ns},{kind_name},{place},{name},{slot},{incarnation},{number},{value}\n"
-            )
-    text.flush()
-    text.detach()
+        for begin in range(0, len(thread.events), _PIECE):
+            file.write(_lines(trace, process, thread, begin).encode())
 
 
-def _names_of(trace: Trace, slot: int, incarnation: int) -> str:
-    if slot == NO_ENDPOINT:
+def _lines(trace: Trace, process: Process, thread: Thread, begin: int) -> str:
+    """Return a piece of a thread's lines: what few events have in common is made once."""
+    events = thread.events[begin : begin + _PIECE]
+    core = "" if process.core is None else str(process.core)
+    place = f"{process.cluster},{core},{process.pid},{thread.tid}"
+    sorts = groups_of(tuple(events[key] for key in ("kind", "endpoint", "incarnation")))
+    texts = np.empty(len(events), object)
+    for own in split_by(sorts):
+        slot, incarnation, kind = events[own[0]].tolist()[3:]
+        texts[own] = (
+            f"{_NAMES.get(kind, kind)},{place},{_names_of(trace, kind, slot, incarnation)},"
+            f"{slot},{incarnation}"
+        )
+    columns = (events["time_ns"], texts, events["number"], events["value"])
+    rows = zip(*(column.tolist() for column in columns), strict=True)
+    return "".join(map("%d,%s,%d,%d\n".__mod__, rows))
+
+
+def _names_of(trace: Trace, kind: int, slot: int, incarnation: int) -> str:
+    if slot == NO_ENDPOINT or kind in _OF_NO_ENDPOINT:
         return ","
     endpoint = endpoint_id(slot, incarnation)
     return f"{trace.node_of(endpoint)},{trace.topic_of(endpoint)}"

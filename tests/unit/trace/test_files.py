@@ -12,6 +12,7 @@ import pytest
 from rmw_manycore_py.errors import FileError, ManycoreError
 from rmw_manycore_py.trace.chains import Messages
 from rmw_manycore_py.trace.comparison import compare
+from rmw_manycore_py.trace.counters import counters_of
 from rmw_manycore_py.trace.events import (
     EVENT,
     NO_ENDPOINT,
@@ -25,7 +26,7 @@ from rmw_manycore_py.trace.events import (
 from rmw_manycore_py.trace.files import SUFFIXES, load, save
 from rmw_manycore_py.trace.flows import flows_of
 from rmw_manycore_py.trace.latency import ChainLatency, Part, latencies
-from rmw_manycore_py.trace.slices import slices_of
+from rmw_manycore_py.trace.slices import What, name_of, slices_of
 
 pytestmark = pytest.mark.unit
 
@@ -149,9 +150,8 @@ def test_each_take_has_one_flow_through_the_receive_thread() -> None:
     flows = flows_of(trace)
     assert len(flows.flows) == 16
     assert flows.without_publish == 0
-    assert Counter(flow.receive is not None for flow in flows.flows) == {True: 8, False: 8}
-    for flow in flows.flows:
-        assert flow.write.time_ns < flow.claim.time_ns
+    assert Counter((flows.flows["receive_thread"] >= 0).tolist()) == {True: 8, False: 8}
+    assert (flows.flows["write_ns"] < flows.flows["claim_ns"]).all()
 
 
 @pytest.mark.needs("perfetto")
@@ -197,10 +197,11 @@ def test_perfetto_gets_one_flow_for_each_take_and_tracks_in_their_places(tmp_pat
 
 def test_slices_of_a_node() -> None:
     trace = example(rounds=2)
+    slices = slices_of(trace.processes[1].threads[0])
+    assert (np.diff(slices["begin_ns"]) >= 0).all()
     spans = {
-        (one.name, one.begin_ns // US, one.end_ns // US)
-        for one in slices_of(trace, trace.processes[1].threads[0])
-        if one.begin_ns < 15_000 * US
+        (name_of(trace, one["what"], one["endpoint"]), one["begin_ns"] // US, one["end_ns"] // US)
+        for one in slices[slices["begin_ns"] < 15_000 * US]
     }
     assert spans == {
         ("wait", 9_900, 10_020),
@@ -260,6 +261,114 @@ def test_a_publish_that_a_kill_cut_short_is_drawn_for_its_takes() -> None:
     trace = example(rounds=1)
     camera = trace.processes[0].threads[0]
     cut = Thread(camera.tid, camera.name, camera.events[:3], 0)
-    one = next(s for s in slices_of(trace, cut) if s.category == "publish")
-    assert one.record == (endpoint_id(CAMERA, INCARNATION), 1)
-    assert one.arguments == {"end": "unknown"}
+    (one,) = (s for s in slices_of(cut) if s["what"] == What.PUBLISH)
+    assert (one["publisher"], one["number"]) == (endpoint_id(CAMERA, INCARNATION), 1)
+    assert not one["is_end_known"]
+
+
+def bridged(trace: Trace) -> Trace:
+    """The camera's images come from outside, and the sink passes on to the outside."""
+    camera, filtering, sink, told = trace.processes
+    rows = list(camera.threads[0].events.tolist())
+    for at in [i for i, row in enumerate(rows) if row[5] == Kind.PUBLISH_BEGIN][::-1]:
+        rows.insert(at, event(rows[at][0] // US - 1, Kind.BRIDGE_IN, CAMERA, 0, 70 * US))
+    left = []
+    for row in sink.threads[0].events.tolist():
+        if row[5] == Kind.RELEASE:
+            left.append(event(row[0] // US - 1, Kind.BRIDGE_OUT, SINK))
+        left.append(row)
+    return Trace("test", (process(1, rows), filtering, process(3, left), told), trace.endpoints, 0)
+
+
+def test_bridged_hops_are_slices_and_parts_of_chains() -> None:
+    trace = bridged(example())
+    inwards, outwards = (slices_of(trace.processes[i].threads[0]) for i in (0, 2))
+    came = inwards[inwards["what"] == What.BRIDGE_IN]
+    assert came["value"].tolist() == [70 * US] * 8
+    assert (came["end_ns"] - came["begin_ns"]).tolist() == [6 * US] * 8
+    left = outwards[outwards["what"] == What.BRIDGE_OUT]
+    assert (left["end_ns"] - left["begin_ns"]).tolist() == [2 * US] * 8
+    (found,) = evaluated(trace)
+    parts = {part.name: part.quantile(0.5) for part in found.parts}
+    assert parts["bridge in /image"] == 70
+    assert parts["bridge out /small"] == 2
+    assert parts["communication /small"] == 197  # to the claim: the bridge has it from then on
+    assert parts["total"] == 70 + 33 + 100 + 197 + 2
+
+
+def matched(trace: Trace) -> Trace:
+    """The filter works in another thread than it takes in, and has two workers."""
+    camera, filtering, sink, told = trace.processes
+    took, resumed, beside, passes = [], [], [], ([], [])
+    for row in filtering.threads[0].events.tolist():
+        is_publish = Kind.PUBLISH_BEGIN <= row[5] <= Kind.PUBLISH_END
+        (resumed if is_publish else took).append(row)
+        if row[5] == Kind.RELEASE:
+            t = row[0] // US
+            beside.append((row[0] + 2 * US, row[0] + US, 0, 100 + 2, 0, Kind.RESUME))
+            end_us = t + 80
+            beside.append((end_us * US, (t + 20) * US, end_us * US, NO_ENDPOINT, 0, Kind.ALIGN))
+            for worker, rows in enumerate(passes):
+                for n in range(2):
+                    begin_us = t + 25 + 20 * n + worker
+                    rows.append(
+                        (end_us * US, begin_us * US, (begin_us + 10) * US, worker, n, Kind.PASS)
+                    )
+    threads = (
+        Thread(102, "executor", np.array(took, EVENT), 0),
+        Thread(202, "matching", np.array(resumed, EVENT), 0),
+    )
+    workers = (
+        Thread(202, "matching", np.array(beside, EVENT), 0),
+        *(Thread(-1 - i, f"NDT worker {i}", np.array(r, EVENT), 0) for i, r in enumerate(passes)),
+    )
+    both = [
+        Process(2, 2, 2, 0, "node", False, True, of_threads, 0) for of_threads in (threads, workers)
+    ]
+    return Trace("test", (camera, *both, sink, told), trace.endpoints, 0)
+
+
+def test_scan_matching_is_seen_through_threads_and_workers() -> None:
+    trace = matched(example())
+    (found,) = evaluated(trace)
+    assert found.chain == ("/image", "/small")
+    parts = {part.name: part.quantile(0.5) for part in found.parts}
+    assert parts["node /filter"] == 100
+    assert parts["NDT alignment /filter"] == 60
+    assert parts["NDT workers /filter"] == 22  # two passes, each 11 us from the first to the last
+    drawn = slices_of(trace.processes[2].threads[1])
+    assert set(drawn["what"].tolist()) == {What.PASS}
+    assert (drawn["end_ns"] - drawn["begin_ns"]).tolist() == [10 * US] * 16
+    assert drawn["number"].tolist() == [0, 1] * 8
+
+
+def test_counters_follow_queues_losses_cpu_and_smem() -> None:
+    publisher = endpoint_id(CAMERA, INCARNATION)
+    rows = [
+        *(event(i, Kind.HINT, SINK, i, publisher) for i in (1, 2, 3, 4)),
+        event(5, Kind.HINT, SINK, 4, publisher),  # twice the same
+        event(6, Kind.LOST, SINK, 0, 2),
+        event(7, Kind.CLAIM, SINK, 3, publisher),
+        event(8, Kind.EXPIRED, SINK, 4, publisher),
+        event(9, Kind.CLAIM, SINK, 9, publisher),  # it was there before the trace
+        event(10, Kind.CPU, NO_ENDPOINT, 0, 1_000 * US),
+        event(10, Kind.SMEM, NO_ENDPOINT, 3, 5_000),
+        event(20, Kind.CPU, NO_ENDPOINT, 0, 1_005 * US),
+        event(20, Kind.SMEM, NO_ENDPOINT, 3, 5_000),
+        event(30, Kind.SMEM, NO_ENDPOINT, 3, 7_000),
+    ]
+    trace = Trace("test", (process(3, rows),), example().endpoints, 0)
+    found = {
+        counter.name: [
+            (time_ns // US, value)
+            for time_ns, value in zip(counter.times_ns, counter.values, strict=True)
+        ]
+        for counter in counters_of(trace)
+    }
+    lengths = [1, 2, 3, 4, 4, 2, 1, 0, 0]
+    assert found == {
+        "queue /small /sink": list(enumerate(lengths, 1)),
+        "lost /small /sink": [(6, 2)],
+        "CPU % cluster 3 > core 2": [(10, 50), (20, 0)],
+        "SMEM bytes cluster 3": [(10, 5000), (30, 7000)],
+    }
