@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -308,11 +309,18 @@ def matched(trace: Trace) -> Trace:
             beside.append((row[0] + 2 * US, row[0] + US, 0, 100 + 2, 0, Kind.RESUME))
             end_us = t + 80
             beside.append((end_us * US, (t + 20) * US, end_us * US, NO_ENDPOINT, 0, Kind.ALIGN))
-            for worker, rows in enumerate(passes):
+            for worker, (rows, length_us) in enumerate(zip(passes, (10, 6), strict=True)):
                 for n in range(2):
                     begin_us = t + 25 + 20 * n + worker
                     rows.append(
-                        (end_us * US, begin_us * US, (begin_us + 10) * US, worker, n, Kind.PASS)
+                        (
+                            end_us * US,
+                            begin_us * US,
+                            (begin_us + length_us) * US,
+                            worker,
+                            n,
+                            Kind.PASS,
+                        )
                     )
     threads = (
         Thread(102, "executor", np.array(took, EVENT), 0),
@@ -335,7 +343,7 @@ def test_scan_matching_is_seen_through_threads_and_workers() -> None:
     parts = {part.name: part.quantile(0.5) for part in found.parts}
     assert parts["node /filter"] == 100
     assert parts["NDT alignment /filter"] == 60
-    assert parts["NDT workers /filter"] == 22  # two passes, each 11 us from the first to the last
+    assert parts["NDT workers /filter"] == 20  # two passes, the second worker's within the first's
     drawn = slices_of(trace.processes[2].threads[1])
     assert set(drawn["what"].tolist()) == {What.PASS}
     assert (drawn["end_ns"] - drawn["begin_ns"]).tolist() == [10 * US] * 16
@@ -345,6 +353,7 @@ def test_scan_matching_is_seen_through_threads_and_workers() -> None:
 def test_counters_follow_queues_losses_cpu_and_smem() -> None:
     publisher = endpoint_id(CAMERA, INCARNATION)
     rows = [
+        event(0, Kind.LOST, SINK, 0, 3),  # they came before the trace, too
         *(event(i, Kind.HINT, SINK, i, publisher) for i in (1, 2, 3, 4)),
         event(5, Kind.HINT, SINK, 4, publisher),  # twice the same
         event(6, Kind.LOST, SINK, 0, 2),
@@ -365,10 +374,51 @@ def test_counters_follow_queues_losses_cpu_and_smem() -> None:
         ]
         for counter in counters_of(trace)
     }
-    lengths = [1, 2, 3, 4, 4, 2, 1, 0, 0]
+    lengths = [0, 1, 2, 3, 4, 4, 2, 1, 0, 0]
     assert found == {
-        "queue /small /sink": list(enumerate(lengths, 1)),
-        "lost /small /sink": [(6, 2)],
+        "queue /small /sink": list(enumerate(lengths)),
+        "lost /small /sink": [(0, 3), (6, 5)],
         "CPU % cluster 3 > core 2": [(10, 50), (20, 0)],
         "SMEM bytes cluster 3": [(10, 5000), (30, 7000)],
     }
+
+
+FIRST_OF_MANY = 10
+
+
+@pytest.mark.needs("perfetto")
+def test_a_message_for_many_has_a_flow_to_each(tmp_path: Path) -> None:
+    """Takes take no time; the receive thread looks twice, and is too late for some."""
+    from perfetto.protos.perfetto.trace import perfetto_trace_pb2
+
+    takers = range(FIRST_OF_MANY, FIRST_OF_MANY + 30)
+    origin = endpoint_id(CAMERA, INCARNATION)
+    taken = [
+        event(100 + 10 * slot, kind, slot, 1, origin)
+        for slot in takers
+        for kind in (Kind.CLAIM, Kind.RELEASE)
+    ]
+    told = [event(at, Kind.RECEIVE, CAMERA, 1, 2) for at in (250, 260)]
+    trace = Trace(
+        "test",
+        (process(1, publish(1, CAMERA, 1)), process(2, told, is_receive_thread=True)),
+        example().endpoints,
+        0,
+    )
+    trace = replace(trace, processes=(*trace.processes, process(2, taken)))
+    flows = flows_of(trace).flows
+    was_told = flows["claim_ns"] >= 250 * US
+    assert flows["subscription"].tolist() == [endpoint_id(slot, INCARNATION) for slot in takers]
+    assert set(flows["receive_ns"][was_told].tolist()) == {250 * US}
+    assert set(flows["receive_thread"][~was_told].tolist()) == {-1}
+    save(trace, tmp_path / "t.pftrace")
+    parsed = perfetto_trace_pb2.Trace()
+    parsed.ParseFromString((tmp_path / "t.pftrace").read_bytes())
+    events = [packet.track_event for packet in parsed.packet if packet.HasField("track_event")]
+    begins = [list(one.flow_ids) for one in events if one.flow_ids]
+    assert begins[0] == list(range(1, 31))
+    assert sorted(i for one in events for i in one.terminating_flow_ids) == begins[0]
+    depth: Counter[int] = Counter()
+    for one in events:
+        depth[one.track_uuid] += {1: 1, 2: -1}.get(one.type, 0)
+        assert depth[one.track_uuid] >= 0
