@@ -90,6 +90,8 @@ TEST_CASE("each claim of what was published while traced has its write, before i
   CHECK(saved.of_kind.at(TraceKind::publish_end) == 100);
   CHECK(saved.of_kind.at(TraceKind::release) == 100);
   CHECK(saved.hinted_ns.size() == 100);
+  CHECK(saved.of_kind.at(TraceKind::cpu) >= 1);
+  CHECK(saved.of_kind.at(TraceKind::smem) >= 1);
   saved.check_claims();
   CHECK(Saved(f.registry()).events == 0);
 }

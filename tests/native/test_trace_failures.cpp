@@ -33,6 +33,21 @@ TEST_CASE("one trace at a time, one saver at a time, and no trace is thrown away
         }).says("too large"));
 }
 
+TEST_CASE("an event that came after a stopped trace was saved keeps no other from being started") {
+  Fixture f;
+  start_trace(f.registry(), {});
+  f.talk(1, 3);
+  stop_trace(f.registry());
+  CHECK(Saved(f.registry()).events > 0);
+  const SharedMemory memory =
+    SharedMemory::open(trace_files(f.platform.paths()).at(0), sizeof(TraceFileHeader));
+  // As a thread does that was on its way through a site when the trace was stopped.
+  memory.at<TraceFileHeader>(0).rings[0].written.fetch_add(1);
+  CHECK(trace_state(f.registry()).pending == 1);
+  CHECK_NOTHROW(start_trace(f.registry(), {}));
+  CHECK(trace_state(f.registry()).pending == 0);
+}
+
 TEST_CASE("a damaged trace file is refused with its name, and costs no one else anything") {
   Fixture f;
   start_trace(f.registry(), {{}, {}, 128});

@@ -30,6 +30,6 @@ def plot(chains: Sequence[ChainLatency], path: Path) -> None:
                 left_us += length_us
     axes.set_yticks(range(len(chains)), [" ".join(one.chain) for one in chains])
     axes.set_xlabel("median, us")
-    axes.legend(fontsize="small")
+    figure.legend(loc="outside upper center", ncols=3, fontsize="small")
     with writing(path):
         figure.savefig(path)

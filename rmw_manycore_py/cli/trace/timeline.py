@@ -29,7 +29,7 @@ _COLORS = {
 }
 _HEIGHTS = {"serialize": 0.3, "take": 0.5, "publish": 0.5, "wait": 0.3}
 _MARGIN = 0.08  # of the time that is drawn, before and after
-_MIN_NAMED = 0.06  # of it that a slice takes to have its name in it
+_MIN_NAMED = 0.15  # of it that a slice takes to have its name in it
 
 
 def draw(trace: Trace, passage: Passage, path: Path) -> None:
@@ -50,7 +50,10 @@ def draw(trace: Trace, passage: Passage, path: Path) -> None:
     axes.set_xlim(0, (window_ns[1] - window_ns[0]) / 1000)
     axes.set_ylim(len(rows) - 0.4, -0.6)
     axes.set_xlabel("us")
-    handles = [axes.barh(0, 0, color=color, label=name) for name, color in _COLORS.items()]
+    shown = {category_of(what) for _, slices in rows.values() for what in np.unique(slices["what"])}
+    handles = [
+        axes.barh(0, 0, color=color, label=name) for name, color in _COLORS.items() if name in shown
+    ]
     figure.legend(handles=handles, loc="outside upper center", ncols=len(handles), fontsize="small")
     with writing(path):
         figure.savefig(path)
