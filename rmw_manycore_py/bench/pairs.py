@@ -68,7 +68,7 @@ def compare(
     if not (other / LIBRARY).is_file():
         raise ManycoreError(
             f"{other}: expected a directory with {LIBRARY}, found none; build one with "
-            "cmake -S . -B build/other -DMANYCORE_TRACE=OFF (see CONTRIBUTING.md)",
+            "cmake -S . -B build/other -DMANYCORE_TRACE=OFF (see docs/design/trace.md)",
             EXIT_BAD_INPUT,
         )
     sides = (

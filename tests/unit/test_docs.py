@@ -16,7 +16,8 @@ VARIABLE = re.compile(r"\b(MANYCORE_[A-Z_]+)\b")
 SUFFIXES = {".py", ".pth", ".cpp", ".hpp", ".sh"}
 # Of CMake and of the preprocessor, not of the environment.
 OTHERS = re.compile(
-    r"MANYCORE_(BUILD_\w+|CHECK\w*|PREFIX|ROS_\w+|SANITIZE|SITE_PACKAGES|THREAD_SANITIZER|WERROR)"
+    r"MANYCORE_(BUILD_\w+|CHECK\w*|PREFIX|ROS_\w+|SANITIZE|SITE_PACKAGES|THREAD_SANITIZER|WERROR"
+    r"|TRACE|WITHOUT_\w+)"
 )
 LINK = re.compile(r"\]\(([^)#\s]+)(?:#[^)]*)?\)")
 

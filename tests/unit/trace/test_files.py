@@ -9,7 +9,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from click.testing import CliRunner
 
+from rmw_manycore_py.cli.main import cli
 from rmw_manycore_py.errors import FileError, ManycoreError
 from rmw_manycore_py.trace.chains import Messages
 from rmw_manycore_py.trace.comparison import compare
@@ -422,3 +424,30 @@ def test_a_message_for_many_has_a_flow_to_each(tmp_path: Path) -> None:
     for one in events:
         depth[one.track_uuid] += {1: 1, 2: -1}.get(one.type, 0)
         assert depth[one.track_uuid] >= 0
+
+
+@pytest.mark.needs("matplotlib")
+def test_a_message_is_drawn_with_its_threads(tmp_path: Path) -> None:
+    save(example(), tmp_path / "t.json")
+    drawn = CliRunner().invoke(
+        cli, ["trace", "draw", str(tmp_path / "t.json"), "-o", str(tmp_path / "t.svg")]
+    )
+    assert drawn.exit_code == 0, drawn.output
+    picture = (tmp_path / "t.svg").read_text()
+    for label in ("core 2 &gt; /camera", "core 2 &gt; /filter", "receive thread"):
+        assert label in picture.replace("> ", "&gt; "), label
+    none = [
+        "trace",
+        "draw",
+        str(tmp_path / "t.json"),
+        "-o",
+        str(tmp_path / "n.svg"),
+        "--chain",
+        "/a",
+    ]
+    refused = CliRunner().invoke(cli, none)
+    assert refused.exit_code != 0
+    assert "no message went through /a; the chains of the trace: /image /small" in str(
+        refused.output or refused.exception
+    )
+    assert not (tmp_path / "n.svg").exists()
