@@ -84,8 +84,8 @@ endmacro()
 
 macro(manycore_interface_target target kind)
   target_compile_features(${target} PRIVATE cxx_std_17)
-  # Many small files that each spend their time on the same headers, and a kind that defines the same
-  # names in each.
+  # Many small files that each spend their time on the same headers; one kind of them defines the
+  # same names in each.
   set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 16)
   set(descriptions ${sources})
   list(FILTER descriptions INCLUDE REGEX "__description\\.c$")
