@@ -15,7 +15,9 @@
 #include "transport/lifecycle/receive_thread_watcher.hpp"
 #include "transport/lifecycle/trace_control.hpp"
 #include "transport/matching/closing.hpp"
+#include "transport/matching/leaving.hpp"
 #include "transport/matching/matching.hpp"
+#include "transport/matching/sweeping.hpp"
 #include "transport/publisher/publisher_impl.hpp"
 #include "transport/qos/manual_liveliness.hpp"
 #include "transport/qos/qos_ranges.hpp"
@@ -187,11 +189,14 @@ void Process::Impl::leave() {
     closed = endpoints.close_some();
     if (closed) {
       endpoints.require_all_closed();
-      closing::sweep(*registry);
-      registry->tracer().note(TraceKind::leave);
-      registry->tracer().unfollow();
-      leave_registry(*registry, slot);
     }
+  }
+  sweeping::sweep_a_little(*registry, placement.cluster, registry->parting_wait_ns());
+  {
+    const Registry::Lock lock(*registry, registry->parting_wait_ns());
+    registry->tracer().note(TraceKind::leave);
+    registry->tracer().unfollow();
+    leave_registry(*registry, slot);
   }
   registry->graph_changed();
   lifeline.reset();
@@ -238,8 +243,8 @@ uint32_t Process::Impl::fill_endpoint(const EndpointSpec & spec, EndpointKind ki
 uint32_t Process::Impl::add_endpoint(const EndpointSpec & spec, EndpointKind kind) {
   check_qos_ranges(spec);
   membership->require();
+  sweeping::sweep_a_little(*registry, placement.cluster);
   std::optional<Registry::Lock> lock(std::in_place, *registry);
-  closing::sweep(*registry);
   matching::require_reach(*registry, spec.topic, kind);
   const uint32_t taken = fill_endpoint(spec, kind);
   EndpointEntry & entry = registry->endpoints()[taken];
@@ -269,7 +274,7 @@ uint32_t Process::Impl::add_endpoint(const EndpointSpec & spec, EndpointKind kin
   } catch (...) {
     lock.reset();
     if (membership->holds()) {
-      closing::leave(*registry, taken);
+      leave_graph(*registry, taken);
     }
     throw;
   }
@@ -284,7 +289,7 @@ std::unique_ptr<Endpoint> Process::Impl::handle_of(uint32_t endpoint) {
     return std::make_unique<Endpoint>(
       std::make_unique<typename Endpoint::Impl>(*registry, endpoint));
   } catch (...) {
-    closing::leave(*registry, endpoint);
+    leave_graph(*registry, endpoint);
     throw;
   }
 }

@@ -16,7 +16,7 @@
 #include "stepped_child.hpp"
 #include "transport/lifecycle/configurator.hpp"
 #include "transport/lifecycle/lifecycle.hpp"
-#include "transport/matching/closing.hpp"
+#include "transport/matching/sweeping.hpp"
 
 using namespace manycore;
 
@@ -97,10 +97,7 @@ const Role reaps("reaps", [](Lines &, const Arguments & arguments) {
   Registry registry(PlatformPaths::of(arguments.at(0)));
   begin_steps();
   reap_dead(registry, 1);
-  {
-    const Registry::Lock lock(registry);
-    closing::sweep(registry);
-  }
+  sweeping::sweep_all(registry);
   finish_steps();
 });
 

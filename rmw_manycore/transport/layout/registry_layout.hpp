@@ -147,6 +147,7 @@ struct RegistryHeader {
   std::atomic<uint64_t> clusters_present;  ///< bit c - 1: cluster c has a segment
   std::atomic<uint32_t> removed;           ///< the files are gone: no process can join
   uint32_t needs_repair;                   ///< an owner of the mutex died; not yet repaired
+  uint32_t sweep_from;                     ///< endpoint slot that the next sweep looks at first
   TraceControl trace;
   std::atomic<uint32_t> topic_buckets[topic_bucket_count];
 };

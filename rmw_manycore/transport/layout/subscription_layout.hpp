@@ -65,6 +65,9 @@ struct SubscriptionHeader {
   }
 
   alignas(64) EntryBlocks sources;
+  /// Sweeping: publishers of the sources below this index follow no reference to the subscription
+  /// any more; under the registry lock.
+  uint32_t swept_before;
 
   std::atomic<uint64_t> * slots() noexcept {
     return reinterpret_cast<std::atomic<uint64_t> *>(this + 1);

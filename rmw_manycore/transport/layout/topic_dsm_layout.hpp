@@ -89,7 +89,8 @@ struct TopicDsmHeader {
   EntryBlocks further_readers;
   /// Closing: readers below this index know that the publisher is gone; under the registry lock.
   uint32_t closed_before;
-  uint32_t reserved2;
+  /// Sweeping: readers below this index were looked at; under the registry lock.
+  uint32_t swept_before;
 };
 static_assert(sizeof(TopicDsmHeader) == 1024);
 static_assert(std::is_standard_layout_v<TopicDsmHeader>);

@@ -14,7 +14,7 @@
 
 #include "platform/os_process.hpp"
 #include "transport/lifecycle/lifecycle.hpp"
-#include "transport/matching/closing.hpp"
+#include "transport/matching/sweeping.hpp"
 
 namespace manycore {
 namespace {
@@ -169,9 +169,9 @@ bool Reaper::watch_and_reap() {
     watch_members();
   }
   const uint32_t dead = reap_dead(registry_, cluster_);
+  sweeping::sweep_all(registry_);
   {
     const Registry::Lock lock(registry_);
-    closing::sweep(registry_);
     is_closing_ = registry_.header().closing_count != 0;
   }
   if (dead != 0) {

@@ -33,21 +33,39 @@ void visit_records_above(
   }
 }
 
-struct Waiting {
-  uint64_t number;
-  int64_t source_timestamp_ns;
-  uint32_t source;
-};
+}  // namespace
 
-bool is_newer(const Waiting & a, const Waiting & b) {
-  return std::tie(a.source_timestamp_ns, a.source, a.number) >
-         std::tie(b.source_timestamp_ns, b.source, b.number);
+std::optional<OrphanReader> orphan_reader(
+  Registry & registry, const Cluster & cluster, TopicDsmHeader & dsm, const ReaderEntry & entry) {
+  auto * const source = registry.reach<SourceEntry>(SegmentRef{entry.source.load()});
+  auto * const header = registry.reach<SubscriptionHeader>(SegmentRef{entry.subscription.load()});
+  const uint32_t slot = entry.endpoint.load();
+  if (source == nullptr || header == nullptr || slot >= registry.endpoints().high_water()) {
+    return std::nullopt;
+  }
+  return OrphanReader{
+    cluster, dsm, *header, *source, registry.endpoints()[slot], slot, entry.source_index.load()};
 }
 
-/// In the order of Source::list_waiting(): no timestamp before an earlier record's.
-void list_waiting(
+bool Undelivered::is_newer_than(const Undelivered & other) const noexcept {
+  return std::tie(source_timestamp_ns, source, number) >
+         std::tie(other.source_timestamp_ns, other.source, other.number);
+}
+
+uint64_t records_to_look_at(TopicDsmHeader & dsm, const SourceEntry & source) {
+  if (source.taken.load(std::memory_order_acquire) >= dsm.last.load(std::memory_order_acquire)) {
+    return 0;
+  }
+  uint64_t count = 0;
+  for (const GenerationEntry & generation : dsm.generations) {
+    count += generation.first.load() == 0 ? 0 : generation.descriptor_count.load();
+  }
+  return count;
+}
+
+void list_undelivered(
   const Cluster & cluster, TopicDsmHeader & dsm, const SourceEntry & source, uint32_t index,
-  std::vector<Waiting> & out) {
+  std::vector<Undelivered> & out) {
   const auto begin = static_cast<ptrdiff_t>(out.size());
   visit_records_above(
     source.taken.load(std::memory_order_acquire), cluster, dsm,
@@ -58,7 +76,7 @@ void list_waiting(
       }
       return false;
     });
-  std::sort(out.begin() + begin, out.end(), [](const Waiting & a, const Waiting & b) {
+  std::sort(out.begin() + begin, out.end(), [](const Undelivered & a, const Undelivered & b) {
     return a.number < b.number;
   });
   int64_t latest_ns = INT64_MIN;
@@ -67,8 +85,6 @@ void list_waiting(
     out[i].source_timestamp_ns = latest_ns;
   }
 }
-
-}  // namespace
 
 bool has_undelivered(const OrphanReader & reader) {
   const bool of_replies = static_cast<EndpointRole>(reader.dsm.role) == EndpointRole::reply;
@@ -86,7 +102,7 @@ bool has_undelivered(const OrphanReader & reader) {
 
 std::set<uint32_t> WantedSources::newest_of(
   SubscriptionHeader & subscription, uint32_t subscription_cluster) {
-  std::vector<Waiting> waiting;
+  std::vector<Undelivered> waiting;
   visit_source_table(
     registry_.clusters().at(subscription_cluster), subscription,
     [&](SourceEntry & source, uint32_t index) {
@@ -94,17 +110,19 @@ std::set<uint32_t> WantedSources::newest_of(
         source.state.load() == SourceState::active ? topic_dsm_of(registry_, source) : nullptr;
       if (dsm != nullptr) {
         const SegmentRef ref{source.topic_dsm.load()};
-        list_waiting(registry_.clusters().at(ref.cluster()), *dsm, source, index, waiting);
+        list_undelivered(registry_.clusters().at(ref.cluster()), *dsm, source, index, waiting);
       }
       return false;
     });
   if (waiting.size() > subscription.depth) {
     const auto end = waiting.begin() + static_cast<ptrdiff_t>(subscription.depth);
-    std::nth_element(waiting.begin(), end, waiting.end(), is_newer);
+    std::nth_element(
+      waiting.begin(), end, waiting.end(),
+      [](const Undelivered & a, const Undelivered & b) { return a.is_newer_than(b); });
     waiting.erase(end, waiting.end());
   }
   std::set<uint32_t> sources;
-  for (const Waiting & record : waiting) {
+  for (const Undelivered & record : waiting) {
     sources.insert(record.source);
   }
   return sources;

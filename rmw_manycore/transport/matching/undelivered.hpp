@@ -1,8 +1,11 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <map>
+#include <optional>
 #include <set>
+#include <vector>
 
 #include "transport/layout/subscription_layout.hpp"
 #include "transport/layout/topic_dsm_layout.hpp"
@@ -20,6 +23,29 @@ struct OrphanReader {
   uint32_t endpoint_slot;
   uint32_t source_index;
 };
+
+/// The reader behind an entry of a reader table, or nothing when the entry leads nowhere. Throws
+/// OutOfReach.
+std::optional<OrphanReader> orphan_reader(
+  Registry & registry, const Cluster & cluster, TopicDsmHeader & dsm, const ReaderEntry & entry);
+
+/// A record that a reader has not taken.
+struct Undelivered {
+  uint64_t number;
+  int64_t source_timestamp_ns;
+  uint32_t source;  ///< index
+
+  bool is_newer_than(const Undelivered & other) const noexcept;
+};
+
+/// Appends what a source has not taken, in order; no timestamp before an earlier record's, as in
+/// Source::list_waiting().
+void list_undelivered(
+  const Cluster & cluster, TopicDsmHeader & dsm, const SourceEntry & source, uint32_t index,
+  std::vector<Undelivered> & out);
+
+/// Records that a look for undelivered ones goes through.
+uint64_t records_to_look_at(TopicDsmHeader & dsm, const SourceEntry & source);
 
 /// A record that the reader has not taken, in any generation; of replies, its own whose hint was
 /// not displaced.

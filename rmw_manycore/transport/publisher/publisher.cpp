@@ -3,7 +3,7 @@
 
 #include <utility>
 
-#include "transport/matching/closing.hpp"
+#include "transport/matching/leaving.hpp"
 #include "transport/notification/notifier.hpp"
 #include "transport/publisher/publisher_impl.hpp"
 #include "transport/registry/endpoint_blocks.hpp"
@@ -14,7 +14,7 @@ Publisher::Publisher(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 
 Publisher::~Publisher() {
   if (impl_->membership.holds()) {
-    closing::leave(impl_->registry, impl_->slot);
+    leave_graph(impl_->registry, impl_->slot);
   }
 }
 

@@ -22,12 +22,13 @@ Claim::~Claim() {
     lock_.release();
     return;
   }
+  const uint32_t publisher = source_.publisher_slot();  // before the topic DSM may go
   const bool finished = source_.release(number_);
   subscription_.impl_->registry.tracer().note(
     TraceKind::release, subscription_.impl_->slot, number_, endpoint_in(info_.publisher));
   lock_.unlock();
   if (finished) {
-    subscription_.impl_->sweep();
+    subscription_.impl_->sweep(publisher);
   }
 }
 

@@ -4,7 +4,8 @@
 #include <utility>
 
 #include "platform/clock.hpp"
-#include "transport/matching/closing.hpp"
+#include "transport/matching/leaving.hpp"
+#include "transport/matching/sweeping.hpp"
 #include "transport/qos/liveliness.hpp"
 #include "transport/registry/endpoint_blocks.hpp"
 #include "transport/subscription/subscription_impl.hpp"
@@ -40,7 +41,7 @@ Subscription::Subscription(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) 
 
 Subscription::~Subscription() {
   if (impl_->membership.holds()) {
-    closing::leave(impl_->registry, impl_->slot);
+    leave_graph(impl_->registry, impl_->slot);
   }
 }
 
@@ -137,14 +138,8 @@ void Subscription::Impl::trace_claim(const RecordInfo & info, uint64_t number) n
   }
 }
 
-void Subscription::Impl::sweep() noexcept {
-  try {
-    const Registry::Lock lock(registry, Registry::Lock::no_wait_ns);
-    closing::sweep(registry);
-  } catch (const std::exception &) {
-    // Another process holds the registry, and a take does not wait for it: the next change of the
-    // graph sweeps.
-  }
+void Subscription::Impl::sweep(uint32_t publisher) noexcept {
+  sweeping::try_to_sweep(registry, publisher);
 }
 
 }  // namespace manycore

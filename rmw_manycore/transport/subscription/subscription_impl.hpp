@@ -21,8 +21,8 @@ struct Subscription::Impl {
     finder(registry_, cluster, header, entry, counts) {}
 
   void trace_claim(const RecordInfo & info, uint64_t number) noexcept;
-  /// A finished topic DSM waits for its last reader only: frees it.
-  void sweep() noexcept;
+  /// A finished topic DSM may have waited for this reader only: frees it.
+  void sweep(uint32_t publisher) noexcept;
 
   Registry & registry;
   uint32_t slot;

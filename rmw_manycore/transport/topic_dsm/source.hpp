@@ -69,6 +69,9 @@ public:
 
   const Gid & publisher() const noexcept { return dsm_->gid; }
   uint32_t publisher_process() const noexcept { return dsm_->process; }
+  uint32_t publisher_slot() const noexcept {
+    return entry_->topic_dsm_endpoint.load(std::memory_order_relaxed);
+  }
 
 private:
   /// Of one generation; empty where the entry leads nowhere.

@@ -1,0 +1,49 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#include "transport/matching/leaving.hpp"
+
+#include "transport/matching/closing.hpp"
+#include "transport/matching/sweeping.hpp"
+
+namespace manycore {
+namespace {
+
+void close(Registry & registry, uint32_t endpoint) {
+  const Slot & slot = registry.endpoints()[endpoint].slot;
+  const uint32_t incarnation = slot.incarnation.load();
+  for (bool closed = false; !closed;) {
+    const Registry::Lock lock(registry, registry.parting_wait_ns());
+    if (slot.state.load() == SlotState::free || slot.incarnation.load() != incarnation) {
+      return;  // meanwhile others closed and freed it
+    }
+    try {
+      closed = closing::close_some(registry, endpoint, false);
+    } catch (const OutOfReach &) {
+      return;  // this is as far as this process can go; the sweep finds that out, too
+    }
+  }
+}
+
+/// Before all others: the sweep of those may end early.
+void sweep(Registry & registry, uint32_t endpoint) {
+  sweeping::Round round(registry);
+  for (bool swept = false; !swept;) {
+    const Registry::Lock lock(registry, registry.parting_wait_ns());
+    swept = round.sweep_some_of(endpoint);
+  }
+}
+
+}  // namespace
+
+void leave_graph(Registry & registry, uint32_t endpoint) noexcept {
+  try {
+    const uint32_t cluster = registry.endpoints()[endpoint].cluster;
+    close(registry, endpoint);
+    sweep(registry, endpoint);
+    sweeping::sweep_a_little(registry, cluster, registry.parting_wait_ns());
+  } catch (const std::exception &) {
+    // The registry stayed locked: this endpoint is closed when its process leaves or ends.
+  }
+  registry.graph_changed();
+}
+
+}  // namespace manycore
