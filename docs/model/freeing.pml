@@ -3,13 +3,14 @@
  * Question: is the memory of a subscription freed only when no publisher and no receive thread can
  * still push to it, and is it freed in the end although they are killed?
  *
- * Follows closing.cpp (close_subscription, sweep_subscription), TopicDsmWriter::enter and ::leave,
+ * Follows closing.cpp (close_some), freeing.cpp (sweep_subscription), TopicDsmWriter::enter and ::leave,
  * ReceiveThread::forward. The publisher pushes through its private reader list, the receive thread
  * reads the table each time. The publisher may be killed at any step, and is then reaped; the
  * receive thread too, and is then replaced if its cluster has a process left, else not. The process
  * that closes the subscription may be killed at any step as well. Then the next owner of the
- * registry lock frees what is closed; what is not, the reaper closes, whose owner of the lock may be
- * a later one.
+ * registry lock frees what is closed, from where the dead one stood: a publisher that was seen out is
+ * not looked at again. What is not closed, the reaper closes, whose owner of the lock may be a later
+ * one.
  *
  * BUG 1: freed without grace
  * BUG 2: publisher: no fence between phase and the look at match_generation
@@ -24,6 +25,7 @@
  * BUG 11: a receive thread counts as dead once its lifeline ends, not once it has stopped
  * BUG 12: what a killed closer left half closed is freed as if it were closed
  * BUG 13: closed before the reader is taken off the table
+ * BUG 14: a publisher noted as seen out before it was looked at
  */
 #define GENERATION 0      /* match_generation */
 #define ACTIVE 1          /* of the reader table's entry */
@@ -38,6 +40,7 @@
 #include "tso.pml"
 
 bool closed;               /* the subscription's state; what is not closed is closing */
+bool swept;                /* SubscriptionHeader::swept_before is behind the one source */
 bool freed;
 bool kill_publisher, kill_receiver, kill_closer;
 bool publisher_ended, receiver_ended, closer_ended;
@@ -170,8 +173,15 @@ inline take_off() {
 
 inline free_when_out() {
 #if BUG != 1 && BUG != 5
+  if
+#if BUG == 14
+  :: !swept -> swept = true; load(CLOSER, PHASE(PUBLISHER)) == 0
+#else
+  :: !swept -> load(CLOSER, PHASE(PUBLISHER)) == 0; swept = true
+#endif
+  :: else
+  fi;
   wait_for_receive_thread();
-  load(CLOSER, PHASE(PUBLISHER)) == 0;
 #endif
   freed = true
 }

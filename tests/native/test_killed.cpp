@@ -101,6 +101,22 @@ const Role reaps("reaps", [](Lines &, const Arguments & arguments) {
   finish_steps();
 });
 
+/// A message that 100 subscriptions want until a newer one comes: their readers are revoked in
+/// several turns.
+const Role sweeps_many("sweeps_many", [](Lines &, const Arguments & arguments) {
+  const auto process = join(arguments.at(0));
+  const EndpointSpec spec = on_topic(crowded_topic, transient_local(1));
+  const auto newer = process->create_publisher(spec);
+  auto older = process->create_publisher(spec);
+  publish(*older, 1, sizeof(Payload), 2);
+  older.reset();
+  publish(*newer, 2, sizeof(Payload), 2);
+  Registry registry(PlatformPaths::of(arguments.at(0)));
+  begin_steps();
+  sweeping::sweep_all(registry);
+  finish_steps();
+});
+
 /// Small, so that no part of a change takes many instructions.
 Profile small_profile() {
   Profile profile = host_profile();
@@ -130,6 +146,9 @@ struct Fixture {
     wait_until("the dead are gone from the registry", [&] {
       take_all(*subscription);  // topic DSMs of the dead wait for it
       take_all(*other);
+      for (const auto & each : subscriptions) {
+        take_all(*each);
+      }
       return inspection.live_processes() == 1 && inspection.closing_endpoints() == 0 &&
              process->graph().nodes().empty();
     });
@@ -208,7 +227,7 @@ uint64_t kill_after(Fixture & f, const std::string & role, uint64_t instructions
 void check_kills(const std::string & role) {
   Fixture f;
   f.platform.receive_thread(1);
-  if (role == "closes_many") {
+  if (role == "closes_many" || role == "sweeps_many") {
     f.crowd_topic();
   }
   f.check_that_it_goes_on();
@@ -245,6 +264,10 @@ TEST_CASE("killed at any instruction while it takes messages") { check_kills("ta
 
 TEST_CASE("killed at any instruction while it closes endpoints of many matches") {
   check_kills("closes_many");
+}
+
+TEST_CASE("killed at any instruction while it sweeps what many readers are done with") {
+  check_kills("sweeps_many");
 }
 
 TEST_CASE("killed at any instruction while it clears away what other dead left") {

@@ -10,6 +10,8 @@
 #include "node_role.hpp"
 #include "patience.hpp"
 #include "transport/lifecycle/configurator.hpp"
+#include "transport/matching/closing.hpp"
+#include "transport/matching/sweeping.hpp"
 
 using namespace manycore;
 
@@ -164,4 +166,56 @@ TEST_CASE("messages that were noted for later and are pushed out then are counte
   f.drive(4);
   CHECK(take_all(*slow) == numbers(7, 10));
   CHECK(slow->lost() == 4);
+}
+
+TEST_CASE("many readers are revoked in turns; a sweep that ended early is gone on with by the next") {
+  Fixture f;
+  const Standstill no_other_sweeper(f.platform, 1);
+  constexpr size_t many = 300;
+  std::vector<std::unique_ptr<Subscription>> stuck;
+  for (size_t i = 0; i < many; ++i) {
+    stuck.push_back(f.subscription(keep_last(1)));
+  }
+  const auto successor = f.publisher();
+  f.drive(1);
+  CHECK(f.inspection.closing_endpoints() == 1);
+  publish(*successor, ++f.published);
+  Registry & registry = f.inspection.registry();
+  const auto sweep_once = [&] {
+    sweeping::Round round(registry);
+    const Registry::Lock lock(registry);
+    return round.sweep_some();
+  };
+  CHECK_FALSE(sweep_once());
+  CHECK(f.inspection.closing_endpoints() == 1);
+  int turns = 1;
+  for (; f.inspection.closing_endpoints() != 0 && turns < 100; ++turns) {
+    sweep_once();  // as another process would: it knows nothing of the turns before
+  }
+  CHECK(f.inspection.closing_endpoints() == 0);
+  CHECK(turns >= 4);
+  for (const auto & each : stuck) {
+    CHECK(take_all(*each) == numbers(2, 2));
+    CHECK(each->lost() == 1);
+  }
+}
+
+TEST_CASE("a subscription with many publishers is freed in turns") {
+  Fixture f;
+  const Standstill no_other_sweeper(f.platform, 1);
+  constexpr size_t many = 300;
+  std::vector<std::unique_ptr<Publisher>> publishers;
+  for (size_t i = 0; i < many; ++i) {
+    publishers.push_back(f.publisher());
+  }
+  const auto subscription = f.subscription(keep_last(1));
+  Registry & registry = f.inspection.registry();
+  const auto slot = static_cast<uint32_t>(endpoint_in(subscription->gid()));
+  const Registry::Lock lock(registry);
+  while (!closing::close_some(registry, slot, false)) {
+  }
+  CHECK_FALSE(sweeping::Round(registry).sweep_some_of(slot));
+  CHECK(f.inspection.closing_endpoints() == 1);
+  CHECK(sweeping::Round(registry).sweep_some_of(slot));  // goes on with what another one began
+  CHECK(f.inspection.closing_endpoints() == 0);
 }

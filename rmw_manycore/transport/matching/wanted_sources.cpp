@@ -2,6 +2,7 @@
 #include "transport/matching/wanted_sources.hpp"
 
 #include <algorithm>
+#include <vector>
 
 #include "transport/queue/source_table.hpp"
 #include "transport/registry/endpoint_blocks.hpp"
@@ -26,38 +27,33 @@ bool is_cut_by_depth(const OrphanReader & reader) {
          static_cast<EndpointRole>(reader.dsm.role) != EndpointRole::reply;
 }
 
-void cut(std::vector<Undelivered> & records, uint32_t depth) {
-  if (records.size() > depth) {
-    const auto end = records.begin() + static_cast<ptrdiff_t>(depth);
-    std::nth_element(
-      records.begin(), end, records.end(),
-      [](const Undelivered & a, const Undelivered & b) { return a.is_newer_than(b); });
-    records.erase(end, records.end());
-  }
+std::vector<Undelivered> undelivered_of(
+  const Cluster & cluster, TopicDsmHeader & dsm, const SourceEntry & source, uint32_t index) {
+  std::vector<Undelivered> records;
+  closing::list_undelivered(cluster, dsm, source, index, records);
+  return records;
 }
 
 }  // namespace
 
-WantedSources::Look & WantedSources::look_of(const OrphanReader & reader) {
-  Look & look = looks_[reader.endpoint_slot];
+WantedSources::Look WantedSources::look_at(
+  const OrphanReader & reader, const Undelivered & newest) const {
   const uint32_t incarnation = reader.endpoint.slot.incarnation.load();
-  const bool is_fresh = look.next == 0 && !look.is_done;
-  if (is_fresh || look.incarnation != incarnation) {
-    look = {};
-    look.incarnation = incarnation;
-    look.taken = taken_by(reader.endpoint);
-  }
-  return look;
+  const bool is_same = last_ && last_->endpoint == reader.endpoint_slot &&
+                       last_->incarnation == incarnation &&
+                       last_->record.source == newest.source &&
+                       last_->record.number == newest.number;
+  return is_same
+           ? *last_
+           : Look{reader.endpoint_slot, incarnation, taken_by(reader.endpoint), newest, 0, 0};
 }
 
-void WantedSources::go_on(Look & look, const OrphanReader & reader, Turn & turn) {
-  EntryTable<SourceEntry> table =
-    source_table(registry_.clusters().at(reader.endpoint.cluster), reader.subscription);
-  look.is_done = true;
+bool WantedSources::count_newer(Look & look, const OrphanReader & reader, Turn & turn) const {
   const uint32_t first = look.next;
-  table.visit(first, [&](SourceEntry & source, uint32_t index) {
-    if (turn.is_over() && index != first) {  // it gets on, however much a turn has on it
-      look.is_done = false;
+  bool is_over = false;
+  const auto visit = [&](SourceEntry & source, uint32_t index) {
+    is_over = turn.is_over() && index != first;  // each turn gets on, however much it has spent
+    if (is_over || look.newer >= reader.subscription.depth) {
       return true;
     }
     look.next = index + 1;
@@ -65,43 +61,41 @@ void WantedSources::go_on(Look & look, const OrphanReader & reader, Turn & turn)
     TopicDsmHeader * const dsm =
       source.state.load() == SourceState::active ? topic_dsm_of(registry_, source) : nullptr;
     if (dsm != nullptr) {
-      const Cluster & cluster =
-        registry_.clusters().at(SegmentRef{source.topic_dsm.load()}.cluster());
       turn.spend(closing::records_to_look_at(*dsm, source) / Turn::records_in_a_step);
-      closing::list_undelivered(cluster, *dsm, source, index, look.newest);
-    }
-    if (look.newest.size() / 2 > reader.subscription.depth) {
-      cut(look.newest, reader.subscription.depth);
+      const uint32_t cluster = SegmentRef{source.topic_dsm.load()}.cluster();
+      const std::vector<Undelivered> records =
+        undelivered_of(registry_.clusters().at(cluster), *dsm, source, index);
+      look.newer += static_cast<uint32_t>(
+        std::count_if(records.begin(), records.end(), [&](const Undelivered & record) {
+          return record.is_newer_than(look.record);
+        }));
     }
     return false;
-  });
-  if (look.is_done) {
-    cut(look.newest, reader.subscription.depth);
-    for (const Undelivered & record : look.newest) {
-      look.sources.insert(record.source);
-    }
-    look.newest = {};
-  }
+  };
+  source_table(registry_.clusters().at(reader.endpoint.cluster), reader.subscription)
+    .visit(first, visit);
+  return !is_over;
 }
 
 /// A subscription that took something since the look began may want more than the look found. It
 /// takes by itself what it wants, so it is given the time.
 std::optional<bool> WantedSources::contain(const OrphanReader & reader, Turn & turn) {
   turn.spend(closing::records_to_look_at(reader.dsm, reader.source) / Turn::records_in_a_step);
-  if (!closing::has_undelivered(reader)) {
+  if (!is_cut_by_depth(reader)) {
+    return closing::has_undelivered(reader);
+  }
+  const std::vector<Undelivered> records =
+    undelivered_of(reader.cluster, reader.dsm, reader.source, reader.source_index);
+  if (records.empty()) {
     return false;
   }
-  if (!is_cut_by_depth(reader)) {
-    return true;
-  }
-  Look & look = look_of(reader);
-  if (!look.is_done) {
-    go_on(look, reader, turn);
-  }
-  if (!look.is_done) {
+  Look look = look_at(reader, records.back());
+  last_.reset();
+  if (!count_newer(look, reader, turn)) {
+    last_ = look;
     return std::nullopt;
   }
-  return look.taken != taken_by(reader.endpoint) || look.sources.count(reader.source_index) != 0;
+  return look.taken != taken_by(reader.endpoint) || look.newer < reader.subscription.depth;
 }
 
 }  // namespace manycore::sweeping
