@@ -5,7 +5,7 @@
  * behind it, and is it given back in the end, whoever dies where and although /dev/shm may be full?
  *
  * Follows TopicDsmWriter (add_generation, open_generation, free_old_generations), Generation
- * (reserve, open, free), Registry::repair and closing.cpp (sweep_publisher). The SMEM has room for
+ * (reserve, open, free), Registry::repair and freeing.cpp (sweep_publisher). The SMEM has room for
  * one generation, which two publishers want; the first may be killed at any step, and is then
  * reaped. Every store here is ordered by the lock or by a system call, but for that of `first`,
  * which x86 keeps behind the stores before it.

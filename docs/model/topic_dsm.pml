@@ -5,7 +5,7 @@
  * source entry and the same memory? Is what the reader never takes counted as lost once, by it or
  * by the sweeper?
  *
- * Follows closing.cpp (sweep_publisher, revoke), count_undelivered, matching.cpp (join), Source (claim,
+ * Follows freeing.cpp (sweep_publisher, revoke), count_undelivered, matching.cpp (join), Source (claim,
  * release) and ReceiveThread::forward. The subscription holds a hint of the first publisher whose
  * record is gone already. A sweep that finds the topic DSM in use gives up, and is done again
  * later.

@@ -9,8 +9,8 @@ namespace {
 
 constexpr uint64_t steps_of_a_slot = 1;
 constexpr uint64_t steps_of_freeing = 256;  ///< a few system calls
-/// Of a process that is about something else: 0.5 ms.
-constexpr int most_turns_beside = 8;
+/// Turns that free nothing, of a process that is about something else: 0.5 ms.
+constexpr int most_idle_turns = 8;
 
 /// Left by a process that lives, as a cluster was out of its reach; or by one that is dying, thread
 /// by thread. What the dead leave is the reaper's.
@@ -86,9 +86,11 @@ void sweep_all(Registry & registry) {
 void sweep_a_little(Registry & registry, uint32_t cluster, long wait_ns) {
   Round round(registry);
   bool over = false;
-  for (int turn = 0; turn < most_turns_beside && !over; ++turn) {
+  for (int idle_turns = 0; !over && idle_turns < most_idle_turns;) {
     const Registry::Lock lock(registry, wait_ns);
+    const uint32_t before = registry.header().closing_count;
     over = round.sweep_some();
+    idle_turns = registry.header().closing_count < before ? 0 : idle_turns + 1;
   }
   if (!over || !round.reached_all()) {
     registry.clusters().at(cluster).wake_reaper();

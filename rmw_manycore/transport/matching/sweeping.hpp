@@ -36,7 +36,8 @@ private:
 /// A whole round; takes the registry lock anew for each turn.
 void sweep_all(Registry & registry);
 
-/// For a process of `cluster` that is about something else: a few turns of a round. What is left
+/// For a process of `cluster` that is about something else: a round that ends early, after a few
+/// turns that free nothing. What is left
 /// then, or is out of its reach, is that cluster's reaper's.
 void sweep_a_little(
   Registry & registry, uint32_t cluster, long wait_ns = Registry::Lock::usual_wait_ns);
