@@ -99,6 +99,19 @@ class ProcessInfo:
     @property
     def alive(self) -> bool: ...
 
+class Death:
+    """A process that ended without leaving: it was killed, or crashed."""
+
+    @property
+    def pid(self) -> int: ...
+    @property
+    def process(self) -> int:
+        """The slot it had."""
+
+    @property
+    def found_ns(self) -> int:
+        """When it was reaped, on the monotonic clock."""
+
 class ClusterInfo:
     """A cluster whose segment exists, and what its receive thread has done."""
 
@@ -301,6 +314,22 @@ class Platform:
     def clusters(self) -> list[ClusterInfo]: ...
     def nodes(self) -> list[NodeInfo]: ...
     def endpoints(self) -> list[EndpointInfo]: ...
+    def graph_generation(self) -> int:
+        """Return a number that changes when a node or endpoint comes or goes."""
+
+    def activity(self) -> bytes:
+        """Return what changes with every message, endpoint by endpoint: rows of 10 uint64.
+
+        Endpoint (bytes 8 to 15 of its gid), the six of CounterValues, entries in its queue, entries
+        that the queue can hold, deadlines missed; the last three of subscriptions only.
+        """
+
+    def deaths(self) -> list[Death]:
+        """Return the latest 1,024 deaths of processes, oldest first."""
+
+    def is_current(self) -> bool:
+        """Tell whether the platform's files are still those that are looked at."""
+
     def topic_table(self) -> list[TopicConfiguration]: ...
     def close(self) -> None:
         """Unmap the registry; the rows stay valid."""

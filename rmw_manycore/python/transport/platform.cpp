@@ -54,6 +54,17 @@ public:
     return with_node_names(view().graph.endpoints(), nodes);
   }
 
+  uint64_t graph_generation() const { return view().graph.generation(); }
+
+  nb::bytes activity() const {
+    const std::vector<Activity> rows = view().graph.activity();
+    return nb::bytes(reinterpret_cast<const char *>(rows.data()), rows.size() * sizeof(Activity));
+  }
+
+  std::vector<Death> deaths() const { return view().graph.deaths(); }
+
+  bool is_current() const { return view().registry.is_current(); }
+
   std::vector<TopicConfiguration> topic_table() const {
     Registry & registry = view().registry;
     std::vector<TopicConfiguration> rows;
@@ -109,6 +120,10 @@ void bind_platform(nb::module_ & module) {
     .def("clusters", &Platform::clusters)
     .def("nodes", &Platform::nodes)
     .def("endpoints", &Platform::endpoints)
+    .def("graph_generation", &Platform::graph_generation)
+    .def("activity", &Platform::activity)
+    .def("deaths", &Platform::deaths)
+    .def("is_current", &Platform::is_current)
     .def("topic_table", &Platform::topic_table);
   bind_context(bound);
 }

@@ -7,6 +7,7 @@
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 
+#include <unordered_map>
 #include <utility>
 
 #include "python/transport/bindings.hpp"
@@ -59,6 +60,13 @@ void bind_cluster_info(nb::module_ & module) {
     .def_ro("alive", &ClusterRow::alive);
 }
 
+void bind_death(nb::module_ & module) {
+  nb::class_<Death>(module, "Death")
+    .def_ro("pid", &Death::pid)
+    .def_ro("process", &Death::process)
+    .def_ro("found_ns", &Death::found_ns);
+}
+
 void bind_node_info(nb::module_ & module) {
   nb::class_<NodeInfo>(module, "NodeInfo")
     .def_ro("handle", &NodeInfo::handle)
@@ -99,14 +107,17 @@ void bind_endpoint_info(nb::module_ & module) {
 
 std::vector<EndpointRow> with_node_names(
   std::vector<EndpointInfo> endpoints, const std::vector<NodeInfo> & nodes) {
+  std::unordered_map<uint32_t, const NodeInfo *> by_handle;
+  for (const NodeInfo & node : nodes) {
+    by_handle.emplace(node.handle, &node);
+  }
   std::vector<EndpointRow> rows;
   for (EndpointInfo & endpoint : endpoints) {
     EndpointRow & row = rows.emplace_back(EndpointRow{std::move(endpoint), "", ""});
-    for (const NodeInfo & node : nodes) {
-      if (node.handle == row.node) {
-        row.node_name = node.name;
-        row.node_namespace = node.ns;
-      }
+    const auto node = by_handle.find(row.node);
+    if (node != by_handle.end()) {
+      row.node_name = node->second->name;
+      row.node_namespace = node->second->ns;
     }
   }
   return rows;
@@ -115,6 +126,7 @@ std::vector<EndpointRow> with_node_names(
 void bind_rows(nb::module_ & module) {
   bind_platform_info(module);
   bind_process_info(module);
+  bind_death(module);
   bind_cluster_info(module);
   bind_node_info(module);
   bind_counter_values(module);

@@ -119,6 +119,17 @@ struct TopicEntry {
 };
 static_assert(sizeof(TopicEntry) == 280);
 
+/// A process that ended without leaving. Its slot may have another process meanwhile.
+struct Death {
+  pid_t pid;
+  uint32_t process;  ///< its slot
+  int64_t found_ns;  ///< CLOCK_MONOTONIC: when it was reaped
+};
+static_assert(sizeof(Death) == 16);
+
+/// Kept for the tools: more than die between two looks of theirs, unless all die at once.
+constexpr uint32_t kept_deaths = process_capacity;
+
 /// Used part of a table. The free list is derived state: rebuilt from the slots' states.
 struct TableHead {
   std::atomic<uint32_t> high_water;
@@ -149,6 +160,8 @@ struct RegistryHeader {
   uint32_t needs_repair;                   ///< an owner of the mutex died; not yet repaired
   uint32_t sweep_from;                     ///< endpoint slot that the next sweep looks at first
   TraceControl trace;
+  std::atomic<uint64_t> death_count;  ///< raised once the death is written down
+  Death deaths[kept_deaths];          ///< at death_count mod kept_deaths the next one
   std::atomic<uint32_t> topic_buckets[topic_bucket_count];
 };
 

@@ -12,6 +12,7 @@
 #include <climits>
 #include <cstdlib>
 
+#include "platform/clock.hpp"
 #include "platform/os_process.hpp"
 #include "platform/user_directory.hpp"
 #include "transport/matching/closing.hpp"
@@ -105,6 +106,14 @@ bool is_dead(Registry & registry, uint32_t process) {
   return registry.processes().is_live(process) && !registry.lifelines().is_held(process);
 }
 
+/// The caller holds the registry lock.
+void note_death(Registry & registry, uint32_t process) {
+  RegistryHeader & header = registry.header();
+  const uint64_t count = header.death_count.load(std::memory_order_relaxed);
+  header.deaths[count % kept_deaths] = {registry.processes()[process].pid, process, monotonic_ns()};
+  header.death_count.store(count + 1, std::memory_order_release);
+}
+
 /// False when another reaper was faster.
 bool reap(Registry & registry, uint32_t process) {
   const std::atomic<uint32_t> & incarnation = registry.processes()[process].slot.incarnation;
@@ -117,6 +126,7 @@ bool reap(Registry & registry, uint32_t process) {
     }
     if (endpoints.close_some()) {
       endpoints.require_all_closed();
+      note_death(registry, process);
       leave_registry(registry, process);
       return true;
     }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "transport/queue/subscriber_queue.hpp"
 #include "transport/registry/endpoint_blocks.hpp"
 #include "transport/registry/snapshot.hpp"
 
@@ -19,6 +20,21 @@ CounterValues read_counters(Registry & registry, const EndpointEntry & entry) {
     values.lost = header == nullptr ? values.lost : lost_so_far(entry, *header);
   }
   return values;
+}
+
+Activity activity_of(Registry & registry, const EndpointEntry & entry) {
+  Activity activity;
+  activity.endpoint = endpoint_in(entry.gid);
+  activity.counters = read_counters(registry, entry);
+  if (entry.kind == EndpointKind::subscription) {
+    auto * const header = registry.clusters().find<SubscriptionHeader>(entry.block);
+    if (header != nullptr) {
+      activity.capacity = header->depth;
+      activity.queued = std::min(subscriber_queue::size(*header), activity.capacity);
+      activity.deadlines_missed = header->deadline.missed(entry.qos.deadline_ns).total;
+    }
+  }
+  return activity;
 }
 
 EndpointInfo describe(Registry & registry, const EndpointEntry & entry) {
@@ -106,6 +122,24 @@ std::vector<NodeInfo> Graph::nodes() const {
 
 std::vector<EndpointInfo> Graph::endpoints() const {
   return read_between_changes(registry_, [&](bool) { return all_endpoints(registry_); });
+}
+
+std::vector<Activity> Graph::activity() const {
+  return list_live<Activity>(registry_.endpoints(), [&](uint32_t, const EndpointEntry & entry) {
+    return activity_of(registry_, entry);
+  });
+}
+
+std::vector<Death> Graph::deaths() const {
+  return read_between_changes(registry_, [&](bool) {
+    const RegistryHeader & header = registry_.header();
+    const uint64_t count = header.death_count.load(std::memory_order_acquire);
+    std::vector<Death> all;
+    for (uint64_t i = count - std::min<uint64_t>(count, kept_deaths); i < count; ++i) {
+      all.push_back(header.deaths[i % kept_deaths]);
+    }
+    return all;
+  });
 }
 
 std::vector<EndpointInfo> Graph::endpoints_of(const std::string & topic) const {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "transport/layout/endpoint.hpp"
+#include "transport/layout/registry_layout.hpp"
 
 namespace manycore {
 
@@ -64,6 +64,16 @@ struct EndpointInfo {
   CounterValues counters;
 };
 
+/// What changes with every message: the counters of an endpoint, and its queue.
+struct Activity {
+  uint64_t endpoint = 0;  ///< slot and incarnation, as endpoint_in() its gid
+  CounterValues counters;
+  uint64_t queued = 0;            ///< subscription: hints in its queue
+  uint64_t capacity = 0;          ///< subscription: hints that its queue can hold
+  uint64_t deadlines_missed = 0;  ///< subscription: periods of its deadline without a message
+};
+static_assert(sizeof(Activity) == 80);
+
 /// Consistent snapshots of who is on the platform, without the registry lock. Any thread; never on
 /// the data path.
 class Graph {
@@ -76,6 +86,11 @@ public:
   std::vector<ClusterInfo> clusters() const;
   std::vector<NodeInfo> nodes() const;
   std::vector<EndpointInfo> endpoints() const;
+  /// A small part of endpoints(), for those that look often. Each row is whole; they may be of
+  /// different moments.
+  std::vector<Activity> activity() const;
+  /// The deaths that are still known, oldest first.
+  std::vector<Death> deaths() const;
   /// Endpoints of one topic or service only (constant-time lookup by name).
   std::vector<EndpointInfo> endpoints_of(const std::string & topic) const;
 
