@@ -1,0 +1,151 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""What a platform consists of: what changes only when a node or endpoint comes or goes."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rmw_manycore_py import _transport
+from rmw_manycore_py.qos import Policies, policies_of
+from rmw_manycore_py.words import EndpointKind, EndpointRole
+
+# Every rclpy node has endpoints of these: drawn, they would hide what a platform is for.
+EVERY_NODES_TOPICS = frozenset(("/rosout", "/parameter_events"))
+
+
+@dataclass(frozen=True)
+class Member:
+    """A process of the platform with the names of its nodes."""
+
+    slot: int
+    pid: int
+    cluster: int
+    core: int | None
+    host_cpu: int | None
+    label: str
+    nodes: tuple[str, ...]
+
+    @property
+    def shown_names(self) -> tuple[str, ...]:
+        """Its nodes; where it has none, what the tools call it."""
+        return self.nodes or (f"({self.label})",)
+
+
+@dataclass(frozen=True)
+class Endpoint:
+    """A publisher or subscription."""
+
+    id: int  # as rows of activity have it
+    kind: EndpointKind
+    role: EndpointRole
+    topic: str
+    type: str
+    node: str
+    process: int
+    qos: Policies
+
+
+@dataclass(frozen=True)
+class Graph:
+    """Members and endpoints of a platform between two changes."""
+
+    platform: str
+    cluster_count: int
+    cores_per_cluster: int
+    smem_bytes: int  # of each cluster
+    members: tuple[Member, ...]
+    endpoints: tuple[Endpoint, ...]
+
+    @cached_property
+    def ids(self) -> NDArray[np.uint64]:
+        """Ids of the endpoints, in their order."""
+        return np.array([endpoint.id for endpoint in self.endpoints], dtype=np.uint64)
+
+    @cached_property
+    def is_publisher(self) -> NDArray[np.bool_]:
+        """Whether each endpoint publishes."""
+        return np.array([e.kind == "publisher" for e in self.endpoints], dtype=bool)
+
+    @cached_property
+    def topics(self) -> tuple[str, ...]:
+        """Names of the topics, sorted; services are none."""
+        return tuple(sorted({e.topic for e in self.endpoints if e.role == "topic"}))
+
+    @cached_property
+    def topic_index(self) -> NDArray[np.intp]:
+        """Index into `topics` of each endpoint; one past the last for services."""
+        place = {name: index for index, name in enumerate(self.topics)}
+        none = len(self.topics)
+        return np.array(
+            [place[e.topic] if e.role == "topic" else none for e in self.endpoints], dtype=np.intp
+        )
+
+    @cached_property
+    def endpoints_of_topics(self) -> dict[str, tuple[Endpoint, ...]]:
+        """Endpoints of each topic."""
+        found: dict[str, list[Endpoint]] = {name: [] for name in self.topics}
+        for endpoint in self.endpoints:
+            if endpoint.role == "topic":
+                found[endpoint.topic].append(endpoint)
+        return {name: tuple(endpoints) for name, endpoints in found.items()}
+
+    @cached_property
+    def drawn_topics(self) -> tuple[str, ...]:
+        """Topics that are published and subscribed to, but those of every node."""
+        return tuple(
+            name
+            for name, endpoints in self.endpoints_of_topics.items()
+            if name not in EVERY_NODES_TOPICS and len({e.kind for e in endpoints}) > 1
+        )
+
+
+def read_graph(platform: _transport.Platform) -> Graph:
+    """Read members and endpoints of a platform."""
+    info = platform.info()
+    processes = platform.processes()
+    nodes: dict[int, list[str]] = {}
+    for node in platform.nodes():
+        nodes.setdefault(node.process, []).append(joined(node.namespace, node.name))
+    return Graph(
+        info.name,
+        info.clusters,
+        info.cores_per_cluster,
+        info.smem_bytes,
+        tuple(_member(process, nodes.get(process.slot, ())) for process in processes),
+        tuple(map(_endpoint, platform.endpoints())),
+    )
+
+
+def joined(namespace: str, name: str) -> str:
+    """Return a node's namespace and name in one."""
+    return f"{namespace.rstrip('/')}/{name}"
+
+
+def _member(process: _transport.ProcessInfo, nodes: Sequence[str]) -> Member:
+    return Member(
+        process.slot,
+        process.pid,
+        process.cluster,
+        process.core,
+        process.host_cpu,
+        process.label,
+        tuple(sorted(nodes)),
+    )
+
+
+def _endpoint(endpoint: _transport.EndpointInfo) -> Endpoint:
+    return Endpoint(
+        int.from_bytes(endpoint.gid[8:16], "little"),
+        endpoint.kind,
+        endpoint.role,
+        endpoint.topic,
+        endpoint.type,
+        joined(endpoint.node_namespace, endpoint.node_name),
+        endpoint.process,
+        policies_of(endpoint.qos),
+    )

@@ -1,0 +1,66 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""What happened between two looks that a person should know."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterable, Iterator
+from dataclasses import asdict, dataclass, field
+from typing import Any, Literal
+
+import numpy as np
+
+from rmw_manycore_py.look.graph import Member
+from rmw_manycore_py.look.loads import Loads
+from rmw_manycore_py.look.sample import EXPIRED, LOST, REFUSED
+
+Kind = Literal["died", "deadline", "lost", "platform"]
+_LOSSES = {LOST: "lost", EXPIRED: "expired", REFUSED: "refused"}
+
+
+@dataclass(frozen=True)
+class Happening:
+    """One line of the list of events."""
+
+    kind: Kind
+    text: str
+    node: str | None = None
+    topic: str | None = None
+    time_s: float = field(default_factory=time.time)  # since 1970
+
+    def row(self) -> dict[str, Any]:
+        """Return it for programs."""
+        return asdict(self)
+
+
+def deaths(dead: Iterable[Member]) -> Iterator[Happening]:
+    """Yield one for each node of each process that died."""
+    for member in dead:
+        where = f"cluster {member.cluster}"
+        where += "" if member.core is None else f" core {member.core}"
+        for name in member.shown_names:
+            yield Happening("died", f"{name} died (pid {member.pid}, {where})", node=name)
+
+
+def receive_thread_deaths(loads: Loads) -> Iterator[Happening]:
+    """Yield one for each receive thread that has another pid than before."""
+    now = {cluster.id: cluster.receive_thread_pid for cluster in loads.after.clusters}
+    for cluster in loads.before.clusters:
+        pid = cluster.receive_thread_pid
+        if pid and now.get(cluster.id, pid) != pid:
+            yield Happening("died", f"the receive thread of cluster {cluster.id} died (pid {pid})")
+
+
+def losses(loads: Loads) -> Iterator[Happening]:
+    """Yield one for each endpoint that lost messages or missed a deadline between the samples."""
+    for column, word in _LOSSES.items():
+        for row in np.flatnonzero(loads.changes[:, column] > 0):
+            endpoint, count = loads.graph.endpoints[row], int(loads.changes[row, column])
+            text = f"{endpoint.topic}: {count} {word} by {endpoint.node}"
+            yield Happening("lost", text, endpoint.node, endpoint.topic)
+    missed = loads.missed_deadlines()
+    for row in np.flatnonzero(missed):
+        endpoint, count = loads.graph.endpoints[row], int(missed[row])
+        text = f"{endpoint.topic}: {endpoint.node} missed its deadline"
+        text += "" if count == 1 else f" {count} times"
+        yield Happening("deadline", text, endpoint.node, endpoint.topic)

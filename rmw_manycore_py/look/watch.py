@@ -1,0 +1,171 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Watching a platform, also before it starts and after it has ended."""
+
+from __future__ import annotations
+
+import time
+from collections import deque
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field
+
+from rmw_manycore_py import _transport
+from rmw_manycore_py.errors import ManycoreError
+from rmw_manycore_py.look import happenings
+from rmw_manycore_py.look.graph import Graph, Member, read_graph
+from rmw_manycore_py.look.happenings import Happening
+from rmw_manycore_py.look.latency import TopicLatency, live_latencies
+from rmw_manycore_py.look.loads import Loads
+from rmw_manycore_py.look.sample import Sample, take_sample
+from rmw_manycore_py.look.workers import workers_of
+
+# Rates are taken over so much time, so that a topic of 1 Hz does not flicker at two looks a second.
+WINDOW_S = 2.0
+_TRACE_PERIOD_S = 1.0
+
+
+@dataclass(frozen=True)
+class Look:
+    """Everything that is shown of a platform at one moment."""
+
+    loads: Loads  # over the window
+    dead: tuple[Member, ...]  # killed or crashed, and not there again
+    workers: dict[int, tuple[int, ...]]  # pids, by the pid of their coordinator
+    happened: tuple[Happening, ...]  # since the look before
+    latencies: dict[str, TopicLatency]  # by topic; empty unless the platform is traced
+    trace: _transport.TraceState | None
+
+    @property
+    def graph(self) -> Graph:
+        """The graph of this moment."""
+        return self.loads.graph
+
+
+@dataclass
+class _Seen:
+    """What is remembered of a platform while it is there."""
+
+    platform: _transport.Platform
+    generation: int = -1
+    members: tuple[tuple[int, int], ...] = ()  # slots and pids that the graph was read with
+    graph: Graph | None = None
+    workers: dict[int, tuple[int, ...]] = field(default_factory=dict)
+    samples: deque[Sample] = field(default_factory=deque)
+    known: dict[tuple[int, int], Member] = field(default_factory=dict)  # by slot and pid
+    dead: dict[tuple[int, int], Member] = field(default_factory=dict)
+    deaths_until_ns: int = 0
+
+
+class Watch:
+    """Looks at one platform by its name; wakes and holds up no process of it."""
+
+    def __init__(
+        self, name: str, clock: Callable[[], float] = time.monotonic, window_s: float = WINDOW_S
+    ) -> None:
+        self._name = name
+        self._clock = clock
+        self._window_s = window_s
+        self._seen: _Seen | None = None
+        self._latencies: dict[str, TopicLatency] = {}
+        self._trace: _transport.TraceState | None = None
+        self._trace_due_s = 0.0
+        self.last_words: tuple[Happening, ...] = ()  # of the platform that has ended
+
+    def look(self) -> Look | None:
+        """Look now; None while there is no such platform."""
+        if self._seen is not None and not self._seen.platform.is_current():
+            self._end(self._seen)
+        if self._seen is None and not self._open():
+            return None
+        assert self._seen is not None
+        return self._look_at(self._seen)
+
+    def close(self) -> None:
+        """Unmap the platform."""
+        if self._seen is not None:
+            self._seen.platform.close()
+            self._seen = None
+
+    def _open(self) -> bool:
+        try:
+            if self._name not in _transport.platforms():
+                return False
+            platform = _transport.Platform(self._name)
+        except _transport.PlatformError:  # not yet whole, or gone again; the next look sees
+            return False
+        self._seen = _Seen(platform, deaths_until_ns=time.monotonic_ns())
+        return True
+
+    def _end(self, seen: _Seen) -> None:
+        dead = self._newly_dead(seen)
+        ended = Happening("platform", f"platform {self._name} has ended")
+        self.last_words = (*happenings.deaths(dead), ended)
+        self._trace, self._latencies = None, {}
+        self.close()
+
+    def _look_at(self, seen: _Seen) -> Look:
+        graph = self._graph(seen)
+        sample = take_sample(seen.platform, graph, seen.workers)
+        previous = seen.samples[-1] if seen.samples else sample
+        seen.samples.append(sample)
+        while len(seen.samples) > 2 and sample.time_s - seen.samples[1].time_s >= self._window_s:
+            seen.samples.popleft()
+        self._look_at_trace()
+        return Look(
+            Loads(seen.samples[0], sample),
+            tuple(seen.dead.values()),
+            seen.workers,
+            self._happened(seen, Loads(previous, sample)),
+            self._latencies,
+            self._trace,
+        )
+
+    def _graph(self, seen: _Seen) -> Graph:
+        """Read the graph anew where it has changed: members without a node change no generation."""
+        generation = seen.platform.graph_generation()
+        members = tuple((process.slot, process.pid) for process in seen.platform.processes())
+        if seen.graph is None or generation != seen.generation or members != seen.members:
+            seen.graph = read_graph(seen.platform)
+            seen.generation, seen.members = generation, members
+            seen.workers = workers_of(member.pid for member in seen.graph.members)
+            seen.known.update({(m.slot, m.pid): m for m in seen.graph.members})
+        return seen.graph
+
+    def _newly_dead(self, seen: _Seen) -> list[Member]:
+        """Return the processes that died since the look before, which knew them."""
+        newly = []
+        for death in seen.platform.deaths():
+            member = seen.known.get((death.process, death.pid))
+            if death.found_ns > seen.deaths_until_ns and member is not None:
+                newly.append(member)
+        seen.deaths_until_ns = time.monotonic_ns()
+        return newly
+
+    def _happened(self, seen: _Seen, since: Loads) -> tuple[Happening, ...]:
+        newly = self._newly_dead(seen)
+        seen.dead.update({(member.slot, member.pid): member for member in newly})
+        seen.dead = _not_back(seen.dead, since.graph.members)
+        living = {(member.slot, member.pid) for member in since.graph.members}
+        seen.known = {key: m for key, m in seen.known.items() if key in living}
+        return (
+            *happenings.deaths(newly),
+            *happenings.receive_thread_deaths(since),
+            *happenings.losses(since),
+        )
+
+    def _look_at_trace(self) -> None:
+        if self._clock() < self._trace_due_s:
+            return
+        self._trace_due_s = self._clock() + _TRACE_PERIOD_S
+        try:
+            self._trace = _transport.trace_state(self._name)
+            self._latencies = live_latencies(self._name, self._trace)
+        except (_transport.PlatformError, ManycoreError):
+            pass  # it is just being saved, or ends: the next look sees
+
+
+def _not_back(
+    dead: dict[tuple[int, int], Member], living: Iterable[Member]
+) -> dict[tuple[int, int], Member]:
+    """Return the dead without those whose nodes all run again."""
+    names = {name for member in living for name in member.shown_names}
+    return {key: member for key, member in dead.items() if not names.issuperset(member.shown_names)}

@@ -1,0 +1,46 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""The whole picture of a look: where everything lies, what it looks like now, and its SVG."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from rmw_manycore_py.look.watch import Look
+from rmw_manycore_py.picture.arcs import Arc, arcs_of
+from rmw_manycore_py.picture.drawing import draw
+from rmw_manycore_py.picture.layout import Layout, lay_out
+from rmw_manycore_py.picture.marks import Marks, marks_of
+
+
+@dataclass(frozen=True)
+class Chip:
+    """The places of everything; good for as long as nothing comes or goes."""
+
+    title: str
+    layout: Layout
+    arcs: tuple[Arc, ...]
+
+    @classmethod
+    def of(cls, look: Look) -> Chip:
+        """Lay the platform out that was looked at."""
+        graph = look.graph
+        present = [cluster.id for cluster in look.loads.after.clusters]
+        layout = lay_out(graph, present, look.dead, look.workers)
+        return cls(f"platform {graph.platform}", layout, arcs_of(graph, layout))
+
+    def fits(self, look: Look, earlier: Look) -> bool:
+        """Tell whether it, which was made of the earlier look, is also right for the later one."""
+        return (
+            look.graph is earlier.graph
+            and look.dead == earlier.dead
+            and look.workers == earlier.workers
+            and len(look.loads.after.clusters) == len(earlier.loads.after.clusters)
+        )
+
+    def marks(self, look: Look) -> Marks:
+        """Return what it looks like now."""
+        return marks_of(look, self.layout, self.arcs)
+
+    def svg(self, marks: Marks, *, standalone: bool = True) -> str:
+        """Return it as SVG."""
+        return draw(self.title, self.layout, self.arcs, marks, standalone=standalone)

@@ -1,0 +1,157 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""The picture as SVG."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from html import escape
+from importlib.resources import files
+
+from rmw_manycore_py.errors import shorten
+from rmw_manycore_py.picture.arcs import Arc
+from rmw_manycore_py.picture.layout import (
+    CELL_HEAD,
+    GAP,
+    NODE_HEIGHT,
+    WORKER_SIDE,
+    Cell,
+    ClusterBox,
+    Layout,
+    NodeBox,
+)
+from rmw_manycore_py.picture.geometry import Rect
+from rmw_manycore_py.picture.marks import Mark, Marks
+from rmw_manycore_py.picture.texts import fitted
+
+# Labels of more topics would cover each other; they are in the table beside the picture.
+MAX_LABELS = 40
+_NO_MARK: Mark = {}
+
+
+def stylesheet() -> str:
+    """Return the style of the picture, for light and dark surroundings."""
+    return files(__package__).joinpath("chip.css").read_text()
+
+
+def draw(
+    title: str, layout: Layout, arcs: tuple[Arc, ...], marks: Marks, *, standalone: bool = True
+) -> str:
+    """Return the picture; one that stands alone brings its style along."""
+    width, height = layout.size
+    return "\n".join(
+        (
+            f'<svg xmlns="http://www.w3.org/2000/svg" class="chip" role="group" '
+            f'aria-label="{_text(title)}" viewBox="0 0 {width:.0f} {height:.0f}">',
+            f"<style>{stylesheet()}</style>" if standalone else "",
+            f'<rect class="paper" width="{width:.0f}" height="{height:.0f}"/>' if standalone else "",
+            *(line for box in layout.clusters for line in _cluster(box, marks)),
+            *(line for arc in arcs for line in _arc(arc, marks)),
+            *(line for node in layout.nodes for line in _node(node)),
+            *(line for arc in arcs[:MAX_LABELS] for line in _label(arc, marks)),
+            "</svg>",
+        )
+    )
+
+
+def _cluster(box: ClusterBox, marks: Marks) -> Iterator[str]:
+    state = "" if box.is_used else " unused"
+    x, y = box.rect.x + 12, box.rect.y + 19
+    name = f"cluster {box.id}" + ("" if box.is_used else ": not in use")
+    yield f'<g class="cluster{state}">{_rect("outline", box.rect, 6)}'
+    yield f'<text class="name" x="{x}" y="{y}">{name}</text>'
+    if box.is_used:
+        fill = marks.get(f"k{box.id}-fill", _NO_MARK)
+        bar = Rect(box.smem.x, box.smem.y, float(fill.get("width", 0)), box.smem.height)
+        receive = _class(marks, f"k{box.id}-rt", "receive")
+        yield _rect("bar", box.smem, 2)
+        yield _rect(_class(marks, f"k{box.id}-fill", "fill"), bar, 2, f"k{box.id}-fill")
+        yield _right_text(f"k{box.id}-smem", box.rect.x + box.rect.width - 12, y, marks)
+        yield _rect(receive, box.receive_thread, 3, f"k{box.id}-rt")
+        yield (
+            f'<text id="k{box.id}-rt-text" class="small" x="{x + 6}" y="{box.rect.y + 54}">'
+            f"{_content(marks, f'k{box.id}-rt-text')}</text>"
+        )
+    for cell in box.cells:
+        yield from _cell(cell, marks)
+    yield "</g>"
+
+
+def _cell(cell: Cell, marks: Marks) -> Iterator[str]:
+    x, y = cell.rect.x, cell.rect.y
+    name = "no core" if cell.core is None else f"core {cell.core}"
+    yield _rect(_class(marks, cell.id, "cell"), cell.rect, 4, cell.id)
+    yield f'<text class="small" x="{x + 6}" y="{y + 13}">{name}</text>'
+    if cell.members:
+        yield _right_text(f"{cell.id}-cpu", x + cell.rect.width - 6, y + 13, marks)
+    if cell.hidden:
+        below = y + CELL_HEAD + len(cell.nodes) * NODE_HEIGHT + 12
+        yield f'<text class="small" x="{x + 6}" y="{below}">+{cell.hidden} more</text>'
+    bottom = y + cell.rect.height - WORKER_SIDE - 4
+    for place, pid in enumerate(cell.workers):
+        rect = Rect(x + GAP + place * (WORKER_SIDE + 2), bottom, WORKER_SIDE, WORKER_SIDE)
+        yield _rect(_class(marks, f"w{pid}", "worker"), rect, 1, f"w{pid}")
+
+
+def _node(node: NodeBox) -> Iterator[str]:
+    state = " dead" if node.is_dead else ""
+    spoken = f"{node.name}, {'died' if node.is_dead else node.kind}, cluster {node.member.cluster}"
+    shown = fitted(node.name, node.rect.width - 10)
+    yield (
+        f'<g id="{_text(node.id)}" class="{node.kind}{state}" data-node="{_text(node.name)}" '
+        f'tabindex="0" role="button" aria-label="{_text(spoken)}"><title>{_text(node.name)} '
+        f"(pid {node.member.pid}){' died' if node.is_dead else ''}</title>"
+    )
+    yield _rect("body", node.rect, 3)
+    yield (
+        f'<text x="{node.rect.x + 5:.1f}" y="{node.rect.y + 12.5:.1f}">{_text(shown)}</text></g>'
+    )
+
+
+def _arc(arc: Arc, marks: Marks) -> Iterator[str]:
+    path = "".join(
+        "M{} {}Q{} {} {} {}".format(*map(_number, curve.numbers())) for curve in arc.curves
+    )
+    name = _text(arc.topic)
+    yield (
+        f'<g id="{_text(arc.id)}" class="{_class(marks, arc.id, "topic")}" data-topic="{name}" '
+        f'tabindex="0" role="button" aria-label="topic {name}"><title>{name}</title>'
+        f'<path class="touch" d="{path}"/><path class="line" d="{path}"/></g>'
+    )
+
+
+def _label(arc: Arc, marks: Marks) -> Iterator[str]:
+    x, y = arc.label_at
+    yield (
+        f'<text class="topic-name" x="{x:.1f}" y="{y:.1f}">{_text(arc.topic)}</text>'
+        f'<text id="{_text(arc.id)}-label" class="topic-load" x="{x:.1f}" y="{y + 12:.1f}">'
+        f"{_content(marks, f'{arc.id}-label')}</text>"
+    )
+
+
+def _rect(style: str, rect: Rect, radius: int, id: str = "") -> str:
+    named = f' id="{_text(id)}"' if id else ""
+    return (
+        f'<rect{named} class="{style}" x="{rect.x:.1f}" y="{rect.y:.1f}" width="{rect.width:.1f}" '
+        f'height="{rect.height:.1f}" rx="{radius}"/>'
+    )
+
+
+def _right_text(id: str, x: float, y: float, marks: Marks) -> str:
+    return f'<text id="{id}" class="small right" x="{x:.1f}" y="{y:.1f}">{_content(marks, id)}</text>'
+
+
+def _class(marks: Marks, id: str, otherwise: str) -> str:
+    return str(marks.get(id, _NO_MARK).get("class", otherwise))
+
+
+def _content(marks: Marks, id: str) -> str:
+    return _text(str(marks.get(id, _NO_MARK).get("text", "")))
+
+
+def _number(value: float) -> str:
+    return f"{value:g}"
+
+
+def _text(text: str) -> str:
+    """Escape a name that other processes chose: neither markup nor control characters."""
+    return escape(shorten(text))
