@@ -22,6 +22,7 @@ VERBS = {
     "map": "rmw_manycore_py.cli.map:command",
     "status": "rmw_manycore_py.cli.status:command",
     "top": "rmw_manycore_py.cli.top:command",
+    "view": "rmw_manycore_py.cli.view:command",
     "trace": "rmw_manycore_py.cli.trace:command",
     "topic": "rmw_manycore_py.cli.topic:command",
     "node": "rmw_manycore_py.cli.node:command",
@@ -45,7 +46,7 @@ VERBS = {
 @click.group(
     cls=LazyGroup,
     commands_at=VERBS,
-    until_ctrl_c=("run", "demo", "logs"),
+    until_ctrl_c=("run", "demo", "logs", "view"),
     context_settings={"help_option_names": ["-h", "--help"]},
     epilog=examples(
         "manycore demo",

@@ -100,7 +100,7 @@ class Loads:
         return result
 
     @cached_property
-    def _fullest(self) -> tuple[Counts, Counts]:
+    def fullest(self) -> tuple[Counts, Counts]:
         """Entries and capacity of each topic's fullest queue."""
         counts = self.after.counts
         rows = np.flatnonzero(~self.graph.is_publisher & (counts[:, CAPACITY] > 0))
@@ -111,7 +111,7 @@ class Loads:
         capacity = np.zeros_like(queued)
         queued[topics] = counts[rows, QUEUED]
         capacity[topics] = counts[rows, CAPACITY]
-        return queued, capacity
+        return queued[:-1], capacity[:-1]
 
     @cached_property
     def lost(self) -> Counts:
@@ -123,12 +123,10 @@ class Loads:
 
     def topics(self) -> dict[str, TopicLoad]:
         """Return the load of each topic."""
-        queued, capacity = self._fullest
+        queued, capacity = self.fullest
         columns = (self.rates_hz, self.bytes_per_s, queued, capacity, self.lost, self.losses_per_s)
-        rows = zip(*(column.tolist() for column in columns), strict=False)
-        return {
-            name: TopicLoad(*row) for name, row in zip(self.graph.topics, rows, strict=False)
-        }
+        rows = zip(*(column.tolist() for column in columns), strict=True)
+        return {name: TopicLoad(*row) for name, row in zip(self.graph.topics, rows, strict=True)}
 
     def cpu_share(self, pid: int) -> float:
         """Return the share of a CPU that a process has used: 1.0 is all of one."""

@@ -1,0 +1,110 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""What the page shows of the node or topic that was clicked."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from typing import Any
+
+from rmw_manycore_py.look.graph import Endpoint, Member
+from rmw_manycore_py.look.sample import (
+    BYTES,
+    CAPACITY,
+    DEADLINES,
+    EXPIRED,
+    LOST,
+    MESSAGES,
+    QUEUED,
+    REFUSED,
+)
+from rmw_manycore_py.look.watch import Look
+from rmw_manycore_py.picture.marks import topic_text
+from rmw_manycore_py.picture.texts import bytes_text, percent_text, rate_text
+
+Row = dict[str, Any]
+
+
+def node_details(look: Look, name: str) -> Row | None:
+    """Return process, place and endpoints of a node; None where there is no such node."""
+    sides = ((look.graph.members, False), (look.dead, True))
+    for members, is_dead in sides:
+        for member in members:
+            if name in member.shown_names:
+                return _node(look, name, member, is_dead)
+    return None
+
+
+def topic_details(look: Look, name: str) -> Row | None:
+    """Return load and endpoints of a topic; None where there is no such topic."""
+    load = look.loads.topics().get(name)
+    if load is None:
+        return None
+    latency = look.latencies.get(name)
+    endpoints = look.graph.endpoints_of_topics[name]
+    return {
+        "name": name,
+        "types": sorted({endpoint.type for endpoint in endpoints}),
+        "load": topic_text(load, latency),
+        "latency": None if latency is None else asdict(latency),
+        "endpoints": _endpoints(look, lambda endpoint: endpoint in endpoints),
+    }
+
+
+def _node(look: Look, name: str, member: Member, is_dead: bool) -> Row:
+    return {
+        "name": name,
+        "dead": is_dead,
+        "program": member.label,
+        "pid": member.pid,
+        "cluster": member.cluster,
+        "core": member.core,
+        "host_cpu": member.host_cpu,
+        "cpu": percent_text(look.loads.cpu_share(member.pid)),
+        "shared_with": [other for other in member.nodes if other != name],
+        "workers": len(look.workers.get(member.pid, ())),
+        "endpoints": []
+        if is_dead
+        else _endpoints(look, lambda e: e.node == name and e.process == member.slot),
+    }
+
+
+def _endpoints(look: Look, is_wanted: Any) -> list[Row]:
+    return [
+        _endpoint(look, row, endpoint)
+        for row, endpoint in enumerate(look.graph.endpoints)
+        if is_wanted(endpoint)
+    ]
+
+
+def _endpoint(look: Look, row: int, endpoint: Endpoint) -> Row:
+    loads = look.loads
+    counts = loads.after.counts[row]
+    changes, seconds = loads.changes[row], loads.seconds or 1.0
+    messages = int(changes[MESSAGES])
+    return {
+        "kind": endpoint.kind,
+        "role": endpoint.role,
+        "topic": endpoint.topic,
+        "type": endpoint.type,
+        "node": endpoint.node,
+        "qos": qos_text(endpoint),
+        "rate": rate_text(messages / seconds),
+        "size": bytes_text(int(changes[BYTES]) / messages) if messages > 0 else "",
+        "queue": f"{counts[QUEUED]}/{counts[CAPACITY]}" if counts[CAPACITY] else "",
+        "lost": int(counts[LOST] + counts[EXPIRED] + counts[REFUSED]),
+        "deadlines_missed": int(counts[DEADLINES]),
+    }
+
+
+def qos_text(endpoint: Endpoint) -> str:
+    """Write the policies of an endpoint, those that are not the default ones in full."""
+    qos = endpoint.qos
+    kept = "keep all" if qos["history"] == "keep_all" else f"keep last {qos['depth']}"
+    words = [qos["reliability"].replace("_", " "), qos["durability"].replace("_", " "), kept]
+    for name in ("deadline_ns", "lifespan_ns", "liveliness_lease_ns"):
+        value = qos[name]  # type: ignore[literal-required]
+        if value is not None:
+            words.append(f"{name.removesuffix('_ns').replace('_', ' ')} {value / 1e6:g} ms")
+    if qos["liveliness"] != "automatic":
+        words.append(qos["liveliness"].replace("_", " "))
+    return ", ".join(words)

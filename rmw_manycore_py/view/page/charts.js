@@ -1,0 +1,86 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+// Time series: one chart per group of series.
+
+import uPlot from "./uplot/uPlot.esm.js";
+
+const LENGTH = 600;
+const COLOURS = ["#2463c7", "#b35c00", "#4f8f5b", "#8e44ad", "#c62828", "#00838f"];
+
+export class Charts {
+  // groups: [title, which series belong to it]
+  constructor(place, groups) {
+    this.place = place;
+    this.groups = groups;
+    this.forget();
+  }
+
+  forget() {
+    this.times = [];
+    this.series = new Map();
+    this.plots = [];
+    this.place.replaceChildren();
+  }
+
+  // news: {times, series: {name: values}, all}
+  add(news) {
+    if (news.all) {
+      this.times = [];
+      this.series.clear();
+    }
+    const names = Object.keys(news.series);
+    const isOther = names.join() !== [...this.series.keys()].join();
+    for (const name of new Set([...this.series.keys(), ...names])) {
+      const known = this.series.get(name) ?? this.times.map(() => null);
+      known.push(...(news.series[name] ?? news.times.map(() => null)));
+      this.series.set(name, known.slice(-LENGTH));
+    }
+    this.times = [...this.times, ...news.times].slice(-LENGTH);
+    if (isOther || news.all) {
+      this.redraw();
+    } else {
+      this.plots.forEach(([plot, own]) => plot.setData(this.data(own)));
+    }
+  }
+
+  data(names) {
+    return [this.times, ...names.map((name) => this.series.get(name))];
+  }
+
+  redraw() {
+    this.plots.forEach(([plot]) => plot.destroy());
+    this.place.replaceChildren();
+    this.plots = [];
+    for (const [title, belongs] of this.groups) {
+      const names = [...this.series.keys()].filter(belongs);
+      if (names.length > 0) {
+        this.plots.push([this.plot(title, names), names]);
+      }
+    }
+  }
+
+  plot(title, names) {
+    const figure = document.createElement("figure");
+    const caption = document.createElement("figcaption");
+    caption.textContent = title;
+    figure.append(caption);
+    this.place.append(figure);
+    const style = getComputedStyle(document.documentElement);
+    const axis = {
+      stroke: style.getPropertyValue("--quiet"),
+      grid: { stroke: style.getPropertyValue("--edge"), width: 1 },
+      size: 46,
+    };
+    const options = {
+      width: 350,
+      height: 110,
+      legend: { show: names.length > 1, live: false },
+      cursor: { y: false },
+      axes: [{ ...axis, size: 24 }, axis],
+      scales: { y: { range: (_, low, high) => [Math.min(low ?? 0, 0), Math.max(high ?? 1, 1)] } },
+      series: [{}, ...names.map((label, index) => (
+        { label, stroke: COLOURS[index % COLOURS.length], width: 1.5, points: { show: false } }
+      ))],
+    };
+    return new uPlot(options, this.data(names), figure);
+  }
+}

@@ -1,0 +1,115 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+// The node or topic that was clicked.
+
+import { Charts } from "./charts.js";
+import { post } from "./requests.js";
+
+const COLUMNS = {
+  node: ["kind", "topic", "type", "rate", "size", "queue", "lost", "deadlines_missed", "qos"],
+  topic: ["kind", "node", "rate", "size", "queue", "lost", "deadlines_missed", "qos"],
+};
+const HEADS = { deadlines_missed: "deadlines missed", qos: "QoS" };
+
+export class Details {
+  constructor(onClose) {
+    this.section = document.getElementById("details");
+    this.title = document.getElementById("details-title");
+    this.facts = document.getElementById("details-facts");
+    this.table = document.getElementById("endpoints");
+    this.parameters = document.getElementById("details-parameters");
+    this.parametersText = document.getElementById("parameters-text");
+    this.charts = new Charts(
+      document.getElementById("details-charts"),
+      ["messages/s", "bytes/s", "queue %", "CPU %"].map((own) => [own, (name) => name === own]),
+    );
+    this.choice = null;
+    document.getElementById("details-close").addEventListener("click", onClose);
+    document.getElementById("parameters").addEventListener("click", () => this.ask());
+  }
+
+  open(choice) {
+    this.choice = choice;
+    this.section.hidden = choice === null;
+    this.charts.forget();
+    if (choice === null) {
+      return;
+    }
+    const [[kind, name]] = Object.entries(choice);
+    this.title.textContent = name;
+    this.facts.textContent = "";
+    this.table.replaceChildren();
+    this.parameters.hidden = kind !== "node";
+    this.parametersText.textContent = "";
+    this.title.focus({ preventScroll: true });
+  }
+
+  show({ kind, name, found, charts }) {
+    if (this.choice?.[kind] !== name) {
+      return; // another one was clicked meanwhile
+    }
+    if (found === null) {
+      this.facts.textContent = `This ${kind} is not there any more.`;
+      this.facts.classList.add("alarm");
+      return;
+    }
+    this.facts.textContent = kind === "node" ? nodeFacts(found) : topicFacts(found);
+    this.facts.classList.toggle("alarm", found.dead === true);
+    this.showEndpoints(COLUMNS[kind], found.endpoints);
+    this.charts.add(charts);
+  }
+
+  showEndpoints(columns, rows) {
+    const used = columns.filter((column) => rows.some((row) => row[column]));
+    const head = line("th", used.map((column) => HEADS[column] ?? column));
+    this.table.replaceChildren(head, ...rows.map((row) => line("td", used.map((one) => row[one]))));
+  }
+
+  async ask() {
+    const node = this.choice?.node;
+    this.parametersText.textContent = "asking";
+    const answer = await post(`parameters?node=${encodeURIComponent(node)}`);
+    if (this.choice?.node === node) {
+      this.parametersText.textContent = answer.error ?? answer.result;
+    }
+  }
+}
+
+function nodeFacts(node) {
+  const facts = [
+    node.dead ? "died" : `CPU ${node.cpu}`,
+    `cluster ${node.cluster}, ${node.core === null ? "no core" : `core ${node.core}`}` +
+      (node.host_cpu === null ? "" : `, host CPU ${node.host_cpu}`),
+    `pid ${node.pid}, ${node.program}`,
+  ];
+  if (node.shared_with.length > 0) {
+    facts.push(`in one process with ${node.shared_with.join(", ")}`);
+  }
+  if (node.workers > 0) {
+    facts.push(`${node.workers} workers`);
+  }
+  return facts.join("\n");
+}
+
+function topicFacts(topic) {
+  const facts = [topic.types.join(", "), topic.load];
+  if (topic.latency !== null) {
+    const { p50_us, p99_us, count } = topic.latency;
+    facts.push(
+      `latency of the last ${count} takes: median ${p50_us.toFixed(1)} us, ` +
+        `99 % below ${p99_us.toFixed(1)} us`,
+    );
+  } else {
+    facts.push("latency: start a trace to see it");
+  }
+  return facts.join("\n");
+}
+
+function line(kind, texts) {
+  const row = document.createElement("tr");
+  row.append(...texts.map((text) => {
+    const cell = document.createElement(kind);
+    cell.textContent = text;
+    return cell;
+  }));
+  return row;
+}

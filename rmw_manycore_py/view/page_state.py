@@ -1,0 +1,97 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""What one page has, and what it still has to be told."""
+
+from __future__ import annotations
+
+import time
+from typing import Any
+
+from rmw_manycore_py.look.watch import Look
+from rmw_manycore_py.picture.chip import Chip
+from rmw_manycore_py.picture.marks import Marks, changed
+from rmw_manycore_py.view.details import node_details, topic_details
+from rmw_manycore_py.view.viewer import Viewer
+
+Row = dict[str, Any]
+
+
+class PageState:
+    """Turns looks into the messages of one page; a slow page gets fewer of them, and misses nothing."""
+
+    def __init__(self, viewer: Viewer) -> None:
+        self._viewer = viewer
+        self._chip: Chip | None = None
+        self._marks: Marks = {}
+        self._happened = 0
+        self._has_charts = False
+        self._selected: tuple[str, str] | None = None  # kind and name
+        self._has_selected = False
+
+    def select(self, message: Any) -> None:
+        """Note what was clicked: {"select": {"node": NAME}}, or "topic", or null."""
+        chosen = message.get("select") if isinstance(message, dict) else None
+        self._selected, self._has_selected = None, False
+        if isinstance(chosen, dict):
+            for kind in ("node", "topic"):
+                if isinstance(chosen.get(kind), str):
+                    self._selected = (kind, chosen[kind])
+
+    def news(self) -> Row:
+        """Return what has changed since the last call."""
+        viewer = self._viewer
+        self._happened, happened = viewer.happened_since(self._happened)
+        news: Row = {
+            "now": time.time(),
+            "state": viewer.state,
+            "there": viewer.is_there,
+            "happened": happened,
+        }
+        if viewer.chip is not None and viewer.look is not None:
+            self._add_picture(news, viewer.chip)
+            self._add_charts(news)
+            news["trace"] = _trace_row(viewer.look)
+            if self._selected is not None:
+                news["details"] = self._details(viewer.look, *self._selected)
+        return news
+
+    def _add_picture(self, news: Row, chip: Chip) -> None:
+        marks = self._viewer.marks
+        if chip is not self._chip:
+            news["svg"] = chip.svg(marks, standalone=False)
+            news["arcs"] = {
+                arc.id: [curve.numbers() for curve in arc.curves] for arc in chip.arcs
+            }
+            news["nodes"] = [node.name for node in chip.layout.nodes]
+            news["topics"] = list(self._viewer.look.graph.topics) if self._viewer.look else []
+            news["rates"] = {arc.id: marks.get(arc.id, {}).get("rate", 0) for arc in chip.arcs}
+            self._chip = chip
+        else:
+            news["marks"] = changed(self._marks, marks)
+        self._marks = marks
+
+    def _add_charts(self, news: Row) -> None:
+        if self._viewer.is_there or not self._has_charts:
+            news["charts"] = self._viewer.history.whole(1 if self._has_charts else None)
+            news["charts"]["all"] = not self._has_charts
+            self._has_charts = True
+
+    def _details(self, look: Look, kind: str, name: str) -> Row:
+        history = self._viewer.history
+        newest = 1 if self._has_selected else None
+        if kind == "node":
+            found, series = node_details(look, name), history.of_node(name, newest)
+        else:
+            found, series = topic_details(look, name), history.of_topic(name, newest)
+        series["all"] = not self._has_selected
+        self._has_selected = True
+        return {"kind": kind, "name": name, "found": found, "charts": series}
+
+
+def _trace_row(look: Look) -> Row | None:
+    if look.trace is None:
+        return None
+    return {
+        "on": look.trace.started_ns != 0,
+        "events": look.trace.pending,
+        "lost": look.trace.lost,
+    }

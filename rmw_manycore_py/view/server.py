@@ -1,0 +1,191 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""The server of the page: 127.0.0.1 only."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import errno
+import socket
+import tempfile
+from collections.abc import AsyncIterator, Callable
+from pathlib import Path
+
+from aiohttp import WSMsgType, web
+
+from rmw_manycore_py.errors import ManycoreError
+from rmw_manycore_py.picture.drawing import stylesheet
+from rmw_manycore_py.view.access import ADDRESS, Access
+from rmw_manycore_py.view.page_state import PageState
+from rmw_manycore_py.view.parameters import parameters_of
+from rmw_manycore_py.view.tracing import Tracing
+from rmw_manycore_py.view.viewer import Viewer
+
+_PAGE = Path(__file__).parent / "page"
+_MAX_REQUEST_BYTES = 4096
+_SHUTDOWN_S = 1.0
+
+
+def listen(port: int) -> socket.socket:
+    """Return a socket that listens; port 0 = any that is free."""
+    try:
+        return socket.create_server((ADDRESS, port))
+    except OSError as error:
+        if error.errno not in (errno.EADDRINUSE, errno.EACCES):
+            raise ManycoreError(f"cannot listen on {ADDRESS}:{port}: {error.strerror}") from error
+        what = "in use, maybe by another manycore view"
+        if error.errno == errno.EACCES:
+            what = "not for this user"
+        raise ManycoreError(f"port {port} is {what}; choose another: --port N, 0 for any") from error
+
+
+def serve(platform: str, port: int, period_s: float, announce: Callable[[str], None]) -> None:
+    """Serve the page until a signal ends this process.
+
+    :param announce: called with the link, once a browser can open it.
+    """
+    with listen(port) as listening, tempfile.TemporaryDirectory(prefix="manycore-view-") as kept:
+        own_port = listening.getsockname()[1]
+        access = Access(own_port)
+        app = application(platform, period_s, access, Path(kept))
+
+        async def say(_app: web.Application) -> None:
+            announce(access.link(own_port))
+
+        app.on_startup.append(say)
+        web.run_app(
+            app, sock=listening, print=None, access_log=None, shutdown_timeout=_SHUTDOWN_S
+        )
+
+
+def application(platform: str, period_s: float, access: Access, kept: Path) -> web.Application:
+    """Return the application: page, live data, traces."""
+    pages = Pages(Viewer(platform, period_s), Tracing(platform, kept))
+    app = web.Application(middlewares=[access.middleware], client_max_size=_MAX_REQUEST_BYTES)
+    app.cleanup_ctx.append(pages.looking)
+    app.on_shutdown.append(pages.close)
+    root = f"/{access.token}"
+    app.add_routes(
+        [
+            web.get(f"{root}/", pages.index),
+            web.get(f"{root}/chip.css", pages.style),
+            web.get(f"{root}/chip.svg", pages.picture),
+            web.get(f"{root}/live", pages.live),
+            web.post(f"{root}/trace/start", pages.start_trace),
+            web.post(f"{root}/trace/stop", pages.stop_trace),
+            web.get(f"{root}/trace/{{name}}", pages.trace_file),
+            web.post(f"{root}/parameters", pages.parameters),
+            web.static(f"{root}/page", _PAGE),
+        ]
+    )
+    return app
+
+
+class Pages:
+    """Handlers of the requests."""
+
+    def __init__(self, viewer: Viewer, tracing: Tracing) -> None:
+        self._viewer = viewer
+        self._tracing = tracing
+        self._sockets: set[web.WebSocketResponse] = set()
+
+    async def looking(self, _app: web.Application) -> AsyncIterator[None]:
+        """Look at the platform while the server runs."""
+        task = asyncio.create_task(self._viewer.run())
+        yield
+        task.cancel()
+        with contextlib.suppress(asyncio.CancelledError):
+            await task
+
+    async def close(self, _app: web.Application) -> None:
+        """Tell the pages that the server ends."""
+        for live in list(self._sockets):
+            await live.close(message=b"manycore view has ended")
+
+    async def index(self, _request: web.Request) -> web.StreamResponse:
+        """Send the page."""
+        return web.FileResponse(_PAGE / "index.html")
+
+    async def style(self, _request: web.Request) -> web.StreamResponse:
+        """Send the style of the picture."""
+        return web.Response(text=stylesheet(), content_type="text/css")
+
+    async def picture(self, _request: web.Request) -> web.StreamResponse:
+        """Send the picture as it is now, as a file of its own."""
+        chip = self._viewer.chip
+        if chip is None:
+            return _problem(404, self._viewer.state)
+        return web.Response(text=chip.svg(self._viewer.marks), content_type="image/svg+xml")
+
+    async def live(self, request: web.Request) -> web.StreamResponse:
+        """Send what changes, look by look, until the page is closed."""
+        live = web.WebSocketResponse(heartbeat=20, max_msg_size=_MAX_REQUEST_BYTES)
+        await live.prepare(request)
+        self._sockets.add(live)
+        state = PageState(self._viewer)
+        selected = asyncio.Event()
+        sending = asyncio.create_task(self._send(live, state, selected))
+        try:
+            async for message in live:
+                if message.type == WSMsgType.TEXT:
+                    with contextlib.suppress(ValueError):
+                        state.select(message.json())
+                        selected.set()
+        finally:
+            sending.cancel()
+            self._sockets.discard(live)
+        return live
+
+    async def _send(
+        self, live: web.WebSocketResponse, state: PageState, selected: asyncio.Event
+    ) -> None:
+        with contextlib.suppress(ConnectionError):
+            while not live.closed:
+                await live.send_json(state.news())
+                selected.clear()
+                waiting = [
+                    asyncio.ensure_future(self._viewer.next_look()),
+                    asyncio.ensure_future(selected.wait()),
+                ]
+                try:
+                    await asyncio.wait(waiting, return_when=asyncio.FIRST_COMPLETED)
+                finally:
+                    for one in waiting:
+                        one.cancel()
+
+    async def start_trace(self, _request: web.Request) -> web.StreamResponse:
+        """Begin a trace."""
+        return await _answered(asyncio.to_thread(self._tracing.start))
+
+    async def stop_trace(self, _request: web.Request) -> web.StreamResponse:
+        """End a trace and save it."""
+        return await _answered(asyncio.to_thread(self._tracing.stop))
+
+    async def trace_file(self, request: web.Request) -> web.StreamResponse:
+        """Send a saved trace."""
+        path = self._tracing.file(request.match_info["name"])
+        if path is None:
+            return _problem(404, "there is no such trace")
+        said = {"Content-Disposition": f'attachment; filename="{path.name}"'}
+        return web.FileResponse(path, headers=said)
+
+    async def parameters(self, request: web.Request) -> web.StreamResponse:
+        """Ask a node for its parameters."""
+        node = request.query.get("node", "")
+        look = self._viewer.look
+        known = look is not None and any(node in member.nodes for member in look.graph.members)
+        if not known:
+            return _problem(404, f"there is no node '{node}'")
+        return await _answered(parameters_of(self._viewer.platform, node))
+
+
+async def _answered(work: object) -> web.StreamResponse:
+    """Return the result of some work as JSON, or what is wrong."""
+    try:
+        return web.json_response({"result": await work})  # type: ignore[misc]
+    except ManycoreError as error:
+        return _problem(409, str(error))
+
+
+def _problem(status: int, text: str) -> web.StreamResponse:
+    return web.json_response({"error": text}, status=status)

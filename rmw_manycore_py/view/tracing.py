@@ -1,0 +1,59 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""The button that starts a trace, and what becomes of it."""
+
+from __future__ import annotations
+
+import itertools
+from pathlib import Path
+from typing import Any
+
+from rmw_manycore_py import _transport
+from rmw_manycore_py.errors import ManycoreError
+from rmw_manycore_py.native_errors import translate_native_errors
+from rmw_manycore_py.trace.chains import Messages
+from rmw_manycore_py.trace.files import save
+from rmw_manycore_py.trace.latency import latencies
+from rmw_manycore_py.trace.recorded import recorded
+
+# Of each thread: half a minute at thousands of messages per second.
+RING_EVENTS = 1 << 18
+
+
+class Tracing:
+    """Traces of one platform, saved into a directory until the viewer ends."""
+
+    def __init__(self, platform: str, directory: Path) -> None:
+        self._platform = platform
+        self._directory = directory
+        self._numbers = itertools.count(1)
+
+    def start(self) -> None:
+        """Begin a trace of the whole platform."""
+        with translate_native_errors():
+            _transport.start_trace(
+                self._platform, clusters=[], nodes=[], events=RING_EVENTS, discard=False
+            )
+
+    def stop(self) -> dict[str, Any]:
+        """End the trace if it is on, save what was recorded, and evaluate its chains."""
+        with translate_native_errors():
+            if _transport.trace_state(self._platform).started_ns:
+                _transport.stop_trace(self._platform)
+        with recorded(self._platform) as trace:
+            if not trace.event_count:
+                raise ManycoreError(f"platform {self._platform} has recorded nothing yet")
+            path = self._directory / f"{self._platform}-{next(self._numbers)}.json"
+            save(trace, path)
+        messages = Messages(trace)
+        return {
+            "file": path.name,
+            "bytes": path.stat().st_size,
+            "events": trace.event_count,
+            "lost": trace.lost,
+            "chains": [one.row() for one in latencies(messages, messages.chains)],
+        }
+
+    def file(self, name: str) -> Path | None:
+        """Return a saved trace by its name."""
+        path = self._directory / name
+        return path if path.parent == self._directory and path.is_file() else None

@@ -1,0 +1,93 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""What all pages see: the latest look, its picture, and what happened before."""
+
+from __future__ import annotations
+
+import asyncio
+import time
+from collections import deque
+from typing import Any
+
+from rmw_manycore_py import _transport
+from rmw_manycore_py.errors import ManycoreError
+from rmw_manycore_py.look.happenings import Happening
+from rmw_manycore_py.look.watch import Look, Watch
+from rmw_manycore_py.picture.chip import Chip
+from rmw_manycore_py.picture.marks import Marks
+from rmw_manycore_py.view.history import History
+
+_KEPT_HAPPENINGS = 500
+
+
+class Viewer:
+    """Looks at a platform over and over, and lets pages wait for the next look."""
+
+    def __init__(self, platform: str, period_s: float) -> None:
+        self.platform = platform
+        self._period_s = period_s
+        self._watch = Watch(platform)
+        self._next = asyncio.Event()
+        self.look: Look | None = None  # the latest, also of a platform that has ended
+        self.chip: Chip | None = None
+        self.marks: Marks = {}
+        self.state = f"waiting for platform {platform} to start"
+        self.is_there = False
+        self.history = History()
+        self.happenings: deque[tuple[int, Happening]] = deque(maxlen=_KEPT_HAPPENINGS)
+        self._happened = 0
+
+    async def run(self) -> None:
+        """Look until cancelled; a platform may start and end meanwhile."""
+        try:
+            due_s = time.monotonic()
+            while True:
+                await self._step()
+                self._next.set()
+                self._next = asyncio.Event()
+                due_s = max(due_s + self._period_s, time.monotonic())
+                await asyncio.sleep(due_s - time.monotonic())
+        finally:
+            self._watch.close()
+
+    async def next_look(self) -> None:
+        """Wait for the next look."""
+        await self._next.wait()
+
+    async def _step(self) -> None:
+        try:
+            look = await asyncio.to_thread(self._watch.look)
+        except (_transport.PlatformError, ManycoreError) as error:
+            self.is_there = False
+            self.state = f"platform {self.platform} cannot be looked at: {error}"
+            return
+        if look is None:
+            self._note_end()
+        else:
+            self._show(look)
+
+    def _show(self, look: Look) -> None:
+        if not self.is_there:
+            self._note((Happening("platform", f"platform {self.platform} is there"),))
+        self.is_there, self.state = True, f"platform {self.platform}"
+        if self.chip is None or self.look is None or not self.chip.fits(look, self.look):
+            self.chip = Chip.of(look)
+        self.look = look
+        self.marks = self.chip.marks(look)
+        self.history.append(look, time.time())
+        self._note(look.happened)
+
+    def _note_end(self) -> None:
+        if self.is_there:
+            self.state = f"platform {self.platform} has ended; waiting for it to start again"
+            self._note(self._watch.last_words)
+        self.is_there = False
+
+    def _note(self, happened: tuple[Happening, ...]) -> None:
+        for happening in happened:
+            self._happened += 1
+            self.happenings.append((self._happened, happening))
+
+    def happened_since(self, number: int) -> tuple[int, list[dict[str, Any]]]:
+        """Return the number of the last happening, and all after `number`."""
+        rows = [happening.row() for own, happening in self.happenings if own > number]
+        return self._happened, rows
