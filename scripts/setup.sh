@@ -101,6 +101,7 @@ install_extra() {
 missing_for_tests() {
   command -v spin >/dev/null || echo spin
   command -v ip >/dev/null || echo iproute2
+  command -v chromedriver >/dev/null || echo chromium chromium-driver
   echo '#include <doctest/doctest.h>' | ${CXX:-c++} -E -x c++ - >/dev/null 2>&1 ||
     echo doctest-dev
 }
@@ -110,6 +111,7 @@ install_for_tests() {
   install_extra ndt
   install_extra trace
   install_extra record
+  install_extra view
   touch .venv/tests
 }
 

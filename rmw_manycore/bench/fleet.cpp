@@ -2,14 +2,16 @@
 // Nodes as people run them by the hundred, at the level of rcl: each has the services of its
 // parameters, is on /rosout and /parameter_events, and two topics that the next node subscribes to.
 //
-//   fleet first=N nodes=N all=N
+//   fleet first=N nodes=N all=N period_ms=N
 //
 // Nodes `first` to `first + nodes - 1` of `all`, in one process with one thread that waits for them
-// all. It is ready when each topic has found its subscription, or, where `all` is 0, at once; it
-// ends with its input. The samples are the times that each node took to create.
+// all. It is ready when each topic has found its subscription, or, where `all` is 0, at once; from
+// then on a message goes over each topic every `period_ms`, none where that is 0. It ends with its
+// input. The samples are the times that each node took to create.
 #include <rcl_interfaces/msg/parameter_event.h>
 #include <rmw/qos_profiles.h>
 
+#include <atomic>
 #include <deque>
 #include <thread>
 
@@ -61,6 +63,16 @@ public:
 
   const RclNode & node() const { return node_; }
 
+  /// A message over each of its own topics. From the thread that created it, or after that.
+  void publish_all() const {
+    rcl_interfaces__msg__ParameterEvent message;
+    rcl_interfaces__msg__ParameterEvent__init(&message);
+    for (const rcl_publisher_t * publisher : own_topics_) {
+      check_rcl(rcl_publish(publisher, &message, nullptr), "rcl_publish");
+    }
+    rcl_interfaces__msg__ParameterEvent__fini(&message);
+  }
+
 private:
   RclNode node_;
   std::vector<const rcl_publisher_t *> own_topics_;
@@ -68,8 +80,20 @@ private:
 
 using Fleet = std::deque<FleetNode>;
 
-/// As one executor of all nodes, until `end` is triggered. Nothing arrives meanwhile.
-void wait_for_anything(RclContext & context, Fleet & fleet, rcl_guard_condition_t & end) {
+void take(const rcl_subscription_t & subscription) {
+  rcl_interfaces__msg__ParameterEvent message;
+  rcl_interfaces__msg__ParameterEvent__init(&message);
+  const rcl_ret_t status = rcl_take(&subscription, &message, nullptr, nullptr);
+  if (status != RCL_RET_SUBSCRIPTION_TAKE_FAILED) {
+    check_rcl(status, "rcl_take");
+  }
+  rcl_interfaces__msg__ParameterEvent__fini(&message);
+}
+
+/// As one executor of all nodes, until `end` is triggered. Where there are no messages, nothing may
+/// wake it.
+void wait_for_anything(
+  RclContext & context, Fleet & fleet, rcl_guard_condition_t & end, bool has_messages) {
   size_t subscriptions = 0;
   size_t services = 0;
   for (const FleetNode & node : fleet) {
@@ -81,22 +105,54 @@ void wait_for_anything(RclContext & context, Fleet & fleet, rcl_guard_condition_
     rcl_wait_set_init(
       &wait_set, subscriptions, 1, 0, 0, services, 0, &context.get(), rcl_get_default_allocator()),
     "rcl_wait_set_init");
-  for (const FleetNode & node : fleet) {
-    for (const rcl_subscription_t & subscription : node.node().subscriptions()) {
-      check_rcl(
-        rcl_wait_set_add_subscription(&wait_set, &subscription, nullptr), "rcl_wait_set_add");
+  do {
+    check_rcl(rcl_wait_set_clear(&wait_set), "rcl_wait_set_clear");
+    for (const FleetNode & node : fleet) {
+      for (const rcl_subscription_t & subscription : node.node().subscriptions()) {
+        check_rcl(
+          rcl_wait_set_add_subscription(&wait_set, &subscription, nullptr), "rcl_wait_set_add");
+      }
+      for (const rcl_service_t & service : node.node().services()) {
+        check_rcl(rcl_wait_set_add_service(&wait_set, &service, nullptr), "rcl_wait_set_add");
+      }
     }
-    for (const rcl_service_t & service : node.node().services()) {
-      check_rcl(rcl_wait_set_add_service(&wait_set, &service, nullptr), "rcl_wait_set_add");
+    check_rcl(rcl_wait_set_add_guard_condition(&wait_set, &end, nullptr), "rcl_wait_set_add");
+    check_rcl(rcl_wait(&wait_set, -1), "rcl_wait");
+    if (wait_set.guard_conditions[0] == nullptr && !has_messages) {
+      throw std::runtime_error("a node of the fleet woke up, and nothing was sent to it");
     }
-  }
-  check_rcl(rcl_wait_set_add_guard_condition(&wait_set, &end, nullptr), "rcl_wait_set_add");
-  check_rcl(rcl_wait(&wait_set, -1), "rcl_wait");
-  if (wait_set.guard_conditions[0] == nullptr) {
-    throw std::runtime_error("a node of the fleet woke up, and nothing was sent to it");
-  }
+    for (size_t i = 0; i < subscriptions; ++i) {
+      if (wait_set.subscriptions[i] != nullptr) {
+        take(*wait_set.subscriptions[i]);
+      }
+    }
+  } while (wait_set.guard_conditions[0] == nullptr);
   check_rcl(rcl_wait_set_fini(&wait_set), "rcl_wait_set_fini");
 }
+
+/// Publishes over all topics, period after period, while it lives.
+class Speaker {
+public:
+  Speaker(const Fleet & fleet, std::chrono::milliseconds period)
+  : thread_([this, &fleet, period] {
+      while (running_ && period.count() > 0) {
+        for (const FleetNode & node : fleet) {
+          node.publish_all();
+        }
+        std::this_thread::sleep_for(period);
+      }
+    }) {}
+  Speaker(const Speaker &) = delete;
+  Speaker & operator=(const Speaker &) = delete;
+  ~Speaker() {
+    running_ = false;
+    thread_.join();
+  }
+
+private:
+  std::atomic<bool> running_{true};
+  std::thread thread_;
+};
 
 void run(const Arguments & arguments) {
   RclContext context;
@@ -112,14 +168,18 @@ void run(const Arguments & arguments) {
   check_rcl(
     rcl_guard_condition_init(&end, &context.get(), rcl_guard_condition_get_default_options()),
     "rcl_guard_condition_init");
-  std::thread waiter([&] { wait_for_anything(context, fleet, end); });
+  const std::chrono::milliseconds period(arguments.number("period_ms"));
+  std::thread waiter([&] { wait_for_anything(context, fleet, end, period.count() > 0); });
   for (const FleetNode & node : fleet) {
     while (arguments.number("all") != 0 && !node.is_matched()) {
       std::this_thread::sleep_for(look_again_after);
     }
   }
-  announce_ready();
-  wait_for_end_of_input();
+  {
+    const Speaker speaker(fleet, period);
+    announce_ready();
+    wait_for_end_of_input();
+  }
   check_rcl(rcl_trigger_guard_condition(&end), "rcl_trigger_guard_condition");
   waiter.join();
   check_rcl(rcl_guard_condition_fini(&end), "rcl_guard_condition_fini");

@@ -65,12 +65,16 @@ def _keys_of(events: Events) -> _Keys:
 
 
 def _keys(slots: Events, incarnations: Events, numbers: Events) -> _Keys:
-    """Return what names a record among those of some seconds: the low half of its number will do."""
-    high = slots.astype(np.uint64) << np.uint64(48) | incarnations.astype(np.uint64) << np.uint64(32)
-    return high | numbers.astype(np.uint64) & np.uint64(0xFFFF_FFFF)
+    """Return what names a record of the last seconds: the low half of its number will do."""
+    slot = slots.astype(np.uint64) << np.uint64(48)
+    incarnation = incarnations.astype(np.uint64) << np.uint64(32)
+    keys: _Keys = slot | incarnation | numbers.astype(np.uint64) & np.uint64(0xFFFF_FFFF)
+    return keys
 
 
-def _by_topic(trace: Trace, begins: Events, taken_us: NDArray[np.float64]) -> dict[str, TopicLatency]:
+def _by_topic(
+    trace: Trace, begins: Events, taken_us: NDArray[np.float64]
+) -> dict[str, TopicLatency]:
     samples: dict[str, list[NDArray[np.float64]]] = {}
     publishers = begins["endpoint"].astype(np.uint64) | begins["incarnation"].astype(
         np.uint64

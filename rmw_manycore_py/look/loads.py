@@ -79,8 +79,8 @@ class Loads:
             weights=self.changes[chosen, column],
             minlength=len(self.graph.topics) + 1,
         )[:-1]
-        result: Rates = np.maximum(sums, 0) / self.seconds if self.seconds > 0 else sums * 0
-        return result
+        result: Rates = np.maximum(sums, 0.0)
+        return result / self.seconds if self.seconds > 0 else 0.0 * result
 
     @cached_property
     def rates_hz(self) -> Rates:
@@ -94,7 +94,7 @@ class Loads:
 
     @cached_property
     def losses_per_s(self) -> Rates:
-        """Messages per second that a subscription of the topic missed or a publisher could not send."""
+        """Messages per second that a subscription missed or a publisher could not send."""
         missed = self._per_s(LOST, publishers=False) + self._per_s(EXPIRED, publishers=False)
         result: Rates = missed + self._per_s(REFUSED, publishers=True)
         return result

@@ -9,6 +9,7 @@ from importlib.resources import files
 
 from rmw_manycore_py.errors import shorten
 from rmw_manycore_py.picture.arcs import Arc
+from rmw_manycore_py.picture.geometry import Rect
 from rmw_manycore_py.picture.layout import (
     CELL_HEAD,
     GAP,
@@ -19,7 +20,6 @@ from rmw_manycore_py.picture.layout import (
     Layout,
     NodeBox,
 )
-from rmw_manycore_py.picture.geometry import Rect
 from rmw_manycore_py.picture.marks import Mark, Marks
 from rmw_manycore_py.picture.texts import fitted
 
@@ -43,7 +43,9 @@ def draw(
             f'<svg xmlns="http://www.w3.org/2000/svg" class="chip" role="group" '
             f'aria-label="{_text(title)}" viewBox="0 0 {width:.0f} {height:.0f}">',
             f"<style>{stylesheet()}</style>" if standalone else "",
-            f'<rect class="paper" width="{width:.0f}" height="{height:.0f}"/>' if standalone else "",
+            f'<rect class="paper" width="{width:.0f}" height="{height:.0f}"/>'
+            if standalone
+            else "",
             *(line for box in layout.clusters for line in _cluster(box, marks)),
             *(line for arc in arcs for line in _arc(arc, marks)),
             *(line for node in layout.nodes for line in _node(node)),
@@ -95,7 +97,7 @@ def _cell(cell: Cell, marks: Marks) -> Iterator[str]:
 def _node(node: NodeBox) -> Iterator[str]:
     state = " dead" if node.is_dead else ""
     spoken = f"{node.name}, {'died' if node.is_dead else node.kind}, cluster {node.member.cluster}"
-    shown = fitted(node.name, node.rect.width - 10)
+    shown = fitted(node.shown_name, node.rect.width - 10)
     yield (
         f'<g id="{_text(node.id)}" class="{node.kind}{state}" data-node="{_text(node.name)}" '
         f'tabindex="0" role="button" aria-label="{_text(spoken)}"><title>{_text(node.name)} '
@@ -128,24 +130,25 @@ def _label(arc: Arc, marks: Marks) -> Iterator[str]:
     )
 
 
-def _rect(style: str, rect: Rect, radius: int, id: str = "") -> str:
-    named = f' id="{_text(id)}"' if id else ""
+def _rect(style: str, rect: Rect, radius: int, own_id: str = "") -> str:
+    named = f' id="{_text(own_id)}"' if own_id else ""
     return (
         f'<rect{named} class="{style}" x="{rect.x:.1f}" y="{rect.y:.1f}" width="{rect.width:.1f}" '
         f'height="{rect.height:.1f}" rx="{radius}"/>'
     )
 
 
-def _right_text(id: str, x: float, y: float, marks: Marks) -> str:
-    return f'<text id="{id}" class="small right" x="{x:.1f}" y="{y:.1f}">{_content(marks, id)}</text>'
+def _right_text(own_id: str, x: float, y: float, marks: Marks) -> str:
+    place = f'x="{x:.1f}" y="{y:.1f}"'
+    return f'<text id="{own_id}" class="small right" {place}>{_content(marks, own_id)}</text>'
 
 
-def _class(marks: Marks, id: str, otherwise: str) -> str:
-    return str(marks.get(id, _NO_MARK).get("class", otherwise))
+def _class(marks: Marks, own_id: str, otherwise: str) -> str:
+    return str(marks.get(own_id, _NO_MARK).get("class", otherwise))
 
 
-def _content(marks: Marks, id: str) -> str:
-    return _text(str(marks.get(id, _NO_MARK).get("text", "")))
+def _content(marks: Marks, own_id: str) -> str:
+    return _text(str(marks.get(own_id, _NO_MARK).get("text", "")))
 
 
 def _number(value: float) -> str:

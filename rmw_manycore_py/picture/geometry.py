@@ -49,7 +49,9 @@ class Curve:
 
     def numbers(self) -> list[float]:
         """Return the coordinates of its three points."""
-        return [round(value, 1) for point in (self.start, self.control, self.end) for value in point]
+        return [
+            round(value, 1) for point in (self.start, self.control, self.end) for value in point
+        ]
 
 
 def connect(start: Rect, end: Rect) -> Curve:

@@ -18,12 +18,13 @@ HEAD = 66.0  # of a cluster: its title, SMEM bar and receive thread
 CELL_HEAD = 18.0
 NODE_HEIGHT = 20.0
 WORKER_SIDE = 8.0
-UNUSED = Rect(0, 0, 150, 34)
+UNUSED_WIDTH, UNUSED_HEIGHT = 190.0, 34.0
 # Beyond so many cores only those are drawn that something runs on.
 MAX_EMPTY_CORES = 16
 MAX_NODES_OF_CELL = 8
 _WIDE, _NARROW = 132.0, 92.0
 _MANY_CELLS = 32
+_BRIDGE = "_manycore_bridge"  # how names of its nodes begin
 
 
 @dataclass(frozen=True)
@@ -37,12 +38,17 @@ class NodeBox:
     rect: Rect
 
     @property
+    def shown_name(self) -> str:
+        """Its name; that of the bridge's processes as people say it."""
+        return self.name.replace(f"/{_BRIDGE}_", "bridge ")
+
+    @property
     def kind(self) -> str:
         """How it is drawn: node, bridge, tool or process."""
         if not self.member.nodes:
             return "process"
         own_name = self.name.rpartition("/")[2]
-        if own_name.startswith("_manycore_bridge"):
+        if own_name.startswith(_BRIDGE):
             return "bridge"
         return "tool" if own_name.startswith("_") else "node"
 
@@ -148,9 +154,7 @@ def lay_out(
     :param workers: pids of workers by the pid of their coordinator.
     """
     used = {member.cluster for member in (*graph.members, *dead)} | set(present)
-    plans = {
-        cluster: _plans(graph, cluster, dead, workers or {}) for cluster in sorted(used)
-    }
+    plans = {cluster: _plans(graph, cluster, dead, workers or {}) for cluster in sorted(used)}
     boxes: list[ClusterBox] = []
     y = PAD
     columns = max(1, math.ceil(math.sqrt(len(plans)))) if plans else 1
@@ -162,7 +166,7 @@ def lay_out(
             boxes.append(_place_cluster(cluster, plans[cluster], x, y))
             x += boxes[-1].rect.width + CLUSTER_GAP
         y = max(box.rect.y + box.rect.height for box in boxes) + CLUSTER_GAP
-    unused = [id for id in range(1, graph.cluster_count + 1) if id not in used]
+    unused = sorted(set(range(1, graph.cluster_count + 1)) - used)
     return Layout((*boxes, *_place_unused(unused, y if boxes else PAD)))
 
 
@@ -175,7 +179,12 @@ def _plans(
     if graph.cores_per_cluster <= MAX_EMPTY_CORES:
         cores |= set(range(graph.cores_per_cluster))
     plans = [
-        _plan(core, [m for m in living if m.core == core], [m for m in gone if m.core == core], workers)
+        _plan(
+            core,
+            [m for m in living if m.core == core],
+            [m for m in gone if m.core == core],
+            workers,
+        )
         for core in sorted(cores)
     ]
     plans += [_plan(None, [member], [], workers) for member in living if member.core is None]
@@ -241,13 +250,13 @@ def _place_cell(cluster: int, plan: _Plan, rect: Rect) -> Cell:
 
 
 def _place_unused(clusters: Sequence[int], y: float) -> list[ClusterBox]:
-    step = UNUSED.width + GAP
+    right, down = UNUSED_WIDTH + GAP, UNUSED_HEIGHT + GAP
     return [
         ClusterBox(
             cluster,
             False,
             (),
-            Rect(PAD + place % 8 * step, y + place // 8 * (UNUSED.height + GAP), UNUSED.width, 34),
+            Rect(PAD + place % 6 * right, y + place // 6 * down, UNUSED_WIDTH, UNUSED_HEIGHT),
         )
         for place, cluster in enumerate(clusters)
     ]

@@ -39,7 +39,7 @@ def marks_of(look: Look, layout: Layout, arcs: tuple[Arc, ...]) -> Marks:
 
 def changed(before: Marks, after: Marks) -> Marks:
     """Return the marks that are not as they were."""
-    return {id: mark for id, mark in after.items() if before.get(id) != mark}
+    return {own_id: mark for own_id, mark in after.items() if before.get(own_id) != mark}
 
 
 def level(share: float, levels: int) -> int:

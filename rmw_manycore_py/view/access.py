@@ -38,19 +38,14 @@ class Access:
         """Return the address to open."""
         return f"http://{ADDRESS}:{port}/{self.token}/"
 
-    @property
-    def middleware(self) -> Callable[[web.Request, Handler], Awaitable[web.StreamResponse]]:
-        """Return the check as aiohttp wants it."""
-
-        @web.middleware
-        async def check(request: web.Request, handler: Handler) -> web.StreamResponse:
-            refusal = self._refusal(request)
-            response = web.Response(status=403, text=refusal) if refusal else await handler(request)
-            if not response.prepared:
-                response.headers.update(_HEADERS)
-            return response
-
-        return check
+    @web.middleware
+    async def check(self, request: web.Request, handler: Handler) -> web.StreamResponse:
+        """Hand a request on, or refuse it."""
+        refusal = self._refusal(request)
+        response = web.Response(status=403, text=refusal) if refusal else await handler(request)
+        if not response.prepared:
+            response.headers.update(_HEADERS)
+        return response
 
     def _refusal(self, request: web.Request) -> str:
         """Return why a request is refused, "" if it is not."""

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import asdict
 from typing import Any
 
@@ -46,7 +47,7 @@ def topic_details(look: Look, name: str) -> Row | None:
         "types": sorted({endpoint.type for endpoint in endpoints}),
         "load": topic_text(load, latency),
         "latency": None if latency is None else asdict(latency),
-        "endpoints": _endpoints(look, lambda endpoint: endpoint in endpoints),
+        "endpoints": _endpoints(look, lambda e: e.role == "topic" and e.topic == name),
     }
 
 
@@ -68,7 +69,7 @@ def _node(look: Look, name: str, member: Member, is_dead: bool) -> Row:
     }
 
 
-def _endpoints(look: Look, is_wanted: Any) -> list[Row]:
+def _endpoints(look: Look, is_wanted: Callable[[Endpoint], bool]) -> list[Row]:
     return [
         _endpoint(look, row, endpoint)
         for row, endpoint in enumerate(look.graph.endpoints)
@@ -102,7 +103,7 @@ def qos_text(endpoint: Endpoint) -> str:
     kept = "keep all" if qos["history"] == "keep_all" else f"keep last {qos['depth']}"
     words = [qos["reliability"].replace("_", " "), qos["durability"].replace("_", " "), kept]
     for name in ("deadline_ns", "lifespan_ns", "liveliness_lease_ns"):
-        value = qos[name]  # type: ignore[literal-required]
+        value = qos[name]
         if value is not None:
             words.append(f"{name.removesuffix('_ns').replace('_', ' ')} {value / 1e6:g} ms")
     if qos["liveliness"] != "automatic":

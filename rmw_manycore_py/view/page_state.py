@@ -16,7 +16,7 @@ Row = dict[str, Any]
 
 
 class PageState:
-    """Turns looks into the messages of one page; a slow page gets fewer of them, and misses nothing."""
+    """Turns looks into the messages of one page; a slow page gets fewer, and misses nothing."""
 
     def __init__(self, viewer: Viewer) -> None:
         self._viewer = viewer
@@ -58,9 +58,7 @@ class PageState:
         marks = self._viewer.marks
         if chip is not self._chip:
             news["svg"] = chip.svg(marks, standalone=False)
-            news["arcs"] = {
-                arc.id: [curve.numbers() for curve in arc.curves] for arc in chip.arcs
-            }
+            news["arcs"] = {arc.id: [curve.numbers() for curve in arc.curves] for arc in chip.arcs}
             news["nodes"] = [node.name for node in chip.layout.nodes]
             news["topics"] = list(self._viewer.look.graph.topics) if self._viewer.look else []
             news["rates"] = {arc.id: marks.get(arc.id, {}).get("rate", 0) for arc in chip.arcs}

@@ -8,8 +8,9 @@ import contextlib
 import errno
 import socket
 import tempfile
-from collections.abc import AsyncIterator, Callable
+from collections.abc import AsyncIterator, Awaitable, Callable
 from pathlib import Path
+from typing import Any
 
 from aiohttp import WSMsgType, web
 
@@ -36,7 +37,9 @@ def listen(port: int) -> socket.socket:
         what = "in use, maybe by another manycore view"
         if error.errno == errno.EACCES:
             what = "not for this user"
-        raise ManycoreError(f"port {port} is {what}; choose another: --port N, 0 for any") from error
+        raise ManycoreError(
+            f"port {port} is {what}; choose another: --port N, 0 for any"
+        ) from error
 
 
 def serve(platform: str, port: int, period_s: float, announce: Callable[[str], None]) -> None:
@@ -53,15 +56,13 @@ def serve(platform: str, port: int, period_s: float, announce: Callable[[str], N
             announce(access.link(own_port))
 
         app.on_startup.append(say)
-        web.run_app(
-            app, sock=listening, print=None, access_log=None, shutdown_timeout=_SHUTDOWN_S
-        )
+        web.run_app(app, sock=listening, print=None, access_log=None, shutdown_timeout=_SHUTDOWN_S)
 
 
 def application(platform: str, period_s: float, access: Access, kept: Path) -> web.Application:
     """Return the application: page, live data, traces."""
     pages = Pages(Viewer(platform, period_s), Tracing(platform, kept))
-    app = web.Application(middlewares=[access.middleware], client_max_size=_MAX_REQUEST_BYTES)
+    app = web.Application(middlewares=[access.check], client_max_size=_MAX_REQUEST_BYTES)
     app.cleanup_ctx.append(pages.looking)
     app.on_shutdown.append(pages.close)
     root = f"/{access.token}"
@@ -179,10 +180,10 @@ class Pages:
         return await _answered(parameters_of(self._viewer.platform, node))
 
 
-async def _answered(work: object) -> web.StreamResponse:
+async def _answered(work: Awaitable[Any]) -> web.StreamResponse:
     """Return the result of some work as JSON, or what is wrong."""
     try:
-        return web.json_response({"result": await work})  # type: ignore[misc]
+        return web.json_response({"result": await work})
     except ManycoreError as error:
         return _problem(409, str(error))
 

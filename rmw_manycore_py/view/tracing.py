@@ -12,7 +12,7 @@ from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.native_errors import translate_native_errors
 from rmw_manycore_py.trace.chains import Messages
 from rmw_manycore_py.trace.files import save
-from rmw_manycore_py.trace.latency import latencies
+from rmw_manycore_py.trace.latency import ChainLatency, latencies
 from rmw_manycore_py.trace.recorded import recorded
 
 # Of each thread: half a minute at thousands of messages per second.
@@ -50,10 +50,16 @@ class Tracing:
             "bytes": path.stat().st_size,
             "events": trace.event_count,
             "lost": trace.lost,
-            "chains": [one.row() for one in latencies(messages, messages.chains)],
+            "chains": [_chain_row(one) for one in latencies(messages, messages.chains)],
         }
 
     def file(self, name: str) -> Path | None:
         """Return a saved trace by its name."""
         path = self._directory / name
         return path if path.parent == self._directory and path.is_file() else None
+
+
+def _chain_row(chain: ChainLatency) -> dict[str, Any]:
+    """Return a chain without the parts that have no sample: JSON has no NaN."""
+    row = chain.row()
+    return {**row, "parts": [part for part in row["parts"] if part["count"]]}

@@ -22,6 +22,9 @@ LAYERS = [
     ("._ndt_bench", ".native_errors", ".qos", ".reference_system"),
     (".trace",),
     (".trace.files",),
+    (".look",),
+    (".picture",),
+    (".view",),
     (".cpu_time", ".figures", ".parent_death", ".progress", ".ros", ".readiness"),
     (".runs", ".scheduling", ".signals", ".topology"),
     (".autoware_overlay", ".helper_process", ".routes"),
@@ -46,7 +49,7 @@ LAYERS = [
     (
         *(".cli.action", ".cli.bag", ".cli.bench", ".cli.bridge", ".cli.component", ".cli.doctor"),
         *(".cli.interface", ".cli.lifecycle", ".cli.map", ".cli.ndt", ".cli.node", ".cli.param"),
-        *(".cli.service", ".cli.top", ".cli.topic", ".cli.trace"),
+        *(".cli.service", ".cli.top", ".cli.topic", ".cli.trace", ".cli.view"),
     ),
     (".cli",),
     (".extensions",),

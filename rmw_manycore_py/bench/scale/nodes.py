@@ -64,7 +64,7 @@ def _watch(run: Run, middleware: Middleware, count: int) -> list[Result]:
     with Session(middleware, run.cpus) as session:
         start = time.monotonic()
         nodes = [
-            session.native("fleet", party, first=party, nodes=1, all=count)
+            session.native("fleet", party, first=party, nodes=1, all=count, period_ms=0)
             for party in range(count)
         ]
         for node in nodes:
@@ -91,7 +91,7 @@ def _watch(run: Run, middleware: Middleware, count: int) -> list[Result]:
 def _join(session: Session, others: Sequence[int], number: int) -> tuple[float, float]:
     """Return the milliseconds that a node took to create, and how often others woke up."""
     before = wake_ups(others)
-    node = session.native("fleet", 0, first=number, nodes=1, all=0)
+    node = session.native("fleet", 0, first=number, nodes=1, all=0, period_ms=0)
     node.wait_until_ready()
     woken = wake_ups(others) - before
     node.release()

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import time
 import webbrowser
+from collections.abc import Callable
 from pathlib import Path
 
 import click
@@ -34,7 +35,9 @@ DEFAULT_PORT = 8642
     help="Port on 127.0.0.1; 0 for any that is free.",
 )
 @click.option("--open", "opens", is_flag=True, help="Open the page in the browser, too.")
-@click.option("--once", is_flag=True, help="Draw the picture into a file instead, without a browser.")
+@click.option(
+    "--once", is_flag=True, help="Draw the picture into a file instead, without a browser."
+)
 @click.option("-o", "--output", type=OutputFile(".svg"), help="With --once: the file.")
 @click.option(
     "--period",
@@ -60,7 +63,9 @@ def command(
 
     def announce(link: str) -> None:
         click.echo(f"platform {platform}: {link}")
-        click.echo("The link holds a token: whoever has it sees the platform. Ctrl-C ends.", err=True)
+        click.echo(
+            "The link holds a token: whoever has it sees the platform. Ctrl-C ends.", err=True
+        )
         if opens:
             webbrowser.open(link)
 
@@ -87,7 +92,7 @@ def _svg(look: Look) -> str:
     return chip.svg(chip.marks(look))
 
 
-def _server():  # type: ignore[no-untyped-def]
+def _server() -> Callable[[str, int, float, Callable[[str], None]], None]:
     try:
         from rmw_manycore_py.view.server import serve
     except ImportError as error:

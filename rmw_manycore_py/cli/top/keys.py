@@ -1,0 +1,79 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Keys of `manycore top`: reading them, and what they change."""
+
+from __future__ import annotations
+
+import os
+import select
+import sys
+import termios
+import tty
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import replace
+
+from rmw_manycore_py.cli.top.rows import NODE_ORDERS, TOPIC_ORDERS
+from rmw_manycore_py.cli.top.screen import Choices
+
+ESCAPE, ENTER, ERASE = "\x1b", "\r\n", "\x7f\b"
+
+
+@contextmanager
+def key_by_key() -> Iterator[None]:
+    """Have the terminal hand on each key at once, unseen; Ctrl-C stays what it is."""
+    descriptor = sys.stdin.fileno()
+    before = termios.tcgetattr(descriptor)
+    tty.setcbreak(descriptor)
+    try:
+        yield
+    finally:
+        termios.tcsetattr(descriptor, termios.TCSADRAIN, before)
+
+
+def pressed(timeout_s: float) -> str:
+    """Return the keys pressed within that time, as soon as there are some."""
+    descriptor = sys.stdin.fileno()
+    ready, _, _ = select.select([descriptor], [], [], max(timeout_s, 0))
+    return os.read(descriptor, 64).decode(errors="replace") if ready else ""
+
+
+def after_keys(choices: Choices, keys: str) -> Choices | None:
+    """Return what keys have made of the choices; None for the end."""
+    if keys.startswith(ESCAPE) and len(keys) > 1:
+        return choices  # an arrow, or the like
+    for key in keys:
+        after = _typed(choices, key) if choices.is_typing else _command(choices, key)
+        if after is None:
+            return None
+        choices = after
+    return choices
+
+
+def _typed(choices: Choices, key: str) -> Choices:
+    if key in ENTER:
+        return replace(choices, is_typing=False)
+    if key == ESCAPE:
+        return replace(choices, is_typing=False, pattern="")
+    if key in ERASE:
+        return replace(choices, pattern=choices.pattern[:-1])
+    return replace(choices, pattern=choices.pattern + key) if key.isprintable() else choices
+
+
+def _command(choices: Choices, key: str) -> Choices | None:
+    if key in ("q", "Q"):
+        return None
+    if key == "n":
+        return replace(choices, node_order=_next(list(NODE_ORDERS), choices.node_order))
+    if key == "t":
+        return replace(choices, topic_order=_next(list(TOPIC_ORDERS), choices.topic_order))
+    if key == "r":
+        return replace(choices, reverse=not choices.reverse)
+    if key == "/":
+        return replace(choices, is_typing=True)
+    if key == ESCAPE:
+        return replace(choices, pattern="")
+    return choices
+
+
+def _next(orders: list[str], order: str) -> str:
+    return orders[(orders.index(order) + 1) % len(orders)]

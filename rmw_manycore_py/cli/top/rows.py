@@ -1,0 +1,123 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""What `manycore top` shows of a look: clusters, nodes, processes and topics."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from rmw_manycore_py.cli.common.rows import Row
+from rmw_manycore_py.look.graph import Member
+from rmw_manycore_py.look.watch import Look
+
+NODE_ORDERS = {"cpu": "cpu_percent", "cluster": "cluster", "core": "core", "name": "node"}
+TOPIC_ORDERS = {
+    "rate": "messages_per_s",
+    "bytes": "bytes_per_s",
+    "queue": "queue_percent",
+    "lost": "lost",
+    "p99": "p99_us",
+    "name": "topic",
+}
+_ASCENDING = {"cluster", "core", "node", "topic"}
+
+
+def cluster_rows(look: Look) -> list[Row]:
+    """Return the memory and the receive thread of each cluster."""
+    rates_hz = look.loads.receive_thread_rates_hz()
+    return [
+        {
+            "cluster": cluster.id,
+            "smem_size": cluster.smem_bytes,
+            "used": cluster.used_bytes,
+            "receive_thread_pid": cluster.receive_thread_pid if cluster.alive else None,
+            "cpu_percent": _percent(look, cluster.receive_thread_pid),
+            "messages_per_s": round(rates_hz[cluster.id], 1),
+        }
+        for cluster in look.loads.after.clusters
+    ]
+
+
+def node_rows(look: Look) -> list[Row]:
+    """Return each node with its place and the share of a CPU that its process takes, in percent.
+
+    Nodes of one process share that: `shared` says how many they are. A node that died is there,
+    too, until one of its name runs again.
+    """
+    living = [_node_row(look, m, name, "alive") for m in look.graph.members for name in m.nodes]
+    return living + [_node_row(look, m, name, "died") for m in look.dead for name in m.nodes]
+
+
+def _node_row(look: Look, member: Member, name: str, state: str) -> Row:
+    return {
+        "node": name,
+        **_place(member),
+        "cpu_percent": _percent(look, member.pid),
+        "shared": len(member.nodes),
+        "state": state,
+    }
+
+
+def process_rows(look: Look) -> list[Row]:
+    """Return each process with its share of a CPU in percent, the busiest first."""
+    rows = [
+        {**_place(member), "label": member.label, "cpu_percent": _percent(look, member.pid)}
+        for member in look.graph.members
+    ]
+    rows += [
+        {
+            "pid": cluster.receive_thread_pid,
+            "cluster": cluster.id,
+            "core": None,
+            "host_cpu": None,
+            "label": "(receive thread)",
+            "cpu_percent": _percent(look, cluster.receive_thread_pid),
+        }
+        for cluster in look.loads.after.clusters
+        if cluster.alive and cluster.receive_thread_pid
+    ]
+    return sorted(rows, key=lambda row: -float(row["cpu_percent"]))
+
+
+def topic_rows(look: Look) -> list[Row]:
+    """Return each topic with what is published per second, the largest first.
+
+    `lost` counts what its subscriptions have missed since they exist. `queued` and `capacity` are
+    of its fullest queue. `p99_us` is None unless the platform is traced.
+    """
+    rows = []
+    for name, load in look.loads.topics().items():
+        latency = look.latencies.get(name)
+        rows.append(
+            {
+                "topic": name,
+                "messages_per_s": round(load.rate_hz, 2),
+                "bytes_per_s": round(load.bytes_per_s, 1),
+                "queued": load.queued,
+                "capacity": load.capacity,
+                "queue_percent": round(100 * load.fill, 1),
+                "lost": load.lost,
+                "p99_us": None if latency is None else round(latency.p99_us, 1),
+            }
+        )
+    return ordered(rows, "bytes_per_s")
+
+
+def ordered(rows: Sequence[Row], column: str, *, reverse: bool = False) -> list[Row]:
+    """Return rows by a column: names from A on, figures from the largest; those without it last."""
+    descending = (column not in _ASCENDING) != reverse
+    known = [row for row in rows if row[column] is not None]
+    unknown = [row for row in rows if row[column] is None]
+    return sorted(known, key=lambda row: row[column], reverse=descending) + unknown
+
+
+def _place(member: Member) -> Row:
+    return {
+        "pid": member.pid,
+        "cluster": member.cluster,
+        "core": member.core,
+        "host_cpu": member.host_cpu,
+    }
+
+
+def _percent(look: Look, pid: int) -> float:
+    return round(100 * look.loads.cpu_share(pid), 1)

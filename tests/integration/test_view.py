@@ -1,0 +1,207 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""`manycore view`: in a real browser, and at its doors."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import urllib.error
+import urllib.request
+import xml.etree.ElementTree as ElementTree
+
+import pytest
+from forked import forked_example, forked_manycore
+from support import IS_MANYCORE, leftovers, manycore_command, wait_until
+
+from rmw_manycore_py.bench.idle import wait_until_quiet, wake_ups
+from rmw_manycore_py.look.watch import Watch
+from rmw_manycore_py.trace.files import load
+
+pytestmark = [
+    pytest.mark.integration,
+    pytest.mark.skipif(not IS_MANYCORE, reason="manycore is about rmw_manycore"),
+]
+
+
+@pytest.fixture
+def talking(start):
+    """A talker and a listener, each in its cluster, that hear each other."""
+    listener = start(forked_example("listener"), cluster=2)
+    talker = start(forked_example("talker"), MANYCORE_CORE="3")
+    listener.wait_for("I heard")
+    return talker, listener
+
+
+@pytest.fixture
+def view(start):
+    """A viewer, and its link."""
+    program = start(manycore_command("view", "--port", "0", "--period", "0.2"))
+    link = program.wait_for(r"http://\S+").group()
+    yield program, link
+    if program.is_running():
+        assert program.stop() == 0, program
+
+
+@pytest.fixture
+def browser(tmp_path):
+    from browser import Browser
+
+    opened = Browser(tmp_path)
+    yield opened
+    opened.close()
+
+
+def answer(link: str, method: str = "GET", **headers: str) -> tuple[int, str]:
+    """Return status and text of a request."""
+    named = {name.replace("_", "-"): value for name, value in headers.items()}
+    request = urllib.request.Request(link, method=method, headers=named)
+    try:
+        with urllib.request.urlopen(request) as response:
+            return response.status, response.read().decode()
+    except urllib.error.HTTPError as error:
+        with error:
+            return error.code, error.read().decode()
+
+
+@pytest.mark.needs("chromium", "chromedriver", "selenium", "aiohttp")
+def test_a_platform_is_seen_from_start_to_end(view, browser, start, platform, tmp_path) -> None:
+    _, link = view
+    browser.open(link)
+    browser.wait_for_text("#state", f"waiting for platform {platform} to start")
+
+    listener = start(forked_example("listener"), cluster=2)
+    talker = start(forked_example("talker"), MANYCORE_CORE="3")
+    browser.find("[data-node='/talker']")
+    browser.find("[data-topic='/chatter']:not(.rate0)")
+    assert "core 3" in browser.text("#picture")
+
+    browser.click("[data-node='/talker']")
+    browser.wait_for_text("#details-facts", f"pid {talker.pid}")
+    browser.wait_for_text("#endpoints", "reliable, volatile, keep last 10")
+    browser.click("#parameters")
+    browser.wait_for_text("#parameters-text", "rate_hz")
+
+    browser.click("#trace")
+    browser.wait_for_text("#trace", "Stop and save")
+    browser.click("[data-topic='/chatter']")
+    browser.wait_for_text("#details-facts", "99 % below")
+    browser.find("#details-charts canvas")
+    browser.click("#trace")
+    browser.wait_for_text("#chains", "communication /chatter")
+    browser.driver.execute_script("document.querySelector('#trace-file').click()")
+    file = tmp_path / f"{platform}-1.json"
+    wait_until(file.exists, "the trace is downloaded")
+    assert load(file).event_count > 0
+
+    talker.signal(signal.SIGKILL)
+    browser.find("g.dead[data-node='/talker']")
+    browser.wait_for_text("#happened .died", "/talker died")
+    start(forked_example("talker"), MANYCORE_CORE="3")
+    browser.until(
+        lambda: browser.all("[data-node='/talker']") and not browser.all("g.dead"), "it is back"
+    )
+    assert browser.complaints() == []
+    listener.kill()
+
+
+@pytest.mark.needs("chromium", "chromedriver", "selenium", "aiohttp")
+def test_two_pages_see_the_end_of_a_platform(talking, view, browser) -> None:
+    viewer, link = view
+    browser.open(link)
+    browser.find("[data-node='/talker']")
+    browser.driver.switch_to.new_window("tab")
+    browser.open(link)
+    browser.find("[data-node='/listener']")
+    for program in talking:
+        program.stop()
+    for tab in browser.driver.window_handles:
+        browser.driver.switch_to.window(tab)
+        browser.wait_for_text("#state", "has ended; waiting for it to start again")
+        browser.find("[data-node='/talker']:not(.dead)")
+    assert viewer.stop() == 0
+    browser.wait_for_text("#state", "manycore view has ended, or cannot be reached")
+
+
+def test_only_its_own_page_is_answered(view) -> None:
+    _, link = view
+    origin = link.rsplit("/", 2)[0]
+    assert answer(link)[0] == 200
+    assert answer(origin + "/")[0] == 403
+    status, text = answer(origin + "/wrong/")
+    assert (status, "wrong token" in text) == (403, True)
+    assert answer(link, Host="elsewhere.example")[0] == 403
+    assert answer(link, Origin="http://elsewhere.example")[0] == 403
+    assert answer(link + "trace/start", "POST")[0] == 403
+    assert answer(link + "live", Upgrade="websocket")[0] == 403
+    status, text = answer(link + "trace/start", "POST", Origin=origin)
+    assert (status, "no platform" in text or "not" in text) == (409, True)
+    assert answer(link + "parameters?node=/x", "POST", Origin=origin)[0] == 404
+    assert answer(link + "page/../server.py")[0] in (403, 404)
+    assert answer(link + "trace/..%2f..%2fetc%2fpasswd")[0] == 404
+
+
+def test_a_port_in_use_is_named(view, start) -> None:
+    port = view[1].split(":")[2].split("/")[0]
+    second = start(forked_manycore("view", "--port", port))
+    assert second.wait() == 1
+    assert f"port {port} is in use" in second.output
+    assert "--port" in second.output
+
+
+def test_the_picture_is_drawn_without_a_browser(talking, start, tmp_path) -> None:
+    file = tmp_path / "chip.svg"
+    drawn = start(forked_manycore("view", "--once", "-o", str(file)))
+    assert drawn.wait() == 0, drawn
+    text = "".join(ElementTree.parse(file).getroot().itertext())
+    for part in ("/talker", "/listener", "/chatter", "core 3", "cluster 2", "receive thread"):
+        assert part in text
+
+
+def test_looking_wakes_nobody_and_joins_nothing(start, platform) -> None:
+    listener = start(forked_example("listener"))
+    watch = Watch(platform)
+    wait_until(lambda: (look := watch.look()) and look.graph.endpoints, "it is there")
+    wait_until_quiet([listener.pid])
+    before = wake_ups([listener.pid])
+    for _ in range(50):
+        look = watch.look()
+    assert wake_ups([listener.pid]) == before
+    assert [member.pid for member in look.graph.members] == [listener.pid]
+    watch.close()
+
+
+def test_a_death_is_told_from_a_leave(talking, platform, start) -> None:
+    talker, listener = talking
+    watch = Watch(platform)
+    assert watch.look().dead == ()
+    talker.signal(signal.SIGKILL)
+    wait_until(lambda: (look := watch.look()) and look.dead, "the death is seen")
+    again = start(forked_example("talker"))
+    wait_until(lambda: not watch.look().dead, "it runs again")
+    again.stop_node()
+    wait_until(lambda: len(watch.look().graph.members) == 1, "it has left")
+    assert watch.look().dead == ()
+    os.kill(listener.pid, signal.SIGKILL)
+    wait_until(lambda: watch.look() is None, "the platform has ended")
+    assert [one.text.split(" (")[0] for one in watch.last_words][-1] == (
+        f"platform {platform} has ended"
+    )
+    wait_until(lambda: not leftovers(platform), "nothing is left")
+
+
+def test_top_shows_nodes_and_topics(talking, start, platform) -> None:
+    talker, _ = talking
+    top = start(forked_manycore("top", "--json", "--count", "2", "--period", "0.6"))
+    assert top.wait() == 0, top
+    look = json.loads(top.lines[-1])
+    nodes = {row["node"]: row for row in look["nodes"]}
+    assert (nodes["/talker"]["pid"], nodes["/talker"]["core"]) == (talker.pid, 3)
+    topics = {row["topic"]: row for row in look["topics"]}
+    assert topics["/chatter"]["messages_per_s"] > 0
+    assert {row["cluster"] for row in look["clusters"]} == {1, 2}
+    plain = start(forked_manycore("top", "--count", "1", "--period", "0.1", "--filter", "chat"))
+    assert plain.wait() == 0
+    assert "/chatter" in plain.output
+    assert "/talker" not in plain.output
+    talker.signal(signal.SIGKILL)

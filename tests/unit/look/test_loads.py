@@ -1,0 +1,90 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Rates are differences of two samples, also where endpoints have come and gone in between."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from rmw_manycore_py._transport import Qos
+from rmw_manycore_py.look.graph import Endpoint, Graph, Member
+from rmw_manycore_py.look.happenings import deaths, losses
+from rmw_manycore_py.look.loads import Loads
+from rmw_manycore_py.look.sample import Sample, aligned
+from rmw_manycore_py.qos import policies_of
+
+pytestmark = pytest.mark.unit
+
+TALKER = Member(0, 70, 1, 2, 0, "talker", ("/talker",))
+LISTENER = Member(1, 71, 2, None, None, "listener", ("/listener",))
+
+
+def endpoint(number: int, kind: Any, topic: str = "/t", role: Any = "topic") -> Endpoint:
+    node = "/talker" if kind == "publisher" else "/listener"
+    return Endpoint(number, kind, role, topic, "std_msgs/msg/String", node, 0, policies_of(Qos()))
+
+
+def sample(time_s: float, rows: list[tuple[Endpoint, list[int]]], cpu_ns: dict[int, int]) -> Sample:
+    graph = Graph("p", 5, 16, 1 << 20, (TALKER, LISTENER), tuple(end for end, _ in rows))
+    counts = np.zeros((len(rows), 9), dtype=np.int64)
+    for row, values in enumerate(values for _, values in rows):
+        counts[row, : len(values)] = values
+    cluster: Any = SimpleNamespace(id=1, messages=int(10 * time_s), receive_thread_pid=9)
+    return Sample(time_s, graph, (cluster,), counts, cpu_ns)
+
+
+A, B = endpoint(1, "publisher"), endpoint(2, "publisher")
+C, SERVICE = endpoint(3, "subscription"), endpoint(4, "publisher", "/s", "request")
+LOADS = Loads(
+    sample(10.0, [(A, [5, 50]), (C, [1, 10, 1])], {70: 1_000_000_000}),
+    sample(
+        12.0,
+        [
+            (SERVICE, [100, 100]),
+            (B, [2, 20]),
+            (C, [3, 30, 4, 0, 0, 0, 3, 10, 2]),
+            (A, [9, 90]),
+        ],
+        {70: 1_500_000_000, 71: 7},
+    ),
+)
+
+
+def test_rates_are_differences() -> None:
+    (name,), (load,) = LOADS.topics().keys(), LOADS.topics().values()
+    assert name == "/t"
+    assert (load.rate_hz, load.bytes_per_s, load.message_bytes) == (3.0, 30.0, 10.0)
+    assert (load.queued, load.capacity, load.fill) == (3, 10, 0.3)
+    assert (load.lost, load.losses_per_s) == (4, 1.5)
+
+
+def test_cpu_time_is_that_since_the_sample_before() -> None:
+    assert LOADS.cpu_share(70) == 0.25
+    assert LOADS.cpu_share(71) == 0.0, "it was not there before"
+    assert LOADS.receive_thread_rates_hz() == {1: 10.0}
+
+
+def test_losses_and_missed_deadlines_are_told() -> None:
+    assert [(one.kind, one.text) for one in losses(LOADS)] == [
+        ("lost", "/t: 3 lost by /listener"),
+        ("deadline", "/t: /listener missed its deadline 2 times"),
+    ]
+    (death,) = deaths([TALKER])
+    assert death.text == "/talker died (pid 70, cluster 1 core 2)"
+
+
+def test_a_first_look_has_no_rates() -> None:
+    load = Loads(LOADS.after, LOADS.after).topics()["/t"]
+    assert (load.rate_hz, load.lost) == (0.0, 4)
+
+
+def test_counts_are_found_by_their_endpoint() -> None:
+    ids = np.array([7, 3, 5], dtype=np.uint64)
+    known = np.array([5, 7, 9], dtype=np.uint64)
+    counts = np.array([[50], [70], [90]], dtype=np.int64)
+    assert aligned(ids, known, counts).tolist() == [[70], [0], [50]]
+    assert aligned(known, known, counts) is counts
+    assert aligned(ids, known[:0], counts[:0]).tolist() == [[0], [0], [0]]
