@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from rmw_manycore_py import _transport
 from rmw_manycore_py.native_errors import translate_native_errors
-from rmw_manycore_py.trace.events import EndpointId, Events, Kind, Trace, endpoint_id
+from rmw_manycore_py.trace.events import EndpointId, Events, Kind, Thread, Trace, endpoint_id
 from rmw_manycore_py.trace.flows import merged
 from rmw_manycore_py.trace.recorded import looked_at
 
@@ -43,7 +43,7 @@ def live_latencies(platform: str, state: _transport.TraceState) -> dict[str, Top
 def topic_latencies(trace: Trace, since_ns: int = 0) -> dict[str, TopicLatency]:
     """Return the latency of each topic, of the messages that arrived since then."""
     threads = list(trace.threads())
-    begins = merged(threads, (Kind.PUBLISH_BEGIN,))
+    begins = np.concatenate([_published(thread) for _, thread in threads] or [np.empty(0)])
     ends = merged(threads, (Kind.RELEASE,))
     ends = ends[ends["time_ns"] >= since_ns] if len(ends) else ends
     if not len(begins) or not len(ends):
@@ -58,6 +58,17 @@ def topic_latencies(trace: Trace, since_ns: int = 0) -> dict[str, TopicLatency]:
     found = begin_keys[match] == end_keys
     taken_us = (ends["time_ns"] - begins["time_ns"][match])[found] / 1e3
     return _by_topic(trace, begins[match[found]], taken_us)
+
+
+def _published(thread: Thread) -> Events:
+    """Return the writes of a thread, each at the time its publish began."""
+    chosen = thread.events[np.isin(thread.events["kind"], (Kind.PUBLISH_BEGIN, Kind.WRITE))]
+    rows = np.flatnonzero(chosen["kind"] == Kind.WRITE)
+    begins = np.maximum(rows - 1, 0)
+    is_begin = chosen["kind"][begins] == Kind.PUBLISH_BEGIN
+    writes: Events = chosen[rows]
+    writes["time_ns"] = np.where(is_begin, chosen["time_ns"][begins], writes["time_ns"])
+    return writes
 
 
 def _keys_of(events: Events) -> _Keys:

@@ -29,7 +29,8 @@ def trace_of(takes_us: list[int]) -> Trace:
     for number, take_us in enumerate(takes_us):
         begin_ns = 1_000_000 * (number + 1)
         for kind, after_ns in ((Kind.PUBLISH_BEGIN, 0), (Kind.WRITE, 10), (Kind.PUBLISH_END, 20)):
-            published.append((begin_ns + after_ns, number, 0, SLOT, INCARNATION, kind))
+            known = 0 if kind == Kind.PUBLISH_BEGIN else number  # as it has none yet
+            published.append((begin_ns + after_ns, known, 0, SLOT, INCARNATION, kind))
         publisher = endpoint_id(SLOT, INCARNATION)
         end_ns = begin_ns + 1000 * take_us
         taken.append((end_ns - 1, number, publisher, READER, 1, Kind.CLAIM))
