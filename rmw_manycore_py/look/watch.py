@@ -137,7 +137,7 @@ class Watch:
             member = seen.known.get((death.process, death.pid))
             if death.found_ns > seen.deaths_until_ns and member is not None:
                 newly.append(member)
-        seen.deaths_until_ns = time.monotonic_ns()
+            seen.deaths_until_ns = max(seen.deaths_until_ns, death.found_ns)
         return newly
 
     def _happened(self, seen: _Seen, since: Loads) -> tuple[Happening, ...]:
@@ -166,6 +166,10 @@ class Watch:
 def _not_back(
     dead: dict[tuple[int, int], Member], living: Iterable[Member]
 ) -> dict[tuple[int, int], Member]:
-    """Return the dead without those whose nodes all run again."""
-    names = {name for member in living for name in member.shown_names}
+    """Return the dead without those whose nodes all run again.
+
+    One that died after the graph was read is among the living, too: it is not back.
+    """
+    others = (member for member in living if (member.slot, member.pid) not in dead)
+    names = {name for member in others for name in member.shown_names}
     return {key: member for key, member in dead.items() if not names.issuperset(member.shown_names)}

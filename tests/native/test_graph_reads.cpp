@@ -170,3 +170,23 @@ TEST_CASE("what is read beside a change is read again; while changes do not ceas
   const Registry::Lock change(registry);
   CHECK(read_between_changes(registry, [](bool is_changing) { return is_changing; }));
 }
+
+TEST_CASE("activity is what endpoints have counted, and what waits in their queues") {
+  TestPlatform platform;
+  const auto process = platform.join();
+  const auto publisher = process->create_publisher(on_topic("/x", keep_last(10)));
+  const auto subscription = process->create_subscription(on_topic("/x", keep_last(10)));
+  for (uint64_t number = 1; number <= 3; ++number) {
+    publish(*publisher, number);
+  }
+  REQUIRE(take(*subscription));
+  const std::vector<Activity> rows = process->graph().activity();
+  REQUIRE(rows.size() == 2);
+  CHECK(rows[0].endpoint == endpoint_in(publisher->gid()));
+  CHECK(rows[0].counters.messages == 3);
+  CHECK(rows[0].capacity == 0);
+  CHECK(rows[1].endpoint == endpoint_in(subscription->gid()));
+  CHECK(rows[1].counters.messages == 1);
+  CHECK(rows[1].queued == 2);
+  CHECK(rows[1].capacity == 10);
+}

@@ -340,3 +340,21 @@ TEST_CASE("a receive thread that is started after all nodes died removes the pla
   }
   ensure_receive_thread(paths, 1);  // ~TestPlatform waits
 }
+
+TEST_CASE("a process that is killed is noted as dead, one that leaves is not") {
+  Fixture f;
+  f.platform.join(1).reset();
+  f.wait_until_alone();
+  CHECK(f.process->graph().deaths().empty());
+  pid_t killed = 0;
+  {
+    Node node(f.platform, 1);
+    killed = node.pid();
+    node.kill();
+  }
+  f.wait_until_alone();
+  const std::vector<Death> deaths = f.process->graph().deaths();
+  REQUIRE(deaths.size() == 1);
+  CHECK(deaths[0].pid == killed);
+  CHECK(deaths[0].found_ns <= monotonic_ns());
+}
