@@ -6,14 +6,12 @@ from __future__ import annotations
 import os
 import signal
 import tempfile
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
 from rmw_manycore_py.bench.contenders import INSIDE, MIB
 from rmw_manycore_py.bench.question import Question, Run
-from rmw_manycore_py.bench.session import Process, Session
+from rmw_manycore_py.bench.session import Session
 from rmw_manycore_py.bench.summary import Goal, Result
 from rmw_manycore_py.recording.library import require_library
 from rmw_manycore_py.recording.recording import Recording
@@ -21,6 +19,7 @@ from rmw_manycore_py.recording.recording import Recording
 TOPIC = "/bench"
 SECONDS = 20.0
 _CLI = "rmw_manycore_py.cli"
+_UNCOUNTED = "lost messages that the recorder did not count"
 _LOST, _LATE, _RATE = "messages lost by the recorder", "lateness of the player", "recorded"
 _MEDIAN, _P99 = "median", "p99"
 
@@ -49,14 +48,15 @@ def measure(run: Run) -> list[Result]:
 
 
 def _measure(run: Run, stream: Stream) -> list[Result]:
-    lost, rates, medians, p99s = [], [], [], []
+    lost, uncounted, rates, medians, p99s = [], [], [], [], []
     for turn in range(run.rounds):
         with tempfile.TemporaryDirectory() as directory:
             file = Path(directory, "bench.mcap")
             run.note(f"record, round {turn + 1} of {run.rounds}: {stream.name}")
-            sent, bytes_per_s = _record(run, stream, file)
+            sent, bytes_per_s, counted = _record(run, stream, file)
             with Recording(file) as recording:
                 lost.append(float(sent - recording.span.messages))
+            uncounted.append(abs(lost[-1] - counted))
             rates.append(bytes_per_s / 1e6)
             run.note(f"play, round {turn + 1} of {run.rounds}: {stream.name}")
             median_ms, p99_ms = _play(run, file)
@@ -64,28 +64,23 @@ def _measure(run: Run, stream: Stream) -> list[Result]:
             p99s.append(p99_ms)
     return [
         Result(_LOST, stream.name, "count", tuple(lost)),
+        Result(_UNCOUNTED, stream.name, "count", tuple(uncounted)),
         Result(_RATE, stream.name, "MB/s", tuple(rates), higher_is_better=True),
         Result(_LATE, f"{stream.name}, {_MEDIAN}", "ms", tuple(medians)),
         Result(_LATE, f"{stream.name}, {_P99}", "ms", tuple(p99s)),
     ]
 
 
-def _record(run: Run, stream: Stream, file: Path) -> tuple[int, float]:
-    """Return how many messages were published, and how many bytes per second."""
+def _record(run: Run, stream: Stream, file: Path) -> tuple[int, float, int]:
+    """Return how many messages were published, bytes per second, and how many it says are lost."""
     count = run.iterations(int(SECONDS * stream.rate_hz))
-    with Session(INSIDE, run.cpus) as session, _verb(session, "record", TOPIC, "-o", file):
+    with Session(INSIDE, run.cpus) as session:
+        recorder = session.module(_CLI, 1, "topic", "record", TOPIC, "-o", file, "--json")
         source = session.python("steady", 0, TOPIC, stream.size_bytes, stream.rate_hz, count)
         found = source.finish()
-    return int(found["sent"]), float(found["bytes_per_s"])
-
-
-@contextmanager
-def _verb(session: Session, *words: object) -> Iterator[Process]:
-    """Run a verb of `manycore topic` until the block ends, then interrupt it."""
-    process = session.module(_CLI, 1, "topic", *words)
-    yield process
-    os.kill(process.pid, signal.SIGINT)
-    process.finish()
+        os.kill(recorder.pid, signal.SIGINT)
+        (topic,) = recorder.finish()["topics"]
+    return int(found["sent"]), float(found["bytes_per_s"]), int(topic["lost"])
 
 
 def _play(run: Run, file: Path) -> tuple[float, float]:
@@ -100,6 +95,7 @@ QUESTION = Question(
     measure,
     (
         *(Goal(_LOST, stream.name, "within", 0, statistic="largest") for stream in STREAMS),
+        *(Goal(_UNCOUNTED, stream.name, "within", 0, statistic="largest") for stream in STREAMS),
         *(Goal(_LATE, f"{stream.name}, {_MEDIAN}", "within", 0.5) for stream in STREAMS),
     ),
     "publisher and player on the first CPU, recorder on the second, files in $TMPDIR",

@@ -24,7 +24,7 @@ from rmw_manycore_py.recording.selection import Selection
 _MAX_CACHE_BYTES = 100 << 20  # as rosbag2
 # So many messages of a topic wait for the recorder while others have the CPU; more where publishers
 # keep more.
-_DEPTH = 100
+_DEPTH = 1000
 
 
 @click.command(
