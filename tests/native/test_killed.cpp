@@ -213,8 +213,10 @@ uint64_t tries() {
 uint64_t kill_after(Fixture & f, const std::string & role, uint64_t instructions) {
   const bool reaps = role == "reaps";
   std::optional<Standstill> no_other_reaper;
-  if (reaps) {
+  if (reaps || role == "sweeps_many") {
     no_other_reaper.emplace(f.platform, 1);
+  }
+  if (reaps) {
     f.leave_dead_nodes();
   }
   SteppedChild child(role, {f.platform.name()});

@@ -168,7 +168,8 @@ TEST_CASE("messages that were noted for later and are pushed out then are counte
   CHECK(slow->lost() == 4);
 }
 
-TEST_CASE("many readers are revoked in turns; a sweep that ended early is gone on with by the next") {
+TEST_CASE(
+  "many readers are revoked in turns; a sweep that ended early is gone on with by the next") {
   Fixture f;
   const Standstill no_other_sweeper(f.platform, 1);
   constexpr size_t many = 300;

@@ -42,7 +42,8 @@ void sweep_all(Registry & registry);
 void sweep_a_little(
   Registry & registry, uint32_t cluster, long wait_ns = Registry::Lock::usual_wait_ns);
 
-/// One turn for one endpoint, if there is such a closed one; gives up where the registry lock is taken.
+/// One turn for one endpoint, if there is such a closed one; gives up where the registry lock is
+/// taken.
 void try_to_sweep(Registry & registry, uint32_t endpoint) noexcept;
 
 }  // namespace manycore::sweeping

@@ -40,12 +40,10 @@ WantedSources::Look WantedSources::look_at(
   const OrphanReader & reader, const Undelivered & newest) const {
   const uint32_t incarnation = reader.endpoint.slot.incarnation.load();
   const bool is_same = last_ && last_->endpoint == reader.endpoint_slot &&
-                       last_->incarnation == incarnation &&
-                       last_->record.source == newest.source &&
+                       last_->incarnation == incarnation && last_->record.source == newest.source &&
                        last_->record.number == newest.number;
-  return is_same
-           ? *last_
-           : Look{reader.endpoint_slot, incarnation, taken_by(reader.endpoint), newest, 0, 0};
+  return is_same ? *last_
+                 : Look{reader.endpoint_slot, incarnation, taken_by(reader.endpoint), newest, 0, 0};
 }
 
 bool WantedSources::count_newer(Look & look, const OrphanReader & reader, Turn & turn) const {
@@ -65,10 +63,9 @@ bool WantedSources::count_newer(Look & look, const OrphanReader & reader, Turn &
       const uint32_t cluster = SegmentRef{source.topic_dsm.load()}.cluster();
       const std::vector<Undelivered> records =
         undelivered_of(registry_.clusters().at(cluster), *dsm, source, index);
-      look.newer += static_cast<uint32_t>(
-        std::count_if(records.begin(), records.end(), [&](const Undelivered & record) {
-          return record.is_newer_than(look.record);
-        }));
+      look.newer += static_cast<uint32_t>(std::count_if(
+        records.begin(), records.end(),
+        [&](const Undelivered & record) { return record.is_newer_than(look.record); }));
     }
     return false;
   };

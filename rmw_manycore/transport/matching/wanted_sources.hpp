@@ -31,8 +31,7 @@ private:
   };
 
   /// Goes on with the last look, if it is at this reader.
-  Look look_at(
-    const closing::OrphanReader & reader, const closing::Undelivered & newest) const;
+  Look look_at(const closing::OrphanReader & reader, const closing::Undelivered & newest) const;
   /// False when the turn was over before the end.
   bool count_newer(Look & look, const closing::OrphanReader & reader, Turn & turn) const;
 

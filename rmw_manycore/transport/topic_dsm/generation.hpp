@@ -26,8 +26,11 @@ struct Generation {
   uint64_t count = 0;        ///< of descriptors
   uint64_t data_offset = 0;  ///< in the cluster segment
   uint64_t data_bytes = 0;
-  uint64_t first = 0;           ///< number of its first record
-  uint64_t released_bytes = 0;  ///< of an old one: given back to the system
+  uint64_t first = 0;  ///< number of its first record
+  // Of an old one:
+  uint64_t end = 0;             ///< number behind its last record
+  uint64_t drained_before = 0;  ///< nothing below this number is in it any more
+  uint64_t released_bytes = 0;  ///< given back to the system
 
   RecordDescriptor & descriptor(uint64_t number) const noexcept {
     return descriptors[number & (count - 1)];

@@ -18,24 +18,27 @@ uint64_t half_as_much_again(uint64_t bytes) { return align_up(bytes * 3 / 2, rec
 
 }  // namespace
 
-/// Takes back what no reader wants in an old generation; true when nothing is left.
-bool TopicDsmWriter::drain(const Generation & old) {
-  bool wanted = false;
-  for (uint64_t slot = 0; slot < old.count; ++slot) {
-    RecordDescriptor & record = old.descriptors[slot];
-    const uint64_t number = record.number.load(std::memory_order_relaxed);
-    if (number != no_record && is_wanted(number, record)) {
-      wanted = true;
-    } else if (number != no_record) {
-      record.number.store(no_record, std::memory_order_seq_cst);
+/// Takes back what no reader wants in an old generation, from its oldest record to the first that
+/// is wanted; true when nothing is left. A deep history is so looked at once, and not at each
+/// publish.
+bool TopicDsmWriter::drain(Generation & old) {
+  for (; old.drained_before < old.end; ++old.drained_before) {
+    const uint64_t number = old.drained_before;
+    RecordDescriptor & record = old.descriptor(number);
+    if (record.number.load(std::memory_order_relaxed) != number) {
+      continue;
     }
+    if (is_wanted(number, record)) {
+      return false;
+    }
+    record.number.store(no_record, std::memory_order_seq_cst);
   }
-  return !wanted;
+  return true;
 }
 
 /// Closes an old generation once nothing is left in it; true when no reader looks into it any more.
 /// Under the lock: a sweeper that holds it may look as well.
-bool TopicDsmWriter::retire(const Generation & old) {
+bool TopicDsmWriter::retire(Generation & old) {
   if (old.entry->first.load(std::memory_order_relaxed) != 0) {
     if (!drain(old)) {
       return false;
@@ -156,6 +159,8 @@ bool TopicDsmWriter::start_generation(uint64_t data_bytes, uint64_t descriptor_c
   reserve_generation(*free_entry, data_bytes, descriptor_count);
   open_generation(*free_entry);
   old_.push_back(current_);
+  old_.back().end = next_number_;
+  old_.back().drained_before = next_number_ - std::min(next_number_, current_.count);
   current_ = Generation::view(cluster_, *free_entry);
   blocks_.clear();
   pinned_in_slot_ = std::move(pinned);

@@ -88,14 +88,17 @@ bool TopicDsmWriter::is_among_last(uint32_t depth, const RecordDescriptor & reco
 /// among those to others, so it wants what its queue has not displaced.
 bool TopicDsmWriter::wants(
   const Reader & reader, uint64_t number, const RecordDescriptor & record) const noexcept {
+  const bool is_reply = endpoint_.role == EndpointRole::reply;
+  if (is_reply && record.correlation.client != reader.gid) {
+    return false;  // first, of many clients: nothing of theirs is touched
+  }
   if (reader.source->taken.load(std::memory_order_seq_cst) >= number || !reader.active()) {
     return false;
   }
   const bool keeps_all = reader.subscription->keep_all != 0;
-  if (endpoint_.role == EndpointRole::reply) {
-    return record.correlation.client == reader.gid &&
-           (keeps_all ||
-            !Displaced::covers(reader.source->displaced, reader.source_incarnation, number));
+  if (is_reply) {
+    return keeps_all ||
+           !Displaced::covers(reader.source->displaced, reader.source_incarnation, number);
   }
   return keeps_all || is_among_last(reader.subscription->depth, record);
 }

@@ -54,8 +54,8 @@ private:
   bool is_owed(uint64_t number) const noexcept;
   TakeBack take_back(uint64_t number, bool force);
   void take_back_free_records();
-  bool drain(const Generation & old);
-  bool retire(const Generation & old);
+  bool drain(Generation & old);
+  bool retire(Generation & old);
   void free_old_generations() noexcept;
   void free_unopened(GenerationEntry & entry);
   /// Makes place where a wanted record stands: grows, waits (RELIABLE + KEEP_ALL) or overwrites.

@@ -4,10 +4,10 @@
 from __future__ import annotations
 
 from rmw_manycore_py.bench.question import Question, Run
-from rmw_manycore_py.bench.scale import endpoints, nodes, threads
+from rmw_manycore_py.bench.scale import endpoints, holds, nodes, threads
 from rmw_manycore_py.bench.summary import Result
 
-PARTS = (threads, endpoints, nodes)
+PARTS = (threads, endpoints, holds, nodes)
 
 
 def measure(run: Run) -> list[Result]:

@@ -1,0 +1,58 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""How long the registry lock is held at a time, when a topic has many endpoints."""
+
+from __future__ import annotations
+
+from rmw_manycore_py.bench.contenders import INSIDE
+from rmw_manycore_py.bench.question import Run
+from rmw_manycore_py.bench.scale.common import at_count, drawn, on_curve
+from rmw_manycore_py.bench.session import Session
+from rmw_manycore_py.bench.summary import Goal, Result
+
+HOLD = "99 % of the holds of the registry lock end within"
+OPERATIONS = {
+    "create": "creating endpoints",
+    "close_subscription": "closing subscriptions",
+    "close_publisher": "closing publishers",
+    "sweep": "sweeping what they left",
+    "reap": "reaping a killed process",
+}
+ENDPOINTS = (100, 200, 400, 800)
+CHANGES = 10
+MOST_US = 100
+
+
+def measure(run: Run) -> list[Result]:
+    """Return the holds of each operation, over the endpoints; Fast DDS has no such lock."""
+    results: list[Result] = []
+    for count in drawn(run, ENDPOINTS):
+        if run.wants(f"{HOLD}: {INSIDE.name}"):
+            run.note(f"holds of the registry lock, {count} publishers and subscriptions")
+            results += _watch(run, count)
+    return results
+
+
+def _watch(run: Run, count: int) -> list[Result]:
+    found: dict[str, list[float]] = {operation: [] for operation in OPERATIONS}
+    for _ in range(run.rounds):
+        with Session(INSIDE, run.cpus) as session:
+            holds = session.native(
+                "registry_holds", 0, endpoints=count, changes=CHANGES, cpu=run.cpus[1]
+            ).finish()
+        for operation, samples in found.items():
+            samples.append(holds[f"{operation}_p99"] / 1e3)
+    return [
+        on_curve(HOLD, _curve(operation), count, "endpoints", "us", samples)
+        for operation, samples in found.items()
+    ]
+
+
+def _curve(operation: str) -> str:
+    return f"{INSIDE.name}, {OPERATIONS[operation]}"
+
+
+GOALS = tuple(
+    Goal(HOLD, at_count(_curve(operation), ENDPOINTS[-1], "endpoints"), "within", MOST_US)
+    for operation in OPERATIONS
+)
+PLACEMENT = "holds: all endpoints on the first, what watches the lock on the second"
