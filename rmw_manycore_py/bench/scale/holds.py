@@ -40,10 +40,12 @@ def _watch(run: Run, count: int) -> list[Result]:
                 "registry_holds", 0, endpoints=count, changes=CHANGES, cpu=run.cpus[1]
             ).finish()
         for operation, samples in found.items():
-            samples.append(holds[f"{operation}_p99"] / 1e3)
+            if (hold_ns := holds.get(f"{operation}_p99")) is not None:  # it was seen
+                samples.append(hold_ns / 1e3)
     return [
         on_curve(HOLD, _curve(operation), count, "endpoints", "us", samples)
         for operation, samples in found.items()
+        if samples
     ]
 
 
