@@ -115,6 +115,11 @@ class Process:
                 return
         self.finish()
 
+    def next_line(self) -> str:
+        """Return the next line that the process prints; "" where it has ended."""
+        assert self._process.stdout is not None
+        return self._process.stdout.readline()
+
     def release(self) -> None:
         """End the input of the process, for which some wait before they end themselves."""
         assert self._process.stdin is not None
