@@ -72,8 +72,9 @@ tidy: setup  ## clang-tidy with the checks of .clang-tidy
 docs: setup  ## the documentation as HTML in build/docs, links checked
 	$(VENV)/mkdocs build --quiet --strict --site-dir build/docs
 
-pictures: setup  ## the pictures of docs/where_does_the_time_go.md, from a trace of an example
+pictures: setup  ## the pictures of README and docs, each from a run of an example
 	mkdir -p build docs/pictures
+	PATH="$(CURDIR)/$(VENV):$$PATH" scripts/picture.sh docs/pictures/chip.svg
 	$(VENV)/manycore run image_pipeline --duration 10 --trace build/pictures.json >/dev/null
 	$(VENV)/manycore trace draw build/pictures.json -o docs/pictures/trace_message.png
 	$(VENV)/manycore trace latency build/pictures.json --plot docs/pictures/trace_chains.png

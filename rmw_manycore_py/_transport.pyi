@@ -100,7 +100,7 @@ class ProcessInfo:
     def alive(self) -> bool: ...
 
 class Death:
-    """A process that ended without leaving: it was killed, or crashed."""
+    """A process that ended though nothing had told it to: it was killed, or crashed."""
 
     @property
     def pid(self) -> int: ...

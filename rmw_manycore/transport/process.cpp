@@ -158,6 +158,7 @@ uint32_t Process::Impl::take_process_slot() {
   entry.core = placement.core ? static_cast<int32_t>(*placement.core) : -1;
   entry.host_cpu = only_cpu();
   entry.charged_bytes = 0;
+  entry.is_ending.store(0);
   entry.trace.store(scope_of_new_process(registry->header(), placement.cluster));
   std::memset(entry.label, 0, sizeof entry.label);
   std::strncpy(entry.label, placement.label.c_str(), sizeof entry.label - 1);
@@ -386,6 +387,10 @@ bool Process::is_cut_off() const noexcept { return impl_->membership->is_cut_off
 bool Process::is_inherited() const noexcept { return impl_->membership->is_inherited(); }
 
 void Process::require_membership() const { impl_->membership->require(); }
+
+void Process::set_ending(bool is_ending) noexcept {
+  impl_->registry->processes()[impl_->slot].is_ending.store(is_ending ? 1 : 0);
+}
 
 Waiters & Process::waiters() noexcept { return *impl_->waiters; }
 Tracer & Process::tracer() noexcept { return impl_->registry->tracer(); }

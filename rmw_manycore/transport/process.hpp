@@ -55,6 +55,8 @@ public:
   /// off.
   void require_membership() const;
 
+  /// Tells the tools that an end of this process from now on is intended, whether or not it leaves.
+  void set_ending(bool is_ending) noexcept;
   Waiters & waiters() noexcept;
   Tracer & tracer() noexcept;
   Graph & graph() noexcept;

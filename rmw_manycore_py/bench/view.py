@@ -16,7 +16,6 @@ from rmw_manycore_program import own_program
 from rmw_manycore_py.bench.contenders import manycore
 from rmw_manycore_py.bench.idle import cpu_ns
 from rmw_manycore_py.bench.question import Question, Run
-from rmw_manycore_py.bench.scale.common import drawn
 from rmw_manycore_py.bench.session import PATIENCE_S, Process, Session
 from rmw_manycore_py.bench.summary import Goal, Result
 from rmw_manycore_py.errors import ManycoreError
@@ -39,7 +38,7 @@ _LOOK_AGAIN_S = 0.005
 def measure(run: Run) -> list[Result]:
     """Return what a viewer and its page take, beside so many nodes."""
     results: list[Result] = []
-    for count in drawn(run, NODES):
+    for count in NODES[:1] if run.share < 1 else NODES:
         if run.wants(f"{COST}: {_name(count)}"):
             results += _watch(run, count)
     return results

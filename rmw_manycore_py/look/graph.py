@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from rmw_manycore_py import _transport
 from rmw_manycore_py.qos import Policies, policies_of
+from rmw_manycore_py.ros.names import full_node_name
 from rmw_manycore_py.words import EndpointKind, EndpointRole
 
 # Every rclpy node has endpoints of these: drawn, they would hide what a platform is for.
@@ -110,7 +111,7 @@ def read_graph(platform: _transport.Platform) -> Graph:
     processes = platform.processes()
     nodes: dict[int, list[str]] = {}
     for node in platform.nodes():
-        nodes.setdefault(node.process, []).append(joined(node.namespace, node.name))
+        nodes.setdefault(node.process, []).append(full_node_name(node.namespace, node.name))
     return Graph(
         info.name,
         info.clusters,
@@ -119,11 +120,6 @@ def read_graph(platform: _transport.Platform) -> Graph:
         tuple(_member(process, nodes.get(process.slot, ())) for process in processes),
         tuple(map(_endpoint, platform.endpoints())),
     )
-
-
-def joined(namespace: str, name: str) -> str:
-    """Return a node's namespace and name in one."""
-    return f"{namespace.rstrip('/')}/{name}"
 
 
 def _member(process: _transport.ProcessInfo, nodes: Sequence[str]) -> Member:
@@ -145,7 +141,7 @@ def _endpoint(endpoint: _transport.EndpointInfo) -> Endpoint:
         endpoint.role,
         endpoint.topic,
         endpoint.type,
-        joined(endpoint.node_namespace, endpoint.node_name),
+        full_node_name(endpoint.node_namespace, endpoint.node_name),
         endpoint.process,
         policies_of(endpoint.qos),
     )

@@ -211,6 +211,11 @@ private:
        no_descriptors_.reset();
        return "ok";
      }},
+    {"end",
+     [this](Words &) {
+       process_->set_ending(true);
+       return "ok";
+     }},
     {"leave", [](Words &) { return ""; }},
   };
 };

@@ -357,4 +357,11 @@ TEST_CASE("a process that is killed is noted as dead, one that leaves is not") {
   REQUIRE(deaths.size() == 1);
   CHECK(deaths[0].pid == killed);
   CHECK(deaths[0].found_ns <= monotonic_ns());
+  {
+    Node node(f.platform, 1);
+    node.tell("end");
+    node.kill();
+  }
+  f.wait_until_alone();
+  CHECK(f.process->graph().deaths().size() == 1);
 }

@@ -69,6 +69,7 @@ rmw_ret_t rmw_init(const rmw_init_options_t * options, rmw_context_t * context) 
     created.actual_domain_id = options->domain_id == RMW_DEFAULT_DOMAIN_ID ? 0 : options->domain_id;
     auto impl = std::make_unique<rmw_context_impl_s>(
       manycore::Process::join(rmw_manycore::placement_of(*options, created.actual_domain_id)));
+    impl->process->set_ending(false);  // an earlier context may have been shut down
     rmw_manycore::check(rmw_init_options_copy(options, &created.options));
     created.impl = impl.release();
     *context = created;
@@ -86,6 +87,7 @@ rmw_ret_t rmw_shutdown(rmw_context_t * context) {
   // Implementation
   *context->impl->is_shutdown = true;
   if (!context->impl->process->is_inherited()) {
+    context->impl->process->set_ending(true);  // many programs end now without closing their nodes
     context->impl->process->waiters().notify_all();
   }
   context->impl->callback_thread.stop();

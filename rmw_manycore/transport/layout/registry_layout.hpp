@@ -53,7 +53,8 @@ struct ProcessEntry {
   int32_t host_cpu;  ///< -1 = not pinned
   TraceSwitch trace;
   uint64_t charged_bytes;  ///< outside the segment, but counted as SMEM
-  char label[88];
+  char label[84];
+  std::atomic<uint32_t> is_ending;  ///< it was told to end: its end is no death
   WakeWords wake;
 };
 static_assert(sizeof(ProcessEntry) == 1216 && offsetof(ProcessEntry, trace) == 28);
@@ -119,7 +120,7 @@ struct TopicEntry {
 };
 static_assert(sizeof(TopicEntry) == 280);
 
-/// A process that ended without leaving. Its slot may have another process meanwhile.
+/// A process that ended without leaving, and without having been told to. Its slot may have another process meanwhile.
 struct Death {
   pid_t pid;
   uint32_t process;  ///< its slot

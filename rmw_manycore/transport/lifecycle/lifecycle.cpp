@@ -108,6 +108,9 @@ bool is_dead(Registry & registry, uint32_t process) {
 
 /// The caller holds the registry lock.
 void note_death(Registry & registry, uint32_t process) {
+  if (registry.processes()[process].is_ending.load() != 0) {
+    return;
+  }
   RegistryHeader & header = registry.header();
   const uint64_t count = header.death_count.load(std::memory_order_relaxed);
   header.deaths[count % kept_deaths] = {registry.processes()[process].pid, process, monotonic_ns()};

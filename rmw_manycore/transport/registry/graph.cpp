@@ -3,7 +3,6 @@
 
 #include <algorithm>
 
-#include "transport/queue/subscriber_queue.hpp"
 #include "transport/registry/endpoint_blocks.hpp"
 #include "transport/registry/snapshot.hpp"
 
@@ -27,10 +26,11 @@ Activity activity_of(Registry & registry, const EndpointEntry & entry) {
   activity.endpoint = endpoint_in(entry.gid);
   activity.counters = read_counters(registry, entry);
   if (entry.kind == EndpointKind::subscription) {
-    auto * const header = registry.clusters().find<SubscriptionHeader>(entry.block);
+    const auto * const header = registry.clusters().find<SubscriptionHeader>(entry.block);
     if (header != nullptr) {
+      const uint64_t head = header->head.load(std::memory_order_acquire);
       activity.capacity = header->depth;
-      activity.queued = std::min(subscriber_queue::size(*header), activity.capacity);
+      activity.queued = std::min(header->tail.load() - head, activity.capacity);
       activity.deadlines_missed = header->deadline.missed(entry.qos.deadline_ns).total;
     }
   }
