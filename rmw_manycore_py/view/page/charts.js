@@ -4,6 +4,7 @@
 import uPlot from "./uplot/uPlot.esm.js";
 
 const LENGTH = 600;
+const COMPACT = new Intl.NumberFormat("en", { notation: "compact" });
 const COLOURS = ["#2463c7", "#b35c00", "#4f8f5b", "#8e44ad", "#c62828", "#00838f"];
 
 export class Charts {
@@ -69,13 +70,14 @@ export class Charts {
       stroke: style.getPropertyValue("--quiet"),
       grid: { stroke: style.getPropertyValue("--edge"), width: 1 },
       size: 46,
+      values: (_, values) => values.map((value) => COMPACT.format(value)),
     };
     const options = {
       width: 350,
       height: 110,
       legend: { show: names.length > 1, live: false },
       cursor: { y: false },
-      axes: [{ ...axis, size: 24 }, axis],
+      axes: [{ ...axis, size: 24, values: undefined }, axis],
       scales: { y: { range: (_, low, high) => [Math.min(low ?? 0, 0), Math.max(high ?? 1, 1)] } },
       series: [{}, ...names.map((label, index) => (
         { label, stroke: COLOURS[index % COLOURS.length], width: 1.5, points: { show: false } }
