@@ -120,7 +120,7 @@ struct TopicEntry {
 };
 static_assert(sizeof(TopicEntry) == 280);
 
-/// A process that ended without leaving, and without having been told to. Its slot may have another process meanwhile.
+/// A process that ended unasked, without leaving. Its slot may have another process meanwhile.
 struct Death {
   pid_t pid;
   uint32_t process;  ///< its slot
