@@ -34,6 +34,7 @@ from rmw_manycore_py.ndt.maps.map_file import write_points
 from rmw_manycore_py.ndt.maps.map_tiles import write_tiles
 from rmw_manycore_py.ndt.messages.conversions import matrix_of, pose_with_covariance
 from rmw_manycore_py.ndt.messages.point_cloud import decode, encode
+from rmw_manycore_py.ndt.messages.point_times import decode_timed, time_field
 
 INITIALIZER = "rmw_manycore_py.ndt.nodes.pose_initializer"
 KEPT = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
@@ -50,6 +51,14 @@ def test_the_filter_thins_a_scan(node, start):
     spin_until(node, lambda: publisher.publish(broken) or publisher.publish(scan) or heard)
     assert heard[0].header == scan.header
     np.testing.assert_array_equal(decode(heard[0]), voxel_centroids(street_scan(), (0.5, 0.5, 0.1)))
+
+    times_s = np.linspace(0.0, 0.1, len(street_scan()))
+    timed = encode(street_scan(), scan.header.stamp, "lidar", {"time": times_s})
+    spin_until(node, lambda: publisher.publish(timed) or time_field(heard[-1]))
+    points, thinned_s = decode_timed(heard[-1], "time")
+    means = voxel_centroids(np.column_stack((street_scan(), times_s)), (0.5, 0.5, 0.1))
+    np.testing.assert_allclose(points, means[:, :3], atol=1e-5)
+    np.testing.assert_allclose(thinned_s, means[:, 3], atol=1e-8)
 
 
 def test_the_loader_publishes_what_is_near_the_vehicle(node, start, tmp_path):

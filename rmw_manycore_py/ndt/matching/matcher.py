@@ -148,7 +148,7 @@ class Matcher:
                 return Alignment.refused(guess, f"the regularization pose {wrong}", self.options)
             position = (float(regularization[0, 3]), float(regularization[1, 3]))
         alignment = self._aligned(voxel_map, scan, guess, position)
-        if only_pose or not alignment.converged:
+        if only_pose or alignment.is_degenerate:
             return alignment
         return self._with_covariance(alignment, voxel_map, scan, position)
 

@@ -6,6 +6,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
 from rclpy.node import Node
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 from sensor_msgs.msg import PointCloud2
@@ -13,6 +14,7 @@ from sensor_msgs.msg import PointCloud2
 from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.ndt.geometry.thinning import voxel_centroids
 from rmw_manycore_py.ndt.messages.point_cloud import CloudError, decode, encode
+from rmw_manycore_py.ndt.messages.point_times import decode_timed, time_field
 from rmw_manycore_py.ndt.nodes.support.declared import declare, parameter
 from rmw_manycore_py.ndt.nodes.support.running import run_node
 
@@ -29,7 +31,10 @@ class FilterParameters:
 
 
 class VoxelGridFilter(Node):
-    """From `input` to `output`, with stamp and frame as they were."""
+    """From `input` to `output`, with stamp and frame as they were.
+
+    Where points have times, `output` has the field `time`: seconds after the stamp, float32.
+    """
 
     def __init__(self) -> None:
         super().__init__("voxel_grid_filter")
@@ -41,11 +46,26 @@ class VoxelGridFilter(Node):
 
     def _on_scan(self, message: Any) -> None:
         try:
-            points = voxel_centroids(decode(message), self._voxel_m)
+            output = self._thinned(message)
         except (CloudError, ManycoreError) as error:
             self.get_logger().warning(f"scan dropped: {error}", throttle_duration_sec=REPEAT_S)
             return
-        self._output.publish(encode(points, message.header.stamp, message.header.frame_id))
+        self._output.publish(output)
+
+    def _thinned(self, message: Any) -> Any:
+        """Return a cloud with the mean of each voxel's points, and of their times.
+
+        Deskewing moves points in proportion to their times, so it moves the mean as it would have
+        moved them.
+        """
+        header, field = message.header, time_field(message)
+        if field is None:
+            points = voxel_centroids(decode(message), self._voxel_m)
+            return encode(points, header.stamp, header.frame_id)
+        points, times_s = decode_timed(message, field)
+        means = voxel_centroids(np.column_stack((points, times_s)), self._voxel_m)
+        thinned = means[:, :3].astype(points.dtype)
+        return encode(thinned, header.stamp, header.frame_id, {"time": means[:, 3]})
 
 
 def main() -> None:

@@ -13,15 +13,15 @@ from rmw_manycore_py.ndt.nodes.scan_matcher.parameters import (
     TRANSFORM_PROBABILITY,
     MatcherParameters,
 )
+from rmw_manycore_py.ndt.nodes.scan_matcher.steps import has_ended
 
 
 def is_reliable(
     alignment: Alignment, parameters: MatcherParameters, diagnostics: Diagnostics
 ) -> bool:
-    """Tell whether the alignment ended by itself, with a score above the threshold."""
+    """Tell whether the alignment ended, with a score above the threshold."""
     diagnostics.value("iteration_num", alignment.iterations)
-    ended = alignment.converged
-    if not ended:
+    if not alignment.converged:
         diagnostics.warn(f"no convergence after {alignment.iterations} iterations: {alignment.why}")
     diagnostics.value("transform_probability", alignment.transform_probability)
     likelihood = alignment.nearest_voxel_likelihood
@@ -32,7 +32,7 @@ def is_reliable(
         score, least = likelihood, parameters.least_nearest_voxel_likelihood
     if not score > least:
         diagnostics.warn(f"the score {score:.3f} is not above the threshold {least:g}")
-    return ended and score > least
+    return has_ended(alignment) and score > least
 
 
 def output_covariance(alignment: Alignment, parameters: MatcherParameters) -> Matrix:

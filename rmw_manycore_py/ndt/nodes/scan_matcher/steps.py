@@ -23,7 +23,7 @@ def report_steps(alignment: Alignment, report: Diagnostics) -> None:
     """Add oscillation and the scores before."""
     oscillations = count_oscillations(alignment.path)
     report.value("local_optimal_solution_oscillation_num", oscillations)
-    if oscillations > MANY_OSCILLATIONS:
+    if oscillates(alignment.path):
         report.warn("There is a possibility of oscillation in a local minimum")
     scores = {
         "transform_probability": (
@@ -38,6 +38,16 @@ def report_steps(alignment: Alignment, report: Diagnostics) -> None:
     for name, (before, after) in scores.items():
         report.value(f"{name}_diff", after - before)
         report.value(f"{name}_before", before)
+
+
+def has_ended(alignment: Alignment) -> bool:
+    """Tell whether an alignment ended by itself, or oscillates around a maximum."""
+    return alignment.converged or (not alignment.is_degenerate and oscillates(alignment.path))
+
+
+def oscillates(path: Poses) -> bool:
+    """Tell whether an alignment went to and fro more often than a healthy one does."""
+    return count_oscillations(path) > MANY_OSCILLATIONS
 
 
 def count_oscillations(path: Poses) -> int:

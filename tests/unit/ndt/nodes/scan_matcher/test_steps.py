@@ -3,11 +3,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from rmw_manycore_py.ndt import Alignment, MatcherOptions
 from rmw_manycore_py.ndt.nodes.scan_matcher.colors import colors, packed_colors
-from rmw_manycore_py.ndt.nodes.scan_matcher.steps import count_oscillations
+from rmw_manycore_py.ndt.nodes.scan_matcher.steps import count_oscillations, has_ended
 
 pytestmark = pytest.mark.unit
 
@@ -37,6 +40,17 @@ def test_a_turn_of_a_right_angle_is_none():
     poses = path(0.0, 1.0, 1.0)
     poses[2, 1, 3] = 1.0
     assert count_oscillations(poses) == 0
+
+
+@pytest.mark.parametrize(
+    ("steps", "is_degenerate", "expected"), [(12, False, True), (11, False, False), (12, True, False)]
+)
+def test_an_alignment_that_oscillates_has_ended(steps, is_degenerate, expected):
+    """As in Autoware, which counts more than ten turns back in a row."""
+    to_and_fro = path(*(n % 2 for n in range(steps + 1)))
+    refused = Alignment.refused(np.eye(4), "still moving", MatcherOptions())
+    alignment = replace(refused, path=to_and_fro, is_degenerate=is_degenerate)
+    assert has_ended(alignment) is expected
 
 
 def test_colours_go_from_blue_over_green_to_red():
