@@ -18,6 +18,9 @@ RECEIVE_THREAD_CORE = 0
 HostCpu = int | tuple[int, ...] | None
 # An I/O cluster has no core for the OS tasks of its own: Linux runs on it anyway.
 IO_CLUSTER_CORES = 4
+# In the environment of a node with workers: their host CPUs, separated by commas. It is here, as a
+# node that is started again after a kill has no time to import mapfile.
+WORKER_CPUS = "MANYCORE_WORKER_CPUS"
 
 
 class Core(NamedTuple):

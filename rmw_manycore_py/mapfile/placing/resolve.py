@@ -31,13 +31,14 @@ from rmw_manycore_py.mapfile.placing.topics import (
     memory_of_clusters,
     topic_table,
 )
-from rmw_manycore_py.mapfile.placing.workers import WORKER_CPUS, worker_cores
+from rmw_manycore_py.mapfile.placing.workers import worker_cores
 from rmw_manycore_py.mapfile.programs.source import SourceNode, scan
 from rmw_manycore_py.ros.ament import canonical_type
 from rmw_manycore_py.ros.domain import default_platform
 from rmw_manycore_py.ros.names import full_node_name, resolve_topic
 from rmw_manycore_py.scheduling import Scheduling
 from rmw_manycore_py.topology import (
+    WORKER_CPUS,
     Core,
     usable_cpus,
 )

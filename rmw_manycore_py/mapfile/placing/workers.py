@@ -9,8 +9,6 @@ from rmw_manycore_py.errors import MapfileError
 from rmw_manycore_py.mapfile.format.mapfile import Mapfile
 from rmw_manycore_py.topology import Core
 
-WORKER_CPUS = "MANYCORE_WORKER_CPUS"  # in a node's environment: host CPUs, separated by commas
-
 
 def worker_cores(mapfile: Mapfile, used: Collection[Core]) -> dict[str, tuple[Core, ...]]:
     """Return the cores of each node's workers: the first of its cluster that nobody has."""

@@ -12,7 +12,6 @@ from pathlib import Path
 from types import ModuleType
 
 import numpy as np
-from pydantic import ValidationError
 
 from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.ndt.files.unreadable import UNREADABLE
@@ -25,6 +24,8 @@ MOST_NUMBERS = 10_000  # of a point: pypcd4 names each of them before it looks f
 def read_pcd(path: Path) -> Points:
     """Return the positions (N, 3) of a file, finite or not; raises OSError and ValueError."""
     _check_counts(path)
+    from pydantic import ValidationError  # pypcd4 has it; other maps do without
+
     try:
         cloud = _load_pypcd4().PointCloud.from_path(path)
     except ValidationError as error:

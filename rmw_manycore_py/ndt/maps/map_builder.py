@@ -2,7 +2,9 @@
 """Voxel maps built beside the work that goes on, to be swapped in between two scans.
 
 A thread reads points. Voxels are built in a process of its own (map_process.py), whose CPU time
-counts less: where matcher and thread shared a CPU, scans took several times as long meanwhile.
+counts less: where matcher and thread shared a CPU, scans took several times as long meanwhile. The
+first map is built in the thread: no scan can be matched before it, and a process takes its time to
+start.
 """
 
 from __future__ import annotations
@@ -49,6 +51,7 @@ class MapBuilder:
         self._options = options
         self._built = built
         self._helper = HelperProcess("map builder", NICENESS)
+        self._is_first = True
         self._executor = ThreadPoolExecutor(1, "map", leave_real_time)
         self._running: Future[BuiltMap] | None = None
         self._waiting: Callable[[], Points | None] | None = None
@@ -102,6 +105,10 @@ class MapBuilder:
         return BuiltMap(voxel_map, points, problem, warning, duration_ms)
 
     def _voxels_of(self, points: Points) -> VoxelMap:
+        if self._is_first:
+            first = VoxelMap.from_points(points, self._options)
+            self._is_first = False
+            return first
         held = self._helper.call(map_process.build, points, self._options)
         try:
             return VoxelMap.attach(held.shared_paths, self._options, held.own_likelihood)
