@@ -276,6 +276,7 @@ def test_a_scan_of_two_million_points(matched):
     stamp_ns = matched.send(scan)
     report = matched.report_of(stamp_ns)
     assert "more than sensor_points.limit" in report.message
+    assert {pair.key: pair.value for pair in report.values}["sensor_points_matched"] == "30000"
     spin_until(matched.node, lambda: stamp_ns in matched.poses)
     assert error_m(matched.poses[stamp_ns]) < 0.1
 

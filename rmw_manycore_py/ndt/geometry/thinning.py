@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Thinning a cloud to one point per voxel.
+"""Thinning a cloud: to one point per voxel, or to a number of points.
 
 In numpy, as scans are thinned by nodes, which must not need Open3D; map files are thinned with
 that (map_file.py).
@@ -8,11 +8,13 @@ that (map_file.py).
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
 from rmw_manycore_py.ndt.geometry.arrays import Points
 
 MAX_CELLS = 1 << 62
+SEED = 1  # the same choice each time: a scan repeated gives the same pose, to the last bit
 
 
 def voxel_centroids(points: Points, voxel_m: tuple[float, float, float]) -> Points:
@@ -38,3 +40,17 @@ def voxel_centroids(points: Points, voxel_m: tuple[float, float, float]) -> Poin
     counts = np.diff(np.append(starts, len(keys)))
     sums = np.add.reduceat(points[order].astype(np.float64), starts, axis=0)
     return (sums / counts[:, None]).astype(points.dtype)
+
+
+def spread_indices(count: int, wanted: int) -> slice | NDArray[np.int64]:
+    """Return what chooses at most `wanted` of `count` points, evenly spread over their order.
+
+    One of each stretch of the order, at a place in it that is drawn: LiDARs put out points ring by
+    ring or column by column, so that every nth point may be of the same few rings. Unlike means of
+    voxels they keep the cloud's density, and with it the score.
+    """
+    if count <= wanted:
+        return slice(None)
+    edges = np.linspace(0, count, wanted + 1).astype(np.int64)
+    places = np.random.default_rng(SEED).random(wanted)
+    return edges[:-1] + (places * np.diff(edges)).astype(np.int64)

@@ -33,9 +33,7 @@ def decode(message: Any) -> Points:
     Points that are not finite, or beyond 1e9 m, are left out. They are doubles where the message
     has such. Raises CloudError.
     """
-    fields = [_number(message, name) for name in AXES] if _has_points(message) else []
-    is_single = all(number.str[1:] in SINGLES for _, number in fields)
-    flat: Points = _columns(message, fields, np.float32 if is_single else np.float64)
+    flat = _positions(message)
     is_place = places(flat)
     return flat if is_place.all() else flat[is_place]
 
@@ -44,10 +42,10 @@ def decode_with(message: Any, name: str) -> tuple[Points, Column]:
     """Return what decode() does, and another field (N) of the same points. Raises CloudError."""
     if not _has_points(message):
         return np.zeros((0, 3), np.float32), np.zeros(0)
-    positions = _columns(message, [_number(message, axis) for axis in AXES], np.float64)
+    flat = _positions(message)
     values = _columns(message, [_number(message, name)], np.float64)[:, 0]
-    is_place = places(positions)
-    return decode(message), values[is_place]
+    is_place = places(flat)
+    return (flat, values) if is_place.all() else (flat[is_place], values[is_place])
 
 
 def places(points: Points) -> npt.NDArray[np.bool_]:
@@ -96,6 +94,14 @@ def _bytes(points: Points, more: Sequence[Column]) -> bytes:
     rows = [points.view(np.uint8)]
     rows += [np.ascontiguousarray(one, "<f4")[:, None].view(np.uint8) for one in more]
     return np.hstack(rows).tobytes()
+
+
+def _positions(message: Any) -> Points:
+    """Return all positions (N, 3), finite or not."""
+    fields = [_number(message, name) for name in AXES] if _has_points(message) else []
+    is_single = all(number.str[1:] in SINGLES for _, number in fields)
+    flat: Points = _columns(message, fields, np.float32 if is_single else np.float64)
+    return flat
 
 
 def _has_points(message: Any) -> bool:

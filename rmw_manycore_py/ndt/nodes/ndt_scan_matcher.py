@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import time
 from functools import partial
 from typing import Any
 
@@ -43,6 +42,7 @@ from rmw_manycore_py.ndt.nodes.scan_matcher.real_time import schedule_in_real_ti
 from rmw_manycore_py.ndt.nodes.scan_matcher.rejected import Rejected
 from rmw_manycore_py.ndt.nodes.scan_matcher.scan_inbox import ScanInbox
 from rmw_manycore_py.ndt.nodes.scan_matcher.scan_points import Scan, ScanPoints
+from rmw_manycore_py.ndt.nodes.scan_matcher.stage_times import StageTimes
 from rmw_manycore_py.ndt.nodes.scan_matcher.steps import report_steps
 from rmw_manycore_py.ndt.nodes.scan_matcher.tracking import (
     AutowareTracking,
@@ -185,16 +185,18 @@ class NdtScanMatcher(Node):
 
     def _match(self, message: Any, report: Diagnostics) -> bool:
         """Go through Autoware's steps; the result is published even if it is not reliable."""
-        start = time.perf_counter()
+        stages = StageTimes()
         stamp, stamp_s = message.header.stamp, seconds(message.header.stamp)
         report.value("topic_time_stamp", stamp_s)
         scan = self._scan_points.of(message, self._now_s(), report)
+        stages.end("decode")
         self._scan = points = scan.points
         report.value("is_activated", self._is_activated)
         if not self._is_activated:
             raise Rejected("Node is not activated: call trigger_node_srv")
         guess = self._guess_at(stamp_s, report)
         self._scan = points = self._deskewed(scan, stamp_s, guess, report)
+        stages.end("deskew")
         self._take_new_map()
         report.value("is_set_map_points", self._map.is_set)
         if not self._map.is_set:
@@ -202,8 +204,10 @@ class NdtScanMatcher(Node):
         if self._map.is_leaving(float(guess.T[0, 3]), float(guess.T[1, 3])):
             report.note("Lidar has gone out of the map range")
         self._memory.make_room_for_scan(len(points))
+        stages.end("map")
         regularization = self._poses.regularization_at(stamp_s, guess.T, report)
         tracked = self._tracking.track(ScanAt(stamp_s, points, guess.T, regularization), report)
+        stages.end("match")
         alignment = tracked.alignment
         if not np.isfinite(alignment.T_map_sensor).all():
             raise Rejected(f"the alignment has no finite result: {alignment.why}")
@@ -214,7 +218,7 @@ class NdtScanMatcher(Node):
             report.warn(f"distance_initial_to_result is too large ({distance_m:.2f} m)")
         if tracked.is_reliable:
             self._outputs.accepted_pose(stamp, alignment.T_map_sensor, tracked.covariance)
-        exe_time_ms = 1e3 * (time.perf_counter() - start)
+        exe_time_ms = stages.total_ms
         report.value("execution_time", round(exe_time_ms, 3))
         if exe_time_ms > self._p.critical_exe_time_ms:
             report.warn(f"NDT exe time is too long (took {exe_time_ms:.1f} ms)")
@@ -222,6 +226,8 @@ class NdtScanMatcher(Node):
         self._outputs.result(stamp, alignment, guess)
         self._markers.alignment(stamp, alignment.path)
         self._publish_clouds(stamp, points, alignment.T_map_sensor)
+        stages.end("publish")
+        stages.report(report)
         return tracked.is_reliable
 
     def _guess_at(self, stamp_s: float, report: Diagnostics) -> Interpolated:

@@ -22,6 +22,12 @@ REPORTED = (
     "execution_time",
     "initial_pose_age",
     "sensor_points_size",
+    "sensor_points_matched",
+    "decode_time_ms",
+    "deskew_time_ms",
+    "map_time_ms",
+    "match_time_ms",
+    "publish_time_ms",
 )
 COLUMNS = (
     *("scan", "stamp_s", "state", "reason"),

@@ -109,6 +109,7 @@ class OwnParameters:
     )
     outlier_ratio: float = parameter("ndt.outlier_ratio", 0.55, above=0.0, most=0.99)
     scan_limit: int = parameter("sensor_points.limit", 200_000, least=100, most=10_000_000)
+    max_matched: int = parameter("sensor_points.max_matched", 30_000, least=100, most=10_000_000)
     deskew: bool = parameter("sensor_points.deskew", False)
     map_path: str = parameter("map_path", "")
     map_leaf_m: float = parameter("map_leaf_size", 0.0, least=0.0)

@@ -10,6 +10,7 @@ import numpy as np
 
 from rmw_manycore_py.ndt.geometry import poses
 from rmw_manycore_py.ndt.geometry.arrays import Matrix, Points
+from rmw_manycore_py.ndt.geometry.thinning import spread_indices
 from rmw_manycore_py.ndt.messages.conversions import seconds
 from rmw_manycore_py.ndt.messages.point_cloud import CloudError, decode
 from rmw_manycore_py.ndt.messages.point_times import FIELDS, decode_timed, time_field
@@ -39,6 +40,9 @@ class ScanPoints:
         self._p = parameters
         self._own = own
         self._frames = frames
+        self._max_points = own.scan_limit
+        if own.behaviour != "autoware":
+            self._max_points = min(own.max_matched, own.scan_limit)
 
     def of(self, message: Any, now_s: float, report: Diagnostics) -> Scan:
         """Return a scan in the base frame, with times where it is to be deskewed.
@@ -54,9 +58,11 @@ class ScanPoints:
         if len(points) == 0:
             raise Rejected("Sensor points is empty: it has no point that is finite")
         self._report_delay(now_s - seconds(message.header.stamp), report)
-        step = self._step_to_limit(len(points), report)
-        times_s = None if times_s is None else times_s[::step]
-        points = self._in_base(points[::step], message.header.frame_id, report)
+        chosen = spread_indices(len(points), self._max_points)
+        self._report_limit(len(points), report)
+        times_s = None if times_s is None else times_s[chosen]
+        points = self._in_base(points[chosen], message.header.frame_id, report)
+        report.value("sensor_points_matched", len(points))
         farthest_m = float(np.sqrt(np.square(points, dtype=np.float64).sum(axis=1).max()))
         report.value("sensor_points_max_distance", round(farthest_m, 3))
         if farthest_m < self._p.required_distance_m:
@@ -82,16 +88,12 @@ class ScanPoints:
         elif delay_s < -self._p.timeout_s:
             report.warn(f"sensor points are of a time {-delay_s:.2f} s ahead: check the clocks")
 
-    def _step_to_limit(self, count: int, report: Diagnostics) -> int:
-        """Return n so that every nth of so many points is used."""
-        if count <= self._own.scan_limit:
-            return 1
-        step = -(-count // self._own.scan_limit)
-        report.warn(
-            f"{count} points are more than sensor_points.limit "
-            f"({self._own.scan_limit}): every {step}th is used; put a filter in front"
-        )
-        return step
+    def _report_limit(self, count: int, report: Diagnostics) -> None:
+        if count > self._own.scan_limit:
+            report.warn(
+                f"{count} points are more than sensor_points.limit ({self._own.scan_limit}): "
+                f"{self._max_points} are used; put a filter in front"
+            )
 
     def _in_base(self, points: Points, frame: str, report: Diagnostics) -> Points:
         if frame == self._p.base_frame:

@@ -1,0 +1,32 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""How long the stages of a scan take, one after the other."""
+
+from __future__ import annotations
+
+import time
+
+from rmw_manycore_py.ndt.nodes.scan_matcher.diagnostics import Diagnostics
+
+
+class StageTimes:
+    """Begins with the scan; wall times, which have in them what else took the CPU."""
+
+    def __init__(self) -> None:
+        self._start_s = self._last_s = time.perf_counter()
+        self._stages_ms: dict[str, float] = {}
+
+    def end(self, stage: str) -> None:
+        """Note the end of a stage, and the beginning of the next."""
+        now_s = time.perf_counter()
+        self._stages_ms[stage] = 1e3 * (now_s - self._last_s)
+        self._last_s = now_s
+
+    @property
+    def total_ms(self) -> float:
+        """Return the time since the beginning."""
+        return 1e3 * (time.perf_counter() - self._start_s)
+
+    def report(self, diagnostics: Diagnostics) -> None:
+        """Add a value for each stage."""
+        for stage, time_ms in self._stages_ms.items():
+            diagnostics.value(f"{stage}_time_ms", round(time_ms, 3))
