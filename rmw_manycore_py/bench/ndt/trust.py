@@ -1,18 +1,22 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 """How many wrong poses are believed, and how many right ones refused: no drive judged by itself.
 
-The shares that make the score's level are chosen anew for each drive, from all the others.
+The shares that make the score's level are chosen anew for each drive, from all the others. Drives
+are aligned and places searched by a process on each usable CPU (trust_helpers.py).
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
+from typing import Protocol, TypeVar
 
 import numpy as np
 
-from rmw_manycore_py.bench.ndt.contenders import on_cpu, usable
-from rmw_manycore_py.bench.ndt.trust_cases import Case, cases_of
+from rmw_manycore_py.bench.ndt.contenders import usable
+from rmw_manycore_py.bench.ndt.trust_cases import Case, cases_of, searched
+from rmw_manycore_py.bench.ndt.trust_helpers import TrustHelpers
 from rmw_manycore_py.bench.ndt.trust_worlds import drives
 from rmw_manycore_py.bench.question import Question, Run
 from rmw_manycore_py.bench.summary import Goal, Result
@@ -24,6 +28,7 @@ CASES = 1000  # right ones, and as many wrong ones
 SCANS = 40  # of each drive
 BELIEVED, REFUSED = "wrong poses believed", "right poses refused"
 AT_START = "wrong poses believed at a start"
+REFUSED_AT_START = "right poses refused at a start"
 SHARES = "share of the drive's median, chosen without the drive"
 FIRST_SHARES = "share of the map's score for a first pose, chosen without the drive"
 OURS, AUTOWARE = "rmw_manycore", "as Autoware"
@@ -35,6 +40,32 @@ SEARCHES = 8  # of each drive
 # all wrong ones of other drives, and a little more.
 LEFT_BELOW, DRIVE_ROOM, MAP_ROOM, FIRST_ROOM = 0.003, 0.07, 0.1, 0.03
 AROUND_M, GLOBAL_M = 5.0, 20.0
+
+T, R = TypeVar("T"), TypeVar("R")
+
+
+class Workers(Protocol):
+    """What does the work: this process, or several."""
+
+    def map(self, function: Callable[[T], R], items: Iterable[T]) -> Iterator[R]:
+        """Return what a function says of each item, in their order."""
+        ...
+
+    def call(self, function: Callable[..., R], *arguments: object) -> R:
+        """Return what a function of a module returns."""
+        ...
+
+
+class Here:
+    """This process and thread."""
+
+    def map(self, function: Callable[[T], R], items: Iterable[T]) -> Iterator[R]:
+        """Return what a function says of each item, in their order."""
+        return map(function, items)
+
+    def call(self, function: Callable[..., R], *arguments: object) -> R:
+        """Return what a function of a module returns."""
+        return function(*arguments)
 
 
 @dataclass(frozen=True)
@@ -56,15 +87,18 @@ def measure(run: Run) -> list[Result]:
         return []
     share = min(1.0, run.share)
     scans, wanted = max(6, int(SCANS * share)), max(12, int(2 * SCANS * share))
-    cases: dict[str, list[Case]] = {}
-    with on_cpu(usable()[0]):
-        for drive in drives(scans):
-            run.note(f"{BELIEVED}: aligning, {drive.name}")
-            cases[drive.name] = cases_of(drive, wanted)
-    return judged(cases, max(40, int(CASES * share)))
+    names = list(drives())
+    with TrustHelpers(usable()) as helpers:
+        run.note(f"{BELIEVED}: aligning scans of {len(names)} drives")
+        aligned = helpers.map(lambda name: helpers.call(cases_of, name, scans, wanted), names)
+        cases = dict(zip(names, aligned, strict=True))
+        run.note(f"{REFUSED}: searching where a start was refused")
+        return judged(cases, max(40, int(CASES * share)), SEARCHES, helpers)
 
 
-def judged(cases: dict[str, list[Case]], count: int, searches: int = SEARCHES) -> list[Result]:
+def judged(
+    cases: dict[str, list[Case]], count: int, searches: int, workers: Workers
+) -> list[Result]:
     """Return the results of at most `count` right and wrong cases, as many of each drive.
 
     :param searches: how many searches are done for each drive.
@@ -75,16 +109,25 @@ def judged(cases: dict[str, list[Case]], count: int, searches: int = SEARCHES) -
         )
         for name in cases
     }
-    pools = [[case for case in all_ if _is_judged(case)] for all_ in cases.values()]
+    pools = list(cases.values())
     right = _picked([[case for case in pool if case.is_right] for pool in pools], count)
-    wrong = _picked([[case for case in pool if case.is_wrong] for pool in pools], count)
+    wrong = _picked(
+        [[case for case in pool if case.is_wrong and _is_judged(case)] for pool in pools], count
+    )
     mislead = {id(case): misleads(case, shares[case.drive]) for case in wrong}
-    refuse = {id(case): is_refused(case, shares[case.drive]) for case in right}
+
+    def refused(case: Case) -> bool:
+        return is_refused(case, shares[case.drive], workers)
+
+    refuse = dict(zip(map(id, right), workers.map(refused, right), strict=True))
+    starts = [replace(case, before=()) for case in right]
+    refuse_at_start = list(workers.map(refused, starts))
     results = [
         _share(BELIEVED, OURS, list(mislead.values())),
         _share(BELIEVED, AUTOWARE, [_as_autoware(case) for case in wrong]),
         _share(REFUSED, OURS, list(refuse.values())),
         _share(REFUSED, AUTOWARE, [not _as_autoware(case) for case in right]),
+        _share(REFUSED_AT_START, OURS, refuse_at_start),
         Result(SHARES, OURS, "", tuple(one.of_drive for one in shares.values())),
         Result(FIRST_SHARES, OURS, "", tuple(one.of_first for one in shares.values())),
     ]
@@ -95,34 +138,42 @@ def judged(cases: dict[str, list[Case]], count: int, searches: int = SEARCHES) -
             f"{BELIEVED}: {name}": [mislead[id(case)] for case in of_drive],
             f"{AT_START}: {name}": fresh,
             f"{REFUSED}: {name}": [refuse[id(case)] for case in right if case.drive == name],
+            f"{REFUSED_AT_START}: {name}": [
+                is_so
+                for case, is_so in zip(right, refuse_at_start, strict=True)
+                if case.drive == name
+            ],
         }
         results += [_share(question, OURS, is_so) for question, is_so in answers.items() if is_so]
-    return [*results, *_searches(wrong, shares, searches)]
+    return [*results, *_searches(wrong, shares, searches, workers)]
 
 
 def _is_judged(case: Case) -> bool:
-    """Tell whether a case counts: the first scans of a drive are starts, which AT_START tells."""
-    return bool(case.before) or not case.world.drive.is_drive
+    """Tell whether a wrong case counts: starts of drives are told by AT_START."""
+    return bool(case.before) or not case.is_drive
 
 
-def _without(name: str, cases: dict[str, list[Case]]) -> list[Case]:
-    return [case for other, of_drive in cases.items() if other != name for case in of_drive]
-
-
-def _searches(wrong: Sequence[Case], shares: dict[str, Shares], searches: int) -> list[Result]:
+def _searches(
+    wrong: Sequence[Case], shares: dict[str, Shares], searches: int, workers: Workers
+) -> list[Result]:
     """Search where alignments led astray, globally around their guesses."""
-    is_right, is_wrong = [], []
+    picked = []
     for name in shares:
-        for case in [c for c in wrong if c.drive == name and _is_in_reach(c)][:searches]:
-            region = Region(case.guess, GLOBAL_M, any_yaw=True)
-            found = case.world.searched(case.scan, region)
-            is_clear = not found.why_unclear(_level_of(case, shares[name]), region)
-            there = is_clear and _is_there(found, case)
-            is_right.append(there)
-            is_wrong.append(is_clear and not there)
-    if not is_right:
+        picked += [c for c in wrong if c.drive == name and _is_in_reach(c)][:searches]
+    answers = list(workers.map(partial(_found_by_search, shares, workers), picked))
+    if not answers:
         return []
+    is_wrong = [clear and not there for clear, there in answers]
+    is_right = [clear and there for clear, there in answers]
     return [_share(SEARCHED, OURS, is_right), _share(FOUND_WRONG, OURS, is_wrong)]
+
+
+def _found_by_search(shares: dict[str, Shares], workers: Workers, case: Case) -> tuple[bool, bool]:
+    """Tell whether a global search finds a clear place, and whether that is the right one."""
+    region = Region(case.guess, GLOBAL_M, any_yaw=True)
+    found = workers.call(searched, case.drive, case.index, region)
+    is_clear = not found.why_unclear(_level_of(case, shares[case.drive]), region)
+    return is_clear, is_clear and _is_there(found, case)
 
 
 def _is_in_reach(case: Case) -> bool:
@@ -145,7 +196,7 @@ def chosen(cases: Sequence[Case]) -> Shares:
     wrong = [
         case.alignment.fit / case.own_score
         for case in cases
-        if case.is_wrong and not case.world.drive.repeats
+        if case.is_wrong and not case.repeats
     ]
     return Shares(
         float(np.quantile(of_map, LEFT_BELOW)) - MAP_ROOM,
@@ -162,7 +213,7 @@ def misleads(case: Case, shares: Shares) -> bool:
     return not verdict.covers(case.alignment.T_map_sensor, case.truth)
 
 
-def is_refused(case: Case, shares: Shares) -> bool:
+def is_refused(case: Case, shares: Shares, workers: Workers) -> bool:
     """Tell whether a right pose is refused, and at a start a search does not find it either."""
     if case.judged(shares.level()).is_believed:
         return False
@@ -170,7 +221,7 @@ def is_refused(case: Case, shares: Shares) -> bool:
         return True
     for radius_m, any_yaw in ((AROUND_M, False), (GLOBAL_M, True)):
         region = Region(case.guess, radius_m, any_yaw)
-        found = case.world.searched(case.scan, region)
+        found = workers.call(searched, case.drive, case.index, region)
         if not found.why_unclear(_level_of(case, shares), region):
             return not _is_there(found, case)
     return True
@@ -209,4 +260,4 @@ def _goals() -> tuple[Goal, ...]:
     )
 
 
-QUESTION = Question("trust", measure, _goals(), "on the first usable CPU")
+QUESTION = Question("trust", measure, _goals(), "on all usable CPUs")

@@ -1,23 +1,29 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Right and wrong results of alignments, each with what a judge would have seen before it."""
+"""Right and wrong results of alignments, each with what a judge would have seen before it.
+
+Cases and what a search finds go between processes: a world stays in the process that built it.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from functools import cache
 
 import numpy as np
 
-from rmw_manycore_py.bench.ndt.trust_worlds import Drive
+from rmw_manycore_py.bench.ndt.trust_worlds import Drive, drives
 from rmw_manycore_py.ndt import Alignment, MatcherOptions, SerialMatcher, VoxelMap
 from rmw_manycore_py.ndt.geometry import poses
 from rmw_manycore_py.ndt.geometry.arrays import Matrix, Pose, ScanPoints, scan_points
+from rmw_manycore_py.ndt.geometry.thinning import spread_indices
 from rmw_manycore_py.ndt.trust.judge import PoseJudge, Verdict
 from rmw_manycore_py.ndt.trust.region_search import sketcher_of
 from rmw_manycore_py.ndt.trust.score_level import ScoreLevel
 from rmw_manycore_py.ndt.trust.search import Found, Region, search
 
 OPTIONS = MatcherOptions(search="radius")  # as the node has them
+MATCHED_POINTS = 30_000  # likewise
 RIGHT_M, RIGHT_DEG = 0.2, 1.0
 WRONG_M, WRONG_DEG = 0.5, 3.0
 # Guesses in a random direction: metres, degrees. The last two go along the drive, as the next
@@ -57,36 +63,46 @@ class World:
         matcher.set_map(voxel_map)
         return cls(drive, voxel_map, matcher)
 
-    def searched(self, scan: ScanPoints, region: Region) -> Found:
-        """Search as the node does."""
-        return search(sketcher_of(self.voxel_map, OPTIONS), self.matcher, scan, region)
+    def scan(self, index: int) -> ScanPoints:
+        """Return the points (N, 3) that the node would match."""
+        points = scan_points(self.drive.scan(index))
+        return scan_points(points[spread_indices(len(points), MATCHED_POINTS)])
+
+
+@cache
+def world_of(drive: str) -> World:
+    """Return the world of a drive, by its name."""
+    return World.of(drives()[drive]())
+
+
+def searched(drive: str, index: int, region: Region) -> Found:
+    """Search for a scan of a drive as the node does."""
+    world = world_of(drive)
+    sketcher = sketcher_of(world.voxel_map, OPTIONS)
+    return search(sketcher, world.matcher, world.scan(index), region)
 
 
 @dataclass(frozen=True)
 class Case:
     """The result of an alignment.
 
+    :param drive: its name; `index` is that of its scan.
+    :param repeats: nothing in a scan of the drive tells its places apart.
+    :param own_score: of the map's own points.
     :param before: what was believed before it; empty at a start.
     :param truth: T_map_sensor.
     """
 
-    world: World
-    scan: ScanPoints
+    drive: str
+    index: int
+    is_drive: bool
+    repeats: bool
+    own_score: float
     stamp_s: float
     before: tuple[Before, ...]
     guess: Pose
     alignment: Alignment
     truth: Pose
-
-    @property
-    def drive(self) -> str:
-        """Return the name of the drive."""
-        return self.world.drive.name
-
-    @property
-    def own_score(self) -> float:
-        """Return the score of the map's own points."""
-        return self.world.voxel_map.own_likelihood
 
     @property
     def is_right(self) -> bool:
@@ -118,12 +134,15 @@ class Case:
         return judge.judge(self.stamp_s, self.alignment, self.guess)
 
 
-def cases_of(drive: Drive, wanted: int) -> list[Case]:
-    """Return about so many right and so many wrong results of a drive, and those between."""
+def cases_of(name: str, count: int, wanted: int) -> list[Case]:
+    """Return about so many right and so many wrong results of a drive, and those between.
+
+    :param count: at most so many scans of the drive are aligned.
+    """
     generator = np.random.default_rng(SEED)
-    world = World.of(drive)
-    matcher = world.matcher
-    scans = {index: scan_points(drive.scan(index)) for index in drive.tested}
+    world = world_of(name)
+    drive, matcher = world.drive, world.matcher
+    scans = {index: world.scan(index) for index in _spread(drive.tested, count)}
     scores: dict[int, float] = {}
     for index, scan in scans.items():
         scores[index] = matcher.score(scan, drive.poses[index]).nearest_voxel_likelihood
@@ -135,8 +154,11 @@ def cases_of(drive: Drive, wanted: int) -> list[Case]:
             alignment = matcher.align(scan, guess, only_pose=True)
             found.append(
                 Case(
-                    world,
-                    scan,
+                    name,
+                    index,
+                    drive.is_drive,
+                    drive.repeats,
+                    world.voxel_map.own_likelihood,
                     float(drive.stamps_s[index]),
                     before,
                     guess,
@@ -145,6 +167,12 @@ def cases_of(drive: Drive, wanted: int) -> list[Case]:
                 )
             )
     return found
+
+
+def _spread(indices: list[int], count: int) -> list[int]:
+    if len(indices) <= count:
+        return indices
+    return [indices[i] for i in np.linspace(0, len(indices) - 1, count).astype(int)]
 
 
 def _before(

@@ -4,8 +4,9 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -32,7 +33,7 @@ class Drive:
 
     :param poses: T_map_sensor (S, 4, 4) of all scans, also of those that make the map.
     :param stamps_s: (S) in seconds.
-    :param tested: indices of the scans that are judged.
+    :param tested: indices of the scans that may be judged.
     :param scan: returns the points (n, 3) of one.
     :param is_drive: the scans follow each other, so that motion tells.
     :param repeats: scans fit as well at other places: nothing in one tells them apart.
@@ -48,59 +49,64 @@ class Drive:
     repeats: bool = False
 
 
-def drives(scans: int) -> Iterator[Drive]:
-    """Yield all drives, of each at most so many scans."""
-    yield from _recorded(scans)
-    yield from simulated(scans)
+def drives() -> dict[str, Callable[[], Drive]]:
+    """Return what makes each of the drives, by their names."""
+    return {**_recorded(), **simulated()}
 
 
-def _recorded(scans: int) -> Iterator[Drive]:
+def _recorded() -> dict[str, Callable[[], Drive]]:
     checkout = Path(__file__).resolve().parents[3]
     directory = Path(os.environ.get(DATA_VARIABLE, checkout.parent / "shared" / "data"))
+    found: dict[str, Callable[[], Drive]] = {}
     for path in sorted(directory.glob("*.npz")) if directory.is_dir() else ():
         try:
             recording = load_recording(path)
         except ManycoreError:
             continue  # another kind of data
         if len(recording) > 1:
-            yield _of_recording(path.stem, recording, scans)
+            found[path.stem] = partial(_of_recording, path.stem, recording)
+    return found
 
 
-def _of_recording(name: str, recording: Recording, scans: int) -> Drive:
-    odd = list(range(1, len(recording), 2))
+def _of_recording(name: str, recording: Recording) -> Drive:
     stamps_s = recording.times_s()
     return Drive(
         name,
         recording.accumulated(range(0, len(recording), 2)).astype(np.float32),
         recording.poses,
         stamps_s,
-        _spread(odd, scans),
+        list(range(1, len(recording), 2)),
         recording.scan,
         len(recording) > 10 and float(np.median(np.diff(stamps_s))) < CONSECUTIVE_S,
     )
 
 
-def _spread(indices: list[int], count: int) -> list[int]:
-    if len(indices) <= count:
-        return indices
-    return [indices[i] for i in np.linspace(0, len(indices) - 1, count).astype(int)]
-
-
-def simulated(scans: int) -> Iterator[Drive]:
-    """Yield drives in made-up streets, of each at most so many scans."""
+def simulated() -> dict[str, Callable[[], Drive]]:
+    """Return what makes the drives in made-up streets, by their names."""
+    found: dict[str, Callable[[], Drive]] = {}
     for seed in (1, 2):
-        generator = np.random.default_rng(seed)
-        yield _driven(f"street {seed}", build_street(LENGTH_M, generator), generator, scans)
+        found[f"street {seed}"] = partial(_in_street, f"street {seed}", seed)
     for period_m in (12.0, 20.0):
-        generator = np.random.default_rng(int(period_m))
-        street = repeating_street(period_m, generator)
-        yield _driven(
-            f"street that repeats every {period_m:g} m", street, generator, scans, repeats=True
-        )
-    generator = np.random.default_rng(5)
-    yield _driven("tunnel", tunnel(), generator, scans, repeats=True)
-    street = build_street(LENGTH_M, generator)
-    yield _driven("street, sparse map", street, generator, scans, SPARSE_MAPPING_M)
+        name = f"street that repeats every {period_m:g} m"
+        found[name] = partial(_in_repeating_street, name, period_m)
+    found["tunnel"] = partial(_in_tunnel, "tunnel")
+    sparse = "street, sparse map"
+    found[sparse] = partial(_in_street, sparse, 5, SPARSE_MAPPING_M)
+    return found
+
+
+def _in_street(name: str, seed: int, mapping_m: float = MAPPING_M) -> Drive:
+    generator = np.random.default_rng(seed)
+    return _driven(name, build_street(LENGTH_M, generator), generator, mapping_m)
+
+
+def _in_repeating_street(name: str, period_m: float) -> Drive:
+    generator = np.random.default_rng(int(period_m))
+    return _driven(name, repeating_street(period_m, generator), generator, repeats=True)
+
+
+def _in_tunnel(name: str) -> Drive:
+    return _driven(name, tunnel(), np.random.default_rng(5), repeats=True)
 
 
 def repeating_street(period_m: float, generator: np.random.Generator) -> Street:
@@ -139,7 +145,6 @@ def _driven(
     name: str,
     street: Street,
     generator: np.random.Generator,
-    scans: int,
     mapping_m: float = MAPPING_M,
     *,
     repeats: bool = False,
@@ -149,14 +154,13 @@ def _driven(
     points = [transform(T, scan) for T, scan in zip(places, mapped, strict=True)]
     poses = poses_along(np.arange(1.3, LENGTH_M - 2.0, STEP_M))
     stamps_s: Matrix = np.arange(len(poses), dtype=np.float64) * PERIOD_S
-    seeds = np.random.default_rng(len(poses))
     return Drive(
         name,
         np.concatenate(points).astype(np.float32),
         poses,
         stamps_s,
-        _spread(list(range(3, len(poses))), scans),
-        lambda index: LIDAR.scan(street, poses[index], seeds),
+        list(range(3, len(poses))),
+        lambda index: LIDAR.scan(street, poses[index], np.random.default_rng((11, index))),
         is_drive=True,
         repeats=repeats,
     )
