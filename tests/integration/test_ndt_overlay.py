@@ -9,14 +9,18 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
+import numpy as np
 import pytest
 from support import IS_MANYCORE, manycore_command
+
+from rmw_manycore_py.ndt.maps.map_file import write_points
 
 pytestmark = [
     pytest.mark.integration,
     pytest.mark.skipif(not IS_MANYCORE, reason="manycore run is part of rmw_manycore"),
 ]
 
+CLOUD = "sensor_msgs/msg/PointCloud2"
 PACKAGE = "autoware_ndt_scan_matcher"
 LAUNCH_FILE = f"""\
 <launch>
@@ -36,6 +40,29 @@ PARAMETERS = """\
 """
 
 
+LOADER = "autoware_map_loader"
+LOADER_LAUNCH_FILE = f"""\
+<launch>
+  <arg name="pointcloud_map_path"/>
+  <arg name="param_file" default="$(find-pkg-share {LOADER})/config/pointcloud_map_loader.param.yaml"/>
+  <node pkg="{LOADER}" exec="autoware_pointcloud_map_loader" name="pointcloud_map_loader">
+    <remap from="output/pointcloud_map" to="/map/pointcloud_map"/>
+    <param from="$(var param_file)" allow_substs="true"/>
+  </node>
+  <node pkg="{LOADER}" exec="autoware_lanelet2_map_loader" name="lanelet2_map_loader"/>
+</launch>
+"""
+LOADER_PARAMETERS = """\
+/**:
+  ros__parameters:
+    enable_whole_load: true
+    enable_downsampled_whole_load: true
+    leaf_size: 3.0
+    pcd_paths_or_directory: [$(var pointcloud_map_path)]
+    pcd_metadata_path: none.yaml
+"""
+
+
 @pytest.fixture
 def autoware(tmp_path: Path) -> Path:
     """Return a prefix in which Autoware's package is installed."""
@@ -48,11 +75,51 @@ def autoware(tmp_path: Path) -> Path:
         prefix / "share/ament_index/resource_index/packages" / PACKAGE: "",
         prefix / "lib" / PACKAGE / f"{PACKAGE}_node": "#!/bin/sh\necho Autoware's own\n",
     }
+    share = prefix / "share" / LOADER
+    files |= {
+        share / "package.xml": f"<package><name>{LOADER}</name></package>",
+        share / "launch" / "pointcloud_map_loader.launch.xml": LOADER_LAUNCH_FILE,
+        share / "config" / "pointcloud_map_loader.param.yaml": LOADER_PARAMETERS,
+        prefix / "share/ament_index/resource_index/packages" / LOADER: "",
+    }
+    for program in ("autoware_pointcloud_map_loader", "autoware_lanelet2_map_loader"):
+        path = prefix / "lib" / LOADER / program
+        files[path] = f"#!/bin/sh\necho {program} of Autoware\n"
     for path, text in files.items():
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(text)
-    (prefix / "lib" / PACKAGE / f"{PACKAGE}_node").chmod(0o755)
+        if path.parent.parent.name == "lib":
+            path.chmod(0o755)
     return prefix
+
+
+def test_the_map_loader_too_where_it_is_asked_for(start, platform, tmp_path, autoware):
+    """Autoware's leaf size thins the topic it is of, not the map; other programs stay its own."""
+    overlay, points = tmp_path / "overlay", np.float32(np.mgrid[0:9, 0:9, 0:1].reshape(3, -1).T)
+    write_points(tmp_path / "map.npz", points)
+    sourced = {"AMENT_PREFIX_PATH": str(autoware)}
+    made = start(manycore_command("ndt", "overlay", overlay, "--map-loader"), **sourced)
+    assert made.wait() == 0, made
+    launch_file = overlay / "share" / LOADER / "launch" / "pointcloud_map_loader.launch.xml"
+    mapfile = tmp_path / "map.yaml"
+    arguments = f"{{pointcloud_map_path: {tmp_path}/map.npz}}"
+    mapfile.write_text(
+        f"launch_path: {launch_file}\nlaunch_arguments: {arguments}\nnodes:\n"
+        "  pointcloud_map_loader: {cluster: 1, core: 1}\n"
+        "  lanelet2_map_loader: {cluster: 1, core: 2}\n"
+    )
+    line = f'. {overlay}/setup.sh && exec "$@"'
+    run = start(["sh", "-c", line, "sh", *manycore_command("run", mapfile)], **sourced)
+    run.wait_for("autoware_lanelet2_map_loader of Autoware")
+    widths = {"/map/pointcloud_map": 81, "/output/debug/downsampled_pointcloud_map": 9}
+    for topic, width in widths.items():
+        durable = ("--qos-durability", "transient_local", "--qos-reliability", "reliable")
+        echo = ("topic", "echo", topic, CLOUD, "--once", "--field", "width", *durable)
+        heard = start(manycore_command(*echo))
+        assert heard.wait() == 0, heard
+        assert str(width) in heard.output.split()
+    assert "autoware_pointcloud_map_loader of Autoware" not in run.output
+    assert run.stop() == 0, run
 
 
 def test_the_launch_file_starts_our_node(start, platform, tmp_path, autoware):

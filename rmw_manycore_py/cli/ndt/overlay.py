@@ -7,17 +7,21 @@ from pathlib import Path
 
 import click
 
-from rmw_manycore_py.autoware_overlay import PACKAGE, write_overlay
+from rmw_manycore_py.autoware_overlay import MAP_LOADER, MATCHER, write_overlay
 from rmw_manycore_py.cli.common.options import examples
 from rmw_manycore_py.cli.common.output_file import writing
 
 
 @click.command(
     "overlay",
-    epilog=examples("manycore ndt overlay ~/ndt_overlay && . ~/ndt_overlay/setup.sh"),
+    epilog=examples(
+        "manycore ndt overlay ~/ndt_overlay && . ~/ndt_overlay/setup.sh",
+        "manycore ndt overlay ~/ndt_overlay --map-loader",
+    ),
 )
 @click.argument("directory", type=click.Path(file_okay=False, path_type=Path))
-def command(directory: Path) -> None:
+@click.option("--map-loader", is_flag=True, help="Replace Autoware's pointcloud_map_loader, too.")
+def command(directory: Path, map_loader: bool) -> None:
     """Let this scan matcher stand in the place of Autoware's, in shells that source DIRECTORY.
 
     DIRECTORY becomes an install prefix with a package of Autoware's name, whose executable starts
@@ -26,7 +30,8 @@ def command(directory: Path) -> None:
     if not directory.parent.is_dir():
         raise click.UsageError(f"'{directory}': there is no directory '{directory.parent}'")
     with writing(directory):
-        stock = write_overlay(directory)
-    files = f"launch and parameter files of {stock}" if stock else "no Autoware is sourced"
-    click.echo(f"{directory}: {PACKAGE} ({files})")
+        found = write_overlay(directory, (MATCHER, MAP_LOADER) if map_loader else (MATCHER,))
+    for package, stock in found.items():
+        files = f"launch and parameter files of {stock}" if stock else "no Autoware is sourced"
+        click.echo(f"{directory}: {package} ({files})")
     click.echo(f". {directory}/setup.sh")

@@ -19,13 +19,16 @@ from sensor_msgs.msg import PointCloud2
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
 from rmw_manycore_py.ndt.geometry.arrays import Points
 from rmw_manycore_py.ndt.geometry.precision import why_coarse
+from rmw_manycore_py.ndt.geometry.thinning import voxel_centroids
 from rmw_manycore_py.ndt.maps.map_area import MapArea
-from rmw_manycore_py.ndt.maps.map_tiles import open_map
+from rmw_manycore_py.ndt.maps.map_tiles import TiledMap, open_map
 from rmw_manycore_py.ndt.messages.conversions import PoseError, matrix_of
 from rmw_manycore_py.ndt.messages.point_cloud import encode
 from rmw_manycore_py.ndt.nodes.map_cell_services import MapCellServices
 from rmw_manycore_py.ndt.nodes.support.declared import declare, parameter
 from rmw_manycore_py.ndt.nodes.support.running import run_node
+
+DOWNSAMPLED_TOPIC = "output/debug/downsampled_pointcloud_map"
 
 
 @dataclass(frozen=True)
@@ -37,7 +40,10 @@ class LoaderParameters:
     selected: bool = parameter("enable_selected_load", False)
     paths: tuple[str, ...] = parameter("pcd_paths_or_directory", (), texts=True)
     metadata: str = parameter("pcd_metadata_path", "")
-    leaf_m: float = parameter("leaf_size", 0.0, least=0.0)
+    downsampled: bool = parameter("enable_downsampled_whole_load", False)
+    downsampled_leaf_m: float = parameter("leaf_size", 3.0, above=0.0)
+    leaf_m: float = parameter("map_leaf_size", 0.0, least=0.0)
+    map_topic: str = parameter("map_topic", "pointcloud_map")
     map_frame: str = parameter("map_frame", "map")
     radius_m: float = parameter("map_radius", 150.0, above=0.0)
     update_distance_m: float = parameter("update_distance", 20.0, above=0.0)
@@ -64,10 +70,14 @@ class PointcloudMapLoader(Node):
         )
         MapCellServices(self, tiles, self._p.map_frame, self._p.partial, self._p.selected)
         kept = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-        self._publisher = self.create_publisher(PointCloud2, "pointcloud_map", kept)
+        self._publisher = self.create_publisher(PointCloud2, self._p.map_topic, kept)
         self._area = MapArea(tiles, self._p.radius_m, self._p.update_distance_m)
+        if self._p.downsampled:
+            points = voxel_centroids(_whole(tiles), (self._p.downsampled_leaf_m,) * 3)
+            self._downsampled = self.create_publisher(PointCloud2, DOWNSAMPLED_TOPIC, kept)
+            self._downsampled.publish(encode(points, Time(), self._p.map_frame))
         if self._p.whole:
-            self._publish(tiles.around(0.0, 0.0, float("inf"))[1])
+            self._publish(_whole(tiles))
         else:
             self.create_subscription(
                 PoseWithCovarianceStamped, "ekf_pose_with_covariance", self._on_pose, 1
@@ -88,6 +98,10 @@ class PointcloudMapLoader(Node):
             self.get_logger().warning(f"the map is coarse: {warning}")
         self.get_logger().info(f"publishing a map of {len(points)} points")
         self._publisher.publish(encode(points, Time(), self._p.map_frame))
+
+
+def _whole(tiles: TiledMap) -> Points:
+    return tiles.around(0.0, 0.0, float("inf"))[1]
 
 
 def main() -> None:

@@ -1,0 +1,191 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""A made-up drive played to the whole node, as an engineer would: run, replay, read the table."""
+
+from __future__ import annotations
+
+import csv
+import json
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import IO, Any
+
+from rmw_manycore_hook import plain_environment
+from rmw_manycore_program import own_program
+from rmw_manycore_py.errors import ManycoreError
+from rmw_manycore_py.parent_death import dies_with_this_process
+
+NODE = "ndt_scan_matcher"
+TOPIC_IN = {
+    "pointcloud_map": "sensor_msgs/msg/PointCloud2",
+    "points_raw": "sensor_msgs/msg/PointCloud2",
+    "ekf_pose_with_covariance": "geometry_msgs/msg/PoseWithCovarianceStamped",
+}
+TOPIC_TO = {
+    "ndt_pose": "geometry_msgs/msg/PoseStamped",
+    "ndt_pose_with_covariance": "geometry_msgs/msg/PoseWithCovarianceStamped",
+    "/diagnostics": "diagnostic_msgs/msg/DiagnosticArray",
+}
+DOMAIN = 90  # benches run one at a time
+END_S = 60.0  # that a run may take to stop
+
+
+@dataclass(frozen=True)
+class Drive:
+    """What `manycore ndt simulate` wrote."""
+
+    directory: Path
+
+    @classmethod
+    def simulated(cls, directory: Path, *options: str) -> Drive:
+        """Make a drive up."""
+        _call("ndt", "simulate", str(directory), *options)
+        return cls(directory)
+
+    def tiles(self, size_m: float) -> Path:
+        """Write the map as tiles; return their directory."""
+        tiles = self.directory / "tiles"
+        drive = str(self.directory / "drive.npz")
+        size = ("--tile-size", str(size_m), "--format", "npz")
+        _call("ndt", "map", drive, "-o", str(tiles), *size)
+        return tiles
+
+
+@dataclass(frozen=True)
+class Scenario:
+    """How a drive is played.
+
+    :param parameters: of the node, beside `activated`.
+    :param busy: processes that take all the CPU time they get.
+    :param rate_hz: of the scans; None: as the drive has them.
+    :param killed_after: answered scans, after which the node is killed; 0: never.
+    """
+
+    parameters: dict[str, Any] = field(default_factory=dict)
+    busy: int = 0
+    rate_hz: float | None = None
+    killed_after: int = 0
+
+    def play(self, drive: Drive, directory: Path) -> list[dict[str, str]]:
+        """Return the rows of the replay's table."""
+        with _load(self.busy), self._running(directory) as pid_of_node:
+            rows = directory / "scans.csv"
+            pace = () if self.rate_hz is None else ("--rate", str(self.rate_hz))
+            source = ("--no-map",) if "map_path" in self.parameters else ()
+            words = ("--csv", str(rows), "--motion", "reference", *pace, *source)
+            replay = _started("ndt", "replay", str(drive.directory / "drive.npz"), *words)
+            if self.killed_after:
+                _wait_until_answered(replay, self.killed_after)
+                os.kill(pid_of_node, signal.SIGKILL)
+            output, _ = replay.communicate()
+        if not rows.exists():
+            raise ManycoreError(f"the replay failed: {output}")
+        with rows.open() as file:
+            return list(csv.DictReader(file))
+
+    @contextmanager
+    def _running(self, directory: Path) -> Iterator[int]:
+        """Run the node; yield its process id."""
+        path = directory / "map.yaml"
+        path.write_text(json.dumps(self._mapfile(directory)))
+        run = _started("run", str(path), "--json")
+        try:
+            yield _pid_of_node(run)
+        finally:
+            run.send_signal(signal.SIGINT)
+            try:
+                run.wait(END_S)
+            except subprocess.TimeoutExpired:
+                run.kill()
+
+    def _mapfile(self, directory: Path) -> dict[str, Any]:
+        node = {
+            "module": f"rmw_manycore_py.ndt.nodes.{NODE}",
+            "cluster": 3,
+            "core": 1,
+            "wait": "adaptive",
+            "workers": 12,
+            "respawn": {"delay": 0},
+            "topic_in": TOPIC_IN,
+            "topic_to": TOPIC_TO,
+            "parameters": {
+                "activated": True,
+                "last_pose_path": str(directory / "last_pose"),
+                **self.parameters,
+            },
+        }
+        return {
+            "platform": {"profile": "coolidge", "smem_size": "128MiB"},
+            "nodes": {NODE: node},
+        }
+
+
+def _call(*words: str) -> None:
+    process = _started(*words)
+    output, _ = process.communicate()
+    if process.returncode != 0:
+        raise ManycoreError(f"manycore {' '.join(words)} failed: {output}")
+
+
+def _started(*words: str) -> subprocess.Popen[str]:
+    environment = plain_environment(os.environ, sys.prefix)
+    environment.update(ROS_DOMAIN_ID=str(DOMAIN), MANYCORE_PLATFORM=f"bench-{os.getpid()}")
+    return subprocess.Popen(
+        own_program("rmw_manycore_py.cli", *words),
+        env=environment,
+        text=True,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        preexec_fn=dies_with_this_process(),
+    )
+
+
+def _pid_of_node(run: subprocess.Popen[str]) -> int:
+    """Wait until the node has started; go on reading what the run prints."""
+    said = []
+    for line in _lines(run):
+        said.append(line)
+        event = json.loads(line) if line.startswith("{") else {}
+        if event.get("event") == "started" and event.get("node") == NODE:
+            # Nothing may wait for the pipe, nor for what reads it.
+            threading.Thread(target=_lines(run).read, daemon=True).start()
+            return int(event["pid"])
+    raise ManycoreError(f"{NODE} did not start: {''.join(said)}")
+
+
+def _wait_until_answered(replay: subprocess.Popen[str], scans: int) -> None:
+    """Wait for a line of progress that tells of so many scans."""
+    for line in _lines(replay):
+        words = line.split()
+        if words[:1] == ["scan"] and int(words[1]) >= scans:
+            return
+
+
+def _lines(process: subprocess.Popen[str]) -> IO[str]:
+    assert process.stdout is not None
+    return process.stdout
+
+
+@contextmanager
+def _load(processes: int) -> Iterator[None]:
+    """Keep the CPUs busy."""
+    busy = [
+        subprocess.Popen(
+            [sys.executable, "-c", "while True: pass"], preexec_fn=dies_with_this_process()
+        )
+        for _ in range(processes)
+    ]
+    try:
+        time.sleep(1.0 if busy else 0.0)  # until they have had their share for a while
+        yield
+    finally:
+        for process in busy:
+            process.kill()
+            process.wait()
