@@ -226,6 +226,33 @@ def test_an_inward_bridge_that_stops_for_a_while(start, platform, tmp_path):
     assert any(errors_m[-5:]), errors_m
 
 
+def test_a_killed_matcher_is_started_again_and_finds_itself(start, platform, tmp_path):
+    """By the mapfile, without a first pose. How many scans that takes, `bench ndt` measures."""
+    made = start(manycore_command("ndt", "simulate", tmp_path, "--length", "75", "--speed", "5"))
+    assert made.wait(LONG_S) == 0, made
+    mapfile = yaml.safe_load((MAPFILES / "ndt_respawn.yaml").read_text())
+    mapfile["nodes"]["ndt_scan_matcher"]["parameters"]["last_pose_path"] = str(tmp_path / "pose")
+    (tmp_path / "respawn.yaml").write_text(yaml.safe_dump(mapfile))
+    run = start(manycore_command("run", tmp_path / "respawn.yaml", "--json"))
+    matcher = json.loads(run.wait_for('"started".*"ndt_scan_matcher"').string)["pid"]
+    poses = start(manycore_command("topic", "echo", "/ndt_pose", POSE_TYPE, "--csv"))
+    rows = tmp_path / "scans.csv"
+    options = ("--csv", rows, "--motion", "reference")
+    replay = start(manycore_command("ndt", "replay", tmp_path / "drive.npz", *options))
+    for _ in range(10):
+        poses.wait_for("^[0-9]")
+    os.kill(matcher, signal.SIGKILL)
+    run.wait_for('"started".*"ndt_scan_matcher"')
+    run.wait_for("matching to a map of")
+    poses.skip_output()  # of the process that was killed
+    poses.wait_for("^[0-9]")
+    replay.wait(LONG_S)
+    with rows.open() as file:
+        errors_m = [row["error_m"] for row in csv.DictReader(file)]
+    assert all(float(error) < 0.5 for error in errors_m if error), errors_m
+    assert any(errors_m[-5:]), errors_m
+
+
 @needs_data
 def test_a_recorded_drive_in_closed_loop(start, offload):
     """Carried by hand, turning by up to 50 degrees between scans; half of them made the map.
