@@ -44,7 +44,7 @@ LOADER = "autoware_map_loader"
 LOADER_LAUNCH_FILE = f"""\
 <launch>
   <arg name="pointcloud_map_path"/>
-  <arg name="param_file" default="$(find-pkg-share {LOADER})/config/pointcloud_map_loader.param.yaml"/>
+  <arg name="param_file" default="$(find-pkg-share {LOADER})/config/loader.param.yaml"/>
   <node pkg="{LOADER}" exec="autoware_pointcloud_map_loader" name="pointcloud_map_loader">
     <remap from="output/pointcloud_map" to="/map/pointcloud_map"/>
     <param from="$(var param_file)" allow_substs="true"/>
@@ -79,7 +79,7 @@ def autoware(tmp_path: Path) -> Path:
     files |= {
         share / "package.xml": f"<package><name>{LOADER}</name></package>",
         share / "launch" / "pointcloud_map_loader.launch.xml": LOADER_LAUNCH_FILE,
-        share / "config" / "pointcloud_map_loader.param.yaml": LOADER_PARAMETERS,
+        share / "config" / "loader.param.yaml": LOADER_PARAMETERS,
         prefix / "share/ament_index/resource_index/packages" / LOADER: "",
     }
     for program in ("autoware_pointcloud_map_loader", "autoware_lanelet2_map_loader"):

@@ -7,16 +7,15 @@ are aligned and places searched by a process on each usable CPU (trust_helpers.p
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Protocol, TypeVar
 
 import numpy as np
 
 from rmw_manycore_py.bench.ndt.contenders import usable
 from rmw_manycore_py.bench.ndt.trust_cases import Case, cases_of, searched
-from rmw_manycore_py.bench.ndt.trust_helpers import TrustHelpers
+from rmw_manycore_py.bench.ndt.trust_helpers import Helpers, TrustHelpers
 from rmw_manycore_py.bench.ndt.trust_worlds import drives
 from rmw_manycore_py.bench.question import Question, Run
 from rmw_manycore_py.bench.summary import Goal, Result
@@ -40,32 +39,6 @@ SEARCHES = 8  # of each drive
 # all wrong ones of other drives, and a little more.
 LEFT_BELOW, DRIVE_ROOM, MAP_ROOM, FIRST_ROOM = 0.003, 0.07, 0.1, 0.03
 AROUND_M, GLOBAL_M = 5.0, 20.0
-
-T, R = TypeVar("T"), TypeVar("R")
-
-
-class Workers(Protocol):
-    """What does the work: this process, or several."""
-
-    def map(self, function: Callable[[T], R], items: Iterable[T]) -> Iterator[R]:
-        """Return what a function says of each item, in their order."""
-        ...
-
-    def call(self, function: Callable[..., R], *arguments: object) -> R:
-        """Return what a function of a module returns."""
-        ...
-
-
-class Here:
-    """This process and thread."""
-
-    def map(self, function: Callable[[T], R], items: Iterable[T]) -> Iterator[R]:
-        """Return what a function says of each item, in their order."""
-        return map(function, items)
-
-    def call(self, function: Callable[..., R], *arguments: object) -> R:
-        """Return what a function of a module returns."""
-        return function(*arguments)
 
 
 @dataclass(frozen=True)
@@ -97,7 +70,7 @@ def measure(run: Run) -> list[Result]:
 
 
 def judged(
-    cases: dict[str, list[Case]], count: int, searches: int, workers: Workers
+    cases: dict[str, list[Case]], count: int, searches: int, helpers: Helpers
 ) -> list[Result]:
     """Return the results of at most `count` right and wrong cases, as many of each drive.
 
@@ -117,11 +90,11 @@ def judged(
     mislead = {id(case): misleads(case, shares[case.drive]) for case in wrong}
 
     def refused(case: Case) -> bool:
-        return is_refused(case, shares[case.drive], workers)
+        return is_refused(case, shares[case.drive], helpers)
 
-    refuse = dict(zip(map(id, right), workers.map(refused, right), strict=True))
+    refuse = dict(zip(map(id, right), helpers.map(refused, right), strict=True))
     starts = [replace(case, before=()) for case in right]
-    refuse_at_start = list(workers.map(refused, starts))
+    refuse_at_start = list(helpers.map(refused, starts))
     results = [
         _share(BELIEVED, OURS, list(mislead.values())),
         _share(BELIEVED, AUTOWARE, [_as_autoware(case) for case in wrong]),
@@ -145,7 +118,7 @@ def judged(
             ],
         }
         results += [_share(question, OURS, is_so) for question, is_so in answers.items() if is_so]
-    return [*results, *_searches(wrong, shares, searches, workers)]
+    return [*results, *_searches(wrong, shares, searches, helpers)]
 
 
 def _is_judged(case: Case) -> bool:
@@ -154,13 +127,13 @@ def _is_judged(case: Case) -> bool:
 
 
 def _searches(
-    wrong: Sequence[Case], shares: dict[str, Shares], searches: int, workers: Workers
+    wrong: Sequence[Case], shares: dict[str, Shares], searches: int, helpers: Helpers
 ) -> list[Result]:
     """Search where alignments led astray, globally around their guesses."""
     picked = []
     for name in shares:
         picked += [c for c in wrong if c.drive == name and _is_in_reach(c)][:searches]
-    answers = list(workers.map(partial(_found_by_search, shares, workers), picked))
+    answers = list(helpers.map(partial(_found_by_search, shares, helpers), picked))
     if not answers:
         return []
     is_wrong = [clear and not there for clear, there in answers]
@@ -168,10 +141,10 @@ def _searches(
     return [_share(SEARCHED, OURS, is_right), _share(FOUND_WRONG, OURS, is_wrong)]
 
 
-def _found_by_search(shares: dict[str, Shares], workers: Workers, case: Case) -> tuple[bool, bool]:
+def _found_by_search(shares: dict[str, Shares], helpers: Helpers, case: Case) -> tuple[bool, bool]:
     """Tell whether a global search finds a clear place, and whether that is the right one."""
     region = Region(case.guess, GLOBAL_M, any_yaw=True)
-    found = workers.call(searched, case.drive, case.index, region)
+    found = helpers.call(searched, case.drive, case.index, region)
     is_clear = not found.why_unclear(_level_of(case, shares[case.drive]), region)
     return is_clear, is_clear and _is_there(found, case)
 
@@ -194,9 +167,7 @@ def chosen(cases: Sequence[Case]) -> Shares:
         if case.before
     ]
     wrong = [
-        case.alignment.fit / case.own_score
-        for case in cases
-        if case.is_wrong and not case.repeats
+        case.alignment.fit / case.own_score for case in cases if case.is_wrong and not case.repeats
     ]
     return Shares(
         float(np.quantile(of_map, LEFT_BELOW)) - MAP_ROOM,
@@ -213,7 +184,7 @@ def misleads(case: Case, shares: Shares) -> bool:
     return not verdict.covers(case.alignment.T_map_sensor, case.truth)
 
 
-def is_refused(case: Case, shares: Shares, workers: Workers) -> bool:
+def is_refused(case: Case, shares: Shares, helpers: Helpers) -> bool:
     """Tell whether a right pose is refused, and at a start a search does not find it either."""
     if case.judged(shares.level()).is_believed:
         return False
@@ -221,7 +192,7 @@ def is_refused(case: Case, shares: Shares, workers: Workers) -> bool:
         return True
     for radius_m, any_yaw in ((AROUND_M, False), (GLOBAL_M, True)):
         region = Region(case.guess, radius_m, any_yaw)
-        found = workers.call(searched, case.drive, case.index, region)
+        found = helpers.call(searched, case.drive, case.index, region)
         if not found.why_unclear(_level_of(case, shares), region):
             return not _is_there(found, case)
     return True

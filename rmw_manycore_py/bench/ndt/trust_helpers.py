@@ -9,15 +9,40 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from queue import SimpleQueue
 from types import TracebackType
-from typing import TypeVar
+from typing import Protocol, TypeVar
 
 from rmw_manycore_py.helper_process import HelperProcess
 
-T, R = TypeVar("T"), TypeVar("R")
+T = TypeVar("T")
+R = TypeVar("R")
+
+
+class Helpers(Protocol):
+    """What does the work: several processes, or this one."""
+
+    def map(self, function: Callable[[T], R], items: Iterable[T]) -> Iterator[R]:
+        """Return what a function says of each item, in their order."""
+        ...
+
+    def call(self, function: Callable[..., R], *arguments: object) -> R:
+        """Return what a function of a module returns."""
+        ...
+
+
+class Here:
+    """Does all of it in the calling thread."""
+
+    def map(self, function: Callable[[T], R], items: Iterable[T]) -> Iterator[R]:
+        """Return what a function says of each item, in their order."""
+        return map(function, items)
+
+    def call(self, function: Callable[..., R], *arguments: object) -> R:
+        """Return what a function of a module returns."""
+        return function(*arguments)
 
 
 class TrustHelpers:
-    """Ends its processes when it is left.
+    """A process on each CPU, until it is left.
 
     :param cpus: a thread and a process for each.
     """

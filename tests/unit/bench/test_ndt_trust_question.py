@@ -7,6 +7,7 @@ import pytest
 
 from rmw_manycore_py.bench.ndt import trust
 from rmw_manycore_py.bench.ndt.trust_cases import Case, cases_of
+from rmw_manycore_py.bench.ndt.trust_helpers import Here
 from rmw_manycore_py.bench.summary import Result
 from rmw_manycore_py.ndt.trust.judge import PoseJudge, Verdict
 
@@ -21,7 +22,7 @@ def cases() -> dict[str, list[Case]]:
 
 
 def answered(cases: dict[str, list[Case]], searches: int = 0) -> dict[str, Result]:
-    results = trust.judged(cases, 60, searches, trust.Here())
+    results = trust.judged(cases, 60, searches, Here())
     return {result.question: result for result in results if result.contender == trust.OURS}
 
 

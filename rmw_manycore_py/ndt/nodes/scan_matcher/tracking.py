@@ -115,7 +115,8 @@ class RobustTracking:
         self._p = parameters
         self._judge = PoseJudge(searches=own.recovery_after_scans > 0)
         self._recovery = Recovery(matcher.options, own.recovery_after_scans, own.recovery_radius_m)
-        self._last_pose = LastPose(Path(own.last_pose_path).expanduser()) if own.last_pose_path else None
+        path = Path(own.last_pose_path).expanduser()
+        self._last_pose = LastPose(path) if own.last_pose_path else None
         self.was_activated = False
         left = self._last_pose.read(time.time(), MAX_LEFT_S) if self._last_pose else None
         if left is not None:

@@ -43,7 +43,8 @@ def test_a_turn_of_a_right_angle_is_none():
 
 
 @pytest.mark.parametrize(
-    ("steps", "is_degenerate", "expected"), [(12, False, True), (11, False, False), (12, True, False)]
+    ("steps", "is_degenerate", "expected"),
+    [(12, False, True), (11, False, False), (12, True, False)],
 )
 def test_an_alignment_that_oscillates_has_ended(steps, is_degenerate, expected):
     """As in Autoware, which counts more than ten turns back in a row."""
