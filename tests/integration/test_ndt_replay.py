@@ -241,7 +241,7 @@ def test_an_inward_bridge_that_stops_for_a_while(start, platform, tmp_path):
 
 def test_a_killed_matcher_is_started_again_and_finds_itself(start, platform, tmp_path):
     """By the mapfile, without a first pose. How many scans that takes, `bench ndt` measures."""
-    made = start(manycore_command("ndt", "simulate", tmp_path, "--length", "75", "--speed", "5"))
+    made = start(manycore_command("ndt", "simulate", tmp_path, "--length", "30"))
     assert made.wait(LONG_S) == 0, made
     mapfile = yaml.safe_load((MAPFILES / "ndt_respawn.yaml").read_text())
     mapfile["nodes"]["ndt_scan_matcher"]["parameters"]["last_pose_path"] = str(tmp_path / "pose")
@@ -250,9 +250,9 @@ def test_a_killed_matcher_is_started_again_and_finds_itself(start, platform, tmp
     matcher = json.loads(run.wait_for('"started".*"ndt_scan_matcher"').string)["pid"]
     poses = start(manycore_command("topic", "echo", "/ndt_pose", POSE_TYPE, "--csv"))
     rows = tmp_path / "scans.csv"
-    options = ("--csv", rows, "--motion", "reference")
+    options = ("--csv", rows, "--motion", "reference", "--rate", "2")
     replay = start(manycore_command("ndt", "replay", tmp_path / "drive.npz", *options))
-    for _ in range(10):
+    for _ in range(5):
         poses.wait_for("^[0-9]")
     os.kill(matcher, signal.SIGKILL)
     run.wait_for('"started".*"ndt_scan_matcher"')

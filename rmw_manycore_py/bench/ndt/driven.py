@@ -94,7 +94,7 @@ class Scenario:
     def _running(self, directory: Path) -> Iterator[int]:
         """Run the node; yield its process id."""
         path = directory / "map.yaml"
-        path.write_text(json.dumps(self._mapfile(directory)))
+        path.write_text(json.dumps(self.mapfile(directory)))
         run = _started("run", str(path), "--json")
         try:
             yield _pid_of_node(run)
@@ -105,7 +105,8 @@ class Scenario:
             except subprocess.TimeoutExpired:
                 run.kill()
 
-    def _mapfile(self, directory: Path) -> dict[str, Any]:
+    def mapfile(self, directory: Path) -> dict[str, Any]:
+        """Return the mapfile of the run, whose node writes to a directory."""
         node = {
             "module": f"rmw_manycore_py.ndt.nodes.{NODE}",
             "cluster": 3,

@@ -33,7 +33,7 @@ def measure(run: Run) -> list[Result]:
     if not wanted:
         return []
     share = max(run.share, 0.2)
-    results = []
+    found = []
     with tempfile.TemporaryDirectory() as directory:
         here = Path(directory)
         run.note(f"{NAME}: making drives up")
@@ -47,8 +47,8 @@ def measure(run: Run) -> list[Result]:
         for name in wanted:
             run.note(f"{NAME}: {name}")
             played = large if name == SIZED and large is not None else drive
-            results += _results(name, scenarios[name].play(played, here))
-    return results
+            found += results(name, scenarios[name].play(played, here))
+    return found
 
 
 def _scenarios(tiles: Path) -> dict[str, Scenario]:
@@ -69,7 +69,8 @@ def _scenarios(tiles: Path) -> dict[str, Scenario]:
     return found
 
 
-def _results(name: str, rows: Sequence[dict[str, str]]) -> list[Result]:
+def results(name: str, rows: Sequence[dict[str, str]]) -> list[Result]:
+    """Return what the rows of a replay's table say."""
     latencies = tuple(float(row["latency_ms"]) for row in rows if row["latency_ms"])
     lost = float(sum(row["state"] == "lost" for row in rows))
     found = [Result(LOST, name, "scans", (lost,))]
