@@ -46,7 +46,7 @@ def has_ended(alignment: Alignment) -> bool:
 
 
 def oscillates(path: Poses) -> bool:
-    """Tell whether an alignment went to and fro more often than a healthy one does."""
+    """Tell whether an alignment turned back in a row more often than a healthy one does."""
     return count_oscillations(path) > MANY_OSCILLATIONS
 
 
