@@ -108,6 +108,7 @@ class MapBuilder:
         if self._is_first:
             first = VoxelMap.from_points(points, self._options)
             self._is_first = False
+            self._executor.submit(self._helper.call, map_process.let_go)  # starts it
             return first
         held = self._helper.call(map_process.build, points, self._options)
         try:
