@@ -8,7 +8,7 @@
 namespace manycore::closing {
 
 /// Takes an endpoint out of the graph and ends some of its matches: as many as the registry lock,
-/// which the caller holds, may be held for. True when all have ended; its memory goes with sweep().
+/// which the caller holds, may be held for. True when all have ended; its memory goes with sweeping.
 /// Safe to repeat after its caller died half way. `died`: the endpoint's process is dead, so hints
 /// of its last records may never have been pushed. Throws OutOfReach while this process cannot map
 /// the cluster of a match: the endpoint then stays `closing`.
@@ -33,13 +33,5 @@ private:
   uint32_t next_ = 0;  ///< those of its endpoints below this slot are closed
   std::optional<OutOfReach> obstacle_;
 };
-
-/// Frees what closed endpoints hold, as far as no process can be using it any more (see
-/// docs/design/topic_dsm.md, Freeing), and closes what a living process could not, as a cluster was
-/// out of its reach. False when something is out of this process's reach, and left to others.
-bool sweep(Registry & registry);
-
-/// What an endpoint's owner calls: takes the lock, closes, sweeps, and tells who watches the graph.
-void leave(Registry & registry, uint32_t endpoint) noexcept;
 
 }  // namespace manycore::closing

@@ -100,50 +100,6 @@ bool has_undelivered(const OrphanReader & reader) {
   return found;
 }
 
-std::set<uint32_t> WantedSources::newest_of(
-  SubscriptionHeader & subscription, uint32_t subscription_cluster) {
-  std::vector<Undelivered> waiting;
-  visit_source_table(
-    registry_.clusters().at(subscription_cluster), subscription,
-    [&](SourceEntry & source, uint32_t index) {
-      TopicDsmHeader * const dsm =
-        source.state.load() == SourceState::active ? topic_dsm_of(registry_, source) : nullptr;
-      if (dsm != nullptr) {
-        const SegmentRef ref{source.topic_dsm.load()};
-        list_undelivered(registry_.clusters().at(ref.cluster()), *dsm, source, index, waiting);
-      }
-      return false;
-    });
-  if (waiting.size() > subscription.depth) {
-    const auto end = waiting.begin() + static_cast<ptrdiff_t>(subscription.depth);
-    std::nth_element(
-      waiting.begin(), end, waiting.end(),
-      [](const Undelivered & a, const Undelivered & b) { return a.is_newer_than(b); });
-    waiting.erase(end, waiting.end());
-  }
-  std::set<uint32_t> sources;
-  for (const Undelivered & record : waiting) {
-    sources.insert(record.source);
-  }
-  return sources;
-}
-
-bool WantedSources::contain(const OrphanReader & reader) {
-  const bool cut_by_depth = reader.subscription.keep_all == 0 &&
-                            static_cast<EndpointRole>(reader.dsm.role) != EndpointRole::reply;
-  if (!cut_by_depth || !has_undelivered(reader)) {
-    return has_undelivered(reader);
-  }
-  auto known = by_subscription_.find(reader.endpoint_slot);
-  if (known == by_subscription_.end()) {
-    known =
-      by_subscription_
-        .emplace(reader.endpoint_slot, newest_of(reader.subscription, reader.endpoint.cluster))
-        .first;
-  }
-  return known->second.count(reader.source_index) != 0;
-}
-
 /// The subscription counts its own replies as it misses them.
 void count_undelivered(Registry & registry, const OrphanReader & reader) {
   const LastPublished published = last_published(reader.dsm);

@@ -2,9 +2,7 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
 #include <optional>
-#include <set>
 #include <vector>
 
 #include "transport/layout/subscription_layout.hpp"
@@ -50,23 +48,6 @@ uint64_t records_to_look_at(TopicDsmHeader & dsm, const SourceEntry & source);
 /// A record that the reader has not taken, in any generation; of replies, its own whose hint was
 /// not displaced.
 bool has_undelivered(const OrphanReader & reader);
-
-/// The sources from which each subscription is still to get messages. KEEP_LAST: those that hold
-/// any of its newest `depth` records, over all its sources, as a resync would cut them. Looks into
-/// a subscription's sources once while it lives; needs the registry lock all the time, under which
-/// no publisher frees a generation.
-class WantedSources {
-public:
-  explicit WantedSources(Registry & registry) noexcept : registry_(registry) {}
-
-  bool contain(const OrphanReader & reader);
-
-private:
-  std::set<uint32_t> newest_of(SubscriptionHeader & subscription, uint32_t subscription_cluster);
-
-  Registry & registry_;
-  std::map<uint32_t, std::set<uint32_t>> by_subscription_;  ///< source indices
-};
 
 /// Counts what the reader has not taken as lost; nothing of the topic DSM may be claimed any more.
 void count_undelivered(Registry & registry, const OrphanReader & reader);
