@@ -108,7 +108,10 @@ macro(manycore_interface_target target kind)
 endmacro()
 
 foreach(package
-    autoware_internal_debug_msgs autoware_internal_localization_msgs autoware_map_msgs
-    composition_interfaces manycore_reference_msgs tf2_msgs tier4_localization_msgs)
+    autoware_adapi_v1_msgs autoware_control_msgs autoware_internal_debug_msgs
+    autoware_internal_localization_msgs autoware_map_msgs autoware_planning_msgs
+    autoware_vehicle_msgs composition_interfaces manycore_reference_msgs tf2_msgs
+    tier4_control_msgs tier4_external_api_msgs tier4_localization_msgs tier4_vehicle_msgs
+    whill_msgs)
   manycore_interfaces(${package})
 endforeach()

@@ -38,6 +38,7 @@ VERBS = {
     "env": "rmw_manycore_py.cli.env:command",
     "completion": "rmw_manycore_py.cli.completion:command",
     "ndt": "rmw_manycore_py.cli.ndt:command",
+    "whill": "rmw_manycore_py.cli.whill:command",
     "bridge": "rmw_manycore_py.cli.bridge:command",
     "bench": "rmw_manycore_py.cli.bench:command",
 }

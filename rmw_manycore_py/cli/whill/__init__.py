@@ -1,0 +1,15 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""`manycore whill`."""
+
+from __future__ import annotations
+
+import click
+
+from rmw_manycore_py.cli.common.group import LazyGroup
+
+VERBS = {verb: f"rmw_manycore_py.cli.whill.{verb}:command" for verb in ("course", "drive")}
+
+
+@click.group("whill", cls=LazyGroup, commands_at=VERBS)
+def command() -> None:
+    """Drive a wheelchair whose localization and control are off-loaded: ROS-lite2's case study."""

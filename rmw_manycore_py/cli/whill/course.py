@@ -1,0 +1,135 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""`manycore whill course`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+import numpy as np
+
+from rmw_manycore_py.cli.common.options import examples
+from rmw_manycore_py.cli.common.output_file import writing
+from rmw_manycore_py.errors import ManycoreError
+from rmw_manycore_py.mapfile.installed import find_mapfile
+from rmw_manycore_py.ndt.maps.map_file import read_points
+from rmw_manycore_py.whill.course.directory import (
+    MAP,
+    TRAJECTORY,
+    WHEEL_BASE_M,
+    Course,
+    check_inside,
+    mapped,
+    thinned,
+    write_course,
+)
+from rmw_manycore_py.whill.course.shape import CourseShape
+from rmw_manycore_py.whill.course.streets import build_streets
+from rmw_manycore_py.whill.course.trajectory_file import read_trajectory
+from rmw_manycore_py.whill.course.views import PointView, StreetView
+from rmw_manycore_py.whill.laws.wheelchair import MAX_SPEED_M_S
+
+MIN_STRAIGHT_M = 5.0
+
+
+@click.command(
+    "course",
+    epilog=examples(
+        "manycore whill course build/whill",
+        "manycore whill course build/short --length 50 --turn-radius 8",
+        "manycore whill course build/mine --map my_map.pcd --trajectory my_way.csv",
+    ),
+)
+@click.argument("directory", type=click.Path(file_okay=False, path_type=Path))
+@click.option(
+    "--length",
+    "length_m",
+    type=click.FloatRange(20.0, 2000.0),
+    default=CourseShape.length_m,
+    show_default=True,
+    help="Metres to drive.",
+)
+@click.option(
+    "--turn-radius",
+    "turn_radius_m",
+    type=click.FloatRange(3.0, 50.0),
+    default=CourseShape.turn_radius_m,
+    show_default=True,
+    help="Radius of the two turns, metres.",
+)
+@click.option(
+    "--speed",
+    "speed_m_s",
+    type=click.FloatRange(0.3, MAX_SPEED_M_S),
+    default=CourseShape.speed_m_s,
+    show_default=True,
+    help="Metres per second on the straights.",
+)
+@click.option(
+    "--turn-speed",
+    "turn_speed_m_s",
+    type=click.FloatRange(0.3, MAX_SPEED_M_S),
+    default=CourseShape.turn_speed_m_s,
+    show_default=True,
+    help="Metres per second in the turns.",
+)
+@click.option("--seed", type=click.IntRange(0), default=1, show_default=True, help="The streets.")
+@click.option(
+    "--map",
+    "map_path",
+    type=click.Path(exists=True, dir_okay=False, path_type=Path),
+    help="A map of yours (pcd, ply, npz) instead of streets; needs --trajectory.",
+)
+@click.option(
+    "--trajectory",
+    "trajectory_path",
+    type=click.Path(exists=True, dir_okay=False, path_type=Path),
+    help="A trajectory of yours in it: CSV with x_m,y_m,yaw_rad,speed_m_s.",
+)
+def command(
+    directory: Path,
+    seed: int,
+    map_path: Path | None,
+    trajectory_path: Path | None,
+    **shape: float,
+) -> None:
+    """Write a course to DIRECTORY: map, trajectory, surroundings, and the mapfile that uses them.
+
+    Streets are those of `manycore ndt simulate`, with a turn to the left and one to the right.
+    """
+    if (map_path is None) != (trajectory_path is None):
+        raise click.UsageError("--map and --trajectory need each other")
+    if map_path is not None and trajectory_path is not None:
+        course = _own(map_path, trajectory_path)
+    else:
+        course = _synthetic(CourseShape(**shape), seed)
+    mapfile = find_mapfile("whill")
+    if mapfile is None:
+        raise ManycoreError("the mapfile whill.yaml is not installed: run 'manycore doctor'")
+    with writing(directory):
+        directory.mkdir(parents=True, exist_ok=True)
+        write_course(directory, course, mapfile)
+    along_m = course.trajectory.along_m()
+    click.echo(f"{directory / MAP}: {len(course.map_points)} points")
+    click.echo(f"{directory / TRAJECTORY}: {len(course.trajectory)} points, {along_m[-1]:.0f} m")
+    click.echo(f"next: manycore whill drive --course {directory} --run")
+
+
+def _synthetic(shape: CourseShape, seed: int) -> Course:
+    if shape.straight_m < MIN_STRAIGHT_M:
+        needed = 2.0 * shape.turn_m + 3.0 * MIN_STRAIGHT_M
+        raise click.UsageError(
+            f"--length {shape.length_m:g}: with turns of {shape.turn_radius_m:g} m expected at "
+            f"least {needed:.0f} m; or give a smaller --turn-radius"
+        )
+    generator = np.random.default_rng(seed)
+    trajectory = shape.trajectory()
+    view = StreetView(build_streets(shape, trajectory, generator))
+    return Course(trajectory, thinned(mapped(view, trajectory, generator)), view)
+
+
+def _own(map_path: Path, trajectory_path: Path) -> Course:
+    trajectory = read_trajectory(trajectory_path, WHEEL_BASE_M, MAX_SPEED_M_S)
+    points = read_points(map_path)
+    check_inside(trajectory, points, trajectory_path)
+    return Course(trajectory, points, PointView(points))

@@ -1,0 +1,37 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Naming the node whose publisher has gone, from the liveliness of a subscription."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from rclpy.event_handler import SubscriptionEventCallbacks
+from rclpy.node import Node
+
+
+def watched(node: Node, topic: str) -> SubscriptionEventCallbacks:
+    """Return the event callbacks of a subscription: they log which publishers died or left.
+
+    On rmw_manycore within milliseconds of a death, on DDS when the participant's lease has run out.
+    """
+    return SubscriptionEventCallbacks(liveliness=_Watch(node, topic).changed)
+
+
+class _Watch:
+    """Remembers who publishes a topic: those that have gone cannot be asked."""
+
+    def __init__(self, node: Node, topic: str) -> None:
+        self._node = node
+        self._topic = node.resolve_topic_name(topic)
+        self._known: set[str] = set()
+
+    def changed(self, event: Any) -> None:
+        """Compare the publishers with those known before."""
+        infos = self._node.get_publishers_info_by_topic(self._topic)
+        present = {info.node_name for info in infos}
+        gone = self._known - present
+        if not gone and event.not_alive_count_change > 0:
+            gone = self._known or {"a publisher"}
+        if gone:
+            self._node.get_logger().warning(f"{self._topic}: {', '.join(sorted(gone))} is gone")
+        self._known = present

@@ -1,0 +1,62 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""`static_trajectory_publisher`: a trajectory from a file, for all that ask now or later."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from autoware_planning_msgs.msg import Trajectory as TrajectoryMessage
+from rclpy.node import Node
+from rclpy.qos import DurabilityPolicy, QoSProfile
+
+from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
+from rmw_manycore_py.ndt.nodes.support.declared import declare, parameter
+from rmw_manycore_py.ndt.nodes.support.running import run_node
+from rmw_manycore_py.whill.course.trajectory_file import read_trajectory
+from rmw_manycore_py.whill.laws.wheelchair import MAX_SPEED_M_S
+from rmw_manycore_py.whill.messages import trajectory_message
+
+
+@dataclass(frozen=True)
+class PublisherParameters:
+    """Ours; the wheel base and the speed are those of the vehicle that is to drive."""
+
+    path: str = parameter("trajectory_path", "")
+    period_s: float = parameter("publish_period", 1.0, above=0.0)
+    map_frame: str = parameter("map_frame", "map")
+    wheel_base_m: float = parameter("wheel_base", 0.45, above=0.0)
+    max_speed_m_s: float = parameter("vehicle_velocity_limit", MAX_SPEED_M_S, above=0.0)
+
+
+class StaticTrajectoryPublisher(Node):
+    """Publishes `trajectory` again and again, for planners' subscribers keep none."""
+
+    def __init__(self) -> None:
+        super().__init__("static_trajectory_publisher")
+        self._p = declare(self, PublisherParameters)
+        if not self._p.path:
+            raise ManycoreError(
+                "parameter trajectory_path: expected a file, found none", EXIT_BAD_INPUT
+            )
+        path = Path(self._p.path).expanduser()
+        trajectory = read_trajectory(path, self._p.wheel_base_m, self._p.max_speed_m_s)
+        self._message = trajectory_message(trajectory, self._p.map_frame)
+        kept = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+        self._output = self.create_publisher(TrajectoryMessage, "trajectory", kept)
+        self.get_logger().info(f"publishing {len(trajectory)} points")
+        self._publish()
+        self.create_timer(self._p.period_s, self._publish)
+
+    def _publish(self) -> None:
+        self._message.header.stamp = self.get_clock().now().to_msg()
+        self._output.publish(self._message)
+
+
+def main() -> None:
+    """Run the node until it is interrupted."""
+    run_node(StaticTrajectoryPublisher)
+
+
+if __name__ == "__main__":
+    main()
