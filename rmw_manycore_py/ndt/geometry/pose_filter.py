@@ -60,6 +60,12 @@ class State:
         full[UPRIGHT, UPRIGHT] = self.upright_variance
         return full
 
+    def twist_covariance(self) -> Matrix:
+        """Return the covariance (6, 6) of the speed along x and the rate about z; else zero."""
+        full = np.zeros((6, 6))
+        full[np.ix_((0, 5), (0, 5))] = self.covariance[V:, V:]
+        return full
+
 
 Update = Callable[[State], State]
 

@@ -32,6 +32,7 @@ from rmw_manycore_py.ndt.messages.conversions import (
 from rmw_manycore_py.ndt.nodes.support.declared import declare, parameter
 from rmw_manycore_py.ndt.nodes.support.log_throttle import LogThrottle
 from rmw_manycore_py.ndt.nodes.support.running import run_node
+from rmw_manycore_py.ndt.nodes.support.watched import watched
 
 LEAST_VARIANCE = 1e-8  # of a measurement: one without noise cannot be weighed
 
@@ -73,10 +74,26 @@ class EkfLocalizer(Node):
         self._with_covariance = self.create_publisher(pose, "ekf_pose_with_covariance", 10)
         self._twist = self.create_publisher(TwistStamped, "ekf_twist", 10)
         self._tf = self.create_publisher(TFMessage, "/tf", 100)
-        self.create_subscription(pose, "initialpose", self._on_initial_pose, 10)
-        self.create_subscription(pose, "in_pose_with_covariance", self._on_pose, 10)
         self.create_subscription(
-            TwistWithCovarianceStamped, "in_twist_with_covariance", self._on_twist, 100
+            pose,
+            "initialpose",
+            self._on_initial_pose,
+            10,
+            event_callbacks=watched(self, "initialpose"),
+        )
+        self.create_subscription(
+            pose,
+            "in_pose_with_covariance",
+            self._on_pose,
+            10,
+            event_callbacks=watched(self, "in_pose_with_covariance"),
+        )
+        self.create_subscription(
+            TwistWithCovarianceStamped,
+            "in_twist_with_covariance",
+            self._on_twist,
+            100,
+            event_callbacks=watched(self, "in_twist_with_covariance"),
         )
         self.create_service(SetBool, "trigger_node", self._on_trigger)
         self.create_timer(1.0 / self._p.frequency_hz, self._publish)
@@ -180,6 +197,7 @@ class EkfLocalizer(Node):
         odometry.header.stamp = pose.header.stamp
         odometry.header.frame_id = self._p.pose_frame
         odometry.twist.twist = twist.twist
+        odometry.twist.covariance = state.twist_covariance().ravel()
         self._odometry.publish(odometry)
 
     def _now_s(self) -> float:

@@ -7,8 +7,9 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
+import numpy.typing as npt
 
-from rmw_manycore_py.ndt.geometry.arrays import Points
+from rmw_manycore_py.ndt.geometry.arrays import Matrix, Points
 from rmw_manycore_py.ndt.geometry.poses import from_xyz_rpy, inverse, transform
 from rmw_manycore_py.ndt.simulation.lidar import Lidar
 from rmw_manycore_py.ndt.simulation.street import Street
@@ -27,7 +28,7 @@ class View(Protocol):
         """Return points (N, 3) in the vehicle's frame: x ahead, y left, z from the ground."""
 
 
-def _sensor_pose(x_m: float, y_m: float, yaw_rad: float) -> Points:
+def _sensor_pose(x_m: float, y_m: float, yaw_rad: float) -> Matrix:
     return from_xyz_rpy((x_m, y_m, SENSOR_HEIGHT_M), (0.0, 0.0, yaw_rad))
 
 
@@ -76,7 +77,7 @@ class PointView:
         noise = 1.0 + generator.normal(0.0, self.lidar.noise_m, len(first)) / ranges[first]
         return _above_ground((seen[first] * noise[:, None]).astype(np.float32))
 
-    def _first_of_each_ray(self, seen: Points, ranges: Points) -> Points:
+    def _first_of_each_ray(self, seen: Points, ranges: Points) -> npt.NDArray[np.intp]:
         lidar = self.lidar
         elevation = np.degrees(np.arcsin(seen[:, 2] / ranges))
         ring = (elevation - lidar.lowest_deg) / (lidar.highest_deg - lidar.lowest_deg)
@@ -86,5 +87,5 @@ class PointView:
         is_seen = (ring >= 0) & (ring < lidar.rings) & (ranges < lidar.range_m)
         order = np.flatnonzero(is_seen)[np.argsort(ranges[is_seen], kind="stable")]
         _, nearest = np.unique(ray[order], return_index=True)
-        first: Points = order[nearest]
+        first: npt.NDArray[np.intp] = order[nearest]
         return first

@@ -78,7 +78,7 @@ class Trajectory:
             return 0, "two points or more", str(len(self))
         columns = np.column_stack([self._positions, self.yaw_rad, self.speed_m_s])
         return (
-            _first(~np.isfinite(columns).all(axis=1), "finite numbers", columns)
+            _first(np.any(~np.isfinite(columns), axis=1), "finite numbers", columns)
             or self._speed_problem(max_speed_m_s)
             or self._gap_problem()
             or self._turn_problem(np.tan(MAX_STEERING_RAD) / wheel_base_m)

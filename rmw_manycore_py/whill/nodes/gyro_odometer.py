@@ -86,9 +86,10 @@ class GyroOdometer(Node):
         publisher.publish(twist)
         full = TwistWithCovarianceStamped(header=imu.header)
         full.twist.twist = twist.twist
-        variances = tuple(float(imu.angular_velocity_covariance[index]) for index in (0, 4, 8))
+        about_x, about_y, about_z = map(float, imu.angular_velocity_covariance[::4])
         speed_variance = float(self._twist.twist.covariance[0])
-        full.twist.covariance = np.array(gyro_covariance(speed_variance, variances))
+        covariance = gyro_covariance(speed_variance, (about_x, about_y, about_z))
+        full.twist.covariance = np.array(covariance)
         full_publisher.publish(full)
 
     def _stale(self, topic: str, stamp_s: float) -> str:

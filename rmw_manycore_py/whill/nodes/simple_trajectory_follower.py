@@ -41,6 +41,8 @@ class FollowerParameters:
     timeout_s: float = parameter("kinematics_timeout", 0.3, above=0.0)
     max_distance_m: float = parameter("max_distance", 3.0, above=0.0)
     max_stddev_m: float = parameter("max_position_stddev", 0.8, above=0.0)
+    max_stddev_m_s: float = parameter("max_speed_stddev", 1.0, above=0.0)
+    doubt_s: float = parameter("max_speed_stddev_time", 0.5, least=0.0)
 
 
 class SimpleTrajectoryFollower(Node):
@@ -52,6 +54,7 @@ class SimpleTrajectoryFollower(Node):
         self._odometry: Any = None
         self._trajectory: Trajectory | None = None
         self._message: Any = None  # that the trajectory was made of
+        self._sure_s = 0.0  # when the speed was last known well enough
         self._output = self.create_publisher(Control, "output/control_cmd", 1)
         self.create_subscription(
             Odometry,
@@ -105,12 +108,25 @@ class SimpleTrajectoryFollower(Node):
                 f"the trajectory is {distance_m:.1f} m away, expected at most "
                 f"{self._p.max_distance_m:g} m"
             )
-        covariance = self._odometry.pose.covariance
-        stddev_m = math.sqrt(max(covariance[0], covariance[7], 0.0))
+        return self._reason_to_doubt()
+
+    def _reason_to_doubt(self) -> str:
+        """Return why the estimate is too uncertain to drive on, "" where it is not."""
+        of_pose, of_twist = self._odometry.pose.covariance, self._odometry.twist.covariance
+        stddev_m = math.sqrt(max(of_pose[0], of_pose[7], 0.0))
         if not stddev_m <= self._p.max_stddev_m:
             return (
                 f"the position is known to {stddev_m:.2f} m only, expected "
-                f"{self._p.max_stddev_m:g} m (are scans and twists coming?)"
+                f"{self._p.max_stddev_m:g} m (are scans coming, and poses?)"
+            )
+        stddev_m_s = math.sqrt(max(of_twist[0], 0.0))
+        now_s = self._now_s()
+        if stddev_m_s <= self._p.max_stddev_m_s:
+            self._sure_s = now_s
+        if not abs(now_s - self._sure_s) <= self._p.doubt_s:
+            return (
+                f"the speed is known to {stddev_m_s:.2f} m/s only, expected "
+                f"{self._p.max_stddev_m_s:g} m/s (are wheels and IMU reporting?)"
             )
         return ""
 

@@ -1,0 +1,147 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""`manycore whill drive`."""
+
+from __future__ import annotations
+
+import os
+import sys
+from contextlib import ExitStack
+from pathlib import Path
+
+import click
+
+from rmw_manycore_py.cli.common.options import examples
+from rmw_manycore_py.cli.common.output_file import OutputFile, writing
+from rmw_manycore_py.cli.common.printing import new_table, print_json, print_table
+from rmw_manycore_py.errors import ManycoreError
+from rmw_manycore_py.figures import load_figure
+from rmw_manycore_py.launch.processes.environment import OUTSIDE_IMPLEMENTATION, leave_middleware
+from rmw_manycore_py.whill.course.directory import MAPFILE, read_course
+from rmw_manycore_py.whill.laptop.drive_log import DriveLog, Summary
+
+
+@click.command(
+    "drive",
+    epilog=examples(
+        "manycore whill course build/whill",
+        "manycore whill drive --course build/whill --run --plot drive.png",
+        "manycore whill drive --course build/whill --run --fault ndt_scan_matcher@20",
+        "manycore whill drive --course build/whill --run --fault stop:ndt_scan_matcher@20",
+        "manycore whill drive --course build/whill --plain --json",
+    ),
+)
+@click.option(
+    "--course",
+    "course_path",
+    type=click.Path(file_okay=False, path_type=Path),
+    default=Path("build/whill"),
+    show_default=True,
+    help="A directory of 'manycore whill course'.",
+)
+@click.option(
+    "--duration",
+    "duration_s",
+    type=click.FloatRange(min=0, min_open=True),
+    metavar="S",
+    help="Stop driving after this many seconds; default: at the end of the course.",
+)
+@click.option(
+    "--patience",
+    "patience_s",
+    type=click.FloatRange(min=0, min_open=True),
+    metavar="S",
+    default=120.0,
+    show_default=True,
+    help="Give up when the vehicle has not moved after this many seconds.",
+)
+@click.option("--run", "runs", is_flag=True, help="Run the course's mapfile too, meanwhile.")
+@click.option("--plain", is_flag=True, help="Run its nodes on plain Fast DDS, without platform.")
+@click.option(
+    "--fault",
+    "fault_texts",
+    metavar="FAULT",
+    multiple=True,
+    help="NODE@S: kill -9 after S seconds; stop:NODE@S: SIGSTOP for 2 s; lidar, imu or wheels@S: "
+    "the sensor stops. May be repeated.",
+)
+@click.option("--plot", "picture", type=OutputFile(".png", ".svg", ".pdf"), help="Draw it, too.")
+@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
+def command(
+    course_path: Path,
+    duration_s: float | None,
+    patience_s: float,
+    runs: bool,
+    plain: bool,
+    fault_texts: tuple[str, ...],
+    picture: Path | None,
+    as_json: bool,
+) -> None:
+    """Be the laptop of the case study: the wheelchair, its sensors and its driver, on Fast DDS.
+
+    The wheelchair reads /whill/controller/cmd_vel alone. The exit status is 0 when it came to the
+    end of the course, or drove as long as --duration says.
+    """
+    if runs and plain:
+        raise click.UsageError("--run and --plain exclude each other")
+    if os.environ.get("RMW_IMPLEMENTATION", OUTSIDE_IMPLEMENTATION) != OUTSIDE_IMPLEMENTATION:
+        leave_middleware(OUTSIDE_IMPLEMENTATION)
+    from rmw_manycore_py.whill.laptop.faults import fault_of
+    from rmw_manycore_py.whill.laptop.progress import DriveProgress
+    from rmw_manycore_py.whill.laptop.session import DriveOptions, run
+    from rmw_manycore_py.whill.laptop.stack import PlainStack, PlatformStack, Stack
+
+    if picture is not None:
+        load_figure()
+    faults = [fault_of(text) for text in fault_texts]
+    course = read_course(course_path)
+    log = DriveLog(float(course.trajectory.along_m()[-1]))
+    options = DriveOptions(course_path, duration_s, patience_s, faults)
+    failure: ManycoreError | None = None
+    with ExitStack() as closing:
+        stack: Stack | None = None
+        if runs or plain:
+            mapfile = course_path / MAPFILE
+            stack = PlatformStack(mapfile, log.tell) if runs else PlainStack(mapfile)
+            closing.callback(stack.close)
+        progress = closing.enter_context(DriveProgress())
+        try:
+            run(course, options, log, stack, progress.report)
+        except ManycoreError as error:
+            failure = error
+    if as_json:
+        print_json(log.as_json())
+    elif log.driven():
+        _print(log.summary())
+    if picture is not None and log.moments:
+        from rmw_manycore_py.whill.laptop.picture import plot
+
+        with writing(picture):
+            plot(log, course, picture)
+    if failure is not None:
+        raise failure
+    sys.exit(0 if log.is_finished or duration_s is not None else 1)
+
+
+def _print(summary: Summary) -> None:
+    s = summary
+    table = new_table("", "#", "")
+    end = "the end of the course" if s.is_finished else f"of {s.course_m:.0f} m"
+    rows: list[tuple[str, float | int | None, str]] = [
+        ("driven", s.driven_m, f"m, {end}"),
+        ("for", s.duration_s, f"s, {s.speed_m_s_mean:.2f} m/s on average"),
+        ("lateral error, RMS", s.lateral_m_rms, "m"),
+        ("lateral error, largest", s.lateral_m_max, "m"),
+        ("scan to command, median", s.latency_ms_median, "ms, at most"),
+        ("scan to command, p99", s.latency_ms_p99, "ms, at most"),
+        ("command period, median", s.command_period_ms_median, "ms"),
+        ("command period, p99", s.command_period_ms_p99, "ms"),
+        ("scans", s.scans, f"{s.scans_lost} lost, {s.scans_late} after 100 ms"),
+        ("stood on the way", s.stands, "times"),
+        ("CPU of the bridge", s.bridge_cpu_percent, "% of one CPU"),
+        ("CPU of nodes and bridge", s.platform_cpu_percent, "% of one CPU"),
+        ("CPU of the laptop", s.laptop_cpu_s, "s"),
+    ]
+    for name, value, unit in rows:
+        if value is not None:
+            table.add_row(name, str(value) if isinstance(value, int) else f"{value:.3f}", unit)
+    print_table(table)

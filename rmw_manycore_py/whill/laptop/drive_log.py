@@ -1,0 +1,174 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""What happened on a drive, and the figures of it."""
+
+from __future__ import annotations
+
+import re
+import time
+from dataclasses import asdict, dataclass, field
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+
+STANDING_M_S = 0.02  # slower is standing
+REPEAT_S = 10.0
+_NUMBER = re.compile(r"[-+]?\d+(\.\d+)?")
+DEADLINE_S = 0.1  # scan to the first command that used it; later ones count as late
+
+
+@dataclass
+class Scan:
+    """How a scan became a command; times in seconds on the wall clock."""
+
+    stamp_s: float
+    pose_s: float | None = None  # its pose has arrived here
+    kinematics_s: float | None = None  # the first prediction made after that
+    control_s: float | None = None  # the first gated command made after that
+    command_s: float | None = None  # the first cmd_vel after that
+
+    @property
+    def latency_s(self) -> float | None:
+        """From the stamp to the first cmd_vel that used the scan."""
+        return None if self.command_s is None else self.command_s - self.stamp_s
+
+
+@dataclass(frozen=True)
+class Moment:
+    """Where the vehicle really was."""
+
+    time_s: float  # wall clock
+    x_m: float
+    y_m: float
+    speed_m_s: float
+    along_m: float
+    lateral_m: float
+
+
+@dataclass(frozen=True)
+class Command:
+    """A cmd_vel that has arrived."""
+
+    time_s: float
+    speed_m_s: float
+    yaw_rate_rad_s: float
+
+
+@dataclass(frozen=True)
+class Incident:
+    """A fault that was injected, or what a program said or did after one."""
+
+    time_s: float
+    text: str
+
+
+@dataclass(frozen=True)
+class Summary:
+    """The figures of a drive; latencies and periods in ms, None where nothing was measured."""
+
+    driven_m: float
+    course_m: float
+    is_finished: bool
+    duration_s: float
+    speed_m_s_mean: float
+    lateral_m_rms: float
+    lateral_m_max: float
+    latency_ms_median: float | None
+    latency_ms_p99: float | None
+    command_period_ms_median: float | None
+    command_period_ms_p99: float | None
+    scans: int
+    scans_lost: int
+    scans_late: int
+    stands: int  # how often the vehicle stood before its end
+    bridge_cpu_percent: float | None
+    platform_cpu_percent: float | None
+    laptop_cpu_s: float
+
+
+@dataclass
+class DriveLog:
+    """All that was noted, from the first command to drive on."""
+
+    course_m: float
+    scans: dict[int, Scan] = field(default_factory=dict)  # by stamp, ns
+    moments: list[Moment] = field(default_factory=list)
+    commands: list[Command] = field(default_factory=list)
+    incidents: list[Incident] = field(default_factory=list)
+    bridge_cpu_percent: float | None = None
+    platform_cpu_percent: float | None = None
+    laptop_cpu_s: float = 0.0
+    is_finished: bool = False
+    _told_s: dict[str, float] = field(default_factory=dict)  # when each was told last
+
+    def tell(self, text: str) -> None:
+        """Note an incident; one that goes on, with other numbers, only once in a while."""
+        now_s, trouble = time.time(), _NUMBER.sub("", text)
+        if now_s - self._told_s.get(trouble, 0.0) >= REPEAT_S:
+            self._told_s[trouble] = now_s
+            self.incidents.append(Incident(now_s, text))
+
+    def start_s(self) -> float | None:
+        """Return when the vehicle was first told to move."""
+        return next((one.time_s for one in self.commands if one.speed_m_s > 0.0), None)
+
+    def driven(self) -> list[Moment]:
+        """Return the moments since the vehicle was first told to move."""
+        start_s = self.start_s()
+        return [] if start_s is None else [m for m in self.moments if m.time_s >= start_s]
+
+    def judged(self) -> list[Scan]:
+        """Return the scans since then that had time to become a command."""
+        start_s = self.start_s()
+        if start_s is None or not self.commands:
+            return []
+        end_s = self.commands[-1].time_s - 2.0 * DEADLINE_S
+        return [one for one in self.scans.values() if start_s <= one.stamp_s <= end_s]
+
+    def summary(self) -> Summary:
+        """Return the figures."""
+        driven, scans = self.driven(), self.judged()
+        lateral = np.array([one.lateral_m for one in driven] or [np.nan])
+        latencies = [1e3 * one.latency_s for one in scans if one.latency_s is not None]
+        periods = 1e3 * np.diff([one.time_s for one in self._while_driving()])
+        duration_s = driven[-1].time_s - driven[0].time_s if driven else 0.0
+        way_m = driven[-1].along_m - driven[0].along_m if driven else 0.0
+        return Summary(
+            driven_m=way_m,
+            course_m=self.course_m,
+            is_finished=self.is_finished,
+            duration_s=duration_s,
+            speed_m_s_mean=way_m / duration_s if duration_s else 0.0,
+            lateral_m_rms=float(np.sqrt(np.mean(lateral**2))),
+            lateral_m_max=float(np.abs(lateral).max()),
+            latency_ms_median=_quantile(latencies, 0.5),
+            latency_ms_p99=_quantile(latencies, 0.99),
+            command_period_ms_median=_quantile(periods, 0.5),
+            command_period_ms_p99=_quantile(periods, 0.99),
+            scans=len(scans),
+            scans_lost=sum(one.latency_s is None for one in scans),
+            scans_late=sum((one.latency_s or 0.0) > DEADLINE_S for one in scans),
+            stands=self._stands(driven),
+            bridge_cpu_percent=self.bridge_cpu_percent,
+            platform_cpu_percent=self.platform_cpu_percent,
+            laptop_cpu_s=self.laptop_cpu_s,
+        )
+
+    def as_json(self) -> dict[str, Any]:
+        """Return the figures and the incidents as data."""
+        incidents = [asdict(one) for one in self.incidents]
+        return {**asdict(self.summary()), "incidents": incidents}
+
+    def _while_driving(self) -> list[Command]:
+        start_s = self.start_s()
+        return [] if start_s is None else [c for c in self.commands if c.time_s >= start_s]
+
+    def _stands(self, driven: list[Moment]) -> int:
+        """Count the times that a vehicle that moved came to stand, without the end of the way."""
+        moves = [one.speed_m_s > STANDING_M_S for one in driven]
+        stops = sum(before and not now for before, now in pairwise(moves))
+        return stops - (self.is_finished and stops > 0)
+
+
+def _quantile(values: Any, share: float) -> float | None:
+    return float(np.quantile(values, share)) if len(values) else None

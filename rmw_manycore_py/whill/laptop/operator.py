@@ -1,0 +1,83 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""The person at the laptop: engages, shows where the vehicle is, and lets it drive on."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from autoware_vehicle_msgs.msg import Engage
+from geometry_msgs.msg import PoseWithCovarianceStamped
+from rclpy.node import Node
+from std_srvs.srv import Trigger
+from tier4_external_api_msgs.msg import Heartbeat
+
+from rmw_manycore_py.ndt.geometry.poses import from_xyz_rpy, perturbed
+from rmw_manycore_py.ndt.messages.conversions import pose_with_covariance
+from rmw_manycore_py.ndt.replay.guess_source import stamp_of
+from rmw_manycore_py.whill.laptop import topics
+from rmw_manycore_py.whill.laptop.plant import Plant
+
+PERIOD_S = 0.1  # of the heartbeat
+ENGAGE_S, CLEAR_S, INITIAL_POSE_S = 1.0, 2.0, 12.0  # between one try and the next
+LOST_S = 2.0  # without kinematics
+POINTED_M, POINTED_RAD = 0.3, 0.05  # how far off a pose is that is pointed at on a map
+VARIANCES = (0.25, 0.25, 0.01, 0.01, 0.01, 0.03)
+
+
+class Operator:
+    """Acts ten times a second."""
+
+    def __init__(self, node: Node, plant: Plant, newest_kinematics_s: Callable[[], float | None]):
+        self._node = node
+        self._plant = plant
+        self._newest_kinematics_s = newest_kinematics_s
+        self._generator = np.random.default_rng(3)
+        self._done_s: dict[str, float] = {}  # when each thing was done last
+        self._heartbeat = node.create_publisher(Heartbeat, topics.HEARTBEAT, 1)
+        self._engage = node.create_publisher(Engage, topics.ENGAGE, 1)
+        self._pose = node.create_publisher(PoseWithCovarianceStamped, topics.INITIAL_POSE, 1)
+        self._clear = node.create_client(Trigger, topics.CLEAR_STOP)
+        node.create_timer(PERIOD_S, self._act)
+
+    @property
+    def sees_kinematics(self) -> bool:
+        """Tell whether the stack says where the vehicle is."""
+        newest_s = self._newest_kinematics_s()
+        return newest_s is not None and time.time() - newest_s < LOST_S
+
+    @property
+    def pointed(self) -> bool:
+        """Tell whether a first pose was sent."""
+        return "pose" in self._done_s
+
+    def _act(self) -> None:
+        stamp = stamp_of(time.time_ns())
+        self._heartbeat.publish(Heartbeat(stamp=stamp))
+        if self._is_due("engage", ENGAGE_S):
+            self._engage.publish(Engage(stamp=stamp, engage=True))
+        if abs(self._plant.speed_m_s) > 0.02:
+            return
+        if not self.sees_kinematics:
+            if self._pose.get_subscription_count() and self._is_due("pose", INITIAL_POSE_S):
+                self._pose.publish(self._pointed(stamp))
+        elif self._clear.service_is_ready() and self._is_due("clear", CLEAR_S):
+            self._clear.call_async(Trigger.Request())
+
+    def _is_due(self, what: str, period_s: float) -> bool:
+        """Tell whether something may be done again, and count it as done then."""
+        now_s = time.monotonic()
+        is_due = now_s - self._done_s.get(what, -np.inf) >= period_s
+        if is_due:
+            self._done_s[what] = now_s
+        return bool(is_due)
+
+    def _pointed(self, stamp: Any) -> Any:
+        plant = self._plant
+        pose = from_xyz_rpy((plant.x_m, plant.y_m, 0.0), (0.0, 0.0, plant.yaw_rad))
+        pointed = perturbed(pose, POINTED_M, 0.0, self._generator)
+        pointed[2, 3] = 0.0
+        pointed = pointed @ from_xyz_rpy((0.0, 0.0, 0.0), (0.0, 0.0, POINTED_RAD))
+        return pose_with_covariance(pointed, np.diag(VARIANCES), stamp, "map")

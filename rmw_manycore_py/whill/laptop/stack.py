@@ -1,0 +1,178 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""The off-loaded nodes, started by the laptop's program too: on the platform, or on plain DDS."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import threading
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, Protocol
+
+from rmw_manycore_program import own_program
+from rmw_manycore_py.cpu_time import tree_cpu_s
+from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
+from rmw_manycore_py.launch.processes.environment import outside_environment
+from rmw_manycore_py.mapfile import load_mapfile, resolve
+from rmw_manycore_py.parent_death import dies_with_this_process
+
+BRIDGE = "(bridge"
+STOPPING_S = 20.0
+
+Tell = Callable[[str], None]
+
+
+class Stack(Protocol):
+    """Processes that drive the vehicle."""
+
+    @property
+    def pids(self) -> dict[str, int]:
+        """The newest process of each node, and of the bridge."""
+
+    def check(self) -> None:
+        """Raise where they have ended."""
+
+    def cpu_s(self) -> tuple[float, float | None]:
+        """Return the CPU time of all, and of the bridge if there is one."""
+
+    def close(self) -> None:
+        """End all."""
+
+
+class PlatformStack:
+    """`manycore run MAPFILE`; what its nodes warn of, and restarts, are told."""
+
+    def __init__(self, mapfile: Path, tell: Tell) -> None:
+        self._tell = tell
+        self._bridge_cpu_s: dict[int, float] = {}  # by process, as seen last
+        self.pids: dict[str, int] = {}
+        self._last_lines: list[str] = []
+        self._process = subprocess.Popen(
+            own_program("rmw_manycore_py.cli", "run", str(mapfile), "--json"),
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            start_new_session=True,  # Ctrl-C is for the laptop, which then ends the run
+            preexec_fn=dies_with_this_process(),
+        )
+        self._reader = threading.Thread(target=self._read, daemon=True)
+        self._reader.start()
+
+    def _read(self) -> None:
+        assert self._process.stdout is not None
+        for line in self._process.stdout:
+            try:
+                event = json.loads(line)
+            except ValueError:
+                self._last_lines.append(line.rstrip())
+                continue
+            self._note(event)
+
+    def _note(self, event: dict[str, Any]) -> None:
+        kind, node = event.get("event"), event.get("node", "")
+        if kind == "started":
+            self.pids[node] = event["pid"]
+        elif kind == "restarting":
+            self._tell(f"{node} {event['reason']}: it is started again")
+        elif kind == "output" and any(word in event["line"] for word in ("[WARN]", "[ERROR]")):
+            self._tell(f"{node}: {event['line'].rpartition(']: ')[2]}")
+        if kind in ("output", "ended", "stopping"):
+            text = event.get("line") or event.get("reason") or ""
+            self._last_lines = [*self._last_lines[-9:], f"{node}: {text}"]
+
+    def check(self) -> None:
+        """Raise when the run is over, with what was said last."""
+        if self._process.poll() is not None:
+            self._reader.join(timeout=1.0)
+            said = "\n  ".join(self._last_lines)
+            raise ManycoreError(f"the run of the platform has ended:\n  {said}")
+
+    def cpu_s(self) -> tuple[float, float | None]:
+        """See Stack; call it now and then, as processes that die take their time with them."""
+        for node, pid in dict(self.pids).items():
+            if node.startswith(BRIDGE):
+                self._bridge_cpu_s[pid] = max(tree_cpu_s(pid), self._bridge_cpu_s.get(pid, 0.0))
+        return tree_cpu_s(self._process.pid), sum(self._bridge_cpu_s.values())
+
+    def close(self) -> None:
+        """End the run, as Ctrl-C would."""
+        if self._process.poll() is None:
+            self._process.send_signal(signal.SIGINT)
+        try:
+            self._process.wait(STOPPING_S)
+        except subprocess.TimeoutExpired:
+            self._process.send_signal(signal.SIGINT)
+            self._process.wait()
+
+
+class PlainStack:
+    """The nodes of a mapfile as ordinary processes on Fast DDS, each on the same host CPU."""
+
+    def __init__(self, mapfile: Path) -> None:
+        placement = resolve(load_mapfile(mapfile))
+        self._processes = {
+            node.name: subprocess.Popen(
+                [*node.argv],
+                cwd=node.cwd,
+                env={**outside_environment(), **node.env},
+                stdout=subprocess.DEVNULL,
+                stderr=subprocess.DEVNULL,
+                preexec_fn=_pinned(node.host_cpu),
+            )
+            for node in placement.nodes
+        }
+
+    @property
+    def pids(self) -> dict[str, int]:
+        """See Stack."""
+        return {name: process.pid for name, process in self._processes.items()}
+
+    def check(self) -> None:
+        """Raise when a node has ended."""
+        for name, process in self._processes.items():
+            if process.poll() is not None:
+                raise ManycoreError(f"{name} has ended with status {process.returncode}")
+
+    def cpu_s(self) -> tuple[float, float | None]:
+        """See Stack."""
+        return sum(tree_cpu_s(process.pid) for process in self._processes.values()), None
+
+    def close(self) -> None:
+        """End the nodes."""
+        for process in self._processes.values():
+            process.send_signal(signal.SIGINT)
+        for process in self._processes.values():
+            try:
+                process.wait(STOPPING_S)
+            except subprocess.TimeoutExpired:
+                process.kill()
+                process.wait()
+
+
+def _pinned(cpu: int) -> Callable[[], None]:
+    dies = dies_with_this_process()
+
+    def before_exec() -> None:
+        dies()
+        os.sched_setaffinity(0, {cpu})
+
+    return before_exec
+
+
+def pid_of(stack: Stack | None, target: str) -> int:
+    """Return the process of a fault's target; `bridge inward` means `(bridge inward)`."""
+    if stack is None:
+        raise ManycoreError(
+            f"--fault: {target} is a process of the stack: start that with --run too",
+            EXIT_BAD_INPUT,
+        )
+    pids = stack.pids
+    for name in (target, f"({target})"):
+        if name in pids:
+            return pids[name]
+    raise ManycoreError(
+        f"--fault: expected one of {', '.join(sorted(pids))}, found '{target}'", EXIT_BAD_INPUT
+    )
