@@ -9,7 +9,7 @@ from rmw_manycore_py.cli.common.group import LazyGroup
 
 _NAMES = (
     *("all", "bridge", "idle", "memory", "ndt", "pairs", "rclpy", "record", "reference", "rmw"),
-    *("scale", "startup", "trace", "view"),
+    *("scale", "startup", "trace", "view", "whill"),
 )
 VERBS = {verb: f"rmw_manycore_py.cli.bench.{verb}:command" for verb in _NAMES}
 

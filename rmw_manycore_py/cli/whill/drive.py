@@ -6,7 +6,9 @@ from __future__ import annotations
 import os
 import sys
 from contextlib import ExitStack
+from dataclasses import asdict
 from pathlib import Path
+from typing import Any
 
 import click
 
@@ -18,6 +20,7 @@ from rmw_manycore_py.figures import load_figure
 from rmw_manycore_py.launch.processes.environment import OUTSIDE_IMPLEMENTATION, leave_middleware
 from rmw_manycore_py.whill.course.directory import MAPFILE, read_course
 from rmw_manycore_py.whill.laptop.drive_log import DriveLog, Summary
+from rmw_manycore_py.whill.laptop.outcomes import outcomes
 
 
 @click.command(
@@ -109,9 +112,10 @@ def command(
         except ManycoreError as error:
             failure = error
     if as_json:
-        print_json(log.as_json())
+        print_json(_as_data(log))
     elif log.driven():
         _print(log.summary())
+        _print_outcomes(log)
     if picture is not None and log.moments:
         from rmw_manycore_py.whill.laptop.picture import plot
 
@@ -120,6 +124,27 @@ def command(
     if failure is not None:
         raise failure
     sys.exit(0 if log.is_finished or duration_s is not None else 1)
+
+
+def _as_data(log: DriveLog) -> dict[str, Any]:
+    return {
+        **asdict(log.summary()),
+        "latencies_ms": log.latencies_ms(),
+        "periods_ms": log.periods_ms(),
+        "incidents": [asdict(one) for one in log.incidents],
+        "faults": [asdict(one) for one in outcomes(log)],
+    }
+
+
+def _print_outcomes(log: DriveLog) -> None:
+    if not log.injected:
+        return
+    click.echo()
+    table = new_table("fault", "#told to stand after", "#drives on after", "named")
+    for one in outcomes(log):
+        times = ("-" if t is None else f"{t:.2f} s" for t in (one.stood_s, one.drove_on_s))
+        table.add_row(one.fault, *times, "yes" if one.named_by else "no")
+    print_table(table)
 
 
 def _print(summary: Summary) -> None:

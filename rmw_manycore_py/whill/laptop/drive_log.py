@@ -5,9 +5,8 @@ from __future__ import annotations
 
 import re
 import time
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass, field
 from itertools import pairwise
-from typing import Any
 
 import numpy as np
 
@@ -56,9 +55,18 @@ class Command:
 
 @dataclass(frozen=True)
 class Incident:
-    """A fault that was injected, or what a program said or did after one."""
+    """What a program warned of, or that it was started again; a fault."""
 
     time_s: float
+    text: str
+
+
+@dataclass(frozen=True)
+class Injected:
+    """A fault that was injected into a process or a sensor."""
+
+    time_s: float
+    target: str
     text: str
 
 
@@ -95,6 +103,7 @@ class DriveLog:
     moments: list[Moment] = field(default_factory=list)
     commands: list[Command] = field(default_factory=list)
     incidents: list[Incident] = field(default_factory=list)
+    injected: list[Injected] = field(default_factory=list)
     bridge_cpu_percent: float | None = None
     platform_cpu_percent: float | None = None
     laptop_cpu_s: float = 0.0
@@ -128,9 +137,8 @@ class DriveLog:
     def summary(self) -> Summary:
         """Return the figures."""
         driven, scans = self.driven(), self.judged()
+        latencies, periods = self.latencies_ms(), self.periods_ms()
         lateral = np.array([one.lateral_m for one in driven] or [np.nan])
-        latencies = [1e3 * one.latency_s for one in scans if one.latency_s is not None]
-        periods = 1e3 * np.diff([one.time_s for one in self._while_driving()])
         duration_s = driven[-1].time_s - driven[0].time_s if driven else 0.0
         way_m = driven[-1].along_m - driven[0].along_m if driven else 0.0
         return Summary(
@@ -154,10 +162,14 @@ class DriveLog:
             laptop_cpu_s=self.laptop_cpu_s,
         )
 
-    def as_json(self) -> dict[str, Any]:
-        """Return the figures and the incidents as data."""
-        incidents = [asdict(one) for one in self.incidents]
-        return {**asdict(self.summary()), "incidents": incidents}
+    def latencies_ms(self) -> list[float]:
+        """Return the latencies of all scans that became a command."""
+        return [1e3 * one.latency_s for one in self.judged() if one.latency_s is not None]
+
+    def periods_ms(self) -> list[float]:
+        """Return the times between commands."""
+        periods: list[float] = (1e3 * np.diff([c.time_s for c in self._while_driving()])).tolist()
+        return periods
 
     def _while_driving(self) -> list[Command]:
         start_s = self.start_s()
@@ -170,5 +182,5 @@ class DriveLog:
         return stops - (self.is_finished and stops > 0)
 
 
-def _quantile(values: Any, share: float) -> float | None:
+def _quantile(values: list[float], share: float) -> float | None:
     return float(np.quantile(values, share)) if len(values) else None

@@ -33,9 +33,9 @@ class DriveProgress:
 
     def report(self, log: DriveLog) -> None:
         """Show incidents at once, and where the vehicle is."""
-        for incident in log.incidents[self._incidents :]:
+        for incident in log.incidents[self._incidents :]:  # another thread may add some meanwhile
             self._print(incident.text)
-        self._incidents = len(log.incidents)
+            self._incidents += 1
         period_s = TERMINAL_PERIOD_S if self._is_live else PERIOD_S
         if time.monotonic() - self._said_s < period_s:
             return

@@ -23,6 +23,7 @@ from rmw_manycore_py.whill.laptop.drive_log import (
     Command,
     DriveLog,
     Incident,
+    Injected,
     Moment,
 )
 from rmw_manycore_py.whill.laptop.faults import STOP_S, Fault, Kind
@@ -146,7 +147,9 @@ class Drive:
         return self._log.is_finished
 
     def _inject(self, fault: Fault) -> None:
-        self._log.incidents.append(Incident(time.time(), str(fault)))
+        now_s = time.time()
+        self._log.incidents.append(Incident(now_s, str(fault)))
+        self._log.injected.append(Injected(now_s, fault.target, str(fault)))
         if fault.kind is Kind.SILENCE:
             self._wheelchair.stopped.add(fault.target)
             return

@@ -117,7 +117,7 @@ class PlainStack:
             node.name: subprocess.Popen(
                 [*node.argv],
                 cwd=node.cwd,
-                env={**outside_environment(), **node.env},
+                env=outside_environment({**os.environ, **node.env}),
                 stdout=subprocess.DEVNULL,
                 stderr=subprocess.DEVNULL,
                 preexec_fn=_pinned(node.host_cpu),

@@ -37,7 +37,7 @@ def test_a_course_has_two_turns_and_can_be_driven(shape):
 def test_nearest_and_lateral_error():
     generator = np.random.default_rng(2)
     way = CourseShape().trajectory()
-    for x, y in generator.uniform(-20, 150, (1000, 2)):
+    for x, y in generator.uniform(-20, 150, (100, 2)):
         distances = [(x - a) ** 2 + (y - b) ** 2 for a, b in zip(way.x_m, way.y_m, strict=True)]
         assert way.nearest(x, y) == distances.index(min(distances))
         assert way.distance_m(x, y) == pytest.approx(min(distances) ** 0.5)

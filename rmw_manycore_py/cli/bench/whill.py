@@ -1,0 +1,39 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""`manycore bench whill`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import click
+
+from rmw_manycore_py.bench import whill
+from rmw_manycore_py.cli.bench.answer import answer
+from rmw_manycore_py.cli.bench.options import bench_options
+from rmw_manycore_py.cli.common.options import examples
+
+
+@click.command(
+    "whill",
+    epilog=examples(
+        "manycore whill course build/whill",
+        "manycore bench whill --rounds 1",
+        "manycore bench whill --rounds 1 --only drive:",
+        "manycore bench whill --rounds 1 --only 'faults: kill -9 ekf_localizer'",
+    ),
+)
+@click.option(
+    "--course",
+    type=click.Path(file_okay=False, path_type=Path),
+    default=Path("build/whill"),
+    show_default=True,
+    help="A directory of 'manycore whill course'.",
+)
+@bench_options
+def command(course: Path, **options: Any) -> None:
+    """Drive the wheelchair: off-loaded, on plain Fast DDS, and with a fault in each process.
+
+    A round is 15 drives over the whole course, of two minutes each with the default one.
+    """
+    answer([whill.drive_question(course), whill.fault_question(course)], **options)
