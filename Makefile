@@ -12,7 +12,8 @@ TESTS_ALONE := -DMANYCORE_BUILD_RMW=OFF -DMANYCORE_BUILD_PYTHON=OFF -DMANYCORE_B
 NATIVE_SOURCES := $(shell find CMakeLists.txt cmake startup rmw_manycore \
 	-type f -not -name '*.md')
 
-.PHONY: help setup demo wheel test test-native stress soak sanitize fuzz bench lint tidy docs pictures clean
+.PHONY: help setup demo demo-whill wheel test test-native stress soak sanitize fuzz bench lint \
+	tidy docs pictures clean
 
 help:  ## this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -27,6 +28,13 @@ setup: .venv/installed  ## build, and install this checkout into .venv
 
 demo: setup  ## run talker and listener in two clusters for ten seconds
 	$(VENV)/manycore demo
+
+.venv/bench: .venv/installed
+	scripts/setup.sh extra bench
+
+demo-whill: setup .venv/bench  ## the wheelchair of ROS-lite2 drives 40 m, localization and control off-loaded
+	$(VENV)/manycore whill course build/demo-whill --length 40 --turn-radius 6
+	$(VENV)/manycore whill drive --course build/demo-whill --run --plot build/demo-whill/drive.png
 
 test: test-native  ## all tests but the long ones
 	$(VENV)/pytest -n $(TEST_JOBS)

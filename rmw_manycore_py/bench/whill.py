@@ -69,7 +69,10 @@ def drive_question(course: Path) -> Question:
 def fault_question(course: Path) -> Question:
     """Return the question how soon the vehicle stands after a fault, and that it drives on."""
     goals = [
-        *(Goal("told to stand after", f"kill -9 {name}", "within", STOOD_S) for name in CONTROL_CHAIN),
+        *(
+            Goal("told to stand after", f"kill -9 {name}", "within", STOOD_S)
+            for name in CONTROL_CHAIN
+        ),
         *(Goal("finished", f"kill -9 {name}", "better", 1.0) for name in KILLED),
         Goal("finished", STOPPED, "better", 1.0),
     ]
@@ -92,7 +95,10 @@ def _disturbed(run: Run, course: Path, contender: str, target: str) -> list[Resu
     outcomes = [drive["faults"][0] for drive in drives if drive["faults"]]
     columns = {
         "told to stand after": ("s", [o["stood_s"] for o in outcomes if o["stood_s"] is not None]),
-        "drives on after": ("s", [o["drove_on_s"] for o in outcomes if o["drove_on_s"] is not None]),
+        "drives on after": (
+            "s",
+            [o["drove_on_s"] for o in outcomes if o["drove_on_s"] is not None],
+        ),
         "named as gone": ("of 1", [float(bool(o["named_by"])) for o in outcomes]),
         "finished": ("of 1", [float(drive["is_finished"]) for drive in drives]),
     }

@@ -52,6 +52,7 @@ from rmw_manycore_py.ndt.nodes.scan_matcher.tracking import (
 )
 from rmw_manycore_py.ndt.nodes.support.declared import declare
 from rmw_manycore_py.ndt.nodes.support.running import run_node
+from rmw_manycore_py.ndt.nodes.support.watched import watched
 
 MAP_UPDATE_PERIOD_S = 1.0
 SCAN_DEPTH = 5  # what arrives at once is counted where it is skipped, not lost in a queue
@@ -126,7 +127,13 @@ class NdtScanMatcher(Node):
         sensor = QoSProfile(depth=SCAN_DEPTH, reliability=ReliabilityPolicy.BEST_EFFORT)
         kept = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
         self.create_subscription(PointCloud2, "points_raw", self._on_scan, sensor)
-        self.create_subscription(PointCloud2, "pointcloud_map", self._map.on_message, kept)
+        self.create_subscription(
+            PointCloud2,
+            "pointcloud_map",
+            self._map.on_message,
+            kept,
+            event_callbacks=watched(self, "pointcloud_map"),
+        )
         self._frames.listen(self)
         self.create_service(SetBool, "trigger_node_srv", self._on_trigger)
         self.create_timer(MAP_UPDATE_PERIOD_S, self._on_timer)

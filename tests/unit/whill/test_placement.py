@@ -22,7 +22,7 @@ from rmw_manycore_py.cli.main import cli
 pytestmark = pytest.mark.unit
 
 MAPFILE = MAPFILES / "whill.yaml"
-CLUSTERS, CORES, MANYCORE_CORES, SPARE_CORES, MATCHER_CORES = 5, 16, 2, 1, 12
+CLUSTERS, CORES, RESERVED_CORES, SPARE_CORES, MATCHER_CORES = 5, 16, 2, 1, 12
 TABLE_I = {
     *("pointcloud_map_loader", "ndt_scan_matcher", "ekf_localizer", "simple_trajectory_follower"),
     *("vehicle_cmd_gate", "static_trajectory_publisher", "pose_initializer_node"),
@@ -46,7 +46,7 @@ def test_rmw_manycore_has_two_cores_of_each_cluster(shown):
     assert len(shown["clusters"]) == CLUSTERS
     for cluster in shown["clusters"]:
         assert cluster["cores"] == CORES
-        assert len(cluster["reserved_cores"]) == MANYCORE_CORES
+        assert len(cluster["reserved_cores"]) == RESERVED_CORES
 
 
 def test_cluster_1_has_the_bridge_alone(shown):
@@ -67,7 +67,7 @@ def test_cluster_3_has_the_matcher_on_the_cores_that_are_left(shown):
     assert matcher["name"].strip("/") == "ndt_scan_matcher"
     assert len(matcher["workers"]) == MATCHER_CORES
     used = {matcher["core"], *(worker["core"] for worker in matcher["workers"])}
-    assert len(used) == CORES - MANYCORE_CORES - SPARE_CORES
+    assert len(used) == CORES - RESERVED_CORES - SPARE_CORES
 
 
 def test_clusters_4_and_5_are_free(shown):

@@ -1,0 +1,84 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""The wheelchair is driven from Fast DDS by ten nodes on the platform, also after faults.
+
+How well it drives on a machine with other things to do is not tested here: `manycore bench whill`.
+"""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+import yaml
+from support import IS_MANYCORE, PATIENCE_S, manycore_command
+
+pytestmark = [
+    pytest.mark.integration,
+    pytest.mark.skipif(not IS_MANYCORE, reason="the bridge is part of rmw_manycore"),
+]
+
+LONG_S = 6 * PATIENCE_S
+SHORT = ("--length", "30", "--turn-radius", "4", "--turn-speed", "1.5")
+
+
+@pytest.fixture(scope="module")
+def course(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return the directory of a course of 30 m."""
+    from click.testing import CliRunner
+
+    from rmw_manycore_py.cli.main import cli
+
+    directory = tmp_path_factory.mktemp("course")
+    result = CliRunner().invoke(cli, ["whill", "course", str(directory), *SHORT])
+    assert result.exit_code == 0, result.output
+    return directory
+
+
+def driven(start: Any, course: Path, *options: str) -> dict[str, Any]:
+    """Return the figures of a drive, and what it said as "said"."""
+    drive = start(manycore_command("whill", "drive", "--course", course, "--json", *options))
+    assert drive.wait(LONG_S) == 0, drive
+    head, _, figures = drive.output.partition("\n{\n")
+    return {**json.loads("{" + figures), "said": head}
+
+
+def test_the_gate_dies_on_the_way_and_the_vehicle_drives_on(start, platform, course):
+    """It stands while no command passes, and is engaged again."""
+    options = ("--run", "--patience", str(LONG_S), "--duration", "10", "--fault")
+    figures = driven(start, course, *options, "vehicle_cmd_gate@2")
+    assert figures["driven_m"] > 1.0
+    assert figures["lateral_m_max"] < 1.0
+    assert figures["scans"] > 0
+    (fault,) = figures["faults"]
+    assert fault["was_restarted"]
+    assert any("vehicle_cmd_gate is gone" in text for text in fault["named_by"])
+    assert fault["stood_s"] is not None
+
+
+def test_a_sensor_that_stops(start, platform, course):
+    """Without wheels no twist is made, and the follower says why the vehicle stands."""
+    options = ("--run", "--patience", str(LONG_S), "--duration", "8", "--fault", "wheels@1")
+    figures = driven(start, course, *options)
+    assert "the speed is known to" in figures["said"]
+    assert figures["driven_m"] < 8.0
+
+
+def test_a_stack_that_is_not_there(start, course):
+    drive = start(manycore_command("whill", "drive", "--course", course, "--patience", "1"))
+    assert drive.wait(LONG_S) == 1
+    assert "nothing publishes /whill/controller/cmd_vel; start the stack first" in drive.output
+
+
+def test_a_trajectory_that_cannot_be_driven_ends_the_run(start, platform, course, tmp_path):
+    """The publisher of trajectories says where it is wrong; it is started again in vain."""
+    mapfile = yaml.safe_load((course / "whill.yaml").read_text())
+    name = "static_trajectory_publisher"
+    node = mapfile["nodes"][name]
+    node["respawn"] = {"delay": 0.01, "max_retries": 1}
+    (tmp_path / "trajectory.csv").write_text("x_m,y_m,yaw_rad,speed_m_s\n0,0,0,1\n5,0,0,1\n")
+    (tmp_path / "whill.yaml").write_text(yaml.safe_dump({**mapfile, "nodes": {name: node}}))
+    run = start(manycore_command("run", tmp_path / "whill.yaml"))
+    assert run.wait(LONG_S) == 1
+    assert "trajectory.csv:2: expected the next point between 0.001 and 2 m away" in run.output
