@@ -13,11 +13,10 @@ from sensor_msgs.msg import Imu
 
 from rmw_manycore_py.ndt.messages.conversions import seconds
 from rmw_manycore_py.ndt.nodes.support.declared import declare, parameter
+from rmw_manycore_py.ndt.nodes.support.log_throttle import LogThrottle
 from rmw_manycore_py.ndt.nodes.support.running import run_node
 from rmw_manycore_py.ndt.nodes.support.watched import watched
 from rmw_manycore_py.whill.laws.odometry import gyro_covariance, is_stale, is_standing
-
-REPEAT_S = 1.0
 
 
 @dataclass(frozen=True)
@@ -36,6 +35,7 @@ class GyroOdometer(Node):
     def __init__(self) -> None:
         super().__init__("gyro_odometer")
         self._p = declare(self, OdometerParameters)
+        self._throttle = LogThrottle()
         self._twist: Any = None  # the newest of the vehicle
         self._imu_s: float | None = None
         self._raw = self.create_publisher(TwistStamped, "twist_raw", 10)
@@ -100,7 +100,8 @@ class GyroOdometer(Node):
         )
 
     def _complain(self, text: str) -> None:
-        self.get_logger().error(text, throttle_duration_sec=REPEAT_S)
+        if self._throttle.is_due(text):
+            self.get_logger().error(text)
 
     def _now_s(self) -> float:
         return seconds(self.get_clock().now().to_msg())

@@ -14,6 +14,7 @@ from rclpy.node import Node
 
 from rmw_manycore_py.ndt.messages.conversions import seconds
 from rmw_manycore_py.ndt.nodes.support.declared import declare, parameter
+from rmw_manycore_py.ndt.nodes.support.log_throttle import LogThrottle
 from rmw_manycore_py.ndt.nodes.support.running import run_node
 from rmw_manycore_py.ndt.nodes.support.watched import watched
 from rmw_manycore_py.whill.laws.following import (
@@ -27,7 +28,6 @@ from rmw_manycore_py.whill.laws.trajectory import Trajectory
 from rmw_manycore_py.whill.messages import planar_pose, trajectory_of
 
 PERIOD_S = 0.03
-REPEAT_S = 1.0
 
 
 @dataclass(frozen=True)
@@ -51,6 +51,7 @@ class SimpleTrajectoryFollower(Node):
     def __init__(self) -> None:
         super().__init__("simple_trajectory_follower")
         self._p = declare(self, FollowerParameters)
+        self._throttle = LogThrottle()
         self._odometry: Any = None
         self._trajectory: Trajectory | None = None
         self._message: Any = None  # that the trajectory was made of
@@ -149,7 +150,8 @@ class SimpleTrajectoryFollower(Node):
         self._output.publish(command)
 
     def _complain(self, text: str) -> None:
-        self.get_logger().warning(text, throttle_duration_sec=REPEAT_S)
+        if self._throttle.is_due(text):
+            self.get_logger().warning(text)
 
     def _now_s(self) -> float:
         return seconds(self.get_clock().now().to_msg())

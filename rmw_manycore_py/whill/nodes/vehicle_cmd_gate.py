@@ -25,12 +25,12 @@ from tier4_external_api_msgs.srv import SetEmergency
 
 from rmw_manycore_py.ndt.messages.conversions import seconds
 from rmw_manycore_py.ndt.nodes.support.declared import declare, parameter
+from rmw_manycore_py.ndt.nodes.support.log_throttle import LogThrottle
 from rmw_manycore_py.ndt.nodes.support.running import run_node
 from rmw_manycore_py.ndt.nodes.support.watched import watched
 from rmw_manycore_py.whill.laws.gating import Gate, GateOptions, Passage, Source
 from rmw_manycore_py.whill.nodes.vehicle_cmd_gate_outputs import GateOutputs, StopLevels
 
-REPEAT_S = 1.0
 MRM_AT_WORK = (MrmState.MRM_OPERATING, MrmState.MRM_SUCCEEDED, MrmState.MRM_FAILED)
 
 
@@ -55,6 +55,7 @@ class VehicleCmdGate(Node):
     def __init__(self) -> None:
         super().__init__("vehicle_cmd_gate")
         self._p = declare(self, GateParameters)
+        self._throttle = LogThrottle()
         self._gate = Gate(
             GateOptions(
                 self._p.watches_external,
@@ -220,7 +221,8 @@ class VehicleCmdGate(Node):
         return False, "the heartbeat is still late"
 
     def _complain(self, text: str) -> None:
-        self.get_logger().warning(text, throttle_duration_sec=REPEAT_S)
+        if self._throttle.is_due(text):
+            self.get_logger().warning(text)
 
     def _now_s(self) -> float:
         return seconds(self.get_clock().now().to_msg())

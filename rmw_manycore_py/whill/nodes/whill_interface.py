@@ -23,13 +23,13 @@ from whill_msgs.msg import ModelCr2State
 
 from rmw_manycore_py.ndt.messages.conversions import seconds
 from rmw_manycore_py.ndt.nodes.support.declared import declare, parameter
+from rmw_manycore_py.ndt.nodes.support.log_throttle import LogThrottle
 from rmw_manycore_py.ndt.nodes.support.running import run_node
 from rmw_manycore_py.ndt.nodes.support.watched import watched
 from rmw_manycore_py.whill.laws.odometry import is_stale, speed_of_motors, steering_of_motion
 from rmw_manycore_py.whill.laws.wheelchair import MAX_SPEED_M_S, wheelchair_twist
 
 FRAME = "base_link"
-REPEAT_S = 1.0
 REPORTED_GEARS = (GearCommand.PARK, GearCommand.REVERSE, GearCommand.DRIVE, GearCommand.LOW)
 
 
@@ -50,6 +50,7 @@ class WhillInterface(Node):
     def __init__(self) -> None:
         super().__init__("whill_interface")
         self._p = declare(self, InterfaceParameters)
+        self._throttle = LogThrottle()
         self._control: Any = None
         self._gear: Any = None
         self._is_emergency = False
@@ -156,7 +157,8 @@ class WhillInterface(Node):
             self._complain(f"the wheelchair reports error {state.error}")
 
     def _complain(self, text: str) -> None:
-        self.get_logger().warning(text, throttle_duration_sec=REPEAT_S)
+        if self._throttle.is_due(text):
+            self.get_logger().warning(text)
 
 
 def main() -> None:

@@ -120,11 +120,11 @@ def test_a_stamp_is_stale_when_it_is_further_from_now_than_the_timeout():
 
 def test_the_motion_of_two_motors():
     """The right motor counts backwards; km/h to m/s is a division by 3.6."""
-    for left, right, tread in rows((-6, 6), (-6, 6), (0.3, 1.0)):
+    for left, right, width in rows((-6, 6), (-6, 6), (0.3, 1.0)):
         wheels = np.array([left, -right]) / 3.6
-        forward = np.array([[0.5, 0.5], [-1 / tread, 1 / tread]]) @ wheels
-        assert odometry.speed_of_motors(left, right, tread) == pytest.approx(forward, abs=1e-9)
-        back = odometry.motors_of_speed(*forward, tread)
+        forward = np.array([[0.5, 0.5], [-1 / width, 1 / width]]) @ wheels
+        assert odometry.speed_of_motors(left, right, width) == pytest.approx(forward, abs=1e-9)
+        back = odometry.motors_of_speed(*forward, width)
         assert back == pytest.approx((left, right), abs=1e-9)
 
 
