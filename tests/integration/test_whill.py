@@ -46,7 +46,7 @@ def driven(start: Any, course: Path, *options: str) -> dict[str, Any]:
 
 def test_the_gate_dies_on_the_way_and_the_vehicle_drives_on(start, platform, course):
     """It stands while no command passes, and is engaged again."""
-    options = ("--run", "--patience", str(LONG_S), "--duration", "10", "--fault")
+    options = ("--run", "--patience", str(LONG_S), "--duration", "8", "--fault")
     figures = driven(start, course, *options, "vehicle_cmd_gate@2")
     assert figures["driven_m"] > 1.0
     assert figures["lateral_m_max"] < 1.0
@@ -59,10 +59,10 @@ def test_the_gate_dies_on_the_way_and_the_vehicle_drives_on(start, platform, cou
 
 def test_a_sensor_that_stops(start, platform, course):
     """Without wheels no twist is made, and the follower says why the vehicle stands."""
-    options = ("--run", "--patience", str(LONG_S), "--duration", "8", "--fault", "wheels@1")
+    options = ("--run", "--patience", str(LONG_S), "--duration", "5", "--fault", "wheels@1")
     figures = driven(start, course, *options)
     assert "the speed is known to" in figures["said"]
-    assert figures["driven_m"] < 8.0
+    assert figures["driven_m"] < 6.0
 
 
 def test_a_stack_that_is_not_there(start, course):

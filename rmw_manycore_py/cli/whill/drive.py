@@ -26,7 +26,6 @@ from rmw_manycore_py.whill.laptop.outcomes import outcomes
 @click.command(
     "drive",
     epilog=examples(
-        "manycore whill course build/whill",
         "manycore whill drive --course build/whill --run --plot drive.png",
         "manycore whill drive --course build/whill --run --fault ndt_scan_matcher@20",
         "manycore whill drive --course build/whill --run --fault stop:ndt_scan_matcher@20",
