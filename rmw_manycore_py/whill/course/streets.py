@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError, what_is_wrong
+from rmw_manycore_py.ndt.files.unreadable import UNREADABLE
 from rmw_manycore_py.ndt.geometry.arrays import Matrix
 from rmw_manycore_py.ndt.simulation.street import Street, build_street
 from rmw_manycore_py.whill.course.shape import CourseShape
@@ -52,9 +53,9 @@ def save_streets(path: Path, street: Street) -> None:
 def load_streets(path: Path) -> Street:
     """Return a street that was saved; a ManycoreError for anything else."""
     try:
-        with np.load(path) as file:
+        with path.open("rb") as opened, np.load(opened) as file:
             columns = [np.asarray(file[name], np.float64) for name in ARRAYS]
-    except (OSError, ValueError, KeyError) as error:
+    except UNREADABLE as error:
         raise ManycoreError(
             f"{path}: expected the streets of a course, found: {what_is_wrong(error)}; make the "
             "course again with 'manycore whill course'",
