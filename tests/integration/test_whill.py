@@ -7,6 +7,7 @@ How well it drives on a machine with other things to do is not tested here: `man
 from __future__ import annotations
 
 import json
+import signal
 from pathlib import Path
 from typing import Any
 
@@ -63,6 +64,15 @@ def test_a_sensor_that_stops(start, platform, course):
     figures = driven(start, course, *options)
     assert "the speed is known to" in figures["said"]
     assert figures["driven_m"] < 6.0
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_an_interrupted_drive_leaves_nothing(start, platform, course, number):
+    drive = start(manycore_command("whill", "drive", "--course", course, "--run"))
+    drive.wait_for("waiting for", LONG_S)
+    drive.signal(number)
+    assert drive.wait(LONG_S) == 130
+    assert "Traceback" not in drive.output
 
 
 def test_a_stack_that_is_not_there(start, course):

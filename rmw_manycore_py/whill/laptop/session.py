@@ -13,6 +13,7 @@ from pathlib import Path
 
 import rclpy
 from rclpy.node import Node
+from rclpy.signals import SignalHandlerOptions
 
 from rmw_manycore_py.cpu_time import tree_cpu_s
 from rmw_manycore_py.errors import ManycoreError
@@ -199,11 +200,14 @@ def run(
     stack: Stack | None,
     report: Callable[[DriveLog], None],
 ) -> None:
-    """Drive the course; all goes into the log."""
-    rclpy.init()
+    """Drive the course; all goes into the log. SIGTERM interrupts as Ctrl-C does."""
+    before = signal.signal(signal.SIGTERM, signal.default_int_handler)
+    # rclpy's own handlers would take the context away while the node is spun.
+    rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
     drive = Drive(course, options, log, stack)
     try:
         drive.run(report)
     finally:
         drive.close()
         rclpy.try_shutdown()
+        signal.signal(signal.SIGTERM, before)
