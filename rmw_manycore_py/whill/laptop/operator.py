@@ -21,7 +21,8 @@ from rmw_manycore_py.whill.laptop import topics
 from rmw_manycore_py.whill.laptop.plant import Plant
 
 PERIOD_S = 0.1  # of the heartbeat
-ENGAGE_S, CLEAR_S, INITIAL_POSE_S = 1.0, 2.0, 12.0  # between one try and the next
+ENGAGE_S, CLEAR_S = 1.0, 2.0  # between one try and the next
+INITIAL_POSE_S = 30.0  # longer than a search takes on a busy host: a new pose starts it anew
 LOST_S = 2.0  # without kinematics
 POINTED_M, POINTED_RAD = 0.3, 0.05  # how far off a pose is that is pointed at on a map
 VARIANCES = (0.25, 0.25, 0.01, 0.01, 0.01, 0.03)
