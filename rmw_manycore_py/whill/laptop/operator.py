@@ -24,6 +24,7 @@ PERIOD_S = 0.1  # of the heartbeat
 ENGAGE_S, CLEAR_S = 1.0, 2.0  # between one try and the next
 INITIAL_POSE_S = 30.0  # longer than a search takes on a busy host: a new pose starts it anew
 LOST_S = 2.0  # without kinematics
+STUCK_S = 10.0  # standing with kinematics: they may be wrong, or too uncertain to drive on
 POINTED_M, POINTED_RAD = 0.3, 0.05  # how far off a pose is that is pointed at on a map
 VARIANCES = (0.25, 0.25, 0.01, 0.01, 0.01, 0.03)
 
@@ -36,6 +37,7 @@ class Operator:
         self._plant = plant
         self._newest_kinematics_s = newest_kinematics_s
         self._generator = np.random.default_rng(3)
+        self._moved_s = time.monotonic()  # when the vehicle moved last
         self._done_s: dict[str, float] = {}  # when each thing was done last
         self._heartbeat = node.create_publisher(Heartbeat, topics.HEARTBEAT, 1)
         self._engage = node.create_publisher(Engage, topics.ENGAGE, 1)
@@ -60,11 +62,17 @@ class Operator:
         if self._is_due("engage", ENGAGE_S):
             self._engage.publish(Engage(stamp=stamp, engage=True))
         if abs(self._plant.speed_m_s) > 0.02:
+            self._moved_s = time.monotonic()
             return
-        if not self.sees_kinematics:
+        is_stuck = time.monotonic() - self._moved_s > STUCK_S
+        if not self.sees_kinematics or is_stuck:
             if self._pose.get_subscription_count() and self._is_due("pose", INITIAL_POSE_S):
                 self._pose.publish(self._pointed(stamp))
-        elif self._clear.service_is_ready() and self._is_due("clear", CLEAR_S):
+        if (
+            self.sees_kinematics
+            and self._clear.service_is_ready()
+            and self._is_due("clear", CLEAR_S)
+        ):
             self._clear.call_async(Trigger.Request())
 
     def _is_due(self, what: str, period_s: float) -> bool:
