@@ -65,14 +65,12 @@ class Operator:
             self._moved_s = time.monotonic()
             return
         is_stuck = time.monotonic() - self._moved_s > STUCK_S
-        if not self.sees_kinematics or is_stuck:
-            if self._pose.get_subscription_count() and self._is_due("pose", INITIAL_POSE_S):
-                self._pose.publish(self._pointed(stamp))
-        if (
-            self.sees_kinematics
-            and self._clear.service_is_ready()
-            and self._is_due("clear", CLEAR_S)
-        ):
+        is_wanted = is_stuck or not self.sees_kinematics
+        is_heard = self._pose.get_subscription_count() > 0
+        if is_wanted and is_heard and self._is_due("pose", INITIAL_POSE_S):
+            self._pose.publish(self._pointed(stamp))
+        is_served = self.sees_kinematics and self._clear.service_is_ready()
+        if is_served and self._is_due("clear", CLEAR_S):
             self._clear.call_async(Trigger.Request())
 
     def _is_due(self, what: str, period_s: float) -> bool:
