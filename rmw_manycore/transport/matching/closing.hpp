@@ -8,10 +8,10 @@
 namespace manycore::closing {
 
 /// Takes an endpoint out of the graph and ends some of its matches: as many as the registry lock,
-/// which the caller holds, may be held for. True when all have ended; its memory goes with sweeping.
-/// Safe to repeat after its caller died half way. `died`: the endpoint's process is dead, so hints
-/// of its last records may never have been pushed. Throws OutOfReach while this process cannot map
-/// the cluster of a match: the endpoint then stays `closing`.
+/// which the caller holds, may be held for. True when all have ended; its memory goes with
+/// sweeping. Safe to repeat after its caller died half way. `died`: the endpoint's process is dead,
+/// so hints of its last records may never have been pushed. Throws OutOfReach while this process
+/// cannot map the cluster of a match: the endpoint then stays `closing`.
 bool close_some(Registry & registry, uint32_t endpoint, bool died);
 
 /// Closes all endpoints of a process that makes no more, piece by piece: the caller takes the
