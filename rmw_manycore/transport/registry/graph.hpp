@@ -68,8 +68,8 @@ struct EndpointInfo {
 struct Activity {
   uint64_t endpoint = 0;  ///< slot and incarnation, as endpoint_in() its gid
   CounterValues counters;
-  uint64_t queued = 0;            ///< subscription: hints in its queue
-  uint64_t capacity = 0;          ///< subscription: hints that its queue can hold
+  uint64_t queued = 0;    ///< subscription: hints in its queue, not what a resync has set aside
+  uint64_t capacity = 0;  ///< subscription: hints that its queue can hold
   uint64_t deadlines_missed = 0;  ///< subscription: periods of its deadline without a message
 };
 static_assert(sizeof(Activity) == 80);
