@@ -5,9 +5,9 @@
 
 namespace manycore {
 
-std::atomic<uint32_t> ForkSide::forks_{0};
+std::atomic<uint32_t> ForkSide::forks{0};
 
 /// Before main(): a fork that nothing of this library knows of has to be counted, too.
-const int ForkSide::registered_ = pthread_atfork(nullptr, nullptr, [] { count_fork(); });
+const int ForkSide::registered = pthread_atfork(nullptr, nullptr, [] { count_fork(); });
 
 }  // namespace manycore

@@ -10,17 +10,17 @@ namespace manycore {
 /// but threads, locks and memberships stay with the parent.
 class ForkSide {
 public:
-  ForkSide() noexcept : made_in_(forks_.load(std::memory_order_relaxed)) {}
+  ForkSide() noexcept : made_in_(forks.load(std::memory_order_relaxed)) {}
 
   /// True in a child of the process that made this.
-  bool is_inherited() const noexcept { return made_in_ != forks_.load(std::memory_order_relaxed); }
+  bool is_inherited() const noexcept { return made_in_ != forks.load(std::memory_order_relaxed); }
 
 private:
-  static void count_fork() noexcept { forks_.fetch_add(1, std::memory_order_relaxed); }
-  static const int registered_;
+  static void count_fork() noexcept { forks.fetch_add(1, std::memory_order_relaxed); }
+  static const int registered;
 
   /// Forks between the first process and this one.
-  static std::atomic<uint32_t> forks_;
+  static std::atomic<uint32_t> forks;
 
   uint32_t made_in_;
 };
