@@ -36,9 +36,9 @@ private:
 /// A whole round; takes the registry lock anew for each turn.
 void sweep_all(Registry & registry);
 
-/// For a process of `cluster` that is about something else: a round that ends early, after a few
-/// turns that free nothing. What is left
-/// then, or is out of its reach, is that cluster's reaper's.
+/// For a process of `cluster` that is creating or closing an endpoint: a round that ends early,
+/// after a few turns that free nothing. The cluster's reaper is woken for what is left then, or out
+/// of this process's reach.
 void sweep_a_little(
   Registry & registry, uint32_t cluster, long wait_ns = Registry::Lock::usual_wait_ns);
 
