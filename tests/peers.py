@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
 import select
@@ -92,8 +93,13 @@ class ForkedPeer:
             return None
 
     def send_signal(self, number: signal.Signals) -> None:
+        """Signal the peer; as with Popen, nothing happens to one that has ended.
+
+        It may have ended although its server has not said so yet.
+        """
         if self.poll() is None:
-            os.kill(self.pid, number)
+            with contextlib.suppress(ProcessLookupError):
+                os.kill(self.pid, number)
 
     def kill(self) -> None:
         self.send_signal(signal.SIGKILL)
