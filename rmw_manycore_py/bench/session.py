@@ -273,7 +273,8 @@ def library_path(middleware: Middleware) -> list[str]:
     given = plain_environment(os.environ, sys.prefix).get("LD_LIBRARY_PATH", "").split(os.pathsep)
     standin = [native_directory() / "standin"] if middleware.is_manycore else []
     other = [middleware.library] if middleware.library else []
-    return [str(path) for path in [*other, *standin, *libraries, *given] if str(path)]
+    # The stand-ins first: beside the other library there may be the one that they stand in for.
+    return [str(path) for path in [*standin, *other, *libraries, *given] if str(path)]
 
 
 def run_peer(peer: Peer, cpus: tuple[int, int], **arguments: object) -> dict[str, Any]:

@@ -4,11 +4,14 @@
 from __future__ import annotations
 
 import random
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
+from rmw_manycore_py.bench.contenders import INSIDE
 from rmw_manycore_py.bench.pairs import Comparison, compare
+from rmw_manycore_py.bench.session import library_path, native_directory
 from rmw_manycore_py.errors import ManycoreError
 
 pytestmark = pytest.mark.unit
@@ -35,3 +38,11 @@ def test_the_interval_holds_the_difference_however_the_machine_drifts() -> None:
 def test_a_directory_without_a_build_is_refused(tmp_path: Path) -> None:
     with pytest.raises(ManycoreError, match=r"expected a directory with librmw_manycore\.so"):
         compare(tmp_path, 6, (0, 0), lambda _: None)
+
+
+def test_the_stand_in_comes_before_what_it_stands_in_for() -> None:
+    side = replace(INSIDE, library=native_directory().parent)
+    path = library_path(side)
+    stand_in = next(entry for entry in path if (Path(entry) / "librmw_fastrtps_cpp.so").exists())
+    assert Path(stand_in) == native_directory() / "standin"
+    assert str(side.library) in path
