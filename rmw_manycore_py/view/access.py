@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Who may look: the owner of the link, on this machine, from no other site's page."""
+"""Access to the page: by its link, on this machine, from no other site's page."""
 
 from __future__ import annotations
 

@@ -59,7 +59,7 @@ def output_of(run: Program, node: str) -> str:
 
 
 def endpoints(platform: str) -> tuple[described.Edges, described.Edges, set[str]]:
-    """Return who publishes, who subscribes and what, of the reference system's topics."""
+    """Return publishers, subscriptions and types of the reference system's topics."""
     with _transport.Platform(platform) as view:
         ours = [e for e in view.endpoints() if e.type.startswith("manycore_reference_msgs/")]
     edges: dict[str, described.Edges] = {"publisher": set(), "subscription": set()}

@@ -114,27 +114,30 @@ def test_the_interface_limits_speed_and_turns_as_a_bicycle(interface):
     )
 
 
+def drive(interface: Bench, behind_s: float = 0.0) -> Callable[[], None]:
+    """Return what sends the interface a command to drive at 1 m/s."""
+    topic = "/control/command/control_cmd"
+    return lambda: interface.send(topic, control(interface, 1.0, behind_s=behind_s))
+
+
 @pytest.mark.parametrize("behind_s", [0.6, -0.6])
 def test_the_interface_stands_with_commands_of_another_time(interface, behind_s):
-    command = "/control/command/control_cmd"
-    drive = lambda: interface.send(command, control(interface, 1.0))  # noqa: E731
-    twists_of(interface, drive, lambda twist: twist.linear.x == 1.0)
-    stale = lambda: interface.send(command, control(interface, 1.0, behind_s=behind_s))  # noqa: E731
-    twists_of(interface, stale, lambda twist: twist == Twist())
+    twists_of(interface, drive(interface), lambda twist: twist.linear.x == 1.0)
+    twists_of(interface, drive(interface, behind_s), lambda twist: twist == Twist())
     assert "the newest control_cmd is" in interface.program.wait_for("told to stand").string
 
 
 def test_the_interface_stands_in_park_and_in_an_emergency(interface):
-    drive = lambda: interface.send("/control/command/control_cmd", control(interface, 1.0))  # noqa: E731
+    driving = drive(interface)
     moves, stands = (lambda twist: twist.linear.x == 1.0), (lambda twist: twist == Twist())
-    twists_of(interface, drive, moves)
+    twists_of(interface, driving, moves)
     interface.send("/control/command/gear_cmd", GearCommand(command=GearCommand.PARK))
-    twists_of(interface, drive, stands)
+    twists_of(interface, driving, stands)
     interface.send("/control/command/gear_cmd", GearCommand(command=GearCommand.DRIVE))
-    twists_of(interface, drive, moves)
+    twists_of(interface, driving, moves)
     emergency = VehicleEmergencyStamped(emergency=True)
     interface.send("/control/command/emergency_cmd", emergency)
-    twists_of(interface, drive, stands)
+    twists_of(interface, driving, stands)
 
 
 def test_the_interface_reports_the_motion_of_the_motors(interface):

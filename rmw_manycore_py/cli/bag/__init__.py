@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""`manycore bag`, for those who know `ros2 bag`."""
+"""`manycore bag`: the verbs of `ros2 bag`."""
 
 from __future__ import annotations
 

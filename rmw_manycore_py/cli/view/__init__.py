@@ -64,7 +64,7 @@ def command(
     def announce(link: str) -> None:
         click.echo(f"platform {platform}: {link}")
         click.echo(
-            "The link holds a token: whoever has it sees the platform. Ctrl-C ends.", err=True
+            "The link holds a token that gives access to the platform. Ctrl-C ends.", err=True
         )
         if opens:
             webbrowser.open(link)

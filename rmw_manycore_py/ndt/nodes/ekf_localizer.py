@@ -29,8 +29,9 @@ from rmw_manycore_py.ndt.messages.conversions import (
     seconds,
     transform_stamped,
 )
+from rmw_manycore_py.ndt.nodes.support.clock import clock_s
 from rmw_manycore_py.ndt.nodes.support.declared import declare, parameter
-from rmw_manycore_py.ndt.nodes.support.log_throttle import LogThrottle
+from rmw_manycore_py.ndt.nodes.support.log_throttle import ThrottledWarnings
 from rmw_manycore_py.ndt.nodes.support.running import run_node
 from rmw_manycore_py.ndt.nodes.support.watched import watched
 
@@ -59,7 +60,7 @@ class EkfLocalizer(Node):
         super().__init__("ekf_localizer")
         self._p = declare(self, EkfParameters)
         self._is_activated = self._p.activated
-        self._throttle = LogThrottle()
+        self._warnings = ThrottledWarnings(self)
         self._filter = PoseFilter(
             FilterOptions(
                 stddev_sideways_c=self._p.stddev_sideways,
@@ -101,7 +102,7 @@ class EkfLocalizer(Node):
     def _on_initial_pose(self, message: Any) -> None:
         measured = self._measured(message)
         if measured is not None:
-            self._filter.initialize(self._now_s(), *measured)
+            self._filter.initialize(clock_s(self), *measured)
 
     def _on_pose(self, message: Any) -> None:
         measured = self._measured(message)
@@ -113,7 +114,7 @@ class EkfLocalizer(Node):
         if not self._filter.is_initialized:
             self._filter.initialize(stamp_s, *measured)
         elif not self._filter.add_pose(stamp_s, *measured):
-            self._warn("a pose is older than what is kept: it is passed over")
+            self._warnings.log("a pose is older than what is kept: it is passed over")
 
     def _on_twist(self, message: Any) -> None:
         twist = message.twist.twist
@@ -121,7 +122,7 @@ class EkfLocalizer(Node):
         noise = np.diag(np.maximum(np.diag(covariance)[[0, 5]], LEAST_VARIANCE))
         v, w = float(twist.linear.x), float(twist.angular.z)
         if not np.isfinite([v, w, *noise.ravel()]).all():
-            self._warn("a twist is not finite: it is passed over")
+            self._warnings.log("a twist is not finite: it is passed over")
         elif self._is_activated and self._filter.is_initialized:
             self._add_twist(seconds(message.header.stamp), v, w, noise)
 
@@ -129,15 +130,15 @@ class EkfLocalizer(Node):
         if self._is_ahead("twist", stamp_s):
             return
         if not self._filter.add_twist(stamp_s, v_m_s, w_rad_s, noise):
-            self._warn("a twist is older than what is kept: it is passed over")
+            self._warnings.log("a twist is older than what is kept: it is passed over")
 
     def _is_ahead(self, what: str, stamp_s: float) -> bool:
         """Tell whether a measurement cannot be used as it is of the future, and warn then."""
-        now_s = self._now_s()
+        now_s = clock_s(self)
         self._follow_clock(now_s)
         is_ahead = self._filter.is_ahead(stamp_s, now_s)
         if is_ahead:
-            self._warn(
+            self._warnings.log(
                 f"a {what} is of a time {stamp_s - now_s:.2f} s ahead: it is passed over, check "
                 "the clocks"
             )
@@ -145,7 +146,7 @@ class EkfLocalizer(Node):
 
     def _follow_clock(self, now_s: float) -> None:
         if self._filter.follow_clock(now_s):
-            self._warn(
+            self._warnings.log(
                 "the clock has jumped back: going on from the last pose; if the vehicle is "
                 "elsewhere now, send a new initialpose"
             )
@@ -163,7 +164,7 @@ class EkfLocalizer(Node):
                 )
             T = matrix_of(message.pose.pose)
         except PoseError as error:
-            self._warn(f"{error}: it is passed over")
+            self._warnings.log(f"{error}: it is passed over")
             return None
         diagonal = np.maximum(np.diag(covariance), LEAST_VARIANCE) - np.diag(covariance)
         return T, covariance + np.diag(diagonal)
@@ -199,13 +200,6 @@ class EkfLocalizer(Node):
         odometry.twist.twist = twist.twist
         odometry.twist.covariance = state.twist_covariance().ravel()
         self._odometry.publish(odometry)
-
-    def _now_s(self) -> float:
-        return seconds(self.get_clock().now().to_msg())
-
-    def _warn(self, text: str) -> None:
-        if self._throttle.is_due(text):
-            self.get_logger().warning(text)
 
 
 def main() -> None:

@@ -50,6 +50,7 @@ from rmw_manycore_py.ndt.nodes.scan_matcher.tracking import (
     ScanAt,
     Tracking,
 )
+from rmw_manycore_py.ndt.nodes.support.clock import clock_s
 from rmw_manycore_py.ndt.nodes.support.declared import declare
 from rmw_manycore_py.ndt.nodes.support.running import run_node
 from rmw_manycore_py.ndt.nodes.support.watched import watched
@@ -195,7 +196,7 @@ class NdtScanMatcher(Node):
         stages = StageTimes()
         stamp, stamp_s = message.header.stamp, seconds(message.header.stamp)
         report.value("topic_time_stamp", stamp_s)
-        scan = self._scan_points.of(message, self._now_s(), report)
+        scan = self._scan_points.of(message, clock_s(self), report)
         stages.end("decode")
         self._scan = points = scan.points
         report.value("is_activated", self._is_activated)
@@ -337,9 +338,6 @@ class NdtScanMatcher(Node):
         report.value("is_succeed_service", True)
         report.publish(now)
         return response
-
-    def _now_s(self) -> float:
-        return seconds(self.get_clock().now().to_msg())
 
 
 def main() -> None:

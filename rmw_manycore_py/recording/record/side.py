@@ -40,7 +40,7 @@ class Ears(Protocol):
 class Side(Protocol):
     """Where topics are. Only `wake` is for other threads."""
 
-    stale: bool  # publishers may have come or gone; who has looked clears it
+    stale: bool  # publishers may have come or gone; cleared by the next look
 
     def offers(self) -> dict[str, list[Offer]]:
         """Return the publishers there are, by topic."""

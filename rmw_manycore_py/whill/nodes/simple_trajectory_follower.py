@@ -13,8 +13,9 @@ from nav_msgs.msg import Odometry
 from rclpy.node import Node
 
 from rmw_manycore_py.ndt.messages.conversions import seconds
+from rmw_manycore_py.ndt.nodes.support.clock import clock_s
 from rmw_manycore_py.ndt.nodes.support.declared import declare, parameter
-from rmw_manycore_py.ndt.nodes.support.log_throttle import LogThrottle
+from rmw_manycore_py.ndt.nodes.support.log_throttle import ThrottledWarnings
 from rmw_manycore_py.ndt.nodes.support.running import run_node
 from rmw_manycore_py.ndt.nodes.support.watched import watched
 from rmw_manycore_py.whill.laws.following import (
@@ -51,7 +52,7 @@ class SimpleTrajectoryFollower(Node):
     def __init__(self) -> None:
         super().__init__("simple_trajectory_follower")
         self._p = declare(self, FollowerParameters)
-        self._throttle = LogThrottle()
+        self._warnings = ThrottledWarnings(self)
         self._odometry: Any = None
         self._trajectory: Trajectory | None = None
         self._message: Any = None  # that the trajectory was made of
@@ -80,23 +81,23 @@ class SimpleTrajectoryFollower(Node):
         if self._message is not None and message.points == self._message.points:
             return
         if not message.points:
-            self._complain("input/trajectory: expected points, found none: it is passed over")
+            self._warnings.log("input/trajectory: expected points, found none: it is passed over")
             return
         self._message, self._trajectory = message, trajectory_of(message)
 
     def _command(self) -> None:
         if self._odometry is None or self._trajectory is None:
             missing = "input/kinematics" if self._odometry is None else "input/trajectory"
-            self._complain(f"waiting for {missing}: no command is published")
+            self._warnings.log(f"waiting for {missing}: no command is published")
             return
         reason = self._reason_to_stand(self._trajectory)
         if reason:
-            self._complain(f"{reason}: the vehicle is told to stand")
+            self._warnings.log(f"{reason}: the vehicle is told to stand")
         self._publish(self._trajectory, must_stand=bool(reason))
 
     def _reason_to_stand(self, trajectory: Trajectory) -> str:
         """Return why the pose is no ground to drive on, "" where it is."""
-        stamp_s, now_s = seconds(self._odometry.header.stamp), self._now_s()
+        stamp_s, now_s = seconds(self._odometry.header.stamp), clock_s(self)
         if is_stale(stamp_s, now_s, self._p.timeout_s):
             return (
                 f"input/kinematics is {now_s - stamp_s:.2f} s old, expected at most "
@@ -121,7 +122,7 @@ class SimpleTrajectoryFollower(Node):
                 f"{self._p.max_stddev_m:g} m (are scans coming, and poses?)"
             )
         stddev_m_s = math.sqrt(max(of_twist[0], 0.0))
-        now_s = self._now_s()
+        now_s = clock_s(self)
         if stddev_m_s <= self._p.max_stddev_m_s:
             self._sure_s = now_s
         if not abs(now_s - self._sure_s) <= self._p.doubt_s:
@@ -148,13 +149,6 @@ class SimpleTrajectoryFollower(Node):
             yaw_rad = yaw_deviation_rad(base, pose.yaw_rad)
             command.lateral.steering_tire_angle = steering_rad(lateral_m, yaw_rad, speed_m_s)
         self._output.publish(command)
-
-    def _complain(self, text: str) -> None:
-        if self._throttle.is_due(text):
-            self.get_logger().warning(text)
-
-    def _now_s(self) -> float:
-        return seconds(self.get_clock().now().to_msg())
 
 
 def main() -> None:

@@ -23,9 +23,9 @@ from tier4_external_api_msgs.msg import Heartbeat, ResponseStatus
 from tier4_external_api_msgs.srv import Engage as EngageService
 from tier4_external_api_msgs.srv import SetEmergency
 
-from rmw_manycore_py.ndt.messages.conversions import seconds
+from rmw_manycore_py.ndt.nodes.support.clock import clock_s
 from rmw_manycore_py.ndt.nodes.support.declared import declare, parameter
-from rmw_manycore_py.ndt.nodes.support.log_throttle import LogThrottle
+from rmw_manycore_py.ndt.nodes.support.log_throttle import ThrottledWarnings
 from rmw_manycore_py.ndt.nodes.support.running import run_node
 from rmw_manycore_py.ndt.nodes.support.watched import watched
 from rmw_manycore_py.whill.laws.gating import Gate, GateOptions, Passage, Source
@@ -55,7 +55,7 @@ class VehicleCmdGate(Node):
     def __init__(self) -> None:
         super().__init__("vehicle_cmd_gate")
         self._p = declare(self, GateParameters)
-        self._throttle = LogThrottle()
+        self._warnings = ThrottledWarnings(self)
         self._gate = Gate(
             GateOptions(
                 self._p.watches_external,
@@ -149,10 +149,10 @@ class VehicleCmdGate(Node):
 
     def _tick(self) -> None:
         if missing := self._gate.missing():
-            self._complain(f"waiting for {', '.join(missing)}: no command passes")
+            self._warnings.log(f"waiting for {', '.join(missing)}: no command passes")
             return
-        if self._gate.tick(self._now_s()):
-            self._complain(self._reason_to_stop())
+        if self._gate.tick(clock_s(self)):
+            self._warnings.log(self._reason_to_stop())
             self._outputs.stop()
         else:
             source = self._gate.wanted_source()
@@ -174,16 +174,18 @@ class VehicleCmdGate(Node):
         """Do nothing: only Autoware's filter of commands needs it; the watch names a dead EKF."""
 
     def _on_heartbeat(self, _message: Any) -> None:
-        self._gate.external_heartbeat(self._now_s())
+        self._gate.external_heartbeat(clock_s(self))
 
     def _on_mrm_state(self, message: Any) -> None:
         is_stop = message.behavior == MrmState.EMERGENCY_STOP
-        self._gate.system_state(self._now_s(), message.state in MRM_AT_WORK and is_stop)
+        self._gate.system_state(clock_s(self), message.state in MRM_AT_WORK and is_stop)
 
     def _on_gate_mode(self, message: Any) -> None:
         sources = {GateMode.AUTO: Source.AUTO, GateMode.EXTERNAL: Source.EXTERNAL}
         if message.data not in sources:
-            self._complain(f"input/gate_mode: expected 0 or 1, found {message.data}: passed over")
+            self._warnings.log(
+                f"input/gate_mode: expected 0 or 1, found {message.data}: passed over"
+            )
             return
         self._gate.source = sources[message.data]
 
@@ -219,13 +221,6 @@ class VehicleCmdGate(Node):
         if self._gate.clear():
             return True, "commands pass again"
         return False, "the heartbeat is still late"
-
-    def _complain(self, text: str) -> None:
-        if self._throttle.is_due(text):
-            self.get_logger().warning(text)
-
-    def _now_s(self) -> float:
-        return seconds(self.get_clock().now().to_msg())
 
 
 def main() -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import xml.etree.ElementTree as ElementTree
 from itertools import combinations
+from typing import Any
 
 import pytest
 
@@ -27,10 +28,10 @@ def member(slot: int, cluster: int, core: int | None, *nodes: str) -> Member:
     return Member(slot, 100 + slot, cluster, core, None, f"program {slot}", nodes)
 
 
-def graph(members: list[Member], ends: list[tuple[str, str, int]] | None = None) -> Graph:
+def graph(members: list[Member], ends: list[tuple[Any, str, int]] | None = None) -> Graph:
     """Return a graph of Coolidge's size; ends are kind, topic, and index of the member."""
     endpoints = tuple(
-        Endpoint(n, kind, "topic", topic, "T", members[i].nodes[0], members[i].slot, QOS)  # type: ignore[arg-type]
+        Endpoint(n, kind, "topic", topic, "T", members[i].nodes[0], members[i].slot, QOS)
         for n, (kind, topic, i) in enumerate(ends or [])
     )
     return Graph("p", 5, 16, 1 << 20, tuple(members), endpoints)

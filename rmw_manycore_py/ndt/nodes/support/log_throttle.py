@@ -5,6 +5,10 @@ from __future__ import annotations
 
 import re
 import time
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from rclpy.node import Node
 
 REPEAT_S = 1.0
 NUMBER = re.compile(r"[-+]?\d+(\.\d+)?")  # troubles that differ in numbers alone are the same
@@ -24,3 +28,16 @@ class LogThrottle:
         is_due = trouble not in self._logged_s
         self._logged_s.setdefault(trouble, now_s)
         return is_due
+
+
+class ThrottledWarnings:
+    """The warnings of a node, each trouble at most once a second."""
+
+    def __init__(self, node: Node) -> None:
+        self._node = node
+        self._throttle = LogThrottle()
+
+    def log(self, text: str) -> None:
+        """Log a warning, unless the same trouble was logged just now."""
+        if self._throttle.is_due(text):
+            self._node.get_logger().warning(text)

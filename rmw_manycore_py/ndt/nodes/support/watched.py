@@ -18,7 +18,7 @@ def watched(node: Node, topic: str) -> SubscriptionEventCallbacks:
 
 
 class _Watch:
-    """Remembers who publishes a topic: those that have gone cannot be asked."""
+    """Remembers the publishers of a topic: those that have gone cannot be asked."""
 
     def __init__(self, node: Node, topic: str) -> None:
         self._node = node
