@@ -31,7 +31,7 @@ from rmw_manycore_py.ndt.messages.conversions import (
 )
 from rmw_manycore_py.ndt.nodes.support.clock import clock_s
 from rmw_manycore_py.ndt.nodes.support.declared import declare, parameter
-from rmw_manycore_py.ndt.nodes.support.log_throttle import ThrottledWarnings
+from rmw_manycore_py.ndt.nodes.support.log_throttle import ThrottledLog
 from rmw_manycore_py.ndt.nodes.support.running import run_node
 from rmw_manycore_py.ndt.nodes.support.watched import watched
 
@@ -60,7 +60,7 @@ class EkfLocalizer(Node):
         super().__init__("ekf_localizer")
         self._p = declare(self, EkfParameters)
         self._is_activated = self._p.activated
-        self._warnings = ThrottledWarnings(self)
+        self._complain = ThrottledLog(self.get_logger().warning)
         self._filter = PoseFilter(
             FilterOptions(
                 stddev_sideways_c=self._p.stddev_sideways,
@@ -114,7 +114,7 @@ class EkfLocalizer(Node):
         if not self._filter.is_initialized:
             self._filter.initialize(stamp_s, *measured)
         elif not self._filter.add_pose(stamp_s, *measured):
-            self._warnings.log("a pose is older than what is kept: it is passed over")
+            self._complain("a pose is older than what is kept: it is passed over")
 
     def _on_twist(self, message: Any) -> None:
         twist = message.twist.twist
@@ -122,7 +122,7 @@ class EkfLocalizer(Node):
         noise = np.diag(np.maximum(np.diag(covariance)[[0, 5]], LEAST_VARIANCE))
         v, w = float(twist.linear.x), float(twist.angular.z)
         if not np.isfinite([v, w, *noise.ravel()]).all():
-            self._warnings.log("a twist is not finite: it is passed over")
+            self._complain("a twist is not finite: it is passed over")
         elif self._is_activated and self._filter.is_initialized:
             self._add_twist(seconds(message.header.stamp), v, w, noise)
 
@@ -130,7 +130,7 @@ class EkfLocalizer(Node):
         if self._is_ahead("twist", stamp_s):
             return
         if not self._filter.add_twist(stamp_s, v_m_s, w_rad_s, noise):
-            self._warnings.log("a twist is older than what is kept: it is passed over")
+            self._complain("a twist is older than what is kept: it is passed over")
 
     def _is_ahead(self, what: str, stamp_s: float) -> bool:
         """Tell whether a measurement cannot be used as it is of the future, and warn then."""
@@ -138,7 +138,7 @@ class EkfLocalizer(Node):
         self._follow_clock(now_s)
         is_ahead = self._filter.is_ahead(stamp_s, now_s)
         if is_ahead:
-            self._warnings.log(
+            self._complain(
                 f"a {what} is of a time {stamp_s - now_s:.2f} s ahead: it is passed over, check "
                 "the clocks"
             )
@@ -146,7 +146,7 @@ class EkfLocalizer(Node):
 
     def _follow_clock(self, now_s: float) -> None:
         if self._filter.follow_clock(now_s):
-            self._warnings.log(
+            self._complain(
                 "the clock has jumped back: going on from the last pose; if the vehicle is "
                 "elsewhere now, send a new initialpose"
             )
@@ -164,7 +164,7 @@ class EkfLocalizer(Node):
                 )
             T = matrix_of(message.pose.pose)
         except PoseError as error:
-            self._warnings.log(f"{error}: it is passed over")
+            self._complain(f"{error}: it is passed over")
             return None
         diagonal = np.maximum(np.diag(covariance), LEAST_VARIANCE) - np.diag(covariance)
         return T, covariance + np.diag(diagonal)

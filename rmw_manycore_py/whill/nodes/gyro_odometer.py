@@ -14,7 +14,7 @@ from sensor_msgs.msg import Imu
 from rmw_manycore_py.ndt.messages.conversions import seconds
 from rmw_manycore_py.ndt.nodes.support.clock import clock_s
 from rmw_manycore_py.ndt.nodes.support.declared import declare, parameter
-from rmw_manycore_py.ndt.nodes.support.log_throttle import ThrottledWarnings
+from rmw_manycore_py.ndt.nodes.support.log_throttle import ThrottledLog
 from rmw_manycore_py.ndt.nodes.support.running import run_node
 from rmw_manycore_py.ndt.nodes.support.watched import watched
 from rmw_manycore_py.whill.laws.odometry import gyro_covariance, is_stale, is_standing
@@ -36,7 +36,7 @@ class GyroOdometer(Node):
     def __init__(self) -> None:
         super().__init__("gyro_odometer")
         self._p = declare(self, OdometerParameters)
-        self._warnings = ThrottledWarnings(self)
+        self._complain = ThrottledLog(self.get_logger().error)
         self._twist: Any = None  # the newest of the vehicle
         self._imu_s: float | None = None
         self._raw = self.create_publisher(TwistStamped, "twist_raw", 10)
@@ -61,18 +61,18 @@ class GyroOdometer(Node):
     def _on_twist(self, message: Any) -> None:
         self._twist = message
         if self._imu_s is None:
-            self._warnings.log("there is no message on imu yet")
+            self._complain("there is no message on imu yet")
         elif is_stale(self._imu_s, clock_s(self), self._p.timeout_s):
-            self._warnings.log(self._stale("imu", self._imu_s))
+            self._complain(self._stale("imu", self._imu_s))
 
     def _on_imu(self, imu: Any) -> None:
         self._imu_s = seconds(imu.header.stamp)
         if self._twist is None:
-            self._warnings.log("there is no message on vehicle/twist_with_covariance yet")
+            self._complain("there is no message on vehicle/twist_with_covariance yet")
             return
         stamp_s = seconds(self._twist.header.stamp)
         if is_stale(stamp_s, clock_s(self), self._p.timeout_s):
-            self._warnings.log(self._stale("vehicle/twist_with_covariance", stamp_s))
+            self._complain(self._stale("vehicle/twist_with_covariance", stamp_s))
             return
         self._publish(imu, self._raw, self._raw_full, imu.angular_velocity)
         linear = self._twist.twist.twist.linear
@@ -99,10 +99,6 @@ class GyroOdometer(Node):
             f"the newest message on {topic} is {age_s:.2f} s old, expected at most "
             f"{self._p.timeout_s:g} s: no twist is published; check the sensor and the clocks"
         )
-
-    def _complain(self, text: str) -> None:
-        if self._throttle.is_due(text):
-            self.get_logger().error(text)
 
 
 def main() -> None:

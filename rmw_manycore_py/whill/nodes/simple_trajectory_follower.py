@@ -15,7 +15,7 @@ from rclpy.node import Node
 from rmw_manycore_py.ndt.messages.conversions import seconds
 from rmw_manycore_py.ndt.nodes.support.clock import clock_s
 from rmw_manycore_py.ndt.nodes.support.declared import declare, parameter
-from rmw_manycore_py.ndt.nodes.support.log_throttle import ThrottledWarnings
+from rmw_manycore_py.ndt.nodes.support.log_throttle import ThrottledLog
 from rmw_manycore_py.ndt.nodes.support.running import run_node
 from rmw_manycore_py.ndt.nodes.support.watched import watched
 from rmw_manycore_py.whill.laws.following import (
@@ -52,7 +52,7 @@ class SimpleTrajectoryFollower(Node):
     def __init__(self) -> None:
         super().__init__("simple_trajectory_follower")
         self._p = declare(self, FollowerParameters)
-        self._warnings = ThrottledWarnings(self)
+        self._complain = ThrottledLog(self.get_logger().warning)
         self._odometry: Any = None
         self._trajectory: Trajectory | None = None
         self._message: Any = None  # that the trajectory was made of
@@ -81,18 +81,18 @@ class SimpleTrajectoryFollower(Node):
         if self._message is not None and message.points == self._message.points:
             return
         if not message.points:
-            self._warnings.log("input/trajectory: expected points, found none: it is passed over")
+            self._complain("input/trajectory: expected points, found none: it is passed over")
             return
         self._message, self._trajectory = message, trajectory_of(message)
 
     def _command(self) -> None:
         if self._odometry is None or self._trajectory is None:
             missing = "input/kinematics" if self._odometry is None else "input/trajectory"
-            self._warnings.log(f"waiting for {missing}: no command is published")
+            self._complain(f"waiting for {missing}: no command is published")
             return
         reason = self._reason_to_stand(self._trajectory)
         if reason:
-            self._warnings.log(f"{reason}: the vehicle is told to stand")
+            self._complain(f"{reason}: the vehicle is told to stand")
         self._publish(self._trajectory, must_stand=bool(reason))
 
     def _reason_to_stand(self, trajectory: Trajectory) -> str:

@@ -25,7 +25,7 @@ from tier4_external_api_msgs.srv import SetEmergency
 
 from rmw_manycore_py.ndt.nodes.support.clock import clock_s
 from rmw_manycore_py.ndt.nodes.support.declared import declare, parameter
-from rmw_manycore_py.ndt.nodes.support.log_throttle import ThrottledWarnings
+from rmw_manycore_py.ndt.nodes.support.log_throttle import ThrottledLog
 from rmw_manycore_py.ndt.nodes.support.running import run_node
 from rmw_manycore_py.ndt.nodes.support.watched import watched
 from rmw_manycore_py.whill.laws.gating import Gate, GateOptions, Passage, Source
@@ -55,7 +55,7 @@ class VehicleCmdGate(Node):
     def __init__(self) -> None:
         super().__init__("vehicle_cmd_gate")
         self._p = declare(self, GateParameters)
-        self._warnings = ThrottledWarnings(self)
+        self._complain = ThrottledLog(self.get_logger().warning)
         self._gate = Gate(
             GateOptions(
                 self._p.watches_external,
@@ -149,10 +149,10 @@ class VehicleCmdGate(Node):
 
     def _tick(self) -> None:
         if missing := self._gate.missing():
-            self._warnings.log(f"waiting for {', '.join(missing)}: no command passes")
+            self._complain(f"waiting for {', '.join(missing)}: no command passes")
             return
         if self._gate.tick(clock_s(self)):
-            self._warnings.log(self._reason_to_stop())
+            self._complain(self._reason_to_stop())
             self._outputs.stop()
         else:
             source = self._gate.wanted_source()
@@ -183,9 +183,7 @@ class VehicleCmdGate(Node):
     def _on_gate_mode(self, message: Any) -> None:
         sources = {GateMode.AUTO: Source.AUTO, GateMode.EXTERNAL: Source.EXTERNAL}
         if message.data not in sources:
-            self._warnings.log(
-                f"input/gate_mode: expected 0 or 1, found {message.data}: passed over"
-            )
+            self._complain(f"input/gate_mode: expected 0 or 1, found {message.data}: passed over")
             return
         self._gate.source = sources[message.data]
 

@@ -24,7 +24,7 @@ from whill_msgs.msg import ModelCr2State
 from rmw_manycore_py.ndt.messages.conversions import seconds
 from rmw_manycore_py.ndt.nodes.support.clock import clock_s
 from rmw_manycore_py.ndt.nodes.support.declared import declare, parameter
-from rmw_manycore_py.ndt.nodes.support.log_throttle import ThrottledWarnings
+from rmw_manycore_py.ndt.nodes.support.log_throttle import ThrottledLog
 from rmw_manycore_py.ndt.nodes.support.running import run_node
 from rmw_manycore_py.ndt.nodes.support.watched import watched
 from rmw_manycore_py.whill.laws.odometry import is_stale, speed_of_motors, steering_of_motion
@@ -51,7 +51,7 @@ class WhillInterface(Node):
     def __init__(self) -> None:
         super().__init__("whill_interface")
         self._p = declare(self, InterfaceParameters)
-        self._warnings = ThrottledWarnings(self)
+        self._complain = ThrottledLog(self.get_logger().warning)
         self._control: Any = None
         self._gear: Any = None
         self._is_emergency = False
@@ -106,16 +106,16 @@ class WhillInterface(Node):
     def _command(self) -> None:
         if self._control is None or self._gear is None:
             missing = "control_cmd" if self._control is None else "gear_cmd"
-            self._warnings.log(f"waiting for /control/command/{missing}: no cmd_vel is published")
+            self._complain(f"waiting for /control/command/{missing}: no cmd_vel is published")
             return
         twist = Twist()
         if reason := self._reason_to_stand():
-            self._warnings.log(f"{reason}: the wheelchair is told to stand")
+            self._complain(f"{reason}: the wheelchair is told to stand")
         else:
             wanted_m_s = self._control.longitudinal.velocity
             if wanted_m_s > self._p.max_speed_m_s:
                 limit = f"{self._p.max_speed_m_s:g} m/s"
-                self._warnings.log(f"control_cmd: {wanted_m_s:.2f} m/s is limited to {limit}")
+                self._complain(f"control_cmd: {wanted_m_s:.2f} m/s is limited to {limit}")
             twist.linear.x, twist.angular.z = wheelchair_twist(
                 wanted_m_s,
                 self._control.lateral.steering_tire_angle,
@@ -155,7 +155,7 @@ class WhillInterface(Node):
         )
         self._hazard.publish(HazardLightsReport(stamp=stamp, report=HazardLightsReport.DISABLE))
         if state.error:
-            self._warnings.log(f"the wheelchair reports error {state.error}")
+            self._complain(f"the wheelchair reports error {state.error}")
 
 
 def main() -> None:

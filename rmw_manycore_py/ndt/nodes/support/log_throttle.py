@@ -5,10 +5,7 @@ from __future__ import annotations
 
 import re
 import time
-from typing import TYPE_CHECKING
-
-if TYPE_CHECKING:
-    from rclpy.node import Node
+from collections.abc import Callable
 
 REPEAT_S = 1.0
 NUMBER = re.compile(r"[-+]?\d+(\.\d+)?")  # troubles that differ in numbers alone are the same
@@ -30,14 +27,17 @@ class LogThrottle:
         return is_due
 
 
-class ThrottledWarnings:
-    """The warnings of a node, each trouble at most once a second."""
+class ThrottledLog:
+    """Logs each trouble at most once a second.
 
-    def __init__(self, node: Node) -> None:
-        self._node = node
+    :param log: of a node's logger, and of one severity: rclpy refuses another one from here.
+    """
+
+    def __init__(self, log: Callable[[str], object]) -> None:
+        self._log = log
         self._throttle = LogThrottle()
 
-    def log(self, text: str) -> None:
-        """Log a warning, unless the same trouble was logged just now."""
+    def __call__(self, text: str) -> None:
+        """Log it, unless the same trouble was logged just now."""
         if self._throttle.is_due(text):
-            self._node.get_logger().warning(text)
+            self._log(text)
