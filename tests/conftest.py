@@ -7,7 +7,7 @@ import os
 import signal
 import sys
 import tempfile
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Generator, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -33,6 +33,8 @@ from support import (
 )
 
 PEER_SERVERS = pytest.StashKey[PeerServers]()
+PROGRAMS = pytest.StashKey[list[Program]]()
+SHOWN_LINES = 40
 StartProgram = Callable[..., Program]
 
 
@@ -67,6 +69,17 @@ def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
     return make_scheduler(config, log)
 
 
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_makereport(item: pytest.Item) -> Generator[None, Any, Any]:
+    """Show with a failure what all programs of the test printed: the culprit may be another one."""
+    report = yield
+    if report.failed:
+        for program in item.stash.get(PROGRAMS, []):
+            command, *lines = repr(program).splitlines()
+            report.sections.append((command, "\n".join(lines[-SHOWN_LINES:])))
+    return report
+
+
 @pytest.fixture
 def platform() -> Iterator[str]:
     """Yield the name of the test's platform; afterwards nothing of it may be left."""
@@ -82,7 +95,7 @@ def platform() -> Iterator[str]:
 @pytest.fixture
 def start(platform: str, request: pytest.FixtureRequest) -> Iterator[StartProgram]:
     """Yield a function that starts a program on the test's platform; none outlives the test."""
-    programs: list[Program] = []
+    programs = request.node.stash.setdefault(PROGRAMS, [])
     servers = request.config.stash.get(PEER_SERVERS, None)
 
     def start_program(
