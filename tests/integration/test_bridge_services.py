@@ -50,6 +50,8 @@ def serve(answers: bool) -> None:
             return response
 
         node.create_service(type_of(SET_BOOL), "/lamp", answer)
+        # Fast DDS drops an answer for which it does not find the client within 100 ms.
+        spin_until(node, lambda: node.count_clients("/lamp") > 0)
         announce("serving")
         spin_until(node, lambda: False, 1e6)
 
