@@ -24,7 +24,7 @@ namespace {
 
 constexpr const char * topic = "/x";
 constexpr const char * crowded_topic = "/crowded";
-constexpr size_t crowd = 100;          // more than one piece of undoing matches
+constexpr size_t crowd = 100;          // more matches than one turn undoes
 constexpr size_t large_bytes = 5'000;  // the topic DSM has to grow for it
 
 std::shared_ptr<Process> join(const std::string & platform) {
@@ -81,7 +81,7 @@ const Role closes("closes", [](Lines &, const Arguments & arguments) {
   finish_steps();
 });
 
-/// Endpoints whose matches are undone in several pieces.
+/// Endpoints whose matches are undone in several turns.
 const Role closes_many("closes_many", [](Lines &, const Arguments & arguments) {
   const auto process = join(arguments.at(0));
   auto publisher = process->create_publisher(on_topic(crowded_topic, transient_local(2)));

@@ -213,7 +213,9 @@ TEST_CASE("a subscription with many publishers is freed in turns") {
   Registry & registry = f.inspection.registry();
   const auto slot = static_cast<uint32_t>(endpoint_in(subscription->gid()));
   const Registry::Lock lock(registry);
-  while (!closing::close_some(registry, slot, false)) {
+  for (bool closed = false; !closed;) {
+    Turn turn;
+    closed = closing::close_some(registry, slot, false, turn);
   }
   CHECK_FALSE(sweeping::Round(registry).sweep_some_of(slot));
   CHECK(f.inspection.closing_endpoints() == 1);

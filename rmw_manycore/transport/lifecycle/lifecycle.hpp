@@ -54,7 +54,7 @@ std::vector<std::string> remove_platform(const PlatformPaths & paths);
 void note_removal(Registry & registry) noexcept;
 
 /// Closes what dead processes left behind, and makes their places free; their endpoints' memory
-/// goes with sweeping::sweep_all(). Takes the registry lock anew for each piece. The dead of the
+/// goes with sweeping::sweep_all(). Takes the registry lock anew for each turn. The dead of the
 /// caller's `cluster` go first: several reapers then do not all begin with the same process.
 /// Returns the number of the dead.
 uint32_t reap_dead(Registry & registry, uint32_t cluster);

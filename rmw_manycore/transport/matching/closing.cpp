@@ -14,19 +14,8 @@
 namespace manycore::closing {
 namespace {
 
-/// How much is closed before the registry lock is given back: well under 100 us of work.
-class Piece {
-public:
-  bool is_done() const noexcept { return steps_left_ <= 0; }
-  /// A slot or an entry was looked at, which may be a cache miss.
-  void look() noexcept { --steps_left_; }
-  /// A match was undone, which takes about half a microsecond.
-  void undo() noexcept { steps_left_ -= steps_of_match; }
-
-private:
-  static constexpr int steps_of_match = 32;
-  int steps_left_ = 64 * steps_of_match;
-};
+constexpr uint64_t steps_of_an_entry = 1;
+constexpr uint64_t steps_of_a_match = 5;
 
 void count_unmatched(Registry & registry, EndpointEntry & entry) {
   if (entry.matched_current.load() != 0) {
@@ -50,7 +39,7 @@ void undo_match(Registry & registry, SourceEntry & source) {
 /// Undoes some matches; true when none is left. `closed_before` moves after each, so a process that
 /// dies half way leaves at most one to be undone once more: its source is `revoked` then, and its
 /// reader may still be on the reader table.
-bool close_some_of_subscription(Registry & registry, EndpointEntry & entry, Piece & piece) {
+bool close_some_of_subscription(Registry & registry, EndpointEntry & entry, Turn & turn) {
   Cluster * const cluster = registry.reach(entry.block.cluster());
   auto * const header = registry.reach<SubscriptionHeader>(entry.block);
   if (cluster == nullptr || header == nullptr) {
@@ -59,32 +48,19 @@ bool close_some_of_subscription(Registry & registry, EndpointEntry & entry, Piec
   bool stopped = false;
   source_table(*cluster, *header)
     .visit(header->closed_before, [&](SourceEntry & source, uint32_t index) {
-      stopped = piece.is_done();
+      stopped = turn.is_over();
       if (stopped) {
         return true;
       }
-      piece.look();
+      turn.spend(steps_of_an_entry);
       if (source.state.load() != SourceState::free) {
         undo_match(registry, source);
-        piece.undo();
+        turn.spend(steps_of_a_match);
       }
       header->closed_before = index + 1;
       return false;
     });
   return !stopped;
-}
-
-/// Nothing when the entry leads nowhere. Throws OutOfReach.
-std::optional<OrphanReader> follow(
-  Registry & registry, const Cluster & cluster, TopicDsmHeader & dsm, const ReaderEntry & reader) {
-  auto * const source = registry.reach<SourceEntry>(SegmentRef{reader.source.load()});
-  auto * const header = registry.reach<SubscriptionHeader>(SegmentRef{reader.subscription.load()});
-  const uint32_t slot = reader.endpoint.load();
-  if (source == nullptr || header == nullptr || slot >= registry.endpoints().high_water()) {
-    return std::nullopt;
-  }
-  return OrphanReader{
-    cluster, dsm, *header, *source, registry.endpoints()[slot], slot, reader.source_index.load()};
 }
 
 /// Hints of its last records may never have been pushed (`died`), or may have been displaced: a
@@ -105,7 +81,7 @@ void tell_of_end(
 
 /// Tells some readers; true when all know. `closed_before` moves after each: what is counted down
 /// for a reader may not be counted down again.
-bool close_some_of_publisher(Registry & registry, EndpointEntry & entry, bool died, Piece & piece) {
+bool close_some_of_publisher(Registry & registry, EndpointEntry & entry, bool died, Turn & turn) {
   Cluster * const cluster = registry.reach(entry.block.cluster());
   auto * const dsm = registry.reach<TopicDsmHeader>(entry.block);
   if (cluster == nullptr || dsm == nullptr) {
@@ -121,17 +97,18 @@ bool close_some_of_publisher(Registry & registry, EndpointEntry & entry, bool di
   visit_reader_table(
     *cluster, *dsm,
     [&](ReaderEntry & reader_entry, uint32_t index) {
-      stopped = piece.is_done();
+      stopped = turn.is_over();
       if (stopped) {
         return true;
       }
-      piece.look();
+      turn.spend(steps_of_an_entry);
       if (reader_entry.active.load(std::memory_order_acquire) != 0) {
-        const std::optional<OrphanReader> reader = follow(registry, *cluster, *dsm, reader_entry);
+        const std::optional<OrphanReader> reader =
+          orphan_reader(registry, *cluster, *dsm, reader_entry);
         if (reader && registry.endpoints().is_live(reader->endpoint_slot)) {
           tell_of_end(registry, entry, *reader, died);
         }
-        piece.undo();
+        turn.spend(steps_of_a_match);
       }
       dsm->closed_before = index + 1;
       return false;
@@ -151,7 +128,9 @@ void wake_reaper(Registry & registry, uint32_t process) {
   registry.clusters().at(registry.processes()[process].cluster).wake_reaper();
 }
 
-bool close_within(Registry & registry, uint32_t endpoint, bool died, Piece & piece) {
+}  // namespace
+
+bool close_some(Registry & registry, uint32_t endpoint, bool died, Turn & turn) {
   EndpointEntry & entry = registry.endpoints()[endpoint];
   if (entry.slot.state.load() == SlotState::live) {
     entry.slot.state.store(SlotState::closing);
@@ -159,34 +138,27 @@ bool close_within(Registry & registry, uint32_t endpoint, bool died, Piece & pie
     ++registry.header().closing_count;
   }
   const bool done = entry.kind == EndpointKind::publisher
-                      ? close_some_of_publisher(registry, entry, died, piece)
-                      : close_some_of_subscription(registry, entry, piece);
+                      ? close_some_of_publisher(registry, entry, died, turn)
+                      : close_some_of_subscription(registry, entry, turn);
   if (done && entry.slot.state.load() == SlotState::closing) {
     entry.slot.state.store(SlotState::closed);
   }
   return done;
 }
 
-}  // namespace
-
-bool close_some(Registry & registry, uint32_t endpoint, bool died) {
-  Piece piece;
-  return close_within(registry, endpoint, died, piece);
-}
-
 bool EndpointsOfProcess::close_some() {
-  Piece piece;
+  Turn turn;
   for (; next_ < registry_.endpoints().high_water(); ++next_) {
-    if (piece.is_done()) {
+    if (turn.is_over()) {
       return false;
     }
-    piece.look();
+    turn.spend(steps_of_an_entry);
     const EndpointEntry & entry = registry_.endpoints()[next_];
     if (entry.process != process_ || entry.slot.state.load() == SlotState::free) {
       continue;
     }
     try {
-      if (!close_within(registry_, next_, died_, piece)) {
+      if (!closing::close_some(registry_, next_, died_, turn)) {
         return false;
       }
     } catch (const OutOfReach & error) {

@@ -16,7 +16,8 @@ void close(Registry & registry, uint32_t endpoint) {
       return;  // meanwhile others closed and freed it
     }
     try {
-      closed = closing::close_some(registry, endpoint, false);
+      Turn turn;
+      closed = closing::close_some(registry, endpoint, false, turn);
     } catch (const OutOfReach &) {
       return;  // this is as far as this process can go; the sweep finds that out, too
     }

@@ -23,8 +23,7 @@ bool is_left_closing(Registry & registry, const EndpointEntry & entry) {
 Progress sweep_endpoint(Registry & registry, WantedSources & wanted, uint32_t slot, Turn & turn) {
   EndpointEntry & entry = registry.endpoints()[slot];
   if (is_left_closing(registry, entry)) {
-    closing::close_some(registry, slot, false);
-    turn.spend(Turn::steps);
+    closing::close_some(registry, slot, false, turn);
   }
   const SlotState state = entry.slot.state.load();
   if (state != SlotState::closed && state != SlotState::freeing) {

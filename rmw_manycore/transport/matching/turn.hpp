@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cstdint>
 
-namespace manycore::sweeping {
+namespace manycore {
 
-/// How much of a sweep is done while the registry lock is held once. Counted in steps of about
-/// 0.1 us (a look at an entry that is not in the cache), so that a turn takes about 50 us.
+/// How much of closing and sweeping is done while the registry lock is held once. Counted in steps
+/// of about 0.1 us (a look at an entry that is not in the cache), so that a turn takes about 50 us.
 class Turn {
 public:
   static constexpr uint32_t steps = 512;
@@ -22,4 +22,4 @@ private:
   uint32_t left_ = steps;
 };
 
-}  // namespace manycore::sweeping
+}  // namespace manycore
