@@ -222,3 +222,25 @@ TEST_CASE("a subscription with many publishers is freed in turns") {
   CHECK(sweeping::Round(registry).sweep_some_of(slot));  // goes on with what another one began
   CHECK(f.inspection.closing_endpoints() == 0);
 }
+
+TEST_CASE("a sweep goes on with what a living process left closing until all of it is closed") {
+  Fixture f;
+  const Standstill no_other_sweeper(f.platform, 1);
+  constexpr size_t many = 300;
+  std::vector<std::unique_ptr<Publisher>> publishers;
+  for (size_t i = 0; i < many; ++i) {
+    publishers.push_back(f.publisher());
+  }
+  const auto subscription = f.subscription(keep_last(1));
+  Registry & registry = f.inspection.registry();
+  {
+    const Registry::Lock lock(registry);
+    Turn turn;
+    CHECK_FALSE(closing::close_some(
+      registry, static_cast<uint32_t>(endpoint_in(subscription->gid())), false, turn));
+  }
+  CHECK(f.inspection.closing_endpoints() == 1);
+  sweeping::sweep_all(registry);
+  CHECK(f.inspection.closing_endpoints() == 0);
+  CHECK(publishers.front()->matched().current == 0);
+}

@@ -19,11 +19,12 @@ bool is_left_closing(Registry & registry, const EndpointEntry & entry) {
          registry.processes().is_live(entry.process) && registry.lifelines().is_held(entry.process);
 }
 
-/// Frees the memory of a closed endpoint, and its slot. Throws OutOfReach.
+/// Closes what is left closing; frees the memory of a closed endpoint, and its slot. Throws
+/// OutOfReach.
 Progress sweep_endpoint(Registry & registry, WantedSources & wanted, uint32_t slot, Turn & turn) {
   EndpointEntry & entry = registry.endpoints()[slot];
-  if (is_left_closing(registry, entry)) {
-    closing::close_some(registry, slot, false, turn);
+  if (is_left_closing(registry, entry) && !closing::close_some(registry, slot, false, turn)) {
+    return Progress::turn_over;
   }
   const SlotState state = entry.slot.state.load();
   if (state != SlotState::closed && state != SlotState::freeing) {
