@@ -244,3 +244,37 @@ TEST_CASE("a sweep goes on with what a living process left closing until all of 
   CHECK(f.inspection.closing_endpoints() == 0);
   CHECK(publishers.front()->matched().current == 0);
 }
+
+TEST_CASE("readers that are done since a sweep ended early among them are looked at once more") {
+  Fixture f;
+  const Standstill no_other_sweeper(f.platform, 1);
+  constexpr size_t many = 150;
+  std::vector<std::unique_ptr<Subscription>> stuck;
+  for (size_t i = 0; i < many; ++i) {
+    stuck.push_back(f.subscription(keep_last(1)));
+  }
+  const auto successor = f.publisher();
+  f.drive(1);
+  Registry & registry = f.inspection.registry();
+  {
+    const Registry::Lock lock(registry);
+    REQUIRE_FALSE(sweeping::Round(registry).sweep_some());
+  }
+  publish(*successor, ++f.published);
+  sweeping::sweep_all(registry);
+  CHECK(f.inspection.closing_endpoints() == 0);
+}
+
+TEST_CASE("the reaper is woken for what the last reader could not free, with the registry locked") {
+  Fixture f;
+  const auto reader = f.subscription(keep_last(1));
+  f.drive(1);
+  const ClusterHeader & cluster = f.inspection.registry().clusters().at(1).header();
+  wait_until("the message that this process joined", [&] { return cluster.messages.load() == 1; });
+  {
+    const Registry::Lock lock(f.inspection.registry());
+    CHECK(take_all(*reader) == numbers(1, 1));
+  }
+  wait_until("the wake-up of the reaper", [&] { return cluster.messages.load() == 2; });
+  wait_until("the topic DSM is freed", [&] { return f.inspection.closing_endpoints() == 0; });
+}

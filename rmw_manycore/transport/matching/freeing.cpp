@@ -70,9 +70,8 @@ Progress revoke(
   return Progress::freed;
 }
 
-/// Goes through the reader table from where the last turn of any process ended; `freed` when no
-/// reader is on it any more.
-Progress revoke_some(
+/// False when the turn was over before the last reader.
+bool revoke_up_to_last(
   Registry & registry, WantedSources & wanted, const Cluster & cluster, TopicDsmHeader & dsm,
   Turn & turn) {
   bool stopped = false;
@@ -90,17 +89,40 @@ Progress revoke_some(
     return stopped;
   };
   visit_reader_table(cluster, dsm, visit, dsm.swept_before);
-  if (stopped) {
-    return Progress::turn_over;
-  }
-  dsm.swept_before = 0;
-  bool is_read = false;
+  return !stopped;
+}
+
+bool is_read(Registry & registry, const Cluster & cluster, TopicDsmHeader & dsm) {
+  bool found = false;
   visit_reader_table(cluster, dsm, [&](const ReaderEntry & entry, uint32_t) {
-    is_read = entry.active.load(std::memory_order_acquire) != 0 &&
-              closing::orphan_reader(registry, cluster, dsm, entry);
-    return is_read;
+    found = entry.active.load(std::memory_order_acquire) != 0 &&
+            closing::orphan_reader(registry, cluster, dsm, entry);
+    return found;
   });
-  return is_read ? Progress::blocked : Progress::freed;
+  return found;
+}
+
+/// Goes through the reader table from where the last turn of any process ended; `freed` when no
+/// reader is on it any more.
+Progress revoke_some(
+  Registry & registry, WantedSources & wanted, ReaderPass & pass, uint32_t endpoint,
+  const Cluster & cluster, TopicDsmHeader & dsm, Turn & turn) {
+  if (pass.endpoint != endpoint) {
+    pass = {endpoint, dsm.swept_before == 0};
+  }
+  while (true) {
+    if (!revoke_up_to_last(registry, wanted, cluster, dsm, turn)) {
+      return Progress::turn_over;
+    }
+    dsm.swept_before = 0;
+    if (!is_read(registry, cluster, dsm)) {
+      return Progress::freed;
+    }
+    if (std::exchange(pass.began_first, true)) {
+      pass = {};
+      return Progress::blocked;
+    }
+  }
 }
 
 template<typename Entry>
@@ -151,13 +173,14 @@ Progress see_publishers_out(
 }  // namespace
 
 Progress sweep_publisher(
-  Registry & registry, WantedSources & wanted, EndpointEntry & entry, Turn & turn) {
+  Registry & registry, WantedSources & wanted, ReaderPass & pass, uint32_t endpoint, Turn & turn) {
+  EndpointEntry & entry = registry.endpoints()[endpoint];
   Cluster * const cluster = registry.reach(entry.block.cluster());
   auto * const dsm = registry.reach<TopicDsmHeader>(entry.block);
   if (cluster == nullptr || dsm == nullptr) {
     return Progress::freed;
   }
-  const Progress progress = revoke_some(registry, wanted, *cluster, *dsm, turn);
+  const Progress progress = revoke_some(registry, wanted, pass, endpoint, *cluster, *dsm, turn);
   if (progress != Progress::freed) {
     return progress;
   }

@@ -11,10 +11,18 @@ namespace manycore::sweeping {
 /// wants what it holds; there is more to look at.
 enum class Progress { freed, blocked, turn_over };
 
+/// One look at all readers of a topic DSM, in as many turns as it takes. The first of them goes on
+/// where the last turn of any process ended; readers before that may be done by now, so the look
+/// then comes to them at last.
+struct ReaderPass {
+  uint32_t endpoint = nothing;  ///< slot of the publisher
+  bool began_first = false;     ///< all readers were looked at since, once it comes to the last
+};
+
 /// Both want a `closed` endpoint, or one that is `freeing`, and throw OutOfReach. They leave the
 /// endpoint's slot to their caller.
 Progress sweep_publisher(
-  Registry & registry, WantedSources & wanted, EndpointEntry & entry, Turn & turn);
+  Registry & registry, WantedSources & wanted, ReaderPass & pass, uint32_t endpoint, Turn & turn);
 Progress sweep_subscription(Registry & registry, EndpointEntry & entry, Turn & turn);
 
 }  // namespace manycore::sweeping

@@ -2,7 +2,6 @@
 #include "transport/matching/sweeping.hpp"
 
 #include "transport/matching/closing.hpp"
-#include "transport/matching/freeing.hpp"
 
 namespace manycore::sweeping {
 namespace {
@@ -21,7 +20,8 @@ bool is_left_closing(Registry & registry, const EndpointEntry & entry) {
 
 /// Closes what is left closing; frees the memory of a closed endpoint, and its slot. Throws
 /// OutOfReach.
-Progress sweep_endpoint(Registry & registry, WantedSources & wanted, uint32_t slot, Turn & turn) {
+Progress sweep_endpoint(
+  Registry & registry, WantedSources & wanted, ReaderPass & pass, uint32_t slot, Turn & turn) {
   EndpointEntry & entry = registry.endpoints()[slot];
   if (is_left_closing(registry, entry) && !closing::close_some(registry, slot, false, turn)) {
     return Progress::turn_over;
@@ -31,7 +31,7 @@ Progress sweep_endpoint(Registry & registry, WantedSources & wanted, uint32_t sl
     return Progress::blocked;
   }
   const Progress progress = entry.kind == EndpointKind::publisher
-                              ? sweep_publisher(registry, wanted, entry, turn)
+                              ? sweep_publisher(registry, wanted, pass, slot, turn)
                               : sweep_subscription(registry, entry, turn);
   if (progress == Progress::freed) {
     turn.spend(steps_of_freeing);
@@ -45,7 +45,7 @@ Progress sweep_endpoint(Registry & registry, WantedSources & wanted, uint32_t sl
 
 bool Round::try_to_sweep(uint32_t slot, Turn & turn) {
   try {
-    return sweep_endpoint(registry_, wanted_, slot, turn) != Progress::turn_over;
+    return sweep_endpoint(registry_, wanted_, pass_, slot, turn) != Progress::turn_over;
   } catch (const OutOfReach &) {
     reached_all_ = false;
     return true;
@@ -97,14 +97,17 @@ void sweep_a_little(Registry & registry, uint32_t cluster, long wait_ns) {
   }
 }
 
-void try_to_sweep(Registry & registry, uint32_t endpoint) noexcept {
+void try_to_sweep(Registry & registry, uint32_t endpoint, const Cluster & cluster) noexcept {
   try {
+    Round round(registry);
     const Registry::Lock lock(registry, Registry::Lock::no_wait_ns);
-    Round(registry).sweep_some_of(endpoint);
+    if (round.sweep_some_of(endpoint) && round.reached_all()) {
+      return;
+    }
   } catch (const std::exception &) {
-    // Another process holds the registry, and its caller does not wait for it: the next change of
-    // the graph sweeps.
+    // Another process holds the registry, and the caller does not wait for it.
   }
+  cluster.wake_reaper();
 }
 
 }  // namespace manycore::sweeping

@@ -1,6 +1,7 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "transport/matching/freeing.hpp"
 #include "transport/matching/turn.hpp"
 #include "transport/matching/wanted_sources.hpp"
 #include "transport/registry/registry.hpp"
@@ -29,6 +30,7 @@ private:
 
   Registry & registry_;
   WantedSources wanted_;
+  ReaderPass pass_;
   uint32_t looked_at_ = 0;  ///< slots
   bool reached_all_ = true;
 };
@@ -42,8 +44,8 @@ void sweep_all(Registry & registry);
 void sweep_a_little(
   Registry & registry, uint32_t cluster, long wait_ns = Registry::Lock::usual_wait_ns);
 
-/// One turn for one endpoint, if there is such a closed one; gives up where the registry lock is
-/// taken.
-void try_to_sweep(Registry & registry, uint32_t endpoint) noexcept;
+/// One turn for one endpoint, if there is such a closed one. Does not wait for the registry lock.
+/// The reaper of `cluster` is woken for what is left then, or out of this process's reach.
+void try_to_sweep(Registry & registry, uint32_t endpoint, const Cluster & cluster) noexcept;
 
 }  // namespace manycore::sweeping

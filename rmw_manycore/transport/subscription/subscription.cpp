@@ -139,7 +139,7 @@ void Subscription::Impl::trace_claim(const RecordInfo & info, uint64_t number) n
 }
 
 void Subscription::Impl::sweep(uint32_t publisher) noexcept {
-  sweeping::try_to_sweep(registry, publisher);
+  sweeping::try_to_sweep(registry, publisher, cluster);
 }
 
 }  // namespace manycore
