@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <tuple>
-#include <vector>
 
 #include "transport/queue/source_table.hpp"
 #include "transport/registry/endpoint_blocks.hpp"
@@ -33,6 +32,22 @@ void visit_records_above(
   }
 }
 
+/// Calls `visit(number, source_timestamp_ns)` for each record that a source has not taken, in any
+/// order.
+template<typename Visit>
+void visit_undelivered(
+  const Cluster & cluster, TopicDsmHeader & dsm, const SourceEntry & source, Visit visit) {
+  visit_records_above(
+    source.taken.load(std::memory_order_acquire), cluster, dsm,
+    [&](RecordDescriptor & record, uint64_t number) {
+      const int64_t timestamp_ns = record.source_timestamp_ns.load(std::memory_order_acquire);
+      if (record.number.load(std::memory_order_relaxed) == number) {  // its publisher may live
+        visit(number, timestamp_ns);
+      }
+      return false;
+    });
+}
+
 }  // namespace
 
 std::optional<OrphanReader> orphan_reader(
@@ -47,11 +62,6 @@ std::optional<OrphanReader> orphan_reader(
     cluster, dsm, *header, *source, registry.endpoints()[slot], slot, entry.source_index.load()};
 }
 
-bool Undelivered::is_newer_than(const Undelivered & other) const noexcept {
-  return std::tie(source_timestamp_ns, source, number) >
-         std::tie(other.source_timestamp_ns, other.source, other.number);
-}
-
 uint64_t records_to_look_at(TopicDsmHeader & dsm, const SourceEntry & source) {
   if (source.taken.load(std::memory_order_acquire) >= dsm.last.load(std::memory_order_acquire)) {
     return 0;
@@ -63,27 +73,36 @@ uint64_t records_to_look_at(TopicDsmHeader & dsm, const SourceEntry & source) {
   return count;
 }
 
-void list_undelivered(
-  const Cluster & cluster, TopicDsmHeader & dsm, const SourceEntry & source, uint32_t index,
-  std::vector<Undelivered> & out) {
-  const auto begin = static_cast<ptrdiff_t>(out.size());
-  visit_records_above(
-    source.taken.load(std::memory_order_acquire), cluster, dsm,
-    [&](RecordDescriptor & record, uint64_t number) {
-      const int64_t timestamp_ns = record.source_timestamp_ns.load(std::memory_order_acquire);
-      if (record.number.load(std::memory_order_relaxed) == number) {  // its publisher may live
-        out.push_back({number, timestamp_ns, index});
-      }
-      return false;
-    });
-  std::sort(out.begin() + begin, out.end(), [](const Undelivered & a, const Undelivered & b) {
-    return a.number < b.number;
+std::optional<Undelivered> newest_undelivered(
+  const Cluster & cluster, TopicDsmHeader & dsm, const SourceEntry & source, uint32_t index) {
+  std::optional<Undelivered> newest;
+  visit_undelivered(cluster, dsm, source, [&](uint64_t number, int64_t timestamp_ns) {
+    newest =
+      newest
+        ? Undelivered{std::max(newest->number, number), std::max(newest->source_timestamp_ns, timestamp_ns), index}
+        : Undelivered{number, timestamp_ns, index};
   });
-  int64_t latest_ns = INT64_MIN;
-  for (auto i = static_cast<size_t>(begin); i < out.size(); ++i) {
-    latest_ns = std::max(latest_ns, out[i].source_timestamp_ns);
-    out[i].source_timestamp_ns = latest_ns;
+  return newest;
+}
+
+/// Those from the first on whose own timestamp is newer: a later one counts as no older than it.
+uint32_t count_newer_than(
+  const Undelivered & record, const Cluster & cluster, TopicDsmHeader & dsm,
+  const SourceEntry & source, uint32_t index) {
+  constexpr uint64_t none = UINT64_MAX;
+  uint64_t first_newer = none;
+  visit_undelivered(cluster, dsm, source, [&](uint64_t number, int64_t timestamp_ns) {
+    if (std::tie(timestamp_ns, index) > std::tie(record.source_timestamp_ns, record.source)) {
+      first_newer = std::min(first_newer, number);
+    }
+  });
+  uint32_t count = 0;
+  if (first_newer != none) {
+    visit_undelivered(cluster, dsm, source, [&](uint64_t number, int64_t) {
+      count += number >= first_newer ? 1 : 0;
+    });
   }
+  return count;
 }
 
 bool has_undelivered(const OrphanReader & reader) {

@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <optional>
-#include <vector>
 
 #include "transport/layout/subscription_layout.hpp"
 #include "transport/layout/topic_dsm_layout.hpp"
@@ -27,22 +26,24 @@ struct OrphanReader {
 std::optional<OrphanReader> orphan_reader(
   Registry & registry, const Cluster & cluster, TopicDsmHeader & dsm, const ReaderEntry & entry);
 
-/// A record that a reader has not taken.
+/// The newest record that a reader has not taken. No record of a source counts as older than an
+/// earlier one, as in Source::list_waiting().
 struct Undelivered {
   uint64_t number;
   int64_t source_timestamp_ns;
   uint32_t source;  ///< index
-
-  bool is_newer_than(const Undelivered & other) const noexcept;
 };
 
-/// Appends what a source has not taken, in order; no timestamp before an earlier record's, as in
-/// Source::list_waiting().
-void list_undelivered(
-  const Cluster & cluster, TopicDsmHeader & dsm, const SourceEntry & source, uint32_t index,
-  std::vector<Undelivered> & out);
+/// Nothing when all is taken.
+std::optional<Undelivered> newest_undelivered(
+  const Cluster & cluster, TopicDsmHeader & dsm, const SourceEntry & source, uint32_t index);
 
-/// Records that a look for undelivered ones goes through.
+/// Records of another source that it has not taken and that are newer than `record`.
+uint32_t count_newer_than(
+  const Undelivered & record, const Cluster & cluster, TopicDsmHeader & dsm,
+  const SourceEntry & source, uint32_t index);
+
+/// Records that one look for undelivered ones goes through.
 uint64_t records_to_look_at(TopicDsmHeader & dsm, const SourceEntry & source);
 
 /// A record that the reader has not taken, in any generation; of replies, its own whose hint was

@@ -1,9 +1,6 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #include "transport/matching/wanted_sources.hpp"
 
-#include <algorithm>
-#include <vector>
-
 #include "transport/queue/source_table.hpp"
 #include "transport/registry/endpoint_blocks.hpp"
 
@@ -14,6 +11,7 @@ using closing::OrphanReader;
 using closing::Undelivered;
 
 constexpr uint64_t steps_of_a_source = 3;
+constexpr uint64_t looks_at_other = 2;  ///< of count_newer_than(), at each record
 
 /// Messages that left the subscription by itself.
 uint64_t taken_by(const EndpointEntry & subscription) {
@@ -27,11 +25,8 @@ bool is_cut_by_depth(const OrphanReader & reader) {
          static_cast<EndpointRole>(reader.dsm.role) != EndpointRole::reply;
 }
 
-std::vector<Undelivered> undelivered_of(
-  const Cluster & cluster, TopicDsmHeader & dsm, const SourceEntry & source, uint32_t index) {
-  std::vector<Undelivered> records;
-  closing::list_undelivered(cluster, dsm, source, index, records);
-  return records;
+void spend_on(TopicDsmHeader & dsm, const SourceEntry & source, uint64_t looks, Turn & turn) {
+  turn.spend(looks * closing::records_to_look_at(dsm, source) / Turn::records_in_a_step);
 }
 
 }  // namespace
@@ -59,13 +54,10 @@ bool WantedSources::count_newer(Look & look, const OrphanReader & reader, Turn &
     TopicDsmHeader * const dsm =
       source.state.load() == SourceState::active ? topic_dsm_of(registry_, source) : nullptr;
     if (dsm != nullptr) {
-      turn.spend(closing::records_to_look_at(*dsm, source) / Turn::records_in_a_step);
+      spend_on(*dsm, source, looks_at_other, turn);
       const uint32_t cluster = SegmentRef{source.topic_dsm.load()}.cluster();
-      const std::vector<Undelivered> records =
-        undelivered_of(registry_.clusters().at(cluster), *dsm, source, index);
-      look.newer += static_cast<uint32_t>(std::count_if(
-        records.begin(), records.end(),
-        [&](const Undelivered & record) { return record.is_newer_than(look.record); }));
+      look.newer += closing::count_newer_than(
+        look.record, registry_.clusters().at(cluster), *dsm, source, index);
     }
     return false;
   };
@@ -77,16 +69,16 @@ bool WantedSources::count_newer(Look & look, const OrphanReader & reader, Turn &
 /// A subscription that took something since the look began may want more than the look found. It
 /// takes by itself what it wants, so it is given the time.
 std::optional<bool> WantedSources::contain(const OrphanReader & reader, Turn & turn) {
-  turn.spend(closing::records_to_look_at(reader.dsm, reader.source) / Turn::records_in_a_step);
+  spend_on(reader.dsm, reader.source, 1, turn);
   if (!is_cut_by_depth(reader)) {
     return closing::has_undelivered(reader);
   }
-  const std::vector<Undelivered> records =
-    undelivered_of(reader.cluster, reader.dsm, reader.source, reader.source_index);
-  if (records.empty()) {
+  const std::optional<Undelivered> newest =
+    closing::newest_undelivered(reader.cluster, reader.dsm, reader.source, reader.source_index);
+  if (!newest) {
     return false;
   }
-  Look look = look_at(reader, records.back());
+  Look look = look_at(reader, *newest);
   last_.reset();
   if (!count_newer(look, reader, turn)) {
     last_ = look;
