@@ -5,9 +5,13 @@
 
 #include <unistd.h>
 
+#include <atomic>
 #include <cstdio>
+#include <thread>
 
+#include "node_role.hpp"
 #include "patience.hpp"
+#include "stepped_child.hpp"
 #include "trace_of_test.hpp"
 
 using namespace manycore;
@@ -102,4 +106,40 @@ TEST_CASE("a process without descriptors loses its events, and counts them") {
   CHECK(state.lost > 0);
   const Saved saved(f.registry());
   CHECK(saved.lost == state.lost);
+}
+
+namespace {
+
+const Role starts_trace("starts_trace", [](Lines &, const Arguments & arguments) {
+  Registry registry(PlatformPaths::of(arguments.at(0)));
+  begin_steps();
+  start_trace(registry, {});
+  finish_steps();
+});
+
+}  // namespace
+
+TEST_CASE("a trace that is being started while another process saves still counts as unsaved") {
+  Fixture f;
+  const TraceControl & control = f.registry().header().trace;
+  SteppedChild starter("starts_trace", {f.platform.name()});
+  while (control.unsaved_since_ns.load() == 0) {
+    starter.step(1);
+    REQUIRE_FALSE(starter.finished());
+  }
+  REQUIRE(control.started_ns.load() == 0);
+  std::atomic<bool> saved{false};
+  std::thread saver([&] {
+    discard_trace(f.registry());
+    saved = true;
+  });
+  wait_until("the saver is through, or waits for the registry lock", [&] {
+    return saved || f.registry().header().mutex.is_waited_for();
+  });
+  while (!starter.finished()) {
+    starter.step(1'000'000);
+  }
+  saver.join();
+  CHECK(control.started_ns.load() != 0);
+  CHECK(control.unsaved_since_ns.load() != 0);
 }

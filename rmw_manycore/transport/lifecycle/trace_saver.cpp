@@ -13,6 +13,14 @@ namespace {
 /// Saving a million events takes seconds, and is not waited for.
 constexpr int lock_timeout_ms = 100;
 
+/// Start of the last trace if it was stopped and not saved, else 0. Under the registry lock, as
+/// traces are started and stopped: what is stored between is of a trace that goes on.
+int64_t stopped_trace_ns(Registry & registry) {
+  const Registry::Lock lock(registry);
+  const TraceControl & control = registry.header().trace;
+  return control.started_ns.load() == 0 ? control.unsaved_since_ns.load() : 0;
+}
+
 }  // namespace
 
 std::vector<std::string> trace_files(const PlatformPaths & paths) {
@@ -45,7 +53,7 @@ TraceSaver::TraceSaver(Registry & registry) : registry_(registry) {
   }
   const TraceControl & control = registry.header().trace;
   // Before the events are read: they are all, but for what threads are writing just now.
-  stopped_trace_ns_ = control.started_ns.load() == 0 ? control.unsaved_since_ns.load() : 0;
+  stopped_trace_ns_ = stopped_trace_ns(registry);
   unplaced_total_ = control.unplaced.load();
   unplaced_ = unplaced_total_ - control.unplaced_saved.load();
   for (const std::string & path : trace_files(registry.paths())) {

@@ -31,7 +31,8 @@ struct ProcessTrace {
 /// Takes the recorded events out of a platform. One at a time: holds a lock while alive.
 class TraceSaver {
 public:
-  /// Throws Error{timeout} when another process saves, Error{corrupt} naming a file.
+  /// Throws Error{timeout} when another process saves, or the registry stays locked;
+  /// Error{corrupt} naming a file.
   explicit TraceSaver(Registry & registry);
 
   /// What was recorded and not saved so far.
