@@ -300,6 +300,24 @@ TEST_CASE("killed thread by thread while it closes: nothing is freed that publis
   CHECK(f.inspection.used_bytes() == used);
 }
 
+TEST_CASE("killed after it noted a death: no other reaper notes that death again") {
+  Fixture f;
+  f.platform.receive_thread(1);
+  const std::atomic<uint64_t> & deaths = f.inspection.registry().header().death_count;
+  {
+    const Standstill no_other_reaper(f.platform, 1);
+    f.leave_dead_nodes();
+    SteppedChild reaper("reaps", {f.platform.name()});
+    while (deaths.load() == 0) {
+      REQUIRE(reaper.step(1) == 1);
+    }
+    REQUIRE(f.inspection.live_processes() == 2);
+    reaper.kill();
+  }
+  f.wait_until_alone();
+  CHECK(deaths.load() == 1);
+}
+
 TEST_CASE("killed while it brings up a platform: the next process does, and 'clean' works") {
   const TestPlatform platform;
   const std::string directory = platform.paths().directory;

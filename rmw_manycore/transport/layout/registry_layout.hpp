@@ -54,7 +54,7 @@ struct ProcessEntry {
   TraceSwitch trace;
   uint64_t charged_bytes;  ///< outside the segment, but counted as SMEM
   char label[84];
-  std::atomic<uint32_t> is_ending;  ///< it was told to end: its end is no death
+  std::atomic<uint32_t> is_ending;  ///< told to end, or noted as dead: its end is no death
   WakeWords wake;
 };
 static_assert(sizeof(ProcessEntry) == 1216 && offsetof(ProcessEntry, trace) == 28);

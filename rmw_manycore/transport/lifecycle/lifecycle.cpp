@@ -106,9 +106,10 @@ bool is_dead(Registry & registry, uint32_t process) {
   return registry.processes().is_live(process) && !registry.lifelines().is_held(process);
 }
 
-/// The caller holds the registry lock.
+/// Once, also when a reaper dies in between and another one reaps again: one that dies in here
+/// leaves the death unnoted. The caller holds the registry lock.
 void note_death(Registry & registry, uint32_t process) {
-  if (registry.processes()[process].is_ending.load() != 0) {
+  if (registry.processes()[process].is_ending.exchange(1) != 0) {
     return;
   }
   RegistryHeader & header = registry.header();
