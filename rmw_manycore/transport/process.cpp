@@ -84,6 +84,7 @@ struct Process::Impl {
   std::unique_ptr<Endpoint> handle_of(uint32_t endpoint);
   void attach();
   void leave();
+  void count_contexts(int change) noexcept;
 
   Placement placement;
   PlatformPaths paths;
@@ -94,6 +95,8 @@ struct Process::Impl {
   std::unique_ptr<Waiters> waiters;
   std::unique_ptr<Graph> graph;
   std::unique_ptr<ReceiveThreadWatcher> watcher;
+  std::mutex contexts_mutex;
+  int live_contexts = 0;
 };
 
 Process::Impl::Impl(const Placement & placement_, JoinOnly)
@@ -202,6 +205,14 @@ void Process::Impl::leave() {
   registry->graph_changed();
   lifeline.reset();
   remove_if_unused(*registry);
+}
+
+void Process::Impl::count_contexts(int change) noexcept {
+  const std::lock_guard<std::mutex> guard(contexts_mutex);
+  live_contexts += change;
+  if (membership->holds()) {
+    registry->processes()[slot].is_ending.store(live_contexts == 0 ? 1 : 0);
+  }
 }
 
 uint32_t Process::Impl::fill_endpoint(const EndpointSpec & spec, EndpointKind kind) {
@@ -388,9 +399,9 @@ bool Process::is_inherited() const noexcept { return impl_->membership->is_inher
 
 void Process::require_membership() const { impl_->membership->require(); }
 
-void Process::set_ending(bool is_ending) noexcept {
-  impl_->registry->processes()[impl_->slot].is_ending.store(is_ending ? 1 : 0);
-}
+void Process::begin_context() noexcept { impl_->count_contexts(1); }
+
+void Process::end_context() noexcept { impl_->count_contexts(-1); }
 
 Waiters & Process::waiters() noexcept { return *impl_->waiters; }
 Tracer & Process::tracer() noexcept { return impl_->registry->tracer(); }

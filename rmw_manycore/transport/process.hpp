@@ -55,8 +55,10 @@ public:
   /// off.
   void require_membership() const;
 
-  /// Tells the tools that an end of this process from now on is intended, whether or not it leaves.
-  void set_ending(bool is_ending) noexcept;
+  /// Counts the contexts of this process. Once all that began have ended, the end of the process
+  /// is intended, whether or not it leaves: tools do not show it as a death.
+  void begin_context() noexcept;
+  void end_context() noexcept;
   Waiters & waiters() noexcept;
   Tracer & tracer() noexcept;
   Graph & graph() noexcept;

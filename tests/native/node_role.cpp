@@ -211,9 +211,14 @@ private:
        no_descriptors_.reset();
        return "ok";
      }},
-    {"end",
+    {"begin_context",
      [this](Words &) {
-       process_->set_ending(true);
+       process_->begin_context();
+       return "ok";
+     }},
+    {"end_context",
+     [this](Words &) {
+       process_->end_context();
        return "ok";
      }},
     {"leave", [](Words &) { return ""; }},

@@ -357,11 +357,25 @@ TEST_CASE("a process that is killed is noted as dead, one that leaves is not") {
   REQUIRE(deaths.size() == 1);
   CHECK(deaths[0].pid == killed);
   CHECK(deaths[0].found_ns <= monotonic_ns());
-  {
-    Node node(f.platform, 1);
-    node.tell("end");
-    node.kill();
-  }
-  f.wait_until_alone();
-  CHECK(f.process->graph().deaths().size() == 1);
+}
+
+TEST_CASE("a process that is killed once all its contexts are shut down does not count as dead") {
+  Fixture f;
+  const auto killed_after = [&](const std::vector<const char *> & steps) {
+    const size_t before = f.process->graph().deaths().size();
+    {
+      Node node(f.platform, 1);
+      for (const char * const step : steps) {
+        node.tell(step);
+      }
+      node.kill();
+    }
+    f.wait_until_alone();
+    return f.process->graph().deaths().size() != before;
+  };
+  CHECK(killed_after({"begin_context"}));
+  CHECK_FALSE(killed_after({"begin_context", "end_context"}));
+  CHECK(killed_after({"begin_context", "begin_context", "end_context"}));
+  CHECK_FALSE(killed_after({"begin_context", "end_context", "begin_context", "end_context"}));
+  CHECK(killed_after({"begin_context", "end_context", "begin_context"}));
 }

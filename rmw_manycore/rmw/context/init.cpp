@@ -69,8 +69,8 @@ rmw_ret_t rmw_init(const rmw_init_options_t * options, rmw_context_t * context) 
     created.actual_domain_id = options->domain_id == RMW_DEFAULT_DOMAIN_ID ? 0 : options->domain_id;
     auto impl = std::make_unique<rmw_context_impl_s>(
       manycore::Process::join(rmw_manycore::placement_of(*options, created.actual_domain_id)));
-    impl->process->set_ending(false);  // an earlier context may have been shut down
     rmw_manycore::check(rmw_init_options_copy(options, &created.options));
+    impl->process->begin_context();
     created.impl = impl.release();
     *context = created;
     return RMW_RET_OK;
@@ -85,9 +85,11 @@ rmw_ret_t rmw_shutdown(rmw_context_t * context) {
   MANYCORE_CHECK_HANDLE(context);
 
   // Implementation
-  *context->impl->is_shutdown = true;
+  const bool was_shutdown = context->impl->is_shutdown->exchange(true);
   if (!context->impl->process->is_inherited()) {
-    context->impl->process->set_ending(true);  // many programs end now without closing their nodes
+    if (!was_shutdown) {
+      context->impl->process->end_context();
+    }
     context->impl->process->waiters().notify_all();
   }
   context->impl->callback_thread.stop();
