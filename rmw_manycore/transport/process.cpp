@@ -83,6 +83,7 @@ struct Process::Impl {
   template<typename Endpoint>
   std::unique_ptr<Endpoint> handle_of(uint32_t endpoint);
   void attach();
+  void sweep_at_parting() noexcept;
   void leave();
   void count_contexts(int change) noexcept;
 
@@ -184,6 +185,15 @@ Process::Impl::~Impl() {
   }
 }
 
+/// What others left cannot keep this process from leaving.
+void Process::Impl::sweep_at_parting() noexcept {
+  try {
+    sweeping::sweep_a_little(*registry, placement.cluster, registry->parting_wait_ns());
+  } catch (const std::exception &) {
+    registry->clusters().at(placement.cluster).wake_reaper();
+  }
+}
+
 void Process::Impl::leave() {
   const JoinLock join_lock(paths);
   // Those whose own closing did not get the lock.
@@ -195,7 +205,7 @@ void Process::Impl::leave() {
       endpoints.require_all_closed();
     }
   }
-  sweeping::sweep_a_little(*registry, placement.cluster, registry->parting_wait_ns());
+  sweep_at_parting();
   {
     const Registry::Lock lock(*registry, registry->parting_wait_ns());
     registry->tracer().note(TraceKind::leave);

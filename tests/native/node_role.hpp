@@ -21,6 +21,8 @@ void join_and_stay(Lines & test, const std::string & platform);
 ///   close                         -> ok     publisher and subscription go
 ///   use_up_descriptors            -> ok     from now on it can open no file ..
 ///   free_descriptors              -> ok     .. and now it can
+///   begin_context                 -> ok
+///   end_context                   -> ok     its end is intended once all that began have ended
 ///   leave                                   ends
 /// QOS: keep_all, or a depth, or a depth with "transient_local", "best_effort", "deadline" or
 /// "lease" (of an hour) after a '+'.

@@ -379,3 +379,21 @@ TEST_CASE("a process that is killed once all its contexts are shut down does not
   CHECK_FALSE(killed_after({"begin_context", "end_context", "begin_context", "end_context"}));
   CHECK(killed_after({"begin_context", "end_context", "begin_context"}));
 }
+
+TEST_CASE("a process that cannot sweep what others left leaves all the same") {
+  Fixture f;
+  const Standstill no_other_sweeper(f.platform, 1);
+  const auto stuck = f.process->create_subscription(on_topic("/stuck", keep_last(1)));
+  {
+    const auto gone = f.process->create_publisher(on_topic("/stuck", keep_last(1)));
+    publish(*gone, 1);
+  }
+  Node node(f.platform, 1);
+  uint32_t & cluster =
+    f.inspection.registry().endpoints()[f.inspection.slot_of(stuck->gid())].cluster;
+  cluster += max_clusters;
+  node.say("leave");
+  CHECK(node.wait() == 0);
+  CHECK(f.inspection.live_processes() == 1);
+  cluster -= max_clusters;
+}
