@@ -11,12 +11,14 @@
 //   sweep                 freeing what these left, once newer messages have displaced theirs
 //   reap                  a killed process with `changes` of both kinds
 // A thread on the CPU `cpu` watches the word that is odd while the lock is held, and reads the CPU
-// clock of the holder: that the kernel lets others run meanwhile does not count. An operation of
-// which it saw no hold, as it got no CPU itself, is left out.
+// clock of the holder: that the kernel lets others run meanwhile does not count, nor do holds of
+// processes that are about something else. An operation of which it saw no hold, as it got no CPU
+// itself, is left out.
 #include <pthread.h>
 
 #include <algorithm>
 #include <atomic>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <thread>
@@ -32,31 +34,30 @@ namespace {
 
 using namespace manycore;
 
-int64_t now_ns(clockid_t clock) {
-  timespec now{};
-  clock_gettime(clock, &now);
-  return now.tv_sec * 1'000'000'000 + now.tv_nsec;
-}
+/// A process whose holds count, and the clock they are measured by.
+struct Holder {
+  pid_t process;
+  clockid_t clock;
+};
 
-clockid_t clock_of_this_thread() {
+Holder this_thread() {
   clockid_t clock{};
   pthread_getcpuclockid(pthread_self(), &clock);
-  return clock;
+  return {getpid(), clock};
 }
 
-clockid_t clock_of_process(pid_t pid) {
+Holder process_of(pid_t pid) {
   clockid_t clock{};
   if (clock_getcpuclockid(pid, &clock) != 0) {
     throw std::runtime_error("the receive thread has no CPU clock");
   }
-  return clock;
+  return {pid, clock};
 }
 
-/// How long holders of the registry lock ran, in nanoseconds.
+/// How long a holder of the registry lock ran, in nanoseconds.
 class HoldWatch {
 public:
-  HoldWatch(const RegistryHeader & header, size_t cpu)
-  : changes_(header.changes), holder_(clock_of_this_thread()) {
+  HoldWatch(const RegistryHeader & header, size_t cpu) : header_(header), holder_(this_thread()) {
     thread_ = std::thread([this, cpu] {
       bench::pin_to(cpu);
       for (watching_ = true; !done_;) {
@@ -73,7 +74,7 @@ public:
   HoldWatch(const HoldWatch &) = delete;
   HoldWatch & operator=(const HoldWatch &) = delete;
 
-  void follow(clockid_t holder) { holder_ = holder; }
+  void follow(Holder holder) { holder_ = holder; }
   /// Those since the last call.
   std::vector<uint64_t> take_holds_ns() {
     const std::lock_guard<std::mutex> guard(mutex_);
@@ -81,23 +82,38 @@ public:
   }
 
 private:
+  bool is_thread_of(pid_t process, pid_t thread) {
+    const auto [known, is_new] = threads_.try_emplace({process, thread}, false);
+    if (is_new) {
+      const std::string task =
+        "/proc/" + std::to_string(process) + "/task/" + std::to_string(thread);
+      known->second = access(task.c_str(), F_OK) == 0;
+    }
+    return known->second;
+  }
   /// Up to the last look at which it was held.
   void watch_one_hold() {
-    const uint64_t seen = changes_.load();
+    const uint64_t seen = header_.changes.load();
     if (seen % 2 == 0) {
       return;
     }
-    const int64_t start_ns = now_ns(holder_);
+    const Holder holder = holder_;
+    const int64_t start_ns = clock_ns(holder.clock);
+    const bool counts = is_thread_of(holder.process, header_.mutex.owner());
     int64_t end_ns = start_ns;
-    for (int64_t ran_ns = start_ns; changes_.load() == seen && !done_; ran_ns = now_ns(holder_)) {
+    for (int64_t ran_ns = start_ns; header_.changes.load() == seen && !done_;
+         ran_ns = clock_ns(holder.clock)) {
       end_ns = ran_ns;
     }
-    const std::lock_guard<std::mutex> guard(mutex_);
-    holds_ns_.push_back(static_cast<uint64_t>(end_ns - start_ns));
+    if (counts) {
+      const std::lock_guard<std::mutex> guard(mutex_);
+      holds_ns_.push_back(static_cast<uint64_t>(end_ns - start_ns));
+    }
   }
 
-  const std::atomic<uint64_t> & changes_;
-  std::atomic<clockid_t> holder_;
+  const RegistryHeader & header_;
+  std::atomic<Holder> holder_;
+  std::map<std::pair<pid_t, pid_t>, bool> threads_;  ///< by process and thread
   std::mutex mutex_;
   std::vector<uint64_t> holds_ns_;
   std::atomic<bool> watching_{false};
@@ -231,7 +247,7 @@ void run(const bench::Arguments & arguments) {
   }
   report(holds, "sweep", found);
   victim.join_platform();
-  holds.follow(clock_of_process(registry.clusters().at(1).header().receive_thread_pid));
+  holds.follow(process_of(registry.clusters().at(1).header().receive_thread_pid));
   holds.take_holds_ns();
   victim.kill();
   wait_until_alone(registry);

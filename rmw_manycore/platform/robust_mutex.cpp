@@ -46,11 +46,6 @@ uint32_t futex_word_of(const pthread_mutex_t & mutex) {
   return static_cast<uint32_t>(__atomic_load_n(&mutex.__data.__lock, __ATOMIC_ACQUIRE));
 }
 
-/// 0 for none or a dead one.
-pid_t owner_of(const pthread_mutex_t & mutex) {
-  return static_cast<pid_t>(futex_word_of(mutex) & FUTEX_TID_MASK);
-}
-
 }  // namespace
 
 void RobustMutex::initialize() {
@@ -75,16 +70,18 @@ RobustMutex::Outcome RobustMutex::lock(long timeout_ns) {
     case ETIMEDOUT:
       // A caller that did not wait tries again by itself, so it is not told about the owner.
       throw Error(
-        ErrorCode::timeout, timeout_ns == 0 ? "the platform's registry is locked"
-                                            : "the platform's registry stayed locked: " +
-                                                describe_lock_owner(owner_of(mutex_)));
+        ErrorCode::timeout,
+        timeout_ns == 0 ? "the platform's registry is locked"
+                        : "the platform's registry stayed locked: " + describe_lock_owner(owner()));
     default:
       throw Error(
         ErrorCode::corrupt, std::string("the registry's lock is damaged: ") + std::strerror(error));
   }
 }
 
-bool RobustMutex::is_locked() const noexcept { return owner_of(mutex_) != 0; }
+pid_t RobustMutex::owner() const noexcept {
+  return static_cast<pid_t>(futex_word_of(mutex_) & FUTEX_TID_MASK);
+}
 
 bool RobustMutex::is_waited_for() const noexcept {
   return (futex_word_of(mutex_) & FUTEX_WAITERS) != 0;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <pthread.h>
+#include <sys/types.h>
 
 namespace manycore {
 
@@ -17,8 +18,9 @@ public:
   /// Error{corrupt} on a word that is no mutex.
   Outcome lock(long timeout_ns);
   void unlock() noexcept;
-  /// True while the thread that locked it lives. Any thread may ask.
-  bool is_locked() const noexcept;
+  /// The thread that locked it; 0 for none or a dead one. Any thread may ask.
+  pid_t owner() const noexcept;
+  bool is_locked() const noexcept { return owner() != 0; }
   /// True when some thread may sleep until its owner, the caller, unlocks it.
   bool is_waited_for() const noexcept;
   /// After owner_died, once the protected state has been repaired.

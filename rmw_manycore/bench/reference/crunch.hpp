@@ -2,15 +2,12 @@
 #pragma once
 
 #include <cstdint>
-#include <ctime>
+
+#include "platform/clock.hpp"
 
 namespace manycore::bench::reference {
 
-inline int64_t thread_cpu_ns() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return now.tv_sec * 1'000'000'000 + now.tv_nsec;
-}
+inline int64_t thread_cpu_ns() { return clock_ns(CLOCK_THREAD_CPUTIME_ID); }
 
 inline bool is_prime(int64_t number) {
   for (int64_t divisor = 2; divisor < number; ++divisor) {

@@ -7,10 +7,11 @@
 #include <manycore_reference_msgs/msg/message64kb.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstring>
 #include <map>
 #include <stdexcept>
+
+#include "platform/clock.hpp"
 
 namespace manycore::bench::reference {
 
@@ -76,10 +77,7 @@ MessageType message_type(const std::string & name) {
   return found->second;
 }
 
-uint64_t system_now_ns() {
-  const auto now = std::chrono::system_clock::now().time_since_epoch();
-  return static_cast<uint64_t>(std::chrono::nanoseconds(now).count());
-}
+uint64_t system_now_ns() { return static_cast<uint64_t>(realtime_ns()); }
 
 void add_record(
   Message & message, const std::string & name, uint64_t timestamp_ns, uint32_t sequence,
