@@ -42,7 +42,7 @@ uint64_t BoundPublisher::publish(
 
 uint64_t BoundPublisher::publish_from(
   uintptr_t address, size_t size, std::optional<int64_t> source_timestamp_ns) {
-  if (source_timestamp_ns) {
+  if (source_timestamp_ns && process_->tracer().is_on()) {
     const auto slot = static_cast<uint32_t>(endpoint_in(publisher_->gid()));
     const int64_t age_ns = std::max<int64_t>(realtime_ns() - *source_timestamp_ns, 0);
     process_->tracer().note(TraceKind::bridge_in, slot, 0, static_cast<uint64_t>(age_ns));

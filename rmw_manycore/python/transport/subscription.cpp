@@ -31,8 +31,10 @@ std::unique_ptr<BoundClaim> BoundSubscription::claim() {
 }
 
 void BoundSubscription::note_bridged() {
-  const auto slot = static_cast<uint32_t>(endpoint_in(subscription_->gid()));
-  process_->tracer().note(TraceKind::bridge_out, slot);
+  if (process_->tracer().is_on()) {
+    const auto slot = static_cast<uint32_t>(endpoint_in(subscription_->gid()));
+    process_->tracer().note(TraceKind::bridge_out, slot);
+  }
 }
 
 nb::bytes BoundSubscription::gid() const { return to_bytes(subscription_->gid()); }
