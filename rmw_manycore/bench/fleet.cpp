@@ -14,6 +14,7 @@
 #include <atomic>
 #include <deque>
 #include <thread>
+#include <utility>
 
 #include "bench/program.hpp"
 #include "bench/rcl_node.hpp"
@@ -93,41 +94,19 @@ void take(const rcl_subscription_t & subscription) {
 /// As one executor of all nodes, until `end` is triggered. Where there are no messages, nothing may
 /// wake it.
 void wait_for_anything(
-  RclContext & context, Fleet & fleet, rcl_guard_condition_t & end, bool has_messages) {
-  size_t subscriptions = 0;
-  size_t services = 0;
+  RclContext & context, const Fleet & fleet, const rcl_guard_condition_t & end, bool has_messages) {
+  std::vector<const RclNode *> nodes;
   for (const FleetNode & node : fleet) {
-    subscriptions += node.node().subscriptions().size();
-    services += node.node().services().size();
+    nodes.push_back(&node.node());
   }
-  rcl_wait_set_t wait_set = rcl_get_zero_initialized_wait_set();
-  check_rcl(
-    rcl_wait_set_init(
-      &wait_set, subscriptions, 1, 0, 0, services, 0, &context.get(), rcl_get_default_allocator()),
-    "rcl_wait_set_init");
+  RclWaitSet wait_set(context.get(), std::move(nodes), end);
   do {
-    check_rcl(rcl_wait_set_clear(&wait_set), "rcl_wait_set_clear");
-    for (const FleetNode & node : fleet) {
-      for (const rcl_subscription_t & subscription : node.node().subscriptions()) {
-        check_rcl(
-          rcl_wait_set_add_subscription(&wait_set, &subscription, nullptr), "rcl_wait_set_add");
-      }
-      for (const rcl_service_t & service : node.node().services()) {
-        check_rcl(rcl_wait_set_add_service(&wait_set, &service, nullptr), "rcl_wait_set_add");
-      }
-    }
-    check_rcl(rcl_wait_set_add_guard_condition(&wait_set, &end, nullptr), "rcl_wait_set_add");
-    check_rcl(rcl_wait(&wait_set, -1), "rcl_wait");
-    if (wait_set.guard_conditions[0] == nullptr && !has_messages) {
+    wait_set.wait();
+    if (!wait_set.is_ended() && !has_messages) {
       throw std::runtime_error("a node of the fleet woke up, and nothing was sent to it");
     }
-    for (size_t i = 0; i < subscriptions; ++i) {
-      if (wait_set.subscriptions[i] != nullptr) {
-        take(*wait_set.subscriptions[i]);
-      }
-    }
-  } while (wait_set.guard_conditions[0] == nullptr);
-  check_rcl(rcl_wait_set_fini(&wait_set), "rcl_wait_set_fini");
+    wait_set.for_each_ready_subscription(take);
+  } while (!wait_set.is_ended());
 }
 
 /// Publishes over all topics, period after period, while it lives.

@@ -14,9 +14,11 @@
 #include <rmw/qos_profiles.h>
 #include <type_description_interfaces/srv/get_type_description.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <stdexcept>
+#include <utility>
 
 namespace manycore::bench {
 
@@ -124,6 +126,61 @@ void RclNode::serve(const char * name, const rosidl_service_type_support_t * typ
   rcl_service_t service = rcl_get_zero_initialized_service();
   check_rcl(rcl_service_init(&service, &node_, type, name, &options), "rcl_service_init");
   services_.push_back(service);
+}
+
+RclWaitSet::RclWaitSet(
+  rcl_context_t & context, std::vector<const RclNode *> nodes, const rcl_guard_condition_t & end,
+  rcl_timer_t * timer)
+: nodes_(std::move(nodes)), end_(end), timer_(timer) {
+  size_t subscriptions = 0;
+  size_t services = 0;
+  for (const RclNode * const node : nodes_) {
+    subscriptions += node->subscriptions().size();
+    services += node->services().size();
+  }
+  check_rcl(
+    rcl_wait_set_init(
+      &wait_set_, subscriptions, 1, timer_ == nullptr ? 0 : 1, 0, services, 0, &context,
+      rcl_get_default_allocator()),
+    "rcl_wait_set_init");
+}
+
+void RclWaitSet::add_all() {
+  constexpr const char * what = "rcl_wait_set_add";
+  for (const RclNode * const node : nodes_) {
+    for (const rcl_subscription_t & subscription : node->subscriptions()) {
+      check_rcl(rcl_wait_set_add_subscription(&wait_set_, &subscription, nullptr), what);
+    }
+    for (const rcl_service_t & service : node->services()) {
+      check_rcl(rcl_wait_set_add_service(&wait_set_, &service, nullptr), what);
+    }
+  }
+  if (timer_ != nullptr) {
+    check_rcl(rcl_wait_set_add_timer(&wait_set_, timer_, nullptr), what);
+  }
+  check_rcl(rcl_wait_set_add_guard_condition(&wait_set_, &end_, nullptr), what);
+}
+
+void RclWaitSet::wait() {
+  check_rcl(rcl_wait_set_clear(&wait_set_), "rcl_wait_set_clear");
+  add_all();
+  const rcl_ret_t status = rcl_wait(&wait_set_, -1);
+  if (status != RCL_RET_TIMEOUT) {  // what a timer that is due counts as
+    check_rcl(status, "rcl_wait");
+  }
+}
+
+bool RclWaitSet::has_request() const {
+  const auto * const begin = wait_set_.services;
+  return std::any_of(begin, begin + wait_set_.size_of_services, [](const rcl_service_t * service) {
+    return service != nullptr;
+  });
+}
+
+bool RclWaitSet::is_ready(const rcl_subscription_t & subscription) const {
+  const auto * const begin = wait_set_.subscriptions;
+  const auto * const end = begin + wait_set_.size_of_subscriptions;
+  return std::find(begin, end, &subscription) != end;
 }
 
 }  // namespace manycore::bench

@@ -5,6 +5,7 @@
 
 #include <deque>
 #include <string>
+#include <vector>
 
 /// Nodes at the level of rcl, as rclcpp and rclpy make them.
 namespace manycore::bench {
@@ -52,6 +53,42 @@ private:
   std::deque<rcl_publisher_t> publishers_;
   std::deque<rcl_subscription_t> subscriptions_;
   std::deque<rcl_service_t> services_;
+};
+
+/// Waits for all that some nodes have, as the executors of rclcpp and rclpy do.
+class RclWaitSet {
+public:
+  /// `end` ends a wait; so does `timer`, unless it is nullptr. What the nodes have may not change.
+  RclWaitSet(
+    rcl_context_t & context, std::vector<const RclNode *> nodes, const rcl_guard_condition_t & end,
+    rcl_timer_t * timer = nullptr);
+  RclWaitSet(const RclWaitSet &) = delete;
+  RclWaitSet & operator=(const RclWaitSet &) = delete;
+  ~RclWaitSet() { report_rcl(rcl_wait_set_fini(&wait_set_)); }
+
+  /// Until something is ready.
+  void wait();
+
+  bool is_ended() const { return wait_set_.guard_conditions[0] != nullptr; }
+  bool is_timer_ready() const { return timer_ != nullptr && wait_set_.timers[0] != nullptr; }
+  bool has_request() const;
+  bool is_ready(const rcl_subscription_t & subscription) const;
+  template<typename Visit>
+  void for_each_ready_subscription(Visit visit) const {
+    for (size_t i = 0; i < wait_set_.size_of_subscriptions; ++i) {
+      if (wait_set_.subscriptions[i] != nullptr) {
+        visit(*wait_set_.subscriptions[i]);
+      }
+    }
+  }
+
+private:
+  void add_all();
+
+  const std::vector<const RclNode *> nodes_;
+  const rcl_guard_condition_t & end_;
+  rcl_timer_t * const timer_;
+  rcl_wait_set_t wait_set_ = rcl_get_zero_initialized_wait_set();
 };
 
 }  // namespace manycore::bench
