@@ -28,6 +28,7 @@ from rmw_manycore_py.ndt.replay.tally import Played, Tally
 
 BASE_FRAME = "base_link"
 WARM_UP_PERIOD_S = 0.25
+LEAD_S = 0.05  # before the first scan
 # Topics may overtake each other on their way; a filter's prediction is there before the scan, which
 # a LiDAR takes a tenth of a second for.
 GUESS_LEAD_S = 0.005
@@ -87,15 +88,16 @@ class Player(Node):
     def play(self, rate_hz: float | None, waits: bool, report: Callable[[Played], None]) -> None:
         """Play all scans, by their stamps or at a rate, and call `report` after each.
 
-        Who `waits` plays none before the last one has its answer.
+        If it `waits`, it plays none before the last one has its answer. Stamps keep the
+        recording's distances all the same: a matcher asks whether a vehicle can move so fast.
         """
         if rate_hz is not None:
             self._times_s = np.arange(len(self._drive)) / rate_hz
-        start = time.monotonic() + 0.05
+        start, start_ns = time.monotonic() + LEAD_S, time.time_ns() + round(1e9 * LEAD_S)
         for index, time_s in enumerate(self._times_s):
             scan = self._scan(index)
             self._spin_until(start + float(time_s))
-            stamp_ns = time.time_ns()
+            stamp_ns = start_ns + round(1e9 * float(time_s))
             guess = self._source.send(index, float(time_s), stamp_ns)
             self._spin_until(time.monotonic() + GUESS_LEAD_S)
             recorded_s = self._drive.stamp_s(index)
