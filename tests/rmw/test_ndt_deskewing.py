@@ -47,7 +47,8 @@ def test_motion_is_taken_out_where_the_points_have_times(stack, start):
     sweep = moving.scan(TRUTH, X_M / SPEED_M_S, np.random.default_rng(2))
     plain = encode(sweep.points, Time(), "base_link")
 
-    stack.pose_of(encode(sweep.points, Time(), "base_link", {"time": np.zeros(len(sweep.points))}))
+    standing = Surroundings(street, LIDAR).scan(TRUTH, 0.0, np.random.default_rng(3)).points
+    stack.pose_of(encode(standing, Time(), "base_link", {"time": np.zeros(len(standing))}))
     stack.begin_anew()  # the vehicle moves from here on
 
     timed = encode(sweep.points, Time(), "base_link", {"time": sweep.times_s})
