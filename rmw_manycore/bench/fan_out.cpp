@@ -1,11 +1,14 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 // How old is a message when each of many subscribers has it, at a steady rate?
 //
-//   fan_out role=sink depth=N
-//   fan_out role=source depth=N bytes=N subscribers=N rate_hz=N warm_up=N iterations=N
+//   fan_out role=sink depth=N best_effort=0|1
+//   fan_out role=source depth=N best_effort=0|1 bytes=N subscribers=N rate_hz=N warm_up=N
+//           iterations=N
 //
-// A sink prints the age of each message in the order of arrival; messages are as many as
+// The source is ready when it has found all sinks, and begins when its input ends. A sink prints
+// the age of each message in the order of arrival, and ends with its input; messages are as many as
 // `iterations` unless some got lost.
+#include <optional>
 #include <thread>
 
 #include "bench/node.hpp"
@@ -19,10 +22,20 @@ using manycore::monotonic_ns;
 
 constexpr uint64_t warm_up_stamp = 0;
 
+rmw_qos_profile_t qos(const Arguments & arguments) {
+  rmw_qos_profile_t qos = reliable_qos(arguments.number("depth"));
+  if (arguments.number("best_effort") != 0) {
+    qos.reliability = RMW_QOS_POLICY_RELIABILITY_BEST_EFFORT;
+  }
+  return qos;
+}
+
 void source(const Arguments & arguments) {
   Node node("source");
-  Publisher publisher(node, "/data", reliable_qos(arguments.number("depth")));
+  Publisher publisher(node, "/data", qos(arguments));
   wait_until_matched(publisher, arguments.number("subscribers"));
+  announce_ready();
+  wait_for_end_of_input();
   Message message;
   message.data.resize(arguments.number("bytes"));
   const std::chrono::nanoseconds period(manycore::ns_per_s / arguments.number("rate_hz"));
@@ -40,14 +53,16 @@ void source(const Arguments & arguments) {
 
 void sink(const Arguments & arguments) {
   Node node("sink");
-  Subscription subscription(node, "/data", reliable_qos(arguments.number("depth")));
+  std::optional<Subscription> subscription(std::in_place, node, "/data", qos(arguments));
   WaitSet wait_set(node);
   Message message;
   std::vector<int64_t> samples_ns;
   while (true) {
-    take_next(wait_set, subscription, message);
+    take_next(wait_set, *subscription, message);
     if (message.data.empty()) {
-      return print_samples(samples_ns);
+      subscription.reset();  // the source waits for that
+      print_samples(samples_ns);
+      return wait_for_end_of_input();
     }
     if (number_of(message) != warm_up_stamp) {
       samples_ns.push_back(monotonic_ns() - static_cast<int64_t>(number_of(message)));

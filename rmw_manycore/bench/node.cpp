@@ -45,14 +45,25 @@ Entity * created(Entity * entity, const char * what) {
   return entity;
 }
 
+constexpr auto stop_again_after = std::chrono::seconds(1);
+
+/// Returns false when the condition does not hold by then.
 template<typename Condition>
-void poll(Condition condition, const char * what) {
-  const auto deadline = std::chrono::steady_clock::now() + patience;
+bool poll_for(std::chrono::milliseconds time, Condition condition) {
+  const auto deadline = std::chrono::steady_clock::now() + time;
   while (!condition()) {
     if (std::chrono::steady_clock::now() > deadline) {
-      throw std::runtime_error(std::string("no ") + what);
+      return false;
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  return true;
+}
+
+template<typename Condition>
+void poll(Condition condition, const char * what) {
+  if (!poll_for(patience, condition)) {
+    throw std::runtime_error(std::string("no ") + what);
   }
 }
 
@@ -188,8 +199,12 @@ void wait_until_matched(const Publisher & publisher, size_t subscriptions) {
 }
 
 void stop_subscribers(Publisher & publisher) {
-  publisher.publish(Message());
-  poll([&] { return publisher.matched() == 0; }, "end of the subscribers");
+  const auto are_gone = [&] { return publisher.matched() == 0; };
+  const auto stop = [&] {  // again where reliability is best effort, and it may be lost
+    publisher.publish(Message());
+    return poll_for(stop_again_after, are_gone);
+  };
+  poll(stop, "end of the subscribers");
 }
 
 void set_number(Message & message, uint64_t number) {

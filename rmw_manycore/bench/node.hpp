@@ -16,7 +16,7 @@ namespace manycore::bench {
 using Message = std_msgs::msg::UInt8MultiArray;
 
 /// How long a thing may take that should take milliseconds, before a bench gives up.
-constexpr std::chrono::seconds patience{20};
+constexpr std::chrono::seconds patience{60};
 
 rmw_qos_profile_t reliable_qos(size_t depth);
 /// The last message is kept for subscriptions that come later.

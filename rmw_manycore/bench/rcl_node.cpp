@@ -89,6 +89,9 @@ RclNode::~RclNode() {
   for (rcl_service_t & service : services_) {
     report_rcl(rcl_service_fini(&service, &node_));
   }
+  for (rcl_client_t & client : clients_) {
+    report_rcl(rcl_client_fini(&client, &node_));
+  }
   for (rcl_subscription_t & subscription : subscriptions_) {
     report_rcl(rcl_subscription_fini(&subscription, &node_));
   }
@@ -121,6 +124,13 @@ rcl_subscription_t & RclNode::subscribe(
   return subscriptions_.emplace_back(subscription);
 }
 
+rcl_client_t & RclNode::call(const char * service, const rosidl_service_type_support_t * type) {
+  const rcl_client_options_t options = rcl_client_get_default_options();
+  rcl_client_t client = rcl_get_zero_initialized_client();
+  check_rcl(rcl_client_init(&client, &node_, type, service, &options), "rcl_client_init");
+  return clients_.emplace_back(client);
+}
+
 void RclNode::serve(const char * name, const rosidl_service_type_support_t * type) {
   const rcl_service_options_t options = rcl_service_get_default_options();
   rcl_service_t service = rcl_get_zero_initialized_service();
@@ -133,14 +143,16 @@ RclWaitSet::RclWaitSet(
   rcl_timer_t * timer)
 : nodes_(std::move(nodes)), end_(end), timer_(timer) {
   size_t subscriptions = 0;
+  size_t clients = 0;
   size_t services = 0;
   for (const RclNode * const node : nodes_) {
     subscriptions += node->subscriptions().size();
+    clients += node->clients().size();
     services += node->services().size();
   }
   check_rcl(
     rcl_wait_set_init(
-      &wait_set_, subscriptions, 1, timer_ == nullptr ? 0 : 1, 0, services, 0, &context,
+      &wait_set_, subscriptions, 1, timer_ == nullptr ? 0 : 1, clients, services, 0, &context,
       rcl_get_default_allocator()),
     "rcl_wait_set_init");
 }
@@ -150,6 +162,9 @@ void RclWaitSet::add_all() {
   for (const RclNode * const node : nodes_) {
     for (const rcl_subscription_t & subscription : node->subscriptions()) {
       check_rcl(rcl_wait_set_add_subscription(&wait_set_, &subscription, nullptr), what);
+    }
+    for (const rcl_client_t & client : node->clients()) {
+      check_rcl(rcl_wait_set_add_client(&wait_set_, &client, nullptr), what);
     }
     for (const rcl_service_t & service : node->services()) {
       check_rcl(rcl_wait_set_add_service(&wait_set_, &service, nullptr), what);

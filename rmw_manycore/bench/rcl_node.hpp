@@ -43,7 +43,11 @@ public:
     const std::string & topic, const rosidl_message_type_support_t * type,
     const rmw_qos_profile_t & qos);
 
+  rcl_client_t & call(const char * service, const rosidl_service_type_support_t * type);
+
+  rcl_node_t & get() { return node_; }
   const std::deque<rcl_subscription_t> & subscriptions() const { return subscriptions_; }
+  const std::deque<rcl_client_t> & clients() const { return clients_; }
   const std::deque<rcl_service_t> & services() const { return services_; }
 
 private:
@@ -52,6 +56,7 @@ private:
   rcl_node_t node_ = rcl_get_zero_initialized_node();
   std::deque<rcl_publisher_t> publishers_;
   std::deque<rcl_subscription_t> subscriptions_;
+  std::deque<rcl_client_t> clients_;
   std::deque<rcl_service_t> services_;
 };
 

@@ -30,7 +30,7 @@ def measure(run: Run) -> list[Result]:
     def spread(middleware: Middleware) -> Sequence[float]:
         with Session(middleware, run.cpus) as session:
             sinks = [
-                session.native("fan_out", party, role="sink", depth=depth)
+                session.native("fan_out", party, role="sink", depth=depth, best_effort=0)
                 for party in range(1, SUBSCRIBERS + 1)
             ]
             source = session.native(
@@ -38,14 +38,15 @@ def measure(run: Run) -> list[Result]:
                 0,
                 role="source",
                 depth=depth,
+                best_effort=0,
                 bytes=MIB,
                 subscribers=SUBSCRIBERS,
                 rate_hz=RATE_HZ,
                 warm_up=WARM_UP,
                 iterations=messages,
             )
-            found = [sink.finish()["samples_ns"] for sink in sinks]
             source.finish()
+            found = [sink.finish()["samples_ns"] for sink in sinks]
         samples_ns = [sample_ns for samples_ns in found for sample_ns in samples_ns]
         lost.setdefault(middleware.name, []).append(SUBSCRIBERS * messages - len(samples_ns))
         return in_us(samples_ns)

@@ -98,6 +98,34 @@ def test_many_matches_are_measured() -> None:
     assert all(row["median"] > 0 for row in rows)
 
 
+def test_a_call_concerns_no_other_client() -> None:
+    rows = run_bench("scale", "--only", "as many clients: manycore")["results"]
+    found = {row["question"]: row["median"] for row in rows if "25 clients" in row["contender"]}
+    assert found.pop("a call to a service with as many clients") > 0
+    assert found == {
+        "sleeps of its other clients per call": 0,
+        "CPU time of its other clients per call": 0,
+    }
+
+
+def test_simulated_time_reaches_all_nodes() -> None:
+    rows = run_bench("scale", "--only", "gets, at 1 kHz: manycore")["results"]
+    assert {row["contender"] for row in rows} == {
+        f"manycore in {place} (block), {nodes} nodes"
+        for place in ("one cluster", "5 clusters")
+        for nodes in (10, 25)
+    }
+    assert all(row["median"] > 0 for row in rows)
+    seen = [row for row in rows if row["unit"] == "count"]
+    assert {(row["samples"], row["largest"] <= 1000) for row in seen} == {(10, True), (25, True)}
+
+
+def test_composed_nodes_are_measured_with_each_executor() -> None:
+    rows = run_bench("scale", "--only", "next in its process: manycore")["results"]
+    assert len(rows) == 2 * 3 * 2
+    assert all(row["median"] > 0 for row in rows)
+
+
 def test_nodes_do_not_wake_each_other() -> None:
     report = run_bench("scale", "--only", "until each topic has its subscription: manycore")
     found = {row["question"]: row["median"] for row in report["results"]}

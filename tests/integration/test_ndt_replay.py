@@ -34,7 +34,7 @@ pytestmark = [
 DATA = Path(os.environ.get("MANYCORE_DATA", REPOSITORY.parent / "shared" / "data"))
 BALM = DATA / "balm_seq177_v0.10.npz"
 needs_data = pytest.mark.skipif(not BALM.exists(), reason=f"no {BALM}; set MANYCORE_DATA")
-LONG_S = 4 * PATIENCE_S
+LONG_S = 10 * PATIENCE_S
 POSE_TYPE = "geometry_msgs/msg/PoseStamped"
 DEADLINE_MS = str(1e3 * PATIENCE_S)
 

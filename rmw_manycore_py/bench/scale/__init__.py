@@ -4,14 +4,14 @@
 from __future__ import annotations
 
 from rmw_manycore_py.bench.question import Question, Run
-from rmw_manycore_py.bench.scale import endpoints, holds, nodes, threads
+from rmw_manycore_py.bench.scale import clients, clock, composed, endpoints, holds, nodes, threads
 from rmw_manycore_py.bench.summary import Result
 
-PARTS = (threads, endpoints, holds, nodes)
+PARTS = (threads, composed, endpoints, holds, clock, clients, nodes)
 
 
 def measure(run: Run) -> list[Result]:
-    """Return the curves over threads of a process, endpoints of a topic, and nodes."""
+    """Return the curves over threads, endpoints of a topic, clients of a service, and nodes."""
     return [result for part in PARTS for result in part.measure(run)]
 
 

@@ -4,11 +4,22 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 
+from rmw_manycore_py.bench.contenders import Middleware, manycore
 from rmw_manycore_py.bench.question import Run
 from rmw_manycore_py.bench.summary import Curve, Result
 
 QUICK_SHARE = 0.1  # of a run: then only the smaller half of each curve is drawn
+CLUSTERS = 5
+OWN = replace(manycore("inside"), name=f"manycore in {CLUSTERS} clusters (block)")
+
+
+def spread(middleware: Middleware, parties: int) -> Middleware:
+    """Put the parties into the clusters in turn; Fast DDS has none."""
+    if not middleware.is_manycore:
+        return middleware
+    return replace(middleware, clusters=tuple(i % CLUSTERS + 1 for i in range(parties)))
 
 
 def drawn(run: Run, curve: Iterable[int]) -> Sequence[int]:

@@ -7,14 +7,13 @@ import os
 import signal
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 
 from rmw_manycore_py._transport import Platform
-from rmw_manycore_py.bench.contenders import FAST_DDS, Middleware, manycore
+from rmw_manycore_py.bench.contenders import FAST_DDS, Middleware
 from rmw_manycore_py.bench.idle import cpu_ns, wait_until_quiet, wake_ups
 from rmw_manycore_py.bench.question import Run
 from rmw_manycore_py.bench.round_trip import WARM_UP, in_us
-from rmw_manycore_py.bench.scale.common import at_count, drawn, on_curve
+from rmw_manycore_py.bench.scale.common import CLUSTERS, OWN, at_count, drawn, on_curve, spread
 from rmw_manycore_py.bench.session import PATIENCE_S, Process, Session
 from rmw_manycore_py.bench.summary import Goal, Result
 from rmw_manycore_py.errors import ManycoreError
@@ -35,8 +34,6 @@ JOINS = 5
 READS = 20
 ROUND_TRIPS = 1000
 WINDOW_S = 5.0
-CLUSTERS = 5
-OWN = replace(manycore("inside"), name=f"manycore in {CLUSTERS} clusters (block)")
 
 
 def measure(run: Run) -> list[Result]:
@@ -47,14 +44,8 @@ def measure(run: Run) -> list[Result]:
         for count in drawn(run, (count for count in NODES if count <= most)):
             if run.wants(f"{UP}: {middleware.name}"):
                 run.note(f"{count} nodes: {middleware.name}")
-                results += _watch(run, _spread(middleware, count), count)
+                results += _watch(run, spread(middleware, count), count)
     return results
-
-
-def _spread(middleware: Middleware, count: int) -> Middleware:
-    if not middleware.is_manycore:
-        return middleware
-    return replace(middleware, clusters=tuple(i % CLUSTERS + 1 for i in range(count)))
 
 
 def _watch(run: Run, middleware: Middleware, count: int) -> list[Result]:

@@ -1,0 +1,88 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Many nodes in one process: a message goes round from each to the next, one at a time.
+
+Usage: ring EXECUTOR NODES WARM_UP LAPS
+"""
+
+from __future__ import annotations
+
+import itertools
+import json
+import sys
+import threading
+import time
+from typing import Any
+
+import rclpy
+from rclpy.executors import MultiThreadedExecutor, SingleThreadedExecutor
+from rclpy.experimental.events_executor import EventsExecutor
+from rclpy.node import Node
+from std_msgs.msg import UInt64
+
+THREADS = 16
+LOOK_S = 0.02
+PATIENCE_S = 1.0
+EXECUTORS = {
+    "single": SingleThreadedExecutor,
+    "multi": lambda: MultiThreadedExecutor(num_threads=THREADS),
+    "events": EventsExecutor,
+}
+
+
+class Link(Node):  # type: ignore[misc]
+    """Hands each message on; the first link counts laps, and keeps the last message."""
+
+    def __init__(self, number: int, of: int, laps: int) -> None:
+        super().__init__(f"link_{number}")
+        self._is_first, self._laps = number == 0, laps
+        self.lap_ends_ns: list[int] = []
+        self.done = threading.Event()
+        self.next = self.create_publisher(UInt64, f"/ring_{(number + 1) % of}", 1)
+        self._previous = self.create_subscription(UInt64, f"/ring_{number}", self._hear, 1)
+
+    def _hear(self, message: UInt64) -> None:
+        if self._is_first:
+            self.lap_ends_ns.append(time.monotonic_ns())
+            if len(self.lap_ends_ns) > self._laps:
+                self.done.set()
+                return
+        self.next.publish(message)
+
+
+def _spin(executor: Any, done: threading.Event) -> None:
+    # Turn by turn: spin() of EventsExecutor does not hear of messages, whatever the middleware.
+    while not done.is_set():
+        executor.spin_once(PATIENCE_S)
+
+
+def main() -> None:
+    """Time the laps; print how long a message takes from a node to the next."""
+    kind, *numbers = sys.argv[1:]
+    count, warm_up, laps = map(int, numbers)
+    rclpy.init()
+    executor = EXECUTORS[kind]()
+    links = [Link(number, count, warm_up + laps) for number in range(count)]
+    while any(link.next.get_subscription_count() == 0 for link in links):
+        time.sleep(LOOK_S)
+    for link in links:
+        executor.add_node(link)
+    done = links[0].done
+    spinner = threading.Thread(target=_spin, args=(executor, done))
+    spinner.start()
+    before_ns = time.process_time_ns()
+    links[0].next.publish(UInt64())
+    done.wait()
+    used_ns = time.process_time_ns() - before_ns
+    spinner.join()
+    executor.shutdown()
+    ends_ns = links[0].lap_ends_ns
+    hops = [(end - start) / count for start, end in itertools.pairwise(ends_ns)]
+    cpu_ns = used_ns / count / (warm_up + laps + 1)
+    print(json.dumps({"samples_ns": hops[warm_up:], "cpu_ns": cpu_ns}))
+    for link in links:
+        link.destroy_node()
+    rclpy.shutdown()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,61 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""What a message costs from one rclpy node to the next, with many of them in one process."""
+
+from __future__ import annotations
+
+from rmw_manycore_py.bench.contenders import FAST_DDS, INSIDE, Middleware
+from rmw_manycore_py.bench.question import Run
+from rmw_manycore_py.bench.round_trip import in_us
+from rmw_manycore_py.bench.scale.common import at_count, drawn, on_curve
+from rmw_manycore_py.bench.session import Session
+from rmw_manycore_py.bench.summary import Goal, Result
+
+HOP = "from a node to the next in its process"
+CPU = "CPU time of a process per message from a node to the next"
+EXECUTORS = {
+    "single": "SingleThreadedExecutor",
+    "multi": "MultiThreadedExecutor, 16 threads",
+    "events": "EventsExecutor",
+}
+NODES = (2, 10, 25, 50)
+WARM_UP, LAPS = 2, 20
+
+
+def measure(run: Run) -> list[Result]:
+    """Return what a hop takes with each executor, over the nodes of the process."""
+    results: list[Result] = []
+    for middleware in (INSIDE, FAST_DDS):
+        for executor in EXECUTORS:
+            for count in drawn(run, NODES):
+                if run.wants(f"{HOP}: {_curve(middleware, executor)}"):
+                    run.note(f"{count} nodes in a process: {_curve(middleware, executor)}")
+                    results += _go_round(run, middleware, executor, count)
+    return results
+
+
+def _go_round(run: Run, middleware: Middleware, executor: str, nodes: int) -> list[Result]:
+    with Session(middleware, run.cpus) as session:
+        laps = run.iterations(LAPS)
+        found = session.python("ring", 0, executor, nodes, WARM_UP, laps).finish()
+    curve = _curve(middleware, executor)
+    return [
+        on_curve(HOP, curve, nodes, "nodes", "us", in_us(found["samples_ns"])),
+        on_curve(CPU, curve, nodes, "nodes", "us", in_us([found["cpu_ns"]])),
+    ]
+
+
+def _curve(middleware: Middleware, executor: str) -> str:
+    return f"{middleware.name}, {EXECUTORS[executor]}"
+
+
+GOALS = tuple(
+    Goal(
+        CPU,
+        at_count(_curve(INSIDE, executor), NODES[-1], "nodes"),
+        "better",
+        1.0,
+        at_count(_curve(FAST_DDS, executor), NODES[-1], "nodes"),
+    )
+    for executor in EXECUTORS
+)
+PLACEMENT = "composed: the process on the first"
