@@ -99,13 +99,19 @@ def test_many_matches_are_measured() -> None:
 
 
 def test_a_call_concerns_no_other_client() -> None:
-    rows = run_bench("scale", "--only", "as many clients: manycore")["results"]
+    rows = run_bench("scale", "--only", "service with as many clients: manycore")["results"]
     found = {row["question"]: row["median"] for row in rows if "25 clients" in row["contender"]}
     assert found.pop("a call to a service with as many clients") > 0
     assert found == {
-        "sleeps of its other clients per call": 0,
-        "CPU time of its other clients per call": 0,
+        "sleeps of a service's other clients per call": 0,
+        "CPU time of a service's other clients per call": 0,
     }
+
+
+def test_a_goal_of_an_action_with_many_clients_is_measured() -> None:
+    rows = run_bench("scale", "--only", "in rclpy: manycore")["results"]
+    assert len(rows) == 3 * 2
+    assert all(row["median"] > 0 for row in rows if "10 clients" in row["contender"])
 
 
 def test_simulated_time_reaches_all_nodes() -> None:
@@ -130,6 +136,7 @@ def test_nodes_do_not_wake_each_other() -> None:
     report = run_bench("scale", "--only", "until each topic has its subscription: manycore")
     found = {row["question"]: row["median"] for row in report["results"]}
     assert len(found) == 7
+    assert any("its graph read" in row["contender"] for row in report["results"])
     assert found["sleeps of all others per node that joins"] == 0
     assert found["CPU time of all when nothing happens"] == 0
 

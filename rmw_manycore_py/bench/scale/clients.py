@@ -1,35 +1,77 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What the clients of a service cost each other."""
+"""What the clients of a service cost each other, and those of an action."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import replace
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 
 from rmw_manycore_py.bench.contenders import FAST_DDS, Middleware
 from rmw_manycore_py.bench.idle import cpu_ns, wait_until_quiet, wake_ups
 from rmw_manycore_py.bench.question import Run
 from rmw_manycore_py.bench.round_trip import in_us
 from rmw_manycore_py.bench.scale.common import CLUSTERS, OWN, at_count, drawn, on_curve
-from rmw_manycore_py.bench.session import Session
+from rmw_manycore_py.bench.session import Process, Session
 from rmw_manycore_py.bench.summary import Goal, Result
 
-CALL = "a call to a service with as many clients"
-WOKEN = "sleeps of its other clients per call"
-CPU = "CPU time of its other clients per call"
-CLIENTS = (1, 25, 50, 100, 200)
 IDLE_PROCESSES = 4
-WARM_UP, CALLS = 50, 1000
+
+
+@dataclass(frozen=True)
+class Served:
+    """What is called, by as many clients.
+
+    :param start: starts a role as a party, given what that role is told.
+    """
+
+    question: str
+    woken: str
+    cpu: str
+    clients: Sequence[int]
+    warm_up: int
+    calls: int
+    start: Callable[..., Process]
+
+
+def _start_service(session: Session, party: int, role: str, *numbers: int) -> Process:
+    words = {"idle": ("clients",), "caller": ("warm_up", "iterations")}.get(role, ())
+    arguments = dict(zip(words, numbers, strict=True))
+    return session.native("clients", party, role=role, **arguments)
+
+
+def _start_action(session: Session, party: int, role: str, *numbers: int) -> Process:
+    return session.python("actions", party, role, *numbers)
+
+
+SERVICE = Served(
+    "a call to a service with as many clients",
+    "sleeps of a service's other clients per call",
+    "CPU time of a service's other clients per call",
+    (1, 25, 50, 100, 200),
+    50,
+    1000,
+    _start_service,
+)
+ACTION = Served(
+    "a goal of an action with as many clients, in rclpy",
+    "sleeps of an action's other clients per goal",
+    "CPU time of an action's other clients per goal",
+    (1, 10, 25, 50),
+    5,
+    50,
+    _start_action,
+)
 
 
 def measure(run: Run) -> list[Result]:
     """Return what a call takes, and what it costs the others, over the clients."""
     results: list[Result] = []
-    for middleware in (OWN, FAST_DDS):
-        for count in drawn(run, CLIENTS):
-            if run.wants(f"{CALL}: {middleware.name}"):
-                run.note(f"{count} clients: {middleware.name}")
-                results += _call(run, _apart(middleware), count)
+    for served in (SERVICE, ACTION):
+        for middleware in (OWN, FAST_DDS):
+            for count in drawn(run, served.clients):
+                if run.wants(f"{served.question}: {middleware.name}"):
+                    run.note(f"{served.question}, {count}: {middleware.name}")
+                    results += _call(run, _apart(middleware), served, count)
     return results
 
 
@@ -41,34 +83,34 @@ def _apart(middleware: Middleware) -> Middleware:
     return replace(middleware, clusters=(1, 2, *others))
 
 
-def _call(run: Run, middleware: Middleware, clients: int) -> list[Result]:
+def _call(run: Run, middleware: Middleware, served: Served, clients: int) -> list[Result]:
     def found(question: str, unit: str, samples: Sequence[float]) -> Result:
         return on_curve(question, middleware.name, clients, "clients", unit, samples)
 
-    calls = run.iterations(CALLS)
+    calls = run.iterations(served.calls)
     with Session(middleware, run.cpus) as session:
-        server = session.native("clients", 0, role="server")
+        server = served.start(session, 0, "server")
         server.wait_until_ready()
         idle = [
-            session.native("clients", party, role="idle", clients=share)
+            served.start(session, party, "idle", share)
             for party, share in enumerate(_shares(clients - 1), start=2)
         ]
         for process in idle:
             process.wait_until_ready()
         pids = [process.pid for process in idle]
         wait_until_quiet(pids)
-        caller = session.native("clients", 1, role="caller", warm_up=WARM_UP, iterations=calls)
+        caller = served.start(session, 1, "caller", served.warm_up, calls)
         before_ns, before = cpu_ns(pids), wake_ups(pids)
         samples_ns = caller.finish()["samples_ns"]
         used_ns, woken = cpu_ns(pids) - before_ns, wake_ups(pids) - before
         for process in (server, *idle):
             process.release()
             process.finish()
-    of_all = WARM_UP + calls  # and of the caller's coming and going
+    of_all = served.warm_up + calls  # and of the caller's coming and going
     return [
-        found(CALL, "us", in_us(samples_ns)),
-        found(WOKEN, "count", [woken / of_all]),
-        found(CPU, "us", [used_ns / 1e3 / of_all]),
+        found(served.question, "us", in_us(samples_ns)),
+        found(served.woken, "count", [woken / of_all]),
+        found(served.cpu, "us", [used_ns / 1e3 / of_all]),
     ]
 
 
@@ -78,9 +120,15 @@ def _shares(clients: int) -> list[int]:
     return [share for share in shares if share > 0]
 
 
-_most, _one = (at_count(OWN.name, count, "clients") for count in (CLIENTS[-1], CLIENTS[0]))
+def _at(middleware: Middleware, served: Served, place: int) -> str:
+    return at_count(middleware.name, served.clients[place], "clients")
+
+
 GOALS = (
-    Goal(CALL, _most, "within", 1.2, _one),
-    Goal(WOKEN, _most, "within", 0.1),
+    Goal(SERVICE.question, _at(OWN, SERVICE, -1), "within", 1.2, _at(OWN, SERVICE, 0)),
+    Goal(SERVICE.woken, _at(OWN, SERVICE, -1), "within", 0.1),
+    # Status and feedback of an action go to all of its clients.
+    Goal(ACTION.question, _at(OWN, ACTION, -1), "better", 1.0, _at(FAST_DDS, ACTION, -1)),
+    Goal(ACTION.cpu, _at(OWN, ACTION, -1), "better", 1.0, _at(FAST_DDS, ACTION, -1)),
 )
 PLACEMENT = "clients: server on the first, caller on the second, the others on both in turn"

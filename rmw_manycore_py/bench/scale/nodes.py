@@ -5,8 +5,10 @@ from __future__ import annotations
 
 import os
 import signal
+import threading
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 
 from rmw_manycore_py._transport import Platform
 from rmw_manycore_py.bench.contenders import FAST_DDS, Middleware
@@ -24,6 +26,7 @@ WOKEN = "sleeps of all others per node that joins"
 IDLE = "CPU time of all when nothing happens"
 ROUND_TRIP = "round trip of 64 B beside them"
 GRAPH = "reading all nodes and endpoints of the graph"
+READ = ", its graph read over and over"
 RECLAIM = "until nothing is left of those killed at once"
 
 NODES = (30, 60, 125, 250, 500)
@@ -72,7 +75,10 @@ def _watch(run: Run, middleware: Middleware, count: int) -> list[Result]:
         ]
         if middleware.is_manycore:
             with Platform(session.platform) as platform:
+                with _reading(platform, run.cpus[1]):
+                    beside = [_join(session, pids, count + i)[0] for i in range(JOINS)]
                 results += [
+                    on_curve(CREATE, f"{middleware.name}{READ}", count, "nodes", "ms", beside),
                     found(GRAPH, "ms", [_read_ms(platform) for _ in range(READS)]),
                     found(RECLAIM, "ms", [_reclaim_ms(platform, nodes)]),
                 ]
@@ -87,6 +93,26 @@ def _join(session: Session, others: Sequence[int], number: int) -> tuple[float, 
     woken = wake_ups(others) - before
     node.release()
     return node.finish()["samples_ns"][0] / 1e6, woken
+
+
+@contextmanager
+def _reading(platform: Platform, cpu: int) -> Iterator[None]:
+    """Read the graph all the time, from a CPU that the nodes that join do not have."""
+    is_over = threading.Event()
+
+    def read() -> None:
+        os.sched_setaffinity(0, [cpu])  # of this thread
+        while not is_over.is_set():
+            platform.nodes()
+            platform.endpoints()
+
+    reader = threading.Thread(target=read)
+    reader.start()
+    try:
+        yield
+    finally:
+        is_over.set()
+        reader.join()
 
 
 def _idle_ms(session: Session, nodes: Sequence[int], window_s: float) -> float:
@@ -142,6 +168,7 @@ def _ms_of(action: Callable[[], object]) -> float:
 _most, _least = (at_count(OWN.name, count, "nodes") for count in (NODES[-1], NODES[0]))
 GOALS = (
     Goal(UP, _most, "within", 20),
+    Goal(CREATE, at_count(f"{OWN.name}{READ}", NODES[-1], "nodes"), "within", 1.2, _most),
     Goal(WOKEN, _most, "within", 0),
     Goal(IDLE, _most, "within", 0),
     Goal(ROUND_TRIP, _most, "within", 1.1, _least),
