@@ -6,6 +6,7 @@
 // of instructions are tried, spread over all: MANYCORE_TEST_STEPS says how many.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 
@@ -16,6 +17,7 @@
 #include "stepped_child.hpp"
 #include "transport/lifecycle/configurator.hpp"
 #include "transport/lifecycle/lifecycle.hpp"
+#include "transport/lifecycle/trace_control.hpp"
 #include "transport/matching/sweeping.hpp"
 
 using namespace manycore;
@@ -341,6 +343,26 @@ TEST_CASE("killed while it brings up a platform: the next process does, and 'cle
       CHECK_NOTHROW(platform.join(1));
     }
   }
+}
+
+TEST_CASE("killed while it makes its trace file: the file goes") {
+  Fixture f;
+  f.platform.receive_thread(1);
+  start_trace(f.inspection.registry(), {});
+  SteppedChild traced("joins", {f.platform.name()});
+  const std::string end_of_name = "." + std::to_string(traced.pid());
+  const auto is_unfinished = [&] {
+    const std::filesystem::directory_iterator all(f.platform.paths().directory);
+    return std::any_of(begin(all), end(all), [&](const auto & file) {
+      return file.path().extension() == end_of_name;
+    });
+  };
+  while (!is_unfinished()) {
+    traced.run_to_system_call();
+    REQUIRE_FALSE(traced.finished());
+  }
+  traced.kill();
+  wait_until("the file is gone", [&] { return !is_unfinished(); });
 }
 
 TEST_CASE("killed while it takes a platform away: the receive threads go on with it") {

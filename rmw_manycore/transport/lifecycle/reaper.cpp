@@ -14,6 +14,7 @@
 
 #include "platform/os_process.hpp"
 #include "transport/lifecycle/lifecycle.hpp"
+#include "transport/lifecycle/trace_saver.hpp"
 #include "transport/matching/sweeping.hpp"
 
 namespace manycore {
@@ -169,6 +170,9 @@ bool Reaper::watch_and_reap() {
     watch_members();
   }
   const uint32_t dead = reap_dead(registry_, cluster_);
+  if (dead != 0 || somebody_ended_) {  // or a receive thread
+    remove_unfinished_traces(registry_);
+  }
   sweeping::sweep_all(registry_);
   {
     const Registry::Lock lock(registry_);

@@ -21,23 +21,42 @@ int64_t stopped_trace_ns(Registry & registry) {
   return control.started_ns.load() == 0 ? control.unsaved_since_ns.load() : 0;
 }
 
+template<typename Visit>
+void visit_names(const std::string & path, Visit visit) {
+  DIR * const directory = opendir(path.c_str());
+  if (directory == nullptr) {
+    return;
+  }
+  while (const dirent * const entry = readdir(directory)) {
+    visit(entry->d_name);
+  }
+  closedir(directory);
+}
+
 }  // namespace
 
 std::vector<std::string> trace_files(const PlatformPaths & paths) {
   std::vector<std::string> found;
-  DIR * const directory = opendir(paths.directory.c_str());
-  if (directory == nullptr) {
-    return found;
-  }
   constexpr const char * prefix = "trace-";
-  while (const dirent * const entry = readdir(directory)) {
-    if (std::strncmp(entry->d_name, prefix, std::strlen(prefix)) == 0) {
-      found.push_back(paths.directory + "/" + entry->d_name);
+  visit_names(paths.directory, [&](const char * name) {
+    if (std::strncmp(name, prefix, std::strlen(prefix)) == 0) {
+      found.push_back(paths.directory + "/" + name);
     }
-  }
-  closedir(directory);
+  });
   std::sort(found.begin(), found.end());
   return found;
+}
+
+void remove_unfinished_traces(const Registry & registry) {
+  const std::string & directory = registry.paths().directory;
+  visit_names(directory, [&](const char * name) {
+    const std::optional<UnfinishedTrace> trace = UnfinishedTrace::of(name);
+    if (
+      trace && (!registry.lifelines().is_held(trace->line) ||
+                registry.lifelines().holder(trace->line).pid != trace->pid)) {
+      unlink((directory + "/" + name).c_str());
+    }
+  });
 }
 
 TraceSaver::TraceSaver(Registry & registry) : registry_(registry) {

@@ -14,6 +14,9 @@ namespace manycore {
 /// Paths of a platform's trace files.
 std::vector<std::string> trace_files(const PlatformPaths & paths);
 
+/// Removes the trace files that processes were making when they were killed.
+void remove_unfinished_traces(const Registry & registry);
+
 /// What one process recorded.
 struct ProcessTrace {
   uint32_t cluster = 0;

@@ -9,6 +9,7 @@
 #include <cstring>
 
 #include "platform/error.hpp"
+#include "transport/layout/registry_layout.hpp"
 
 namespace manycore {
 namespace {
@@ -19,16 +20,29 @@ constexpr uint64_t step_bytes = 256 << 10;
 /// Of the file system: what a trace leaves to messages and control blocks.
 constexpr uint64_t share_left = 8;
 
-/// Of a file that is not complete: savers do not look for it.
-std::string hidden(const std::string & path) {
-  const size_t name = path.rfind('/') + 1;
-  return path.substr(0, name) + "." + path.substr(name);
+uint32_t line_of(const TraceIdentity & identity) {
+  return identity.process == nothing ? receive_thread_line + identity.cluster : identity.process;
 }
 
 }  // namespace
 
+std::string UnfinishedTrace::path_of(const std::string & path, const TraceIdentity & identity) {
+  const size_t name = path.rfind('/') + 1;
+  return path.substr(0, name) + "." + path.substr(name) + "." + std::to_string(line_of(identity)) +
+         "." + std::to_string(getpid());
+}
+
+std::optional<UnfinishedTrace> UnfinishedTrace::of(const std::string & name) {
+  UnfinishedTrace found{};
+  char rest = 0;
+  const bool is_one =
+    std::sscanf(name.c_str(), ".trace-%*u.%u.%d%c", &found.line, &found.pid, &rest) == 2;
+  return is_one && found.line < lifeline_count ? std::optional(found) : std::nullopt;
+}
+
 TraceFile::TraceFile(const std::string & path, const TraceIdentity & identity, uint32_t events_log2)
-: memory_(SharedMemory::create(hidden(path), trace_file_bytes(events_log2))) {
+: memory_(
+    SharedMemory::create(UnfinishedTrace::path_of(path, identity), trace_file_bytes(events_log2))) {
   try {
     memory_.reserve(0, trace_names_offset);
     describe(identity, events_log2);

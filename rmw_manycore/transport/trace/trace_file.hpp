@@ -23,6 +23,18 @@ struct TraceIdentity {
   std::string label;
 };
 
+/// A trace file that is not complete, as its name tells: savers do not look for it, and where the
+/// process that makes it has ended it is in no use.
+struct UnfinishedTrace {
+  uint32_t line;  ///< lifeline of that process
+  pid_t pid;      ///< of it, in its own PID namespace
+
+  /// What the file is called until it becomes `path`.
+  static std::string path_of(const std::string & path, const TraceIdentity & identity);
+  /// Nothing for a file of another kind.
+  static std::optional<UnfinishedTrace> of(const std::string & name);
+};
+
 /// The file that a traced process writes its events to: a ring for each thread, and the names of
 /// the endpoints they are about. It outlives its process. Thread-safe; useless in a child of
 /// fork().
