@@ -1,9 +1,10 @@
 /* Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
  *
  * Question: does a subscription in another cluster learn of every message, although eMCOS messages
- * are thrown away when its cluster's pipe is full?
+ * are thrown away when its cluster's pipe is full, and of none after a later one? It would pass
+ * over the earlier one then.
  *
- * Follows notifier.cpp (announce, ask_to_look), ReceiveThread::run and Subscription::Impl::next.
+ * Follows notifier.cpp (announce, ask_to_look), ReceiveThread::run and RecordFinder::next.
  * Waking is waiting.pml's matter: here the subscriber looks when its epoch was raised, and only
  * then.
  *
@@ -13,6 +14,7 @@
  * BUG 4: pipe_overflow cleared after the processes are woken
  * BUG 5: subscriber clears resync after its look
  * BUG 6: publisher relies on the full pipe alone
+ * BUG 7: resync not looked at again once a hint was popped
  */
 #define MESSAGES 2
 #define PUBLISHERS 2
@@ -20,8 +22,8 @@
 
 chan pipe = [CAPACITY] of { byte, byte };   /* publisher; record number, 0 in one of kind resync */
 byte last[PUBLISHERS];    /* published so far */
-byte hinted[PUBLISHERS];  /* highest record number on the subscriber queue */
-byte noted[PUBLISHERS];
+chan queue = [PUBLISHERS * MESSAGES] of { byte, byte };
+byte noted[PUBLISHERS];   /* taken up to here */
 bool resync, pipe_overflow;
 bool woken;               /* epoch raised since the subscriber's last look */
 
@@ -77,7 +79,7 @@ end:
 #endif
      pipe?i, n;
      if
-     :: n > 0 -> hinted[i] = n; woken = true
+     :: n > 0 -> queue!i, n; woken = true
      :: else
      fi;
      i = 0; n = 0;
@@ -87,25 +89,48 @@ end:
   od
 }
 
-inline look() {
-  if
-  :: resync ->
+inline look_at_everything() {
 #if BUG != 5
-     resync = false;
+  resync = false;
 #endif
-     noted[0] = last[0];
-     noted[1] = last[1];
+  noted[0] = last[0];
+  noted[1] = last[1];
 #if BUG == 5
-     resync = false
+  resync = false
 #endif
+}
+
+inline take() {
+  atomic {
+    assert(n <= noted[i] + 1);
+    noted[i] = (n > noted[i] -> n : noted[i])
+  }
+}
+
+/* Until it finds nothing more. */
+inline look() {
+  do
+  :: resync -> look_at_everything()
   :: else ->
-     atomic { noted[0] = (hinted[0] > noted[0] -> hinted[0] : noted[0]) };
-     atomic { noted[1] = (hinted[1] > noted[1] -> hinted[1] : noted[1]) }
-  fi
+     if
+     :: empty(queue) -> break
+     :: queue?i, n ->
+#if BUG != 7
+        if
+        :: resync -> look_at_everything()     /* finds n too */
+        :: else -> take()
+        fi;
+#else
+        take();
+#endif
+        i = 0; n = 0
+     fi
+  od
 }
 
 /* An end state in which it sleeps and has missed something is an error. */
 proctype Subscription() {
+  byte i, n;
   do
   :: noted[0] == MESSAGES && noted[1] == MESSAGES -> break
   :: woken -> woken = false; look()

@@ -47,9 +47,10 @@ std::optional<RecordFinder::Candidate> RecordFinder::next() {
       settle();
       return std::nullopt;
     }
-    if (sources_.renew()) {
-      // A hint of a new source may overtake the matcher's resync, and with it the source's history.
-      // Looking into all sources finds what the hint announced as well.
+    // Looking into all sources finds what the hint announced as well. Where hints before it are
+    // missing, `resync` was set before it was pushed, but perhaps after the look above. A hint of a
+    // new source may overtake the matcher's resync, and with it the source's history.
+    if (take_request_to_resync() || sources_.renew()) {
       resync(hint);
     } else if (const std::optional<Candidate> candidate = candidate_of(*hint)) {
       return candidate;
@@ -81,11 +82,14 @@ std::optional<RecordFinder::Candidate> RecordFinder::candidate_of(const Hint & h
 }
 
 void RecordFinder::resync_if_asked() {
-  if (
-    header_.resync.load(std::memory_order_relaxed) != 0 &&
-    header_.resync.exchange(0, std::memory_order_seq_cst) != 0) {
+  if (take_request_to_resync()) {
     resync();
   }
+}
+
+bool RecordFinder::take_request_to_resync() noexcept {
+  return header_.resync.load(std::memory_order_relaxed) != 0 &&
+         header_.resync.exchange(0, std::memory_order_seq_cst) != 0;
 }
 
 /// Hints may be missing: forget those that are there and look into every topic DSM instead.

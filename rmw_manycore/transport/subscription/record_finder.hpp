@@ -42,6 +42,8 @@ public:
 
 private:
   std::optional<Candidate> next_of_backlog();
+  /// True once for each time that `resync` was set; the caller then has to.
+  bool take_request_to_resync() noexcept;
   /// The record that a hint of the queue names, or nothing when it is stale.
   std::optional<Candidate> candidate_of(const Hint & hint) noexcept;
   /// `popped`: a hint that its caller has not used.
