@@ -81,6 +81,14 @@ std::string describe_lock_owner(pid_t thread) {
   return holds + "not stopped (state " + owner->state + "); try again, or end it if it hangs";
 }
 
+bool may_unlock(pid_t thread) {
+  if (thread == 0) {
+    return true;
+  }
+  const std::optional<ThreadStatus> owner = status_of(thread);
+  return owner && owner->state != 'T' && owner->state != 't';
+}
+
 std::string describe_flock_owner(int fd) {
   struct stat file {};
   const bool is_open = fstat(fd, &file) == 0;

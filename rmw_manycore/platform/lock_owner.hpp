@@ -11,7 +11,11 @@ namespace manycore {
 /// `thread`: 0 for a lock that no thread owns at this moment.
 std::string describe_lock_owner(pid_t thread);
 
-/// The same of an open file that another process has locked with flock().
+/// True when the owner of a lock may come to give it back: it runs, sleeps or waits for a CPU, or
+/// `thread` is 0. False for one that is stopped, or not visible here.
+bool may_unlock(pid_t thread);
+
+/// As describe_lock_owner(), of an open file that another process has locked with flock().
 std::string describe_flock_owner(int fd);
 
 }  // namespace manycore

@@ -13,6 +13,7 @@
 #include "messages.hpp"
 #include "node_role.hpp"
 #include "patience.hpp"
+#include "platform/clock.hpp"
 #include "platform/file_lock.hpp"
 #include "transport/lifecycle/configurator.hpp"
 
@@ -27,6 +28,18 @@ const Role lock_holder("lock_holder", [](Lines & test, const Arguments & argumen
   const Registry::Lock lock(registry);
   test.say("locked");
   raise(SIGSTOP);
+});
+
+/// Publishes the first message of a topic DSM, which has to grow for it.
+const Role large_publisher("large_publisher", [](Lines & test, const Arguments & arguments) {
+  Placement placement;
+  placement.platform = arguments.at(0);
+  const auto process = Process::join(placement);
+  const auto publisher = process->create_publisher(on_topic("/growing", keep_last(1)));
+  test.say("ready");
+  test.hear();
+  const Refusal refusal = refusal_of([&] { publish(*publisher, 1, 100'000); });
+  test.say(refusal.code ? refusal.text : "published");
 });
 
 /// Stands still, or goes on, while it holds a lock file, as a process that joins a platform does.
@@ -169,6 +182,27 @@ TEST_CASE("stopped while it holds the registry lock: publishers whose topic DSM 
   CHECK(f.inspection.generations_of(*publisher) == 2);
   node.tell("publish 2001 2100 100");
   take_all(*near);
+}
+
+TEST_CASE("a first message waits for the registry lock as long as its owner is not stopped") {
+  Fixture f;
+  const auto near = f.process->create_subscription(on_topic("/growing", keep_last(1)));
+  Child publisher("large_publisher", {f.platform.name()});
+  publisher.expect("ready");
+  {
+    const Standstill no_other(f.platform, 1);
+    const Registry::Lock lock(f.inspection.registry());
+    publisher.say("go");
+    wait_until("it waits for the lock", [&] {
+      return f.inspection.registry().header().mutex.is_waited_for();
+    });
+    const int64_t until_ns = monotonic_ns() + 3 * Registry::Lock::short_wait_ns;
+    wait_until("a stopped owner would be waited for no more", [&] {
+      return monotonic_ns() > until_ns || publisher.lines().has_news();
+    });
+  }
+  publisher.expect("published");
+  CHECK(take_all(*near) == numbers(1, 1));
 }
 
 TEST_CASE("the owner of a lock file is named, and stopped only if it is") {

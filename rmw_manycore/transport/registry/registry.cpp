@@ -9,6 +9,7 @@
 
 #include "platform/clock.hpp"
 #include "platform/error.hpp"
+#include "platform/lock_owner.hpp"
 #include "transport/layout/subscription_layout.hpp"
 #include "transport/layout/topic_dsm_layout.hpp"
 
@@ -134,9 +135,14 @@ Cluster * Registry::reach(uint32_t cluster) {
   }
 }
 
-Registry::Lock::Lock(Registry & registry, long wait_ns) : registry_(registry) {
+Registry::Lock::Lock(Registry & registry, long wait_ns)
+: Lock(registry, registry.lock_within(wait_ns)) {}
+
+Registry::Lock::Lock(Registry & registry, WhileOwnersRun)
+: Lock(registry, registry.lock_while_owners_run()) {}
+
+Registry::Lock::Lock(Registry & registry, RobustMutex::Outcome outcome) : registry_(registry) {
   RegistryHeader & header = registry.header();
-  const RobustMutex::Outcome outcome = registry.lock_within(wait_ns);
   header.changes.store(header.changes.load(std::memory_order_relaxed) | 1);
   // A reader that sees any of the changes to come sees this, too.
   std::atomic_thread_fence(std::memory_order_release);
@@ -177,6 +183,23 @@ RobustMutex::Outcome Registry::lock_within(long wait_ns) {
   } catch (const Error &) {
     stayed_locked_ = stayed_locked_ || wait_ns >= Lock::usual_wait_ns;
     throw;
+  }
+}
+
+RobustMutex::Outcome Registry::lock_while_owners_run() {
+  const int64_t until_ns = monotonic_ns() + Lock::usual_wait_ns;
+  while (true) {
+    const uint64_t changes = header().changes.load();
+    try {
+      return lock_within(Lock::short_wait_ns);
+    } catch (const Error & error) {
+      const bool has_moved = header().changes.load() != changes;
+      if (
+        error.code() != ErrorCode::timeout || monotonic_ns() >= until_ns ||
+        !(has_moved || may_unlock(header().mutex.owner()))) {
+        throw;
+      }
+    }
   }
 }
 

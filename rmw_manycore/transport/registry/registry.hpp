@@ -98,16 +98,22 @@ public:
     static constexpr long usual_wait_ns = 5'000'000'000;
     static constexpr long short_wait_ns = 100'000'000;  ///< from inside a publish
     static constexpr long no_wait_ns = 0;
+    struct WhileOwnersRun {};
 
     /// A process that had the lock and comes back at once lets those go first that waited for it,
     /// but for short waits. Throws Error{timeout} when the lock is not to be had within `wait_ns`;
     /// OutOfReach when a former owner died and this process cannot map all that is to be repaired.
     explicit Lock(Registry & registry, long wait_ns = usual_wait_ns);
+    /// Waits as usual for owners that run, or wait for a CPU themselves; for one that is stopped,
+    /// or not visible here, only `short_wait_ns`.
+    Lock(Registry & registry, WhileOwnersRun wait);
     ~Lock();
     Lock(const Lock &) = delete;
     Lock & operator=(const Lock &) = delete;
 
   private:
+    Lock(Registry & registry, RobustMutex::Outcome outcome);
+
     Registry & registry_;
   };
 
@@ -161,6 +167,7 @@ private:
   friend class Lock;
   std::atomic<uint32_t> & bucket_of(uint64_t topic_hash) const noexcept;
   RobustMutex::Outcome lock_within(long wait_ns);
+  RobustMutex::Outcome lock_while_owners_run();
   void let_others_go_first() const noexcept;
   /// Throws OutOfReach before it changes anything.
   void repair();

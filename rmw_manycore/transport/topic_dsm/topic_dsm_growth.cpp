@@ -82,20 +82,31 @@ uint64_t TopicDsmWriter::data_limit() const noexcept {
   return endpoint_.topic_dsm_size != 0 ? current_.data_bytes : cluster_.size() / 2;
 }
 
-/// To grow it waits for the lock once: a process that stands still holding it must not hold up each
-/// record, nor each publish. From then on growing only tries, until the lock is to be had.
+/// Of a message that needs the room, or would displace another, more would be lost than time, so
+/// the lock is waited for while its owners run. A process that stands still holding it must not
+/// hold up each record, nor each publish: no hold is waited for twice.
+Registry::Lock TopicDsmWriter::lock_to_grow() {
+  if (registry_.header().changes.load() == waited_for_) {
+    return Registry::Lock(registry_, Registry::Lock::no_wait_ns);
+  }
+  try {
+    return {registry_, Registry::Lock::WhileOwnersRun{}};
+  } catch (const Error &) {
+    waited_for_ = registry_.header().changes.load();
+    throw;
+  }
+}
+
 void TopicDsmWriter::reserve_generation(
   GenerationEntry & entry, uint64_t data_bytes, uint64_t descriptor_count) {
   const uint64_t extent = Generation::extent_bytes(data_bytes, descriptor_count);
-  const bool grows = extent > current_.entry->extent_bytes();
-  const long wait_ns =
-    grows && registry_answers_ ? Registry::Lock::short_wait_ns : Registry::Lock::no_wait_ns;
-  registry_answers_ = registry_answers_ && !grows;
-  const Registry::Lock lock(registry_, wait_ns);
-  registry_answers_ = true;
-  if (grows) {  // a smaller one makes room in the end
-    cluster_.require_message_room(extent);
+  if (extent <= current_.entry->extent_bytes()) {  // a smaller one makes room in the end
+    const Registry::Lock lock(registry_, Registry::Lock::no_wait_ns);
+    Generation::reserve(cluster_, entry, data_bytes, descriptor_count);
+    return;
   }
+  const Registry::Lock lock = lock_to_grow();
+  cluster_.require_message_room(extent);
   Generation::reserve(cluster_, entry, data_bytes, descriptor_count);
 }
 

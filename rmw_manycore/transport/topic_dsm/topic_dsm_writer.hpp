@@ -74,6 +74,7 @@ private:
   bool start_generation(uint64_t data_bytes, uint64_t descriptor_count);
   /// Goes over to a smaller generation when a quarter of this one was enough for long.
   void shrink(uint64_t need_bytes) noexcept;
+  Registry::Lock lock_to_grow();
   void reserve_generation(GenerationEntry & entry, uint64_t data_bytes, uint64_t descriptor_count);
   void open_generation(GenerationEntry & entry);
   void require_data_bytes(uint64_t need_bytes);
@@ -95,7 +96,7 @@ private:
   uint64_t next_number_ = 1;
   uint64_t last_sequence_number_ = 0;
   int64_t blocked_until_ns_ = 0;
-  bool registry_answers_ = true;  ///< its lock was to be had when the topic DSM grew last
+  uint64_t waited_for_ = 0;  ///< in vain: `changes` of the hold of the registry lock
 };
 
 }  // namespace manycore
