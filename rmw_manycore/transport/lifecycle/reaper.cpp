@@ -166,9 +166,9 @@ bool Reaper::watch_and_reap() {
     registry_.graph_changed();
   }
   {
-    const Registry::Lock lock(registry_);
-    watch_members();
+    const Registry::Lock lock(registry_);  // a process that joins holds it from its message on
   }
+  watch_members();
   const uint32_t dead = reap_dead(registry_, cluster_);
   if (dead != 0 || somebody_ended_) {  // or a receive thread
     remove_unfinished_traces(registry_);
