@@ -17,6 +17,9 @@ struct ClusterHeader {
   std::atomic<uint64_t> messages;       ///< eMCOS messages handled
   std::atomic<uint64_t> notifications;  ///< hints pushed on subscriber queues
   std::atomic<uint64_t> charged_bytes;  ///< sum of its processes' (derived)
+  /// Of granules: none below is free, and none from there on is used (derived).
+  std::atomic<uint64_t> free_from;
+  std::atomic<uint64_t> used_before;
   /// Odd while the receive thread follows references (see docs/design/topic_dsm.md, Freeing).
   alignas(64) std::atomic<uint64_t> phase;
 };

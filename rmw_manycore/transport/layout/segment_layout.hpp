@@ -9,7 +9,7 @@
 namespace manycore {
 
 /// Raised whenever any struct in a *_layout.hpp, its meaning, or the name of a file changes.
-constexpr uint32_t layout_version = 12;
+constexpr uint32_t layout_version = 13;
 
 constexpr uint64_t registry_magic = 0x4d43'5245'4749'5354;  // "MCREGIST"
 constexpr uint64_t cluster_magic = 0x4d43'434c'5553'5452;   // "MCCLUSTR"

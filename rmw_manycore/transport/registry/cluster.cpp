@@ -124,21 +124,63 @@ void Cluster::set_granules(uint64_t first, uint64_t count, bool used) const noex
   }
 }
 
-/// First fit; returns granule_count when there is no run.
-uint64_t Cluster::find_run(uint64_t count) const noexcept {
-  const uint64_t total = granule_count_;
-  uint64_t run = 0;
-  for (uint64_t i = 0; i < total; ++i) {
-    if (run == 0 && i % 64 == 0 && granule_map()[i / 64] == UINT64_MAX) {
-      i += 63;
-      continue;
-    }
-    run = granule_used(i) ? 0 : run + 1;
-    if (run == count) {
-      return i + 1 - count;
+/// The first granule from `from` on that is used, or not; granule_count when there is none.
+uint64_t Cluster::find_granule(uint64_t from, bool used) const noexcept {
+  const uint64_t end = used_before();
+  for (uint64_t i = from; i < end; i = (i / 64 + 1) * 64) {
+    const uint64_t word = used ? granule_map()[i / 64] : ~granule_map()[i / 64];
+    const uint64_t rest = word >> (i % 64);
+    if (rest != 0) {
+      return std::min(i + static_cast<uint64_t>(__builtin_ctzll(rest)), granule_count_);
     }
   }
-  return total;
+  return used ? granule_count_ : std::max(from, end);
+}
+
+/// First fit; returns granule_count when there is no run.
+uint64_t Cluster::find_run(uint64_t count) const noexcept {
+  std::atomic<uint64_t> & free_from = header().free_from;
+  uint64_t first = find_granule(free_from.load(std::memory_order_relaxed), false);
+  free_from.store(first, std::memory_order_relaxed);
+  while (first < granule_count_ && count <= granule_count_ - first) {
+    const uint64_t end = find_granule(first, true);
+    if (end - first >= count) {
+      return first;
+    }
+    first = find_granule(end, false);
+  }
+  return granule_count_;
+}
+
+uint64_t Cluster::used_before() const noexcept {
+  return std::min(header().used_before.load(std::memory_order_relaxed), granule_count_);
+}
+
+void Cluster::note_allocated(uint64_t first, uint64_t count) const noexcept {
+  ClusterHeader & head = header();
+  set_granules(first, count, true);
+  if (head.free_from.load(std::memory_order_relaxed) == first) {
+    head.free_from.store(first + count, std::memory_order_relaxed);
+  }
+  if (used_before() < first + count) {
+    head.used_before.store(first + count, std::memory_order_relaxed);
+  }
+}
+
+void Cluster::note_freed(uint64_t first, uint64_t count) const noexcept {
+  ClusterHeader & head = header();
+  set_granules(first, count, false);
+  if (first < head.free_from.load(std::memory_order_relaxed)) {
+    head.free_from.store(first, std::memory_order_relaxed);
+  }
+  if (used_before() == first + count) {
+    uint64_t end = first;
+    while (end != 0 && !granule_used(end - 1)) {
+      const bool is_word_free = end % 64 == 0 && granule_map()[end / 64 - 1] == 0;
+      end -= is_word_free ? 64 : 1;
+    }
+    head.used_before.store(end, std::memory_order_relaxed);
+  }
 }
 
 /// Map and count are changed together, under the registry lock, whose next owner rebuilds both
@@ -146,7 +188,7 @@ uint64_t Cluster::find_run(uint64_t count) const noexcept {
 void Cluster::require_sound_map() const {
   const ClusterHeader & head = header();
   uint64_t used = 0;
-  for (uint64_t i = 0; i < map_bytes(granule_count_) / 8; ++i) {
+  for (uint64_t i = 0; i < (used_before() + 63) / 64; ++i) {
     used += static_cast<uint64_t>(__builtin_popcountll(granule_map()[i]));
   }
   if (used * granule_bytes_ != head.used_bytes.load(std::memory_order_relaxed)) {
@@ -205,7 +247,7 @@ uint64_t Cluster::reserve(uint64_t length) {
     memory_.reserve_and_populate(offset, 1);
     memory_.reserve_and_populate(offset + bytes - 1, 1);
   }
-  set_granules(first, count, true);
+  note_allocated(first, count);
   head.used_bytes.fetch_add(bytes, std::memory_order_relaxed);
   return offset;
 }
@@ -220,7 +262,7 @@ void Cluster::free(uint64_t offset, uint64_t length) noexcept {
   if (!contains(offset, count * granule_bytes_)) {
     return;
   }
-  set_granules(offset / granule_bytes_, count, false);
+  note_freed(offset / granule_bytes_, count);
   head.used_bytes.fetch_sub(count * granule_bytes_, std::memory_order_relaxed);
   memory_.release(offset, count * granule_bytes_);
 }
@@ -254,7 +296,9 @@ void Cluster::forget_allocations() noexcept {
   ClusterHeader & head = header();
   const uint64_t own = granules_of(granule_map_offset + map_bytes(granule_count_));
   std::fill_n(granule_map(), map_bytes(granule_count_) / 8, 0);
-  set_granules(0, own, true);
+  head.free_from.store(0, std::memory_order_relaxed);
+  head.used_before.store(0, std::memory_order_relaxed);
+  note_allocated(0, own);
   head.used_bytes.store(own * granule_bytes_, std::memory_order_relaxed);
   head.charged_bytes.store(0, std::memory_order_relaxed);
 }
@@ -265,7 +309,7 @@ void Cluster::mark_allocated(uint64_t offset, uint64_t length) noexcept {
   if (!contains(offset, count * granule_bytes_)) {
     return;
   }
-  set_granules(offset / granule_bytes_, count, true);
+  note_allocated(offset / granule_bytes_, count);
   head.used_bytes.fetch_add(count * granule_bytes_, std::memory_order_relaxed);
 }
 

@@ -113,6 +113,10 @@ private:
   uint64_t * granule_map() const noexcept { return &memory_.at<uint64_t>(granule_map_offset); }
   bool granule_used(uint64_t index) const noexcept;
   void set_granules(uint64_t first, uint64_t count, bool used) const noexcept;
+  uint64_t find_granule(uint64_t from, bool used) const noexcept;
+  uint64_t used_before() const noexcept;
+  void note_allocated(uint64_t first, uint64_t count) const noexcept;
+  void note_freed(uint64_t first, uint64_t count) const noexcept;
   /// Throws Error{corrupt}.
   void require_sound_map() const;
   uint64_t find_run(uint64_t count) const noexcept;
