@@ -79,6 +79,7 @@ struct Process::Impl {
 
   uint32_t take_process_slot();
   uint32_t fill_endpoint(const EndpointSpec & spec, EndpointKind kind);
+  uint32_t publish_endpoint(const EndpointSpec & spec, EndpointKind kind);
   uint32_t add_endpoint(const EndpointSpec & spec, EndpointKind kind);
   template<typename Endpoint>
   std::unique_ptr<Endpoint> handle_of(uint32_t endpoint);
@@ -262,12 +263,9 @@ uint32_t Process::Impl::fill_endpoint(const EndpointSpec & spec, EndpointKind ki
   return taken;
 }
 
-uint32_t Process::Impl::add_endpoint(const EndpointSpec & spec, EndpointKind kind) {
-  check_qos_ranges(spec);
-  membership->require();
-  sweeping::sweep_a_little(*registry, placement.cluster);
-  std::optional<Registry::Lock> lock(std::in_place, *registry);
-  matching::require_reach(*registry, spec.topic, kind);
+/// Live before it is connected: should this process die in between, the reaper ends its matches.
+uint32_t Process::Impl::publish_endpoint(const EndpointSpec & spec, EndpointKind kind) {
+  const Registry::Lock lock(*registry);
   const uint32_t taken = fill_endpoint(spec, kind);
   EndpointEntry & entry = registry->endpoints()[taken];
   try {
@@ -281,20 +279,26 @@ uint32_t Process::Impl::add_endpoint(const EndpointSpec & spec, EndpointKind kin
     registry->endpoints().give_back(taken);
     throw;
   }
-  // Live before it is connected: should this process die in between, the reaper ends its matches.
+  entry.order = ++registry->header().last_order;
   registry->endpoints().publish(taken);
   registry->link_endpoint(taken);
+  return taken;
+}
+
+uint32_t Process::Impl::add_endpoint(const EndpointSpec & spec, EndpointKind kind) {
+  check_qos_ranges(spec);
+  membership->require();
+  sweeping::sweep_a_little(*registry, placement.cluster);
+  matching::require_reach(*registry, spec.topic, kind);
+  const uint32_t taken = publish_endpoint(spec, kind);
   try {
     std::vector<matching::Candidate> candidates = matching::candidates_of(*registry, taken);
-    matching::connect_some(*registry, taken, candidates);
     while (!candidates.empty()) {
-      lock.reset();
-      lock.emplace(*registry);
+      const Registry::Lock lock(*registry);
       membership->require();
       matching::connect_some(*registry, taken, candidates);
     }
   } catch (...) {
-    lock.reset();
     if (membership->holds()) {
       leave_graph(*registry, taken);
     }

@@ -89,7 +89,9 @@ struct EndpointEntry {
   uint32_t process;
   uint32_t node;
   uint32_t cluster;
-  std::atomic<uint32_t> next_of_topic;  ///< chain of its topic's bucket
+  std::atomic<uint32_t> next_of_topic;  ///< chain of its topic's bucket: an older one (derived)
+  uint32_t previous_of_topic;           ///< (derived)
+  uint32_t order;                       ///< younger endpoints have greater ones; it wraps around
   uint64_t topic_hash;
   SegmentRef block;  ///< publisher: topic DSM header; subscription: subscription header
   Gid gid;
@@ -108,7 +110,7 @@ struct EndpointEntry {
   char topic[name_bytes];
   char type[name_bytes];
 };
-static_assert(sizeof(EndpointEntry) == 744);
+static_assert(sizeof(EndpointEntry) == 752 && offsetof(EndpointEntry, topic_hash) == 40);
 
 /// One line of the topic table (ROS-lite2 Fig. 7).
 struct TopicEntry {
@@ -160,6 +162,7 @@ struct RegistryHeader {
   std::atomic<uint32_t> removed;           ///< the files are gone: no process can join
   uint32_t needs_repair;                   ///< an owner of the mutex died; not yet repaired
   uint32_t sweep_from;                     ///< endpoint slot that the next sweep looks at first
+  uint32_t last_order;                     ///< of endpoints
   TraceControl trace;
   std::atomic<uint64_t> death_count;  ///< raised once the death is written down
   Death deaths[kept_deaths];          ///< at death_count mod kept_deaths the next one

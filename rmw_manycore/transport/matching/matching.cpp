@@ -17,6 +17,7 @@ namespace {
 
 /// Each takes about 1 us under the registry lock.
 constexpr uint32_t matches_at_a_time = 64;
+constexpr int most_walks = 16;  ///< along a chain that changes
 
 /// Both ends of a possible match.
 struct Pair {
@@ -208,24 +209,47 @@ void count_matches_of(Registry & registry, uint32_t slot, std::vector<uint64_t> 
   });
 }
 
+/// False when some may be missing.
+bool look_for_candidates(
+  Registry & registry, uint32_t endpoint, std::vector<Candidate> & candidates) {
+  const EndpointEntry & own = registry.endpoints()[endpoint];
+  candidates.clear();
+  return registry.for_each_older(endpoint, [&](uint32_t slot, uint32_t incarnation) {
+    const EndpointEntry & other = registry.endpoints()[slot];
+    if (
+      other.kind != own.kind && other.topic_hash == own.topic_hash &&
+      std::strncmp(other.topic, own.topic, name_bytes) == 0) {
+      candidates.push_back({slot, incarnation});
+    }
+  });
+}
+
 }  // namespace
 
 void require_reach(Registry & registry, const std::string & topic, EndpointKind kind) {
-  registry.for_each_of_topic(topic.c_str(), [&](uint32_t, EndpointEntry & other) {
-    if (other.kind != kind) {
+  registry.for_each_of_bucket(topic.c_str(), [&](uint32_t slot) {
+    const EndpointEntry & other = registry.endpoints()[slot];
+    if (
+      registry.endpoints().is_live(slot) && other.kind != kind &&
+      std::strncmp(other.topic, topic.c_str(), name_bytes) == 0) {
       registry.reach(other.cluster);
     }
   });
 }
 
 std::vector<Candidate> candidates_of(Registry & registry, uint32_t endpoint) {
-  const EndpointEntry & own = registry.endpoints()[endpoint];
   std::vector<Candidate> candidates;
-  registry.for_each_of_topic(own.topic, [&](uint32_t slot, const EndpointEntry & other) {
-    if (other.kind != own.kind && registry.endpoints().is_live(slot)) {
-      candidates.push_back({slot, other.slot.incarnation.load()});
-    }
-  });
+  bool is_complete = false;
+  for (int i = 0; !is_complete && i < most_walks; ++i) {
+    is_complete = look_for_candidates(registry, endpoint, candidates);
+  }
+  if (!is_complete) {
+    const Registry::Lock lock(registry);
+    look_for_candidates(registry, endpoint, candidates);
+  }
+  for (const Candidate & candidate : candidates) {
+    registry.reach(registry.endpoints()[candidate.slot].cluster);
+  }
   return candidates;
 }
 

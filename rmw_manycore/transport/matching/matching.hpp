@@ -8,7 +8,7 @@
 namespace manycore::matching {
 
 /// Throws OutOfReach while this process cannot map the cluster of an endpoint with which a new one
-/// may be matched: connect() would fail half way. Needs the registry lock.
+/// may be matched. Without the registry lock: some may come or go meanwhile.
 void require_reach(Registry & registry, const std::string & topic, EndpointKind kind);
 
 /// The endpoints that a live one has still to be matched with. Those that come later find it in the
@@ -18,7 +18,9 @@ struct Candidate {
   uint32_t incarnation;
 };
 
-/// All endpoints of its topic of the other kind. Needs the registry lock.
+/// All endpoints of its topic and of the other kind that are older. Without the registry lock,
+/// unless endpoints leave the topic all the time. Throws OutOfReach while this process cannot map
+/// the cluster of one: connect_some() would fail half way.
 std::vector<Candidate> candidates_of(Registry & registry, uint32_t endpoint);
 
 /// Joins a live endpoint with the last of the candidates that are compatible and still there, and

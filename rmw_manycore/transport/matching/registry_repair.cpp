@@ -1,6 +1,9 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 // Rebuilds the registry after the owner of its lock died. Part of Registry, defined up here because
 // matches are derived state, too.
+#include <algorithm>
+#include <vector>
+
 #include "transport/matching/matching.hpp"
 #include "transport/queue/source_table.hpp"
 #include "transport/registry/registry.hpp"
@@ -71,6 +74,7 @@ void Registry::repair() {
     }
   }
   header().closing_count = 0;
+  std::vector<uint32_t> live;
   for (uint32_t slot = 0; slot < endpoints_.high_water(); ++slot) {
     EndpointEntry & entry = endpoints_[slot];
     const SlotState state = entry.slot.state.load(std::memory_order_acquire);
@@ -79,10 +83,17 @@ void Registry::repair() {
     }
     mark_blocks_of(entry);
     if (state == SlotState::live) {
-      link_endpoint(slot);
+      live.push_back(slot);
     } else {
       ++header().closing_count;
     }
+  }
+  // In the order in which they came: one that looks for older ones to be matched with goes on.
+  std::sort(live.begin(), live.end(), [this](uint32_t a, uint32_t b) {
+    return header().last_order - endpoints_[a].order > header().last_order - endpoints_[b].order;
+  });
+  for (const uint32_t slot : live) {
+    link_endpoint(slot);
   }
   matching::undo_half_matches(*this);
   matching::recount(*this);

@@ -233,19 +233,34 @@ std::atomic<uint32_t> & Registry::bucket_of(uint64_t topic_hash) const noexcept 
 }
 
 // Under the lock nothing else changes a chain; graph reads without it look afterwards whether it
-// held. So no order of loads and stores matters.
+// held. So no order of loads and stores matters, but for the walk of for_each_older().
 constexpr auto chained = std::memory_order_relaxed;
 
+/// A chain holds at each instruction what it held before or after: should this process die in
+/// between, only `previous_of_topic` and what repair() builds anew may be wrong.
 void Registry::link_endpoint(uint32_t slot) noexcept {
   EndpointEntry & entry = endpoints_[slot];
   std::atomic<uint32_t> & bucket = bucket_of(entry.topic_hash);
-  entry.next_of_topic.store(bucket.load(chained), chained);
+  const uint32_t next = bucket.load(chained);
+  entry.previous_of_topic = nothing;
+  // Release: a walk that reads it finds the slot's new incarnation.
+  entry.next_of_topic.store(next, std::memory_order_release);
+  if (next < endpoints_.high_water()) {
+    endpoints_[next].previous_of_topic = slot;
+  }
   bucket.store(slot, chained);
 }
 
-void Registry::unlink_endpoint(uint32_t slot) noexcept {
+/// What leads to an endpoint in its chain. Where `previous_of_topic` is damaged, it is looked for.
+std::atomic<uint32_t> * Registry::link_to(uint32_t slot) noexcept {
   EndpointEntry & entry = endpoints_[slot];
   std::atomic<uint32_t> * link = &bucket_of(entry.topic_hash);
+  if (entry.previous_of_topic < endpoints_.high_water()) {
+    std::atomic<uint32_t> & next = endpoints_[entry.previous_of_topic].next_of_topic;
+    if (next.load(chained) == slot) {
+      return &next;
+    }
+  }
   uint32_t linked = link->load(chained);
   // A damaged chain is not followed out of the table, nor round and round.
   for (uint32_t i = 0; linked != slot && linked < endpoints_.high_water() && i < endpoint_capacity;
@@ -253,9 +268,48 @@ void Registry::unlink_endpoint(uint32_t slot) noexcept {
     link = &endpoints_[linked].next_of_topic;
     linked = link->load(chained);
   }
-  if (linked == slot) {
-    link->store(entry.next_of_topic.load(chained), chained);
+  return linked == slot ? link : nullptr;
+}
+
+void Registry::unlink_endpoint(uint32_t slot) noexcept {
+  EndpointEntry & entry = endpoints_[slot];
+  std::atomic<uint32_t> * const link = link_to(slot);
+  if (link == nullptr) {
+    return;
   }
+  const uint32_t next = entry.next_of_topic.load(chained);
+  link->store(next, chained);
+  if (next < endpoints_.high_water()) {
+    endpoints_[next].previous_of_topic = entry.previous_of_topic;
+  }
+}
+
+/// The next in its chain, if the endpoint was still in it after that was read: it leaves its state
+/// before it leaves its chain.
+std::optional<uint32_t> Registry::next_of(uint32_t slot, uint32_t incarnation) const noexcept {
+  const EndpointEntry & entry = endpoints_[slot];
+  const uint32_t next = entry.next_of_topic.load(std::memory_order_acquire);
+  const bool was_in_it = endpoints_.is_live(slot) && entry.slot.incarnation.load() == incarnation;
+  return was_in_it ? std::optional(next) : std::nullopt;
+}
+
+bool Registry::for_each_older(
+  uint32_t slot, const std::function<void(uint32_t, uint32_t)> & visit) const {
+  uint32_t incarnation = endpoints_[slot].slot.incarnation.load();
+  for (uint32_t i = 0; i < endpoint_capacity; ++i) {
+    const std::optional<uint32_t> next = next_of(slot, incarnation);
+    if (next && *next >= endpoints_.high_water()) {
+      return true;
+    }
+    const uint32_t incarnation_of_next = next ? endpoints_[*next].slot.incarnation.load() : 0;
+    if (!next || next_of(slot, incarnation) != next) {
+      return false;  // that one may have left meanwhile, and its slot be another chain's
+    }
+    slot = *next;
+    incarnation = incarnation_of_next;
+    visit(slot, incarnation);
+  }
+  return true;  // damaged
 }
 
 void Registry::for_each_of_bucket(
@@ -266,17 +320,6 @@ void Registry::for_each_of_bucket(
     visit(slot);
     slot = next;
   }
-}
-
-void Registry::for_each_of_topic(
-  const char * topic, const std::function<void(uint32_t, EndpointEntry &)> & visit) {
-  const uint64_t hash = hash_name(topic);
-  for_each_of_bucket(topic, [&](uint32_t slot) {
-    EndpointEntry & entry = endpoints_[slot];
-    if (entry.topic_hash == hash && std::strcmp(entry.topic, topic) == 0) {
-      visit(slot, entry);
-    }
-  });
 }
 
 void Registry::graph_changed() noexcept {

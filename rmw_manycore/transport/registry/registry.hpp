@@ -3,6 +3,7 @@
 
 #include <cstring>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -150,15 +151,17 @@ public:
   /// Line of the topic table, or nullptr.
   const TopicEntry * find_topic(const std::string & name) const noexcept;
 
-  /// Chains of endpoints by topic; the caller holds the lock.
+  /// Chains of endpoints by topic, from the youngest to the oldest; the caller holds the lock.
   void link_endpoint(uint32_t slot) noexcept;
   void unlink_endpoint(uint32_t slot) noexcept;
-  /// Visits the endpoints of a topic; the caller holds the lock.
-  void for_each_of_topic(
-    const char * topic, const std::function<void(uint32_t, EndpointEntry &)> & visit);
   /// Visits the slots of a topic's bucket, which it may share with other topics. Without the lock,
   /// a change may lead to other buckets, but not out of the table.
   void for_each_of_bucket(const char * topic, const std::function<void(uint32_t)> & visit) const;
+
+  /// Calls `visit(slot, incarnation)` for those that are older than an endpoint that is in its
+  /// chain and stays there, in its bucket, which topics may share. Needs no lock. False when
+  /// another one left the chain just where the walk stood: some may then be missing.
+  bool for_each_older(uint32_t slot, const std::function<void(uint32_t, uint32_t)> & visit) const;
 
   /// Raises the graph generation and the epochs of processes that watch it.
   void graph_changed() noexcept;
@@ -166,6 +169,8 @@ public:
 private:
   friend class Lock;
   std::atomic<uint32_t> & bucket_of(uint64_t topic_hash) const noexcept;
+  std::atomic<uint32_t> * link_to(uint32_t slot) noexcept;
+  std::optional<uint32_t> next_of(uint32_t slot, uint32_t incarnation) const noexcept;
   RobustMutex::Outcome lock_within(long wait_ns);
   RobustMutex::Outcome lock_while_owners_run();
   void let_others_go_first() const noexcept;

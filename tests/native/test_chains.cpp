@@ -1,0 +1,159 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+//
+// The chains of endpoints by topic, which one that is new walks along without the registry lock.
+#include <doctest/doctest.h>
+
+#include <csignal>
+
+#include "child.hpp"
+#include "messages.hpp"
+#include "platform_of_test.hpp"
+#include "stepped_child.hpp"
+
+using namespace manycore;
+
+namespace {
+
+/// Dies holding the registry lock, in the middle of a repair.
+const Role repairer("repairer", [](Lines & test, const Arguments & arguments) {
+  Registry registry(PlatformPaths::of(arguments.at(0)));
+  const Registry::Lock lock(registry);
+  for (std::atomic<uint32_t> & bucket : registry.header().topic_buckets) {
+    bucket = nothing;
+  }
+  test.say("holding");
+  raise(SIGSTOP);
+});
+
+/// Walks again and again along the endpoints that are older than its own. A walk that counts as
+/// whole has found the oldest; it says so after each.
+const Role walker("walker", [](Lines & test, const Arguments & arguments) {
+  Placement placement;
+  placement.platform = arguments.at(0);
+  const auto process = Process::join(placement);
+  const auto publisher = process->create_publisher(on_topic("/chain", keep_last(1)));
+  Registry registry(PlatformPaths::of(placement.platform));
+  const auto own = static_cast<uint32_t>(endpoint_in(publisher->gid()));
+  const auto oldest = static_cast<uint32_t>(std::stoul(arguments.at(1)));
+  begin_steps();
+  while (true) {
+    bool found = false;
+    const bool is_whole = registry.for_each_older(
+      own, [&](uint32_t slot, uint32_t) { found = found || slot == oldest; });
+    test.say(is_whole && !found ? "missed the oldest" : "ok");
+  }
+});
+
+using Slots = std::vector<uint32_t>;
+
+struct Fixture {
+  std::unique_ptr<Subscription> subscription(const std::string & topic = "/chain") {
+    return process->create_subscription(on_topic(topic, keep_last(1)));
+  }
+  uint32_t slot_of(const Subscription & subscription) {
+    return inspection.slot_of(subscription.gid());
+  }
+  /// From the youngest on.
+  Slots older() {
+    Slots slots;
+    CHECK(registry.for_each_older(
+      inspection.slot_of(youngest->gid()),
+      [&](uint32_t slot, uint32_t) { slots.push_back(slot); }));
+    return slots;
+  }
+
+  TestPlatform platform;
+  std::shared_ptr<Process> process = platform.join();
+  Inspection inspection{platform};
+  Registry & registry = inspection.registry();
+  Standstill receive_thread{platform, 1};
+  std::unique_ptr<Subscription> first = subscription();
+  std::unique_ptr<Subscription> second = subscription();
+  std::unique_ptr<Subscription> third = subscription();
+  std::unique_ptr<Publisher> youngest = process->create_publisher(on_topic("/chain", keep_last(1)));
+};
+
+}  // namespace
+
+TEST_CASE("older endpoints are found by age, not by slot, also after a repair") {
+  Fixture f;
+  const uint32_t free_slot = f.slot_of(*f.first);
+  f.first.reset();
+  const auto late = f.subscription();
+  REQUIRE(f.slot_of(*late) == free_slot);
+  f.youngest.reset();
+  f.youngest = f.process->create_publisher(on_topic("/chain", keep_last(1)));
+  const Slots expected{free_slot, f.slot_of(*f.third), f.slot_of(*f.second)};
+  CHECK(f.older() == expected);
+  Child dead("repairer", {f.platform.name()});
+  dead.expect("holding");
+  dead.kill();
+  CHECK(f.older() == expected);
+  { const Registry::Lock repairs(f.registry); }
+  CHECK(f.older() == expected);
+  f.third.reset();
+  CHECK(f.older() == Slots{expected[0], expected[2]});
+}
+
+TEST_CASE("a walk notices that the endpoint where it stands has left its chain for another one") {
+  Fixture f;
+  const uint32_t slot = f.slot_of(*f.third);
+  std::unique_ptr<Subscription> other;
+  Slots visited;
+  CHECK_FALSE(f.registry.for_each_older(
+    f.inspection.slot_of(f.youngest->gid()), [&](uint32_t found, uint32_t) {
+      visited.push_back(found);
+      if (other == nullptr) {
+        f.third.reset();
+        other = f.subscription("/other");
+      }
+    }));
+  REQUIRE(f.slot_of(*other) == slot);
+  CHECK(visited == Slots{slot});
+  CHECK(f.older() == Slots{f.slot_of(*f.second), f.slot_of(*f.first)});
+}
+
+// It stands at its own endpoint, has read which is the next, and that one's slot goes to another
+// chain before it looks there. The other way to be led astray is the case above.
+TEST_CASE("a walk notices that the next endpoint left, after each of its instructions") {
+  Fixture f;
+  constexpr uint64_t more_than_a_step_takes = 150;
+  std::vector<std::unique_ptr<Subscription>> next;
+  for (uint64_t i = 0; i < more_than_a_step_takes; ++i) {
+    next.push_back(f.subscription());
+  }
+  SteppedChild walker("walker", {f.platform.name(), std::to_string(f.slot_of(*f.first))});
+  std::vector<std::unique_ptr<Subscription>> others;
+  for (uint64_t instructions = 0; instructions < more_than_a_step_takes; ++instructions) {
+    CAPTURE(instructions);
+    walker.step(instructions);
+    next.pop_back();
+    others.push_back(f.subscription("/other"));
+    while (!walker.lines().has_news()) {
+      walker.run_to_system_call();
+    }
+    REQUIRE(walker.hear() == "ok");
+  }
+}
+
+TEST_CASE("a walk goes on behind endpoints that leave before it comes to them") {
+  Fixture f;
+  const Slots expected{f.slot_of(*f.third), f.slot_of(*f.first)};
+  Slots visited;
+  CHECK(f.registry.for_each_older(
+    f.inspection.slot_of(f.youngest->gid()), [&](uint32_t found, uint32_t) {
+      visited.push_back(found);
+      f.second.reset();
+    }));
+  CHECK(visited == expected);
+}
+
+TEST_CASE("an endpoint whose predecessor is damaged leaves its chain all the same") {
+  Fixture f;
+  const Slots expected{f.slot_of(*f.third), f.slot_of(*f.first)};
+  uint32_t & previous = f.registry.endpoints()[f.slot_of(*f.second)].previous_of_topic;
+  SUBCASE("by another endpoint") { previous = f.slot_of(*f.first); }
+  SUBCASE("by none") { previous = nothing; }
+  f.second.reset();
+  CHECK(f.older() == expected);
+}
