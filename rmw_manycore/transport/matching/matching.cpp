@@ -5,6 +5,7 @@
 
 #include "platform/error.hpp"
 #include "transport/matching/detaching.hpp"
+#include "transport/matching/turn.hpp"
 #include "transport/qos/liveliness.hpp"
 #include "transport/qos/qos_compatibility.hpp"
 #include "transport/queue/source_table.hpp"
@@ -15,9 +16,10 @@
 namespace manycore::matching {
 namespace {
 
-/// Each takes about 1 us under the registry lock.
-constexpr uint32_t matches_at_a_time = 64;
-constexpr int most_walks = 16;  ///< along a chain that changes
+constexpr uint64_t steps_of_a_candidate = 3;
+constexpr uint64_t steps_of_a_match = 7;
+constexpr uint64_t steps_of_growing = 200;  ///< a table by a block: system calls
+constexpr int most_walks = 16;              ///< along a chain that changes
 
 /// Both ends of a possible match.
 struct Pair {
@@ -28,7 +30,7 @@ struct Pair {
 };
 
 SourceEntry & free_source(
-  Cluster & cluster, SubscriptionHeader & subscription, uint32_t & index_out) {
+  Cluster & cluster, SubscriptionHeader & subscription, uint32_t & index_out, Turn & turn) {
   EntryTable<SourceEntry> table = source_table(cluster, subscription);
   SourceEntry * found = nullptr;
   table.visit(subscription.free_source_from, [&](SourceEntry & entry, uint32_t) {
@@ -37,6 +39,7 @@ SourceEntry & free_source(
   });
   if (found == nullptr) {
     found = &table.grow(cluster);
+    turn.spend(steps_of_growing);
   }
   index_out = table.index_of(*found).value_or(Hint::source_limit);
   if (index_out >= Hint::source_limit) {
@@ -46,7 +49,7 @@ SourceEntry & free_source(
   return *found;
 }
 
-ReaderEntry & free_reader(Cluster & cluster, TopicDsmHeader & dsm) {
+ReaderEntry & free_reader(Cluster & cluster, TopicDsmHeader & dsm, Turn & turn) {
   ReaderEntry * found = nullptr;
   visit_reader_table(
     cluster, dsm,
@@ -57,6 +60,7 @@ ReaderEntry & free_reader(Cluster & cluster, TopicDsmHeader & dsm) {
     dsm.free_reader_from);
   if (found == nullptr) {
     found = &further_readers(cluster, dsm).grow(cluster);
+    turn.spend(steps_of_growing);
   }
   dsm.free_reader_from = index_of_reader(cluster, dsm, *found).value_or(0);
   return *found;
@@ -69,7 +73,8 @@ bool wants_history(const EndpointEntry & publisher, const EndpointEntry & subscr
          subscription.qos.durability == Durability::transient_local;
 }
 
-void join(Registry & registry, const Pair & pair) {
+void join(Registry & registry, const Pair & pair, Turn & turn) {
+  turn.spend(steps_of_a_match);
   Cluster & publisher_cluster = registry.clusters().at(pair.publisher.cluster);
   Cluster & subscription_cluster = registry.clusters().at(pair.subscription.cluster);
   auto * const dsm = publisher_cluster.find<TopicDsmHeader>(pair.publisher.block.offset());
@@ -80,8 +85,8 @@ void join(Registry & registry, const Pair & pair) {
       ErrorCode::corrupt, "the registry is damaged; stop the nodes, run 'manycore clean'");
   }
   uint32_t index = 0;
-  SourceEntry & source = free_source(subscription_cluster, *header, index);
-  ReaderEntry & reader = free_reader(publisher_cluster, *dsm);
+  SourceEntry & source = free_source(subscription_cluster, *header, index, turn);
+  ReaderEntry & reader = free_reader(publisher_cluster, *dsm, turn);
   const bool history = wants_history(pair.publisher, pair.subscription);
 
   source.incarnation.fetch_add(1, std::memory_order_release);  // after it was free
@@ -143,7 +148,8 @@ void count_incompatible_type(Registry & registry, const Pair & pair) {
   }
 }
 
-void consider(Registry & registry, const Pair & pair) {
+void consider(Registry & registry, const Pair & pair, Turn & turn) {
+  turn.spend(steps_of_a_candidate);
   if (
     pair.publisher.role != pair.subscription.role ||
     (pair.subscription.ignore_local != 0 && pair.publisher.process == pair.subscription.process)) {
@@ -158,7 +164,7 @@ void consider(Registry & registry, const Pair & pair) {
     count_incompatible(registry, pair, policy);
     return;
   }
-  join(registry, pair);
+  join(registry, pair, turn);
 }
 
 void undo_half_matches_of(Registry & registry, EndpointEntry & entry) {
@@ -255,19 +261,20 @@ std::vector<Candidate> candidates_of(Registry & registry, uint32_t endpoint) {
 
 void connect_some(Registry & registry, uint32_t endpoint, std::vector<Candidate> & candidates) {
   EndpointEntry & own = registry.endpoints()[endpoint];
-  for (uint32_t i = 0; i < matches_at_a_time && !candidates.empty(); ++i) {
+  for (Turn turn; !turn.is_over() && !candidates.empty();) {
     const Candidate candidate = candidates.back();
     candidates.pop_back();
     EndpointEntry & other = registry.endpoints()[candidate.slot];
     if (
       !registry.endpoints().is_live(candidate.slot) ||
       other.slot.incarnation.load() != candidate.incarnation) {
+      turn.spend(steps_of_a_candidate);
       continue;
     }
     if (own.kind == EndpointKind::publisher) {
-      consider(registry, {endpoint, candidate.slot, own, other});
+      consider(registry, {endpoint, candidate.slot, own, other}, turn);
     } else {
-      consider(registry, {candidate.slot, endpoint, other, own});
+      consider(registry, {candidate.slot, endpoint, other, own}, turn);
     }
   }
 }
