@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import time
 from collections import deque
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 
 from rmw_manycore_py import _transport
@@ -16,7 +16,7 @@ from rmw_manycore_py.look.happenings import Happening
 from rmw_manycore_py.look.latency import TopicLatency, live_latencies
 from rmw_manycore_py.look.loads import Loads
 from rmw_manycore_py.look.sample import Sample, take_sample
-from rmw_manycore_py.look.workers import workers_of
+from rmw_manycore_py.look.workers import Workers
 
 # Rates are taken over so much time, so that a topic of 1 Hz does not flicker at two looks a second.
 WINDOW_S = 2.0
@@ -48,7 +48,7 @@ class _Seen:
     generation: int = -1
     members: tuple[tuple[int, int], ...] = ()  # slots and pids that the graph was read with
     graph: Graph | None = None
-    workers: dict[int, tuple[int, ...]] = field(default_factory=dict)
+    workers: Workers = field(default_factory=Workers)
     samples: deque[Sample] = field(default_factory=deque)
     known: dict[tuple[int, int], Member] = field(default_factory=dict)  # by slot and pid
     dead: dict[tuple[int, int], Member] = field(default_factory=dict)
@@ -58,11 +58,8 @@ class _Seen:
 class Watch:
     """Looks at one platform by its name; wakes and holds up no process of it."""
 
-    def __init__(
-        self, name: str, clock: Callable[[], float] = time.monotonic, window_s: float = WINDOW_S
-    ) -> None:
+    def __init__(self, name: str, window_s: float = WINDOW_S) -> None:
         self._name = name
-        self._clock = clock
         self._window_s = window_s
         self._seen: _Seen | None = None
         self._latencies: dict[str, TopicLatency] = {}
@@ -104,7 +101,8 @@ class Watch:
 
     def _look_at(self, seen: _Seen) -> Look:
         graph = self._graph(seen)
-        sample = take_sample(seen.platform, graph, seen.workers)
+        workers = seen.workers.of([member.pid for member in graph.members])
+        sample = take_sample(seen.platform, graph, workers)
         previous = seen.samples[-1] if seen.samples else sample
         seen.samples.append(sample)
         while len(seen.samples) > 2 and sample.time_s - seen.samples[1].time_s >= self._window_s:
@@ -113,7 +111,7 @@ class Watch:
         return Look(
             Loads(seen.samples[0], sample),
             tuple(seen.dead.values()),
-            seen.workers,
+            workers,
             self._happened(seen, Loads(previous, sample)),
             self._latencies,
             self._trace,
@@ -126,7 +124,6 @@ class Watch:
         if seen.graph is None or generation != seen.generation or members != seen.members:
             seen.graph = read_graph(seen.platform)
             seen.generation, seen.members = generation, members
-            seen.workers = workers_of(member.pid for member in seen.graph.members)
             seen.known.update({(m.slot, m.pid): m for m in seen.graph.members})
         return seen.graph
 
@@ -153,9 +150,9 @@ class Watch:
         )
 
     def _look_at_trace(self) -> None:
-        if self._clock() < self._trace_due_s:
+        if time.monotonic() < self._trace_due_s:
             return
-        self._trace_due_s = self._clock() + _TRACE_PERIOD_S
+        self._trace_due_s = time.monotonic() + _TRACE_PERIOD_S
         try:
             self._trace = _transport.trace_state(self._name)
             self._latencies = live_latencies(self._name, self._trace)

@@ -10,6 +10,7 @@ import sys
 import urllib.error
 import urllib.request
 import xml.etree.ElementTree as ElementTree
+from contextlib import closing
 
 import pytest
 from forked import forked_example, forked_manycore
@@ -23,6 +24,27 @@ pytestmark = [
     pytest.mark.integration,
     pytest.mark.skipif(not IS_MANYCORE, reason="manycore is about rmw_manycore"),
 ]
+
+
+# A node with two workers, which it needs 20 times a second.
+MATCHER = """
+import os
+import rclpy
+from ndt_world import pose, scan_at, street
+from rmw_manycore_py.ndt import MatcherOptions, VoxelMap, WorkerMatcher
+
+rclpy.init()
+node = rclpy.create_node("matcher")
+options, place = MatcherOptions(), pose(40, 0.5, 1.8, 0.01, -0.02, 0.3)
+world = street()
+scan = scan_at(world, place)
+with WorkerMatcher(options, [min(os.sched_getaffinity(0))] * 2) as matcher:
+    matcher.set_map(VoxelMap.from_points(world, options))
+    print("matching", flush=True)
+    while True:
+        rclpy.spin_once(node, timeout_sec=0.05)
+        matcher.score(scan, place)
+"""
 
 
 @pytest.fixture
@@ -190,6 +212,24 @@ def test_a_death_is_told_from_a_leave(talking, platform, start) -> None:
         f"platform {platform} has ended"
     )
     wait_until(lambda: not leftovers(platform), "nothing is left")
+
+
+def test_a_worker_in_the_place_of_a_killed_one_is_seen(start, platform) -> None:
+    matcher = start([sys.executable, "-c", MATCHER])
+    matcher.wait_for("matching")
+    with closing(Watch(platform)) as watch:
+        before = watch.look().workers[matcher.pid]
+        assert len(before) == 2
+        os.kill(before[0], signal.SIGKILL)
+
+        def is_replaced() -> bool:
+            now = watch.look().workers.get(matcher.pid, ())
+            return len(now) == 2 and before[0] not in now and before[1] in now
+
+        wait_until(is_replaced, "the other worker is seen")
+        look = watch.look()
+        assert set(look.workers[matcher.pid]) <= look.loads.after.cpu_ns.keys()
+    matcher.kill()
 
 
 def test_top_shows_nodes_and_topics(talking, start, platform) -> None:
