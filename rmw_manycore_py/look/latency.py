@@ -11,15 +11,23 @@ from numpy.typing import NDArray
 
 from rmw_manycore_py import _transport
 from rmw_manycore_py.native_errors import translate_native_errors
-from rmw_manycore_py.trace.events import EndpointId, Events, Kind, Thread, Trace, endpoint_id
-from rmw_manycore_py.trace.flows import merged
+from rmw_manycore_py.trace.events import (
+    EndpointId,
+    Events,
+    Ids,
+    Kind,
+    Thread,
+    Trace,
+    endpoint_ids,
+    endpoint_in,
+)
+from rmw_manycore_py.trace.flows import joined, merged
+from rmw_manycore_py.trace.pairs import first_of, split_by
 from rmw_manycore_py.trace.recorded import looked_at
 
 WINDOW_S = 5.0
 # Copying more than this for each look would cost more than it tells.
 _MAX_EVENTS = 1 << 20
-
-_Keys = NDArray[np.uint64]
 
 
 @dataclass(frozen=True)
@@ -43,21 +51,14 @@ def live_latencies(platform: str, state: _transport.TraceState) -> dict[str, Top
 def topic_latencies(trace: Trace, since_ns: int = 0) -> dict[str, TopicLatency]:
     """Return the latency of each topic, of the messages that arrived since then."""
     threads = list(trace.threads())
-    begins = np.concatenate([_published(thread) for _, thread in threads] or [np.empty(0)])
+    writes = joined([_published(thread) for _, thread in threads])
     ends = merged(threads, (Kind.RELEASE,))
-    ends = ends[ends["time_ns"] >= since_ns] if len(ends) else ends
-    if not len(begins) or not len(ends):
-        return {}
-    publisher_slots = ends["value"] & 0xFFFF_FFFF
-    incarnations = ends["value"] >> np.uint64(32) & np.uint64(0xFFFF)
-    end_keys = _keys(publisher_slots, incarnations, ends["number"])
-    begin_keys = _keys_of(begins)
-    order = np.argsort(begin_keys, kind="stable")
-    place = np.minimum(np.searchsorted(begin_keys, end_keys, sorter=order), len(order) - 1)
-    match = order[place]
-    found = begin_keys[match] == end_keys
-    taken_us = (ends["time_ns"] - begins["time_ns"][match])[found] / 1e3
-    return _by_topic(trace, begins[match[found]], taken_us)
+    ends = ends[ends["time_ns"] >= since_ns]
+    publishers = endpoint_in(ends["value"])
+    write = first_of((endpoint_ids(writes), writes["number"]), (publishers, ends["number"]))
+    found = write >= 0
+    taken_us = (ends["time_ns"][found] - writes["time_ns"][write[found]]) / 1e3
+    return _by_topic(trace, publishers[found], taken_us)
 
 
 def _published(thread: Thread) -> Events:
@@ -71,30 +72,14 @@ def _published(thread: Thread) -> Events:
     return writes
 
 
-def _keys_of(events: Events) -> _Keys:
-    return _keys(events["endpoint"], events["incarnation"], events["number"])
-
-
-def _keys(slots: Events, incarnations: Events, numbers: Events) -> _Keys:
-    """Return what names a record of the last seconds: the low half of its number will do."""
-    slot = slots.astype(np.uint64) << np.uint64(48)
-    incarnation = incarnations.astype(np.uint64) << np.uint64(32)
-    keys: _Keys = slot | incarnation | numbers.astype(np.uint64) & np.uint64(0xFFFF_FFFF)
-    return keys
-
-
 def _by_topic(
-    trace: Trace, begins: Events, taken_us: NDArray[np.float64]
+    trace: Trace, publishers: Ids, taken_us: NDArray[np.float64]
 ) -> dict[str, TopicLatency]:
     samples: dict[str, list[NDArray[np.float64]]] = {}
-    publishers = begins["endpoint"].astype(np.uint64) | begins["incarnation"].astype(
-        np.uint64
-    ) << np.uint64(32)
-    for publisher in np.unique(publishers):
-        slot, incarnation = int(publisher) & 0xFFFF_FFFF, int(publisher) >> 32
-        name = _topic_name(trace, endpoint_id(slot, incarnation))
+    for own in split_by(publishers):
+        name = _topic_name(trace, int(publishers[own[0]]))
         if name is not None:
-            samples.setdefault(name, []).append(taken_us[publishers == publisher])
+            samples.setdefault(name, []).append(taken_us[own])
     return {name: _quantiles(np.concatenate(parts)) for name, parts in samples.items()}
 
 
