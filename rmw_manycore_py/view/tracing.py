@@ -8,12 +8,10 @@ from pathlib import Path
 from typing import Any
 
 from rmw_manycore_py import _transport
-from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.native_errors import translate_native_errors
 from rmw_manycore_py.trace.chains import Messages
-from rmw_manycore_py.trace.files import save
 from rmw_manycore_py.trace.latency import ChainLatency, latencies
-from rmw_manycore_py.trace.recorded import recorded
+from rmw_manycore_py.trace.saving import save_recorded
 
 # Of each thread: half a minute at thousands of messages per second.
 RING_EVENTS = 1 << 18
@@ -39,11 +37,8 @@ class Tracing:
         with translate_native_errors():
             if _transport.trace_state(self._platform).started_ns:
                 _transport.stop_trace(self._platform)
-        with recorded(self._platform) as trace:
-            if not trace.event_count:
-                raise ManycoreError(f"platform {self._platform} has recorded nothing yet")
-            path = self._directory / f"{self._platform}-{next(self._numbers)}.json"
-            save(trace, path)
+        path = self._directory / f"{self._platform}-{next(self._numbers)}.json"
+        trace = save_recorded(self._platform, path)
         messages = Messages(trace)
         return {
             "file": path.name,

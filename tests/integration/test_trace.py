@@ -18,6 +18,7 @@ from support import IS_MANYCORE, MAPFILES, PLATFORMS, entries, manycore_command,
 from rmw_manycore_py.trace.events import Kind
 from rmw_manycore_py.trace.files import load
 from rmw_manycore_py.trace.flows import NO_THREAD, flows_of
+from rmw_manycore_py.view.tracing import Tracing
 
 pytestmark = [
     pytest.mark.integration,
@@ -187,6 +188,27 @@ def test_what_is_lost_is_told(talking, manycore, tmp_path) -> None:
     trace = load(tmp_path / "trace.csv")
     assert trace.lost > 0
     check_flows(trace)
+
+
+def test_a_trace_of_losses_alone_is_saved(talking, manycore, platform, tmp_path) -> None:
+    """A process without descriptors has no ring."""
+    talker = talking[0]
+
+    def lose_all() -> None:
+        manycore("trace", "start", "--node", "/talker")
+        wait_until(
+            lambda: json.loads(manycore("trace", "status", "--json"))["lost"], "events are lost"
+        )
+
+    resource.prlimit(talker.pid, resource.RLIMIT_NOFILE, (0, 0))
+    lose_all()
+    manycore("trace", "stop")
+    assert "lost" in manycore("trace", "save", "-o", tmp_path / "lost.json")
+    lose_all()
+    assert Tracing(platform, tmp_path).stop()["lost"] > 0
+    for path in (tmp_path / "lost.json", tmp_path / f"{platform}-1.json"):
+        trace = load(path)
+        assert (trace.event_count, trace.lost > 0) == (0, True)
 
 
 def test_one_trace_at_a_time_and_none_is_thrown_away(talking, manycore, tmp_path) -> None:

@@ -11,9 +11,8 @@ from rmw_manycore_py.cli.common.options import examples, platform_option
 from rmw_manycore_py.cli.common.output_file import OutputFile
 from rmw_manycore_py.cli.common.printing import counted, print_notices
 from rmw_manycore_py.cli.common.view import require_platform
-from rmw_manycore_py.errors import ManycoreError
-from rmw_manycore_py.trace.files import SUFFIXES, save
-from rmw_manycore_py.trace.recorded import recorded
+from rmw_manycore_py.trace.files import SUFFIXES
+from rmw_manycore_py.trace.saving import save_recorded
 
 
 @click.command(
@@ -31,12 +30,7 @@ from rmw_manycore_py.trace.recorded import recorded
 def command(output: Path, platform: str) -> None:
     """Write what was recorded into a file, and give its room back."""
     require_platform(platform)
-    with recorded(platform) as trace:
-        if not trace.event_count and not trace.lost:
-            raise ManycoreError(
-                f"platform {platform} has recorded nothing since its last trace was saved"
-            )
-        save(trace, output)
+    trace = save_recorded(platform, output)
     if trace.lost:
         print_notices(
             [f"{trace.lost} events were lost, as rings were full: trace start --events N"]

@@ -4,6 +4,7 @@
 import { post } from "./requests.js";
 
 const SVG = "http://www.w3.org/2000/svg";
+const HOPS = ["bridge", "communication", "node"]; // the parts that add up to a chain
 
 export class Trace {
   constructor(button) {
@@ -28,13 +29,18 @@ export class Trace {
     this.button.classList.toggle("on", on);
     this.button.textContent = on
       ? `Stop and save trace (${count} events)`
-      : events > 0 ? `Save trace (${count} events)` : "Start trace";
+      : this.waits() ? `Save trace (${count} events)` : "Start trace";
+  }
+
+  // Whether there is something to be saved, and be it how many events were lost.
+  waits() {
+    return this.state !== null && this.state.events + this.state.lost > 0;
   }
 
   async press() {
     this.busy = true;
     this.button.disabled = true;
-    const saves = this.state.on || this.state.events > 0;
+    const saves = this.state.on || this.waits();
     const answer = await post(saves ? "trace/stop" : "trace/start");
     this.busy = false;
     this.button.disabled = false;
@@ -68,7 +74,7 @@ function chainOf({ chain, nodes, parts }) {
   place.className = "chain";
   const title = document.createElement("h3");
   title.textContent = chain.map((topic, index) => `${topic} (${nodes[index]})`).join(" > ");
-  const steps = parts.filter(({ part }) => part.startsWith("communication ") || part.startsWith("node "));
+  const steps = parts.filter(({ part }) => HOPS.includes(part.split(" ")[0]));
   place.append(title, barOf(steps), tableOf(parts));
   return place;
 }
