@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 import signal
 import sys
@@ -230,20 +229,3 @@ def test_a_worker_in_the_place_of_a_killed_one_is_seen(start, platform) -> None:
         look = watch.look()
         assert set(look.workers[matcher.pid]) <= look.loads.after.cpu_ns.keys()
     matcher.kill()
-
-
-def test_top_shows_nodes_and_topics(talking, start, platform) -> None:
-    talker, _ = talking
-    top = start(forked_manycore("top", "--json", "--count", "2", "--period", "0.6"))
-    assert top.wait() == 0, top
-    look = json.loads(top.lines[-1])
-    nodes = {row["node"]: row for row in look["nodes"]}
-    assert (nodes["/talker"]["pid"], nodes["/talker"]["core"]) == (talker.pid, 3)
-    topics = {row["topic"]: row for row in look["topics"]}
-    assert topics["/chatter"]["messages_per_s"] > 0
-    assert {row["cluster"] for row in look["clusters"]} == {1, 2}
-    plain = start(forked_manycore("top", "--count", "1", "--period", "0.1", "--filter", "chat"))
-    assert plain.wait() == 0
-    assert "/chatter" in plain.output
-    assert "/talker" not in plain.output
-    talker.signal(signal.SIGKILL)

@@ -4,18 +4,22 @@
 from __future__ import annotations
 
 import json
+import os
+import signal
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import closing, suppress
+from functools import partial
 
 import click
 from rich.console import Console
-from rich.live import Live
 
+from rmw_manycore_py.cli.common.keyboard import single_keys
+from rmw_manycore_py.cli.common.looking import look_at
 from rmw_manycore_py.cli.common.options import examples, platform_option
 from rmw_manycore_py.cli.common.view import require_platform
-from rmw_manycore_py.cli.top.keys import after_keys, key_by_key, pressed
+from rmw_manycore_py.cli.top.interaction import Interaction
 from rmw_manycore_py.cli.top.rows import (
     NODE_ORDERS,
     TOPIC_ORDERS,
@@ -25,9 +29,7 @@ from rmw_manycore_py.cli.top.rows import (
     topic_rows,
 )
 from rmw_manycore_py.cli.top.screen import Choices, screen
-from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.look.watch import Look, Watch
-from rmw_manycore_py.native_errors import translate_native_errors
 
 _PLAIN_WIDTH = 1000  # into a pipe or a file: no line is broken
 
@@ -86,32 +88,37 @@ def command(
     require_platform(platform)
     choices = Choices(node_order, topic_order, pattern=pattern)
     with closing(Watch(platform, window_s=period_s)) as watch, suppress(KeyboardInterrupt):
-        if as_json:
-            for look in _looks(watch, platform, period_s, count):
+        look_now = partial(look_at, platform, watch)
+        if not as_json and _interact(look_now, period_s, count, choices):
+            return
+        for look in _looks(look_now, period_s, count):
+            if as_json:
                 click.echo(json.dumps(_row(look)))
-        elif sys.stdout.isatty() and sys.stdin.isatty():
-            _interact(watch, platform, period_s, count, choices)
-        else:
-            for look in _looks(watch, platform, period_s, count):
+            else:
                 _print(look, choices)
 
 
-def _looks(watch: Watch, platform: str, period_s: float, count: int | None) -> Iterator[Look]:
+def _looks(look_now: Callable[[], Look], period_s: float, count: int | None) -> Iterator[Look]:
     """Yield a look per period, the first one after one period."""
-    _look(watch, platform)
+    look_now()
     done = 0
     while count is None or done < count:
         time.sleep(period_s)
-        yield _look(watch, platform)
+        yield look_now()
         done += 1
 
 
-def _look(watch: Watch, platform: str) -> Look:
-    with translate_native_errors():
-        look = watch.look()
-    if look is None:
-        raise ManycoreError(f"platform {platform} has ended")
-    return look
+def _interact(
+    look_now: Callable[[], Look], period_s: float, count: int | None, choices: Choices
+) -> bool:
+    """Take the terminal until the end; tell whether it was there to be taken."""
+    interaction = Interaction(look_now, period_s, count, choices)
+    while True:
+        with single_keys(wanted=sys.stdout.isatty()) as keyboard:
+            is_stopped = keyboard is not None and interaction.run(keyboard)
+        if not is_stopped:
+            return keyboard is not None
+        os.kill(os.getpid(), signal.SIGSTOP)  # until the shell lets it go on: fg, or bg
 
 
 def _row(look: Look) -> dict[str, object]:
@@ -129,19 +136,3 @@ def _print(look: Look, choices: Choices) -> None:
         console.print(screen(look, choices))
     lines = (line.rstrip() for line in capture.get().splitlines())
     click.echo("\n".join(line for line in lines if line))
-
-
-def _interact(
-    watch: Watch, platform: str, period_s: float, count: int | None, choices: Choices
-) -> None:
-    look = _look(watch, platform)
-    due_s, done = time.monotonic() + min(period_s, 0.3), 0  # the first figures soon
-    with key_by_key(), Live(auto_refresh=False, screen=True) as live:
-        while count is None or done < count:
-            live.update(screen(look, choices, live.console.height), refresh=True)
-            after = after_keys(choices, pressed(due_s - time.monotonic()))
-            if after is None:
-                return
-            choices = after
-            if time.monotonic() >= due_s:
-                look, due_s, done = _look(watch, platform), time.monotonic() + period_s, done + 1

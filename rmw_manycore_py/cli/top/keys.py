@@ -1,40 +1,14 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Keys of `manycore top`: reading them, and what they change."""
+"""What the keys of `manycore top` change."""
 
 from __future__ import annotations
 
-import os
-import select
-import sys
-import termios
-import tty
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import replace
 
 from rmw_manycore_py.cli.top.rows import NODE_ORDERS, TOPIC_ORDERS
 from rmw_manycore_py.cli.top.screen import Choices
 
 ESCAPE, ENTER, ERASE = "\x1b", "\r\n", "\x7f\b"
-
-
-@contextmanager
-def key_by_key() -> Iterator[None]:
-    """Have the terminal hand on each key at once, unseen; Ctrl-C stays what it is."""
-    descriptor = sys.stdin.fileno()
-    before = termios.tcgetattr(descriptor)
-    tty.setcbreak(descriptor)
-    try:
-        yield
-    finally:
-        termios.tcsetattr(descriptor, termios.TCSADRAIN, before)
-
-
-def pressed(timeout_s: float) -> str:
-    """Return the keys pressed within that time, as soon as there are some."""
-    descriptor = sys.stdin.fileno()
-    ready, _, _ = select.select([descriptor], [], [], max(timeout_s, 0))
-    return os.read(descriptor, 64).decode(errors="replace") if ready else ""
 
 
 def after_keys(choices: Choices, keys: str) -> Choices | None:

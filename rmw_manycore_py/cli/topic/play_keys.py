@@ -3,12 +3,7 @@
 
 from __future__ import annotations
 
-import os
-import sys
-import termios
-import tty
 from collections.abc import Iterator
-from contextlib import contextmanager
 
 from rmw_manycore_py.recording.play.position import Position
 
@@ -39,26 +34,3 @@ def _keys(typed: str) -> Iterator[str]:
         else:
             yield rest[0]
             rest = rest[1:]
-
-
-@contextmanager
-def single_keys(*, wanted: bool) -> Iterator[int | None]:
-    """Yield the descriptor that keys come from, one by one and unseen; None without a terminal."""
-    descriptor = sys.stdin.fileno() if sys.stdin is not None else -1
-    if not wanted or not _is_ours(descriptor):
-        yield None
-        return
-    before = termios.tcgetattr(descriptor)
-    tty.setcbreak(descriptor, termios.TCSADRAIN)
-    try:
-        yield descriptor
-    finally:
-        termios.tcsetattr(descriptor, termios.TCSADRAIN, before)
-
-
-def _is_ours(descriptor: int) -> bool:
-    """Tell whether it is a terminal that this process may use: a job in the background may not."""
-    try:
-        return os.isatty(descriptor) and os.tcgetpgrp(descriptor) == os.getpgrp()
-    except OSError:
-        return False

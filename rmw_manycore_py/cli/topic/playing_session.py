@@ -14,9 +14,10 @@ from typing import Any
 import click
 import numpy as np
 
+from rmw_manycore_py.cli.common.keyboard import single_keys
 from rmw_manycore_py.cli.common.printing import counted, print_notices
 from rmw_manycore_py.cli.topic.alarm import Alarm
-from rmw_manycore_py.cli.topic.play_keys import HELP, press, single_keys
+from rmw_manycore_py.cli.topic.play_keys import HELP, press
 from rmw_manycore_py.cli.topic.status_line import StatusLine
 from rmw_manycore_py.recording.play.player import Player, Tally
 from rmw_manycore_py.recording.play.position import Position

@@ -6,16 +6,17 @@ from __future__ import annotations
 import time
 import webbrowser
 from collections.abc import Callable
+from contextlib import closing
 from pathlib import Path
 
 import click
 
+from rmw_manycore_py.cli.common.looking import look_at
 from rmw_manycore_py.cli.common.options import examples, platform_option
 from rmw_manycore_py.cli.common.output_file import OutputFile, writing
 from rmw_manycore_py.cli.common.view import require_platform
 from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.look.watch import Look, Watch
-from rmw_manycore_py.native_errors import translate_native_errors
 from rmw_manycore_py.picture.chip import Chip
 
 DEFAULT_PORT = 8642
@@ -74,15 +75,10 @@ def command(
 
 def _draw(platform: str, output: Path, period_s: float) -> None:
     require_platform(platform)
-    watch = Watch(platform)
-    with translate_native_errors():
-        first = watch.look()
-        if first is not None:
-            time.sleep(period_s)
-        look = watch.look()
-        watch.close()
-    if look is None:
-        raise ManycoreError(f"platform {platform} has ended")
+    with closing(Watch(platform)) as watch:
+        look_at(platform, watch)
+        time.sleep(period_s)
+        look = look_at(platform, watch)
     with writing(output):
         output.write_text(_svg(look))
 

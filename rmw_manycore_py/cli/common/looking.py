@@ -1,0 +1,17 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Looking at a platform that has to be there."""
+
+from __future__ import annotations
+
+from rmw_manycore_py.errors import ManycoreError
+from rmw_manycore_py.look.watch import Look, Watch
+from rmw_manycore_py.native_errors import translate_native_errors
+
+
+def look_at(platform: str, watch: Watch) -> Look:
+    """Return what the watch sees now; an error where the platform has ended."""
+    with translate_native_errors():
+        look = watch.look()
+    if look is None:
+        raise ManycoreError(f"platform {platform} has ended")
+    return look

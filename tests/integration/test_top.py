@@ -1,0 +1,108 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""`manycore top`: into a pipe, on a terminal, and in the background of one."""
+
+from __future__ import annotations
+
+import json
+import signal
+
+import pytest
+from forked import forked_example, forked_manycore
+from person import Person
+from support import IS_MANYCORE, environment, manycore_command
+
+pytestmark = [
+    pytest.mark.integration,
+    pytest.mark.skipif(not IS_MANYCORE, reason="manycore is about rmw_manycore"),
+]
+
+WHOLE_SCREEN = "\x1b\\[\\?1049h"
+USUAL_SCREEN = "\x1b\\[\\?1049l"
+
+
+@pytest.fixture
+def talking(start):
+    """A talker and a listener, each in its cluster, that hear each other."""
+    listener = start(forked_example("listener"), cluster=2)
+    talker = start(forked_example("talker"), MANYCORE_CORE="3")
+    listener.wait_for("I heard")
+    return talker, listener
+
+
+@pytest.fixture
+def at_a_terminal(platform):
+    """Return a function that has a person start a command."""
+    people = []
+
+    def sit_down(*command: object) -> Person:
+        env = {**environment(platform), "TERM": "xterm"}
+        people.append(Person(list(map(str, command)), env))
+        return people[-1]
+
+    yield sit_down
+    for person in people:
+        person.close()
+
+
+def test_top_shows_nodes_and_topics(talking, start, platform) -> None:
+    talker, _ = talking
+    top = start(forked_manycore("top", "--json", "--count", "2", "--period", "0.6"))
+    assert top.wait() == 0, top
+    look = json.loads(top.lines[-1])
+    nodes = {row["node"]: row for row in look["nodes"]}
+    assert (nodes["/talker"]["pid"], nodes["/talker"]["core"]) == (talker.pid, 3)
+    topics = {row["topic"]: row for row in look["topics"]}
+    assert topics["/chatter"]["messages_per_s"] > 0
+    assert {row["cluster"] for row in look["clusters"]} == {1, 2}
+    plain = start(forked_manycore("top", "--count", "1", "--period", "0.1", "--filter", "chat"))
+    assert plain.wait() == 0
+    assert "/chatter" in plain.output
+    assert "/talker" not in plain.output
+    talker.signal(signal.SIGKILL)
+
+
+def test_keys_choose_what_a_terminal_shows(talking, at_a_terminal) -> None:
+    person = at_a_terminal(*manycore_command("top"))
+    person.sees(WHOLE_SCREEN)
+    person.sees("/talker")
+    person.type("n")
+    person.sees("nodes by cluster")
+    person.type("/chat\r")
+    person.sees("with 'chat'")
+    person.type("q")
+    person.sees(USUAL_SCREEN)
+    assert person.leaves() == 0
+
+
+@pytest.mark.parametrize("end", [signal.SIGTERM, signal.SIGINT])
+def test_a_signal_leaves_the_terminal_as_it_was(talking, at_a_terminal, end) -> None:
+    person = at_a_terminal(*manycore_command("top"))
+    person.sees("/talker")
+    person.process.send_signal(end)
+    person.sees(USUAL_SCREEN)
+    assert person.leaves() == 0
+
+
+def test_in_the_background_it_prints_and_leaves_the_terminal_alone(talking, at_a_terminal) -> None:
+    """A job that the kernel had stopped would make the shell's wait end with 128 + SIGTTOU."""
+    top = " ".join(map(str, manycore_command("top", "--count", "2", "--period", "0.2")))
+    person = at_a_terminal("bash", "-mc", f"{top} & wait $!; echo status $?")
+    said = person.sees(r"(?s)(.*)status (\d+)")
+    assert said[2] == "0"
+    assert "/talker" in said[1]
+    assert "\x1b[?" not in said[1]
+    assert person.leaves() == 0
+
+
+def test_stopped_it_gives_the_terminal_back(talking, at_a_terminal) -> None:
+    top = " ".join(map(str, manycore_command("top")))
+    person = at_a_terminal("bash", "-mc", f"{top}; echo status $?; stty -a; fg; echo over")
+    person.sees("/talker")
+    person.type("\x1a")
+    assert "\x1b[?1049l" in person.sees(r"(?s)(.*)status 14\d")[1]  # 128 + SIGSTOP or SIGTSTP
+    assert " icanon" in person.sees(r"(?s)speed(.*)echoke")[1]
+    person.sees(WHOLE_SCREEN)
+    person.sees("/listener")
+    person.type("q")
+    person.sees("over")
+    assert person.leaves() == 0
