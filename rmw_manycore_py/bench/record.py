@@ -14,7 +14,6 @@ from rmw_manycore_py.bench.question import Question, Run
 from rmw_manycore_py.bench.session import Session
 from rmw_manycore_py.bench.summary import Goal, Result
 from rmw_manycore_py.recording.library import require_library
-from rmw_manycore_py.recording.recording import Recording
 
 TOPIC = "/bench"
 SECONDS = 20.0
@@ -48,6 +47,8 @@ def measure(run: Run) -> list[Result]:
 
 
 def _measure(run: Run, stream: Stream) -> list[Result]:
+    from rmw_manycore_py.recording.recording import Recording  # needs the library
+
     lost, uncounted, rates, medians, p99s = [], [], [], [], []
     for turn in range(run.rounds):
         with tempfile.TemporaryDirectory() as directory:

@@ -4,6 +4,8 @@
 from __future__ import annotations
 
 import re
+import subprocess
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -48,6 +50,27 @@ def test_every_command_has_help_with_examples(path: tuple[str, ...]) -> None:
     result = manycore(*path, "--help")
     assert result.exit_code == 0
     assert f"Examples:\n    manycore {' '.join(path)}" in result.output or path == ("env",)
+
+
+# What extras install; the command line loads without.
+WITHOUT_EXTRAS = """
+import sys
+for name in ("aiohttp", "matplotlib", "mcap", "open3d", "perfetto", "pypcd4", "rosbags"):
+    sys.modules[name] = None
+from test_commands import commands
+print(len(list(commands())))
+"""
+
+
+def test_every_command_loads_without_the_extras() -> None:
+    found = subprocess.run(
+        [sys.executable, "-c", WITHOUT_EXTRAS],
+        cwd=Path(__file__).parent,
+        capture_output=True,
+        text=True,
+    )
+    assert found.returncode == 0, found.stderr
+    assert int(found.stdout) == len(list(commands()))
 
 
 def test_the_verbs_are_there() -> None:
