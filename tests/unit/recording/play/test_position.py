@@ -17,9 +17,34 @@ S = 1_000_000_000
 class Watch:
     def __init__(self) -> None:
         self.now_ns = 5 * S
+        self.asked = threading.Event()
 
     def __call__(self) -> int:
+        self.asked.set()
         return self.now_ns
+
+
+class Waiting:
+    """A thread that waits for a position.
+
+    It looks at the watch under the position's lock, and gives that back when it sleeps: what
+    changes the position after the look finds it asleep.
+    """
+
+    def __init__(self, position: Position, watch: Watch, at_ns: int) -> None:
+        self.result: int | None = -1
+        self._thread = threading.Thread(target=self._wait, args=(position, at_ns))
+        watch.asked.clear()
+        self._thread.start()
+        assert watch.asked.wait(30)
+
+    def _wait(self, position: Position, at_ns: int) -> None:
+        self.result = position.wait_until(at_ns)
+
+    def ended(self) -> int | None:
+        self._thread.join(30)
+        assert not self._thread.is_alive()
+        return self.result
 
 
 @pytest.fixture
@@ -67,18 +92,23 @@ def test_a_step_counts_only_while_paused(watch: Watch) -> None:
     position = Position(1.0, paused=False, now_ns=watch)
     position.step()
     position.toggle_pause()
-    waiting = threading.Thread(target=position.wait_until, args=(S,))
-    waiting.start()
+    waiting = Waiting(position, watch, S)
     position.stop()
-    waiting.join()
+    assert waiting.ended() is None
     assert position.at_ns() == 0
+
+
+def test_a_step_wakes_the_wait(watch: Watch) -> None:
+    position = Position(1.0, paused=True, now_ns=watch)
+    waiting = Waiting(position, watch, S)
+    position.step()
+    assert waiting.ended() == 0
+    assert position.at_ns() == S
 
 
 def test_stopping_ends_the_wait(watch: Watch) -> None:
     position = Position(1.0, paused=True, now_ns=watch)
-    found: list[int | None] = [0]
-    waiting = threading.Thread(target=lambda: found.append(position.wait_until(S)))
-    waiting.start()
+    waiting = Waiting(position, watch, S)
     position.stop()
-    waiting.join()
-    assert found == [0, None]
+    assert waiting.ended() is None
+    assert position.wait_until(S) is None
