@@ -156,10 +156,14 @@ class Pages:
 
     async def start_trace(self, _request: web.Request) -> web.StreamResponse:
         """Begin a trace."""
+        if (absence := self._absence()) is not None:
+            return absence
         return await _answered(asyncio.to_thread(self._tracing.start))
 
     async def stop_trace(self, _request: web.Request) -> web.StreamResponse:
         """End a trace and save it."""
+        if (absence := self._absence()) is not None:
+            return absence
         return await _answered(asyncio.to_thread(self._tracing.stop))
 
     async def trace_file(self, request: web.Request) -> web.StreamResponse:
@@ -171,13 +175,18 @@ class Pages:
         return web.FileResponse(path, headers=said)
 
     async def parameters(self, request: web.Request) -> web.StreamResponse:
-        """Ask a node for its parameters."""
+        """Ask a node for its parameters, which joins the platform: one that ended stays ended."""
+        if (absence := self._absence()) is not None:
+            return absence
         node = request.query.get("node", "")
         look = self._viewer.look
         known = look is not None and any(node in member.nodes for member in look.graph.members)
         if not known:
             return _problem(404, f"there is no node '{node}'")
         return await _answered(parameters_of(self._viewer.platform, node))
+
+    def _absence(self) -> web.StreamResponse | None:
+        return None if self._viewer.is_there else _problem(409, self._viewer.state)
 
 
 async def _answered(work: Awaitable[Any]) -> web.StreamResponse:
