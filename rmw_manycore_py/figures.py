@@ -21,7 +21,7 @@ def load_figure() -> type[Figure]:
     except ImportError as error:
         raise ManycoreError(
             f"matplotlib cannot be loaded ({error}). Plots need it: "
-            "pip install 'rmw-manycore[bench]', or [ndt]"
+            "pip install 'rmw-manycore[bench]', or [ndt], or [trace]"
         ) from error
     figure_class: type[Figure] = figure.Figure  # unknown to type checkers without matplotlib
     return figure_class

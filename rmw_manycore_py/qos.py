@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import TYPE_CHECKING, TypedDict
 
 from rmw_manycore_py.words import Durability, History, Liveliness, Reliability
@@ -22,6 +23,16 @@ class Policies(TypedDict, total=False):
     lifespan_ns: int | None
     liveliness: Liveliness
     liveliness_lease_ns: int | None
+
+
+def all_reliable(offers: Iterable[Qos]) -> bool:
+    """Tell whether all of these publishers are reliable; true of none."""
+    return all(offer.reliability == "reliable" for offer in offers)
+
+
+def all_transient_local(offers: Iterable[Qos]) -> bool:
+    """Tell whether all of these publishers keep messages for late subscribers; true of none."""
+    return all(offer.durability == "transient_local" for offer in offers)
 
 
 def policies_of(qos: Qos) -> Policies:

@@ -121,8 +121,9 @@ class Loads:
         result: Counts = missed + after.totals(REFUSED, publishers=True)
         return result
 
+    @cached_property
     def topics(self) -> dict[str, TopicLoad]:
-        """Return the load of each topic."""
+        """The load of each topic."""
         queued, capacity = self.fullest
         columns = (self.rates_hz, self.bytes_per_s, queued, capacity, self.lost, self.losses_per_s)
         rows = zip(*(column.tolist() for column in columns), strict=True)

@@ -29,7 +29,7 @@ def marks_of(look: Look, layout: Layout, arcs: tuple[Arc, ...]) -> Marks:
         marks.update(_of_cluster(look.loads, box, rates_hz.get(box.id, 0.0)))
     for cell in layout.cells:
         marks.update(_of_cell(look.loads, cell))
-    topics = look.loads.topics()
+    topics = look.loads.topics
     for arc in arcs:
         load = topics.get(arc.topic)
         if load is not None:

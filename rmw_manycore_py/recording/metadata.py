@@ -92,11 +92,6 @@ def _topic(row: TopicRow) -> dict[str, Any]:
     return {"topic_metadata": metadata, "message_count": row.messages}
 
 
-def text_of(found: dict[str, Any]) -> str:
-    """Return it as rosbag2 writes it into the recording itself."""
-    return dump(found)
-
-
 def write_metadata(folder: Path, found: dict[str, Any]) -> None:
     """Write metadata.yaml, whole or not at all."""
     path = folder / FILE_NAME

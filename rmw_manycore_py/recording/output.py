@@ -11,10 +11,10 @@ from mcap.writer import CompressionType, Writer
 
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
 from rmw_manycore_py.recording.definitions import Schema
-from rmw_manycore_py.recording.metadata import Span, TopicRow, information, text_of
+from rmw_manycore_py.recording.metadata import Span, TopicRow, information
 from rmw_manycore_py.recording.offers import profiles_text
+from rmw_manycore_py.recording.plain_yaml import dump
 
-COMPRESSIONS = ("none", "lz4", "zstd")
 # The largest part of a recording that reading one message takes into memory.
 CHUNK_BYTES = 1 << 20
 _SEQUENCE_MASK = 0xFFFFFFFF
@@ -97,7 +97,7 @@ class Output:
         span = Span(self.messages, self._start_ns, self._end_ns)
         found = information(self.path.name, rows, span)
         self._writer.flush()
-        self._writer.add_metadata("rosbag2", {"serialized_metadata": text_of(found)})
+        self._writer.add_metadata("rosbag2", {"serialized_metadata": dump(found)})
         self._writer.finish()
         self._file.close()
         return found

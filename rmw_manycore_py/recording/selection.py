@@ -6,6 +6,7 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
+from rmw_manycore_py.ros.names import is_hidden
 from rmw_manycore_py.ros.patterns import is_pattern, matches
 
 
@@ -35,7 +36,7 @@ class Selection:
             return False
         if _fits(self.names, topic):
             return True
-        if not self.hidden and any(part.startswith("_") for part in topic.split("/")):
+        if not self.hidden and is_hidden(topic):
             return False
         return self.all or type_name in self.types or _found(self.regex, topic)
 

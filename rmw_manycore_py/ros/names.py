@@ -11,6 +11,11 @@ def full_node_name(namespace: str, name: str) -> str:
     return f"/{namespace.strip('/')}/{name}".replace("//", "/")
 
 
+def is_hidden(name: str) -> bool:
+    """Tell whether ROS hides a topic, service or node of that full name."""
+    return any(part.startswith("_") for part in name.split("/"))
+
+
 def expand(topic: str, node: str) -> str:
     """Return the full name of a topic that the node of that full name writes."""
     if topic.startswith("/"):

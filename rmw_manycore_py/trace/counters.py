@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from rmw_manycore_py.trace.events import Events, Kind, Trace, endpoint_ids, endpoint_in
 from rmw_manycore_py.trace.flows import merged
-from rmw_manycore_py.trace.names import core_name
+from rmw_manycore_py.trace.names import place_name
 from rmw_manycore_py.trace.pairs import groups_of, split_by
 
 
@@ -73,7 +73,7 @@ def _cpu_shares(trace: Trace) -> Iterator[Counter]:
         if not spans_ns.any():
             continue
         shares = 100 * np.diff(events["value"].astype(np.int64)) / np.maximum(spans_ns, 1)
-        name = f"CPU % cluster {process.cluster} > {core_name(process)}"
+        name = f"CPU % {place_name(process)}"
         if process.core is None and not process.is_receive_thread:
             name += f" ({process.label} {process.pid})"
         # A share is that of the time until the next look.

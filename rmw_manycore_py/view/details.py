@@ -37,7 +37,7 @@ def node_details(look: Look, name: str) -> Row | None:
 
 def topic_details(look: Look, name: str) -> Row | None:
     """Return load and endpoints of a topic; None where there is no such topic."""
-    load = look.loads.topics().get(name)
+    load = look.loads.topics.get(name)
     if load is None:
         return None
     latency = look.latencies.get(name)

@@ -10,8 +10,8 @@ from typing import Any
 from rmw_manycore_py import _transport
 from rmw_manycore_py.native_errors import translate_native_errors
 from rmw_manycore_py.trace.chains import Messages
+from rmw_manycore_py.trace.files.saving import save_recorded
 from rmw_manycore_py.trace.latency import ChainLatency, latencies
-from rmw_manycore_py.trace.saving import save_recorded
 
 # Of each thread: half a minute at thousands of messages per second.
 RING_EVENTS = 1 << 18

@@ -10,6 +10,7 @@ from rmw_manycore_py._transport import EndpointInfo, NodeInfo, ProcessInfo
 from rmw_manycore_py.cli.common.rows import Row, counters_row
 from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.native_errors import translate_native_errors
+from rmw_manycore_py.ros.names import full_node_name, is_hidden
 
 
 def platform_names() -> list[str]:
@@ -51,12 +52,7 @@ def losses(endpoints: Iterable[EndpointInfo]) -> list[Row]:
 
 def full_name(node: NodeInfo) -> str:
     """Return a node's namespace and name in one."""
-    return _joined(node.namespace, node.name)
-
-
-def is_hidden(name: str) -> bool:
-    """Tell whether ROS hides a topic, service or node of that name."""
-    return any(part.startswith("_") for part in name.split("/"))
+    return full_node_name(node.namespace, node.name)
 
 
 def topics(endpoints: Iterable[EndpointInfo], *, hidden: bool = False) -> list[Row]:
@@ -152,11 +148,7 @@ def node_interfaces(endpoints: Iterable[EndpointInfo], node: str, *, hidden: boo
 
 
 def _owner(endpoint: EndpointInfo) -> str:
-    return _joined(endpoint.node_namespace, endpoint.node_name)
-
-
-def _joined(namespace: str, name: str) -> str:
-    return f"{namespace.rstrip('/')}/{name}"
+    return full_node_name(endpoint.node_namespace, endpoint.node_name)
 
 
 LOSSES = ("lost", "expired", "refused")

@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import click
 
-from rmw_manycore_py.cli.common import view
 from rmw_manycore_py.cli.common.options import (
     discovery_options,
     examples,
@@ -21,6 +20,7 @@ from rmw_manycore_py.cli.lifecycle.services import (
     existing_lifecycle_node,
     lifecycle_nodes,
 )
+from rmw_manycore_py.ros.names import is_hidden
 
 
 @click.command("get", epilog=examples("manycore lifecycle get", "manycore lifecycle get /camera"))
@@ -35,7 +35,7 @@ def command(node: str | None, platform: str, as_json: bool, hidden: bool) -> Non
         names = [existing_lifecycle_node(platform, node)]
     else:
         found = lifecycle_nodes(platform)
-        names = [name for name in found if hidden or not view.is_hidden(name)]
+        names = [name for name in found if hidden or not is_hidden(name)]
     with tool_node(platform) as tool:
         states = {name: Lifecycle(tool, name).state() for name in names}
     if as_json:

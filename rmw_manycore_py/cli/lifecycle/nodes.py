@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import click
 
-from rmw_manycore_py.cli.common import view
 from rmw_manycore_py.cli.common.options import (
     count_option,
     discovery_options,
@@ -16,6 +15,7 @@ from rmw_manycore_py.cli.common.options import (
 )
 from rmw_manycore_py.cli.common.printing import print_json
 from rmw_manycore_py.cli.lifecycle.services import lifecycle_nodes
+from rmw_manycore_py.ros.names import is_hidden
 
 
 @click.command("nodes", epilog=examples("manycore lifecycle nodes"))
@@ -28,7 +28,7 @@ from rmw_manycore_py.cli.lifecycle.services import lifecycle_nodes
 def command(platform: str, count: bool, hidden: bool, everything: bool, as_json: bool) -> None:
     """List the nodes that have a lifecycle."""
     found = lifecycle_nodes(platform)
-    names = [name for name in found if hidden or everything or not view.is_hidden(name)]
+    names = [name for name in found if hidden or everything or not is_hidden(name)]
     if as_json:
         print_json(names)
     elif count:

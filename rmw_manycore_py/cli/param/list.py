@@ -8,7 +8,6 @@ import re
 import click
 from typing_extensions import override
 
-from rmw_manycore_py.cli.common import view
 from rmw_manycore_py.cli.common.completion import complete_nodes
 from rmw_manycore_py.cli.common.node_names import existing_node, nodes_with_service
 from rmw_manycore_py.cli.common.options import (
@@ -22,6 +21,7 @@ from rmw_manycore_py.cli.common.printing import print_json
 from rmw_manycore_py.cli.common.tool_node import tool_node
 from rmw_manycore_py.cli.param.parameters import TYPES, Parameters
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
+from rmw_manycore_py.ros.names import is_hidden
 
 _PREFIXES = "--param-prefixes"
 
@@ -78,7 +78,7 @@ def command(
         owners = nodes_with_service(
             platform, "list_parameters", "rcl_interfaces/srv/ListParameters"
         )
-        names = [name for name in owners if hidden or not view.is_hidden(name)]
+        names = [name for name in owners if hidden or not is_hidden(name)]
     with tool_node(platform) as tool:
         found = {name: _types(Parameters(tool, name), prefixes) for name in names}
     found = {

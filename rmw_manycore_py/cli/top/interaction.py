@@ -14,7 +14,7 @@ from rich.live import Live
 from rmw_manycore_py.cli.top.keys import after_keys
 from rmw_manycore_py.cli.top.screen import Choices, screen
 from rmw_manycore_py.look.watch import Look
-from rmw_manycore_py.signals import STOP_SIGNALS, signal_inbox
+from rmw_manycore_py.signals import STOP_SIGNALS, SignalInbox, signal_inbox
 
 _FIRST_S = 0.3  # the first figures soon
 
@@ -38,10 +38,11 @@ class Interaction:
             signal_inbox((*STOP_SIGNALS, signal.SIGTSTP)) as inbox,
             Live(auto_refresh=False, screen=True) as live,
         ):
+            sources: list[int | SignalInbox] = [keyboard, inbox]
             while self._left != 0:
                 live.update(screen(self._look, self._choices, live.console.height), refresh=True)
                 left_s = max(self._due_s - time.monotonic(), 0)
-                ready, _, _ = select.select([keyboard, inbox], [], [], left_s)
+                ready, _, _ = select.select(sources, [], [], left_s)
                 if inbox in ready:
                     return inbox.take() == [signal.SIGTSTP]
                 if keyboard in ready and not self._type(os.read(keyboard, 64)):

@@ -85,7 +85,7 @@ def topic_rows(look: Look) -> list[Row]:
     of its fullest queue. `p99_us` is None unless the platform is traced.
     """
     rows = []
-    for name, load in look.loads.topics().items():
+    for name, load in look.loads.topics.items():
         latency = look.latencies.get(name)
         rows.append(
             {

@@ -17,6 +17,7 @@ from rmw_manycore_py.cli.common.suggestions import did_you_mean
 from rmw_manycore_py.cli.common.tool_node import spin_once, tool_node
 from rmw_manycore_py.cli.topic.qos_options import QosOptions
 from rmw_manycore_py.errors import ManycoreError
+from rmw_manycore_py.qos import all_reliable, all_transient_local
 from rmw_manycore_py.ros.names import expand
 
 ANY_QOS = QosOptions()
@@ -148,10 +149,7 @@ def offered_policies(endpoints: Iterable[EndpointInfo]) -> tuple[bool | None, bo
     offers = [e.qos for e in endpoints if e.kind == "publisher"]
     if not offers:
         return None, None
-    return (
-        all(qos.reliability == "reliable" for qos in offers),
-        all(qos.durability == "transient_local" for qos in offers),
-    )
+    return all_reliable(offers), all_transient_local(offers)
 
 
 def mixed_offers(endpoints: Iterable[EndpointInfo], asked: QosOptions) -> Iterator[str]:

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from rmw_manycore_py.cli.common.output_file import writing
-from rmw_manycore_py.errors import ManycoreError
+from rmw_manycore_py.figures import load_figure
 from rmw_manycore_py.trace.latency import ChainLatency
 
 _HOPS = ("bridge", "communication", "node")
@@ -15,11 +15,7 @@ _HOPS = ("bridge", "communication", "node")
 
 def plot(chains: Sequence[ChainLatency], path: Path) -> None:
     """Draw a bar for each chain, made of its hops' medians."""
-    try:
-        from matplotlib.figure import Figure
-    except ImportError as error:
-        raise ManycoreError("--plot needs matplotlib: pip install 'rmw-manycore[trace]'") from error
-    figure = Figure(figsize=(10, 1.5 + len(chains)), layout="constrained")
+    figure = load_figure()(figsize=(10, 1.5 + len(chains)), layout="constrained")
     axes = figure.subplots()
     for row, one in enumerate(chains):
         left_us = 0.0

@@ -12,7 +12,7 @@ from rmw_manycore_py.cli.common.output_file import OutputFile
 from rmw_manycore_py.cli.common.printing import counted, print_notices
 from rmw_manycore_py.cli.common.view import require_platform
 from rmw_manycore_py.trace.files import SUFFIXES
-from rmw_manycore_py.trace.saving import save_recorded
+from rmw_manycore_py.trace.files.saving import save_recorded
 
 
 @click.command(

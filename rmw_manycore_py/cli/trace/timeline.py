@@ -10,11 +10,11 @@ from typing import Any
 import numpy as np
 
 from rmw_manycore_py.cli.common.output_file import writing
-from rmw_manycore_py.errors import ManycoreError
+from rmw_manycore_py.figures import load_figure
 from rmw_manycore_py.trace.chains import Passage
 from rmw_manycore_py.trace.events import Process, Trace
 from rmw_manycore_py.trace.flows import flows_of
-from rmw_manycore_py.trace.names import core_name, process_name
+from rmw_manycore_py.trace.names import core_name, place_order, process_name
 from rmw_manycore_py.trace.slices import Slices, category_of, name_of, slices_of
 
 _COLORS = {
@@ -34,14 +34,10 @@ _MIN_NAMED = 0.15  # of it that a slice takes to have its name in it
 
 def draw(trace: Trace, passage: Passage, path: Path) -> None:
     """Draw what all threads with a part in it did, from the first publish to the last callback."""
-    try:
-        from matplotlib.figure import Figure
-    except ImportError as error:
-        raise ManycoreError("draw needs matplotlib: pip install 'rmw-manycore[trace]'") from error
     margin_ns = int(_MARGIN * (passage.callback_ns[-1] - passage.published_ns[0]))
     window_ns = (passage.published_ns[0] - margin_ns, passage.callback_ns[-1] + margin_ns)
     rows = _rows(trace, window_ns)
-    figure = Figure(figsize=(11, 1.2 + 0.55 * len(rows)), layout="constrained")
+    figure = load_figure()(figsize=(11, 1.2 + 0.55 * len(rows)), layout="constrained")
     axes = figure.subplots()
     for y, (_, slices) in enumerate(rows.values()):
         _draw_thread(axes, trace, slices, y, window_ns)
@@ -67,13 +63,8 @@ def _rows(trace: Trace, window_ns: tuple[int, int]) -> dict[int, tuple[Process, 
         slices = slices[(slices["end_ns"] >= window_ns[0]) & (slices["begin_ns"] <= window_ns[1])]
         if {category_of(what) for what in np.unique(slices["what"])} - {"wait", "event"}:
             found[index] = (process, slices)
-    order = sorted(found, key=lambda index: _place(found[index][0]))
+    order = sorted(found, key=lambda index: place_order(found[index][0]))
     return {index: found[index] for index in order}
-
-
-def _place(process: Process) -> tuple[int, int]:
-    core = 1000 if process.core is None else process.core
-    return process.cluster, -1 if process.is_receive_thread else core
 
 
 def _label(trace: Trace, process: Process) -> str:

@@ -14,6 +14,7 @@ from rmw_manycore_bridge.outside import Outside as Domain
 from rmw_manycore_bridge.policies import to_rclpy
 from rmw_manycore_py._transport import Qos
 from rmw_manycore_py.recording.play.stage import Voice
+from rmw_manycore_py.recording.type_hash import type_hash_of
 from rmw_manycore_py.ros.domain import ros_domain
 
 # How long reliable subscribers are waited for at the end; those that stand still get no more.
@@ -31,7 +32,7 @@ class Outside:
     def types_of(self, topic: str) -> dict[str, str]:
         """Return the types that others have of a topic, as far as they are known by now."""
         others = [*self._domain.publishers(topic), *self._domain.subscriptions(topic)]
-        return {other.topic_type: _hash_text(other) for other in others}
+        return {other.topic_type: type_hash_of(other) for other in others}
 
     def publisher(self, topic: str, type_name: str, type_hash: str, qos: Qos) -> Voice:
         """Return a publisher.
@@ -56,8 +57,3 @@ class Outside:
         for publisher in self._publishers:
             publisher.wait_for_all_acked(_PATIENCE)
         self._domain.close()
-
-
-def _hash_text(endpoint: Any) -> str:
-    text = str(endpoint.topic_type_hash)
-    return text if text.startswith("RIHS01_") else ""

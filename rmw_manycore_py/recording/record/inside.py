@@ -10,10 +10,7 @@ from rmw_manycore_py import _transport
 from rmw_manycore_py._transport import Qos
 from rmw_manycore_py.native_errors import translate_native_errors
 from rmw_manycore_py.recording.place import own_cluster
-from rmw_manycore_py.recording.record.side import Ears, Heard, Offer
-
-# So many messages of one topic are taken before another has its turn.
-_BATCH = 64
+from rmw_manycore_py.recording.record.side import BATCH, Ears, Heard, Offer
 
 
 class Inside:
@@ -56,7 +53,7 @@ class Inside:
         if self._woken.is_set():
             self._woken.clear()
             return
-        is_busy = sum(ears.take(_BATCH) for ears in self._ears) > 0
+        is_busy = sum(ears.take(BATCH) for ears in self._ears) > 0
         generation = self._process.graph_generation()
         if generation != self._generation:
             self._generation = generation

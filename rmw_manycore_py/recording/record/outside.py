@@ -14,11 +14,9 @@ from rmw_manycore_bridge.outside import Outside as Domain
 from rmw_manycore_bridge.policies import from_rclpy, to_rclpy
 from rmw_manycore_bridge.rcl import RawReader
 from rmw_manycore_py._transport import Qos
-from rmw_manycore_py.recording.record.side import Ears, Heard, Offer
+from rmw_manycore_py.recording.record.side import BATCH, Ears, Heard, Offer
+from rmw_manycore_py.recording.type_hash import type_hash_of
 from rmw_manycore_py.ros.domain import ros_domain
-
-# So many messages of one topic are taken before another has its turn.
-_BATCH = 64
 
 
 class Outside:
@@ -61,9 +59,8 @@ class Outside:
 
 
 def _offer(publisher: Any) -> Offer:
-    text = str(publisher.topic_type_hash)
-    type_hash = text if text.startswith("RIHS01_") else ""
-    return Offer(publisher.topic_type, type_hash, from_rclpy(publisher.qos_profile))
+    qos = from_rclpy(publisher.qos_profile)
+    return Offer(publisher.topic_type, type_hash_of(publisher), qos)
 
 
 class _OutsideEars:
@@ -90,7 +87,7 @@ class _OutsideEars:
 
     def pump_outside(self) -> None:
         """Hand on what has arrived; for more than that the wait set does not sleep."""
-        self.take(_BATCH)
+        self.take(BATCH)
 
     def take(self, limit: int) -> bool:
         """Hand on so many messages at most; tell whether there may be more."""

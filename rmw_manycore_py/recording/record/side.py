@@ -9,6 +9,9 @@ from typing import Protocol
 
 from rmw_manycore_py._transport import Qos
 
+# So many messages of one topic are taken before another has its turn.
+BATCH = 64
+
 
 @dataclass(frozen=True)
 class Offer:

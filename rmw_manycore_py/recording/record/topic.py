@@ -7,6 +7,7 @@ import time
 from collections.abc import Callable, Sequence
 
 from rmw_manycore_py._transport import Qos
+from rmw_manycore_py.qos import all_reliable, all_transient_local
 from rmw_manycore_py.recording.metadata import TopicRow
 from rmw_manycore_py.recording.record.side import Ears, Offer, Side
 from rmw_manycore_py.recording.record.writing import Taken, WritingThread
@@ -74,11 +75,9 @@ def request_for(offers: Sequence[Qos], depth: int) -> Qos:
 
     A late subscriber of a latched topic gets what each publisher has kept, so depths add up.
     """
-    reliable = all(offer.reliability == "reliable" for offer in offers)
-    kept = all(offer.durability == "transient_local" for offer in offers)
     return Qos(
-        reliability="reliable" if reliable else "best_effort",
-        durability="transient_local" if kept else "volatile",
+        reliability="reliable" if all_reliable(offers) else "best_effort",
+        durability="transient_local" if all_transient_local(offers) else "volatile",
         depth=max(depth, sum(offer.depth for offer in offers)),
     )
 

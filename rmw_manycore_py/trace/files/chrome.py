@@ -15,14 +15,13 @@ from rmw_manycore_py.trace.counters import counters_of
 from rmw_manycore_py.trace.events import Process, Trace
 from rmw_manycore_py.trace.files.embedded import from_text, to_text, wrong
 from rmw_manycore_py.trace.flows import flows_of
-from rmw_manycore_py.trace.names import core_name, process_name
+from rmw_manycore_py.trace.names import place_name, place_order, process_name
 from rmw_manycore_py.trace.pairs import groups_of, split_by
 from rmw_manycore_py.trace.slices import ARGUMENTS, Slices, category_of, name_of, slices_of
 
 _KEY = "manycore"
 _US = "%d.%03d"  # a time in microseconds, as two numbers
 _SORT = ("what", "endpoint", "is_end_known")  # slices of one sort differ in numbers only
-_CORES = 1000  # more than a cluster has
 
 
 def write(trace: Trace, file: BinaryIO) -> None:
@@ -70,12 +69,9 @@ def _pieces(trace: Trace) -> Iterator[list[str]]:
 
 
 def _process_lines(trace: Trace, pid: int, process: Process) -> Iterator[str]:
-    place = f"cluster {process.cluster} > {core_name(process)}"
-    name = f"{place} > {process_name(trace, process)}"
+    name = f"{place_name(process)} > {process_name(trace, process)}"
     yield _metadata("process_name", pid, 0, {"name": name})
-    core = -1 if process.core is None else process.core
-    order = process.cluster * _CORES + (0 if process.is_receive_thread else core + 2)
-    yield _metadata("process_sort_index", pid, 0, {"sort_index": order})
+    yield _metadata("process_sort_index", pid, 0, {"sort_index": place_order(process)})
 
 
 def _metadata(kind: str, pid: int, tid: int, arguments: dict[str, Any]) -> str:

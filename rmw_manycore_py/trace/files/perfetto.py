@@ -110,7 +110,7 @@ class _Writer:
         parents: dict[tuple[int, str], int] = {}
         index = 0
         for process in self._trace.processes:
-            for key, name, above in _place(process):
+            for key, name, above in _tracks_above(process):
                 if key not in parents:
                     parents[key], packet = self._track(name, above and parents[above])
                     yield packet
@@ -210,7 +210,7 @@ def _opened_and_closed(slices: Slices) -> tuple[NDArray[np.intp], NDArray[np.int
     return which[order], times_ns[order]
 
 
-def _place(
+def _tracks_above(
     process: Process,
 ) -> tuple[tuple[tuple[int, str], str, tuple[int, str] | None], ...]:
     """Return the tracks above a process: key, name and key of the one above."""

@@ -54,7 +54,7 @@ LOADS = Loads(
 
 
 def test_rates_are_differences() -> None:
-    (name,), (load,) = LOADS.topics().keys(), LOADS.topics().values()
+    (name,), (load,) = LOADS.topics.keys(), LOADS.topics.values()
     assert name == "/t"
     assert (load.rate_hz, load.bytes_per_s, load.message_bytes) == (3.0, 30.0, 10.0)
     assert (load.queued, load.capacity, load.fill) == (3, 10, 0.3)
@@ -77,7 +77,7 @@ def test_losses_and_missed_deadlines_are_told() -> None:
 
 
 def test_a_first_look_has_no_rates() -> None:
-    load = Loads(LOADS.after, LOADS.after).topics()["/t"]
+    load = Loads(LOADS.after, LOADS.after).topics["/t"]
     assert (load.rate_hz, load.lost) == (0.0, 4)
 
 
