@@ -59,7 +59,7 @@ fuzz: setup  ## a million mutated messages, with the address sanitizer and besid
 wheel: setup  ## a wheel in dist/ for machines without a compiler, tried in an environment without one
 	$(VENV)/python scripts/build_wheel.py
 
-bench: setup  ## every bench, briefly; tables, and CSV in build/bench
+bench: setup  ## messages, start, idle nodes, memory, briefly; tables, and CSV in build/bench
 	$(VENV)/manycore bench all --quick --output build/bench
 
 lint: setup  ## style, types, spelling

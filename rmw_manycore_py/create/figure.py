@@ -38,7 +38,7 @@ def dot_of(mapfile: Path) -> Dot:
     """Return what one mapfile is in the figure; what is wrong with it is a ManycoreError."""
     placement = check(mapfile)
     return Dot(
-        mapfile.stem,
+        mapfile.stem if mapfile.suffix == ".yaml" else mapfile.name,
         len(placement.nodes),
         count_lines(mapfile.read_text(encoding="utf-8")),
         delta_loc(placement.nodes),
