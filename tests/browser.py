@@ -5,16 +5,23 @@ from __future__ import annotations
 
 import os
 import shutil
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
 from selenium import webdriver
 from selenium.webdriver.common.by import By
+from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.support.ui import WebDriverWait
 from support import PATIENCE_S
 
 WINDOW = (1500, 900)
+KEEP_SOCKETS = """
+globalThis.sockets = [];
+globalThis.WebSocket = class extends WebSocket {
+  constructor(...words) { super(...words); sockets.push(this); }
+};
+"""
 
 
 class Browser:
@@ -31,10 +38,64 @@ class Browser:
         options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
         options.add_experimental_option("prefs", {"download.default_directory": str(downloads)})
         service = webdriver.ChromeService(shutil.which("chromedriver"))
+        self.downloads = downloads
+        self._scripts: list[dict[str, str]] = []  # of pages to come
         self.driver = webdriver.Chrome(options=options, service=service)
 
     def open(self, link: str) -> None:
         self.driver.get(link)
+
+    def open_in_new_tab(self, link: str) -> None:
+        self.driver.switch_to.new_window("tab")
+        self.open(link)
+
+    def tabs(self) -> Iterator[None]:
+        """Bring each tab to the front in turn."""
+        for tab in self.driver.window_handles:
+            self.driver.switch_to.window(tab)
+            yield
+
+    def forget(self) -> None:
+        """Close all tabs but one, which is empty, for the next test."""
+        first, *others = self.driver.window_handles
+        for tab in others:
+            self.driver.switch_to.window(tab)
+            self.driver.close()
+        self.driver.switch_to.window(first)
+        self.driver.get("about:blank")
+        self.complaints()
+        for script in self._scripts:
+            self.driver.execute_cdp_cmd("Page.removeScriptToEvaluateOnNewDocument", script)
+        self._scripts.clear()
+
+    def keep_sockets(self) -> None:
+        """Have the pages to come keep their WebSockets in `sockets`, for scripts."""
+        found = self.driver.execute_cdp_cmd(
+            "Page.addScriptToEvaluateOnNewDocument", {"source": KEEP_SOCKETS}
+        )
+        self._scripts.append(found)
+
+    def press(self, selector: str | None, *keys: str) -> None:
+        """Press keys, by their names, at an element or where the focus is."""
+        place = self.find(selector) if selector else self.driver.switch_to.active_element
+        for key in keys:
+            place.send_keys(getattr(Keys, key.upper(), key) if len(key) > 1 else key)
+            place = self.driver.switch_to.active_element
+
+    def focused(self, attribute: str) -> str | None:
+        return self.driver.switch_to.active_element.get_attribute(attribute)
+
+    def focused_text(self) -> str:
+        return str(self.driver.execute_script("return document.activeElement.textContent"))
+
+    def accessible(self) -> list[tuple[str, str]]:
+        """Return role and name of all that the browser tells a screen reader of."""
+        nodes = self.driver.execute_cdp_cmd("Accessibility.getFullAXTree", {})["nodes"]
+        return [
+            (node["role"]["value"], node.get("name", {}).get("value", ""))
+            for node in nodes
+            if not node["ignored"]
+        ]
 
     def find(self, selector: str) -> Any:
         """Return the first element of a CSS selector, once it is there."""

@@ -91,7 +91,8 @@ def _cell(cell: Cell, marks: Marks) -> Iterator[str]:
     bottom = y + cell.rect.height - WORKER_SIDE - 4
     for place, pid in enumerate(cell.workers):
         rect = Rect(x + GAP + place * (WORKER_SIDE + 2), bottom, WORKER_SIDE, WORKER_SIDE)
-        yield _rect(_class(marks, f"w{pid}", "worker"), rect, 1, f"w{pid}")
+        style = _class(marks, f"w{pid}", "worker")
+        yield _rect(style, rect, 1, f"w{pid}", f"NDT worker, pid {pid}")
 
 
 def _node(node: NodeBox) -> Iterator[str]:
@@ -130,11 +131,12 @@ def _label(arc: Arc, marks: Marks) -> Iterator[str]:
     )
 
 
-def _rect(style: str, rect: Rect, radius: int, own_id: str = "") -> str:
+def _rect(style: str, rect: Rect, radius: int, own_id: str = "", title: str = "") -> str:
     named = f' id="{_text(own_id)}"' if own_id else ""
+    end = f"><title>{_text(title)}</title></rect>" if title else "/>"
     return (
         f'<rect{named} class="{style}" x="{rect.x:.1f}" y="{rect.y:.1f}" width="{rect.width:.1f}" '
-        f'height="{rect.height:.1f}" rx="{radius}"/>'
+        f'height="{rect.height:.1f}" rx="{radius}"{end}'
     )
 
 

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 from bridging import Bridge
+from forked import forked_example, forked_manycore
 from installing import Installation, pack_wheel
 
 
@@ -27,3 +28,22 @@ def installation(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Insta
 def bridge(start, platform) -> Bridge:
     """Return the test's bridge, with which it starts nodes inside and outside."""
     return Bridge(start, platform)
+
+
+@pytest.fixture
+def talking(start):
+    """A talker on core 3 and a listener, each in its cluster, that hear each other."""
+    listener = start(forked_example("listener"), cluster=2)
+    talker = start(forked_example("talker"), MANYCORE_CORE="3")
+    listener.wait_for("I heard")
+    return talker, listener
+
+
+@pytest.fixture
+def view(start):
+    """A viewer, and its link."""
+    program = start(forked_manycore("view", "--port", "0", "--period", "0.2"))
+    link = program.wait_for(r"http://\S+").group()
+    yield program, link
+    if program.is_running():
+        assert program.stop() == 0, program

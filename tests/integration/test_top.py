@@ -7,7 +7,7 @@ import json
 import signal
 
 import pytest
-from forked import forked_example, forked_manycore
+from forked import forked_manycore
 from person import Person
 from support import IS_MANYCORE, environment, manycore_command
 
@@ -18,15 +18,6 @@ pytestmark = [
 
 WHOLE_SCREEN = "\x1b\\[\\?1049h"
 USUAL_SCREEN = "\x1b\\[\\?1049l"
-
-
-@pytest.fixture
-def talking(start):
-    """A talker and a listener, each in its cluster, that hear each other."""
-    listener = start(forked_example("listener"), cluster=2)
-    talker = start(forked_example("talker"), MANYCORE_CORE="3")
-    listener.wait_for("I heard")
-    return talker, listener
 
 
 @pytest.fixture

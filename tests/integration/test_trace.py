@@ -38,15 +38,6 @@ def manycore(start):
     return call
 
 
-@pytest.fixture
-def talking(start):
-    """A talker and a listener, each in its cluster, that hear each other."""
-    listener = start(forked_example("listener"), cluster=2)
-    talker = start(forked_example("talker"))
-    listener.wait_for("I heard")
-    return talker, listener
-
-
 def hear(listener, messages: int = 1) -> None:
     """Wait until so many messages were published and heard from now on."""
     listener.skip_output()

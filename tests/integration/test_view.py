@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""`manycore view`: in a real browser, and at its doors."""
+"""`manycore view` at its doors, and the looks it is made of."""
 
 from __future__ import annotations
 
@@ -14,11 +14,10 @@ from contextlib import closing
 
 import pytest
 from forked import forked_example, forked_manycore
-from support import IS_MANYCORE, leftovers, manycore_command, wait_until
+from support import IS_MANYCORE, leftovers, wait_until
 
 from rmw_manycore_py.bench.idle import wait_until_quiet, wake_ups
 from rmw_manycore_py.look.watch import Watch
-from rmw_manycore_py.trace.files import load
 
 pytestmark = [
     pytest.mark.integration,
@@ -47,34 +46,6 @@ with WorkerMatcher(options, [min(os.sched_getaffinity(0))] * 2) as matcher:
 """
 
 
-@pytest.fixture
-def talking(start):
-    """A talker and a listener, each in its cluster, that hear each other."""
-    listener = start(forked_example("listener"), cluster=2)
-    talker = start(forked_example("talker"), MANYCORE_CORE="3")
-    listener.wait_for("I heard")
-    return talker, listener
-
-
-@pytest.fixture
-def view(start):
-    """A viewer, and its link."""
-    program = start(manycore_command("view", "--port", "0", "--period", "0.2"))
-    link = program.wait_for(r"http://\S+").group()
-    yield program, link
-    if program.is_running():
-        assert program.stop() == 0, program
-
-
-@pytest.fixture
-def browser(tmp_path):
-    from browser import Browser
-
-    opened = Browser(tmp_path)
-    yield opened
-    opened.close()
-
-
 def answer(link: str, method: str = "GET", **headers: str) -> tuple[int, str]:
     """Return status and text of a request."""
     named = {name.replace("_", "-"): value for name, value in headers.items()}
@@ -85,64 +56,6 @@ def answer(link: str, method: str = "GET", **headers: str) -> tuple[int, str]:
     except urllib.error.HTTPError as error:
         with error:
             return error.code, error.read().decode()
-
-
-@pytest.mark.needs("chromium", "chromedriver", "selenium", "aiohttp")
-def test_a_platform_is_seen_from_start_to_end(view, browser, start, platform, tmp_path) -> None:
-    _, link = view
-    browser.open(link)
-    browser.wait_for_text("#state", f"waiting for platform {platform} to start")
-
-    listener = start(forked_example("listener"), cluster=2)
-    talker = start(forked_example("talker"), MANYCORE_CORE="3")
-    browser.find("[data-node='/talker']")
-    browser.find("[data-topic='/chatter']:not(.rate0)")
-    assert "core 3" in browser.text("#picture")
-
-    browser.click("[data-node='/talker']")
-    browser.wait_for_text("#details-facts", f"pid {talker.pid}")
-    browser.wait_for_text("#endpoints", "reliable, volatile, keep last 10")
-    browser.click("#parameters")
-    browser.wait_for_text("#parameters-text", "rate_hz")
-
-    browser.click("#trace")
-    browser.wait_for_text("#trace", "Stop and save")
-    browser.click("[data-topic='/chatter']")
-    browser.wait_for_text("#details-facts", "99 % below")
-    browser.find("#details-charts canvas")
-    browser.click("#trace")
-    browser.wait_for_text("#chains", "communication /chatter")
-    browser.driver.execute_script("document.querySelector('#trace-file').click()")
-    file = tmp_path / f"{platform}-1.json"
-    wait_until(file.exists, "the trace is downloaded")
-    assert load(file).event_count > 0
-
-    talker.signal(signal.SIGKILL)
-    browser.find("g.dead[data-node='/talker']")
-    browser.wait_for_text("#happened .died", "/talker died")
-    start(forked_example("talker"), MANYCORE_CORE="3")
-    browser.until(
-        lambda: browser.all("[data-node='/talker']") and not browser.all("g.dead"), "it is back"
-    )
-    assert browser.complaints() == []
-    listener.kill()
-
-
-@pytest.mark.needs("chromium", "chromedriver", "selenium", "aiohttp")
-def test_two_pages_see_the_end_of_a_platform(talking, view, browser) -> None:
-    viewer, link = view
-    browser.open(link)
-    browser.find("[data-node='/talker']")
-    browser.driver.switch_to.new_window("tab")
-    browser.open(link)
-    browser.find("[data-node='/listener']")
-    for program in talking:
-        program.stop()
-    for tab in browser.driver.window_handles:
-        browser.driver.switch_to.window(tab)
-        browser.wait_for_text("#state", "has ended; waiting for it to start again")
-    assert viewer.stop() == 0
-    browser.wait_for_text("#state", "manycore view has ended, or cannot be reached")
 
 
 def test_only_its_own_page_is_answered(view, platform) -> None:

@@ -41,6 +41,17 @@ export class Charts {
     } else {
       this.plots.forEach(([plot, own]) => plot.setData(this.data(own)));
     }
+    this.plots.forEach(([, own, latest]) => (latest.textContent = this.latest(own)));
+  }
+
+  // The newest values in words, for those who do not see the curves.
+  latest(names) {
+    const values = names.map((name) => {
+      const value = this.series.get(name).at(-1);
+      const text = value === null || value === undefined ? "nothing" : COMPACT.format(value);
+      return names.length > 1 ? `${name} ${text}` : text;
+    });
+    return values.join(", ");
   }
 
   data(names) {
@@ -54,7 +65,7 @@ export class Charts {
     for (const [title, belongs] of this.groups) {
       const names = [...this.series.keys()].filter(belongs);
       if (names.length > 0) {
-        this.plots.push([this.plot(title, names), names]);
+        this.plots.push(this.plot(title, names));
       }
     }
   }
@@ -63,7 +74,10 @@ export class Charts {
     const figure = document.createElement("figure");
     const caption = document.createElement("figcaption");
     caption.textContent = title;
-    figure.append(caption);
+    const latest = document.createElement("output");
+    latest.setAttribute("aria-live", "off");
+    latest.textContent = this.latest(names);
+    figure.append(caption, latest);
     this.place.append(figure);
     const style = getComputedStyle(document.documentElement);
     const axis = {
@@ -83,6 +97,8 @@ export class Charts {
         { label, stroke: COLOURS[index % COLOURS.length], width: 1.5, points: { show: false } }
       ))],
     };
-    return new uPlot(options, this.data(names), figure);
+    const plot = new uPlot(options, this.data(names), figure);
+    plot.root.setAttribute("aria-hidden", "true"); // curves and legend; the values are in `latest`
+    return [plot, names, latest];
   }
 }

@@ -11,7 +11,10 @@ const COLUMNS = {
 const HEADS = { deadlines_missed: "deadlines missed", qos: "QoS" };
 
 export class Details {
-  constructor(onClose) {
+  // onLost: called with what was shown, when the element that had opened it is gone.
+  constructor(onClose, onLost) {
+    this.onLost = onLost;
+    this.opener = null;
     this.section = document.getElementById("details");
     this.title = document.getElementById("details-title");
     this.facts = document.getElementById("details-facts");
@@ -28,12 +31,19 @@ export class Details {
   }
 
   open(choice) {
+    const focused = document.activeElement;
+    const wasInside = this.section.contains(focused);
+    const previous = this.choice;
     this.choice = choice;
     this.section.hidden = choice === null;
     this.charts.forget();
     if (choice === null) {
+      if (wasInside) {
+        this.giveBack(previous);
+      }
       return;
     }
+    this.opener = wasInside ? this.opener : focused;
     const [[kind, name]] = Object.entries(choice);
     this.title.textContent = name;
     this.facts.textContent = "";
@@ -41,6 +51,15 @@ export class Details {
     this.parameters.hidden = kind !== "node";
     this.parametersText.textContent = "";
     this.title.focus({ preventScroll: true });
+  }
+
+  // The keyboard goes on where it was before.
+  giveBack(choice) {
+    if (this.opener?.isConnected && this.opener !== document.body) {
+      this.opener.focus({ preventScroll: true });
+    } else {
+      this.onLost(choice);
+    }
   }
 
   show({ kind, name, found, charts }) {
@@ -109,6 +128,9 @@ function line(kind, texts) {
   row.append(...texts.map((text) => {
     const cell = document.createElement(kind);
     cell.textContent = text;
+    if (kind === "th") {
+      cell.scope = "col";
+    }
     return cell;
   }));
   return row;

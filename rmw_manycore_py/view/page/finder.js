@@ -28,18 +28,34 @@ export class Finder {
       items.push(document.createElement("li"));
       items.at(-1).textContent = `and ${found.length - MAX_SHOWN} more`;
     }
+    const focused = this.list.contains(document.activeElement) ? document.activeElement : null;
     this.list.replaceChildren(...items);
+    if (focused !== null) { // the graph changed while it was there
+      const again = items.find((one) => one.textContent === focused.textContent);
+      (again?.firstElementChild ?? this.input).focus({ preventScroll: true });
+    }
+  }
+
+  // The way back to a node or topic that is no longer shown in full.
+  focus(choice) {
+    const text = textOf(choice);
+    const item = [...this.list.children].find((one) => one.textContent === text);
+    (item?.firstElementChild ?? this.input).focus({ preventScroll: true });
   }
 
   item(choice) {
     const item = document.createElement("li");
     const button = document.createElement("button");
     button.type = "button";
-    button.textContent = `${Object.keys(choice)[0]} ${nameOf(choice)}`;
+    button.textContent = textOf(choice);
     button.addEventListener("click", () => this.onSelect(choice));
     item.append(button);
     return item;
   }
+}
+
+function textOf(choice) {
+  return `${Object.keys(choice)[0]} ${nameOf(choice)}`;
 }
 
 function nameOf(choice) {

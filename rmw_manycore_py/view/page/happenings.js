@@ -4,6 +4,10 @@
 const MAX_SHOWN = 200;
 const list = document.getElementById("happened");
 
+export function forgetHappened() {
+  list.replaceChildren();
+}
+
 export function showHappened(rows, onSelect) {
   for (const row of rows) {
     list.prepend(item(row, onSelect));

@@ -5,7 +5,7 @@ import { Charts } from "./charts.js";
 import { Details } from "./details.js";
 import { Finder } from "./finder.js";
 import { Flow } from "./flow.js";
-import { showHappened } from "./happenings.js";
+import { forgetHappened, showHappened } from "./happenings.js";
 import { Picture } from "./picture.js";
 import { setUpTheme } from "./theme.js";
 import { Trace } from "./trace.js";
@@ -16,7 +16,7 @@ const totals = document.getElementById("totals");
 const flow = new Flow(document.getElementById("flow"), document.getElementById("moving"));
 const picture = new Picture(document.getElementById("picture"), select);
 const finder = new Finder(select);
-const details = new Details(() => select(null));
+const details = new Details(() => select(null), (choice) => finder.focus(choice));
 const trace = new Trace(document.getElementById("trace"));
 const charts = new Charts(document.getElementById("charts"), [
   ["messages per second", (name) => name === "messages/s"],
@@ -29,6 +29,9 @@ let live = null;
 let selected = null;
 
 function select(choice) {
+  if (choice === null && selected === null) {
+    return;
+  }
   selected = choice;
   picture.select(choice);
   details.open(choice);
@@ -86,6 +89,7 @@ function connect() {
   live.onopen = () => {
     flow.stop();
     charts.forget();
+    forgetHappened(); // the server tells all of it again
     if (selected !== null) {
       live.send(JSON.stringify({ select: selected }));
     }

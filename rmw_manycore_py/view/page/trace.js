@@ -111,6 +111,9 @@ function tableOf(parts) {
     for (const text of texts) {
       const cell = document.createElement(index === 0 ? "th" : "td");
       cell.textContent = text;
+      if (index === 0) {
+        cell.scope = "col";
+      }
       row.append(cell);
     }
   }

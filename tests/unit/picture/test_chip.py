@@ -110,6 +110,12 @@ def test_arcs_lead_from_publishers_to_subscriptions() -> None:
     assert arc.topic == "/t"
 
 
+def test_workers_are_named() -> None:
+    drawn = draw("p", lay_out(graph(FEW), [1, 2], workers={100: (70, 71)}), (), {})
+    titles = [element.text for element in ElementTree.fromstring(drawn).iter() if element.text]
+    assert {"NDT worker, pid 70", "NDT worker, pid 71"} <= set(titles)
+
+
 def test_many_pairs_meet_in_a_point() -> None:
     ends = [("publisher", "/t", i) for i in range(3)]
     ends += [("subscription", "/t", i) for i in range(3, 3 + MAX_PAIRS)]

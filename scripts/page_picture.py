@@ -1,0 +1,41 @@
+#!/usr/bin/env python3
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Takes a picture of the page of `manycore view`: scripts/page_picture.py LINK TOPIC FILE.png."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import sys
+import time
+
+from selenium import webdriver
+from selenium.webdriver.common.by import By
+from selenium.webdriver.common.keys import Keys
+from selenium.webdriver.support.ui import WebDriverWait
+
+PATIENCE_S = 30.0
+HISTORY_S = 20.0  # that the charts show
+
+
+def main(link: str, topic: str, file: str) -> None:
+    """Choose a topic on the page, wait until there is something to see of it, and take it."""
+    options = webdriver.ChromeOptions()
+    options.binary_location = shutil.which("chromium") or ""
+    options.add_argument("--headless=new")
+    options.add_argument("--window-size=1500,1000")
+    if os.geteuid() == 0:
+        options.add_argument("--no-sandbox")
+    with webdriver.Chrome(options, webdriver.ChromeService(shutil.which("chromedriver"))) as driver:
+        waiting = WebDriverWait(driver, PATIENCE_S)
+        driver.get(link)
+        selector = f"[data-topic='{topic}']"
+        arc = waiting.until(lambda _: driver.find_element(By.CSS_SELECTOR, selector))
+        time.sleep(HISTORY_S)
+        arc.send_keys(Keys.ENTER)
+        waiting.until(lambda _: driver.find_elements(By.CSS_SELECTOR, "#details-charts canvas"))
+        driver.save_screenshot(file)
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])

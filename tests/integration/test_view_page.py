@@ -1,0 +1,152 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""The page of `manycore view` in a real browser."""
+
+from __future__ import annotations
+
+import signal
+
+import pytest
+from forked import forked_example
+from support import IS_MANYCORE, wait_until
+
+from rmw_manycore_py.trace.files import load
+
+pytestmark = [
+    pytest.mark.integration,
+    pytest.mark.needs("chromium", "chromedriver", "selenium", "aiohttp"),
+    pytest.mark.skipif(not IS_MANYCORE, reason="manycore is about rmw_manycore"),
+]
+
+# What a screen reader calls an element by its name; such a role without one is silent.
+NAMED_ROLES = ("button", "checkbox", "group", "heading", "link", "list", "log", "region")
+NAMED_ROLES += ("searchbox", "slider", "status")
+NAMELESS = ("list", "log", "status")  # read by what is in them
+
+
+@pytest.fixture(scope="module")
+def chromium(tmp_path_factory):
+    from browser import Browser
+
+    opened = Browser(tmp_path_factory.mktemp("downloads"))
+    yield opened
+    opened.close()
+
+
+@pytest.fixture
+def browser(chromium):
+    yield chromium
+    chromium.forget()
+
+
+def test_a_platform_is_seen_from_start_to_end(view, browser, start, platform) -> None:
+    _, link = view
+    browser.open(link)
+    browser.wait_for_text("#state", f"waiting for platform {platform} to start")
+
+    listener = start(forked_example("listener"), cluster=2)
+    talker = start(forked_example("talker"), MANYCORE_CORE="3")
+    browser.find("[data-node='/talker']")
+    browser.find("[data-topic='/chatter']:not(.rate0)")
+    assert "core 3" in browser.text("#picture")
+
+    browser.click("[data-node='/talker']")
+    browser.wait_for_text("#details-facts", f"pid {talker.pid}")
+    browser.wait_for_text("#endpoints", "reliable, volatile, keep last 10")
+    browser.click("#parameters")
+    browser.wait_for_text("#parameters-text", "rate_hz")
+
+    browser.click("#trace")
+    browser.wait_for_text("#trace", "Stop and save")
+    browser.click("[data-topic='/chatter']")
+    browser.wait_for_text("#details-facts", "99 % below")
+    browser.find("#details-charts canvas")
+    browser.click("#trace")
+    browser.wait_for_text("#chains", "communication /chatter")
+    browser.driver.execute_script("document.querySelector('#trace-file').click()")
+    file = browser.downloads / f"{platform}-1.json"
+    wait_until(file.exists, "the trace is downloaded")
+    assert load(file).event_count > 0
+
+    talker.signal(signal.SIGKILL)
+    browser.find("g.dead[data-node='/talker']")
+    browser.wait_for_text("#happened .died", "/talker died")
+    start(forked_example("talker"), MANYCORE_CORE="3")
+    browser.until(
+        lambda: browser.all("[data-node='/talker']") and not browser.all("g.dead"), "it is back"
+    )
+    assert browser.complaints() == []
+    listener.kill()
+
+
+def test_two_pages_see_the_end_of_a_platform(talking, view, browser) -> None:
+    viewer, link = view
+    browser.open(link)
+    browser.find("[data-node='/talker']")
+    browser.open_in_new_tab(link)
+    browser.find("[data-node='/listener']")
+    for program in talking:
+        program.stop()
+    for _ in browser.tabs():
+        browser.wait_for_text("#state", "has ended; waiting for it to start again")
+    assert viewer.stop() == 0
+    browser.wait_for_text("#state", "manycore view has ended, or cannot be reached")
+
+
+def test_the_keyboard_goes_everywhere(talking, view, browser, start) -> None:
+    browser.open(view[1])
+    browser.press("[data-node='/talker']", "Enter")
+    browser.wait_for_text("#details-title", "/talker")
+    assert browser.focused("id") == "details-title"
+    browser.press(None, "Escape")
+    assert browser.focused("data-node") == "/talker"
+
+    browser.press(None, "/", *"chat", "Tab")
+    assert browser.focused_text() == "topic /chatter"
+    start(forked_example("lamp"))  # the list is written anew
+    browser.find("[data-node='/lamp']")
+    assert browser.focused_text() == "topic /chatter"
+    browser.press(None, "Enter")
+    browser.wait_for_text("#details-title", "/chatter")
+    browser.wait_for_text("#endpoints th[scope='col']", "kind")
+    browser.click("#details-close")
+    browser.until(lambda: browser.focused_text() == "topic /chatter", "the way back")
+    assert browser.complaints() == []
+
+
+def test_a_screen_reader_has_names_and_values(talking, view, browser) -> None:
+    browser.open(view[1])
+    browser.find("[data-node='/talker']")
+    browser.find("[data-topic='/chatter']")
+    browser.find("#charts output")
+    tree = browser.accessible()
+    silent = [role for role, name in tree if role in NAMED_ROLES and not name]
+    assert [role for role in silent if role not in NAMELESS] == []
+    names = {name for role, name in tree if role == "button"}
+    assert {"/talker, node, cluster 1", "topic /chatter", "Start trace"} <= names
+    assert ("heading", "Events") in tree
+    assert not [name for role, name in tree if role == "Canvas"], "pictures for the eye alone"
+
+
+def test_light_and_dark_are_chosen(view, browser) -> None:
+    browser.open(view[1])
+    shown = "return getComputedStyle(document.body).backgroundColor"
+    before = browser.driver.execute_script(shown)
+    browser.click("#theme")
+    assert browser.driver.execute_script(shown) != before
+    browser.click("#theme")
+    assert browser.driver.execute_script(shown) == before
+
+
+def test_events_are_told_once_and_lead_to_their_node(talking, view, browser) -> None:
+    """Also after the connection was lost: the server then tells all of it again."""
+    browser.keep_sockets()
+    browser.open(view[1])
+    browser.find("[data-node='/talker']")
+    talking[0].signal(signal.SIGKILL)
+    browser.wait_for_text("#happened .died", "/talker died")
+    told = browser.text("#happened")
+    browser.driver.execute_script("sockets[0].close()")
+    browser.until(lambda: browser.driver.execute_script("return sockets.length") == 2, "again")
+    browser.until(lambda: browser.text("#happened") == told, "the same events")
+    browser.click("#happened button[aria-label='show /talker']")
+    browser.wait_for_text("#details-facts", "died")
