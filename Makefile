@@ -82,7 +82,7 @@ docs: setup  ## the documentation as HTML in build/docs, links checked
 
 pictures: setup  ## the pictures of README and docs, each from a run of an example
 	mkdir -p build docs/pictures
-	PATH="$(CURDIR)/$(VENV):$$PATH" scripts/picture.sh docs/pictures/chip.svg
+	PATH="$(CURDIR)/$(VENV):$$PATH" scripts/picture.sh docs/pictures/chip.svg docs/pictures/page.png
 	$(VENV)/manycore run image_pipeline --duration 10 --trace build/pictures.json >/dev/null
 	$(VENV)/manycore trace draw build/pictures.json -o docs/pictures/trace_message.png
 	$(VENV)/manycore trace latency build/pictures.json --plot docs/pictures/trace_chains.png

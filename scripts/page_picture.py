@@ -19,7 +19,7 @@ HISTORY_S = 20.0  # that the charts show
 
 
 def main(link: str, topic: str, file: str) -> None:
-    """Choose a topic on the page, wait until there is something to see of it, and take it."""
+    """Trace, choose a topic on the page, wait until there is something to see, and take it."""
     options = webdriver.ChromeOptions()
     options.binary_location = shutil.which("chromium") or ""
     options.add_argument("--headless=new")
@@ -31,6 +31,7 @@ def main(link: str, topic: str, file: str) -> None:
         driver.get(link)
         selector = f"[data-topic='{topic}']"
         arc = waiting.until(lambda _: driver.find_element(By.CSS_SELECTOR, selector))
+        driver.find_element(By.ID, "trace").click()
         time.sleep(HISTORY_S)
         arc.send_keys(Keys.ENTER)
         waiting.until(lambda _: driver.find_elements(By.CSS_SELECTOR, "#details-charts canvas"))

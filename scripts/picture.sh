@@ -1,13 +1,26 @@
 #!/bin/sh
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #
-# Draws a run of the image pipeline: scripts/picture.sh FILE.svg
+# Draws a run of the image pipeline, and the page that shows it where there is Chromium:
+# scripts/picture.sh CHIP.svg PAGE.png
 set -eu
 export MANYCORE_PLATFORM="picture-$$"
+topic=/camera/image_inverted
 manycore run image_pipeline >build/picture.log 2>&1 &
 run=$!
-trap 'kill -INT $run 2>/dev/null; wait $run' EXIT
+view=
+trap 'kill -INT $view $run 2>/dev/null; wait $view $run' EXIT
 # Waits for the topic, and then for a message at its end.
-manycore topic echo --once --no-arr /camera/image_inverted sensor_msgs/msg/Image >/dev/null
+manycore topic echo --once --no-arr $topic sensor_msgs/msg/Image >/dev/null
 manycore view --once --period 3 -o "$1"
 echo "wrote $1"
+if ! command -v chromium >/dev/null || ! command -v chromedriver >/dev/null; then
+  echo "$2 stays as it was: apt-get install chromium chromium-driver"
+  exit
+fi
+rm -f build/picture-view.log
+manycore view --port 0 >build/picture-view.log 2>/dev/null &
+view=$!
+until link=$(grep -os "http://.*" build/picture-view.log); do sleep 0.1; done
+python scripts/page_picture.py "$link" $topic "$2"
+echo "wrote $2"
