@@ -80,7 +80,7 @@ tidy: setup  ## clang-tidy with the checks of .clang-tidy
 docs: setup  ## the documentation as HTML in build/docs, links checked
 	$(VENV)/mkdocs build --quiet --strict --site-dir build/docs
 
-pictures: setup  ## the pictures of README and docs, each from a run of an example
+pictures: setup .venv/tests  ## the pictures of README and docs, each from a run of an example
 	mkdir -p build docs/pictures
 	PATH="$(CURDIR)/$(VENV):$$PATH" scripts/picture.sh docs/pictures/chip.svg docs/pictures/page.png
 	$(VENV)/manycore run image_pipeline --duration 10 --trace build/pictures.json >/dev/null

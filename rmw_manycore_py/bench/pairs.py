@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 import random
 import statistics
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -77,11 +77,16 @@ def compare(
         replace(INSIDE, name="other build", library=other.resolve()),
     )
     found: dict[str, list[float]] = {side.name: [] for side in sides}
-    for pair in range(pairs):
-        note(f"pair {pair + 1} of {pairs}")
-        for side in sides if pair % 2 == 0 else reversed(sides):
-            found[side.name].append(statistics.median(_round_trips_us(side, cpus)))
+    for run, side in enumerate(in_turns(*sides, pairs)):
+        note(f"pair {run // 2 + 1} of {pairs}: {side.name}")
+        found[side.name].append(statistics.median(_round_trips_us(side, cpus)))
     return Comparison(tuple(found["this build"]), tuple(found["other build"]))
+
+
+def in_turns(one: Middleware, other: Middleware, pairs: int) -> Iterator[Middleware]:
+    """Yield both for each pair, the one that was last first: a drift meets both alike."""
+    for pair in range(pairs):
+        yield from (one, other) if pair % 2 == 0 else (other, one)
 
 
 def _round_trips_us(side: Middleware, cpus: tuple[int, int]) -> Sequence[float]:

@@ -10,7 +10,6 @@ import signal
 import subprocess
 import sys
 import threading
-import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
@@ -19,6 +18,7 @@ from typing import IO, Any
 
 from rmw_manycore_hook import plain_environment
 from rmw_manycore_program import own_program
+from rmw_manycore_py.bench.load import busy
 from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.parent_death import dies_with_this_process
 
@@ -35,6 +35,7 @@ TOPIC_TO = {
 }
 DOMAIN = 90  # benches run one at a time
 END_S = 60.0  # that a run may take to stop
+PATIENCE_S = 600.0  # that one program may take: a drive is 20 s long
 
 
 @dataclass(frozen=True)
@@ -75,18 +76,20 @@ class Scenario:
 
     def play(self, drive: Drive, directory: Path) -> list[dict[str, str]]:
         """Return the rows of the replay's table."""
-        with _load(self.busy), self._running(directory) as pid_of_node:
+        cpus = sorted(os.sched_getaffinity(0))
+        with busy(self.busy, cpus, PATIENCE_S), self._running(directory) as pid_of_node:
             rows = directory / "scans.csv"
             pace = () if self.rate_hz is None else ("--rate", str(self.rate_hz))
             source = ("--no-map",) if "map_path" in self.parameters else ()
             words = ("--csv", str(rows), "--motion", "reference", *pace, *source)
             replay = _started("ndt", "replay", str(drive.directory / "drive.npz"), *words)
-            if self.killed_after:
-                _wait_until_answered(replay, self.killed_after)
-                os.kill(pid_of_node, signal.SIGKILL)
-            output, _ = replay.communicate()
-        if not rows.exists():
-            raise ManycoreError(f"the replay failed: {output}")
+            with _patience(replay):
+                if self.killed_after:
+                    _wait_until_answered(replay, self.killed_after)
+                    os.kill(pid_of_node, signal.SIGKILL)
+                output, _ = replay.communicate()
+        if replay.returncode < 0 or not rows.exists():
+            raise ManycoreError(f"the replay failed{_how_it_ended(replay)}: {output}")
         with rows.open() as file:
             return list(csv.DictReader(file))
 
@@ -97,13 +100,16 @@ class Scenario:
         path.write_text(json.dumps(self.mapfile(directory)))
         run = _started("run", str(path), "--json")
         try:
-            yield _pid_of_node(run)
+            with _patience(run):
+                pid = _pid_of_node(run)
+            yield pid
         finally:
             run.send_signal(signal.SIGINT)
             try:
                 run.wait(END_S)
             except subprocess.TimeoutExpired:
                 run.kill()
+                run.wait()
 
     def mapfile(self, directory: Path) -> dict[str, Any]:
         """Return the mapfile of the run, whose node writes to a directory."""
@@ -130,9 +136,27 @@ class Scenario:
 
 def _call(*words: str) -> None:
     process = _started(*words)
-    output, _ = process.communicate()
+    with _patience(process):
+        output, _ = process.communicate()
     if process.returncode != 0:
-        raise ManycoreError(f"manycore {' '.join(words)} failed: {output}")
+        how = _how_it_ended(process)
+        raise ManycoreError(f"manycore {' '.join(words)} failed{how}: {output}")
+
+
+@contextmanager
+def _patience(process: subprocess.Popen[str]) -> Iterator[None]:
+    """Kill a process that keeps this waiting for too long: its output then ends."""
+    end_of_patience = threading.Timer(PATIENCE_S, process.kill)
+    end_of_patience.start()
+    try:
+        yield
+    finally:
+        end_of_patience.cancel()
+
+
+def _how_it_ended(process: subprocess.Popen[str]) -> str:
+    is_killed = process.returncode == -signal.SIGKILL
+    return f" (not done within {PATIENCE_S:g} s, or killed)" if is_killed else ""
 
 
 def _started(*words: str) -> subprocess.Popen[str]:
@@ -158,7 +182,7 @@ def _pid_of_node(run: subprocess.Popen[str]) -> int:
             # Nothing may wait for the pipe, nor for what reads it.
             threading.Thread(target=_lines(run).read, daemon=True).start()
             return int(event["pid"])
-    raise ManycoreError(f"{NODE} did not start: {''.join(said)}")
+    raise ManycoreError(f"{NODE} did not start within {PATIENCE_S:g} s: {''.join(said)}")
 
 
 def _wait_until_answered(replay: subprocess.Popen[str], scans: int) -> None:
@@ -172,21 +196,3 @@ def _wait_until_answered(replay: subprocess.Popen[str], scans: int) -> None:
 def _lines(process: subprocess.Popen[str]) -> IO[str]:
     assert process.stdout is not None
     return process.stdout
-
-
-@contextmanager
-def _load(processes: int) -> Iterator[None]:
-    """Keep the CPUs busy."""
-    busy = [
-        subprocess.Popen(
-            [sys.executable, "-c", "while True: pass"], preexec_fn=dies_with_this_process()
-        )
-        for _ in range(processes)
-    ]
-    try:
-        time.sleep(1.0 if busy else 0.0)  # until they have had their share for a while
-        yield
-    finally:
-        for process in busy:
-            process.kill()
-            process.wait()

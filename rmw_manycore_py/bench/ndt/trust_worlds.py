@@ -12,10 +12,10 @@ from pathlib import Path
 import numpy as np
 
 from rmw_manycore_py.bench.ndt.world import DATA_VARIABLE
-from rmw_manycore_py.errors import ManycoreError
+from rmw_manycore_py.ndt.files.unreadable import UNREADABLE
 from rmw_manycore_py.ndt.geometry.arrays import Matrix, Points
 from rmw_manycore_py.ndt.geometry.poses import transform
-from rmw_manycore_py.ndt.recordings.recording import Recording, load_recording
+from rmw_manycore_py.ndt.recordings.recording import RECORDING_ARRAYS, load_recording
 from rmw_manycore_py.ndt.simulation.drive import poses_along, scans_along
 from rmw_manycore_py.ndt.simulation.lidar import Lidar
 from rmw_manycore_py.ndt.simulation.street import Street, build_street
@@ -59,19 +59,25 @@ def _recorded() -> dict[str, Callable[[], Drive]]:
     directory = Path(os.environ.get(DATA_VARIABLE, checkout.parent / "shared" / "data"))
     found: dict[str, Callable[[], Drive]] = {}
     for path in sorted(directory.glob("*.npz")) if directory.is_dir() else ():
-        try:
-            recording = load_recording(path)
-        except ManycoreError:
-            continue  # another kind of data
-        if len(recording) > 1:
-            found[path.stem] = partial(_of_recording, path.stem, recording)
+        if _scans_in(path) > 1:
+            found[path.stem] = partial(_of_recording, path)
     return found
 
 
-def _of_recording(name: str, recording: Recording) -> Drive:
+def _scans_in(path: Path) -> int:
+    """Return how many scans a recording has, without reading them; 0 for another kind of data."""
+    try:
+        with np.load(path, allow_pickle=False) as file:
+            return len(file["offsets"]) - 1 if set(file.files) >= RECORDING_ARRAYS else 0
+    except UNREADABLE:
+        return 0
+
+
+def _of_recording(path: Path) -> Drive:
+    recording = load_recording(path)
     stamps_s = recording.times_s()
     return Drive(
-        name,
+        path.stem,
         recording.accumulated(range(0, len(recording), 2)).astype(np.float32),
         recording.poses,
         stamps_s,

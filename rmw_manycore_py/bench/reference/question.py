@@ -4,20 +4,17 @@
 from __future__ import annotations
 
 import os
-import sys
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 
+from rmw_manycore_py.bench.load import busy
 from rmw_manycore_py.bench.question import Question, Run
 from rmw_manycore_py.bench.reference.goals import goals, question
 from rmw_manycore_py.bench.reference.setups import Contender, Setup, Wanted, setups
 from rmw_manycore_py.bench.reference.system import Found, run_system
-from rmw_manycore_py.bench.session import PATIENCE_S, Process
+from rmw_manycore_py.bench.session import PATIENCE_S
 from rmw_manycore_py.bench.summary import Result
 
 MIN_DURATION_S = 4.0
-LOAD = "while True: pass"
 
 
 def reference_question(wanted: Wanted, texts: Path | None) -> Question:
@@ -56,29 +53,11 @@ def _take_turns(run: Run, wanted: Wanted, setup: Setup, texts: Path | None) -> l
 
 def _run(run: Run, wanted: Wanted, setup: Setup, contender: Contender) -> Found:
     duration_s = max(setup.duration_s * run.share, MIN_DURATION_S)
-    with _load_beside(setup.is_beside_a_load, duration_s):
+    last_cpu = max(os.sched_getaffinity(0))
+    with busy(int(setup.is_beside_a_load), [last_cpu], PATIENCE_S + duration_s):
         return run_system(
             wanted.nodes, contender.middleware, contender.system, setup.load, duration_s
         )
-
-
-@contextmanager
-def _load_beside(wanted: bool, duration_s: float) -> Iterator[None]:
-    """Keep the last CPU busy meanwhile."""
-    if not wanted:
-        yield
-        return
-    load = Process(
-        "load beside",
-        [sys.executable, "-c", LOAD],
-        dict(os.environ),
-        [max(os.sched_getaffinity(0))],
-        patience_s=PATIENCE_S + duration_s,
-    )
-    try:
-        yield
-    finally:
-        load.close()
 
 
 def _save(

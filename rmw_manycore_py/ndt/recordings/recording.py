@@ -29,6 +29,7 @@ from rmw_manycore_py.ndt.geometry.poses import rigid, transform
 from rmw_manycore_py.ndt.geometry.precision import needs_doubles, why_coarse
 from rmw_manycore_py.ndt.recordings.stamps import in_seconds
 
+RECORDING_ARRAYS = frozenset(("points", "offsets", "poses"))  # that no recording lacks
 DEFAULT_SCALE_M = 0.002
 DEFAULT_PERIOD_S = 0.1  # of recordings without stamps: the 10 Hz of most LiDARs
 INT16_MAX = 32767
@@ -170,7 +171,7 @@ def load_recording(path: Path) -> Recording:
             arrays = {name: np.asarray(file[name]) for name in file.files}
     except UNREADABLE as error:
         raise _bad(path, f"cannot be read as npz: {what_is_wrong(error)}") from error
-    missing = {"points", "offsets", "poses"} - arrays.keys()
+    missing = RECORDING_ARRAYS - arrays.keys()
     if missing:
         raise _bad(path, f"has no array {', '.join(sorted(missing))}")
     points, poses = arrays["points"], arrays["poses"]

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from rmw_manycore_py.bench.contenders import INSIDE
-from rmw_manycore_py.bench.pairs import Comparison, compare
+from rmw_manycore_py.bench.pairs import LIBRARY, Comparison, compare, in_turns
 from rmw_manycore_py.bench.session import library_path, native_directory
 from rmw_manycore_py.errors import ManycoreError
 
@@ -40,9 +40,21 @@ def test_a_directory_without_a_build_is_refused(tmp_path: Path) -> None:
         compare(tmp_path, 6, (0, 0), lambda _: None)
 
 
-def test_the_stand_in_comes_before_what_it_stands_in_for() -> None:
-    side = replace(INSIDE, library=native_directory().parent)
-    path = library_path(side)
-    stand_in = next(entry for entry in path if (Path(entry) / "librmw_fastrtps_cpp.so").exists())
-    assert Path(stand_in) == native_directory() / "standin"
-    assert str(side.library) in path
+def test_builds_take_turns_and_turns_to_be_first() -> None:
+    this, other = (replace(INSIDE, name=name) for name in ("this", "other"))
+    order = [side.name for side in in_turns(this, other, 3)]
+    assert order == ["this", "other", "other", "this", "this", "other"]
+
+
+def test_stand_ins_come_first_and_then_the_build_they_lead_to(tmp_path: Path) -> None:
+    """Beside a build may lie what the stand-in stands in for, as in a prefix."""
+    for name in ("librmw_fastrtps_cpp.so", LIBRARY):
+        (tmp_path / name).touch()
+    path = library_path(replace(INSIDE, library=tmp_path))
+
+    def first_with(library: str) -> Path:
+        return next(Path(entry) for entry in path if Path(entry, library).exists())
+
+    assert first_with("librmw_fastrtps_cpp.so") == native_directory() / "standin"
+    assert first_with(LIBRARY) == tmp_path
+    assert Path(path[2], LIBRARY).exists(), "without the other build it is this one"
