@@ -6,12 +6,14 @@ from __future__ import annotations
 import json
 import re
 import signal
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
 import pytest
 from bridging import OUTSIDE
-from mcap.reader import make_reader
+from mcap.exceptions import EndOfFile
+from mcap.reader import NonSeekingReader, make_reader
 from mcap_ros2.decoder import DecoderFactory
 from recordings import text_in, write_texts
 from ros_support import announce, peer_node, spin_until, type_of
@@ -106,6 +108,12 @@ def test_a_killed_recorder_leaves_what_can_be_read_and_played(start, tmp_path) -
     recorder.wait()
     texts = texts_of(bag, "/news")
     assert len(texts) > 10
+    with file.open("rb") as stream:
+        others = []
+        with suppress(EndOfFile):  # as it was not finished
+            for _, _, message in NonSeekingReader(stream).iter_messages(log_time_order=False):
+                others.append(text_in(message.data))
+    assert others == texts
     info = start(manycore_command("bag", "info", bag))
     assert info.wait() == 0
     assert f"Messages:          {len(texts)}" in info.lines

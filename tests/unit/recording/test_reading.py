@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 from bag_support import Bag
+from mcap.reader import NonSeekingReader, SeekingReader
 from mcap.writer import CompressionType, IndexType, Writer
 from recordings import START_NS, STRING, string_row, text_in, text_message, write_texts
 
@@ -40,6 +41,21 @@ def test_what_is_written_is_read(tmp_path: Path, compression: str) -> None:
         assert recording.distro == "jazzy"
         late = recording.messages({"/a"}, START_NS + 1_000_000_000)
         assert [text_in(message.data) for message in late] == ["text 10", "text 11"]
+
+
+@pytest.mark.parametrize("compression", ["none", "lz4", "zstd"])
+def test_the_reader_of_mcap_finds_all_of_it_whole(tmp_path: Path, compression: str) -> None:
+    """By the index and without, every checksum compared."""
+    path = write_texts(tmp_path / "a.mcap", TEXTS, compression=compression, each=5)
+    for kind in (SeekingReader, NonSeekingReader):
+        with path.open("rb") as stream:
+            found = kind(stream, validate_crcs=True).iter_messages()
+            assert [text_in(message.data) for _, _, message in found] == [t for _, _, t in TEXTS]
+    with path.open("rb") as stream:
+        reader = SeekingReader(stream, validate_crcs=True)
+        statistics = reader.get_summary().statistics
+        assert (statistics.message_count, statistics.channel_count) == (12, 1)
+        assert reader.get_header().profile == "ros2"
 
 
 def test_messages_come_in_the_order_of_their_times(tmp_path: Path) -> None:
