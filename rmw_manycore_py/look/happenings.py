@@ -8,14 +8,10 @@ from collections.abc import Iterable, Iterator
 from dataclasses import asdict, dataclass, field
 from typing import Any, Literal
 
-import numpy as np
-
 from rmw_manycore_py.look.graph import Member
 from rmw_manycore_py.look.loads import Loads
-from rmw_manycore_py.look.sample import EXPIRED, LOST, REFUSED
 
 Kind = Literal["died", "deadline", "lost", "platform"]
-_LOSSES = {LOST: "lost", EXPIRED: "expired", REFUSED: "refused"}
 
 
 @dataclass(frozen=True)
@@ -49,18 +45,3 @@ def receive_thread_deaths(loads: Loads) -> Iterator[Happening]:
         pid = cluster.receive_thread_pid
         if pid and now.get(cluster.id, pid) != pid:
             yield Happening("died", f"the receive thread of cluster {cluster.id} died (pid {pid})")
-
-
-def losses(loads: Loads) -> Iterator[Happening]:
-    """Yield one for each endpoint that lost messages or missed a deadline between the samples."""
-    for column, word in _LOSSES.items():
-        for row in np.flatnonzero(loads.changes[:, column] > 0):
-            endpoint, count = loads.graph.endpoints[row], int(loads.changes[row, column])
-            text = f"{endpoint.topic}: {count} {word} by {endpoint.node}"
-            yield Happening("lost", text, endpoint.node, endpoint.topic)
-    missed = loads.missed_deadlines()
-    for row in np.flatnonzero(missed):
-        endpoint, count = loads.graph.endpoints[row], int(missed[row])
-        text = f"{endpoint.topic}: {endpoint.node} missed its deadline"
-        text += "" if count == 1 else f" {count} times"
-        yield Happening("deadline", text, endpoint.node, endpoint.topic)

@@ -13,7 +13,6 @@ from rmw_manycore_py.look.graph import Graph
 from rmw_manycore_py.look.sample import (
     BYTES,
     CAPACITY,
-    DEADLINES,
     EXPIRED,
     LOST,
     MESSAGES,
@@ -146,8 +145,3 @@ class Loads:
             else 0.0
             for cluster in self.after.clusters
         }
-
-    def missed_deadlines(self) -> Counts:
-        """Return how many deadlines each endpoint missed between the samples."""
-        missed: Counts = np.maximum(self.changes[:, DEADLINES], 0)
-        return missed

@@ -15,6 +15,7 @@ from rmw_manycore_py.look.graph import Graph, Member, read_graph
 from rmw_manycore_py.look.happenings import Happening
 from rmw_manycore_py.look.latency import TopicLatency, live_latencies
 from rmw_manycore_py.look.loads import Loads
+from rmw_manycore_py.look.losses import Losses
 from rmw_manycore_py.look.sample import Sample, take_sample
 from rmw_manycore_py.look.workers import Workers
 
@@ -49,6 +50,7 @@ class _Seen:
     members: tuple[tuple[int, int], ...] = ()  # slots and pids that the graph was read with
     graph: Graph | None = None
     workers: Workers = field(default_factory=Workers)
+    losses: Losses = field(default_factory=Losses)
     samples: deque[Sample] = field(default_factory=deque)
     known: dict[tuple[int, int], Member] = field(default_factory=dict)  # by slot and pid
     dead: dict[tuple[int, int], Member] = field(default_factory=dict)
@@ -95,7 +97,8 @@ class Watch:
     def _end(self, seen: _Seen) -> None:
         dead = self._newly_dead(seen)
         ended = Happening("platform", f"platform {self._name} has ended")
-        self.last_words = (*happenings.deaths(dead), ended)
+        losses = seen.losses.rest(time.monotonic())
+        self.last_words = (*losses, *happenings.deaths(dead), ended)
         self._trace, self._latencies = None, {}
         self.close()
 
@@ -146,7 +149,7 @@ class Watch:
         return (
             *happenings.deaths(newly),
             *happenings.receive_thread_deaths(since),
-            *happenings.losses(since),
+            *seen.losses.told_of(since),
         )
 
     def _look_at_trace(self) -> None:

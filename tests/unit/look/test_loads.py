@@ -11,8 +11,9 @@ import pytest
 
 from rmw_manycore_py._transport import Qos
 from rmw_manycore_py.look.graph import Endpoint, Graph, Member
-from rmw_manycore_py.look.happenings import deaths, losses
+from rmw_manycore_py.look.happenings import deaths
 from rmw_manycore_py.look.loads import Loads
+from rmw_manycore_py.look.losses import Losses
 from rmw_manycore_py.look.sample import Sample, aligned
 from rmw_manycore_py.qos import policies_of
 
@@ -67,13 +68,43 @@ def test_cpu_time_is_that_since_the_sample_before() -> None:
     assert LOADS.receive_thread_rates_hz() == {1: 10.0}
 
 
+def test_deaths_are_told() -> None:
+    (death,) = deaths([TALKER])
+    assert death.text == "/talker died (pid 70, cluster 1 core 2)"
+
+
 def test_losses_and_missed_deadlines_are_told() -> None:
-    assert [(one.kind, one.text) for one in losses(LOADS)] == [
+    assert [(one.kind, one.text) for one in Losses().told_of(LOADS)] == [
         ("lost", "/t: 3 lost by /listener"),
         ("deadline", "/t: /listener missed its deadline 2 times"),
     ]
-    (death,) = deaths([TALKER])
-    assert death.text == "/talker died (pid 70, cluster 1 core 2)"
+
+
+def test_what_goes_on_is_summed_up() -> None:
+    """The first at once, then what came in ten seconds; after a pause the first again."""
+    losses = Losses()
+    lost, told = 0, []
+    samples = [sample(0.0, [(C, [0, 0, 0])], {})]
+    for second in range(1, 41):
+        lost += 3 if second <= 15 or second == 40 else 0
+        samples.append(sample(float(second), [(C, [0, 0, lost])], {}))
+        told += [(second, one.text) for one in losses.told_of(Loads(*samples[-2:]))]
+    assert told == [
+        (1, "/t: 3 lost by /listener"),
+        (11, "/t: 30 lost by /listener in 10 s"),
+        (21, "/t: 12 lost by /listener in 10 s"),
+        (40, "/t: 3 lost by /listener"),
+    ]
+    assert list(losses.rest(40.0)) == []
+
+
+def test_what_was_not_told_is_told_at_the_end() -> None:
+    losses = Losses()
+    samples = [sample(float(n), [(C, [0, 0, 3 * n])], {}) for n in range(3)]
+    assert len(list(losses.told_of(Loads(*samples[:2])))) == 1
+    assert list(losses.told_of(Loads(*samples[1:]))) == []
+    (rest,) = losses.rest(4.0)
+    assert rest.text == "/t: 3 lost by /listener in 3 s"
 
 
 def test_a_first_look_has_no_rates() -> None:
