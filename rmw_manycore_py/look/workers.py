@@ -10,7 +10,7 @@ from pathlib import Path
 _PROGRAM = "manycore_ndt_wo"  # as the kernel cuts the name of manycore_ndt_worker
 _PERIOD_S = 1.0
 # The children of a process with a dozen threads take 0.1 ms to read: of a crowd, so many a period.
-_MAX_IN_TURN = 64
+_MAX_IN_TURN = 16
 
 
 class Workers:
