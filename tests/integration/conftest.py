@@ -34,7 +34,8 @@ def bridge(start, platform) -> Bridge:
 def talking(start):
     """A talker on core 3 and a listener, each in its cluster, that hear each other."""
     listener = start(forked_example("listener"), cluster=2)
-    talker = start(forked_example("talker"), MANYCORE_CORE="3")
+    often = ("--ros-args", "-p", "rate_hz:=20.0")
+    talker = start(forked_example("talker", *often), MANYCORE_CORE="3")
     listener.wait_for("I heard")
     return talker, listener
 
