@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import codecs
 import fcntl
 import os
 import pty
@@ -26,6 +27,7 @@ class Person:
         self.before = termios.tcgetattr(theirs)
         self._theirs = theirs
         self.seen = ""
+        self._decoder = codecs.getincrementaldecoder("utf-8")()
         self.process = subprocess.Popen(
             ["setsid", "--ctty", *command], env=env, stdin=theirs, stdout=theirs, stderr=theirs
         )
@@ -42,7 +44,7 @@ class Person:
         while not (match := re.search(pattern, self.seen)):
             left_s = max(0, deadline - time.monotonic())
             assert select.select([self._terminal], [], [], left_s)[0], (pattern, self.seen)
-            self.seen += os.read(self._terminal, 4096).decode()
+            self.seen += self._decoder.decode(os.read(self._terminal, 4096))
         self.seen = self.seen[match.end() :]
         return match
 

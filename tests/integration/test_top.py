@@ -78,7 +78,7 @@ def test_in_the_background_it_prints_and_leaves_the_terminal_alone(talking, at_a
     """A job that the kernel had stopped would make the shell's wait end with 128 + SIGTTOU."""
     top = " ".join(map(str, manycore_command("top", "--count", "2", "--period", "0.2")))
     person = at_a_terminal("bash", "-mc", f"{top} & wait $!; echo status $?")
-    said = person.sees(r"(?s)(.*)status (\d+)")
+    said = person.sees(r"(?s)(.*)status (\d+)\s")
     assert said[2] == "0"
     assert "/talker" in said[1]
     assert "\x1b[?" not in said[1]
@@ -90,7 +90,7 @@ def test_stopped_it_gives_the_terminal_back(talking, at_a_terminal) -> None:
     person = at_a_terminal("bash", "-mc", f"{top}; echo status $?; stty -a; fg; echo over")
     person.sees("/talker")
     person.type("\x1a")
-    assert "\x1b[?1049l" in person.sees(r"(?s)(.*)status 14\d")[1]  # 128 + SIGSTOP or SIGTSTP
+    assert "\x1b[?1049l" in person.sees(r"(?s)(.*)status 14\d\s")[1]  # 128 + SIGSTOP or SIGTSTP
     assert " icanon" in person.sees(r"(?s)speed(.*)echoke")[1]
     person.sees(WHOLE_SCREEN)
     person.sees("/listener")
