@@ -11,6 +11,7 @@ import socket
 import sys
 from collections.abc import Iterable
 from functools import partial
+from pathlib import Path
 
 from rmw_manycore_bridge.counters import CounterFile, status_path, take_pattern_files
 from rmw_manycore_bridge.inside import NODE_PREFIX, Inside
@@ -25,6 +26,7 @@ from rmw_manycore_bridge.service_outward import OutwardService
 from rmw_manycore_bridge.sides import OwnPublishers, Sides
 from rmw_manycore_bridge.topic_inward import InwardTopic
 from rmw_manycore_bridge.topic_outward import OutwardTopic
+from rmw_manycore_bridge.transports import NOTICE, avoid_shared_memory
 from rmw_manycore_py.bridge_plan import Plan
 from rmw_manycore_py.readiness import report_ready
 from rmw_manycore_py.routes import Direction
@@ -49,7 +51,10 @@ class BridgeProcess:
             plan, core, f"{NODE_PREFIX}{direction}{lane or ''}", self._graphs_changed
         )
         self._before = take_pattern_files(plan.platform, direction, lane)
-        counters = CounterFile.create(status_path(plan.platform, direction, lane), routes)
+        path = status_path(plan.platform, direction, lane)
+        if direction == "inward" and path.exists():
+            _listen_over_udp(path.with_name(f"profile-{direction}-{lane}.xml"))
+        counters = CounterFile.create(path, routes)
         own = OwnPublishers(plan.platform)
         self._outsides = {
             domain: Outside(domain, name, self._graphs_changed, own.is_noted)
@@ -113,6 +118,11 @@ class BridgeProcess:
                 loop.close()
             os.close(self._failed)
             return _report(self._loops)
+
+
+def _listen_over_udp(profile: Path) -> None:
+    if avoid_shared_memory(os.environ, profile):
+        print(NOTICE, file=sys.stderr, flush=True)
 
 
 def _report(loops: Iterable[Loop]) -> int:
