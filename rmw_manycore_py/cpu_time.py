@@ -14,10 +14,17 @@ def tree_cpu_s(pid: int | None = None) -> float:
     """Return user and system time of a process and of its living descendants, in seconds."""
     own = os.getpid() if pid is None else pid
     try:
-        stat = Path(f"/proc/{own}/stat").read_text().rpartition(")")[2].split()
         tasks = list(Path(f"/proc/{own}/task").iterdir())
         children = [child for task in tasks for child in (task / "children").read_text().split()]
     except OSError:  # it has ended meanwhile
         return 0.0
-    ticks = int(stat[USER]) + int(stat[SYSTEM])
-    return ticks / TICKS_PER_S + sum(tree_cpu_s(int(child)) for child in children)
+    return process_cpu_s(own) + sum(tree_cpu_s(int(child)) for child in children)
+
+
+def process_cpu_s(pid: int) -> float:
+    """Return user and system time of a process in seconds, 0 once it has ended."""
+    try:
+        stat = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
+    except OSError:
+        return 0.0
+    return (int(stat[USER]) + int(stat[SYSTEM])) / TICKS_PER_S

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from builtin_interfaces.msg import Time
 from geometry_msgs.msg import PoseWithCovarianceStamped, TwistWithCovarianceStamped
+from nav_msgs.msg import Odometry
 from ndt_support import COVARIANCE, command
 from rclpy.node import Node
 from ros_support import spin_until
@@ -52,6 +53,7 @@ class Vehicle:
         """Measure that the vehicle stands still at a time."""
         message = TwistWithCovarianceStamped()
         message.header.stamp = self._stamp(ahead_s)
+        message.twist.covariance[0] = message.twist.covariance[35] = 0.01
         self.twists.publish(message)
 
     def drive_to(self, T: np.ndarray) -> None:
@@ -114,6 +116,25 @@ def test_a_clock_that_jumps_back(vehicle, ekf):
     vehicle.drive_to(THERE)
     ekf.wait_for("the clock has jumped back: going on from the last pose")
     vehicle.drive_to(HERE)
+
+
+def test_a_speed_that_is_no_longer_measured_becomes_uncertain(node, vehicle):
+    """By this a follower knows that the wheels or the IMU have stopped reporting."""
+    heard: list[Any] = []
+    node.create_subscription(Odometry, "ekf_odom", heard.append, 10)
+
+    def variances() -> tuple[float, float]:
+        return tuple(heard[-1].twist.covariance[[0, 35]]) if heard else (np.inf, np.inf)
+
+    def is_sure() -> bool:
+        return max(variances()) < 0.1
+
+    spin_until(node, lambda: vehicle.tick() or vehicle.send_twist(0) or is_sure())
+    before = variances()
+    assert min(before) > 0.0
+    spin_until(node, lambda: vehicle.tick() or min(variances()) > 10.0 * max(before))
+    off_diagonal = heard[-1].twist.covariance.reshape(6, 6)[1:5, 1:5]
+    assert not off_diagonal.any()
 
 
 def test_a_first_pose_of_the_future_is_none(node, ekf):

@@ -21,7 +21,8 @@ from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import Imu
 from std_srvs.srv import Trigger
 from support import Program
-from tier4_external_api_msgs.msg import Heartbeat
+from tier4_control_msgs.msg import GateMode
+from tier4_external_api_msgs.msg import Emergency, Heartbeat
 from tier4_vehicle_msgs.msg import VehicleEmergencyStamped
 from whill_msgs.msg import ModelCr2State
 
@@ -186,6 +187,37 @@ def test_the_gate_holds_passes_stops_and_is_cleared(node, start):
     bench.until(told(1.2, 0.0), ask)
 
 
+def test_the_gate_passes_the_gear_and_tells_its_state(node, start):
+    bench = Bench(node, start, "vehicle_cmd_gate")
+    gears = bench.hear(GearCommand, "output/gear_cmd")
+    engagements, modes = (
+        bench.hear(Engage, "output/engage"),
+        bench.hear(GateMode, "output/gate_mode"),
+    )
+    stops = bench.hear(Emergency, "output/external_emergency")
+
+    def beat() -> None:
+        bench.send("input/external_emergency_stop_heartbeat", Heartbeat(stamp=bench.stamp()))
+        bench.send("input/auto/control_cmd", control(bench, 1.2))
+        bench.send("input/auto/gear_cmd", GearCommand(command=GearCommand.DRIVE))
+        bench.send("input/external/gear_cmd", GearCommand(command=GearCommand.REVERSE))
+
+    bench.until(lambda: gears and gears[-1].command == GearCommand.DRIVE, beat)
+    bench.until(lambda: engagements and not engagements[-1].engage, beat)
+    bench.send("input/engage", Engage(engage=True))
+    bench.until(lambda: engagements[-1].engage, beat)
+    assert modes[-1].data == GateMode.AUTO
+    assert not stops[-1].emergency
+    bench.send("input/gate_mode", GateMode(data=GateMode.EXTERNAL))
+    bench.until(lambda: modes[-1].data == GateMode.EXTERNAL, beat)
+    bench.until(lambda: gears[-1].command == GearCommand.REVERSE, beat)
+    stop = node.create_client(Trigger, f"{GATE}/external_emergency_stop")
+    assert stop.wait_for_service(30.0)
+    stop.call_async(Trigger.Request())
+    bench.until(lambda: stops[-1].emergency, beat)
+    bench.until(lambda: gears[-1].command == GearCommand.NONE, beat)
+
+
 @pytest.fixture
 def follower(node: Node, start: Start) -> Bench:
     """Return `simple_trajectory_follower` with the default course."""
@@ -195,13 +227,20 @@ def follower(node: Node, start: Start) -> Bench:
     return bench
 
 
-def at(bench: Bench, y_m: float = 0.0, variance: float = 0.01, behind_s: float = 0.0) -> Odometry:
+def at(
+    bench: Bench,
+    y_m: float = 0.0,
+    variance: float = 0.01,
+    behind_s: float = 0.0,
+    speed_variance: float = 0.01,
+) -> Odometry:
     """Return where the vehicle is: at x = 5 m, 1.5 m/s fast."""
     odometry = Odometry()
     odometry.header.stamp = bench.stamp(behind_s)
     odometry.pose.pose.position.x, odometry.pose.pose.position.y = 5.0, y_m
     odometry.pose.covariance[0] = variance
     odometry.twist.twist.linear.x = 1.5
+    odometry.twist.covariance[0] = speed_variance
     return odometry
 
 
@@ -232,6 +271,7 @@ def test_the_follower_steers_back(follower):
         ({"behind_s": -2.0}, "is -[12]"),
         ({"y_m": 9.0}, "the trajectory is 9.0 m away"),
         ({"variance": 4.0}, "the position is known to 2.00 m only"),
+        ({"speed_variance": 2.25}, "the speed is known to 1.50 m/s only"),
         ({"y_m": float("nan")}, "the trajectory is nan m away"),
     ],
 )
@@ -268,11 +308,13 @@ def test_the_odometer_refuses_old_speeds_and_forgets_the_bias_at_standstill(node
     bench.until(lambda: corrected[-1].twist.angular.z == 0.0, lambda: sense(0.005))
     assert raw[-1].twist.angular.z == 0.005
     bench.until(lambda: corrected[-1].twist.angular.z == 0.005, lambda: sense(0.5))
-    sense(0.5, behind_s=0.5)
     bench.until(
         lambda: "s old, expected at most 0.2 s: no twist is published" in bench.program.output,
-        lambda: sense(0.5, behind_s=0.5),
+        lambda: sense(0.75, behind_s=0.5),
     )
+    fresh = 0.25  # heard after all that the old ones could have made
+    bench.until(lambda: corrected[-1].twist.linear.x == fresh, lambda: sense(fresh))
+    assert all(one.twist.linear.x != 0.75 for one in raw + corrected)
 
 
 def test_the_converter_keeps_the_header_and_scales(node, start):

@@ -6,6 +6,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+from builtin_interfaces.msg import Time
 from geometry_msgs.msg import (
     Pose,
     PoseStamped,
@@ -100,6 +101,11 @@ def seconds(stamp: Any) -> float:
 def nanoseconds(stamp: Any) -> int:
     """Return a builtin_interfaces/msg/Time in nanoseconds."""
     return int(stamp.sec) * 1_000_000_000 + int(stamp.nanosec)
+
+
+def stamp_of(time_ns: int) -> Any:
+    """Return nanoseconds as a builtin_interfaces/msg/Time."""
+    return Time(sec=time_ns // 1_000_000_000, nanosec=time_ns % 1_000_000_000)
 
 
 def _quaternion(T: Matrix) -> Any:

@@ -8,13 +8,12 @@ from collections.abc import Sequence
 from typing import Protocol
 
 import numpy as np
-from builtin_interfaces.msg import Time
 from geometry_msgs.msg import PoseWithCovarianceStamped, TwistWithCovarianceStamped
 from rclpy.node import Node
 
 from rmw_manycore_py.ndt.geometry import poses
 from rmw_manycore_py.ndt.geometry.arrays import Matrix
-from rmw_manycore_py.ndt.messages.conversions import pose_with_covariance
+from rmw_manycore_py.ndt.messages.conversions import pose_with_covariance, stamp_of
 from rmw_manycore_py.ndt.replay.prediction import MEASURED, Prediction
 
 MAP_FRAME = "map"
@@ -119,8 +118,3 @@ class StackInputs:
         message.twist.twist.linear.x, message.twist.twist.angular.z = speed_m_s, turn_rad_s
         message.twist.covariance[0], message.twist.covariance[35] = SPEED_VARIANCE, TURN_VARIANCE
         self._twist.publish(message)
-
-
-def stamp_of(time_ns: int) -> Time:
-    """Return nanoseconds as a builtin_interfaces/msg/Time."""
-    return Time(sec=time_ns // 1_000_000_000, nanosec=time_ns % 1_000_000_000)

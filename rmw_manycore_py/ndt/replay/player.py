@@ -20,10 +20,10 @@ from rmw_manycore_py.cpu_time import tree_cpu_s
 from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.ndt.geometry.arrays import Points
 from rmw_manycore_py.ndt.geometry.thinning import voxel_centroids
-from rmw_manycore_py.ndt.messages.conversions import covariance_of, matrix_of, nanoseconds
+from rmw_manycore_py.ndt.messages.conversions import covariance_of, matrix_of, nanoseconds, stamp_of
 from rmw_manycore_py.ndt.messages.point_cloud import encode
 from rmw_manycore_py.ndt.recordings.recording import Recording
-from rmw_manycore_py.ndt.replay.guess_source import MAP_FRAME, GuessSource, stamp_of
+from rmw_manycore_py.ndt.replay.guess_source import MAP_FRAME, GuessSource
 from rmw_manycore_py.ndt.replay.tally import Played, Tally
 
 BASE_FRAME = "base_link"

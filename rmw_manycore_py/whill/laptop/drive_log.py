@@ -3,16 +3,16 @@
 
 from __future__ import annotations
 
-import re
 import time
 from dataclasses import dataclass, field
 from itertools import pairwise
 
 import numpy as np
 
+from rmw_manycore_py.ndt.nodes.support.log_throttle import LogThrottle
+
 STANDING_M_S = 0.02  # slower is standing
 REPEAT_S = 10.0
-_NUMBER = re.compile(r"[-+]?\d+(\.\d+)?")
 DEADLINE_S = 0.1  # scan to the first command that used it; later ones count as late
 
 
@@ -108,14 +108,12 @@ class DriveLog:
     platform_cpu_percent: float | None = None
     laptop_cpu_s: float = 0.0
     is_finished: bool = False
-    _told_s: dict[str, float] = field(default_factory=dict)  # when each was told last
+    _throttle: LogThrottle = field(default_factory=lambda: LogThrottle(REPEAT_S))
 
     def tell(self, text: str) -> None:
         """Note an incident; one that goes on, with other numbers, only once in a while."""
-        now_s, trouble = time.time(), _NUMBER.sub("", text)
-        if now_s - self._told_s.get(trouble, 0.0) >= REPEAT_S:
-            self._told_s[trouble] = now_s
-            self.incidents.append(Incident(now_s, text))
+        if self._throttle.is_due(text):
+            self.incidents.append(Incident(time.time(), text))
 
     def start_s(self) -> float | None:
         """Return when the vehicle was first told to move."""
@@ -179,7 +177,8 @@ class DriveLog:
         """Count the times that a vehicle that moved came to stand, without the end of the way."""
         moves = [one.speed_m_s > STANDING_M_S for one in driven]
         stops = sum(before and not now for before, now in pairwise(moves))
-        return stops - (self.is_finished and stops > 0)
+        stands_at_end = self.is_finished and stops > 0 and not moves[-1]
+        return stops - stands_at_end
 
 
 def _quantile(values: list[float], share: float) -> float | None:

@@ -69,8 +69,8 @@ def main() -> None:
     from sensor_msgs.msg import PointCloud2
 
     from rmw_manycore_py.ndt.geometry.thinning import voxel_centroids
+    from rmw_manycore_py.ndt.messages.conversions import stamp_of
     from rmw_manycore_py.ndt.messages.point_cloud import encode
-    from rmw_manycore_py.ndt.replay.guess_source import stamp_of
     from rmw_manycore_py.whill.course.directory import read_course
     from rmw_manycore_py.whill.laptop.topics import POINTS
 

@@ -15,9 +15,9 @@ from std_srvs.srv import Trigger
 from tier4_external_api_msgs.msg import Heartbeat
 
 from rmw_manycore_py.ndt.geometry.poses import from_xyz_rpy, perturbed
-from rmw_manycore_py.ndt.messages.conversions import pose_with_covariance
-from rmw_manycore_py.ndt.replay.guess_source import stamp_of
+from rmw_manycore_py.ndt.messages.conversions import pose_with_covariance, stamp_of
 from rmw_manycore_py.whill.laptop import topics
+from rmw_manycore_py.whill.laptop.drive_log import STANDING_M_S
 from rmw_manycore_py.whill.laptop.plant import Plant
 
 PERIOD_S = 0.1  # of the heartbeat
@@ -61,7 +61,7 @@ class Operator:
         self._heartbeat.publish(Heartbeat(stamp=stamp))
         if self._is_due("engage", ENGAGE_S):
             self._engage.publish(Engage(stamp=stamp, engage=True))
-        if abs(self._plant.speed_m_s) > 0.02:
+        if abs(self._plant.speed_m_s) > STANDING_M_S:
             self._moved_s = time.monotonic()
             return
         is_stuck = time.monotonic() - self._moved_s > STUCK_S

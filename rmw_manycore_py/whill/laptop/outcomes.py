@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 from rmw_manycore_py.whill.laptop.drive_log import Command, DriveLog, Injected
+from rmw_manycore_py.whill.laptop.plant import COMMAND_TIMEOUT_S
 
-COMMAND_TIMEOUT_S = 0.5  # the wheelchair's own
 WINDOW_S = 3.0  # a vehicle that is told to stand later is so for another reason
 NAMING_S = 5.0
 GONE, RESTARTED = "is gone", "is started again"

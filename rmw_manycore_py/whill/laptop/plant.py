@@ -6,6 +6,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+COMMAND_TIMEOUT_S = 0.5
+
 
 @dataclass(frozen=True)
 class PlantOptions:
@@ -13,7 +15,7 @@ class PlantOptions:
 
     tread_m: float = 0.5
     lag_s: float = 0.12
-    command_timeout_s: float = 0.5
+    command_timeout_s: float = COMMAND_TIMEOUT_S
 
 
 @dataclass

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any, Protocol
 
 from rmw_manycore_program import own_program
-from rmw_manycore_py.cpu_time import tree_cpu_s
+from rmw_manycore_py.cpu_time import process_cpu_s, tree_cpu_s
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
 from rmw_manycore_py.launch.processes.environment import outside_environment
 from rmw_manycore_py.mapfile import load_mapfile, resolve
@@ -34,6 +34,9 @@ class Stack(Protocol):
 
     def check(self) -> None:
         """Raise where they have ended."""
+
+    def note_cpu(self) -> None:
+        """Note CPU times that would go with a process that dies; call it now and then."""
 
     def cpu_s(self) -> tuple[float, float | None]:
         """Return the CPU time of all, and of the bridge if there is one."""
@@ -90,11 +93,15 @@ class PlatformStack:
             said = "\n  ".join(self._last_lines)
             raise ManycoreError(f"the run of the platform has ended:\n  {said}")
 
-    def cpu_s(self) -> tuple[float, float | None]:
-        """See Stack; call it now and then, as processes that die take their time with them."""
+    def note_cpu(self) -> None:
+        """See Stack."""
         for node, pid in dict(self.pids).items():
             if node.startswith(BRIDGE):
-                self._bridge_cpu_s[pid] = max(tree_cpu_s(pid), self._bridge_cpu_s.get(pid, 0.0))
+                self._bridge_cpu_s[pid] = max(process_cpu_s(pid), self._bridge_cpu_s.get(pid, 0.0))
+
+    def cpu_s(self) -> tuple[float, float | None]:
+        """See Stack."""
+        self.note_cpu()
         return tree_cpu_s(self._process.pid), sum(self._bridge_cpu_s.values())
 
     def close(self) -> None:
@@ -135,6 +142,9 @@ class PlainStack:
         for name, process in self._processes.items():
             if process.poll() is not None:
                 raise ManycoreError(f"{name} has ended with status {process.returncode}")
+
+    def note_cpu(self) -> None:
+        """See Stack: there is no bridge."""
 
     def cpu_s(self) -> tuple[float, float | None]:
         """See Stack."""

@@ -13,7 +13,7 @@ from rclpy.node import Node
 from sensor_msgs.msg import Imu
 from whill_msgs.msg import ModelCr2State
 
-from rmw_manycore_py.ndt.replay.guess_source import stamp_of
+from rmw_manycore_py.ndt.messages.conversions import stamp_of
 from rmw_manycore_py.whill.laptop import topics
 from rmw_manycore_py.whill.laptop.drive_log import Command
 from rmw_manycore_py.whill.laptop.plant import Plant

@@ -15,7 +15,7 @@ KM_H_PER_M_S = 3.6
 Covariance = tuple[float, ...]  # (36), row by row: x, y, z, about x, about y, about z
 
 
-def covariance_of(variances: tuple[float, float, float, float, float, float]) -> Covariance:
+def diagonal_covariance(variances: tuple[float, float, float, float, float, float]) -> Covariance:
     """Return a covariance (36) with these on its diagonal."""
     return tuple(
         variances[row] if row == column else 0.0 for row in range(6) for column in range(6)
@@ -25,14 +25,16 @@ def covariance_of(variances: tuple[float, float, float, float, float, float]) ->
 def velocity_covariance(stddev_vx_m_s: float, stddev_wz_rad_s: float) -> Covariance:
     """Return the covariance of a speed and a yaw rate; the other directions are not measured."""
     unknown = NOT_MEASURED
-    return covariance_of((stddev_vx_m_s**2, unknown, unknown, unknown, unknown, stddev_wz_rad_s**2))
+    return diagonal_covariance(
+        (stddev_vx_m_s**2, unknown, unknown, unknown, unknown, stddev_wz_rad_s**2)
+    )
 
 
 def gyro_covariance(
     speed_variance: float, gyro_variances: tuple[float, float, float]
 ) -> Covariance:
     """Return the covariance of a speed of the wheels with turn rates of the gyroscope."""
-    return covariance_of((speed_variance, NOT_MEASURED, NOT_MEASURED, *gyro_variances))
+    return diagonal_covariance((speed_variance, NOT_MEASURED, NOT_MEASURED, *gyro_variances))
 
 
 def is_standing(yaw_rate_rad_s: float, speed_m_s: float) -> bool:

@@ -42,6 +42,7 @@ class StaticTrajectoryPublisher(Node):
         path = Path(self._p.path).expanduser()
         trajectory = read_trajectory(path, self._p.wheel_base_m, self._p.max_speed_m_s)
         self._message = trajectory_message(trajectory, self._p.map_frame)
+        self._message.header.stamp = self.get_clock().now().to_msg()  # one trajectory, one stamp
         kept = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
         self._output = self.create_publisher(TrajectoryMessage, "trajectory", kept)
         self.get_logger().info(f"publishing {len(trajectory)} points")
@@ -49,7 +50,6 @@ class StaticTrajectoryPublisher(Node):
         self.create_timer(self._p.period_s, self._publish)
 
     def _publish(self) -> None:
-        self._message.header.stamp = self.get_clock().now().to_msg()
         self._output.publish(self._message)
 
 

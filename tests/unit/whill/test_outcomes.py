@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import pytest
 
-from rmw_manycore_py.whill.laptop.drive_log import Command, DriveLog, Incident, Injected
+from rmw_manycore_py.whill.laptop.drive_log import Command, DriveLog, Incident, Injected, Moment
 from rmw_manycore_py.whill.laptop.outcomes import outcomes
 
 pytestmark = pytest.mark.unit
@@ -48,6 +48,18 @@ def test_a_vehicle_that_drives_on():
 def test_the_end_of_the_course_is_no_outcome():
     (outcome,) = outcomes(log_of((0, 5, 1.5), (5, 6, 0.0)))
     assert outcome.stood_s is None
+
+
+@pytest.mark.parametrize(
+    ("speeds", "stands"),
+    [((1.0, 0.0, 1.0), 1), ((1.0, 0.0, 1.0, 0.0), 1), ((1.0, 0.0), 0), ((1.0, 1.0), 0)],
+)
+def test_where_a_finished_drive_ends_is_no_stand_on_the_way(speeds, stands):
+    """The drive may be over before another moment is noted."""
+    log = log_of((0, 4, 1.0))
+    log.is_finished = True
+    log.moments += [Moment(1.0 + i, 0.0, 0.0, speed, 0.0, 0.0) for i, speed in enumerate(speeds)]
+    assert log.summary().stands == stands
 
 
 def test_names():

@@ -14,13 +14,14 @@ NUMBER = re.compile(r"[-+]?\d+(\.\d+)?")  # troubles that differ in numbers alon
 class LogThrottle:
     """Throttles each trouble by itself; others do not hide it, as rclpy's throttling would."""
 
-    def __init__(self) -> None:
+    def __init__(self, repeat_s: float = REPEAT_S) -> None:
+        self._repeat_s = repeat_s
         self._logged_s: dict[str, float] = {}  # when each trouble was logged last
 
     def is_due(self, message: str) -> bool:
         """Tell whether a trouble may be logged again, and count it as logged then."""
         now_s = time.monotonic()
-        self._logged_s = {k: t for k, t in self._logged_s.items() if now_s - t < REPEAT_S}
+        self._logged_s = {k: t for k, t in self._logged_s.items() if now_s - t < self._repeat_s}
         trouble = NUMBER.sub("", message)
         is_due = trouble not in self._logged_s
         self._logged_s.setdefault(trouble, now_s)

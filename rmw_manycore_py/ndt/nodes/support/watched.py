@@ -29,9 +29,9 @@ class _Watch:
         """Compare the publishers with those known before."""
         infos = self._node.get_publishers_info_by_topic(self._topic)
         present = {info.node_name for info in infos}
-        gone = self._known - present
-        if not gone and event.not_alive_count_change > 0:
-            gone = self._known or {"a publisher"}
+        gone = ", ".join(sorted(self._known - present))
+        if not gone and event.not_alive_count_change > 0:  # the event does not tell which one
+            gone = " or ".join(sorted(self._known)) or "a publisher"
         if gone:
-            self._node.get_logger().warning(f"{self._topic}: {', '.join(sorted(gone))} is gone")
+            self._node.get_logger().warning(f"{self._topic}: {gone} is gone")
         self._known = present
