@@ -42,6 +42,7 @@ def drive_question(course: Path) -> Question:
     """Return the question how off-loading compares with the same nodes on the laptop."""
     contenders = (OFF_LOADED, PLAIN)
     goals = (
+        Goal("finished", OFF_LOADED, "better", 1.0, statistic="mean"),
         Goal("lateral error, RMS", OFF_LOADED, "within", 0.10),
         Goal("lateral error, largest", OFF_LOADED, "within", 0.30),
         Goal("scan to command", OFF_LOADED, "within", 100.0, statistic="p99"),
@@ -57,7 +58,7 @@ def drive_question(course: Path) -> Question:
             if run.wants(f"drive: {name}")
         }
         return [
-            Result(question, name, unit, tuple(samples))
+            Result(question, name, unit, tuple(samples), question in HIGHER_IS_BETTER)
             for question, (unit, samples_of) in FIGURES.items()
             for name, drives in found.items()
             if (samples := [value for drive in drives for value in samples_of(drive)])
@@ -73,8 +74,10 @@ def fault_question(course: Path) -> Question:
             Goal("told to stand after", f"kill -9 {name}", "within", STOOD_S)
             for name in CONTROL_CHAIN
         ),
-        *(Goal("finished", f"kill -9 {name}", "better", 1.0) for name in KILLED),
-        Goal("finished", STOPPED, "better", 1.0),
+        *(
+            Goal("finished", contender, "better", 1.0, statistic="mean")
+            for contender in (*(f"kill -9 {name}" for name in KILLED), STOPPED)
+        ),
     ]
 
     def measure(run: Run) -> list[Result]:
@@ -102,9 +105,8 @@ def _disturbed(run: Run, course: Path, contender: str, target: str) -> list[Resu
         "named as gone": ("of 1", [float(bool(o["named_by"])) for o in outcomes]),
         "finished": ("of 1", [float(drive["is_finished"]) for drive in drives]),
     }
-    higher = ("named as gone", "finished")
     return [
-        Result(question, contender, unit, tuple(samples), question in higher)
+        Result(question, contender, unit, tuple(samples), question in HIGHER_IS_BETTER)
         for question, (unit, samples) in columns.items()
         if samples
     ]
@@ -138,7 +140,9 @@ def _missed(drive: Mapping[str, Any]) -> list[float]:
     return [float(drive["scans_lost"] + drive["scans_late"])]
 
 
+HIGHER_IS_BETTER = ("finished", "named as gone")
 FIGURES: dict[str, tuple[str, Callable[[Mapping[str, Any]], list[float]]]] = {
+    "finished": ("of 1", _one("is_finished")),
     "lateral error, RMS": ("m", _one("lateral_m_rms")),
     "lateral error, largest": ("m", _one("lateral_m_max")),
     "scan to command": ("ms", lambda drive: list(drive["latencies_ms"])),

@@ -58,12 +58,32 @@ def test_the_gate_dies_on_the_way_and_the_vehicle_drives_on(start, platform, cou
     assert fault["stood_s"] is not None
 
 
-def test_a_sensor_that_stops(start, platform, course):
-    """Without wheels no twist is made, and the follower says why the vehicle stands."""
-    options = ("--run", "--patience", str(LONG_S), "--duration", "5", "--fault", "wheels@1")
-    figures = driven(start, course, *options)
-    assert "the speed is known to" in figures["said"]
-    assert figures["driven_m"] < 6.0
+@pytest.mark.parametrize(
+    ("sensor", "duration_s", "said"),
+    [("wheels", 5, "the speed is known to"), ("lidar", 8, "the position is known to")],
+)
+def test_a_sensor_that_stops(start, platform, course, sensor, duration_s, said):
+    """Without wheels there is no twist, without LiDAR no pose: the vehicle stands on its way."""
+    options = ("--run", "--patience", str(LONG_S), "--duration", str(duration_s))
+    figures = driven(start, course, *options, "--fault", f"{sensor}@1")
+    assert f"simple_trajectory_follower: {said}" in figures["said"]
+    assert figures["stands"] >= 1
+
+
+def test_without_a_first_pose_the_vehicle_stands(start, platform, course, tmp_path):
+    """Of the platform's nodes those run that drive, and none that takes a pose."""
+    mapfile = yaml.safe_load((course / "whill.yaml").read_text())
+    names = ("static_trajectory_publisher", "simple_trajectory_follower", "whill_interface")
+    nodes = {name: mapfile["nodes"][name] for name in names}
+    for file in ("map.npz", "trajectory.csv", "streets.npz"):
+        (tmp_path / file).symlink_to(course / file)
+    (tmp_path / "whill.yaml").write_text(yaml.safe_dump({**mapfile, "nodes": nodes}))
+    drive = start(
+        manycore_command("whill", "drive", "--course", tmp_path, "--run", "--patience", "8")
+    )
+    assert drive.wait(LONG_S) == 1
+    assert "follower: waiting for input/kinematics: no command is published" in drive.output
+    assert "nothing subscribes /initialpose, so no first pose was sent" in drive.output
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])

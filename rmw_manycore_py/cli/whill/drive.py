@@ -103,7 +103,8 @@ def command(
         stack: Stack | None = None
         if runs or plain:
             mapfile = course_path / MAPFILE
-            stack = PlatformStack(mapfile, log.tell) if runs else PlainStack(mapfile)
+            make = PlatformStack if runs else PlainStack
+            stack = make(mapfile, log.tell)
             closing.callback(stack.close)
         progress = closing.enter_context(DriveProgress())
         try:

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import threading
 import time
 from dataclasses import dataclass, field
 from itertools import pairwise
@@ -108,12 +109,17 @@ class DriveLog:
     platform_cpu_percent: float | None = None
     laptop_cpu_s: float = 0.0
     is_finished: bool = False
+    _telling: threading.Lock = field(default_factory=threading.Lock)
     _throttle: LogThrottle = field(default_factory=lambda: LogThrottle(REPEAT_S))
 
     def tell(self, text: str) -> None:
-        """Note an incident; one that goes on, with other numbers, only once in a while."""
-        if self._throttle.is_due(text):
-            self.incidents.append(Incident(time.time(), text))
+        """Note an incident; one that goes on, with other numbers, only once in a while.
+
+        May be called from any thread.
+        """
+        with self._telling:
+            if self._throttle.is_due(text):
+                self.incidents.append(Incident(time.time(), text))
 
     def start_s(self) -> float | None:
         """Return when the vehicle was first told to move."""

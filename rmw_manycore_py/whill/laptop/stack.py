@@ -80,8 +80,8 @@ class PlatformStack:
             self.pids[node] = event["pid"]
         elif kind == "restarting":
             self._tell(f"{node} {event['reason']}: it is started again")
-        elif kind == "output" and any(word in event["line"] for word in ("[WARN]", "[ERROR]")):
-            self._tell(f"{node}: {event['line'].rpartition(']: ')[2]}")
+        elif kind == "output":
+            _tell_warning(self._tell, node, event["line"])
         if kind in ("output", "ended", "stopping"):
             text = event.get("line") or event.get("reason") or ""
             self._last_lines = [*self._last_lines[-9:], f"{node}: {text}"]
@@ -118,19 +118,22 @@ class PlatformStack:
 class PlainStack:
     """The nodes of a mapfile as ordinary processes on Fast DDS, each on the same host CPU."""
 
-    def __init__(self, mapfile: Path) -> None:
+    def __init__(self, mapfile: Path, tell: Tell) -> None:
         placement = resolve(load_mapfile(mapfile))
         self._processes = {
             node.name: subprocess.Popen(
                 [*node.argv],
                 cwd=node.cwd,
                 env=outside_environment({**os.environ, **node.env}),
-                stdout=subprocess.DEVNULL,
-                stderr=subprocess.DEVNULL,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.STDOUT,
+                text=True,
                 preexec_fn=_pinned(node.host_cpu),
             )
             for node in placement.nodes
         }
+        for name, process in self._processes.items():
+            threading.Thread(target=_read, args=(name, process, tell), daemon=True).start()
 
     @property
     def pids(self) -> dict[str, int]:
@@ -160,6 +163,17 @@ class PlainStack:
             except subprocess.TimeoutExpired:
                 process.kill()
                 process.wait()
+
+
+def _read(node: str, process: subprocess.Popen[str], tell: Tell) -> None:
+    assert process.stdout is not None
+    for line in process.stdout:
+        _tell_warning(tell, node, line.rstrip())
+
+
+def _tell_warning(tell: Tell, node: str, line: str) -> None:
+    if "[WARN]" in line or "[ERROR]" in line:
+        tell(f"{node}: {line.rpartition(']: ')[2]}")
 
 
 def _pinned(cpu: int) -> Callable[[], None]:
