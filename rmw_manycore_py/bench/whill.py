@@ -38,8 +38,12 @@ PATIENCE_S = 900.0
 STOOD_S = 0.5 + 0.1  # the timeout, and a cycle of the gate's timer, the slowest of all
 
 
-def drive_question(course: Path) -> Question:
-    """Return the question how off-loading compares with the same nodes on the laptop."""
+def drive_question(course: Path, namespace: str | None = None) -> Question:
+    """Return the question how off-loading compares with the same nodes on the laptop.
+
+    :param namespace: network namespace for the nodes, whose packets are counted then.
+    """
+    place = () if namespace is None else ("--netns", namespace)
     contenders = (OFF_LOADED, PLAIN)
     goals = (
         Goal("finished", OFF_LOADED, "better", 1.0, statistic="mean"),
@@ -53,7 +57,7 @@ def drive_question(course: Path) -> Question:
 
     def measure(run: Run) -> list[Result]:
         found = {
-            name: [_driven(run, course, OPTIONS[name]) for _ in range(run.rounds)]
+            name: [_driven(run, course, OPTIONS[name], *place) for _ in range(run.rounds)]
             for name in contenders
             if run.wants(f"drive: {name}")
         }
@@ -151,4 +155,5 @@ FIGURES: dict[str, tuple[str, Callable[[Mapping[str, Any]], list[float]]]] = {
     "CPU of the bridge": ("%", _one("bridge_cpu_percent")),
     "CPU of the off-loaded nodes": ("%", _one("platform_cpu_percent")),
     "CPU of the rest of the laptop": ("s", _one("laptop_cpu_s")),
+    "packets to the nodes": ("", _one("packets_in")),
 }

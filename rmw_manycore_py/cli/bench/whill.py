@@ -30,10 +30,16 @@ from rmw_manycore_py.cli.common.options import examples
     show_default=True,
     help="A directory of 'manycore whill course'.",
 )
+@click.option(
+    "--netns",
+    "namespace",
+    metavar="NAME",
+    help="Drive with the nodes in this network namespace; count the packets that come into it.",
+)
 @bench_options
-def command(course: Path, **options: Any) -> None:
+def command(course: Path, namespace: str | None, **options: Any) -> None:
     """Drive the wheelchair: off-loaded, on plain Fast DDS, and with a fault in each process.
 
     A round is 15 drives over the whole course, of two minutes each with the default one.
     """
-    answer([whill.drive_question(course), whill.fault_question(course)], **options)
+    answer([whill.drive_question(course, namespace), whill.fault_question(course)], **options)

@@ -59,6 +59,13 @@ from rmw_manycore_py.whill.laptop.outcomes import outcomes
 @click.option("--run", "runs", is_flag=True, help="Run the course's mapfile too, meanwhile.")
 @click.option("--plain", is_flag=True, help="Run its nodes on plain Fast DDS, without platform.")
 @click.option(
+    "--netns",
+    "namespace",
+    metavar="NAME",
+    help="With --run or --plain: have the nodes in this network namespace of 'ip netns' (root), "
+    "and count the packets that come into it.",
+)
+@click.option(
     "--fault",
     "fault_texts",
     metavar="FAULT",
@@ -74,6 +81,7 @@ def command(
     patience_s: float,
     runs: bool,
     plain: bool,
+    namespace: str | None,
     fault_texts: tuple[str, ...],
     picture: Path | None,
     as_json: bool,
@@ -85,6 +93,8 @@ def command(
     """
     if runs and plain:
         raise click.UsageError("--run and --plain exclude each other")
+    if namespace is not None and not (runs or plain):
+        raise click.UsageError("--netns is for the nodes that --run or --plain starts")
     if os.environ.get("RMW_IMPLEMENTATION", OUTSIDE_IMPLEMENTATION) != OUTSIDE_IMPLEMENTATION:
         leave_middleware(OUTSIDE_IMPLEMENTATION)
     from rmw_manycore_py.whill.laptop.faults import fault_of
@@ -104,7 +114,7 @@ def command(
         if runs or plain:
             mapfile = course_path / MAPFILE
             make = PlatformStack if runs else PlainStack
-            stack = make(mapfile, log.tell)
+            stack = make(mapfile, log.tell, namespace)
             closing.callback(stack.close)
         progress = closing.enter_context(DriveProgress())
         try:
@@ -165,6 +175,7 @@ def _print(summary: Summary) -> None:
         ("CPU of the bridge", s.bridge_cpu_percent, "% of one CPU"),
         ("CPU of nodes and bridge", s.platform_cpu_percent, "% of one CPU"),
         ("CPU of the laptop", s.laptop_cpu_s, "s"),
+        ("packets to the stack", s.packets_in, "into its network namespace"),
     ]
     for name, value, unit in rows:
         if value is not None:

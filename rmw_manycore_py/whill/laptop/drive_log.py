@@ -93,6 +93,7 @@ class Summary:
     bridge_cpu_percent: float | None
     platform_cpu_percent: float | None
     laptop_cpu_s: float
+    packets_in: int | None  # into the stack's network namespace
 
 
 @dataclass
@@ -108,6 +109,7 @@ class DriveLog:
     bridge_cpu_percent: float | None = None
     platform_cpu_percent: float | None = None
     laptop_cpu_s: float = 0.0
+    packets_in: int | None = None
     is_finished: bool = False
     _telling: threading.Lock = field(default_factory=threading.Lock)
     _throttle: LogThrottle = field(default_factory=lambda: LogThrottle(REPEAT_S))
@@ -164,6 +166,7 @@ class DriveLog:
             bridge_cpu_percent=self.bridge_cpu_percent,
             platform_cpu_percent=self.platform_cpu_percent,
             laptop_cpu_s=self.laptop_cpu_s,
+            packets_in=self.packets_in,
         )
 
     def latencies_ms(self) -> list[float]:

@@ -83,10 +83,12 @@ class Drive:
         if not self._is_moving():
             raise ManycoreError(self._reason_for_standing())
         start_s = time.monotonic()
-        before_s = self._cpu_s()
+        before_s, packets = self._cpu_s(), self._packets()
         duration_s = self._options.duration_s or float("inf")
         self._spin_until(lambda: self._is_over(start_s), duration_s, report)
         self._note_cpu(before_s, time.monotonic() - start_s)
+        if packets is not None:
+            self._log.packets_in = (self._packets() or packets) - packets
 
     def close(self) -> None:
         """End the LiDAR's driver and the node."""
@@ -166,6 +168,9 @@ class Drive:
         timer = threading.Timer(STOP_S, os.kill, (pid, signal.SIGCONT))
         timer.daemon = True
         timer.start()
+
+    def _packets(self) -> int | None:
+        return None if self._stack is None else self._stack.packets_received()
 
     def _cpu_s(self) -> tuple[float, float | None, float]:
         stack_s, bridge_s = (0.0, None) if self._stack is None else self._stack.cpu_s()

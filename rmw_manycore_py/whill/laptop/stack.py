@@ -18,6 +18,7 @@ from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
 from rmw_manycore_py.launch.processes.environment import outside_environment
 from rmw_manycore_py.mapfile import load_mapfile, resolve
 from rmw_manycore_py.parent_death import dies_with_this_process
+from rmw_manycore_py.whill.laptop.network_namespace import entering, packets_received
 
 BRIDGE = "(bridge"
 STOPPING_S = 20.0
@@ -41,6 +42,9 @@ class Stack(Protocol):
     def cpu_s(self) -> tuple[float, float | None]:
         """Return the CPU time of all, and of the bridge if there is one."""
 
+    def packets_received(self) -> int | None:
+        """Return what came into the network namespace; None where it is the laptop's own."""
+
     def close(self) -> None:
         """End all."""
 
@@ -48,13 +52,16 @@ class Stack(Protocol):
 class PlatformStack:
     """`manycore run MAPFILE`; what its nodes warn of, and restarts, are told."""
 
-    def __init__(self, mapfile: Path, tell: Tell) -> None:
-        self._tell = tell
+    def __init__(self, mapfile: Path, tell: Tell, namespace: str | None = None) -> None:
+        self._tell, self._namespace = tell, namespace
         self._bridge_cpu_s: dict[int, float] = {}  # by process, as seen last
         self.pids: dict[str, int] = {}
         self._last_lines: list[str] = []
         self._process = subprocess.Popen(
-            own_program("rmw_manycore_py.cli", "run", str(mapfile), "--json"),
+            [
+                *entering(namespace),
+                *own_program("rmw_manycore_py.cli", "run", str(mapfile), "--json"),
+            ],
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
             text=True,
@@ -104,6 +111,10 @@ class PlatformStack:
         self.note_cpu()
         return tree_cpu_s(self._process.pid), sum(self._bridge_cpu_s.values())
 
+    def packets_received(self) -> int | None:
+        """See Stack."""
+        return None if self._namespace is None else packets_received(self._process.pid)
+
     def close(self) -> None:
         """End the run, as Ctrl-C would."""
         if self._process.poll() is None:
@@ -118,11 +129,12 @@ class PlatformStack:
 class PlainStack:
     """The nodes of a mapfile as ordinary processes on Fast DDS, each on the same host CPU."""
 
-    def __init__(self, mapfile: Path, tell: Tell) -> None:
+    def __init__(self, mapfile: Path, tell: Tell, namespace: str | None = None) -> None:
+        self._namespace = namespace
         placement = resolve(load_mapfile(mapfile))
         self._processes = {
             node.name: subprocess.Popen(
-                [*node.argv],
+                [*entering(namespace), *node.argv],
                 cwd=node.cwd,
                 env=outside_environment({**os.environ, **node.env}),
                 stdout=subprocess.PIPE,
@@ -152,6 +164,11 @@ class PlainStack:
     def cpu_s(self) -> tuple[float, float | None]:
         """See Stack."""
         return sum(tree_cpu_s(process.pid) for process in self._processes.values()), None
+
+    def packets_received(self) -> int | None:
+        """See Stack."""
+        pid = next(iter(self._processes.values())).pid
+        return None if self._namespace is None else packets_received(pid)
 
     def close(self) -> None:
         """End the nodes."""

@@ -1,0 +1,25 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""A network namespace (ip-netns(8)) that the off-loaded nodes run in, as another host would be."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+_LOOPBACK = "lo"
+_PACKETS = 1  # columns of /proc/PID/net/dev behind the name: bytes, packets received
+
+
+def entering(name: str | None) -> list[str]:
+    """Return the words before a command that has it run in a network namespace."""
+    return [] if name is None else ["ip", "netns", "exec", name]
+
+
+def packets_received(pid: int) -> int | None:
+    """Return what the namespace of a process received from outside; None once it has ended."""
+    try:
+        rows = Path(f"/proc/{pid}/net/dev").read_text().splitlines()[2:]
+    except OSError:
+        return None
+    interfaces = (row.split(":", 1) for row in rows)
+    counts = {name.strip(): int(values.split()[_PACKETS]) for name, values in interfaces}
+    return sum(packets for name, packets in counts.items() if name != _LOOPBACK)
