@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from collections.abc import MutableMapping
 from pathlib import Path
+from xml.sax.saxutils import escape
 
 TRANSPORTS = "FASTDDS_BUILTIN_TRANSPORTS"
 PROFILES = "FASTRTPS_DEFAULT_PROFILES_FILE"
@@ -67,5 +68,5 @@ def avoid_shared_memory(environment: MutableMapping[str, str], profile: Path) ->
 
 def _localhost_profile(static_peers: str) -> str:
     addresses = ["127.0.0.1", *filter(None, static_peers.split(";"))]
-    peers = "".join(_PEER.format(address=address) for address in addresses)
+    peers = "".join(_PEER.format(address=escape(address)) for address in addresses)
     return _LOCALHOST_PROFILE.format(peers=peers)

@@ -3,15 +3,32 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
+from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
+
+_NAMESPACES = Path("/run/netns")
 _LOOPBACK = "lo"
 _PACKETS = 1  # columns of /proc/PID/net/dev behind the name: bytes, packets received
 
 
 def entering(name: str | None) -> list[str]:
-    """Return the words before a command that has it run in a network namespace."""
-    return [] if name is None else ["ip", "netns", "exec", name]
+    """Return the words before a command that has it run in a network namespace.
+
+    :raises ManycoreError: where there is no such namespace, or only root may enter it.
+    """
+    if name is None:
+        return []
+    if not (_NAMESPACES / name).exists():
+        raise ManycoreError(
+            f"--netns: expected a name that 'ip netns list' shows, found '{name}'; "
+            f"make it: ip netns add {name}",
+            EXIT_BAD_INPUT,
+        )
+    if os.geteuid() != 0:
+        raise ManycoreError("--netns: entering a network namespace needs root", EXIT_BAD_INPUT)
+    return ["ip", "netns", "exec", name]
 
 
 def packets_received(pid: int) -> int | None:

@@ -10,6 +10,7 @@ from subprocess import PIPE
 
 import pytest
 
+from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.whill.laptop.network_namespace import entering, packets_received
 
 pytestmark = pytest.mark.unit
@@ -57,6 +58,11 @@ def test_packets_from_outside_are_counted(namespace):
         inside.stdin.close()
         inside.wait()
     assert packets_received(inside.pid) is None
+
+
+def test_a_namespace_that_is_not_there():
+    with pytest.raises(ManycoreError, match="found 'nowhere'; make it: ip netns add nowhere"):
+        entering("nowhere")
 
 
 def test_without_a_namespace_a_command_stays_as_it_is():
