@@ -77,7 +77,8 @@ class _Session:
 
     def run(self) -> tuple[str, bool]:
         """Carry until something ends it; return what, and whether that is fine."""
-        self._show(self._client.answer)
+        for message in (self._client.answer, *self._client.early()):
+            self._show(message)
         with selectors.DefaultSelector() as selector:
             selector.register(self._client.socket, selectors.EVENT_READ, self._take_messages)
             selector.register(self._inbox, selectors.EVENT_READ, self._take_signals)

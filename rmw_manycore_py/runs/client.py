@@ -75,10 +75,14 @@ class Client:
         while (message := self._next()) is not None:
             yield message
 
+    def early(self) -> list[Message]:
+        """Return what came together with the answer: the socket does not become readable for it."""
+        early, self._messages = self._messages, []
+        return early
+
     def take(self, patience_s: float | None = None) -> list[Message] | None:
         """Return what comes next, within a time if one is given; None at the end."""
-        early, self._messages = self._messages, []
-        if early:
+        if early := self.early():
             return early
         readable, _, _ = select.select([self.socket], [], [], patience_s)
         data = self._receive() if readable else b""
