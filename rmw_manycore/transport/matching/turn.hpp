@@ -6,8 +6,9 @@
 
 namespace manycore {
 
-/// How much of matching, closing and sweeping is done while the registry lock is held once. Counted in steps
-/// of about 0.1 us (a look at an entry that is not in the cache), so that a turn takes about 50 us.
+/// How much of matching, closing and sweeping is done while the registry lock is held once. Counted
+/// in steps of about 0.1 us (a look at an entry that is not in the cache), so that a turn takes
+/// about 50 us.
 class Turn {
 public:
   static constexpr uint32_t steps = 512;

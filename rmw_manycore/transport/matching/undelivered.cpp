@@ -77,10 +77,11 @@ std::optional<Undelivered> newest_undelivered(
   const Cluster & cluster, TopicDsmHeader & dsm, const SourceEntry & source, uint32_t index) {
   std::optional<Undelivered> newest;
   visit_undelivered(cluster, dsm, source, [&](uint64_t number, int64_t timestamp_ns) {
-    newest =
-      newest
-        ? Undelivered{std::max(newest->number, number), std::max(newest->source_timestamp_ns, timestamp_ns), index}
-        : Undelivered{number, timestamp_ns, index};
+    if (!newest) {
+      newest = Undelivered{number, timestamp_ns, index};
+    }
+    newest->number = std::max(newest->number, number);
+    newest->source_timestamp_ns = std::max(newest->source_timestamp_ns, timestamp_ns);
   });
   return newest;
 }
