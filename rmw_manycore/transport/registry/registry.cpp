@@ -284,8 +284,7 @@ void Registry::unlink_endpoint(uint32_t slot) noexcept {
   }
 }
 
-/// The next in its chain, if the endpoint was still in it after that was read: it leaves its state
-/// before it leaves its chain.
+/// The next in its chain, if the endpoint was still in it after that was read (chains.pml).
 std::optional<uint32_t> Registry::next_of(uint32_t slot, uint32_t incarnation) const noexcept {
   const EndpointEntry & entry = endpoints_[slot];
   const uint32_t next = entry.next_of_topic.load(std::memory_order_acquire);
