@@ -35,7 +35,7 @@ namespace {
 using namespace manycore;
 
 /// A process whose holds count, and the clock they are measured by.
-struct Holder {
+struct alignas(uint64_t) Holder {  // clang calls a library for an atomic of less alignment
   pid_t process;
   clockid_t clock;
 };
