@@ -10,6 +10,7 @@ from __future__ import annotations
 import time
 from collections.abc import Sequence
 
+from rmw_manycore_py.bench import images
 from rmw_manycore_py.bench.contenders import BETWEEN, FAST_DDS, Middleware
 from rmw_manycore_py.bench.idle import cpu_ns, wait_until_quiet
 from rmw_manycore_py.bench.question import PAYLOADS, Question, Run
@@ -36,14 +37,14 @@ _TYPE = "std_msgs/msg/UInt8MultiArray"
 
 
 def measure(run: Run) -> list[Result]:
-    """Measure all sizes, then the idle bridge."""
+    """Measure all sizes, then the idle bridge, then images beside load."""
     results = []
     for size in SIZES:
         results += _measure_size(run, size)
     results += _measure_throughput(run)
     if run.wants(f"{IDLE}: {BRIDGED}"):
         results.append(Result(IDLE, BRIDGED, "ms/s", (_idle_ms(run),)))
-    return results
+    return results + images.measure(run)
 
 
 def _measure_size(run: Run, size: str) -> list[Result]:
@@ -173,7 +174,9 @@ QUESTION = Question(
             for name in (INWARD, OUTWARD)
         ),
         Goal(IDLE, BRIDGED, "within", 10),
+        *images.GOALS,
     ),
     "ping outside on the first CPU, pong in cluster 2 on the second; inward process on the first; "
-    "source on the first and sink on the second, bridge on that of the one inside",
+    "source on the first and sink on the second, bridge on that of the one inside; "
+    + images.PLACEMENT,
 )

@@ -205,9 +205,12 @@ class Session:
         party: int,
         with_library_path: bool = True,
         output: IO[str] | None = None,
+        cpus: Sequence[int] | None = None,
     ) -> Process:
-        """Start any command as a party; `output` takes what it prints."""
-        cpu = self._cpus[party % len(self._cpus)]
+        """Start any command as a party; `output` takes what it prints.
+
+        :param cpus: instead of the party's.
+        """
         environment = self._environment(party)
         if with_library_path:
             environment["LD_LIBRARY_PATH"] = os.pathsep.join(library_path(self.middleware))
@@ -216,7 +219,7 @@ class Session:
             self.middleware.name,
             command,
             environment,
-            [cpu],
+            cpus or [self._cpus[party % len(self._cpus)]],
             output=output,
             patience_s=self._patience_s,
         )

@@ -12,6 +12,8 @@ from typing import Any
 import pytest
 from support import PATIENCE_S, PLATFORMS, entries, manycore_command, wait_until
 
+from rmw_manycore_py.bench.hosts import can_have_hosts
+
 pytestmark = pytest.mark.integration
 
 
@@ -173,6 +175,13 @@ def test_a_plot_needs_a_place() -> None:
 def test_bridge() -> None:
     report = run_bench("bridge", *BRIDGE)
     assert {result["contender"] for result in report["results"]} >= {"bridged", FAST_DDS_AND_OURS}
+
+
+@pytest.mark.skipif(not can_have_hosts(), reason="network namespaces need root")
+def test_images_that_reach_another_host_are_counted() -> None:
+    rows = run_bench("bridge", "--only", "another host, reliable, free CPUs")["results"]
+    assert {row["contender"] for row in rows} == {"bridged", "Fast DDS as installed"}
+    assert all(0 < row["median"] <= 100 for row in rows)
 
 
 def test_the_reference_system_is_measured_and_loses_nothing_where_all_is_kept() -> None:

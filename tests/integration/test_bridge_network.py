@@ -3,9 +3,7 @@
 
 from __future__ import annotations
 
-import os
 import re
-import shutil
 import socket
 import subprocess
 import sys
@@ -26,45 +24,27 @@ from support import (
     wait_until,
 )
 
+from rmw_manycore_py.bench.hosts import NETWORK, Host, can_have_hosts, two_hosts
+
 pytestmark = [
     pytest.mark.integration,
     pytest.mark.skipif(not IS_MANYCORE, reason="the bridge is part of rmw_manycore"),
 ]
 
 HEARD = "I heard: 'Hello World"
-# No shared memory: namespaces of one machine share that, hosts do not.
-NETWORK = {"ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET", "FASTDDS_BUILTIN_TRANSPORTS": "UDPv4"}
 DEPTH = 1000  # all messages: one that loses the CPU for a while loses none of them
 _RTPS_MAGIC = b"RTPS"
 _PREFIX = slice(8, 20)  # of a participant's GUID, in the header of an RTPS message
 _ETH_P_ALL = 3
 
 
-def ip(*words: str) -> None:
-    subprocess.run(["ip", *words], check=True, capture_output=True)
-
-
 @pytest.fixture
-def hosts() -> Iterator[tuple[list[str], list[str]]]:
+def hosts() -> Iterator[tuple[Host, Host]]:
     """Yield what runs a command on either of two hosts with a cable between them."""
-    names = [f"mc{os.getpid()}{side}" for side in "ab"]
-    try:
-        for name in names:
-            ip("netns", "add", name)
-    except subprocess.CalledProcessError:
+    if not can_have_hosts():
         pytest.skip("network namespaces need root")
-    ip("link", "add", "cable", "netns", names[0], "type", "veth", "peer", "name", "cable",
-       "netns", names[1])  # fmt: skip
-    for number, name in enumerate(names, start=1):
-        inside = ("-n", name)
-        ip(*inside, "addr", "add", f"10.77.0.{number}/24", "dev", "cable")
-        for device in ("lo", "cable"):
-            ip(*inside, "link", "set", device, "up")
-        ip(*inside, "route", "add", "224.0.0.0/4", "dev", "cable")
-    exec_in = [[shutil.which("ip") or "ip", "netns", "exec", name] for name in names]
-    yield exec_in[0], exec_in[1]
-    for name in names:
-        ip("netns", "del", name)
+    with two_hosts() as both:
+        yield both
 
 
 def show_participants() -> None:

@@ -1,0 +1,43 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Two hosts with a cable between them, as network namespaces (ip-netns(8)) of this one."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager
+
+Host = list[str]  # the words before a command that has it run there
+# Namespaces of one machine share its memory, hosts do not.
+NETWORK = {"ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET", "FASTDDS_BUILTIN_TRANSPORTS": "UDPv4"}
+_CABLE = "cable"
+
+
+def can_have_hosts() -> bool:
+    """Tell whether this user may make network namespaces."""
+    return os.geteuid() == 0 and shutil.which("ip") is not None
+
+
+@contextmanager
+def two_hosts() -> Iterator[tuple[Host, Host]]:
+    """Make both, and remove them in the end."""
+    names = [f"bench{os.getpid()}{side}" for side in "ab"]
+    with ExitStack() as ending:
+        for name in names:
+            _ip("netns", "add", name)
+            ending.callback(_ip, "netns", "del", name)
+        end, other_end = (("netns", name) for name in names)
+        _ip("link", "add", _CABLE, *end, "type", "veth", "peer", "name", _CABLE, *other_end)
+        for number, name in enumerate(names, start=1):
+            _ip("-n", name, "addr", "add", f"10.77.0.{number}/24", "dev", _CABLE)
+            for device in ("lo", _CABLE):
+                _ip("-n", name, "link", "set", device, "up")
+            _ip("-n", name, "route", "add", "224.0.0.0/4", "dev", _CABLE)
+        here, there = (["ip", "netns", "exec", name] for name in names)
+        yield here, there
+
+
+def _ip(*words: str) -> None:
+    subprocess.run(["ip", *words], check=True, capture_output=True)
