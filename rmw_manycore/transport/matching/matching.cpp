@@ -10,6 +10,7 @@
 #include "transport/qos/qos_compatibility.hpp"
 #include "transport/queue/source_table.hpp"
 #include "transport/registry/endpoint_blocks.hpp"
+#include "transport/registry/snapshot.hpp"
 #include "transport/topic_dsm/last_published.hpp"
 #include "transport/topic_dsm/reader_table.hpp"
 
@@ -215,17 +216,19 @@ void count_matches_of(Registry & registry, uint32_t slot, std::vector<uint64_t> 
   });
 }
 
+bool is_other_end(const EndpointEntry & entry, const char * topic, EndpointKind kind) {
+  return entry.kind != kind && std::strncmp(entry.topic, topic, name_bytes) == 0;
+}
+
 /// False when some may be missing.
 bool look_for_candidates(
   Registry & registry, uint32_t endpoint, std::vector<Candidate> & candidates) {
   const EndpointEntry & own = registry.endpoints()[endpoint];
   candidates.clear();
   return registry.for_each_older(endpoint, [&](uint32_t slot, uint32_t incarnation) {
-    const EndpointEntry & other = registry.endpoints()[slot];
-    if (
-      other.kind != own.kind && other.topic_hash == own.topic_hash &&
-      std::strncmp(other.topic, own.topic, name_bytes) == 0) {
-      candidates.push_back({slot, incarnation});
+    const EntryCopy<EndpointEntry> other(registry.endpoints(), slot);
+    if (is_other_end(*other, own.topic, own.kind) && other.holds()) {
+      candidates.push_back({slot, incarnation, (*other).cluster});
     }
   });
 }
@@ -234,11 +237,9 @@ bool look_for_candidates(
 
 void require_reach(Registry & registry, const std::string & topic, EndpointKind kind) {
   registry.for_each_of_bucket(topic.c_str(), [&](uint32_t slot) {
-    const EndpointEntry & other = registry.endpoints()[slot];
-    if (
-      registry.endpoints().is_live(slot) && other.kind != kind &&
-      std::strncmp(other.topic, topic.c_str(), name_bytes) == 0) {
-      registry.reach(other.cluster);
+    const EntryCopy<EndpointEntry> other(registry.endpoints(), slot);
+    if (is_other_end(*other, topic.c_str(), kind) && other.holds()) {
+      registry.reach((*other).cluster);
     }
   });
 }
@@ -254,7 +255,7 @@ std::vector<Candidate> candidates_of(Registry & registry, uint32_t endpoint) {
     look_for_candidates(registry, endpoint, candidates);
   }
   for (const Candidate & candidate : candidates) {
-    registry.reach(registry.endpoints()[candidate.slot].cluster);
+    registry.reach(candidate.cluster);
   }
   return candidates;
 }

@@ -16,6 +16,7 @@ void require_reach(Registry & registry, const std::string & topic, EndpointKind 
 struct Candidate {
   uint32_t slot;
   uint32_t incarnation;
+  uint32_t cluster;
 };
 
 /// All endpoints of its topic and of the other kind that are older. Without the registry lock,
