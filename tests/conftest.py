@@ -16,6 +16,7 @@ import pytest
 # Test files import `support` by name, from whatever directory pytest is started in.
 sys.path.insert(0, str(Path(__file__).parent))
 
+from fast_dds import remove_unfinished_ports
 from fork_server import ForkServer, is_inside
 from isolation import Isolation
 from peers import PeerServers
@@ -112,3 +113,4 @@ def start(platform: str, request: pytest.FixtureRequest) -> Iterator[StartProgra
         wait_until(lambda: has_receive_threads(platform), "there is who clears up after the killed")
     for program in programs:
         program.kill()
+    remove_unfinished_ports()
