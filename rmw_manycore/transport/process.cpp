@@ -3,9 +3,7 @@
 
 #include <unistd.h>
 
-#include <algorithm>
 #include <atomic>
-#include <cstring>
 #include <map>
 #include <mutex>
 
@@ -18,8 +16,8 @@
 #include "transport/matching/leaving.hpp"
 #include "transport/matching/matching.hpp"
 #include "transport/matching/sweeping.hpp"
+#include "transport/new_endpoint.hpp"
 #include "transport/publisher/publisher_impl.hpp"
-#include "transport/qos/manual_liveliness.hpp"
 #include "transport/qos/qos_ranges.hpp"
 #include "transport/registry/membership.hpp"
 #include "transport/registry/smem_charge.hpp"
@@ -58,15 +56,6 @@ void ensure_cluster(Registry & registry, uint32_t id) {
   header.clusters_present.fetch_or(bit);
 }
 
-Gid make_gid(const Registry & registry, uint32_t slot, uint32_t incarnation) {
-  const uint64_t nonce = registry.nonce();
-  Gid gid{};
-  std::memcpy(gid.data(), &nonce, 8);
-  std::memcpy(gid.data() + 8, &slot, 4);
-  std::memcpy(gid.data() + 12, &incarnation, 4);
-  return gid;
-}
-
 }  // namespace
 
 struct Process::Impl {
@@ -78,7 +67,6 @@ struct Process::Impl {
   Impl(const Placement & placement_, JoinOnly);
 
   uint32_t take_process_slot();
-  uint32_t fill_endpoint(const EndpointSpec & spec, EndpointKind kind);
   uint32_t publish_endpoint(const EndpointSpec & spec, EndpointKind kind);
   uint32_t add_endpoint(const EndpointSpec & spec, EndpointKind kind);
   template<typename Endpoint>
@@ -226,47 +214,10 @@ void Process::Impl::count_contexts(int change) noexcept {
   }
 }
 
-uint32_t Process::Impl::fill_endpoint(const EndpointSpec & spec, EndpointKind kind) {
-  const uint32_t taken = registry->endpoints().take("endpoints");
-  EndpointEntry & entry = registry->endpoints()[taken];
-  try {
-    store_name(entry.topic, spec.topic, "topic");
-    store_name(entry.type, spec.type, "type");
-  } catch (...) {
-    registry->endpoints().give_back(taken);
-    throw;
-  }
-  const TopicEntry * const configured = registry->find_topic(spec.topic);
-  entry.kind = kind;
-  entry.role = spec.role;
-  entry.ignore_local = spec.ignore_local ? 1 : 0;
-  entry.process = slot;
-  entry.node = spec.node;
-  entry.cluster = placement.cluster;
-  entry.topic_hash = hash_name(entry.topic);
-  entry.block = SegmentRef{};
-  entry.gid = make_gid(*registry, taken, entry.slot.incarnation);
-  entry.qos = spec.qos;
-  entry.type_hash_version = spec.type_hash.version;
-  std::copy(spec.type_hash.value.begin(), spec.type_hash.value.end(), entry.type_hash);
-  entry.topic_dsm_size = configured == nullptr ? 0 : configured->topic_dsm_size;
-  for (std::atomic<uint64_t> * count :
-       {&entry.matched_total, &entry.matched_current, &entry.incompatible_total,
-        &entry.incompatible_types, &entry.counters.messages, &entry.counters.bytes,
-        &entry.counters.lost, &entry.counters.expired, &entry.counters.refused,
-        &entry.counters.overwritten}) {
-    count->store(0);
-  }
-  entry.incompatible_policy.store(0);
-  entry.asserted_ns.store(ManualLiveliness::never);
-  entry.dead_publishers.store(0);
-  return taken;
-}
-
 /// Live before it is connected: should this process die in between, the reaper ends its matches.
 uint32_t Process::Impl::publish_endpoint(const EndpointSpec & spec, EndpointKind kind) {
   const Registry::Lock lock(*registry);
-  const uint32_t taken = fill_endpoint(spec, kind);
+  const uint32_t taken = new_endpoint(*registry, spec, kind, slot, placement.cluster);
   EndpointEntry & entry = registry->endpoints()[taken];
   try {
     Cluster & cluster = registry->clusters().at(entry.cluster);

@@ -1,0 +1,15 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "transport/layout/endpoint.hpp"
+#include "transport/registry/registry.hpp"
+
+namespace manycore {
+
+/// Takes a slot of the endpoint table for a process and fills it in; it is not live yet, and has no
+/// block. Throws Error. The caller holds the registry lock.
+uint32_t new_endpoint(
+  Registry & registry, const EndpointSpec & spec, EndpointKind kind, uint32_t process,
+  uint32_t cluster);
+
+}  // namespace manycore
