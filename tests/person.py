@@ -19,7 +19,7 @@ from support import PATIENCE_S
 
 
 class Person:
-    """A person at a terminal of their own who has started a program."""
+    """A person at a terminal of their own, with a program that runs there."""
 
     def __init__(self, command: list[str | Path], env: dict[str, str]) -> None:
         self._terminal, theirs = pty.openpty()

@@ -32,30 +32,11 @@ const rosidl_service_type_support_t * service_type() {
   return ROSIDL_GET_SRV_TYPE_SUPPORT(rcl_interfaces, srv, GetParameterTypes);
 }
 
-/// Ends what waits for it.
-class End {
-public:
-  explicit End(RclContext & context) {
-    const auto options = rcl_guard_condition_get_default_options();
-    check_rcl(
-      rcl_guard_condition_init(&condition_, &context.get(), options), "rcl_guard_condition");
-  }
-  End(const End &) = delete;
-  End & operator=(const End &) = delete;
-  ~End() { report_rcl(rcl_guard_condition_fini(&condition_)); }
-
-  const rcl_guard_condition_t & condition() const { return condition_; }
-  void tell() { check_rcl(rcl_trigger_guard_condition(&condition_), "rcl_trigger"); }
-
-private:
-  rcl_guard_condition_t condition_ = rcl_get_zero_initialized_guard_condition();
-};
-
 /// Calls `act` after each wait, in a thread of its own, until the input ends.
 template<typename Act>
 void spin_until_end_of_input(RclContext & context, const RclNode & node, Act act) {
-  End end(context);
-  RclWaitSet wait_set(context.get(), {&node}, end.condition());
+  RclGuardCondition end(context);
+  RclWaitSet wait_set(context.get(), {&node}, end);
   std::thread waiter([&] {
     for (wait_set.wait(); !wait_set.is_ended(); wait_set.wait()) {
       act();
@@ -63,7 +44,7 @@ void spin_until_end_of_input(RclContext & context, const RclNode & node, Act act
   });
   announce_ready();
   wait_for_end_of_input();
-  end.tell();
+  end.trigger();
   waiter.join();
 }
 
@@ -128,8 +109,8 @@ void call(const Arguments & arguments) {
   RclNode node(context.get(), "caller");
   const rcl_client_t & client = node.call(service_name, service_type());
   wait_for_server(node, client);
-  const End end(context);
-  RclWaitSet wait_set(context.get(), {&node}, end.condition());
+  const RclGuardCondition end(context);
+  RclWaitSet wait_set(context.get(), {&node}, end);
   rcl_interfaces__srv__GetParameterTypes_Request request;
   rcl_interfaces__srv__GetParameterTypes_Request__init(&request);
   const size_t warm_up = arguments.number("warm_up");

@@ -94,7 +94,7 @@ void take(const rcl_subscription_t & subscription) {
 /// As one executor of all nodes, until `end` is triggered. Where there are no messages, nothing may
 /// wake it.
 void wait_for_anything(
-  RclContext & context, const Fleet & fleet, const rcl_guard_condition_t & end, bool has_messages) {
+  RclContext & context, const Fleet & fleet, const RclGuardCondition & end, bool has_messages) {
   std::vector<const RclNode *> nodes;
   for (const FleetNode & node : fleet) {
     nodes.push_back(&node.node());
@@ -143,10 +143,7 @@ void run(const Arguments & arguments) {
     fleet.emplace_back(context.get(), i, arguments.number("all"));
     samples_ns.push_back(monotonic_ns() - start_ns);
   }
-  rcl_guard_condition_t end = rcl_get_zero_initialized_guard_condition();
-  check_rcl(
-    rcl_guard_condition_init(&end, &context.get(), rcl_guard_condition_get_default_options()),
-    "rcl_guard_condition_init");
+  RclGuardCondition end(context);
   const std::chrono::milliseconds period(arguments.number("period_ms"));
   std::thread waiter([&] { wait_for_anything(context, fleet, end, period.count() > 0); });
   for (const FleetNode & node : fleet) {
@@ -159,9 +156,8 @@ void run(const Arguments & arguments) {
     announce_ready();
     wait_for_end_of_input();
   }
-  check_rcl(rcl_trigger_guard_condition(&end), "rcl_trigger_guard_condition");
+  end.trigger();
   waiter.join();
-  check_rcl(rcl_guard_condition_fini(&end), "rcl_guard_condition_fini");
   print_samples(samples_ns);
 }
 

@@ -72,6 +72,13 @@ RclContext::~RclContext() {
   report_rcl(rcl_context_fini(&context_));
 }
 
+RclGuardCondition::RclGuardCondition(RclContext & context) {
+  check_rcl(
+    rcl_guard_condition_init(
+      &condition_, &context.get(), rcl_guard_condition_get_default_options()),
+    "rcl_guard_condition_init");
+}
+
 RclNode::RclNode(rcl_context_t & context, const std::string & name) {
   const rcl_node_options_t options = rcl_node_get_default_options();
   check_rcl(rcl_node_init(&node_, name.c_str(), "", &context, &options), "rcl_node_init");
@@ -139,7 +146,7 @@ void RclNode::serve(const char * name, const rosidl_service_type_support_t * typ
 }
 
 RclWaitSet::RclWaitSet(
-  rcl_context_t & context, std::vector<const RclNode *> nodes, const rcl_guard_condition_t & end,
+  rcl_context_t & context, std::vector<const RclNode *> nodes, const RclGuardCondition & end,
   rcl_timer_t * timer)
 : nodes_(std::move(nodes)), end_(end), timer_(timer) {
   size_t subscriptions = 0;
@@ -173,7 +180,7 @@ void RclWaitSet::add_all() {
   if (timer_ != nullptr) {
     check_rcl(rcl_wait_set_add_timer(&wait_set_, timer_, nullptr), what);
   }
-  check_rcl(rcl_wait_set_add_guard_condition(&wait_set_, &end_, nullptr), what);
+  check_rcl(rcl_wait_set_add_guard_condition(&wait_set_, &end_.get(), nullptr), what);
 }
 
 void RclWaitSet::wait() {

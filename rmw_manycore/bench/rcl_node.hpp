@@ -27,6 +27,21 @@ private:
   rcl_context_t context_ = rcl_get_zero_initialized_context();
 };
 
+/// Ends a wait when it is triggered, from any thread.
+class RclGuardCondition {
+public:
+  explicit RclGuardCondition(RclContext & context);
+  RclGuardCondition(const RclGuardCondition &) = delete;
+  RclGuardCondition & operator=(const RclGuardCondition &) = delete;
+  ~RclGuardCondition() { report_rcl(rcl_guard_condition_fini(&condition_)); }
+
+  void trigger() { report_rcl(rcl_trigger_guard_condition(&condition_)); }
+  const rcl_guard_condition_t & get() const { return condition_; }
+
+private:
+  rcl_guard_condition_t condition_ = rcl_get_zero_initialized_guard_condition();
+};
+
 /// A node with the services of its parameters, on /rosout and /parameter_events. What it has stays
 /// where it is until the node goes.
 class RclNode {
@@ -65,7 +80,7 @@ class RclWaitSet {
 public:
   /// `end` ends a wait; so does `timer`, unless it is nullptr. What the nodes have may not change.
   RclWaitSet(
-    rcl_context_t & context, std::vector<const RclNode *> nodes, const rcl_guard_condition_t & end,
+    rcl_context_t & context, std::vector<const RclNode *> nodes, const RclGuardCondition & end,
     rcl_timer_t * timer = nullptr);
   RclWaitSet(const RclWaitSet &) = delete;
   RclWaitSet & operator=(const RclWaitSet &) = delete;
@@ -91,7 +106,7 @@ private:
   void add_all();
 
   const std::vector<const RclNode *> nodes_;
-  const rcl_guard_condition_t & end_;
+  const RclGuardCondition & end_;
   rcl_timer_t * const timer_;
   rcl_wait_set_t wait_set_ = rcl_get_zero_initialized_wait_set();
 };

@@ -29,6 +29,13 @@ struct Fixture {
   std::unique_ptr<Publisher> publisher(const Qos & qos = keep_last(10)) {
     return process->create_publisher(on_topic("/driver", qos));
   }
+  std::vector<std::unique_ptr<Publisher>> publishers(size_t count) {
+    std::vector<std::unique_ptr<Publisher>> created;
+    for (size_t i = 0; i < count; ++i) {
+      created.push_back(publisher());
+    }
+    return created;
+  }
   std::unique_ptr<Subscription> subscription(const Qos & qos) {
     return process->create_subscription(on_topic("/driver", qos));
   }
@@ -205,10 +212,7 @@ TEST_CASE("a subscription with many publishers is freed in turns") {
   Fixture f;
   const Standstill no_other_sweeper(f.platform, 1);
   constexpr size_t many = 300;
-  std::vector<std::unique_ptr<Publisher>> publishers;
-  for (size_t i = 0; i < many; ++i) {
-    publishers.push_back(f.publisher());
-  }
+  const auto publishers = f.publishers(many);
   const auto subscription = f.subscription(keep_last(1));
   Registry & registry = f.inspection.registry();
   const auto slot = static_cast<uint32_t>(endpoint_in(subscription->gid()));
@@ -227,10 +231,7 @@ TEST_CASE("a sweep goes on with what a living process left closing until all of 
   Fixture f;
   const Standstill no_other_sweeper(f.platform, 1);
   constexpr size_t many = 300;
-  std::vector<std::unique_ptr<Publisher>> publishers;
-  for (size_t i = 0; i < many; ++i) {
-    publishers.push_back(f.publisher());
-  }
+  const auto publishers = f.publishers(many);
   const auto subscription = f.subscription(keep_last(1));
   Registry & registry = f.inspection.registry();
   {

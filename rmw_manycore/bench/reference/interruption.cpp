@@ -29,17 +29,13 @@ void block_interruptions() {
 
 bool is_interrupted() { return interrupted; }
 
-Interruption::Interruption(RclContext & context) {
-  check_rcl(
-    rcl_guard_condition_init(
-      &guard_condition_, &context.get(), rcl_guard_condition_get_default_options()),
-    "rcl_guard_condition_init");
+Interruption::Interruption(RclContext & context) : guard_condition_(context) {
   waiter_ = std::thread([this] {
     const sigset_t signals = interruptions();
     int signal = 0;
     sigwait(&signals, &signal);
     interrupted = true;
-    report_rcl(rcl_trigger_guard_condition(&guard_condition_));
+    guard_condition_.trigger();
   });
 }
 
@@ -48,7 +44,6 @@ Interruption::~Interruption() {
     pthread_kill(waiter_.native_handle(), SIGTERM);
   }
   waiter_.join();
-  report_rcl(rcl_guard_condition_fini(&guard_condition_));
 }
 
 }  // namespace manycore::bench::reference

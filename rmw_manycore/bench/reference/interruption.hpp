@@ -1,8 +1,6 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <rcl/rcl.h>
-
 #include <thread>
 
 #include "bench/rcl_node.hpp"
@@ -22,10 +20,10 @@ public:
   Interruption & operator=(const Interruption &) = delete;
   ~Interruption();
 
-  const rcl_guard_condition_t & guard_condition() const { return guard_condition_; }
+  const RclGuardCondition & guard_condition() const { return guard_condition_; }
 
 private:
-  rcl_guard_condition_t guard_condition_ = rcl_get_zero_initialized_guard_condition();
+  RclGuardCondition guard_condition_;
   std::thread waiter_;
 };
 
