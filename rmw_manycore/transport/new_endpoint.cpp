@@ -32,7 +32,6 @@ uint32_t new_endpoint(
     registry.endpoints().give_back(taken);
     throw;
   }
-  const TopicEntry * const configured = registry.find_topic(spec.topic);
   entry.kind = kind;
   entry.role = spec.role;
   entry.ignore_local = spec.ignore_local ? 1 : 0;
@@ -45,12 +44,11 @@ uint32_t new_endpoint(
   entry.qos = spec.qos;
   entry.type_hash_version = spec.type_hash.version;
   std::copy(spec.type_hash.value.begin(), spec.type_hash.value.end(), entry.type_hash);
-  entry.topic_dsm_size = configured == nullptr ? 0 : configured->topic_dsm_size;
   for (std::atomic<uint64_t> * count :
        {&entry.matched_total, &entry.matched_current, &entry.incompatible_total,
         &entry.incompatible_types, &entry.counters.messages, &entry.counters.bytes,
         &entry.counters.lost, &entry.counters.expired, &entry.counters.refused,
-        &entry.counters.overwritten}) {
+        &entry.counters.overwritten, &entry.counters.dropped}) {
     count->store(0);
   }
   entry.incompatible_policy.store(0);

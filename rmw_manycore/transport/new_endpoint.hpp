@@ -6,8 +6,9 @@
 
 namespace manycore {
 
-/// Takes a slot of the endpoint table for a process and fills it in; it is not live yet, and has no
-/// block. Throws Error. The caller holds the registry lock.
+/// Takes a slot of the endpoint table for a process and fills it in. The endpoint is not live yet
+/// and has no block. The caller holds the registry lock. Throws
+/// Error{no_space|invalid_argument|corrupt}.
 uint32_t new_endpoint(
   Registry & registry, const EndpointSpec & spec, EndpointKind kind, uint32_t process,
   uint32_t cluster);

@@ -59,4 +59,19 @@ Placement Placement::from_environment(size_t domain_id) {
   return placement;
 }
 
+void Placement::require_on(const Profile & profile) const {
+  if (cluster == 0 || cluster > profile.clusters) {
+    throw Error(
+      ErrorCode::invalid_argument, "there is no cluster " + std::to_string(cluster) +
+                                     " on platform '" + platform + "': it has clusters 1 to " +
+                                     std::to_string(profile.clusters));
+  }
+  if (core && *core >= profile.cores_per_cluster) {
+    throw Error(
+      ErrorCode::invalid_argument, "there is no core " + std::to_string(*core) + " on platform '" +
+                                     platform + "': a cluster has cores 0 to " +
+                                     std::to_string(profile.cores_per_cluster - 1));
+  }
+}
+
 }  // namespace manycore

@@ -23,25 +23,11 @@
 #include "transport/registry/smem_charge.hpp"
 #include "transport/subscription/subscription_block.hpp"
 #include "transport/subscription/subscription_impl.hpp"
+#include "transport/transfer/topic_transfer.hpp"
+#include "transport/transfer/transfer_pipes.hpp"
 
 namespace manycore {
 namespace {
-
-void check_placement(const Placement & placement, const Profile & profile) {
-  if (placement.cluster == 0 || placement.cluster > profile.clusters) {
-    throw Error(
-      ErrorCode::invalid_argument, "there is no cluster " + std::to_string(placement.cluster) +
-                                     " on platform '" + placement.platform +
-                                     "': it has clusters 1 to " + std::to_string(profile.clusters));
-  }
-  if (placement.core && *placement.core >= profile.cores_per_cluster) {
-    throw Error(
-      ErrorCode::invalid_argument, "there is no core " + std::to_string(*placement.core) +
-                                     " on platform '" + placement.platform +
-                                     "': a cluster has cores 0 to " +
-                                     std::to_string(profile.cores_per_cluster - 1));
-  }
-}
 
 void ensure_cluster(Registry & registry, uint32_t id) {
   RegistryHeader & header = registry.header();
@@ -50,9 +36,11 @@ void ensure_cluster(Registry & registry, uint32_t id) {
     registry.clusters().at(id);
     return;
   }
-  unlink(registry.paths().cluster(id).c_str());  // a creator that died before it set the bit
+  // Left by a creator that died before it set the bit.
+  unlink(registry.paths().cluster(id).c_str());
   Cluster::create(registry.paths(), id, header.profile.smem_bytes, registry.nonce());
   registry.clusters().at(id);
+  transfer_pipes::create(registry, registry.paths(), id);
   header.clusters_present.fetch_or(bit);
 }
 
@@ -63,15 +51,16 @@ struct Process::Impl {
   ~Impl();
 
   struct JoinOnly {};
-  /// Joins, no more: the first half of what the other constructor does.
+  /// First half of the other constructor: joins the platform.
   Impl(const Placement & placement_, JoinOnly);
 
   uint32_t take_process_slot();
+  void require_movers();
   uint32_t publish_endpoint(const EndpointSpec & spec, EndpointKind kind);
   uint32_t add_endpoint(const EndpointSpec & spec, EndpointKind kind);
   template<typename Endpoint>
   std::unique_ptr<Endpoint> handle_of(uint32_t endpoint);
-  void attach();
+  void attach(uint32_t taken);
   void sweep_at_parting() noexcept;
   void leave();
   void count_contexts(int change) noexcept;
@@ -96,10 +85,9 @@ Process::Impl::Impl(const Placement & placement_, JoinOnly)
     ensure_platform(paths, host_profile(), {});
     try {
       registry = std::make_unique<Registry>(paths);
-      check_placement(placement, registry->header().profile);
+      placement.require_on(registry->header().profile);
       const Registry::Lock lock(*registry);
       ensure_cluster(*registry, placement.cluster);
-      attach();
       slot = take_process_slot();
     } catch (...) {
       if (!is_alive(paths)) {
@@ -110,7 +98,7 @@ Process::Impl::Impl(const Placement & placement_, JoinOnly)
   }
 }
 
-/// Delegates, so that ~Impl() leaves again when the rest fails.
+/// Delegates, so that ~Impl() leaves the platform if the rest fails.
 Process::Impl::Impl(const Placement & placement_) : Impl(placement_, JoinOnly{}) {
   waiters = std::make_unique<Waiters>(registry->processes()[slot].wake, placement.wait_mode);
   graph = std::make_unique<Graph>(*registry);
@@ -121,13 +109,14 @@ Process::Impl::Impl(const Placement & placement_) : Impl(placement_, JoinOnly{})
   registry->tracer().note(TraceKind::join);
 }
 
-/// Has the reaper look for this process; while its cluster has none, the others'. Before there is
-/// anything to find: a process killed later than that is found, since the reaper looks under the
-/// registry lock, which this process holds.
-void Process::Impl::attach() {
-  registry->clusters().at(placement.cluster).wake_reaper();
+/// Makes the reaper of the cluster watch the process that takes this slot, or the reapers of other
+/// clusters if the cluster has none. Called before the slot is live: the reaper checks under the
+/// registry lock, which this process holds, so it finds the slot even if this process is killed
+/// later.
+void Process::Impl::attach(uint32_t taken) {
+  registry->clusters().at(placement.cluster).wake_reaper(taken);
   if (!registry->lifelines().is_held(receive_thread_line + placement.cluster)) {
-    tell_other_reapers(*registry, placement.cluster);
+    notify_other_reapers(*registry, placement.cluster);
   }
 }
 
@@ -138,7 +127,7 @@ uint32_t Process::Impl::take_process_slot() {
   try {
     lifeline = registry->lifelines().try_hold(taken);
   } catch (const Error &) {
-    throw;  // the slot's line is damaged: the next process takes another slot
+    throw;  // the line is damaged: keep the slot taken, so that the next process takes another one
   } catch (...) {
     processes.give_back(taken);
     throw;
@@ -156,6 +145,7 @@ uint32_t Process::Impl::take_process_slot() {
   std::memset(entry.label, 0, sizeof entry.label);
   std::strncpy(entry.label, placement.label.c_str(), sizeof entry.label - 1);
   entry.wake.reset();
+  attach(taken);
   processes.publish(taken);
   membership.emplace(*registry, entry.slot);
   return taken;
@@ -163,18 +153,18 @@ uint32_t Process::Impl::take_process_slot() {
 
 Process::Impl::~Impl() {
   if (membership->is_inherited()) {
-    watcher.release();  // its thread is the parent's
+    watcher.release();  // its thread belongs to the parent
     return;
   }
   watcher.reset();
   try {
     leave();
   } catch (const std::exception &) {
-    // The lock stayed taken: the reaper cleans up after this process's end.
+    // The lock stayed taken: the reaper cleans up after this process.
   }
 }
 
-/// What others left cannot keep this process from leaving.
+/// Errors while sweeping what other processes left do not keep this process from leaving.
 void Process::Impl::sweep_at_parting() noexcept {
   try {
     sweeping::sweep_a_little(*registry, placement.cluster, registry->parting_wait_ns());
@@ -185,21 +175,27 @@ void Process::Impl::sweep_at_parting() noexcept {
 
 void Process::Impl::leave() {
   const JoinLock join_lock(paths);
-  // Those whose own closing did not get the lock.
+  // Close endpoints whose destructors could not get the lock.
   closing::EndpointsOfProcess endpoints(*registry, slot, false);
   for (bool closed = false; !closed;) {
     const Registry::Lock lock(*registry, registry->parting_wait_ns());
-    closed = endpoints.close_some();
+    Turn turn;
+    closed = endpoints.close_some(turn);
     if (closed) {
       endpoints.require_all_closed();
     }
   }
   sweep_at_parting();
-  {
+  NodesOfProcess nodes(*registry, slot);
+  for (bool has_left = false; !has_left;) {
     const Registry::Lock lock(*registry, registry->parting_wait_ns());
-    registry->tracer().note(TraceKind::leave);
-    registry->tracer().unfollow();
-    leave_registry(*registry, slot);
+    Turn turn;
+    has_left = nodes.remove_some(turn);
+    if (has_left) {
+      registry->tracer().note(TraceKind::leave);
+      registry->tracer().unfollow();
+      leave_registry(*registry, slot);
+    }
   }
   registry->graph_changed();
   lifeline.reset();
@@ -214,11 +210,27 @@ void Process::Impl::count_contexts(int change) noexcept {
   }
 }
 
-/// Live before it is connected: should this process die in between, the reaper ends its matches.
+/// Returns once the movers of this cluster have their pipes open. A publisher may then end at once
+/// after it has handed over its records.
+void Process::Impl::require_movers() {
+  if (!registry->lifelines().is_held(receive_thread_line + placement.cluster)) {
+    ensure_receive_thread(paths, placement.cluster);
+  }
+}
+
+/// Makes the endpoint live before it is matched: if this process dies in between, the reaper undoes
+/// its matches.
 uint32_t Process::Impl::publish_endpoint(const EndpointSpec & spec, EndpointKind kind) {
+  const TopicEntry * const configured = registry->find_topic(spec.topic);  // entries never change
+  const Transfer transfer = transfer_of(configured, spec, kind);
+  if (transfer != Transfer::dsm) {
+    require_movers();
+  }
   const Registry::Lock lock(*registry);
   const uint32_t taken = new_endpoint(*registry, spec, kind, slot, placement.cluster);
   EndpointEntry & entry = registry->endpoints()[taken];
+  entry.topic_dsm_size = configured == nullptr ? 0 : configured->topic_dsm_size;
+  entry.transfer = transfer;
   try {
     Cluster & cluster = registry->clusters().at(entry.cluster);
     const void * const block =
@@ -243,6 +255,9 @@ uint32_t Process::Impl::add_endpoint(const EndpointSpec & spec, EndpointKind kin
   matching::require_reach(*registry, spec.topic, kind);
   const uint32_t taken = publish_endpoint(spec, kind);
   try {
+    if (kind == EndpointKind::publisher) {
+      TopicDsmWriter::open_first_generation(*registry, taken);
+    }
     std::vector<matching::Candidate> candidates = matching::candidates_of(*registry, taken);
     while (!candidates.empty()) {
       const Registry::Lock lock(*registry);
@@ -258,7 +273,7 @@ uint32_t Process::Impl::add_endpoint(const EndpointSpec & spec, EndpointKind kin
   return taken;
 }
 
-/// The endpoint goes with its handle, also where there is no memory for one.
+/// Leaves the graph again if there is no memory for the handle.
 template<typename Endpoint>
 std::unique_ptr<Endpoint> Process::Impl::handle_of(uint32_t endpoint) {
   registry->graph_changed();
@@ -273,7 +288,7 @@ std::unique_ptr<Endpoint> Process::Impl::handle_of(uint32_t endpoint) {
 
 namespace {
 
-/// What this process has joined. A child of fork() begins anew, with a mutex that no thread holds.
+/// Memberships of this process. A child of fork() starts anew, with a mutex that no thread holds.
 struct Joined {
   static Joined & by_this_process();
 
@@ -345,7 +360,7 @@ void Process::remove_node(uint32_t node) noexcept {
     const Registry::Lock lock(*impl_->registry, impl_->registry->parting_wait_ns());
     impl_->registry->nodes().give_back(node);
   } catch (const std::exception &) {
-    // The registry stayed locked: the node goes with this process.
+    // The registry stayed locked: the node is removed with this process.
   }
   impl_->registry->graph_changed();
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "transport/layout/endpoint.hpp"
+#include "transport/layout/registry_layout.hpp"
 #include "transport/publisher/publisher.hpp"
 #include "transport/registry/graph.hpp"
 #include "transport/subscription/subscription.hpp"
@@ -16,30 +17,45 @@
 
 namespace manycore {
 
-/// Where a process runs: platform, virtual cluster and core, and how it waits.
+/// Placement of a process: platform, cluster and core, and its wait mode.
 struct Placement {
   std::string platform;
   uint32_t cluster = 1;          ///< from 1
-  std::optional<uint32_t> core;  ///< from 0; unset = not pinned, shares no virtual core
+  std::optional<uint32_t> core;  ///< from 0; unset = not pinned and not on any core
   WaitMode wait_mode = WaitMode::block;
-  std::string label;  ///< shown by the tools; default: the program's name
+  std::string label;  ///< shown by the tools; default: name of the program
 
-  /// From MANYCORE_PLATFORM, MANYCORE_CLUSTER, MANYCORE_CORE, MANYCORE_WAIT; platform defaults to
-  /// "domain-<domain_id>". Throws Error{invalid_argument} naming the variable.
+  /// Reads MANYCORE_PLATFORM, MANYCORE_CLUSTER, MANYCORE_CORE and MANYCORE_WAIT; the platform
+  /// defaults to "domain-<domain_id>". Throws Error{invalid_argument} naming the variable.
   static Placement from_environment(size_t domain_id);
+  /// Throws Error{invalid_argument} unless such a platform has this cluster and core.
+  void require_on(const Profile & profile) const;
 };
 
-/// This process's membership of a platform. Joining brings up platform, cluster and receive thread
-/// where they are missing; the last one to leave removes everything. Thread-safe.
+/// Membership of this process in a platform. Joining creates platform, cluster and receive thread
+/// if they are missing; the last process to leave removes everything. Thread-safe.
+///
+///   const auto process = Process::join(Placement::from_environment(0));
+///   EndpointSpec spec;
+///   spec.node = process->add_node("talker", "/", "/");
+///   spec.topic = "/chatter";
+///   spec.type = "std_msgs/msg/String";
+///   const auto publisher = process->create_publisher(spec);
+///   Draft draft = publisher->draft(size_bytes);  // room in the topic DSM, to serialize into
+///   publisher->publish(std::move(draft), size_bytes, realtime_ns());
+///   const auto subscription = process->create_subscription(spec);
+///   while (const auto claim = subscription->claim()) {
+///     read(claim->data(), claim->size());  // in place, until the claim is destroyed
+///   }
 class Process {
 public:
-  /// One membership per (process, platform): a second join returns the first one.
+  /// One membership per process and platform: a second join returns the first membership.
   static std::shared_ptr<Process> join(const Placement & placement);
   ~Process();
   Process(const Process &) = delete;
   Process & operator=(const Process &) = delete;
 
-  /// Returns the node's handle. Names as in ROS: name "talker", namespace "/" or "/a".
+  /// Returns the handle of the node. Names as in ROS: name "talker", namespace "/" or "/a".
   uint32_t add_node(const std::string & name, const std::string & ns, const std::string & enclave);
   void remove_node(uint32_t node) noexcept;
 
@@ -47,16 +63,16 @@ public:
   std::unique_ptr<Publisher> create_publisher(const EndpointSpec & spec);
   std::unique_ptr<Subscription> create_subscription(const EndpointSpec & spec);
 
-  /// True in a child of fork(): what belongs to this membership fails there, or does nothing.
+  /// True in a child of fork(): operations on this membership fail there or have no effect.
   bool is_inherited() const noexcept;
   /// True once the platform's files were removed from outside.
   bool is_cut_off() const noexcept;
-  /// Throws Error{system} in a child of fork(), and once this process was taken for dead or cut
-  /// off.
+  /// Throws Error{system} in a child of fork(), and after this process was reaped as dead or its
+  /// platform was removed.
   void require_membership() const;
 
-  /// Counts the contexts of this process. Once all that began have ended, the end of the process
-  /// is intended, whether or not it leaves: tools do not show it as a death.
+  /// Count the ROS contexts of this process. Once all have ended, the end of the process counts as
+  /// intended, whether or not it leaves the platform: tools do not report a death.
   void begin_context() noexcept;
   void end_context() noexcept;
   Waiters & waiters() noexcept;

@@ -9,22 +9,25 @@
 
 namespace manycore {
 
+/// Kinds of eMCOS messages; the values detect foreign bytes in a pipe.
 enum class EmcosMessageKind : uint32_t {
   publish = 0x4d43'0001,  ///< a record was published for subscriptions of the receiving cluster
-  attach = 0x4d43'0002,   ///< a process joined the cluster: watch it
-  detach = 0x4d43'0003,   ///< a process left: see whether it was the last
-  resync = 0x4d43'0004,   ///< hints may be missing in this cluster: wake who must scan
+  attach = 0x4d43'0002,   ///< a process joined the cluster: start watching it
+  detach = 0x4d43'0003,   ///< a process left the cluster: check whether it was the last one
+  /// Hints may be missing in this cluster: wake subscriptions that must resync.
+  resync = 0x4d43'0004,
 };
 
-/// What travels through the clusters' pipes: timing only, never data (ROS-lite2 III-B).
+/// Message sent through a cluster's pipe. It carries timing, never data (ROS-lite2 III-B). At most
+/// PIPE_BUF bytes, so writes are atomic.
 struct EmcosMessage {
   EmcosMessageKind kind;
-  uint32_t process;      ///< attach, detach: process slot
-  SegmentRef topic_dsm;  ///< publish
-  uint32_t endpoint;     ///< publish: publisher's slot
-  uint32_t incarnation;  ///< publish: of that slot
-  uint64_t number;       ///< publish: record number
-  uint32_t target;       ///< publish: only this subscription's slot, or `nothing` for all
+  uint32_t process;      ///< attach: slot of the process, or `nothing` to check all
+  SegmentRef topic_dsm;  ///< publish: its header
+  uint32_t endpoint;     ///< publish: slot of the publisher
+  uint32_t incarnation;  ///< publish: incarnation of that slot
+  uint64_t number;       ///< publish: number of the record
+  uint32_t target;       ///< publish: slot of the only subscription to notify, or `nothing` for all
   uint32_t reserved;
   uint64_t padding[3];
 };

@@ -10,10 +10,11 @@
 
 namespace manycore {
 
-/// Globally unique name of an endpoint: platform nonce, endpoint slot, incarnation (see gid.hpp).
+/// Globally unique identifier of an endpoint: platform nonce, endpoint slot, incarnation (see
+/// gid.hpp).
 using Gid = std::array<uint8_t, 16>;
 
-/// Slot and incarnation of the endpoint, as trace_endpoint() puts them.
+/// Slot and incarnation of the endpoint, packed as by trace_endpoint().
 inline uint64_t endpoint_in(const Gid & gid) noexcept {
   uint64_t word = 0;
   std::memcpy(&word, gid.data() + 8, sizeof word);
@@ -32,45 +33,45 @@ struct TypeHash {
   std::array<uint8_t, 32> value{};
 };
 
-/// What a node asks for when it creates a publisher or a subscription.
+/// Parameters of a new publisher or subscription.
 struct EndpointSpec {
-  uint32_t node = 0;  ///< handle from Process::add_node
+  uint32_t node = 0;  ///< node handle from Process::add_node()
   EndpointRole role = EndpointRole::topic;
   std::string topic;  ///< fully qualified ROS name; for services the service's name
   std::string type;   ///< "std_msgs/msg/String"; for services the service's type
   TypeHash type_hash;
   Qos qos;
-  bool ignore_local =
-    false;  ///< subscription only: not matched with publishers of the same process
+  bool ignore_local = false;  ///< subscription only: do not match publishers of the same process
 };
 
-/// Client and request number that a request or reply belongs to; all zero on topics.
+/// Client and request number of a request or reply; all zero on topics.
 struct Correlation {
   Gid client{};  ///< gid of the client's reply subscription
   int64_t number = 0;
 };
 
-/// Counts behind the matched event of one endpoint.
+/// Counts reported by the matched event of an endpoint.
 struct MatchedCount {
   uint64_t total = 0;    ///< matches so far
   uint64_t current = 0;  ///< matches now
 };
 
-/// A count that rises with time (deadlines missed, leases lost), and when it will next unless
-/// something happens.
+/// A count that rises as time passes (deadlines missed, leases lost).
 struct TimedCount {
   uint64_t total = 0;
-  int64_t next_due_ns = infinite_ns;  ///< CLOCK_MONOTONIC
+  int64_t next_due_ns = infinite_ns;  ///< CLOCK_MONOTONIC: when `total` rises next unless a message
+                                      ///< or an assertion comes first
 };
 
-/// A subscription's publishers, by liveliness.
+/// Matched publishers of a subscription, by liveliness.
 struct LivelinessCount {
   uint64_t alive = 0;
   uint64_t not_alive = 0;
-  int64_t next_due_ns = infinite_ns;  ///< CLOCK_MONOTONIC: the next lease runs out, unless asserted
+  /// CLOCK_MONOTONIC: when the next lease runs out unless it is renewed.
+  int64_t next_due_ns = infinite_ns;
 };
 
-/// Counts behind the incompatible-QoS event of one endpoint.
+/// Counts reported by the incompatible-QoS event of an endpoint.
 struct IncompatibleCount {
   uint64_t total = 0;
   QosPolicy last_policy = QosPolicy::none;

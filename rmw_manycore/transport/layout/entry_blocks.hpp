@@ -8,14 +8,14 @@ namespace manycore {
 
 constexpr uint32_t max_entry_blocks = 11;
 
-/// The blocks of a table in a cluster's SMEM. Each is twice as large as the one before: short
-/// tables stay small, and an index leads straight to its entry.
+/// Blocks of a table in a cluster's SMEM. Each block is twice the size of its predecessor: short
+/// tables stay small, and the block of an index is computed, not searched.
 struct EntryBlocks {
-  /// In the same segment; 0 = not there yet. Added under the registry lock.
+  /// Offsets in the same segment; 0 = not allocated. Written under the registry lock.
   std::atomic<uint64_t> offsets[max_entry_blocks];
 };
 
-/// Size of block number `block`, from 0: whole granules, as SMEM is given out in such.
+/// Size of block `block`, counted from 0. A whole number of granules, the unit of SMEM allocation.
 constexpr uint64_t entry_block_bytes(uint32_t block, uint64_t granule_bytes) {
   return granule_bytes << block;
 }

@@ -6,15 +6,16 @@
 
 namespace manycore {
 
+/// The values of each ROS 2 policy that an endpoint can have.
 enum class Reliability : uint8_t { best_effort, reliable };
 enum class Durability : uint8_t { is_volatile, transient_local };
 enum class History : uint8_t { keep_last, keep_all };
 enum class Liveliness : uint8_t { automatic, manual_by_topic };
 
-/// No limit for a duration of a policy.
+/// Value of a duration policy without a limit.
 constexpr int64_t infinite_ns = INT64_MAX;
 
-/// The ROS 2 policies of one endpoint, as stored in the registry. All durations in nanoseconds.
+/// QoS of one endpoint as stored in the registry. Durations are in nanoseconds.
 struct Qos {
   int64_t deadline_ns = infinite_ns;
   int64_t lifespan_ns = infinite_ns;
@@ -27,7 +28,8 @@ struct Qos {
 };
 static_assert(sizeof(Qos) == 32 && std::is_trivially_copyable_v<Qos>);
 
-/// The policies by which an offer can fail a request, in the order of their DDS numbers.
+/// Policies by which an offer can be incompatible with a request, in the order of their DDS
+/// numbers.
 enum class QosPolicy : uint8_t { none, durability, deadline, liveliness, reliability };
 
 }  // namespace manycore

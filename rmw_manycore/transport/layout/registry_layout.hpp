@@ -7,6 +7,7 @@
 #include "transport/layout/endpoint.hpp"
 #include "transport/layout/segment_layout.hpp"
 #include "transport/layout/trace_layout.hpp"
+#include "transport/layout/transfer_layout.hpp"
 #include "transport/layout/wake_words.hpp"
 
 namespace manycore {
@@ -20,31 +21,41 @@ constexpr uint32_t nothing = UINT32_MAX;  ///< no slot
 
 constexpr size_t name_bytes = 256;  ///< ROS names are at most 255 characters
 
-/// free -> live -> closing -> freeing -> free; closing and freeing only for endpoints (see
-/// docs/design/topic_dsm.md, Freeing). From freeing on no reference to its memory may be followed.
-/// An endpoint is `closing` until its matches are undone, by its process or by the reaper of that;
-/// should they die half way, the reaper goes on, or while the process lives the next sweep. Only
-/// then it is `closed`, and any process that has the registry lock may free it; a publisher is
-/// `freeing` meanwhile.
-enum class SlotState : uint32_t { free, live, closing, closed, freeing };
+/// free -> live -> closing -> closed -> freeing -> unreachable -> free; only endpoints pass through
+/// the states from closing on (see docs/design/freeing.md).
+///
+/// An endpoint is `closing` while its matches are being undone, by its own process or by the
+/// reaper of that process. If that process or reaper dies midway, the reaper continues; while the
+/// process lives, the next sweep does. A `closed` endpoint may be freed by any process that holds
+/// the registry lock. A publisher then becomes `freeing`: from then on no process may follow a
+/// reference to its memory. An endpoint becomes `unreachable` once no process can still be
+/// following one. Its memory is then freed piece by piece.
+enum class SlotState : uint32_t { free, live, closing, closed, freeing, unreachable };
+
+/// True while an endpoint's memory may be freed or is being freed.
+constexpr bool is_closed(SlotState state) {
+  return state == SlotState::closed || state == SlotState::freeing ||
+         state == SlotState::unreachable;
+}
 
 /// True while references to an endpoint's memory may be followed.
 constexpr bool has_memory(SlotState state) {
   return state == SlotState::live || state == SlotState::closing || state == SlotState::closed;
 }
 
-/// First member of every table entry.
+/// First member of each table entry.
 struct Slot {
   std::atomic<SlotState> state;
-  uint32_t next_free;                 ///< while free
-  std::atomic<uint32_t> incarnation;  ///< raised at each use
+  uint32_t next_free;                 ///< valid in state `free`
+  std::atomic<uint32_t> incarnation;  ///< incremented each time the slot is taken
 };
 
-/// Lifelines of the `alive` file, after those of the process slots.
-constexpr uint32_t receive_thread_line = process_capacity;  ///< + cluster, from 1
+/// Line numbers of the `alive` file; the process slots come first.
+constexpr uint32_t receive_thread_line = process_capacity;  ///< + cluster number, from 1
 constexpr uint32_t configurator_line = receive_thread_line + max_clusters + 1;
 constexpr uint32_t lifeline_count = configurator_line + 1;
 
+/// A member process of the platform.
 struct ProcessEntry {
   Slot slot;
   pid_t pid;
@@ -52,17 +63,19 @@ struct ProcessEntry {
   int32_t core;      ///< -1 = not placed on a core
   int32_t host_cpu;  ///< -1 = not pinned
   TraceSwitch trace;
-  uint64_t charged_bytes;  ///< outside the segment, but counted as SMEM
+  uint64_t charged_bytes;  ///< memory outside the segment that counts as SMEM of the cluster
   char label[84];
-  std::atomic<uint32_t> is_ending;  ///< told to end, or noted as dead: its end is no death
+  /// Its contexts have ended, or its death is recorded: its end is not recorded as a death.
+  std::atomic<uint32_t> is_ending;
   WakeWords wake;
 };
 static_assert(sizeof(ProcessEntry) == 1216 && offsetof(ProcessEntry, trace) == 28);
 
+/// A ROS 2 node of a member process.
 struct NodeEntry {
   Slot slot;
-  uint32_t process;
-  std::atomic<uint32_t> traced;  ///< where only some nodes of its process are
+  std::atomic<uint32_t> process;  ///< slot
+  std::atomic<uint32_t> traced;   ///< traced, in TraceScope::some_nodes
   uint32_t reserved;
   char name[name_bytes];
   char ns[name_bytes];
@@ -70,28 +83,34 @@ struct NodeEntry {
 };
 static_assert(sizeof(NodeEntry) == 792);
 
-/// Written by the endpoint's owner only, read by the tools.
+/// Written only by the endpoint's owner; read by the tools.
 struct EndpointCounters {
-  std::atomic<uint64_t> messages;     ///< published or taken
-  std::atomic<uint64_t> bytes;        ///< of serialized data
-  std::atomic<uint64_t> lost;         ///< subscription: overwritten before taken, or unreadable
-  std::atomic<uint64_t> expired;      ///< subscription: older than its lifespan when its turn came
-  std::atomic<uint64_t> refused;      ///< publisher: did not fit
-  std::atomic<uint64_t> overwritten;  ///< publisher: recycled while a reader still wanted it
+  std::atomic<uint64_t> messages;  ///< published or taken
+  std::atomic<uint64_t> bytes;     ///< size of serialized data
+  /// Subscription: messages overwritten before they were taken, or unreadable.
+  std::atomic<uint64_t> lost;
+  /// Subscription: messages past their lifespan when they were about to be taken.
+  std::atomic<uint64_t> expired;
+  std::atomic<uint64_t> refused;  ///< publisher: messages that did not fit
+  /// Publisher: records recycled while a reader still wanted them.
+  std::atomic<uint64_t> overwritten;
+  std::atomic<uint64_t> dropped;  ///< publisher: records that did not reach a cluster
 };
 
+/// A publisher or subscription.
 struct EndpointEntry {
   Slot slot;
   EndpointKind kind;
   EndpointRole role;
   uint8_t ignore_local;
   uint8_t type_hash_version;
-  uint32_t process;
+  std::atomic<uint32_t> process;  ///< slot
   uint32_t node;
   uint32_t cluster;
-  std::atomic<uint32_t> next_of_topic;  ///< chain of its topic's bucket: an older one (derived)
-  uint32_t previous_of_topic;           ///< (derived)
-  uint32_t order;                       ///< younger endpoints have greater ones; it wraps around
+  /// Next older endpoint in the chain of the topic's bucket (derived).
+  std::atomic<uint32_t> next_of_topic;
+  uint32_t previous_of_topic;  ///< (derived)
+  uint32_t order;              ///< age: larger for younger endpoints; wraps around
   uint64_t topic_hash;
   SegmentRef block;  ///< publisher: topic DSM header; subscription: subscription header
   Gid gid;
@@ -101,16 +120,19 @@ struct EndpointEntry {
   std::atomic<uint64_t> matched_current;
   std::atomic<uint64_t> incompatible_total;
   std::atomic<uint32_t> incompatible_policy;
-  uint32_t topic_dsm_size;  ///< publisher: fixed size from the topic table; 0 = grows
+  uint32_t topic_dsm_size;  ///< publisher: fixed size from the topic table in bytes; 0 = grows
   std::atomic<uint64_t> incompatible_types;
-  std::atomic<int64_t> asserted_ns;  ///< publisher: last assertion of manual liveliness; 0 = never
-  std::atomic<uint32_t> dead_publishers;  ///< subscription: died and not yet replaced
-  uint32_t reserved;
+  /// Publisher: last assertion of manual liveliness, CLOCK_MONOTONIC; 0 = never.
+  std::atomic<int64_t> asserted_ns;
+  /// Subscription: publishers that died and were not replaced yet.
+  std::atomic<uint32_t> dead_publishers;
+  Transfer transfer;  ///< of the topic, from the topic table
+  uint8_t reserved[3];
   EndpointCounters counters;
   char topic[name_bytes];
   char type[name_bytes];
 };
-static_assert(sizeof(EndpointEntry) == 752 && offsetof(EndpointEntry, topic_hash) == 40);
+static_assert(sizeof(EndpointEntry) == 760 && offsetof(EndpointEntry, topic_hash) == 40);
 
 /// One line of the topic table (ROS-lite2 Fig. 7).
 struct TopicEntry {
@@ -118,28 +140,31 @@ struct TopicEntry {
   uint32_t topic_id;
   uint32_t topic_dsm_size;
   uint64_t receiver_clusters;  ///< bit c - 1 = cluster c
+  TransferSettings transfer;
   char name[name_bytes];
 };
-static_assert(sizeof(TopicEntry) == 280);
+static_assert(sizeof(TopicEntry) == 288);
 
-/// A process that ended unasked, without leaving. Its slot may have another process meanwhile.
+/// A process that ended without leaving the platform. Its slot may belong to another process by
+/// now.
 struct Death {
   pid_t pid;
-  uint32_t process;  ///< its slot
+  uint32_t process;  ///< slot it had
   int64_t found_ns;  ///< CLOCK_MONOTONIC: when it was reaped
 };
 static_assert(sizeof(Death) == 16);
 
-/// Kept for the tools: more than die between two looks of theirs, unless all die at once.
+/// Deaths kept for the tools. As many as there are process slots, so a tool misses none between two
+/// looks unless more processes than that die in between.
 constexpr uint32_t kept_deaths = process_capacity;
 
-/// Used part of a table. The free list is derived state: rebuilt from the slots' states.
+/// State of a table. The free list is derived: it is rebuilt from the states of the slots.
 struct TableHead {
   std::atomic<uint32_t> high_water;
   uint32_t first_free;
 };
 
-/// The platform's shape, fixed at creation.
+/// Shape of the platform, fixed at creation.
 struct Profile {
   uint32_t clusters;
   uint32_t cores_per_cluster;
@@ -147,25 +172,27 @@ struct Profile {
   int32_t host_cpu_of_receive_thread[max_clusters];  ///< index cluster - 1; -1 = not pinned
 };
 
+/// Head of the registry; its tables follow at the offsets below.
 struct RegistryHeader {
   SegmentHeader segment;
   Profile profile;
   RobustMutex mutex;
-  std::atomic<uint64_t> changes;  ///< raised when the lock is taken and given back: odd between
+  /// Incremented when the mutex is taken and when it is released: odd while it is held.
+  std::atomic<uint64_t> changes;
   std::atomic<uint64_t> graph_generation;
   TableHead processes;
   TableHead nodes;
   TableHead endpoints;
   uint32_t topic_count;
-  uint32_t closing_count;                  ///< endpoints closing, closed or freeing (derived)
+  uint32_t closing_count;                  ///< endpoints in a state from closing on (derived)
   std::atomic<uint64_t> clusters_present;  ///< bit c - 1: cluster c has a segment
-  std::atomic<uint32_t> removed;           ///< the files are gone: no process can join
-  uint32_t needs_repair;                   ///< an owner of the mutex died; not yet repaired
-  uint32_t sweep_from;                     ///< endpoint slot that the next sweep looks at first
-  uint32_t last_order;                     ///< of endpoints
+  std::atomic<uint32_t> removed;           ///< 1 = the files are removed; no process can join
+  uint32_t needs_repair;  ///< an owner of the mutex died and its changes are not repaired yet
+  uint32_t sweep_from;    ///< endpoint slot at which the next sweep starts
+  uint32_t last_order;    ///< EndpointEntry::order of the youngest endpoint
   TraceControl trace;
-  std::atomic<uint64_t> death_count;  ///< raised once the death is written down
-  Death deaths[kept_deaths];          ///< at death_count mod kept_deaths the next one
+  std::atomic<uint64_t> death_count;  ///< incremented after the entry in `deaths` is written
+  Death deaths[kept_deaths];  ///< ring; the next death goes to index death_count mod kept_deaths
   std::atomic<uint32_t> topic_buckets[topic_bucket_count];
 };
 

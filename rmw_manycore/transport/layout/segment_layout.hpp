@@ -8,8 +8,8 @@
 
 namespace manycore {
 
-/// Raised whenever any struct in a *_layout.hpp, its meaning, or the name of a file changes.
-constexpr uint32_t layout_version = 13;
+/// Increment whenever a struct in a *_layout.hpp, its meaning, or a file name changes.
+constexpr uint32_t layout_version = 15;
 
 constexpr uint64_t registry_magic = 0x4d43'5245'4749'5354;  // "MCREGIST"
 constexpr uint64_t cluster_magic = 0x4d43'434c'5553'5452;   // "MCCLUSTR"
@@ -18,7 +18,7 @@ constexpr uint32_t subscription_magic = 0x4d43'5342;        // "MCSB"
 
 constexpr uint32_t max_clusters = 64;  ///< receiver clusters are a 64-bit mask; Bostan has 20
 
-/// First bytes of every segment. `magic` is written last by the creator.
+/// First bytes of each segment. The creator stores `magic` last.
 struct SegmentHeader {
   std::atomic<uint64_t> magic;
   uint32_t version;
@@ -28,9 +28,9 @@ struct SegmentHeader {
 };
 static_assert(sizeof(SegmentHeader) == 32 && std::atomic<uint64_t>::is_always_lock_free);
 
-/// Place of something in one of the cluster segments.
+/// Reference to an object in a cluster segment.
 struct SegmentRef {
-  uint64_t word = 0;  ///< cluster in the upper 16 bits, offset in the lower 48; 0 = nothing
+  uint64_t word = 0;  ///< cluster in the upper 16 bits, offset in the lower 48; 0 = null
 
   static SegmentRef make(uint32_t cluster, uint64_t offset) noexcept {
     return {uint64_t{cluster} << 48 | offset};
@@ -42,7 +42,7 @@ struct SegmentRef {
 };
 static_assert(sizeof(SegmentRef) == 8 && std::is_trivially_copyable_v<SegmentRef>);
 
-/// Throws Error{corrupt} naming `what` unless the header is a complete one of this layout.
+/// Throws Error{corrupt} naming `what` unless the header is complete and has this layout.
 void check_segment(
   const SegmentHeader & header, uint64_t magic, uint64_t mapped_bytes, const char * what);
 

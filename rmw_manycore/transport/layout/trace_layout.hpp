@@ -17,85 +17,90 @@ constexpr uint64_t trace_magic = 0x4d43'5452'4143'4531;  // "MCTRACE1"
 enum class TraceScope : uint32_t {
   off,
   all,
-  some_nodes,  ///< those of nodes whose entry says so, and those that belong to no node
+  some_nodes,  ///< events of nodes whose NodeEntry::traced is set, and events without a node
 };
-/// Read by each trace site, so it lies in a cache line that is seldom written.
+/// Loaded at each trace site, so it lies in a cache line that is rarely written.
 using TraceSwitch = std::atomic<TraceScope>;
 static_assert(TraceSwitch::is_always_lock_free);
 
-/// What happened. `endpoint`, `number` and `value` of TraceEvent mean, where not said otherwise:
-/// the endpoint that acts, the record's number, and nothing. Names: see docs/design/trace.md.
+/// Kind of a TraceEvent. Unless stated otherwise, `endpoint` is the acting endpoint, `number` the
+/// record number, and `value` is unused. Kinds are named as in docs/design/trace.md.
 enum class TraceKind : uint16_t {
   none,
-  publish_begin,    ///< value: bytes asked for
-  serialize_begin,  ///< the record has its place and number
-  write,            ///< before the record can be seen; value: bytes
+  publish_begin,    ///< value: bytes requested
+  serialize_begin,  ///< the record has its room and number
+  write,            ///< before readers can see the record; value: bytes
   publish_end,
-  send,        ///< before an eMCOS message is sent; value: cluster
-  receive,     ///< a receive thread has an eMCOS message; value: cluster
-  hint,        ///< before it is pushed; endpoint: subscription; value: publisher
+  send,        ///< before an eMCOS message is written; value: cluster
+  receive,     ///< a receive thread read an eMCOS message; value: cluster
+  hint,        ///< before a hint is pushed; endpoint: subscription; value: publisher
   wake,        ///< before a process is notified; value: number of wake words
-  wait_begin,  ///< value: timeout in ns, UINT64_MAX = none
-  wait_end,    ///< value: 1 = something is ready
+  wait_begin,  ///< value: timeout in ns; UINT64_MAX = none
+  wait_end,    ///< value: 1 = some entity is ready
   claim,       ///< value: publisher
   release,     ///< value: publisher
-  request,     ///< a request is written or claimed; value: the client's number
-  reply,       ///< the same of a reply
-  lost,        ///< value: how many
+  request,     ///< a request was written or claimed; value: request number of the client
+  reply,       ///< a reply was written or claimed; value: request number of the client
+  lost,        ///< value: number of messages
   expired,     ///< value: publisher
-  refused,     ///< a publish failed
-  blocked,     ///< RELIABLE + KEEP_ALL: the publisher starts to wait
+  refused,     ///< publishing failed
+  blocked,     ///< RELIABLE + KEEP_ALL: the publisher starts waiting for a reader
   match,       ///< value: the other endpoint
-  join,        ///< of the process
-  leave,       ///< of the process
-  cpu,         ///< value: CPU time that the process has used, in ns
-  smem,        ///< number: cluster; value: bytes of its SMEM that are used
+  join,        ///< a process joined
+  leave,       ///< a process left
+  cpu,         ///< value: CPU time used by the process in ns
+  smem,        ///< number: cluster; value: bytes of SMEM in use
   bridge_in,   ///< before a message from outside is published; value: its age in ns
-  bridge_out,  ///< the message that is claimed was published outside
-  align,       ///< a scan was matched; number: begin, value: end, both of CLOCK_MONOTONIC
-  resume,      ///< goes on with what thread `endpoint` of the process did at time `number`
-  pass,        ///< as `align`, of a worker's share of a pass; endpoint: worker; incarnation: pass
+  bridge_out,  ///< the claimed message was published outside
+  align,       ///< a scan was aligned; number: begin, value: end, both CLOCK_MONOTONIC
+  resume,      ///< continues what thread `endpoint` of this process did at time `number`
+  pass,        ///< as `align`, for a worker's share of a pass; endpoint: worker; incarnation: pass
+  hand,        ///< a record is handed to its transfer; value: receiving cluster
+  arrive,      ///< a record has arrived in a receiving cluster; value: cluster
+  drop,        ///< a record does not reach a receiving cluster; value: cluster
 };
 
-/// Slot and incarnation of an endpoint in one word.
+/// Slot and incarnation of an endpoint packed into one word.
 constexpr uint64_t trace_endpoint(uint32_t slot, uint32_t incarnation) noexcept {
   return uint64_t{incarnation} << 32 | slot;
 }
 
+/// One recorded event.
 struct TraceEvent {
   int64_t time_ns;  ///< CLOCK_MONOTONIC
   uint64_t number;
   uint64_t value;
   uint32_t endpoint;     ///< slot, or `nothing`
-  uint16_t incarnation;  ///< of the slot, low bits
+  uint16_t incarnation;  ///< of the slot; low 16 bits
   TraceKind kind;
 };
 static_assert(sizeof(TraceEvent) == 32 && std::is_trivially_copyable_v<TraceEvent>);
 
-/// free -> used -> ended -> used. An ended ring is used again once all its events were saved.
+/// free -> used -> ended -> used. A thread may take over an ended ring once all its events are
+/// saved.
 enum class TraceRingState : uint32_t { free, used, ended };
 
-/// Events of one thread: one writer, one saver. `written` is the writer's, `read` the saver's; both
-/// only grow, and `written - read` events are there.
+/// Events of one thread: one writer, one saver. The writer owns `written`, the saver `read`; both
+/// only grow, and the ring holds written - read events.
 struct alignas(64) TraceRing {
   std::atomic<TraceRingState> state;
-  int32_t tid;      ///< with `name`: stored before the ring's first event
+  int32_t tid;      ///< stored, like `name`, before the ring's first event
   char name[16];    ///< of the thread
-  uint64_t offset;  ///< of the events, in the file
-  uint64_t backed;  ///< events that have memory; the writer's
+  uint64_t offset;  ///< of the events, in the trace file
+  uint64_t backed;  ///< events backed with memory; owned by the writer
   uint64_t reserved[3];
   alignas(64) std::atomic<uint64_t> written;
-  std::atomic<uint64_t> lost;  ///< events for which there was no room
+  std::atomic<uint64_t> lost;  ///< events dropped because the ring was full
   alignas(64) std::atomic<uint64_t> read;
-  std::atomic<uint64_t> lost_saved;  ///< how many of `lost` were told in a saved trace
+  std::atomic<uint64_t> lost_saved;  ///< part of `lost` already reported in a saved trace
 };
 static_assert(sizeof(TraceRing) == 192);
 
 constexpr uint32_t trace_rings_per_process = 64;
 constexpr uint32_t trace_names_per_process = 1024;
 
-/// What an endpoint was called when its first event was recorded: it may be gone when the trace is
-/// saved.
+/// Names of an endpoint, recorded with its first event because the endpoint may be gone when the
+/// trace is saved.
 struct TraceName {
   uint32_t slot;
   uint32_t incarnation;
@@ -110,7 +115,7 @@ struct TraceName {
 };
 static_assert(sizeof(TraceName) == 1048);
 
-/// Head of a process's trace file.
+/// Head of the trace file of a process.
 struct TraceFileHeader {
   SegmentHeader segment;
   uint32_t process;      ///< slot; `nothing` = a receive thread
@@ -122,7 +127,7 @@ struct TraceFileHeader {
   char label[88];
   std::atomic<uint32_t> ring_count;
   std::atomic<uint32_t> name_count;
-  std::atomic<uint64_t> unplaced;  ///< events of threads that found no ring
+  std::atomic<uint64_t> unplaced;  ///< events of threads that got no ring
   std::atomic<uint64_t> unplaced_saved;
   TraceRing rings[trace_rings_per_process];
 };
@@ -132,7 +137,7 @@ constexpr uint64_t trace_names_offset = 16384;
 static_assert(sizeof(TraceFileHeader) <= trace_names_offset);
 constexpr uint64_t trace_events_offset =
   (trace_names_offset + uint64_t{trace_names_per_process} * sizeof(TraceName) + 4095) / 4096 * 4096;
-constexpr uint32_t min_trace_events_log2 = 7;   ///< a page
+constexpr uint32_t min_trace_events_log2 = 7;   ///< one page
 constexpr uint32_t max_trace_events_log2 = 24;  ///< 512 MiB
 
 constexpr uint64_t trace_file_bytes(uint32_t events_log2) {
@@ -140,15 +145,16 @@ constexpr uint64_t trace_file_bytes(uint32_t events_log2) {
          uint64_t{trace_rings_per_process} * (sizeof(TraceEvent) << events_log2);
 }
 
-/// In the registry's header. Changed under the registry lock, but for the counts.
+/// Tracing state in the registry header. Changed under the registry lock, except for the counters.
 struct TraceControl {
-  std::atomic<int64_t> started_ns;    ///< CLOCK_MONOTONIC; 0 = nothing is traced
-  std::atomic<uint64_t> clusters;     ///< bit c - 1: all of cluster c, also what joins later
-  std::atomic<uint32_t> events_log2;  ///< of rings made from now on
-  std::atomic<uint32_t> files;        ///< made so far; their names count
-  std::atomic<uint64_t> unplaced;     ///< events of processes that could make no file
+  std::atomic<int64_t> started_ns;  ///< CLOCK_MONOTONIC; 0 = not tracing
+  /// Bit c - 1: trace all of cluster c, including processes that join later.
+  std::atomic<uint64_t> clusters;
+  std::atomic<uint32_t> events_log2;  ///< of rings created from now on
+  std::atomic<uint32_t> files;        ///< files created so far; numbers their names
+  std::atomic<uint64_t> unplaced;     ///< events of processes that could not create a file
   std::atomic<uint64_t> unplaced_saved;
-  std::atomic<int64_t> unsaved_since_ns;  ///< start of the last trace; 0 = it is stopped and saved
+  std::atomic<int64_t> unsaved_since_ns;      ///< start of the last trace; 0 = stopped and saved
   TraceSwitch receive_threads[max_clusters];  ///< index cluster - 1
 };
 static_assert(sizeof(TraceControl) == 304);

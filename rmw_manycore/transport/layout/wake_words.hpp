@@ -7,16 +7,16 @@
 
 namespace manycore {
 
-/// What threads of a process sleep on.
+/// Word that threads of a process sleep on.
 struct WakeWord {
   FutexWord epoch;
   std::atomic<uint32_t> sleepers;
 
-  /// Raises the epoch; one system call only if a thread sleeps.
+  /// Increments the epoch; makes a system call only if a thread sleeps.
   ///
-  /// No wake-up is lost: the sleeper counts itself before the kernel compares the epoch, the waker
-  /// raises the epoch before it looks at the count; both are seq_cst, so one of them sees the
-  /// other.
+  /// No wake-up is lost: the sleeper increments `sleepers` before the kernel compares the epoch,
+  /// the waker increments the epoch before it loads `sleepers`. All accesses are seq_cst, so at
+  /// least one of them sees the other.
   void notify() noexcept {
     epoch.fetch_add(1, std::memory_order_seq_cst);
     if (sleepers.load(std::memory_order_seq_cst) != 0) {
@@ -25,12 +25,13 @@ struct WakeWord {
   }
 };
 
-/// So that a hundred threads, and some, have one each.
+/// Enough for a hundred threads to have one each.
 constexpr uint32_t wake_words_per_process = 128;
-/// The word of those that wait for whatever their process gets; the others are threads' own.
+/// Word of the threads that wait for any notification of their process; each other word belongs to
+/// one thread.
 constexpr uint32_t common_word = 0;
 
-/// Some of a process's wake words.
+/// Set of wake words of one process.
 struct WakeSet {
   static constexpr uint32_t words_per_part = 64;
   static constexpr uint32_t part_count = wake_words_per_process / words_per_part;
@@ -78,13 +79,14 @@ struct WakeSet {
   }
 };
 
-/// The wake words behind which something is waited for. A thread adds its own before it looks and
-/// sleeps; it stays there until the thread was woken for nothing, so waiting again costs a load.
+/// Wake words of the threads that wait for one cause. A thread adds its word before it checks the
+/// cause and sleeps. The word stays until the thread is woken for nothing, so waiting again costs
+/// one load.
 ///
-/// No wake-up is lost: the waiting thread adds its word before it looks for the cause, the waker
-/// makes the cause before it reads the words; all seq_cst, so one of them sees the other. A thread
-/// has one word, so it does not matter that parts are read one after the other. See
-/// docs/model/waiting.pml.
+/// No wake-up is lost: the waiting thread adds its word before it checks the cause, the waker
+/// makes the cause true before it reads the words. All accesses are seq_cst, so at least one of
+/// them sees the other. A thread has one word, so the parts need not be read atomically together.
+/// Model: docs/model/waiting.pml.
 struct Watchers {
   std::atomic<uint64_t> parts[WakeSet::part_count];
 
@@ -107,7 +109,7 @@ struct Watchers {
     }
     return set;
   }
-  /// Before anybody waits.
+  /// Call before any thread waits.
   void reset() noexcept {
     for (std::atomic<uint64_t> & part : parts) {
       part.store(0);
@@ -115,16 +117,16 @@ struct Watchers {
   }
 };
 
-/// In the registry, one per process slot.
+/// Wake words and process-wide watchers of one process slot; part of its registry entry.
 struct alignas(64) WakeWords {
   WakeWord words[wake_words_per_process];
-  Watchers graph;            ///< of changes of the graph
-  Watchers endpoint_events;  ///< of matches, incompatible QoS, losses, deadlines
+  Watchers graph;            ///< of graph changes
+  Watchers endpoint_events;  ///< of matches, incompatible QoS, losses and deadlines
 
   void notify(const WakeSet & set) noexcept {
     set.for_each([this](uint32_t word) { words[word].notify(); });
   }
-  /// Those to be woken by an arrival at a subscription of the process.
+  /// Words to wake for an arrival at a subscription of the process.
   WakeSet set_of(const Watchers & arrivals, bool changes_events) const noexcept {
     WakeSet set = arrivals.read();
     if (changes_events) {
@@ -139,7 +141,7 @@ struct alignas(64) WakeWords {
   }
   void notify(const Watchers & watchers) noexcept { notify(watchers.read()); }
 
-  /// Once, before the process that has taken the slot is known to anybody.
+  /// Call once after taking the slot, before the process is visible to others.
   void reset() noexcept {
     for (WakeWord & word : words) {
       word.sleepers.store(0);

@@ -18,8 +18,8 @@ Configurator::Configurator(
   if (is_alive(paths_)) {
     throw Error(
       ErrorCode::invalid_argument, "platform '" + platform +
-                                     "' is running already; stop it, or give this one another name "
-                                     "(platform: name in the mapfile)");
+                                     "' is running already; stop it, or choose another name "
+                                     "('name' under 'platform' in the mapfile)");
   }
   ensure_platform(paths_, profile, topics);
   lifeline_ = Lifelines::open(paths_.alive()).try_hold(configurator_line);
@@ -35,7 +35,7 @@ Configurator::~Configurator() {
     Registry registry(paths_);
     remove_if_unused(registry);
   } catch (const std::exception &) {
-    // Nodes that are still alive keep the platform; the last one to leave removes it.
+    // Live nodes keep the platform; the last one to leave removes it.
   }
 }
 

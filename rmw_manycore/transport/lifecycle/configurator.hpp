@@ -9,11 +9,11 @@
 
 namespace manycore {
 
-/// Creates a platform before its first node, and keeps it while alive: profile and topic table come
-/// from a mapfile. For the launcher.
+/// Creates a platform before its first node, with profile and topic table from a mapfile, and keeps
+/// it during its own lifetime. Used by the launcher.
 class Configurator {
 public:
-  /// Throws Error{invalid_argument} when a platform of this name is alive already.
+  /// Throws Error{invalid_argument} if a platform of this name is running.
   Configurator(
     const std::string & platform, const Profile & profile,
     const std::vector<TopicConfiguration> & topics);
@@ -27,11 +27,11 @@ private:
   std::optional<HeldLifeline> lifeline_;
 };
 
-/// Names of this user's platforms, dead or alive.
+/// Names of this user's platforms, running or dead.
 std::vector<std::string> platform_names();
 
-/// Removes what a dead platform left. Throws Error{invalid_argument} when it is alive. Returns the
-/// paths.
+/// Removes the files of a dead platform and returns their paths. Throws Error{invalid_argument} if
+/// the platform is running.
 std::vector<std::string> clean_platform(const std::string & platform);
 
 }  // namespace manycore

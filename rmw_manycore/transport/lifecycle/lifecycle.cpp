@@ -30,7 +30,7 @@ void make_private_directory(const std::string & path) {
   struct stat status {};
   if (lstat(path.c_str(), &status) != 0) {
     if (errno == ENOENT) {
-      return;  // removed by its last user just now; the caller tries again
+      return;  // its last user has just removed it; the caller tries again
     }
     throw_errno("cannot examine " + path);
   }
@@ -60,7 +60,7 @@ std::vector<std::string> entries_of(const std::string & directory) {
 
 bool exists(const std::string & path) { return access(path.c_str(), F_OK) == 0; }
 
-/// This library's own directory, links resolved.
+/// Directory of this library, symbolic links resolved.
 std::string own_directory() {
   Dl_info info{};
   char resolved[PATH_MAX];
@@ -72,7 +72,8 @@ std::string own_directory() {
   return path.substr(0, path.rfind('/'));
 }
 
-/// Beside the library in a prefix, in a build tree, or from site-packages up to the prefix.
+/// Searches beside the library in a prefix, in a build tree, and from site-packages up to the
+/// prefix.
 std::string receive_thread_program() {
   const std::string directory = own_directory();
   for (const char * const place : {"/rmw_manycore/", "/", "/../", "/../../../rmw_manycore/"}) {
@@ -86,8 +87,7 @@ std::string receive_thread_program() {
     "manycore_receive_thread was not found near " + directory + "; reinstall rmw-manycore");
 }
 
-/// True when some process of the platform lives, or its configurator. The caller holds the
-/// JoinLock.
+/// True if a process of the platform or its configurator lives. The caller holds the JoinLock.
 bool is_in_use(Registry & registry) {
   const Lifelines & alive = registry.lifelines();
   if (alive.is_held(configurator_line)) {
@@ -101,13 +101,13 @@ bool is_in_use(Registry & registry) {
   return false;
 }
 
-/// Without the registry lock a process that is joining may be taken for dead.
+/// Without the registry lock, a process that is joining may be mistaken for dead.
 bool is_dead(Registry & registry, uint32_t process) {
   return registry.processes().is_live(process) && !registry.lifelines().is_held(process);
 }
 
-/// Once, also when a reaper dies in between and another one reaps again: one that dies in here
-/// leaves the death unnoted. The caller holds the registry lock.
+/// Records a death once, even if a reaper dies midway and another reaper repeats its work; a reaper
+/// that dies inside this function leaves the death unrecorded. The caller holds the registry lock.
 void note_death(Registry & registry, uint32_t process) {
   if (registry.processes()[process].is_ending.exchange(1) != 0) {
     return;
@@ -118,18 +118,40 @@ void note_death(Registry & registry, uint32_t process) {
   header.death_count.store(count + 1, std::memory_order_release);
 }
 
-/// False when another reaper was faster.
+/// False if another reaper was faster.
 bool reap(Registry & registry, uint32_t process) {
   const std::atomic<uint32_t> & incarnation = registry.processes()[process].slot.incarnation;
   const uint32_t first = incarnation.load();
-  closing::EndpointsOfProcess endpoints(registry, process, true);
-  while (true) {
+  const auto is_to_reap = [&] {
+    return incarnation.load() == first && registry.processes().is_live(process) &&
+           !registry.lifelines().is_locked(process);
+  };
+  {
+    // A process that appeared dead without the lock may still join and create endpoints. A process
+    // found dead under the lock adds no endpoints or nodes: none of its threads holds the lock.
     const Registry::Lock lock(registry);
-    if (incarnation.load() != first || !is_dead(registry, process)) {
+    if (!is_to_reap()) {
       return false;
     }
-    if (endpoints.close_some()) {
-      endpoints.require_all_closed();
+  }
+  // Waits until the last thread of the process has ended. This takes system calls, so it is done
+  // without the lock.
+  if (registry.lifelines().is_held(process)) {
+    return false;
+  }
+  closing::EndpointsOfProcess endpoints(registry, process, true);
+  NodesOfProcess nodes(registry, process);
+  while (true) {
+    const Registry::Lock lock(registry);
+    if (!is_to_reap()) {
+      return false;
+    }
+    Turn turn;
+    if (!endpoints.close_some(turn)) {
+      continue;
+    }
+    endpoints.require_all_closed();
+    if (nodes.remove_some(turn)) {
       note_death(registry, process);
       leave_registry(registry, process);
       return true;
@@ -158,8 +180,9 @@ JoinLock::~JoinLock() {
   }
 }
 
-/// SMEM of each cluster, in whole MiB, of a machine with so much shared memory (0 = no limit): an
-/// equal share of half of it. Where that is little, clusters may take what others leave.
+/// SMEM of each cluster in bytes, in whole MiB, on a machine with `shared_bytes` of shared memory
+/// (0 = no limit): an equal share of half of it. On a small machine clusters may overcommit and use
+/// what the others leave.
 uint64_t host_smem_bytes(uint64_t shared_bytes, uint32_t clusters) {
   constexpr uint64_t mebibyte = 1u << 20;
   constexpr uint64_t useful = 1024 * mebibyte;
@@ -214,7 +237,7 @@ std::vector<std::string> remove_platform(const PlatformPaths & paths) {
       try {
         Pipe::open(paths.pipe(id)).send_last(&message, sizeof message);
       } catch (const Error &) {
-        // Not a pipe any more: there is nobody behind it to tell.
+        // no longer a pipe, so no receive thread reads it
       }
     }
   }
@@ -248,12 +271,20 @@ void note_removal(Registry & registry) noexcept {
   }
 }
 
-void leave_registry(Registry & registry, uint32_t process) {
-  for (uint32_t slot = 0; slot < registry.nodes().high_water(); ++slot) {
-    if (registry.nodes().is_live(slot) && registry.nodes()[slot].process == process) {
-      registry.nodes().give_back(slot);
+bool NodesOfProcess::remove_some(Turn & turn) {
+  for (; !left_.empty(); left_.pop_back()) {
+    if (turn.is_over()) {
+      return false;
+    }
+    turn.spend(1);
+    if (is_of_process(registry_.nodes()[left_.back()], process_)) {
+      registry_.nodes().give_back(left_.back());
     }
   }
+  return true;
+}
+
+void leave_registry(Registry & registry, uint32_t process) {
   discharge(registry, process);
   registry.processes().give_back(process);
 }
@@ -262,7 +293,8 @@ uint32_t reap_dead(Registry & registry, uint32_t cluster) {
   uint32_t dead = 0;
   for (const bool own : {true, false}) {
     for (uint32_t slot = 0; slot < registry.processes().high_water(); ++slot) {
-      // First without the lock: it waits until the last thread of the dead is gone.
+      // Check without the lock first: the check waits until the last thread of the dead process has
+      // ended.
       if (
         (registry.processes()[slot].cluster == cluster) == own && is_dead(registry, slot) &&
         reap(registry, slot)) {
@@ -273,7 +305,7 @@ uint32_t reap_dead(Registry & registry, uint32_t cluster) {
   return dead;
 }
 
-void tell_other_reapers(Registry & registry, uint32_t own) {
+void notify_other_reapers(Registry & registry, uint32_t own) {
   const uint64_t present = registry.header().clusters_present.load();
   for (uint32_t id = 1; id <= max_clusters; ++id) {
     Cluster * const cluster =

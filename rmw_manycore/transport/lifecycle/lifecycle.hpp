@@ -7,16 +7,17 @@
 
 #include "platform/file_lock.hpp"
 #include "platform/lifeline.hpp"
-#include "transport/registry/registry.hpp"
+#include "transport/matching/turn.hpp"
+#include "transport/registry/slots_of_process.hpp"
 
 namespace manycore {
 
-/// Serialises joining and leaving of all platforms of this user, while alive. The user directory
-/// comes with its first holder and goes with the last one that leaves no platform in it, unless it
-/// is a chosen one.
+/// Serialises joining and leaving of all platforms of this user during its lifetime. The first
+/// holder creates the user directory; the last one that leaves no platform in it removes the
+/// directory, unless it is MANYCORE_DIRECTORY.
 class JoinLock {
 public:
-  /// Throws Error{permission} when the user directory is not private.
+  /// Throws Error{permission} if the user directory is not private, and Error{timeout}.
   explicit JoinLock(const PlatformPaths & paths);
   ~JoinLock();
   JoinLock(const JoinLock &) = delete;
@@ -29,44 +30,62 @@ private:
 
 uint64_t host_smem_bytes(uint64_t shared_bytes, uint32_t clusters);
 
-/// Sizes for a platform that nobody configured: Coolidge's shape, SMEM from what the file
-/// system of the user directory holds.
+/// Profile of a platform without a mapfile: Coolidge's shape, SMEM sized by the file system of the
+/// user directory.
 Profile host_profile();
 
-/// Brings the platform's directory and registry up where they are missing, and wipes what a dead
-/// platform left. The caller holds the JoinLock.
+/// Creates directory and registry of the platform if they are missing, after removing the files of
+/// a dead platform. The caller holds the JoinLock.
 void ensure_platform(
   const PlatformPaths & paths, const Profile & profile,
   const std::vector<TopicConfiguration> & topics);
 
-/// True when anything of the platform lives, receive threads included.
+/// True if any process of the platform lives, receive threads included.
 bool is_alive(const PlatformPaths & paths);
 
-/// Removes all files of a platform without a process, also what a killed process has left of them;
-/// but not a later platform of its name. False when it is used. The caller holds the JoinLock.
+/// Removes all files of a platform without processes, including those that a killed process left,
+/// but not those of a later platform of the same name. False if the platform is in use. The caller
+/// holds the JoinLock.
 bool remove_if_unused(Registry & registry);
 
-/// Sends the receive threads home and removes all files. The caller holds the JoinLock. Returns the
-/// paths.
+/// Ends the receive threads and removes all files; returns their paths. The caller holds the
+/// JoinLock.
 std::vector<std::string> remove_platform(const PlatformPaths & paths);
 
-/// Tells all members that the files are gone, and wakes them to notice.
+/// Marks the platform as removed and wakes all members, which then notice.
 void note_removal(Registry & registry) noexcept;
 
-/// Closes what dead processes left behind, and makes their places free; their endpoints' memory
-/// goes with sweeping::sweep_all(). Takes the registry lock anew for each turn. The dead of the
-/// caller's `cluster` go first: several reapers then do not all begin with the same process.
-/// Returns the number of the dead.
+/// Closes the endpoints of dead processes and frees their slots; sweeping::sweep_all() frees the
+/// endpoints' memory. Takes the registry lock anew for each turn. Starts with dead processes of
+/// `cluster`, so that several reapers do not start with the same process. Returns the number of
+/// dead processes.
 uint32_t reap_dead(Registry & registry, uint32_t cluster);
 
-/// Under the registry lock: gives back the place of a process whose endpoints are closed, and its
-/// nodes.
+/// Removes the nodes of a dead or leaving process, which adds no further nodes, turn by turn. The
+/// caller takes the registry lock anew for each turn.
+class NodesOfProcess {
+public:
+  /// Finds the nodes without the registry lock.
+  NodesOfProcess(Registry & registry, uint32_t process)
+  : registry_(registry), process_(process), left_(slots_of_process(registry.nodes(), process)) {}
+
+  /// Removes as many nodes as the turn allows. Returns true when none is left.
+  bool remove_some(Turn & turn);
+
+private:
+  Registry & registry_;
+  const uint32_t process_;
+  std::vector<uint32_t> left_;  ///< slots not visited yet
+};
+
+/// Frees the slot of a process whose endpoints are closed and whose nodes are removed. The caller
+/// holds the registry lock.
 void leave_registry(Registry & registry, uint32_t process);
 
-/// Has the reapers of all clusters but `own` look whom to watch.
-void tell_other_reapers(Registry & registry, uint32_t own);
+/// Makes the reapers of all clusters except `own` check which processes to watch.
+void notify_other_reapers(Registry & registry, uint32_t own);
 
-/// Starts the cluster's receive thread unless it lives. Throws Error{system} when it cannot be
+/// Starts the cluster's receive thread unless it is running. Throws Error{system} if it cannot be
 /// started.
 void ensure_receive_thread(const PlatformPaths & paths, uint32_t cluster);
 

@@ -23,7 +23,7 @@ namespace {
 constexpr int for_ever_ms = -1;
 constexpr int retry_ms = 1000;
 constexpr int unwatched_ms = 500;
-constexpr uint64_t look_again_key = 0;  ///< no process has pid 0
+constexpr uint64_t rescan_key = 0;  ///< pid 0 never occurs
 constexpr uint64_t files_key = UINT64_MAX;
 
 void add_to_poll(int poll, int fd, uint64_t key) {
@@ -35,8 +35,8 @@ void add_to_poll(int poll, int fd, uint64_t key) {
   }
 }
 
-/// A descriptor that tells when files of a directory go; empty when there are too many such
-/// already.
+/// An inotify descriptor that reports removed files of a directory; empty if the limit of such
+/// descriptors is reached.
 FileDescriptor watch_files_of(const std::string & directory) {
   FileDescriptor files(inotify_init1(IN_CLOEXEC | IN_NONBLOCK));
   constexpr uint32_t gone = IN_DELETE | IN_MOVED_FROM | IN_DELETE_SELF | IN_MOVE_SELF;
@@ -50,12 +50,13 @@ void drain(const FileDescriptor & descriptor) {
   }
 }
 
-/// Removes the platform if nobody uses it; true when this receive thread has nothing left to serve.
+/// Removes the platform if no process uses it. True if this receive thread has nothing left to
+/// serve.
 bool end_if_unused(Registry & registry) {
   const JoinLock lock(registry.paths());
   if (!registry.is_current()) {
     note_removal(registry);
-    remove_if_unused(registry);  // what a process that was killed meanwhile has left of it
+    remove_if_unused(registry);  // files left by a process that was killed meanwhile
     return true;
   }
   return remove_if_unused(registry);
@@ -64,8 +65,8 @@ bool end_if_unused(Registry & registry) {
 }  // namespace
 
 void exit_if_unused(Registry & registry) {
-  // One thread at a time: the end of one would cut off the other, and leave the directory that its
-  // JoinLock brought up.
+  // One thread at a time: _exit() in one thread would end the other midway, and leave the directory
+  // that its JoinLock created.
   static std::mutex mutex;
   const std::lock_guard<std::mutex> guard(mutex);
   if (end_if_unused(registry)) {
@@ -82,7 +83,7 @@ Reaper::Reaper(Registry & registry, uint32_t cluster)
   if (!poll_ || !event_) {
     throw_errno("cannot create the reaper's descriptors");
   }
-  add_to_poll(poll_.get(), event_.get(), look_again_key);
+  add_to_poll(poll_.get(), event_.get(), rescan_key);
   if (files_) {
     add_to_poll(poll_.get(), files_.get(), files_key);
   }
@@ -92,18 +93,28 @@ Reaper::Reaper(Registry & registry, uint32_t cluster)
 
 Reaper::~Reaper() {
   running_ = false;
-  look_again();
+  rescan();
   thread_.join();
 }
 
-void Reaper::look_again() noexcept { eventfd_write(event_.get(), 1); }
+void Reaper::rescan(uint32_t process) noexcept {
+  {
+    const std::lock_guard<std::mutex> guard(mutex_);
+    if (process < process_capacity) {
+      joined_.set(process);
+    } else {
+      must_check_all_ = true;
+    }
+  }
+  eventfd_write(event_.get(), 1);
+}
 
 void Reaper::watch(uint32_t line) {
   const ProcessIdentity holder = registry_.lifelines().holder(line);
   if (holder.pid <= 0) {
     return;
   }
-  // A pid of another namespace says nothing here, where another process may have it.
+  // A pid of another PID namespace may belong to a different process here.
   const bool is_watched =
     holder.is_of_this_pid_namespace() &&
     (holder.pid == getpid() || watched_.count(holder.pid) != 0 || watch_end_of(holder.pid));
@@ -126,9 +137,9 @@ bool Reaper::watch_end_of(pid_t pid) {
   }
 }
 
-/// A cluster that has no receive thread, not yet or not any more, is everybody's. So is one whose
-/// receive thread is not watched: nobody would tell of its end. That it lives is looked at once it
-/// is watched.
+/// A cluster without a receive thread is watched by all reapers. So is a cluster whose receive
+/// thread is not watched, because its end would go unnoticed; once it is watched, the lifeline is
+/// checked.
 bool Reaper::is_ours(uint32_t cluster) const {
   if (cluster == cluster_) {
     return true;
@@ -153,24 +164,62 @@ void Reaper::watch_members() {
       watch(slot);
     }
   }
-  // It keeps the platform without a process in it, and may be killed as the last one.
+  // The configurator keeps the platform without any process, and may be killed last.
   if (registry_.lifelines().is_held(configurator_line)) {
     watch(configurator_line);
   }
 }
 
-/// Watches first: the members that died before they were watched are found by reap_dead().
+/// The usual case: watches only the processes that joined, so that a join does not cost a check of
+/// every process. Watches first, then checks the lifeline: a process that died before it was
+/// watched is found by a check of all processes.
+bool Reaper::watch_joined() noexcept {
+  std::bitset<process_capacity> joined;
+  {
+    const std::lock_guard<std::mutex> guard(mutex_);
+    if (must_check_all_) {
+      return false;
+    }
+    joined = std::exchange(joined_, {});
+  }
+  try {
+    wait_for_joining();
+    for (uint32_t slot = 0; slot < process_capacity; ++slot) {
+      if (joined.test(slot) && !watch_one(slot)) {
+        return false;
+      }
+    }
+    return !some_unwatched_;
+  } catch (const std::exception &) {
+    return false;  // the lock stayed taken
+  }
+}
+
+/// Returns false if the process is dead.
+bool Reaper::watch_one(uint32_t process) {
+  watch(process);
+  return !registry_.processes().is_live(process) || registry_.lifelines().is_held(process);
+}
+
+/// Returns once the process that sent the message has joined: it holds the registry lock from
+/// before it sends the message until its slot is live.
+void Reaper::wait_for_joining() { const Registry::Lock lock(registry_); }
+
+/// Watches first: reap_dead() then finds the members that died before they were watched.
 bool Reaper::watch_and_reap() {
-  // What a predecessor reaped may be untold, as is what this one reaps before it fails.
+  // A predecessor, or an earlier attempt that failed, may have reaped without notifying.
   if (std::exchange(graph_may_have_changed_, true)) {
     registry_.graph_changed();
   }
   {
-    const Registry::Lock lock(registry_);  // a process that joins holds it from its message on
+    const std::lock_guard<std::mutex> guard(mutex_);
+    joined_.reset();
+    must_check_all_ = false;
   }
+  wait_for_joining();
   watch_members();
   const uint32_t dead = reap_dead(registry_, cluster_);
-  if (dead != 0 || somebody_ended_) {  // or a receive thread
+  if (dead != 0 || some_ended_) {  // or a receive thread did
     remove_unfinished_traces(registry_);
   }
   sweeping::sweep_all(registry_);
@@ -188,23 +237,23 @@ bool Reaper::watch_and_reap() {
 bool Reaper::wait_for_end(int timeout_ms) {
   epoll_event events[16];
   const int count = epoll_wait(poll_.get(), events, 16, timeout_ms);
-  bool somebody_ended = false;
+  bool some_ended = false;
   for (int i = 0; i < count; ++i) {
-    if (events[i].data.u64 == look_again_key) {
+    if (events[i].data.u64 == rescan_key) {
       eventfd_t ignored = 0;
       eventfd_read(event_.get(), &ignored);
     } else if (events[i].data.u64 == files_key) {
       drain(files_);
-      somebody_ended = true;  // with its files, the platform
+      some_ended = true;  // the platform is gone with its files
     } else {
       watched_.erase(static_cast<pid_t>(events[i].data.u64));
-      somebody_ended = true;
+      some_ended = true;
     }
   }
-  return somebody_ended;
+  return some_ended;
 }
 
-int Reaper::patience_ms() const noexcept {
+int Reaper::timeout_ms() const noexcept {
   if (some_unwatched_ || !files_) {
     return unwatched_ms;
   }
@@ -213,23 +262,23 @@ int Reaper::patience_ms() const noexcept {
 
 int Reaper::try_to_reap() noexcept {
   try {
-    somebody_ended_ = watch_and_reap() || somebody_ended_;
-    return patience_ms();
+    some_ended_ = watch_and_reap() || some_ended_;
+    return timeout_ms();
   } catch (const std::exception &) {
-    // A lock that stayed taken, a damaged entry; or the platform's files are gone, and a repair
-    // needs them.
-    somebody_ended_ = true;
+    // The lock stayed taken, an entry is damaged, or the platform's files, which a repair needs,
+    // are gone.
+    some_ended_ = true;
     return retry_ms;
   }
 }
 
-int Reaper::try_to_end(int patience_ms) noexcept {
+int Reaper::try_to_end(int timeout_ms) noexcept {
   try {
-    if (somebody_ended_ || !files_) {
+    if (some_ended_ || !files_) {
       exit_if_unused(registry_);
     }
-    somebody_ended_ = false;
-    return patience_ms;
+    some_ended_ = false;
+    return timeout_ms;
   } catch (const std::exception &) {
     return retry_ms;  // the JoinLock stayed taken
   }
@@ -237,8 +286,10 @@ int Reaper::try_to_end(int patience_ms) noexcept {
 
 void Reaper::run() noexcept {
   while (running_) {
-    const int patience_ms = try_to_end(try_to_reap());
-    somebody_ended_ = wait_for_end(patience_ms) || somebody_ended_;
+    const int timeout_ms = try_to_end(try_to_reap());
+    do {
+      some_ended_ = wait_for_end(timeout_ms) || some_ended_;
+    } while (running_ && timeout_ms == for_ever_ms && !some_ended_ && watch_joined());
   }
 }
 

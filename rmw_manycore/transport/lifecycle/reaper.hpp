@@ -4,7 +4,9 @@
 #include <sys/types.h>
 
 #include <atomic>
+#include <bitset>
 #include <map>
+#include <mutex>
 #include <thread>
 
 #include "platform/file_descriptor.hpp"
@@ -12,8 +14,8 @@
 
 namespace manycore {
 
-/// The second thread of a receive-thread process: sleeps on the pidfds of its cluster's processes
-/// and of the other clusters' receive threads; closes what the dead left behind.
+/// Second thread of a receive-thread process: waits on the pidfds of its cluster's processes and of
+/// the other clusters' receive threads, and frees what dead processes left.
 class Reaper {
 public:
   Reaper(Registry & registry, uint32_t cluster);
@@ -21,41 +23,50 @@ public:
   Reaper(const Reaper &) = delete;
   Reaper & operator=(const Reaper &) = delete;
 
-  /// Somebody joined: look whom to watch. Any thread.
-  void look_again() noexcept;
+  /// Makes the reaper watch a process that joins, or check all processes if `process` is `nothing`.
+  /// Thread-safe.
+  void rescan(uint32_t process = nothing) noexcept;
 
 private:
   void run() noexcept;
-  /// Each returns how long to wait for the next end before trying again.
+  /// Each returns the timeout in ms after which to try again.
   int try_to_reap() noexcept;
-  int try_to_end(int patience_ms) noexcept;
-  /// True when a member was dead.
+  int try_to_end(int timeout_ms) noexcept;
+  /// True if a member was dead.
   bool watch_and_reap();
   void watch_members();
+  void wait_for_joining();
+  bool watch_one(uint32_t process);
+  /// Returns false if all processes must be checked.
+  bool watch_joined() noexcept;
   bool is_ours(uint32_t cluster) const;
   void watch(uint32_t line);
-  /// False when no descriptor is left.
+  /// False if no file descriptor is left.
   bool watch_end_of(pid_t pid);
-  int patience_ms() const noexcept;
-  /// True when one of those watched has ended; false when there is another reason to look, or none.
+  int timeout_ms() const noexcept;
+  /// True if a watched process ended or files were removed; false on other events and on timeout.
   bool wait_for_end(int timeout_ms);
 
   Registry & registry_;
   uint32_t cluster_;
   FileDescriptor poll_;   ///< epoll
-  FileDescriptor event_;  ///< eventfd: look again
-  FileDescriptor files_;  ///< inotify: files of the platform are gone
+  FileDescriptor event_;  ///< eventfd: rescan() was called
+  FileDescriptor files_;  ///< inotify: files of the platform were removed
   std::map<pid_t, FileDescriptor> watched_;
-  bool some_unwatched_ = false;  ///< in other PID namespaces, or no descriptor was left
-  bool is_closing_ = false;  ///< something could not be freed yet, and nobody tells when it can be
+  bool some_unwatched_ = false;  ///< in another PID namespace, or no file descriptor was left
+  /// Some memory cannot be freed yet, and no event will tell when it can.
+  bool is_closing_ = false;
+  std::mutex mutex_;                      ///< guards the following two
+  std::bitset<process_capacity> joined_;  ///< slots passed to rescan(), not watched yet
+  bool must_check_all_ = true;
   bool graph_may_have_changed_ = true;
-  bool somebody_ended_ = true;  ///< perhaps all, before this receive thread was started
+  /// Initially true: all members may have died before this receive thread started.
+  bool some_ended_ = true;
   std::atomic<bool> running_{true};
   std::thread thread_;
 };
 
-/// Ends this receive-thread process, and the platform with it, if no process uses the platform any
-/// more.
+/// Ends this receive-thread process, and removes the platform, if no process uses the platform.
 void exit_if_unused(Registry & registry);
 
 }  // namespace manycore

@@ -1,6 +1,7 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-// manycore_receive_thread PLATFORM CLUSTER: the receive thread of one cluster, started by the first
-// process of it and by whoever notices that it died. Not meant to be started by hand.
+// manycore_receive_thread PLATFORM CLUSTER: the receive thread of one cluster. Started by the first
+// process of the cluster, and by each process that detects its death. Not meant to be started by
+// hand.
 
 #include <sys/prctl.h>
 #include <unistd.h>
@@ -12,6 +13,7 @@
 #include "platform/os_process.hpp"
 #include "transport/lifecycle/lifecycle.hpp"
 #include "transport/lifecycle/reaper.hpp"
+#include "transport/movers/movers.hpp"
 #include "transport/notification/receive_thread.hpp"
 
 namespace manycore {
@@ -21,6 +23,7 @@ void serve(const std::string & platform, uint32_t id, Daemon & daemon) {
   const PlatformPaths paths = PlatformPaths::of(platform);
   Registry registry(paths);
   Cluster & cluster = registry.clusters().at(id);
+  Movers movers(registry, id);
   const std::optional<HeldLifeline> lifeline =
     registry.lifelines().try_hold(receive_thread_line + id);
   if (!lifeline) {
@@ -42,16 +45,19 @@ void serve(const std::string & platform, uint32_t id, Daemon & daemon) {
   registry.tracer().note(TraceKind::join);
   ReceiveThread receive_thread(registry, id);
   if (replaces) {
+    // Dekker with TransferSender: counted before the movers look at what was handed over.
+    cluster.header().successors.fetch_add(1, std::memory_order_seq_cst);
     receive_thread.recover();
   }
+  movers.start();
   Reaper reaper(registry, id);
-  tell_other_reapers(registry, id);  // they watch this process from now on
+  notify_other_reapers(registry, id);  // they watch this process from now on
   daemon.ready();
-  receive_thread.run([&](EmcosMessageKind kind) {
+  receive_thread.run([&](EmcosMessageKind kind, uint32_t process) {
     if (kind == EmcosMessageKind::detach) {
       exit_if_unused(registry);
     }
-    reaper.look_again();
+    reaper.rescan(kind == EmcosMessageKind::attach ? process : nothing);
   });
 }
 

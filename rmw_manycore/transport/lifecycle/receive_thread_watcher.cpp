@@ -13,13 +13,13 @@
 namespace manycore {
 namespace {
 
-constexpr int retry_ms = 1000;  ///< after a start that failed
+constexpr int retry_ms = 1000;  ///< after a failed start
 constexpr int settle_ms = 1;    ///< while another process is starting it
 constexpr int for_ever_ms = -1;
-constexpr int foreign_ms = 500;  ///< no pidfd tells of an end in another PID namespace
+constexpr int foreign_ms = 500;  ///< pidfds do not work across PID namespaces
 
-/// Sleeps until the time is over or the descriptor is readable; -1 stands for neither. Only here
-/// the thread may be cancelled: a descriptor to tell it by could be closed by the program.
+/// Sleeps until the timeout or until the descriptor is readable; -1 disables either. The thread can
+/// be cancelled here only. A descriptor to end it by could be closed by the program.
 void sleep_cancellable(int timeout_ms, int fd = -1) {
   pollfd readable{fd, POLLIN, 0};
   pthread_setcancelstate(PTHREAD_CANCEL_ENABLE, nullptr);
@@ -41,7 +41,8 @@ ReceiveThreadWatcher::~ReceiveThreadWatcher() {
   thread_.join();
 }
 
-/// The receive thread ends when the files go; if it was killed before, this thread notices.
+/// The receive thread ends when the files are removed. If it was killed before, this thread detects
+/// it.
 bool ReceiveThreadWatcher::is_cut_off() {
   if (registry_.is_current()) {
     return false;
@@ -51,7 +52,7 @@ bool ReceiveThreadWatcher::is_cut_off() {
   std::fprintf(
     stderr,
     "[rmw_manycore] %s was removed while this process used it (systemd-logind does so at logout, "
-    "if RemoveIPC is on: see 'manycore doctor'); start this process again\n",
+    "if RemoveIPC is on: see 'manycore doctor'); restart this process\n",
     directory.c_str());
   return true;
 }
@@ -69,13 +70,13 @@ bool ReceiveThreadWatcher::watch_once() {
     return true;
   }
   const LastingDescriptor pidfd(open_pidfd(receive_thread.pid));
-  // The lifeline proves that the pid, read before, is still the receive thread's.
+  // The lifeline proves that the pid read above is still the receive thread's.
   const bool is_watched = lifelines.is_held(line) && pidfd.get() >= 0;
   sleep_cancellable(is_watched ? for_ever_ms : settle_ms, pidfd.get());
   return true;
 }
 
-/// Not noexcept: being cancelled unwinds the stack.
+/// Not noexcept: cancellation unwinds the stack.
 void ReceiveThreadWatcher::run() {
   pthread_setcancelstate(PTHREAD_CANCEL_DISABLE, nullptr);
   bool reported = false;

@@ -7,8 +7,8 @@
 
 namespace manycore {
 
-/// Keeps the own cluster's receive thread alive: starts it where it is missing, sleeps on its
-/// pidfd, and starts it again when it died. One thread that is never due, so it costs no CPU.
+/// Keeps the receive thread of the own cluster running: starts it if it is missing, waits on its
+/// pidfd, and restarts it when it dies. The thread blocks all the time, so it costs no CPU.
 class ReceiveThreadWatcher {
 public:
   ReceiveThreadWatcher(Registry & registry, uint32_t cluster);
@@ -18,7 +18,7 @@ public:
 
 private:
   void run();
-  /// False when nothing is left to watch.
+  /// False if there is nothing left to watch.
   bool watch_once();
   bool is_cut_off();
 

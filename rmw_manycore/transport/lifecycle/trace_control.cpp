@@ -9,7 +9,7 @@
 namespace manycore {
 namespace {
 
-constexpr uint32_t usual_events_log2 = 18;  ///< 8 MiB each, which take memory as they fill
+constexpr uint32_t usual_events_log2 = 18;  ///< 8 MiB each, backed as they fill
 
 uint32_t events_log2_of(uint32_t events) {
   if (events == 0) {
@@ -57,7 +57,7 @@ void require_stopped(const Registry & registry) {
       ErrorCode::invalid_argument,
       "the platform has been traced for " +
         std::to_string((monotonic_ns() - started_ns) / ns_per_s) +
-        " s already; there is one trace at a time: stop it ('manycore trace stop') and save it");
+        " s; only one trace can run at a time: stop it ('manycore trace stop') and save it");
   }
 }
 
@@ -67,7 +67,8 @@ void require_saved(Registry & registry) {
     return;
   }
   if (registry.header().trace.unsaved_since_ns.load() == 0) {
-    discard_trace(registry);  // what a thread was writing when the last one was stopped and saved
+    // Events that a thread was writing when the last trace was stopped and saved.
+    discard_trace(registry);
   } else {
     throw Error(
       ErrorCode::invalid_argument,
@@ -126,7 +127,7 @@ void start_trace(Registry & registry, const TraceSelection & selection) {
   require_saved(registry);
   const uint32_t events_log2 = events_log2_of(selection.events);
   const Registry::Lock lock(registry);
-  require_stopped(registry);  // by now another one may be on
+  require_stopped(registry);  // another trace may have been started since
   const uint64_t clusters = mask_of(registry, selection);
   const std::vector<uint32_t> nodes = slots_of(registry, selection.nodes);
   TraceControl & control = registry.header().trace;
@@ -196,7 +197,7 @@ TraceState trace_state(Registry & registry) {
       state.pending += reader.pending();
       state.lost += reader.lost();
     } catch (const Error &) {
-      // The one that saves is told.
+      // Reported to the process that saves.
     }
   }
   return state;

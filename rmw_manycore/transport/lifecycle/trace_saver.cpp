@@ -10,11 +10,11 @@
 namespace manycore {
 namespace {
 
-/// Saving a million events takes seconds, and is not waited for.
+/// Saving a million events takes seconds, so another saver is not waited for.
 constexpr int lock_timeout_ms = 100;
 
-/// Start of the last trace if it was stopped and not saved, else 0. Under the registry lock, as
-/// traces are started and stopped: what is stored between is of a trace that goes on.
+/// Start of the last trace if it is stopped and not saved, else 0. Reads both words under the
+/// registry lock, under which start_trace() and stop_trace() change them together.
 int64_t stopped_trace_ns(Registry & registry) {
   const Registry::Lock lock(registry);
   const TraceControl & control = registry.header().trace;
@@ -68,10 +68,12 @@ TraceSaver::TraceSaver(Registry & registry) : registry_(registry) {
       throw;
     }
     throw Error(
-      ErrorCode::timeout, "another process is saving the trace of this platform; wait for its end");
+      ErrorCode::timeout,
+      "another process is saving the trace of this platform; retry when it is done");
   }
   const TraceControl & control = registry.header().trace;
-  // Before the events are read: they are all, but for what threads are writing just now.
+  // Read before the events: if the trace is stopped here, the events below are complete, except for
+  // those that threads are writing at this moment.
   stopped_trace_ns_ = stopped_trace_ns(registry);
   unplaced_total_ = control.unplaced.load();
   unplaced_ = unplaced_total_ - control.unplaced_saved.load();
@@ -87,7 +89,8 @@ TraceSaver::TraceSaver(Registry & registry) : registry_(registry) {
     process.core = header.core;
     process.host_cpu = header.host_cpu;
     process.label = text_of(header.label);
-    process.alive = is_writer_alive(header);  // before its events are read: then these are all
+    // Read before the events: if the writer is dead, they are complete.
+    process.alive = is_writer_alive(header);
     process.threads = reader.read();
     process.names = reader.names();
     process.unplaced = reader.unplaced();
@@ -110,11 +113,11 @@ bool TraceSaver::is_writer_alive(const TraceFileHeader & header) const {
          alive.is_held(header.process);
 }
 
-/// A file whose process had ended before it was read has nothing more to come.
+/// If a process had ended before its file was read, the file is complete and can be removed.
 void TraceSaver::finish() noexcept {
   TraceControl & control = registry_.header().trace;
   control.unplaced_saved.store(unplaced_total_);
-  if (stopped_trace_ns_ != 0) {  // and if no other one was started since
+  if (stopped_trace_ns_ != 0) {  // unless another trace was started since
     control.unsaved_since_ns.compare_exchange_strong(stopped_trace_ns_, 0);
   }
   for (size_t i = 0; i < readers_.size(); ++i) {

@@ -14,13 +14,13 @@ namespace manycore {
 /// Paths of a platform's trace files.
 std::vector<std::string> trace_files(const PlatformPaths & paths);
 
-/// Removes the trace files that processes were making when they were killed.
+/// Removes incomplete trace files of processes killed while creating them.
 void remove_unfinished_traces(const Registry & registry);
 
-/// What one process recorded.
+/// Events recorded by one process.
 struct ProcessTrace {
   uint32_t cluster = 0;
-  std::optional<uint32_t> process;  ///< slot; none: a receive thread
+  std::optional<uint32_t> process;  ///< slot; empty for a receive thread
   int32_t pid = 0;
   int32_t core = -1;
   int32_t host_cpu = -1;
@@ -28,21 +28,22 @@ struct ProcessTrace {
   bool alive = false;
   std::vector<ThreadTrace> threads;
   std::vector<TraceName> names;
-  uint64_t unplaced = 0;  ///< events of threads that found no ring
+  uint64_t unplaced = 0;  ///< events of threads that got no ring
 };
 
-/// Takes the recorded events out of a platform. One at a time: holds a lock while alive.
+/// Reads the recorded events of a platform. One instance at a time: holds a lock during its
+/// lifetime.
 class TraceSaver {
 public:
-  /// Throws Error{timeout} when another process saves, or the registry stays locked;
+  /// Throws Error{timeout} if another process is saving or the registry stays locked, and
   /// Error{corrupt} naming a file.
   explicit TraceSaver(Registry & registry);
 
-  /// What was recorded and not saved so far.
+  /// Events recorded and not saved before.
   const std::vector<ProcessTrace> & processes() const noexcept { return processes_; }
-  /// Events of processes that could make no file.
+  /// Events of processes that could not create a file.
   uint64_t unplaced() const noexcept { return unplaced_; }
-  /// What was found is saved now: gives its room back, and that of processes that are gone.
+  /// Marks the events as saved: frees their ring space, and removes the files of ended processes.
   void finish() noexcept;
 
 private:
@@ -54,11 +55,11 @@ private:
   std::vector<ProcessTrace> processes_;
   uint64_t unplaced_total_ = 0;
   uint64_t unplaced_ = 0;
-  int64_t stopped_trace_ns_ =
-    0;  ///< start of the trace, if it was stopped before its events were read
+  /// Start of the trace if it was stopped before its events were read, else 0.
+  int64_t stopped_trace_ns_ = 0;
 };
 
-/// Throws away what was recorded and not saved. Throws as TraceSaver.
+/// Discards recorded events that are not saved. Throws like TraceSaver.
 void discard_trace(Registry & registry);
 
 }  // namespace manycore

@@ -10,6 +10,7 @@
 #include "transport/queue/source_table.hpp"
 #include "transport/registry/endpoint_blocks.hpp"
 #include "transport/topic_dsm/reader_table.hpp"
+#include "transport/transfer/landings.hpp"
 
 namespace manycore::closing {
 namespace {
@@ -36,12 +37,12 @@ void undo_match(Registry & registry, SourceEntry & source) {
   detach_reader(registry, source);
 }
 
-/// Undoes some matches; true when none is left. `closed_before` moves after each, so a process that
-/// dies half way leaves at most one to be undone once more: its source is `revoked` then, and its
-/// reader may still be on the reader table.
+/// Undoes matches until the turn is over; true when none is left. `closed_before` advances after
+/// each match, so if this process dies, at most one is undone twice: its source is then `revoked`,
+/// and its reader may still be in the reader table.
 bool close_some_of_subscription(Registry & registry, EndpointEntry & entry, Turn & turn) {
-  Cluster * const cluster = registry.reach(entry.block.cluster());
-  auto * const header = registry.reach<SubscriptionHeader>(entry.block);
+  Cluster * const cluster = registry.map_cluster(entry.block.cluster());
+  auto * const header = registry.map<SubscriptionHeader>(entry.block);
   if (cluster == nullptr || header == nullptr) {
     return true;
   }
@@ -63,10 +64,9 @@ bool close_some_of_subscription(Registry & registry, EndpointEntry & entry, Turn
   return !stopped;
 }
 
-/// Hints of its last records may never have been pushed (`died`), or may have been displaced: a
-/// reader that misses something is told to look, so that the topic DSM does not wait for it for
-/// ever.
-void tell_of_end(
+/// Hints of the last records may not have been pushed (`died`) or may have been displaced. A reader
+/// with undelivered records is set to resync, so that the topic DSM does not wait for it forever.
+void notify_of_end(
   Registry & registry, const EndpointEntry & publisher, const OrphanReader & reader, bool died) {
   EndpointEntry & subscription = registry.endpoints()[reader.endpoint_slot];
   if (died) {
@@ -79,16 +79,17 @@ void tell_of_end(
   }
 }
 
-/// Tells some readers; true when all know. `closed_before` moves after each: what is counted down
-/// for a reader may not be counted down again.
+/// Notifies readers until the turn is over; true when all are notified. `closed_before` advances
+/// after each reader, because a reader's match count must not be decremented twice.
 bool close_some_of_publisher(Registry & registry, EndpointEntry & entry, bool died, Turn & turn) {
-  Cluster * const cluster = registry.reach(entry.block.cluster());
-  auto * const dsm = registry.reach<TopicDsmHeader>(entry.block);
+  Cluster * const cluster = registry.map_cluster(entry.block.cluster());
+  auto * const dsm = registry.map<TopicDsmHeader>(entry.block);
   if (cluster == nullptr || dsm == nullptr) {
     return true;
   }
+  landings::close_all(registry.clusters(), *cluster, *dsm);
   if (died) {
-    dsm->phase.store(0, std::memory_order_seq_cst);  // the dead follow no references
+    dsm->phase.store(0, std::memory_order_seq_cst);  // a dead process follows no references
   }
   if (dsm->orphan.load() != 0) {
     return true;
@@ -106,7 +107,7 @@ bool close_some_of_publisher(Registry & registry, EndpointEntry & entry, bool di
         const std::optional<OrphanReader> reader =
           orphan_reader(registry, *cluster, *dsm, reader_entry);
         if (reader && registry.endpoints().is_live(reader->endpoint_slot)) {
-          tell_of_end(registry, entry, *reader, died);
+          notify_of_end(registry, entry, *reader, died);
         }
         turn.spend(steps_of_a_match);
       }
@@ -120,10 +121,10 @@ bool close_some_of_publisher(Registry & registry, EndpointEntry & entry, bool di
   return !stopped;
 }
 
-/// Has the reaper of a process's cluster sweep: it has descriptors of its own.
+/// Makes the reaper of the process's cluster sweep: it has file descriptors of its own.
 void wake_reaper(Registry & registry, uint32_t process) {
   if (!registry.processes().is_live(process)) {
-    return;  // a damaged entry
+    return;  // damaged entry
   }
   registry.clusters().at(registry.processes()[process].cluster).wake_reaper();
 }
@@ -146,22 +147,21 @@ bool close_some(Registry & registry, uint32_t endpoint, bool died, Turn & turn) 
   return done;
 }
 
-bool EndpointsOfProcess::close_some() {
-  Turn turn;
-  for (; next_ < registry_.endpoints().high_water(); ++next_) {
+bool EndpointsOfProcess::close_some(Turn & turn) {
+  for (; !left_.empty(); left_.pop_back()) {
     if (turn.is_over()) {
       return false;
     }
     turn.spend(steps_of_an_entry);
-    const EndpointEntry & entry = registry_.endpoints()[next_];
-    if (entry.process != process_ || entry.slot.state.load() == SlotState::free) {
+    const uint32_t slot = left_.back();
+    if (!is_of_process(registry_.endpoints()[slot], process_)) {
       continue;
     }
     try {
-      if (!closing::close_some(registry_, next_, died_, turn)) {
+      if (!closing::close_some(registry_, slot, died_, turn)) {
         return false;
       }
-    } catch (const OutOfReach & error) {
+    } catch (const ClusterUnmappable & error) {
       obstacle_.emplace(error);
     }
   }
@@ -175,7 +175,7 @@ void EndpointsOfProcess::require_all_closed() {
   if (!died_) {
     wake_reaper(registry_, process_);
   }
-  throw OutOfReach(*obstacle_);
+  throw ClusterUnmappable(*obstacle_);
 }
 
 }  // namespace manycore::closing

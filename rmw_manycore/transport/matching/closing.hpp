@@ -2,37 +2,42 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "transport/matching/turn.hpp"
-#include "transport/registry/registry.hpp"
+#include "transport/registry/slots_of_process.hpp"
 
 namespace manycore::closing {
 
-/// Takes an endpoint out of the graph and ends its matches, as many as the turn allows; the caller
-/// holds the registry lock. True when all have ended; the endpoint's memory goes with sweeping.
-/// Safe to repeat after its caller died half way. `died`: the endpoint's process is dead, so hints
-/// of its last records may never have been pushed. Throws OutOfReach while this process cannot map
-/// the cluster of a match: the endpoint then stays `closing`.
+/// Removes an endpoint from the graph and undoes its matches until the turn is over. True when all
+/// are undone; the endpoint's memory is freed by sweeping. The caller holds the registry lock. May
+/// be repeated after a caller died midway. `died`: the endpoint's process is dead, so hints of its
+/// last records may not have been pushed. Throws ClusterUnmappable if this process cannot map the
+/// cluster of a match; the endpoint then stays `closing`.
 bool close_some(Registry & registry, uint32_t endpoint, bool died, Turn & turn);
 
-/// Closes all endpoints of a process that makes no more, turn by turn: the caller takes the
-/// registry lock anew for each.
+/// Closes all endpoints of a process that creates no more of them, turn by turn. The caller takes
+/// the registry lock anew for each turn.
 class EndpointsOfProcess {
 public:
-  EndpointsOfProcess(Registry & registry, uint32_t process, bool died) noexcept
-  : registry_(registry), process_(process), died_(died) {}
+  /// Finds the endpoints without the registry lock.
+  EndpointsOfProcess(Registry & registry, uint32_t process, bool died)
+  : registry_(registry),
+    process_(process),
+    died_(died),
+    left_(slots_of_process(registry.endpoints(), process)) {}
 
-  /// One turn. True when all were come to.
-  bool close_some();
-  /// Throws OutOfReach unless all are closed.
+  /// Closes as many endpoints as the turn allows. Returns true when all have been visited.
+  bool close_some(Turn & turn);
+  /// Throws ClusterUnmappable if an endpoint could not be closed.
   void require_all_closed();
 
 private:
   Registry & registry_;
   const uint32_t process_;
   const bool died_;
-  uint32_t next_ = 0;  ///< those of its endpoints below this slot are closed
-  std::optional<OutOfReach> obstacle_;
+  std::vector<uint32_t> left_;  ///< slots not visited yet
+  std::optional<ClusterUnmappable> obstacle_;
 };
 
 }  // namespace manycore::closing

@@ -6,8 +6,8 @@
 
 namespace manycore {
 
-/// Takes the reader of a source off its topic DSM's reader table; the caller holds the registry
-/// lock. Throws OutOfReach, and then has changed nothing.
+/// Removes the reader of a source from its topic DSM's reader table. The caller holds the registry
+/// lock. Throws ClusterUnmappable before anything is changed.
 void detach_reader(Registry & registry, SourceEntry & source);
 
 }  // namespace manycore

@@ -9,6 +9,8 @@
 #include "transport/registry/endpoint_blocks.hpp"
 #include "transport/topic_dsm/generation.hpp"
 #include "transport/topic_dsm/reader_table.hpp"
+#include "transport/transfer/landing.hpp"
+#include "transport/transfer/landings.hpp"
 
 namespace manycore::sweeping {
 namespace {
@@ -19,9 +21,19 @@ constexpr uint64_t steps_of_a_reader = 8;
 constexpr uint64_t steps_of_a_source = 2;
 constexpr uint32_t free_readers_in_a_step = 16;
 
-/// True when no receive thread follows references that it loaded before now. The dead follow none:
-/// one that was killed in its phase has a successor only if its cluster has a process. Throws
-/// OutOfReach when the phase of one that lives is not to be seen.
+/// The phases of a receive thread's process: its own, and those of its movers.
+bool is_any_odd(const ClusterHeader & header) noexcept {
+  bool is_odd = header.phase.load(std::memory_order_seq_cst) % 2 != 0;
+  for (const std::atomic<uint64_t> & phase : header.mover_phases) {
+    is_odd = is_odd || phase.load(std::memory_order_seq_cst) % 2 != 0;
+  }
+  return is_odd;
+}
+
+/// True if no receive thread still follows references that it loaded before this call. A dead
+/// receive thread follows none: if it was killed in its phase, a successor exists only if the
+/// cluster has a process. Throws ClusterUnmappable if the phase of a live receive thread cannot be
+/// read.
 bool receive_threads_are_out(Registry & registry) {
   const uint64_t present = registry.header().clusters_present.load();
   for (uint32_t id = 1; id <= max_clusters; ++id) {
@@ -29,18 +41,31 @@ bool receive_threads_are_out(Registry & registry) {
       continue;
     }
     const Cluster * const cluster = registry.clusters().find(id);
-    const bool may_be_in_phase =
-      cluster == nullptr || cluster->header().phase.load(std::memory_order_seq_cst) % 2 != 0;
+    const bool may_be_in_phase = cluster == nullptr || is_any_odd(cluster->header());
     if (may_be_in_phase && registry.lifelines().is_held(receive_thread_line + id)) {
-      registry.reach(id);
+      registry.map_cluster(id);
       return false;
     }
   }
   return true;
 }
 
-/// Takes the topic DSM away from a reader that is done with it, or wants newer messages of others
-/// instead.
+/// True if nothing that the reader has not taken will come. What a dead mover left without a hint,
+/// the reader is asked to look for.
+bool gets_no_more(Registry & registry, const OrphanReader & reader, Turn & turn) {
+  if (!closing::is_abandoned(registry, reader, turn)) {
+    return false;
+  }
+  if (!closing::has_arrived(registry, reader)) {
+    return true;
+  }
+  reader.subscription.resync.store(1, std::memory_order_seq_cst);
+  notify_watchers(registry, reader.subscription);
+  return false;
+}
+
+/// Revokes the source of a reader that has taken all of the topic DSM that it can, or that wants
+/// newer messages of other publishers instead.
 Progress revoke(
   Registry & registry, WantedSources & wanted, const OrphanReader & reader, ReaderEntry & entry,
   Turn & turn) {
@@ -50,18 +75,18 @@ Progress revoke(
     if (!is_wanted) {
       return Progress::turn_over;
     }
-    if (*is_wanted) {
+    if (*is_wanted && !gets_no_more(registry, reader, turn)) {
       return Progress::blocked;
     }
-    // Dekker with the claim: the reader stores `reading` before it looks at the state.
+    // Dekker with the claim: the reader stores `reading` before it loads the state.
     source.state.store(SourceState::revoked, std::memory_order_seq_cst);
   }
   if (source.reading.load(std::memory_order_seq_cst) != no_record) {
     return Progress::blocked;
   }
   closing::count_undelivered(registry, reader);
-  // Off the reader table before the source is free for another match: should this process die in
-  // between, the next sweep must not take that match for this one.
+  // Remove the reader before the source entry can be reused: if this process dies in between, the
+  // next sweep must not mistake a new match for this one.
   free_reader_entry(reader.cluster, reader.dsm, entry);
   SubscriptionHeader & subscription = reader.subscription;
   subscription.free_source_from = std::min(subscription.free_source_from, reader.source_index);
@@ -70,7 +95,7 @@ Progress revoke(
   return Progress::freed;
 }
 
-/// False when the turn was over before the last reader.
+/// False if the turn ended before the last reader.
 bool revoke_up_to_last(
   Registry & registry, WantedSources & wanted, const Cluster & cluster, TopicDsmHeader & dsm,
   Turn & turn) {
@@ -102,8 +127,8 @@ bool is_read(Registry & registry, const Cluster & cluster, TopicDsmHeader & dsm)
   return found;
 }
 
-/// Goes through the reader table from where the last turn of any process ended; `freed` when no
-/// reader is on it any more.
+/// Continues in the reader table where the last turn of any process ended. `freed` when no reader
+/// is left.
 Progress revoke_some(
   Registry & registry, WantedSources & wanted, ReaderPass & pass, uint32_t endpoint,
   const Cluster & cluster, TopicDsmHeader & dsm, Turn & turn) {
@@ -125,32 +150,71 @@ Progress revoke_some(
   }
 }
 
-template<typename Entry>
-void free_table(Cluster & cluster, const EntryTable<Entry> & table) {
-  table.visit_memory([&](uint64_t offset, uint64_t bytes) { cluster.free(offset, bytes); });
+/// Returns the steps that freeing so much SMEM and the memory behind it takes.
+uint64_t steps_of_freeing(uint64_t bytes) {
+  constexpr uint64_t steps_of_a_system_call = 20;
+  constexpr uint64_t bytes_in_a_step = 256;
+  return steps_of_a_system_call + bytes / bytes_in_a_step;
 }
 
-void free_topic_dsm(Cluster & cluster, TopicDsmHeader & dsm) {
+/// Frees blocks of a table, last block first, as the turn allows. Returns true when none is left.
+template<typename Entry>
+bool free_some_of_table(Cluster & cluster, const EntryTable<Entry> & table, Turn & turn) {
+  while (!turn.is_over()) {
+    const uint64_t bytes = table.free_last(cluster);
+    if (bytes == 0) {
+      return true;
+    }
+    turn.spend(steps_of_freeing(bytes));
+  }
+  return false;
+}
+
+/// Frees pieces of generations as the turn allows. Returns true when none is left.
+bool free_some_generations(Cluster & cluster, TopicDsmHeader & dsm, Turn & turn) {
   for (GenerationEntry & generation : dsm.generations) {
-    if (generation.offset.load() != 0) {
-      Generation::free(cluster, generation);
+    while (generation.offset.load() != 0) {
+      if (turn.is_over()) {
+        return false;
+      }
+      turn.spend(steps_of_freeing(std::min(generation.extent_bytes(), freed_piece_bytes)));
+      Generation::free_some(cluster, generation);
     }
   }
-  free_table(cluster, further_readers(cluster, dsm));
-  cluster.free(cluster.ref_of(&dsm).offset(), sizeof dsm);
+  return true;
 }
 
-/// True when the publisher behind `source` holds no references into the subscription. The reader
-/// was taken off the reader table when the subscription closed, so the topic DSM may have been
-/// freed since: the publisher's slot says whether its header is still a header, before it is read.
+/// Before the generations, which say how large landings are. True when none is left.
+bool free_some_landings(
+  Registry & registry, const Cluster & cluster, TopicDsmHeader & dsm, Turn & turn) {
+  while (!turn.is_over()) {
+    if (!landings::free_one(registry, cluster, dsm)) {
+      return true;
+    }
+    turn.spend(steps_of_freeing(landing_bytes(dsm)));
+  }
+  return false;
+}
+
+/// Frees the head of an endpoint that holds no other memory. Clears the reference in the entry
+/// first: if this process dies in between, no repairer follows a reference to freed memory.
+void free_head(Cluster & cluster, EndpointEntry & entry, uint64_t bytes, Turn & turn) {
+  turn.spend(steps_of_freeing(bytes));
+  cluster.free(std::exchange(entry.block, SegmentRef{}).offset(), bytes);
+}
+
+/// True if the publisher of `source` holds no references into the subscription. Its reader entry
+/// was removed when the subscription closed, so the topic DSM may be freed since. The publisher's
+/// slot is checked first, before the header is read.
 bool publisher_is_out(Registry & registry, const SourceEntry & source) {
   const TopicDsmHeader * const dsm = topic_dsm_of(registry, source);
   return dsm == nullptr || dsm->magic.load() != topic_dsm_magic ||
          dsm->phase.load(std::memory_order_seq_cst) % 2 == 0;
 }
 
-/// Looks at the publishers behind the sources, from where the last turn of any process ended. One
-/// that was seen out once stays out: it finds the subscription no more. `freed` when all are.
+/// Checks the publishers of the sources, continuing where the last turn of any process ended. A
+/// publisher seen outside its phase once stays outside this subscription: it cannot find it any
+/// more. `freed` when all were seen.
 Progress see_publishers_out(
   Registry & registry, const Cluster & cluster, SubscriptionHeader & header, Turn & turn) {
   Progress progress = Progress::freed;
@@ -170,48 +234,89 @@ Progress see_publishers_out(
   return progress;
 }
 
+/// Frees the landings of publishers that the subscription was the last to read in its cluster.
+/// A publisher that is seen out here finds its landing no more.
+Progress free_landings(Registry & registry, Cluster & cluster, SubscriptionHeader & header) {
+  Progress progress = Progress::freed;
+  visit_source_table(cluster, header, [&](SourceEntry & source, uint32_t) {
+    TopicDsmHeader * const dsm =
+      source.state.load() == SourceState::free ? nullptr : topic_dsm_of(registry, source);
+    const Cluster * const publisher =
+      dsm == nullptr ? nullptr
+                     : registry.map_cluster(SegmentRef{source.topic_dsm.load()}.cluster());
+    if (publisher == nullptr || !landings::has_retired(*publisher, *dsm, cluster.id())) {
+      return false;
+    }
+    if (!publisher_is_out(registry, source)) {
+      progress = Progress::blocked;
+      return true;
+    }
+    landings::free_retired(*publisher, *dsm, cluster);
+    return false;
+  });
+  return progress;
+}
+
 }  // namespace
 
 Progress sweep_publisher(
   Registry & registry, WantedSources & wanted, ReaderPass & pass, uint32_t endpoint, Turn & turn) {
   EndpointEntry & entry = registry.endpoints()[endpoint];
-  Cluster * const cluster = registry.reach(entry.block.cluster());
-  auto * const dsm = registry.reach<TopicDsmHeader>(entry.block);
+  Cluster * const cluster = registry.map_cluster(entry.block.cluster());
+  auto * const dsm = registry.map<TopicDsmHeader>(entry.block);
   if (cluster == nullptr || dsm == nullptr) {
     return Progress::freed;
   }
-  const Progress progress = revoke_some(registry, wanted, pass, endpoint, *cluster, *dsm, turn);
-  if (progress != Progress::freed) {
-    return progress;
+  if (entry.slot.state.load() != SlotState::unreachable) {
+    const Progress progress = revoke_some(registry, wanted, pass, endpoint, *cluster, *dsm, turn);
+    if (progress != Progress::freed) {
+      return progress;
+    }
+    // Dekker with the receive threads: each stores its phase before it looks at the state.
+    entry.slot.state.store(SlotState::freeing, std::memory_order_seq_cst);
+    if (!receive_threads_are_out(registry)) {
+      return Progress::blocked;
+    }
+    entry.slot.state.store(SlotState::unreachable);
   }
-  // Dekker with the receive threads: each stores its phase before it looks at the state.
-  entry.slot.state.store(SlotState::freeing, std::memory_order_seq_cst);
-  if (!receive_threads_are_out(registry)) {
-    return Progress::blocked;
+  if (
+    !free_some_landings(registry, *cluster, *dsm, turn) ||
+    !free_some_generations(*cluster, *dsm, turn) ||
+    !free_some_of_table(*cluster, further_readers(*cluster, *dsm), turn)) {
+    return Progress::freed_some;
   }
-  entry.block = SegmentRef{};  // should this process die, no repairer looks into what is given back
-  free_topic_dsm(*cluster, *dsm);
+  free_head(*cluster, entry, header_bytes(*dsm), turn);
   return Progress::freed;
 }
 
 Progress sweep_subscription(Registry & registry, EndpointEntry & entry, Turn & turn) {
-  Cluster * const cluster = registry.reach(entry.block.cluster());
-  auto * const header = registry.reach<SubscriptionHeader>(entry.block);
+  Cluster * const cluster = registry.map_cluster(entry.block.cluster());
+  auto * const header = registry.map<SubscriptionHeader>(entry.block);
   if (cluster == nullptr || header == nullptr) {
     return Progress::freed;
   }
-  const Progress progress = see_publishers_out(registry, *cluster, *header, turn);
-  if (progress != Progress::freed) {
-    return progress;
+  if (entry.slot.state.load() != SlotState::unreachable) {
+    const Progress progress = see_publishers_out(registry, *cluster, *header, turn);
+    if (progress != Progress::freed) {
+      return progress;
+    }
+    if (!receive_threads_are_out(registry)) {
+      return Progress::blocked;
+    }
+    if (
+      entry.transfer != Transfer::dsm &&
+      free_landings(registry, *cluster, *header) == Progress::blocked) {
+      return Progress::blocked;
+    }
+    header->magic.store(0);
+    entry.slot.state.store(SlotState::unreachable);
   }
-  if (!receive_threads_are_out(registry)) {
-    return Progress::blocked;
+  if (!free_some_of_table(*cluster, source_table(*cluster, *header), turn)) {
+    return Progress::freed_some;
   }
-  header->magic.store(0);
-  const uint64_t offset = std::exchange(entry.block, SegmentRef{}).offset();
-  free_table(*cluster, source_table(*cluster, *header));
-  cluster->free(
-    offset, sizeof(SubscriptionHeader) + (uint64_t{8} << (header->slot_count_log2 & 31)));
+  free_head(
+    *cluster, entry, sizeof(SubscriptionHeader) + (uint64_t{8} << (header->slot_count_log2 & 31)),
+    turn);
   return Progress::freed;
 }
 

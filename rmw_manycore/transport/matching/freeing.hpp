@@ -7,20 +7,21 @@
 
 namespace manycore::sweeping {
 
-/// What came of one turn at an endpoint: its memory is free; a process may still be using it, or
-/// wants what it holds; there is more to look at.
-enum class Progress { freed, blocked, turn_over };
+/// Result of one turn at an endpoint. `freed`: all its memory is freed. `freed_some`: the turn
+/// ended after a part was freed. `blocked`: another process uses the memory or wants its content.
+/// `turn_over`: the turn ended with work left.
+enum class Progress { freed, freed_some, blocked, turn_over };
 
-/// One look at all readers of a topic DSM, in as many turns as it takes. The first of them goes on
-/// where the last turn of any process ended; readers before that may be done by now, so the look
-/// then comes to them at last.
+/// A pass over all readers of a topic DSM, in as many turns as needed. Its first turn continues
+/// where the last turn of any process ended. Earlier readers may have finished since, so the pass
+/// starts over once at the first reader.
 struct ReaderPass {
-  uint32_t endpoint = nothing;  ///< slot of the publisher
-  bool began_first = false;     ///< all readers were looked at since, once it comes to the last
+  uint32_t endpoint = nothing;  ///< publisher's slot
+  bool began_first = false;     ///< the pass has started at the first reader
 };
 
-/// Both want a `closed` endpoint, or one that is `freeing`, and throw OutOfReach. They leave the
-/// endpoint's slot to their caller.
+/// Free the memory of an endpoint for whose state is_closed() holds; the caller frees its slot.
+/// Throw ClusterUnmappable.
 Progress sweep_publisher(
   Registry & registry, WantedSources & wanted, ReaderPass & pass, uint32_t endpoint, Turn & turn);
 Progress sweep_subscription(Registry & registry, EndpointEntry & entry, Turn & turn);

@@ -13,18 +13,18 @@ void close(Registry & registry, uint32_t endpoint) {
   for (bool closed = false; !closed;) {
     const Registry::Lock lock(registry, registry.parting_wait_ns());
     if (slot.state.load() == SlotState::free || slot.incarnation.load() != incarnation) {
-      return;  // meanwhile others closed and freed it
+      return;  // another process closed and freed it
     }
     try {
       Turn turn;
       closed = closing::close_some(registry, endpoint, false, turn);
-    } catch (const OutOfReach &) {
-      return;  // this is as far as this process can go; the sweep finds that out, too
+    } catch (const ClusterUnmappable &) {
+      return;  // a cluster cannot be mapped: the following sweep wakes the reaper
     }
   }
 }
 
-/// Before all others: the sweep of those may end early.
+/// Sweeps this endpoint first, because the sweep of all endpoints may end early.
 void sweep(Registry & registry, uint32_t endpoint) {
   sweeping::Round round(registry);
   for (bool swept = false; !swept;) {
@@ -42,7 +42,7 @@ void leave_graph(Registry & registry, uint32_t endpoint) noexcept {
     sweep(registry, endpoint);
     sweeping::sweep_a_little(registry, cluster, registry.parting_wait_ns());
   } catch (const std::exception &) {
-    // The registry stayed locked: this endpoint is closed when its process leaves or ends.
+    // The registry stayed locked: the endpoint is closed when its process leaves or ends.
   }
   registry.graph_changed();
 }

@@ -5,8 +5,8 @@
 
 namespace manycore {
 
-/// What an endpoint's owner calls at its end: closes and sweeps, by as many holds of the registry
-/// lock as it takes, and wakes the processes that watch the graph.
+/// Closes and sweeps an endpoint for its owner, taking the registry lock as often as needed, and
+/// wakes the processes that watch the graph.
 void leave_graph(Registry & registry, uint32_t endpoint) noexcept;
 
 }  // namespace manycore

@@ -13,16 +13,16 @@
 #include "transport/registry/snapshot.hpp"
 #include "transport/topic_dsm/last_published.hpp"
 #include "transport/topic_dsm/reader_table.hpp"
+#include "transport/transfer/landings.hpp"
 
 namespace manycore::matching {
 namespace {
 
 constexpr uint64_t steps_of_a_candidate = 3;
 constexpr uint64_t steps_of_a_match = 7;
-constexpr uint64_t steps_of_growing = 200;  ///< a table by a block: system calls
-constexpr int most_walks = 16;              ///< along a chain that changes
+constexpr uint64_t steps_of_growing = 200;  ///< adding a block takes system calls
 
-/// Both ends of a possible match.
+/// Both ends of a potential match.
 struct Pair {
   uint32_t publisher_slot;
   uint32_t subscription_slot;
@@ -67,11 +67,21 @@ ReaderEntry & free_reader(Cluster & cluster, TopicDsmHeader & dsm, Turn & turn) 
   return *found;
 }
 
-/// What a new match lets the subscription see: nothing published so far, or the history that is
-/// left.
+/// True if the subscription gets the remaining history, false if only messages published from now
+/// on.
 bool wants_history(const EndpointEntry & publisher, const EndpointEntry & subscription) {
   return publisher.qos.durability == Durability::transient_local &&
          subscription.qos.durability == Durability::transient_local;
+}
+
+void count_match(Registry & registry, const Pair & pair) {
+  for (EndpointEntry * end : {&pair.publisher, &pair.subscription}) {
+    // Increment in this order: matched_of() loads the total first, so it never reports more current
+    // matches than total ones.
+    end->matched_current.fetch_add(1);
+    end->matched_total.fetch_add(1);
+    notify_event_watchers(registry, end->process);
+  }
 }
 
 void join(Registry & registry, const Pair & pair, Turn & turn) {
@@ -88,9 +98,11 @@ void join(Registry & registry, const Pair & pair, Turn & turn) {
   uint32_t index = 0;
   SourceEntry & source = free_source(subscription_cluster, *header, index, turn);
   ReaderEntry & reader = free_reader(publisher_cluster, *dsm, turn);
+  landings::ensure(registry, pair.publisher, *dsm, subscription_cluster);
   const bool history = wants_history(pair.publisher, pair.subscription);
 
-  source.incarnation.fetch_add(1, std::memory_order_release);  // after it was free
+  // Invalidates references to the entry's former use.
+  source.incarnation.fetch_add(1, std::memory_order_release);
   source.topic_dsm.store(pair.publisher.block.word, std::memory_order_relaxed);
   source.topic_dsm_endpoint.store(pair.publisher_slot, std::memory_order_relaxed);
   source.topic_dsm_incarnation.store(pair.publisher.slot.incarnation, std::memory_order_relaxed);
@@ -102,21 +114,21 @@ void join(Registry & registry, const Pair & pair, Turn & turn) {
   source.reader.store(publisher_cluster.ref_of(&reader).word, std::memory_order_relaxed);
   source.state.store(SourceState::joining, std::memory_order_release);
 
-  // Release, for receive threads that still look at a reader that was here before.
+  // Release: a receive thread may still be reading the entry's former reader.
   reader.endpoint.store(pair.subscription_slot, std::memory_order_release);
   reader.subscription.store(pair.subscription.block.word, std::memory_order_release);
   reader.source.store(subscription_cluster.ref_of(&source).word, std::memory_order_release);
   reader.source_index.store(index, std::memory_order_release);
   reader.source_incarnation.store(source.incarnation.load(), std::memory_order_release);
   reader.active.store(1, std::memory_order_release);
-  // From here on the publisher finds this reader: it looks again after storing `last` (seq_cst). No
-  // claim may come earlier, or the publisher could recycle a record under a reader it does not
-  // know.
+  // From here on the publisher finds this reader: it checks `match_generation` after storing `last`
+  // (seq_cst). A claim before this point would be invisible to the publisher, which could recycle
+  // the record.
   dsm->match_generation.fetch_add(1, std::memory_order_seq_cst);
   source.state.store(SourceState::active, std::memory_order_seq_cst);
   header->source_generation.fetch_add(1, std::memory_order_seq_cst);
 
-  // History, or what was published between the first look at `last` and now.
+  // Deliver history, and messages published since `last` was first loaded.
   if (dsm->last.load(std::memory_order_seq_cst) > taken) {
     header->resync.store(1, std::memory_order_seq_cst);
     notify_watchers(registry, *header);
@@ -125,13 +137,7 @@ void join(Registry & registry, const Pair & pair, Turn & turn) {
   registry.tracer().note(
     TraceKind::match, pair.subscription_slot, 0,
     trace_endpoint(pair.publisher_slot, pair.publisher.slot.incarnation));
-  for (EndpointEntry * end : {&pair.publisher, &pair.subscription}) {
-    // In this order: matched_of() reads the total first, and never sees more changes than there
-    // were.
-    end->matched_current.fetch_add(1);
-    end->matched_total.fetch_add(1);
-    notify_event_watchers(registry, end->process);
-  }
+  count_match(registry, pair);
 }
 
 void count_incompatible(Registry & registry, const Pair & pair, QosPolicy policy) {
@@ -177,15 +183,15 @@ void undo_half_matches_of(Registry & registry, EndpointEntry & entry) {
   visit_source_table(*cluster, *header, [&](SourceEntry & source, uint32_t) {
     if (source.state.load() == SourceState::joining) {
       detach_reader(registry, source);
-      // Not `free`: the publisher may have seen the reader, so this entry has to answer for the
-      // publisher's phase when the subscription is freed.
+      // Not `free`: the publisher may have seen the reader, so its phase must be checked through
+      // this entry when the subscription is freed.
       source.state.store(SourceState::revoked, std::memory_order_seq_cst);
     }
     return false;
   });
 }
 
-/// A publisher that is closing counts down reader by reader.
+/// A closing publisher decrements reader by reader.
 bool counts_down(Registry & registry, TopicDsmHeader & dsm, const SourceEntry & source) {
   const SegmentRef ref{source.reader.load()};
   const Cluster * const cluster = registry.clusters().find(ref.cluster());
@@ -196,7 +202,8 @@ bool counts_down(Registry & registry, TopicDsmHeader & dsm, const SourceEntry & 
   return index && *index < dsm.closed_before;
 }
 
-/// Those that are closing count as well until they have left: it is then that they count down.
+/// Counts matches of closing endpoints as well, until they are undone: only then the counts are
+/// decremented.
 void count_matches_of(Registry & registry, uint32_t slot, std::vector<uint64_t> & counts) {
   const EndpointEntry & entry = registry.endpoints()[slot];
   Cluster * const cluster = registry.clusters().find(entry.block.cluster());
@@ -220,42 +227,28 @@ bool is_other_end(const EndpointEntry & entry, const char * topic, EndpointKind 
   return entry.kind != kind && std::strncmp(entry.topic, topic, name_bytes) == 0;
 }
 
-/// False when some may be missing.
-bool look_for_candidates(
-  Registry & registry, uint32_t endpoint, std::vector<Candidate> & candidates) {
-  const EndpointEntry & own = registry.endpoints()[endpoint];
-  candidates.clear();
-  return registry.for_each_older(endpoint, [&](uint32_t slot, uint32_t incarnation) {
-    const EntryCopy<EndpointEntry> other(registry.endpoints(), slot);
-    if (is_other_end(*other, own.topic, own.kind) && other.holds()) {
-      candidates.push_back({slot, incarnation, (*other).cluster});
-    }
-  });
-}
-
 }  // namespace
 
 void require_reach(Registry & registry, const std::string & topic, EndpointKind kind) {
   registry.for_each_of_bucket(topic.c_str(), [&](uint32_t slot) {
     const EntryCopy<EndpointEntry> other(registry.endpoints(), slot);
     if (is_other_end(*other, topic.c_str(), kind) && other.holds()) {
-      registry.reach((*other).cluster);
+      registry.map_cluster((*other).cluster);
     }
   });
 }
 
 std::vector<Candidate> candidates_of(Registry & registry, uint32_t endpoint) {
+  const EndpointEntry & own = registry.endpoints()[endpoint];
   std::vector<Candidate> candidates;
-  bool is_complete = false;
-  for (int i = 0; !is_complete && i < most_walks; ++i) {
-    is_complete = look_for_candidates(registry, endpoint, candidates);
-  }
-  if (!is_complete) {
-    const Registry::Lock lock(registry);
-    look_for_candidates(registry, endpoint, candidates);
-  }
+  registry.for_each_older(endpoint, [&](uint32_t slot, uint32_t incarnation) {
+    const EntryCopy<EndpointEntry> other(registry.endpoints(), slot);
+    if (is_other_end(*other, own.topic, own.kind) && other.holds()) {
+      candidates.push_back({slot, incarnation, (*other).cluster});
+    }
+  });
   for (const Candidate & candidate : candidates) {
-    registry.reach(candidate.cluster);
+    registry.map_cluster(candidate.cluster);
   }
   return candidates;
 }

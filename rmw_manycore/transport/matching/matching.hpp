@@ -7,11 +7,12 @@
 
 namespace manycore::matching {
 
-/// Throws OutOfReach while this process cannot map the cluster of an endpoint with which a new one
-/// may be matched. Without the registry lock: some may come or go meanwhile.
+/// Throws ClusterUnmappable if this process cannot map the cluster of an endpoint with which a new
+/// endpoint may be matched. Takes no registry lock, so endpoints may be added or removed
+/// concurrently.
 void require_reach(Registry & registry, const std::string & topic, EndpointKind kind);
 
-/// The endpoints that a live one has still to be matched with. Those that come later find it in the
+/// An older endpoint that a new one may be matched with. Younger endpoints find the new one in the
 /// graph and match themselves.
 struct Candidate {
   uint32_t slot;
@@ -19,21 +20,19 @@ struct Candidate {
   uint32_t cluster;
 };
 
-/// All endpoints of its topic and of the other kind that are older. Without the registry lock,
-/// unless endpoints leave the topic all the time. Throws OutOfReach while this process cannot map
-/// the cluster of one: connect_some() would fail half way.
+/// All older endpoints of the same topic and the other kind. Needs no lock. Throws
+/// ClusterUnmappable if this process cannot map the cluster of a candidate, because connect_some()
+/// would fail midway.
 std::vector<Candidate> candidates_of(Registry & registry, uint32_t endpoint);
 
-/// Joins a live endpoint with the last of the candidates that are compatible and still there, and
-/// takes them off: as many as may be matched while others wait for the registry lock, which it
-/// needs.
+/// Matches a live endpoint with the compatible and live ones among the last candidates, and removes
+/// these from the list, until the turn is over. The caller holds the registry lock.
 void connect_some(Registry & registry, uint32_t endpoint, std::vector<Candidate> & candidates);
 
-/// After an owner of the registry lock died in connect(): takes back the match it left half made.
+/// Undoes the match that an owner of the registry lock left incomplete when it died.
 void undo_half_matches(Registry & registry);
 
-/// After an owner of the registry lock died while counting: counts anew who is matched with how
-/// many.
+/// Recomputes all match counts after an owner of the registry lock died.
 void recount(Registry & registry);
 
 }  // namespace manycore::matching

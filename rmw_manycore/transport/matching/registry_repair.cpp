@@ -1,6 +1,6 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-// Rebuilds the registry after the owner of its lock died. Part of Registry, defined up here because
-// matches are derived state, too.
+// Part of Registry: rebuilds derived state after the owner of its lock died. Defined in this layer
+// because match counts are derived state as well.
 #include <algorithm>
 #include <vector>
 
@@ -8,6 +8,8 @@
 #include "transport/queue/source_table.hpp"
 #include "transport/registry/registry.hpp"
 #include "transport/topic_dsm/reader_table.hpp"
+#include "transport/transfer/landing.hpp"
+#include "transport/transfer/landings.hpp"
 
 namespace manycore {
 
@@ -24,7 +26,8 @@ void Registry::mark_blocks_of(EndpointEntry & entry) noexcept {
     if (dsm == nullptr) {
       return;
     }
-    mark(entry.block.offset(), sizeof(TopicDsmHeader));
+    mark(entry.block.offset(), header_bytes(*dsm));
+    landings::mark_all(clusters_, *cluster, *dsm);
     for (GenerationEntry & generation : dsm->generations) {
       if (generation.offset.load() != 0) {
         mark(generation.offset.load(), generation.extent_bytes());
@@ -45,12 +48,12 @@ void Registry::mark_blocks_of(EndpointEntry & entry) noexcept {
   }
 }
 
-/// The last owner of the lock died at some instruction of a change. Primary state is the slots'
-/// states, which change in one store; everything derived from them is built anew. All clusters are
-/// mapped before: the map of one that is left out would go on without what was half allocated.
+/// The last owner of the lock died at some instruction of a change. The slots' states are primary,
+/// and each changes in a single store; everything derived from them is rebuilt. All clusters are
+/// mapped first: the map of an omitted cluster would keep half-made allocations.
 void Registry::repair() {
   for (uint32_t id = 1; id <= max_clusters; ++id) {
-    reach(id);
+    map_cluster(id);
   }
   processes_.rebuild_free_list();
   nodes_.rebuild_free_list();
@@ -88,7 +91,7 @@ void Registry::repair() {
       ++header().closing_count;
     }
   }
-  // In the order in which they came: one that looks for older ones to be matched with goes on.
+  // Link in order of age: a concurrent walk to older endpoints continues.
   std::sort(live.begin(), live.end(), [this](uint32_t a, uint32_t b) {
     return header().last_order - endpoints_[a].order > header().last_order - endpoints_[b].order;
   });

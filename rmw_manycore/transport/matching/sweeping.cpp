@@ -7,34 +7,33 @@ namespace manycore::sweeping {
 namespace {
 
 constexpr uint64_t steps_of_a_slot = 1;
-constexpr uint64_t steps_of_freeing = 256;  ///< a few system calls
-/// Turns that free nothing, of a process that is about something else: 0.5 ms.
-constexpr int most_idle_turns = 8;
+/// Steps without progress before a process returns to its own work: about 0.5 ms.
+constexpr uint64_t max_idle_steps = 8 * Turn::steps;
 
-/// Left by a process that lives, as a cluster was out of its reach; or by one that is dying, thread
-/// by thread. What the dead leave is the reaper's.
+/// True for an endpoint that a live process left closing because it could not map a cluster, or
+/// that a process left whose threads are ending one by one. Endpoints of dead processes are left to
+/// the reaper.
 bool is_left_closing(Registry & registry, const EndpointEntry & entry) {
   return entry.slot.state.load() == SlotState::closing &&
-         registry.processes().is_live(entry.process) && registry.lifelines().is_held(entry.process);
+         registry.processes().is_live(entry.process) &&
+         registry.lifelines().is_locked(entry.process);
 }
 
-/// Closes what is left closing; frees the memory of a closed endpoint, and its slot. Throws
-/// OutOfReach.
+/// Closes an endpoint left closing; frees the memory and the slot of a closed endpoint. Throws
+/// ClusterUnmappable.
 Progress sweep_endpoint(
   Registry & registry, WantedSources & wanted, ReaderPass & pass, uint32_t slot, Turn & turn) {
   EndpointEntry & entry = registry.endpoints()[slot];
   if (is_left_closing(registry, entry) && !closing::close_some(registry, slot, false, turn)) {
     return Progress::turn_over;
   }
-  const SlotState state = entry.slot.state.load();
-  if (state != SlotState::closed && state != SlotState::freeing) {
+  if (!is_closed(entry.slot.state.load())) {
     return Progress::blocked;
   }
   const Progress progress = entry.kind == EndpointKind::publisher
                               ? sweep_publisher(registry, wanted, pass, slot, turn)
                               : sweep_subscription(registry, entry, turn);
   if (progress == Progress::freed) {
-    turn.spend(steps_of_freeing);
     registry.endpoints().give_back(slot);
     --registry.header().closing_count;
   }
@@ -45,18 +44,28 @@ Progress sweep_endpoint(
 
 bool Round::try_to_sweep(uint32_t slot, Turn & turn) {
   try {
-    return sweep_endpoint(registry_, wanted_, pass_, slot, turn) != Progress::turn_over;
-  } catch (const OutOfReach &) {
-    reached_all_ = false;
+    const Progress progress = sweep_endpoint(registry_, wanted_, pass_, slot, turn);
+    has_freed_ = has_freed_ || progress == Progress::freed || progress == Progress::freed_some;
+    return progress == Progress::freed || progress == Progress::blocked;
+  } catch (const ClusterUnmappable &) {
+    mapped_all_ = false;
     return true;
   }
 }
 
-/// Goes on where the last round of any process ended.
+/// Continues where the last round of any process ended.
 bool Round::sweep_some() {
+  Turn turn;
+  has_freed_ = false;
+  const bool looked_at_all = sweep_until(turn);
+  idle_steps_ = has_freed_ ? 0 : idle_steps_ + turn.spent();
+  return looked_at_all;
+}
+
+bool Round::sweep_until(Turn & turn) {
   RegistryHeader & header = registry_.header();
   const uint32_t end = registry_.endpoints().high_water();
-  for (Turn turn; header.closing_count != 0 && looked_at_ < end; ++looked_at_) {
+  for (; header.closing_count != 0 && looked_at_ < end; ++looked_at_) {
     if (turn.is_over()) {
       return false;
     }
@@ -86,13 +95,11 @@ void sweep_all(Registry & registry) {
 void sweep_a_little(Registry & registry, uint32_t cluster, long wait_ns) {
   Round round(registry);
   bool over = false;
-  for (int idle_turns = 0; !over && idle_turns < most_idle_turns;) {
+  while (!over && round.idle_steps() < max_idle_steps) {
     const Registry::Lock lock(registry, wait_ns);
-    const uint32_t before = registry.header().closing_count;
     over = round.sweep_some();
-    idle_turns = registry.header().closing_count < before ? 0 : idle_turns + 1;
   }
-  if (!over || !round.reached_all()) {
+  if (!over || !round.mapped_all()) {
     registry.clusters().at(cluster).wake_reaper();
   }
 }
@@ -101,11 +108,11 @@ void try_to_sweep(Registry & registry, uint32_t endpoint, const Cluster & cluste
   try {
     Round round(registry);
     const Registry::Lock lock(registry, Registry::Lock::no_wait_ns);
-    if (round.sweep_some_of(endpoint) && round.reached_all()) {
+    if (round.sweep_some_of(endpoint) && round.mapped_all()) {
       return;
     }
   } catch (const std::exception &) {
-    // Another process holds the registry, and the caller does not wait for it.
+    // Another process holds the registry lock, and the caller must not wait for it.
   }
   cluster.wake_reaper();
 }

@@ -6,46 +6,53 @@
 #include "transport/matching/wanted_sources.hpp"
 #include "transport/registry/registry.hpp"
 
-/// Frees what closed endpoints hold, as far as no process can be using it any more (see
-/// docs/design/topic_dsm.md, Freeing), and closes what a living process could not, as a cluster was
-/// out of its reach. In turns, between which the registry lock goes to others: how far it has come
-/// is in shared memory, so any process goes on where another one stopped or died.
+/// Frees what closed endpoints hold, as soon as no process can be using it (see
+/// docs/design/freeing.md), and closes endpoints that a live process could not close
+/// because it could not map a cluster. Works in turns, between which other processes get the
+/// registry lock. Progress is kept in shared memory, so any process continues where another one
+/// stopped or died.
 namespace manycore::sweeping {
 
-/// One look at all endpoints, by as many turns as it takes.
+/// One check of all endpoints, in as many turns as needed.
 class Round {
 public:
   explicit Round(Registry & registry) noexcept : registry_(registry), wanted_(registry) {}
 
-  /// One turn; the caller holds the registry lock. True when every endpoint was looked at.
+  /// One turn. True when all endpoints were checked. The caller holds the registry lock.
   bool sweep_some();
-  /// One turn for one endpoint; the caller holds the lock. True when it was looked at whole.
+  /// One turn for one endpoint. True when its check is complete. The caller holds the lock.
   bool sweep_some_of(uint32_t endpoint);
-  /// False when something is out of this process's reach, and left to others.
-  bool reached_all() const noexcept { return reached_all_; }
+  /// False if this process could not map a cluster, whose endpoints are left to other processes.
+  bool mapped_all() const noexcept { return mapped_all_; }
+  /// Steps since this round last freed memory.
+  uint64_t idle_steps() const noexcept { return idle_steps_; }
 
 private:
-  /// False when the turn is over before the endpoint was looked at.
+  /// False if the turn ended before all endpoints were checked.
+  bool sweep_until(Turn & turn);
+  /// False if the turn ended before the check was complete.
   bool try_to_sweep(uint32_t slot, Turn & turn);
 
   Registry & registry_;
   WantedSources wanted_;
   ReaderPass pass_;
-  uint32_t looked_at_ = 0;  ///< slots
-  bool reached_all_ = true;
+  uint32_t looked_at_ = 0;  ///< slots checked so far
+  bool has_freed_ = false;  ///< in this turn
+  uint64_t idle_steps_ = 0;
+  bool mapped_all_ = true;
 };
 
-/// A whole round; takes the registry lock anew for each turn.
+/// A complete round. Takes the registry lock anew for each turn.
 void sweep_all(Registry & registry);
 
-/// For a process of `cluster` that is creating or closing an endpoint: a round that ends early,
-/// after a few turns that free nothing. The cluster's reaper is woken for what is left then, or out
-/// of this process's reach.
+/// Sweeps one round for a process of `cluster` that creates or closes an endpoint. Ends early after
+/// about 0.5 ms without progress. Wakes the cluster's reaper for endpoints that are then left, or
+/// whose memory this process cannot map.
 void sweep_a_little(
   Registry & registry, uint32_t cluster, long wait_ns = Registry::Lock::usual_wait_ns);
 
-/// One turn for one endpoint, if there is such a closed one. Does not wait for the registry lock.
-/// The reaper of `cluster` is woken for what is left then, or out of this process's reach.
+/// One turn for one endpoint, if it is closed. Never waits for the registry lock. Wakes the reaper
+/// of `cluster` for what is then left, or cannot be mapped by this process.
 void try_to_sweep(Registry & registry, uint32_t endpoint, const Cluster & cluster) noexcept;
 
 }  // namespace manycore::sweeping

@@ -7,9 +7,12 @@
 #include "transport/queue/source_table.hpp"
 #include "transport/registry/endpoint_blocks.hpp"
 #include "transport/topic_dsm/last_published.hpp"
+#include "transport/transfer/landing.hpp"
 
 namespace manycore::closing {
 namespace {
+
+constexpr uint32_t processes_in_a_step = 16;
 
 /// Calls `visit(RecordDescriptor &, number)` for each record above `taken`, until it returns true.
 template<typename Visit>
@@ -32,8 +35,8 @@ void visit_records_above(
   }
 }
 
-/// Calls `visit(number, source_timestamp_ns)` for each record that a source has not taken, in any
-/// order.
+/// Calls `visit(number, source_timestamp_ns)` for each record that a source has not taken, in no
+/// particular order.
 template<typename Visit>
 void visit_undelivered(
   const Cluster & cluster, TopicDsmHeader & dsm, const SourceEntry & source, Visit visit) {
@@ -41,19 +44,41 @@ void visit_undelivered(
     source.taken.load(std::memory_order_acquire), cluster, dsm,
     [&](RecordDescriptor & record, uint64_t number) {
       const int64_t timestamp_ns = record.source_timestamp_ns.load(std::memory_order_acquire);
-      if (record.number.load(std::memory_order_relaxed) == number) {  // its publisher may live
+      // Unchanged: a live publisher may recycle it concurrently.
+      if (record.number.load(std::memory_order_relaxed) == number) {
         visit(number, timestamp_ns);
       }
       return false;
     });
 }
 
+bool has_movers(Registry & registry, uint32_t cluster) {
+  const Lifelines & lifelines = registry.lifelines();
+  if (lifelines.is_locked(receive_thread_line + cluster)) {
+    return true;
+  }
+  for (uint32_t slot = 0; slot < registry.processes().high_water(); ++slot) {
+    if (
+      registry.processes().is_live(slot) && registry.processes()[slot].cluster == cluster &&
+      lifelines.is_locked(slot)) {
+      return true;  // it starts another receive thread
+    }
+  }
+  return false;
+}
+
+/// Empty where the reader is in the publisher's own cluster.
+Landing landing_of(Registry & registry, const OrphanReader & reader) {
+  const Cluster * const to = registry.map_cluster(reader.endpoint.cluster);
+  return to == nullptr ? Landing() : Landing::of(reader.cluster, reader.dsm, *to);
+}
+
 }  // namespace
 
 std::optional<OrphanReader> orphan_reader(
   Registry & registry, const Cluster & cluster, TopicDsmHeader & dsm, const ReaderEntry & entry) {
-  auto * const source = registry.reach<SourceEntry>(SegmentRef{entry.source.load()});
-  auto * const header = registry.reach<SubscriptionHeader>(SegmentRef{entry.subscription.load()});
+  auto * const source = registry.map<SourceEntry>(SegmentRef{entry.source.load()});
+  auto * const header = registry.map<SubscriptionHeader>(SegmentRef{entry.subscription.load()});
   const uint32_t slot = entry.endpoint.load();
   if (source == nullptr || header == nullptr || slot >= registry.endpoints().high_water()) {
     return std::nullopt;
@@ -86,7 +111,8 @@ std::optional<Undelivered> newest_undelivered(
   return newest;
 }
 
-/// Those from the first on whose own timestamp is newer: a later one counts as no older than it.
+/// Counts from the first record whose own timestamp is newer: later records never count as older
+/// (see Undelivered).
 uint32_t count_newer_than(
   const Undelivered & record, const Cluster & cluster, TopicDsmHeader & dsm,
   const SourceEntry & source, uint32_t index) {
@@ -120,7 +146,30 @@ bool has_undelivered(const OrphanReader & reader) {
   return found;
 }
 
-/// The subscription counts its own replies as it misses them.
+bool is_abandoned(Registry & registry, const OrphanReader & reader, Turn & turn) {
+  if (
+    static_cast<Transfer>(reader.dsm.transfer) != Transfer::session ||
+    !landing_of(registry, reader)) {
+    return false;
+  }
+  turn.spend(registry.processes().high_water() / processes_in_a_step);
+  return !has_movers(registry, reader.cluster.id());
+}
+
+bool has_arrived(Registry & registry, const OrphanReader & reader) {
+  const Landing landing = landing_of(registry, reader);
+  bool found = false;
+  if (landing) {
+    visit_records_above(
+      reader.source.taken.load(std::memory_order_acquire), reader.cluster, reader.dsm,
+      [&](RecordDescriptor &, uint64_t number) {
+        return found = number <= landing.arrived() && landing.has(number);
+      });
+  }
+  return found;
+}
+
+/// Replies are excluded: a client counts those itself as it misses them.
 void count_undelivered(Registry & registry, const OrphanReader & reader) {
   const LastPublished published = last_published(reader.dsm);
   const uint64_t accounted = reader.source.accounted.load(std::memory_order_acquire);

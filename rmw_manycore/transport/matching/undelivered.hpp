@@ -6,6 +6,7 @@
 
 #include "transport/layout/subscription_layout.hpp"
 #include "transport/layout/topic_dsm_layout.hpp"
+#include "transport/matching/turn.hpp"
 #include "transport/registry/registry.hpp"
 
 namespace manycore::closing {
@@ -21,36 +22,44 @@ struct OrphanReader {
   uint32_t source_index;
 };
 
-/// The reader behind an entry of a reader table, or nothing when the entry leads nowhere. Throws
-/// OutOfReach.
+/// The reader of a reader table's entry, or nothing if the entry is invalid. Throws
+/// ClusterUnmappable.
 std::optional<OrphanReader> orphan_reader(
   Registry & registry, const Cluster & cluster, TopicDsmHeader & dsm, const ReaderEntry & entry);
 
-/// The newest record that a reader has not taken. No record of a source counts as older than an
-/// earlier one, as in Source::list_waiting().
+/// The newest record that a reader has not taken. As in Source::list_waiting(), no record of a
+/// source counts as older than an earlier one.
 struct Undelivered {
   uint64_t number;
   int64_t source_timestamp_ns;
-  uint32_t source;  ///< index
+  uint32_t source;  ///< index in the source table
 };
 
-/// Nothing when all is taken.
+/// Nothing if all records are taken.
 std::optional<Undelivered> newest_undelivered(
   const Cluster & cluster, TopicDsmHeader & dsm, const SourceEntry & source, uint32_t index);
 
-/// Records of another source that it has not taken and that are newer than `record`.
+/// Number of records of another source that are not taken and newer than `record`.
 uint32_t count_newer_than(
   const Undelivered & record, const Cluster & cluster, TopicDsmHeader & dsm,
   const SourceEntry & source, uint32_t index);
 
-/// Records that one look for undelivered ones goes through.
+/// Number of descriptors that one search for undelivered records visits.
 uint64_t records_to_look_at(TopicDsmHeader & dsm, const SourceEntry & source);
 
-/// A record that the reader has not taken, in any generation; of replies, its own whose hint was
-/// not displaced.
+/// True if the reader has not taken some record, in any generation. Of replies, only the client's
+/// own count, unless their hint was displaced.
 bool has_undelivered(const OrphanReader & reader);
 
-/// Counts what the reader has not taken as lost; nothing of the topic DSM may be claimed any more.
+/// True if the reader's session has no mover any more, nor a process that starts one: the last
+/// process of the publisher's cluster has gone.
+bool is_abandoned(Registry & registry, const OrphanReader & reader, Turn & turn);
+
+/// True if a record that the reader has not taken is in its cluster, announced or not.
+bool has_arrived(Registry & registry, const OrphanReader & reader);
+
+/// Counts what the reader has not taken as lost. Requires that nothing of the topic DSM can be
+/// claimed any more.
 void count_undelivered(Registry & registry, const OrphanReader & reader);
 
 }  // namespace manycore::closing

@@ -11,9 +11,9 @@ using closing::OrphanReader;
 using closing::Undelivered;
 
 constexpr uint64_t steps_of_a_source = 3;
-constexpr uint64_t looks_at_other = 2;  ///< of count_newer_than(), at each record
+constexpr uint64_t looks_at_other = 2;  ///< count_newer_than() visits each record twice
 
-/// Messages that left the subscription by itself.
+/// Messages that the subscription itself removed: taken or expired.
 uint64_t taken_by(const EndpointEntry & subscription) {
   const EndpointCounters & counters = subscription.counters;
   return counters.messages.load(std::memory_order_acquire) +
@@ -45,7 +45,8 @@ bool WantedSources::count_newer(Look & look, const OrphanReader & reader, Turn &
   const uint32_t first = look.next;
   bool is_over = false;
   const auto visit = [&](SourceEntry & source, uint32_t index) {
-    is_over = turn.is_over() && index != first;  // each turn gets on, however much it has spent
+    // Each turn makes progress, whatever it spent before.
+    is_over = turn.is_over() && index != first;
     if (is_over || look.newer >= reader.subscription.depth) {
       return true;
     }
@@ -66,8 +67,8 @@ bool WantedSources::count_newer(Look & look, const OrphanReader & reader, Turn &
   return !is_over;
 }
 
-/// A subscription that took something since the look began may want more than the look found. It
-/// takes by itself what it wants, so it is given the time.
+/// A subscription that took a message since the check began may want more than the check found. It
+/// takes what it wants itself, so the topic DSM stays for now.
 std::optional<bool> WantedSources::contain(const OrphanReader & reader, Turn & turn) {
   spend_on(reader.dsm, reader.source, 1, turn);
   if (!is_cut_by_depth(reader)) {

@@ -8,35 +8,37 @@
 
 namespace manycore::sweeping {
 
-/// Whether a subscription is still to get messages of a publisher that is gone. KEEP_LAST: if the
-/// newest of them is among its newest `depth` records, over all its sources, as a resync would cut
-/// them. Looks at other sources until `depth` newer records are found, by as many turns as it
-/// takes; the caller holds the registry lock in each, under which no publisher frees a generation.
+/// Decides whether a subscription still wants messages of a publisher that is gone. A KEEP_LAST
+/// subscription does if the newest of them is among its newest `depth` records over all its
+/// sources, as a resync would cut them. Visits other sources until `depth` newer records are found,
+/// in as many turns as needed. The caller holds the registry lock in each turn, so no publisher
+/// frees a generation meanwhile.
 class WantedSources {
 public:
   explicit WantedSources(Registry & registry) noexcept : registry_(registry) {}
 
-  /// Nothing when the turn was over before the answer was found: ask for the same reader next.
+  /// Nothing if the turn ended before the answer was found: ask for the same reader in the next
+  /// turn.
   std::optional<bool> contain(const closing::OrphanReader & reader, Turn & turn);
 
 private:
-  /// At the sources of one subscription.
+  /// Progress of the check for one subscription.
   struct Look {
     uint32_t endpoint;  ///< slot of the subscription
     uint32_t incarnation;
-    uint64_t taken;  ///< messages, when the look began
+    uint64_t taken;  ///< messages taken or expired when the check began
     closing::Undelivered record;
-    uint32_t next;   ///< index of the first source that it has not come to
-    uint32_t newer;  ///< records found
+    uint32_t next;   ///< index of the first source not visited yet
+    uint32_t newer;  ///< newer records found so far
   };
 
-  /// Goes on with the last look, if it is at this reader.
+  /// Continues the last check if it is for this reader.
   Look look_at(const closing::OrphanReader & reader, const closing::Undelivered & newest) const;
-  /// False when the turn was over before the end.
+  /// False if the turn ended before the last source.
   bool count_newer(Look & look, const closing::OrphanReader & reader, Turn & turn) const;
 
   Registry & registry_;
-  std::optional<Look> last_;  ///< one that no turn has finished
+  std::optional<Look> last_;  ///< check that is not complete
 };
 
 }  // namespace manycore::sweeping

@@ -9,11 +9,7 @@
 namespace manycore {
 namespace {
 
-bool is_for(const Announcement & announcement, const Reader & reader) noexcept {
-  return announcement.target == nullptr || *announcement.target == reader.gid;
-}
-
-/// A displaced hint is most often one of the same publisher, whose source is known.
+/// A displaced hint usually belongs to the same publisher, whose source entry is already resolved.
 void note_displaced(const Cluster & own, const Reader & reader, const Hint & oldest) noexcept {
   if (oldest.source == reader.source_index) {
     note_displaced(*reader.source, oldest);
@@ -22,17 +18,15 @@ void note_displaced(const Cluster & own, const Reader & reader, const Hint & old
   }
 }
 
-/// Pushes to the own cluster's readers; returns the mask of the other clusters concerned.
+/// Pushes to the readers of the own cluster; returns the bit mask of the other clusters with
+/// readers.
 uint64_t push_to_own_cluster(
-  Tracer & tracer, const Cluster & own, const ReaderList & list,
+  Tracer & tracer, const Cluster & own, const Readers & readers,
   const Announcement & announcement) noexcept {
   uint64_t others = 0;
-  WakeWords * pending = nullptr;  // readers of one process stand together
+  WakeWords * pending = nullptr;  // readers are grouped by process
   WakeSet words;
-  for (const Reader & reader : list.readers()) {
-    if (!is_for(announcement, reader)) {
-      continue;
-    }
+  for (const Reader & reader : readers) {
     if (reader.cluster != own.id()) {
       others |= uint64_t{1} << (reader.cluster - 1);
       continue;
@@ -57,39 +51,29 @@ uint64_t push_to_own_cluster(
   return others;
 }
 
-/// The target's slot for the receive thread, which knows no gids.
-uint32_t target_slot(const ReaderList & list, const Announcement & announcement) noexcept {
-  if (announcement.target == nullptr) {
-    return nothing;
-  }
-  for (const Reader & reader : list.readers()) {
-    if (is_for(announcement, reader)) {
-      return reader.endpoint;
-    }
-  }
-  return nothing;
-}
-
-/// The pipe was full. Either it still is after `pipe_overflow` is set, then the receive thread has
-/// yet to read from it and looks at the flag afterwards; or the message gets in.
-void ask_to_look(Cluster & cluster, const ReaderList & list) noexcept {
-  for (const Reader & reader : list.readers()) {
+/// Called where the readers in that cluster have to look for themselves.
+void request_resync(const Cluster & cluster, const Readers & readers) noexcept {
+  for (const Reader & reader : readers) {
     if (reader.cluster == cluster.id()) {
       reader.subscription->resync.store(1, std::memory_order_seq_cst);
     }
   }
-  cluster.header().pipe_overflow.store(1, std::memory_order_seq_cst);
-  EmcosMessage message{};
-  message.kind = EmcosMessageKind::resync;
-  cluster.send(message);
+  cluster.wake_resyncing();
+}
+
+/// False if the readers in that cluster have to look for themselves.
+bool send(const EmcosMessage & message, const Cluster & cluster, TransferSender * sender) noexcept {
+  return sender == nullptr ? cluster.send(message) : sender->hand_over(message, cluster);
 }
 
 }  // namespace
 
 void announce(
   Registry & registry, const Cluster & own, const ReaderList & list,
-  const Announcement & announcement) noexcept {
-  uint64_t others = push_to_own_cluster(registry.tracer(), own, list, announcement);
+  const Announcement & announcement, TransferSender * sender) noexcept {
+  const bool is_targeted = announcement.target != nullptr;
+  const Readers readers = is_targeted ? list.with_gid(*announcement.target) : list.all();
+  uint64_t others = push_to_own_cluster(registry.tracer(), own, readers, announcement);
   if (others == 0) {
     return;
   }
@@ -99,13 +83,14 @@ void announce(
   message.endpoint = announcement.endpoint;
   message.incarnation = announcement.incarnation;
   message.number = announcement.number;
-  message.target = target_slot(list, announcement);
+  // Names the client by its slot: the receive thread does not compare gids.
+  message.target = is_targeted ? readers.begin()->endpoint : nothing;
   for (; others != 0; others &= others - 1) {
     const uint32_t id = static_cast<uint32_t>(__builtin_ctzll(others)) + 1;
     Cluster * const cluster = registry.clusters().find(id);
     registry.tracer().note(TraceKind::send, announcement.endpoint, announcement.number, id);
-    if (cluster != nullptr && !cluster->send(message)) {
-      ask_to_look(*cluster, list);
+    if (cluster != nullptr && !send(message, *cluster, sender)) {
+      request_resync(*cluster, readers);
     }
   }
 }

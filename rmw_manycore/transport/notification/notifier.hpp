@@ -2,23 +2,25 @@
 #pragma once
 
 #include "transport/topic_dsm/reader_list.hpp"
+#include "transport/transfer/transfer_sender.hpp"
 
 namespace manycore {
 
-/// A record to announce: where it is, and for whom.
+/// A published record and the readers to notify.
 struct Announcement {
   SegmentRef topic_dsm;
-  uint32_t endpoint;     ///< publisher's slot
+  uint32_t endpoint;     ///< slot of the publisher
   uint32_t incarnation;  ///< of that slot
   uint64_t number;
-  const Gid * target;  ///< only the reader with this gid, or nullptr for all
+  const Gid * target;  ///< gid of the only reader to notify, or nullptr for all
 };
 
-/// Step 1 of Fig. 4, last part: readers of the `own` cluster get a hint on their queue and are
-/// woken; every other cluster with a reader gets one eMCOS message. Never waits: where a pipe is
-/// full, the readers are told to look for themselves.
+/// Step 1 of ROS-lite2 Fig. 4, last part: pushes a hint to each reader of the `own` cluster and
+/// wakes its process; sends one eMCOS message to each other cluster with a reader. Never blocks: if
+/// a pipe is full, the readers behind it are set to resync. `sender` hands records of a transferred
+/// topic over, and blocks at most as long as it says; nullptr for others.
 void announce(
   Registry & registry, const Cluster & own, const ReaderList & list,
-  const Announcement & announcement) noexcept;
+  const Announcement & announcement, TransferSender * sender) noexcept;
 
 }  // namespace manycore

@@ -7,13 +7,13 @@
 
 namespace manycore {
 
-/// Wake-ups that one message asks for, so that each thread is woken once, however many of its
-/// subscriptions the message reached.
+/// Wake-ups collected for one message, so that each thread is woken once, however many of its
+/// subscriptions received the message.
 class PendingWakes {
 public:
   explicit PendingWakes(Registry & registry) noexcept : registry_(registry) {}
 
-  /// `process`: a slot below the high water mark.
+  /// Requires `process` < high_water().
   void add(uint32_t process, const WakeSet & words) noexcept {
     if (words_[process].empty() && !words.empty()) {
       processes_[count_++] = process;
@@ -31,8 +31,9 @@ public:
 
 private:
   Registry & registry_;
-  std::array<WakeSet, process_capacity> words_{};     ///< by process slot
-  std::array<uint32_t, process_capacity> processes_;  ///< those with words, `count_` of them
+  std::array<WakeSet, process_capacity> words_{};  ///< by process slot
+  /// Slots with a non-empty set; the first `count_` are valid.
+  std::array<uint32_t, process_capacity> processes_;
   uint32_t count_ = 0;
 };
 

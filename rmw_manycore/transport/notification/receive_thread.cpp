@@ -1,35 +1,54 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #include "transport/notification/receive_thread.hpp"
 
+#include "transport/matching/turn.hpp"
+#include "transport/notification/announced.hpp"
 #include "transport/queue/source_table.hpp"
 #include "transport/registry/odd_phase.hpp"
 #include "transport/topic_dsm/reader_table.hpp"
 
 namespace manycore {
+namespace {
+
+constexpr uint64_t steps_of_a_subscription = 3;
+
+}  // namespace
 
 ReceiveThread::ReceiveThread(Registry & registry, uint32_t cluster)
 : registry_(registry), cluster_(registry.clusters().at(cluster)), wakes_(registry) {
-  cluster_.header().phase.store(0, std::memory_order_seq_cst);  // a dead predecessor's may be odd
+  // A dead predecessor may have left it odd.
+  cluster_.header().phase.store(0, std::memory_order_seq_cst);
 }
 
+/// Asks all subscriptions of the cluster to resync, turn by turn. A subscription that is created
+/// meanwhile in a slot already passed misses no message: the lost messages had been published
+/// before it was matched.
 void ReceiveThread::recover() {
-  const Registry::Lock lock(registry_);
-  for (uint32_t slot = 0; slot < registry_.endpoints().high_water(); ++slot) {
-    EndpointEntry & endpoint = registry_.endpoints()[slot];
-    if (
-      !registry_.endpoints().is_live(slot) || endpoint.cluster != cluster_.id() ||
-      endpoint.kind != EndpointKind::subscription) {
-      continue;
-    }
-    if (auto * const header = cluster_.find<SubscriptionHeader>(endpoint.block.offset())) {
-      header->resync.store(1, std::memory_order_seq_cst);
+  for (uint32_t slot = 0; slot < registry_.endpoints().high_water();) {
+    const Registry::Lock lock(registry_);  // prevents freeing of subscriptions
+    for (Turn turn; !turn.is_over() && slot < registry_.endpoints().high_water(); ++slot) {
+      turn.spend(request_resync(slot) ? steps_of_a_subscription : 1);
     }
   }
-  wake_who_must_look();
+  wake_cluster();
 }
 
-/// Every write is atomic and of one size, so what is not a whole message of a known kind was put
-/// there by a stranger. It may stand across messages, which then are unreadable as well.
+/// Returns false if the slot holds no live subscription of this cluster.
+bool ReceiveThread::request_resync(uint32_t slot) noexcept {
+  EndpointEntry & endpoint = registry_.endpoints()[slot];
+  if (
+    !registry_.endpoints().is_live(slot) || endpoint.cluster != cluster_.id() ||
+    endpoint.kind != EndpointKind::subscription) {
+    return false;
+  }
+  if (auto * const header = cluster_.find<SubscriptionHeader>(endpoint.block.offset())) {
+    header->resync.store(1, std::memory_order_seq_cst);
+  }
+  return true;
+}
+
+/// All writers write whole messages atomically, so a partial message or an unknown kind was written
+/// by a foreign program. It may overlap other messages, which are then unreadable too.
 bool ReceiveThread::handle(const EmcosMessage & message, const ProcessesChanged & on_change) {
   switch (message.kind) {
     case EmcosMessageKind::publish:
@@ -37,9 +56,9 @@ bool ReceiveThread::handle(const EmcosMessage & message, const ProcessesChanged 
       return true;
     case EmcosMessageKind::attach:
     case EmcosMessageKind::detach:
-      on_change(message.kind);
+      on_change(message.kind, message.process);
       return true;
-    case EmcosMessageKind::resync:  // take_overflow() follows
+    case EmcosMessageKind::resync:  // handled by take_overflow()
       return true;
   }
   return false;
@@ -58,46 +77,28 @@ void ReceiveThread::run(const ProcessesChanged & on_change) {
       header.messages.load(std::memory_order_relaxed) + count, std::memory_order_relaxed);
     if (!understood) {
       recover();
-      on_change(EmcosMessageKind::detach);  // its message may be among the unread
+      on_change(EmcosMessageKind::detach, nothing);  // unread messages may include a detach
     }
     if (take_overflow()) {
-      wake_who_must_look();
-      on_change(EmcosMessageKind::attach);  // its message may be among the missing
+      wake_cluster();
+      on_change(EmcosMessageKind::attach, nothing);  // missing messages may include an attach
     }
   }
 }
 
-/// The publisher's slot says so: the topic DSM may be gone, and what it says with it. Dekker with
-/// the sweeper: the phase is stored before.
-bool ReceiveThread::is_there(const EmcosMessage & message) const noexcept {
-  if (message.endpoint >= registry_.endpoints().high_water()) {
-    return false;
-  }
-  const Slot & publisher = registry_.endpoints()[message.endpoint].slot;
-  return has_memory(publisher.state.load(std::memory_order_seq_cst)) &&
-         publisher.incarnation.load(std::memory_order_seq_cst) == message.incarnation;
-}
-
-/// Step 2 of Fig. 4: receive thread -> queue -> wake.
+/// Step 2 of ROS-lite2 Fig. 4: receive thread -> queue -> wake.
 void ReceiveThread::forward(const EmcosMessage & message) noexcept {
   const OddPhase phase(cluster_.header().phase);
-  Cluster * const source = registry_.clusters().find(message.topic_dsm.cluster());
-  TopicDsmHeader * const dsm =
-    source == nullptr ? nullptr : source->find<TopicDsmHeader>(message.topic_dsm.offset());
-  const bool current = dsm != nullptr && is_there(message) &&
-                       dsm->magic.load(std::memory_order_relaxed) == topic_dsm_magic &&
-                       dsm->endpoint.load(std::memory_order_relaxed) == message.endpoint &&
-                       dsm->incarnation.load(std::memory_order_relaxed) == message.incarnation;
-  if (current) {
+  if (const Announced announced = Announced::find(registry_, message)) {
     registry_.tracer().note(TraceKind::receive, message.endpoint, message.number, cluster_.id());
-    while (!push_to_readers(*source, *dsm, message)) {
+    while (!push_to_readers(*announced.source, *announced.dsm, message)) {
     }
     wakes_.flush();
   }
 }
 
-/// False when the reader table changed meanwhile: an entry may then have been read half old, half
-/// new. What was pushed already is pushed twice; subscribers ignore doubles.
+/// False if the reader table changed concurrently: an entry may then mix fields of two readers. The
+/// retry pushes some hints twice; subscribers ignore duplicates.
 bool ReceiveThread::push_to_readers(
   const Cluster & source, TopicDsmHeader & dsm, const EmcosMessage & message) noexcept {
   const uint64_t generation = dsm.match_generation.load(std::memory_order_seq_cst);
@@ -106,15 +107,17 @@ bool ReceiveThread::push_to_readers(
     if (entry.active.load(std::memory_order_acquire) == 0) {
       return false;
     }
-    // Acquire: who reads a value of a later reader finds the generation raised.
+    // Acquire: a field of the entry's next reader implies that `match_generation` is incremented.
     const uint32_t endpoint = entry.endpoint.load(std::memory_order_acquire);
+    if (message.target != nothing && message.target != endpoint) {
+      return false;
+    }
     const SegmentRef subscription{entry.subscription.load(std::memory_order_acquire)};
     const Hint hint{
       entry.source_index.load(std::memory_order_acquire),
       entry.source_incarnation.load(std::memory_order_acquire), message.number};
     unchanged = dsm.match_generation.load(std::memory_order_seq_cst) == generation;
-    const bool wanted = message.target == nothing || message.target == endpoint;
-    if (unchanged && wanted && subscription.cluster() == cluster_.id()) {
+    if (unchanged && subscription.cluster() == cluster_.id()) {
       push(subscription, hint, message);
     }
     return !unchanged;
@@ -145,16 +148,16 @@ void ReceiveThread::push(SegmentRef ref, const Hint & hint, const EmcosMessage &
   }
 }
 
-/// After every batch: a sender that found the pipe full relies on the reader of the full pipe to
-/// come by here.
+/// Called after each batch: a sender that found the pipe full relies on the receive thread to check
+/// the flag after emptying it.
 bool ReceiveThread::take_overflow() noexcept {
   std::atomic<uint32_t> & overflow = cluster_.header().pipe_overflow;
   return overflow.load(std::memory_order_seq_cst) != 0 &&
          overflow.exchange(0, std::memory_order_seq_cst) != 0;
 }
 
-/// All processes of the cluster: who has nothing to look for sleeps on.
-void ReceiveThread::wake_who_must_look() noexcept {
+/// Wakes all processes of the cluster; those without a subscription to resync go back to sleep.
+void ReceiveThread::wake_cluster() noexcept {
   for (uint32_t slot = 0; slot < registry_.processes().high_water(); ++slot) {
     if (
       registry_.processes().is_live(slot) && registry_.processes()[slot].cluster == cluster_.id()) {

@@ -10,35 +10,35 @@
 
 namespace manycore {
 
-/// The receive thread of one cluster (ROS-lite2 III-B): takes publish notices off the cluster's
-/// pipe, pushes them on the queues of the cluster's subscriptions and wakes their nodes. The
-/// owner's thread runs it.
+/// The receive thread of one cluster (ROS-lite2 III-B): reads eMCOS messages from the cluster's
+/// pipe, pushes hints to the queues of its subscriptions and wakes their processes. Runs in the
+/// thread that calls run().
 class ReceiveThread {
 public:
-  using ProcessesChanged = std::function<void(EmcosMessageKind)>;
+  /// `process`: slot of the process that joined, or `nothing` if any may have joined or left.
+  using ProcessesChanged = std::function<void(EmcosMessageKind kind, uint32_t process)>;
 
   ReceiveThread(Registry & registry, uint32_t cluster);
 
-  /// After the death of a predecessor, or of messages: every subscription of the cluster looks for
-  /// itself once.
+  /// Sets each subscription of the cluster to resync. Called after a predecessor died, or after
+  /// messages were lost.
   void recover();
 
-  /// For ever. `on_change` is told of attach and detach messages.
+  /// Never returns. Calls `on_change` for each attach and detach message.
   void run(const ProcessesChanged & on_change);
 
 private:
   static constexpr size_t batch_size = 64;
 
-  /// False for a message of no known kind.
+  /// False for an unknown message kind.
   bool handle(const EmcosMessage & message, const ProcessesChanged & on_change);
   void forward(const EmcosMessage & message) noexcept;
-  /// Its publisher still has its topic DSM.
-  bool is_there(const EmcosMessage & message) const noexcept;
   bool push_to_readers(
     const Cluster & source, TopicDsmHeader & dsm, const EmcosMessage & message) noexcept;
   void push(SegmentRef subscription, const Hint & hint, const EmcosMessage & message) noexcept;
+  bool request_resync(uint32_t slot) noexcept;
   bool take_overflow() noexcept;
-  void wake_who_must_look() noexcept;
+  void wake_cluster() noexcept;
 
   Registry & registry_;
   Cluster & cluster_;

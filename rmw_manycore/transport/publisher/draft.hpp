@@ -8,8 +8,8 @@
 
 namespace manycore {
 
-/// Room for one message in the topic DSM, between serialization and publication. Nothing else is
-/// published meanwhile; dropped without `publish`, nothing was sent. Stays in one thread.
+/// Room for one message in the topic DSM, between allocation and publication. Blocks every other
+/// publish of this publisher; destroying it unpublished sends nothing. Must stay in one thread.
 class Draft {
 public:
   Draft(Draft && other) noexcept = default;

@@ -42,10 +42,10 @@ uint64_t Publisher::publish(
   Impl & impl = *impl_;
   const Writing writing = std::move(draft.writing_);
   const uint64_t sequence_number = ++impl.published;
-  // Before the message, which tells readers to look.
+  // Touch both clocks before the message wakes readers that check them.
   const bool started = impl.has_deadline() && impl.deadline.touch(impl.entry.qos.deadline_ns);
   const bool revived = impl.is_manual() && impl.liveliness.assert_now();
-  if (started || revived) {  // who slept as nothing was due has to look, too
+  if (started || revived) {  // wake waiters: a deadline or lease just started
     notify_event_watchers(impl.registry, impl.entry.process);
   }
   impl.trace_write(size_bytes, correlation);
@@ -55,14 +55,20 @@ uint64_t Publisher::publish(
   announce(
     impl.registry, impl.cluster, impl.writer.readers(),
     {impl.entry.block, impl.slot, impl.entry.slot.incarnation, number,
-     targeted ? &correlation.client : nullptr});
+     targeted ? &correlation.client : nullptr},
+    impl.sender.get());
   impl.registry.tracer().note(TraceKind::publish_end, impl.slot, number);
   EndpointCounters & counters = impl.entry.counters;
   counters.messages.store(sequence_number, std::memory_order_relaxed);
   counters.bytes.store(
     counters.bytes.load(std::memory_order_relaxed) + size_bytes, std::memory_order_relaxed);
+  if (impl.sender) {
+    impl.sender->require_received();
+  }
   return sequence_number;
 }
+
+Transfer Publisher::transfer() const noexcept { return impl_->entry.transfer; }
 
 MatchedCount Publisher::matched() const { return matched_of(impl_->entry); }
 
@@ -84,12 +90,12 @@ TimedCount Publisher::liveliness_lost() const noexcept {
 void Publisher::assert_liveliness() {
   impl_->membership.require();
   if (impl_->is_manual() && impl_->liveliness.assert_now()) {
-    impl_->tell_event_watchers();
+    impl_->notify_event_watchers();
     notify_event_watchers(impl_->registry, impl_->entry.process);
   }
 }
 
-/// Before the record can be seen: whatever its readers record of it is later.
+/// Called before readers can see the record, so that their events are later.
 void Publisher::Impl::trace_write(size_t size_bytes, const Correlation & correlation) noexcept {
   Tracer & tracer = registry.tracer();
   tracer.note(TraceKind::write, slot, writer.next_number(), size_bytes);
@@ -101,9 +107,9 @@ void Publisher::Impl::trace_write(size_t size_bytes, const Correlation & correla
   }
 }
 
-void Publisher::Impl::tell_event_watchers() {
+void Publisher::Impl::notify_event_watchers() {
   const Writing writing = write();
-  for (const Reader & reader : writer.readers().readers()) {
+  for (const Reader & reader : writer.readers().all()) {
     reader.wake->notify(reader.wake->endpoint_events);
   }
 }

@@ -6,12 +6,13 @@
 #include <memory>
 
 #include "transport/layout/endpoint.hpp"
+#include "transport/layout/transfer_layout.hpp"
 #include "transport/publisher/draft.hpp"
 
 namespace manycore {
 
-/// The writing role of one topic DSM. Thread-safe. Destroying it leaves what its readers have not
-/// yet taken in place until they have.
+/// Writing side of one topic DSM. Thread-safe. After destruction, messages stay until each reader
+/// has taken them.
 class Publisher {
 public:
   struct Impl;
@@ -20,20 +21,21 @@ public:
 
   const Gid & gid() const noexcept;
   const Qos & qos() const noexcept;
+  Transfer transfer() const noexcept;
 
-  /// Step 1 of Fig. 4, first half: room for `size_bytes` in the topic DSM, to serialize into.
-  /// Throws Error{too_large} (text names the size needed), Error{no_space}, or Error{timeout} when
-  /// RELIABLE + KEEP_ALL readers left no room within `max_blocking_ns`.
+  /// Step 1 of ROS-lite2 Fig. 4, first half: room for `size_bytes` in the topic DSM to serialize
+  /// into. Throws Error{too_large} (the text names the size needed), Error{no_space}, or
+  /// Error{timeout} if RELIABLE + KEEP_ALL readers left no room within `max_blocking_ns`.
   Draft draft(size_t size_bytes);
 
-  /// Step 1, second half: makes the first `size_bytes` of the draft a record and notifies readers.
-  /// `source_timestamp_ns` is CLOCK_REALTIME. Returns the publication sequence number (from 1).
-  /// With a correlation whose client is set and role reply, only that client receives it.
+  /// Step 1, second half: publishes the first `size_bytes` of the draft as a record and notifies
+  /// readers. `source_timestamp_ns` is CLOCK_REALTIME. Returns the publication sequence number,
+  /// which starts at 1. In role reply, only the client named in `correlation` receives the message.
   uint64_t publish(
     Draft && draft, size_t size_bytes, int64_t source_timestamp_ns,
     const Correlation & correlation = {});
 
-  /// For MANUAL_BY_TOPIC liveliness, which publish() asserts as well; else nothing to do.
+  /// Renews the lease of MANUAL_BY_TOPIC liveliness, as publish() does. No effect on other kinds.
   void assert_liveliness();
 
   MatchedCount matched() const;

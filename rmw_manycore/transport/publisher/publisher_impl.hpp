@@ -8,9 +8,11 @@
 #include "transport/qos/manual_liveliness.hpp"
 #include "transport/registry/membership.hpp"
 #include "transport/topic_dsm/topic_dsm_writer.hpp"
+#include "transport/transfer/transfer_sender.hpp"
 
 namespace manycore {
 
+/// State of a publisher in its process; shared state is in the endpoint entry and the topic DSM.
 struct Publisher::Impl {
   Impl(Registry & registry_, uint32_t slot_)
   : registry(registry_),
@@ -19,7 +21,8 @@ struct Publisher::Impl {
     membership(registry_, entry.slot),
     cluster(registry_.clusters().at(entry.cluster)),
     writer(registry_, cluster, entry),
-    liveliness(entry.asserted_ns, entry.qos.liveliness_lease_ns) {
+    liveliness(entry.asserted_ns, entry.qos.liveliness_lease_ns),
+    sender(TransferSender::of(registry_, cluster, entry)) {
     deadline.reset();
   }
 
@@ -28,22 +31,23 @@ struct Publisher::Impl {
     return entry.qos.liveliness == Liveliness::manual_by_topic &&
            entry.qos.liveliness_lease_ns != infinite_ns;
   }
-  /// This thread's turn; waits for that of another one.
+  /// Exclusive access to the topic DSM; blocks while another thread has it.
   Writing write() { return Writing(mutex, writer, membership); }
   void trace_write(size_t size_bytes, const Correlation & correlation) noexcept;
-  /// Wakes the processes of the readers that wait for events.
-  void tell_event_watchers();
+  /// Wakes threads that wait for events of matched subscriptions.
+  void notify_event_watchers();
 
   Registry & registry;
   uint32_t slot;
   EndpointEntry & entry;
   Membership membership;
   Cluster & cluster;
-  std::mutex mutex;  ///< of Writing
+  std::mutex mutex;  ///< guards `writer`; held by Writing
   TopicDsmWriter writer;
   uint64_t published = 0;
   DeadlineClock deadline;
   ManualLiveliness liveliness;
+  std::unique_ptr<TransferSender> sender;  ///< of a transferred topic
 };
 
 }  // namespace manycore

@@ -8,16 +8,17 @@ namespace manycore {
 class Membership;
 class TopicDsmWriter;
 
-/// One thread's turn to write: holds the publisher's mutex and keeps the phase of its topic DSM
-/// odd. In a child of fork() it ends without effect, as both are the parent's.
+/// Exclusive access of one thread to the topic DSM: holds the publisher's mutex and keeps the phase
+/// odd. In a child of fork() the destructor has no effect, because mutex and phase belong to the
+/// parent.
 class Writing {
 public:
   Writing(std::mutex & mutex, TopicDsmWriter & writer, const Membership & membership);
-  Writing(Writing && other) noexcept = default;  ///< `other` has no turn afterwards
+  Writing(Writing && other) noexcept = default;  ///< `other` has no access afterwards
   Writing & operator=(Writing &&) = delete;
   ~Writing();
 
-  /// False once moved from, and in a child of fork().
+  /// False after a move, and in a child of fork().
   bool is_on() const noexcept;
 
 private:

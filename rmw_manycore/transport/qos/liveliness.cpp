@@ -10,8 +10,8 @@
 namespace manycore {
 namespace {
 
-/// The live publisher behind a source, or nullptr. Looks into the registry only: a topic DSM may be
-/// freed meanwhile.
+/// The live publisher of a source, or nullptr. Reads the registry only, because the topic DSM may
+/// be freed concurrently.
 const EndpointEntry * publisher_of(Registry & registry, const SourceEntry & source) {
   const uint32_t slot = source.topic_dsm_endpoint.load(std::memory_order_relaxed);
   if (

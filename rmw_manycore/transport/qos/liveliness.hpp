@@ -5,17 +5,17 @@
 
 namespace manycore {
 
-/// Who of a subscription's publishers is alive now. Any thread, without the registry lock.
+/// Counts a subscription's publishers by liveliness. Thread-safe, without the registry lock.
 ///
-/// AUTOMATIC publishers live as long as their process, which its lifeline proves; MANUAL_BY_TOPIC
-/// ones for the subscription's lease after each assertion, and count as neither before the first. A
-/// publisher whose process died is not alive, until another one takes its place (see
-/// docs/design/qos_timing.md).
+/// An AUTOMATIC publisher is alive while its process lives, which the lifeline proves. A
+/// MANUAL_BY_TOPIC publisher is alive for the subscription's lease after each assertion, and counts
+/// as neither before the first. A publisher whose process died is not alive until a new publisher
+/// is matched in its place (see docs/design/qos_timing.md).
 LivelinessCount liveliness_of(Registry & registry, const EndpointEntry & subscription);
 
-/// The publisher's process died: to be called for each of its matches, under the registry lock.
+/// Call under the registry lock for each match of a publisher whose process died.
 void note_death(const EndpointEntry & publisher, EndpointEntry & subscription);
-/// The subscription has a new publisher; under the registry lock.
+/// Call under the registry lock when the subscription gets a new publisher.
 void note_successor(EndpointEntry & subscription);
 
 }  // namespace manycore

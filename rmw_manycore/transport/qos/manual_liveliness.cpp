@@ -14,7 +14,7 @@ bool ManualLiveliness::assert_now() noexcept {
   const int64_t before_ns = asserted_ns_.load(std::memory_order_relaxed);
   const bool revived = ran_out(before_ns);
   lost_ += revived ? 1 : 0;
-  // seq_cst, before a look at who watches: a watcher counts itself before it looks here.
+  // seq_cst, before the caller loads the watchers: a waiting thread registers before it loads this.
   asserted_ns_.store(monotonic_ns(), std::memory_order_seq_cst);
   return revived || before_ns == never;
 }

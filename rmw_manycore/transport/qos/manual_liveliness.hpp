@@ -8,21 +8,21 @@
 
 namespace manycore {
 
-/// The publisher's side of MANUAL_BY_TOPIC liveliness with a lease: remembers the last assertion
-/// where subscriptions read it, and counts how often the lease ran out. Without a timer: both are
+/// The publisher's side of MANUAL_BY_TOPIC liveliness with a lease: stores the last assertion where
+/// subscriptions read it, and counts how often the lease ran out. Needs no timer: both are
 /// functions of the clock. Thread-safe.
 class ManualLiveliness {
 public:
   static constexpr int64_t never = 0;
 
-  /// `asserted_ns`: CLOCK_MONOTONIC of the last assertion, in shared memory.
+  /// `asserted_ns` is the last assertion, CLOCK_MONOTONIC, in shared memory; `lease_ns` is the
+  /// publisher's lease.
   ManualLiveliness(std::atomic<int64_t> & asserted_ns, int64_t lease_ns) noexcept
   : asserted_ns_(asserted_ns), lease_ns_(lease_ns) {}
 
-  /// True when this brought the publisher (back) to life, so that subscriptions have something to
-  /// hear of.
+  /// True if the publisher was not alive before, so subscriptions must be notified.
   bool assert_now() noexcept;
-  /// How often the lease ran out; nothing before the first assertion, then once until the next one.
+  /// How often the lease ran out: 0 before the first assertion, then at most once per assertion.
   TimedCount lost() const noexcept;
 
 private:

@@ -5,8 +5,8 @@
 
 namespace manycore {
 
-/// DDS request-offer rule: `none` when `offered` satisfies `requested`, else the last failing
-/// policy (the one that Fast DDS tells of).
+/// DDS request-offer rule: `none` if `offered` satisfies `requested`, else the last failing policy,
+/// which is the one that Fast DDS reports.
 QosPolicy last_incompatible_policy(const Qos & offered, const Qos & requested);
 
 }  // namespace manycore

@@ -5,8 +5,8 @@
 
 namespace manycore {
 
-/// Throws Error{invalid_argument} naming the first value that has no meaning: a history depth of 0
-/// or more than 2^20, a duration of 0 ns or less.
+/// Throws Error{invalid_argument} naming the first invalid value: a history depth of 0 or more than
+/// 2^20, or a duration of 0 ns or less.
 void check_qos_ranges(const EndpointSpec & spec);
 
 }  // namespace manycore

@@ -9,13 +9,13 @@
 
 namespace manycore {
 
-/// SourceEntry::displaced: the newest record of a source whose hint was displaced. Like the hint it
-/// holds the low bits of record number and source incarnation; a pusher may come late, when the
-/// entry is another source's.
+/// Encoding of SourceEntry::displaced: the newest record of a source whose hint was displaced from
+/// the queue. Like a hint, it holds only the low bits of record number and source incarnation; a
+/// late pusher may write it after another source has taken the entry.
 struct Displaced {
   static constexpr uint64_t some = uint64_t{1} << 63;
 
-  /// By any pusher, in any order: within an incarnation only ever towards newer numbers.
+  /// Called by any pusher, in any order. Within an incarnation the number only increases.
   static void raise(std::atomic<uint64_t> & displaced, const Hint & hint) noexcept {
     const uint64_t word = encode(hint.source_incarnation, hint.number);
     uint64_t known = displaced.load(std::memory_order_relaxed);
@@ -23,15 +23,15 @@ struct Displaced {
            !displaced.compare_exchange_weak(known, word, std::memory_order_release)) {
     }
   }
-  /// True when the hint of this record was displaced: that record's, or that of a later one, as the
-  /// queue drops a source's hints in order.
+  /// True when the hint of this record, or of a later record of the same source, was displaced: the
+  /// queue drops the hints of a source in order.
   static bool covers(
     const std::atomic<uint64_t> & displaced, uint32_t source_incarnation,
     uint64_t number) noexcept {
     const std::optional<uint64_t> newest = read(displaced, source_incarnation);
     return newest && ((*newest - number) & Hint::number_mask) <= Hint::number_mask / 2;
   }
-  /// Low bits of its number.
+  /// Low bits of the displaced record number, if it belongs to this incarnation.
   static std::optional<uint64_t> read(
     const std::atomic<uint64_t> & displaced, uint32_t source_incarnation) noexcept {
     const uint64_t word = displaced.load(std::memory_order_acquire);

@@ -7,20 +7,21 @@
 
 namespace manycore {
 
+/// The source table of a subscription.
 inline EntryTable<SourceEntry> source_table(
   const Cluster & cluster, SubscriptionHeader & subscription) noexcept {
   return {cluster, subscription.sources};
 }
 
-/// Calls `visit(SourceEntry &, index)` for each entry of a subscription's source table, used or
-/// not, until it returns true.
+/// Calls `visit(SourceEntry &, index)` for each entry of the source table, used or free, until it
+/// returns true.
 template<typename Visit>
 void visit_source_table(const Cluster & cluster, SubscriptionHeader & subscription, Visit visit) {
   source_table(cluster, subscription).visit(0, visit);
 }
 
-/// Notes in its source's entry that a hint was displaced, for the subscriber to know that it is not
-/// on its way.
+/// Records in the source's entry that a hint was displaced, so that the subscriber does not wait
+/// for it.
 inline void note_displaced(SourceEntry & source, const Hint & hint) noexcept {
   const uint32_t incarnation = source.incarnation.load(std::memory_order_relaxed);
   if ((incarnation & Hint::incarnation_mask) == hint.source_incarnation) {

@@ -8,11 +8,12 @@
 
 namespace manycore {
 
-/// "Source `source` has record `number` for you." Never trusted: see docs/design/topic_dsm.md.
+/// "Source `source` has record `number` for you." May be stale, duplicated or missing; the reader
+/// always verifies it against the topic DSM (docs/design/topic_dsm.md).
 struct Hint {
   uint32_t source = 0;              ///< index in the subscription's source table, 14 bits
-  uint32_t source_incarnation = 0;  ///< low 6 bits count
-  uint64_t number = 0;              ///< low 28 bits count
+  uint32_t source_incarnation = 0;  ///< only the low 6 bits are stored
+  uint64_t number = 0;              ///< only the low 28 bits are stored
 
   static constexpr uint32_t source_limit = 1u << 14;
   static constexpr uint32_t incarnation_mask = (1u << 6) - 1;
@@ -21,8 +22,9 @@ struct Hint {
 
 namespace subscriber_queue {
 
-/// One slot: lap of its position (16 bits) | source incarnation (6) | source (14) | number (28).
-/// The lap makes a slot's value differ at each use, so that a delayed pusher's exchange fails.
+/// Word of a slot: lap of its position (16 bits) | source incarnation (6) | source (14) | number
+/// (28). The lap makes the word differ at each reuse of the slot, so a delayed pusher's exchange
+/// fails.
 inline uint64_t encode(uint64_t lap, const Hint & hint) noexcept {
   return lap << 48 | uint64_t{hint.source_incarnation & Hint::incarnation_mask} << 42 |
          uint64_t{hint.source} << 28 | (hint.number & Hint::number_mask);
@@ -34,7 +36,7 @@ inline Hint decode(uint64_t word) noexcept {
     static_cast<uint32_t>(word >> 42) & Hint::incarnation_mask, word & Hint::number_mask};
 }
 
-/// Slots of one queue, and the arithmetic of positions.
+/// The slots of one queue, addressed by position.
 class Slots {
 public:
   explicit Slots(SubscriptionHeader & header) noexcept
@@ -53,8 +55,8 @@ private:
   uint32_t log2_;
 };
 
-/// Once, before the subscription is known to anybody: lap 0 is "never filled", positions start at
-/// lap 1.
+/// Called once, before the subscription is visible to others. Lap 0 means "never filled", so
+/// positions start at lap 1.
 inline void initialize(SubscriptionHeader & header) noexcept {
   const uint64_t count = uint64_t{1} << header.slot_count_log2;
   for (uint64_t i = 0; i < count; ++i) {
@@ -64,20 +66,22 @@ inline void initialize(SubscriptionHeader & header) noexcept {
   header.tail.store(count, std::memory_order_relaxed);
 }
 
-/// Step 2 of Fig. 4 (or step 1 inside a cluster): appends a hint, displacing the oldest when the
-/// queue holds `depth`. Any number of pushers in any processes; each may die at any instruction. A
-/// full KEEP_ALL queue displaces nothing: `resync` tells the subscriber to look for itself.
+/// Step 2 of ROS-lite2 Fig. 4 (step 1 inside a cluster): appends a hint and displaces the oldest
+/// one when the queue holds `depth` hints. Any number of pushers in any processes may run
+/// concurrently, and each may die at any instruction. A full KEEP_ALL queue displaces nothing; it
+/// sets `resync`, so the subscriber scans its sources.
 ///
-/// The exchange on the slot is the push; whoever finds a filled slot at `tail` moves `tail` on, so
-/// a pusher that died in between holds nobody up. `on_displaced(Hint)` is called for each that it
-/// displaces. True when those that wait for the subscription's events have to look, too.
+/// The push takes effect with the exchange on the slot. A pusher that finds the slot at `tail`
+/// filled advances `tail`, so a pusher that died between the two exchanges blocks no other. Calls
+/// `on_displaced(Hint)` for each displaced hint. Returns true when threads waiting for the
+/// subscription's events must be woken as well.
 template<typename OnDisplaced>
 bool push(SubscriptionHeader & header, const Hint & hint, OnDisplaced on_displaced) noexcept {
-  // Each attempt that fails was overtaken by another pusher; only damage makes so many fail.
-  constexpr int most_attempts = 10'000;
+  // A failed attempt was overtaken by another pusher; only a damaged queue fails this often.
+  constexpr int max_attempts = 10'000;
   bool changes_events = header.note_arrival();
   const Slots slots(header);
-  for (int attempt = 0; attempt < most_attempts; ++attempt) {
+  for (int attempt = 0; attempt < max_attempts; ++attempt) {
     uint64_t tail = header.tail.load(std::memory_order_acquire);
     std::atomic<uint64_t> & slot = slots.at(tail);
     uint64_t word = slot.load(std::memory_order_acquire);
@@ -87,7 +91,7 @@ bool push(SubscriptionHeader & header, const Hint & hint, OnDisplaced on_displac
     }
     uint64_t head = header.head.load(std::memory_order_acquire);
     if (header.tail.load(std::memory_order_acquire) != tail) {
-      continue;  // `word` may be of a later lap, and `head` may have passed `tail`
+      continue;  // `word` may belong to a later lap, and `head` may have passed `tail`
     }
     if (tail - head >= header.depth) {
       if (header.keep_all != 0) {
@@ -96,12 +100,12 @@ bool push(SubscriptionHeader & header, const Hint & hint, OnDisplaced on_displac
       const uint64_t oldest = slots.at(head).load(std::memory_order_acquire);
       if (header.head.compare_exchange_strong(head, head + 1, std::memory_order_acq_rel)) {
         header.dropped.fetch_add(1, std::memory_order_relaxed);
-        on_displaced(decode(oldest));  // what stood there while nobody had moved `head`
+        on_displaced(decode(oldest));  // the exchange on `head` proves that the slot still held it
         changes_events = true;
       }
       continue;
     }
-    // seq_cst, as for `tail`: the pusher reads the watchers next (see Watchers).
+    // seq_cst, as for `tail`: the pusher loads the watchers next (see Watchers).
     if (slot.compare_exchange_strong(
           word, encode(slots.lap(tail), hint), std::memory_order_seq_cst)) {
       header.tail.compare_exchange_strong(tail, tail + 1, std::memory_order_seq_cst);
@@ -112,36 +116,36 @@ bool push(SubscriptionHeader & header, const Hint & hint, OnDisplaced on_displac
   return changes_events;
 }
 
-/// Step 3: removes the oldest hint. One popper at a time; pushers may displace at the same time.
+/// Step 3: removes the oldest hint. One popper at a time; pushers may displace hints concurrently.
 inline std::optional<Hint> pop(SubscriptionHeader & header) noexcept {
   const Slots slots(header);
   while (true) {
     uint64_t head = header.head.load(std::memory_order_acquire);
     const uint64_t word = slots.at(head).load(std::memory_order_acquire);
     if (header.head.load(std::memory_order_acquire) != head) {
-      continue;  // displaced meanwhile
+      continue;  // a pusher displaced it meanwhile
     }
     if (!slots.filled(word, head)) {
       return std::nullopt;
     }
-    // A filled slot at `tail`: finish the push of a pusher that is late or dead, so that head <=
-    // tail.
+    // The slot may be filled while `tail` still points at it: advance `tail` for a pusher that is
+    // late or dead, so that head <= tail.
     uint64_t tail = head;
     header.tail.compare_exchange_strong(tail, head + 1, std::memory_order_acq_rel);
-    // Success means that nobody displaced position `head`, so `word` was its content.
+    // Success means that position `head` was not displaced, so `word` is its content.
     if (header.head.compare_exchange_strong(head, head + 1, std::memory_order_acq_rel)) {
       return decode(word);
     }
   }
 }
 
-/// Hints in the queue, at some moment during the call.
+/// Number of hints at some moment during the call.
 inline uint64_t size(SubscriptionHeader & header) noexcept {
   const uint64_t head = header.head.load(std::memory_order_acquire);
   return header.tail.load(std::memory_order_acquire) - head;
 }
 
-/// seq_cst: a thread that finds it empty sleeps, having added itself to the watchers (see
+/// seq_cst: a thread adds itself to the watchers, and sleeps if it finds the queue empty (see
 /// Watchers).
 inline bool empty(SubscriptionHeader & header) noexcept {
   const Slots slots(header);

@@ -12,18 +12,20 @@ namespace manycore {
 namespace {
 
 constexpr uint32_t page_bytes = 4096;
+/// A hole costs time for each process that maps the cluster, about 0.2 us, whatever its size.
+constexpr uint64_t min_hole_bytes = 16 << 10;
 
-/// Small SMEMs are cut finely, large ones by the page.
+/// 1 KiB for small SMEMs, one page for large ones.
 uint32_t granule_size(uint64_t smem_bytes) { return smem_bytes <= (64u << 20) ? 1024 : page_bytes; }
 
 uint64_t map_bytes(uint64_t granules) { return align_up(align_up(granules, 64) / 8, 8); }
 
-/// Letters of ASCII alone, whatever the locale.
+/// ASCII only, independent of the locale.
 bool is_name_start(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
 }
 
-/// A zero would end the message, and Python takes no message that is not UTF-8.
+/// Replaces other characters: a NUL would end the error text, and Python requires UTF-8.
 std::string printable(std::string text) {
   std::replace_if(text.begin(), text.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
   return text;
@@ -47,7 +49,7 @@ Error no_message_room(const Cluster & cluster, uint64_t length, const std::strin
   return no_room(
     cluster, length,
     fill_level(cluster) + ", and " + std::to_string(control_reserve_bytes(cluster.size())) +
-      " are kept for nodes, publishers and subscriptions to come; " + advice);
+      " are reserved for further nodes, publishers and subscriptions; " + advice);
 }
 
 }  // namespace
@@ -63,8 +65,8 @@ PlatformPaths PlatformPaths::of(const std::string & platform) {
   if (!is_name(platform)) {
     throw Error(
       ErrorCode::invalid_argument, "'" + printable(platform) +
-                                     "' is no platform name: expected up to 64 letters, digits, "
-                                     "'_', '.' and '-', the first none of '.' and '-'");
+                                     "' is not a valid platform name: expected up to 64 letters, "
+                                     "digits, '_', '.' and '-', not starting with '.' or '-'");
   }
   const UserDirectory user = UserDirectory::from_environment();
   return {user.path, user.path + "/" + platform, user.is_chosen};
@@ -117,14 +119,16 @@ bool Cluster::granule_used(uint64_t index) const noexcept {
 }
 
 void Cluster::set_granules(uint64_t first, uint64_t count, bool used) const noexcept {
-  uint64_t * const map = granule_map();
-  for (uint64_t i = first; i < first + count; ++i) {
-    const uint64_t bit = uint64_t{1} << (i % 64);
-    map[i / 64] = used ? map[i / 64] | bit : map[i / 64] & ~bit;
+  const uint64_t end = first + count;
+  for (uint64_t i = first, next = 0; i < end; i = next) {
+    next = std::min(end, (i / 64 + 1) * 64);
+    const uint64_t bits = ~uint64_t{0} >> (64 - (next - i)) << (i % 64);
+    uint64_t & word = granule_map()[i / 64];
+    word = used ? word | bits : word & ~bits;
   }
 }
 
-/// The first granule from `from` on that is used, or not; granule_count when there is none.
+/// First used (or free) granule from `from` on; granule_count_ if there is none.
 uint64_t Cluster::find_granule(uint64_t from, bool used) const noexcept {
   const uint64_t end = used_before();
   for (uint64_t i = from; i < end; i = (i / 64 + 1) * 64) {
@@ -137,7 +141,7 @@ uint64_t Cluster::find_granule(uint64_t from, bool used) const noexcept {
   return used ? granule_count_ : std::max(from, end);
 }
 
-/// First fit; returns granule_count when there is no run.
+/// First fit; granule_count_ if no run is long enough.
 uint64_t Cluster::find_run(uint64_t count) const noexcept {
   std::atomic<uint64_t> & free_from = header().free_from;
   uint64_t first = find_granule(free_from.load(std::memory_order_relaxed), false);
@@ -183,13 +187,16 @@ void Cluster::note_freed(uint64_t first, uint64_t count) const noexcept {
   }
 }
 
-/// Map and count are changed together, under the registry lock, whose next owner rebuilds both
-/// after a death.
+/// Map and `used_bytes` are changed together under the registry lock. If its owner dies in
+/// between, the next owner rebuilds both. Most words of a large map are empty or full, which needs
+/// no bit count.
 void Cluster::require_sound_map() const {
   const ClusterHeader & head = header();
   uint64_t used = 0;
   for (uint64_t i = 0; i < (used_before() + 63) / 64; ++i) {
-    used += static_cast<uint64_t>(__builtin_popcountll(granule_map()[i]));
+    const uint64_t word = granule_map()[i];
+    const bool is_mixed = word + 1 > 1;  // neither empty nor full
+    used += is_mixed ? static_cast<uint64_t>(__builtin_popcountll(word)) : word & 64;
   }
   if (used * granule_bytes_ != head.used_bytes.load(std::memory_order_relaxed)) {
     throw Error(
@@ -208,14 +215,14 @@ void Cluster::require_message_room(uint64_t length) const {
 void Cluster::require_file_system_room(uint64_t length) const {
   const uint64_t bytes = granules_of(length) * granule_bytes_;
   const FileSystemRoom host = memory_.file_system_room();
-  const bool is_limited = host.total_bytes != 0;  // a tmpfs with size=0 is not
+  const bool is_limited = host.total_bytes != 0;  // a tmpfs mounted with size=0 is unlimited
   if (is_limited && host.free_bytes < bytes + control_reserve_bytes(host.total_bytes)) {
     throw no_room(
       *this, length,
       std::to_string(host.free_bytes) + " of the " + std::to_string(host.total_bytes) +
         " bytes of " + memory_.path() + "'s file system are free, and " +
         std::to_string(control_reserve_bytes(host.total_bytes)) +
-        " are kept for nodes, publishers and subscriptions to come; enlarge it (mount -o "
+        " are reserved for further nodes, publishers and subscriptions; enlarge it (mount -o "
         "remount,size=...) or lower topic_dsm_size");
   }
 }
@@ -242,8 +249,8 @@ uint64_t Cluster::reserve(uint64_t length) {
   const uint64_t offset = first * granule_bytes_;
   const uint64_t bytes = count * granule_bytes_;
   if (granule_bytes_ < page_bytes) {
-    // Pages that neighbours share are backed and touched under the lock: a fallocate() that fails
-    // takes back all untouched pages of its range, and so a neighbour's.
+    // Back and touch shared pages under the lock: a fallocate() that fails takes back all untouched
+    // pages of its range, including those of a neighbour.
     memory_.reserve_and_populate(offset, 1);
     memory_.reserve_and_populate(offset + bytes - 1, 1);
   }
@@ -264,15 +271,27 @@ void Cluster::free(uint64_t offset, uint64_t length) noexcept {
   }
   note_freed(offset / granule_bytes_, count);
   head.used_bytes.fetch_sub(count * granule_bytes_, std::memory_order_relaxed);
-  memory_.release(offset, count * granule_bytes_);
+  if (count * granule_bytes_ >= min_hole_bytes) {
+    memory_.release(offset, count * granule_bytes_);
+  }
 }
 
-void Cluster::wake_reaper() const noexcept {
+void Cluster::wake_reaper(uint32_t process) const noexcept {
   EmcosMessage message{};
   message.kind = EmcosMessageKind::attach;
+  message.process = process;
   if (!send(message)) {
     header().pipe_overflow.store(1, std::memory_order_seq_cst);
   }
+}
+
+/// Either the pipe is still full after `pipe_overflow` is set: then the receive thread has yet to
+/// read from it, and checks the flag afterwards. Or the message fits.
+void Cluster::wake_resyncing() const noexcept {
+  header().pipe_overflow.store(1, std::memory_order_seq_cst);
+  EmcosMessage message{};
+  message.kind = EmcosMessageKind::resync;
+  send(message);
 }
 
 bool Cluster::has_room(uint64_t length) const noexcept {

@@ -11,19 +11,20 @@
 #include "platform/shared_memory.hpp"
 #include "transport/layout/cluster_layout.hpp"
 #include "transport/layout/emcos_message.hpp"
+#include "transport/layout/registry_layout.hpp"
 
 namespace manycore {
 
 /// Paths of a platform's files.
 struct PlatformPaths {
-  /// No platform name begins with a dot, so no platform's directory has this name.
+  /// Cannot collide with a platform's directory: platform names do not start with a dot.
   static constexpr const char * join_lock_name = ".lock";
   std::string user_directory;  ///< /dev/shm/manycore-<uid>, or MANYCORE_DIRECTORY
   std::string directory;       ///< .../<platform>
-  bool is_chosen = false;      ///< the user directory is MANYCORE_DIRECTORY
+  bool is_chosen = false;      ///< `user_directory` is MANYCORE_DIRECTORY
 
-  /// Throws Error{invalid_argument} for what is no platform name, and what
-  /// UserDirectory::from_environment() throws.
+  /// Throws Error{invalid_argument} for an invalid platform name, and the errors of
+  /// UserDirectory::from_environment().
   static PlatformPaths of(const std::string & platform);
   static bool is_name(const std::string & platform) noexcept;
   std::string join_lock() const { return user_directory + "/" + join_lock_name; }
@@ -31,12 +32,17 @@ struct PlatformPaths {
   std::string alive() const { return directory + "/alive"; }
   std::string cluster(uint32_t id) const { return directory + "/cluster-" + std::to_string(id); }
   std::string pipe(uint32_t id) const { return cluster(id) + ".pipe"; }
+  /// Of packets, by priority; of requests to copy. Only where topics are transferred.
+  std::string data_pipe(uint32_t id, uint32_t priority) const {
+    return cluster(id) + ".data-" + std::to_string(priority);
+  }
+  std::string session_pipe(uint32_t id) const { return cluster(id) + ".sessions"; }
 };
 
 /// A cluster's SMEM and pipe, mapped into this process.
 class Cluster {
 public:
-  /// Creates segment and pipe; the caller holds the join lock.
+  /// Creates segment and pipe. The caller holds the join lock.
   static void create(
     const PlatformPaths & paths, uint32_t id, uint64_t smem_bytes, uint64_t platform_nonce);
   /// Throws Error{corrupt}.
@@ -45,33 +51,33 @@ public:
   uint32_t id() const noexcept { return id_; }
   ClusterHeader & header() const noexcept { return memory_.at<ClusterHeader>(0); }
   uint64_t size() const noexcept { return memory_.size(); }
-  /// SMEM is given out in whole granules.
+  /// Unit of SMEM allocation in bytes.
   uint64_t granule_bytes() const noexcept { return granule_bytes_; }
 
-  /// True when [offset, offset + length) is inside the SMEM.
+  /// True if [offset, offset + length) is inside the SMEM.
   bool contains(uint64_t offset, uint64_t length) const noexcept {
     return offset <= memory_.size() && length <= memory_.size() - offset;
   }
-  /// Nullptr for a reference that is out of bounds or where no T can be: shared memory is never
-  /// followed blindly.
+  /// Object at an offset, or nullptr if it would be out of bounds or misaligned. References in
+  /// shared memory are always checked.
   template<typename T>
   T * find(uint64_t offset, uint64_t length = sizeof(T)) const noexcept {
     return offset % alignof(T) == 0 && contains(offset, length) ? &memory_.at<T>(offset) : nullptr;
   }
 
-  /// Throws Error{no_space} unless `length` bytes of messages leave the SMEM's control reserve; the
-  /// caller holds the registry lock.
+  /// Throws Error{no_space} unless `length` bytes of messages leave the control reserve of the
+  /// SMEM. The caller holds the registry lock.
   void require_message_room(uint64_t length) const;
-  /// The same of the file system, before memory is backed.
+  /// The same for the file system; call before memory is backed.
   void require_file_system_room(uint64_t length) const;
-  /// Allocation of SMEM, resident but not cleared; the caller holds the registry lock. Throws
-  /// Error{no_space|corrupt}.
+  /// Allocates SMEM, backed but not cleared; returns its offset. The caller holds the registry
+  /// lock. Throws Error{no_space|corrupt}.
   uint64_t allocate(uint64_t length);
-  /// The two halves of allocate(). Takes SMEM that nothing may touch yet; the caller holds the
-  /// registry lock. Throws Error{no_space|corrupt}.
+  /// First half of allocate(): reserves SMEM that must not be accessed before back(). The caller
+  /// holds the registry lock. Throws Error{no_space|corrupt}.
   uint64_t reserve(uint64_t length);
-  /// Makes reserved SMEM resident; needs no lock, and takes as long as the memory is large. Throws
-  /// Error{no_space}.
+  /// Second half of allocate(): backs reserved SMEM with memory. Needs no lock; takes time in
+  /// proportion to `length`. Throws Error{no_space}.
   void back(uint64_t offset, uint64_t length) const;
   template<typename T>
   T & allocate_cleared(uint64_t length = sizeof(T)) {
@@ -79,34 +85,38 @@ public:
     std::memset(&memory_.at<std::byte>(offset), 0, length);
     return memory_.at<T>(offset);
   }
-  /// Gives memory behind allocated SMEM back to the system, as far as it is whole pages; needs no
-  /// lock. Nothing may touch it until it is allocated anew.
-  void release(uint64_t offset, uint64_t length) const noexcept { memory_.release(offset, length); }
   SegmentRef ref_of(const void * object) const noexcept {
     return SegmentRef::make(
       id_, static_cast<uint64_t>(static_cast<const std::byte *>(object) - memory_.data()));
   }
+  /// Frees SMEM, and returns the memory of larger blocks to the system. The caller holds the
+  /// registry lock. The range must not be accessed until it is allocated again.
   void free(uint64_t offset, uint64_t length) noexcept;
-  /// Counts `after` instead of `before` bytes that a process holds outside the segment; the caller
-  /// holds the registry lock. Throws Error{no_space}.
+  /// Changes the bytes that a process has charged from `before` to `after`. The caller holds the
+  /// registry lock. Throws Error{no_space}.
   void charge(uint64_t before, uint64_t after);
-  /// Allocated and charged.
+  /// Allocated and charged bytes.
   uint64_t used_bytes() const noexcept {
     return header().used_bytes.load(std::memory_order_relaxed) +
            header().charged_bytes.load(std::memory_order_relaxed);
   }
-  /// Rebuilding the map after an owner of the registry lock died: forget all, then mark what lives.
+  /// Rebuilds the map after an owner of the registry lock died: clear it, then mark all live
+  /// blocks.
   void forget_allocations() noexcept;
   void mark_allocated(uint64_t offset, uint64_t length) noexcept;
   void mark_charged(uint64_t length) noexcept;
 
-  /// False when the pipe is full.
+  /// False if the pipe is full.
   bool send(const EmcosMessage & message) const noexcept {
     return pipe_.try_send(&message, sizeof message);
   }
-  /// Has the receive thread's reaper look at all members, now or, where the pipe is full, once it
-  /// has read what is in there.
-  void wake_reaper() const noexcept;
+  /// Makes the reaper of the receive thread watch a process that joins, or check all processes if
+  /// `process` is `nothing`. If the pipe is full, the reaper does so after the receive thread has
+  /// emptied it.
+  void wake_reaper(uint32_t process = nothing) const noexcept;
+  /// Makes the receive thread wake the subscriptions that the caller has set to resync, because
+  /// their hints found the pipe full.
+  void wake_resyncing() const noexcept;
   const Pipe & pipe() const noexcept { return pipe_; }
 
 private:
@@ -126,21 +136,21 @@ private:
   uint32_t id_;
   SharedMemory memory_;
   Pipe pipe_;
-  // As in the header, which may be damaged later.
+  // Copies of the header's fields, which may be damaged later.
   uint64_t granule_bytes_;
   uint64_t granule_count_;
 };
 
-/// The clusters that this process has mapped, each on first use. Thread-safe, lock-free once
-/// mapped.
+/// The clusters mapped by this process, each on first use. Thread-safe; lock-free for mapped
+/// clusters.
 class Clusters {
 public:
   Clusters(PlatformPaths paths, uint64_t platform_nonce);
-  /// Throws Error{corrupt|system} when it cannot be mapped.
+  /// Throws Error{corrupt|system} if the cluster cannot be mapped.
   Cluster & at(uint32_t id);
-  /// Nullptr when it cannot be mapped.
+  /// Nullptr if the cluster cannot be mapped.
   Cluster * find(uint32_t id) noexcept;
-  /// The object behind a reference, or nullptr when it leads nowhere.
+  /// Object behind a reference, or nullptr if the reference is invalid.
   template<typename T>
   T * find(SegmentRef ref, uint64_t length = sizeof(T)) noexcept {
     Cluster * const cluster = find(ref.cluster());

@@ -16,7 +16,7 @@ IncompatibleCount incompatible_of(const EndpointEntry & entry) {
 }
 
 uint64_t lost_so_far(const EndpointEntry & entry, const SubscriptionHeader & header) {
-  // Neither word by itself says anything, so they need no order; the sum wraps.
+  // The two words are independent, so their order does not matter; the sum may wrap.
   const uint64_t by_drops = header.dropped.load(std::memory_order_relaxed) +
                             header.lost_beside_dropped.load(std::memory_order_relaxed);
   return std::max(entry.counters.lost.load(std::memory_order_relaxed), by_drops);
@@ -44,7 +44,7 @@ TopicDsmHeader * topic_dsm_of(Registry & registry, const SourceEntry & source) {
   const Slot & publisher = registry.endpoints()[slot].slot;
   const bool there = has_memory(publisher.state.load()) &&
                      publisher.incarnation == source.topic_dsm_incarnation.load();
-  return there ? registry.reach<TopicDsmHeader>(SegmentRef{source.topic_dsm.load()}) : nullptr;
+  return there ? registry.map<TopicDsmHeader>(SegmentRef{source.topic_dsm.load()}) : nullptr;
 }
 
 }  // namespace manycore

@@ -7,24 +7,23 @@
 
 namespace manycore {
 
-/// What connecting and closing endpoints have in common. The caller holds the registry lock.
+/// Operations shared by matching and closing. The caller holds the registry lock unless stated
+/// otherwise.
 
-/// Counts behind an endpoint's matched and incompatible-QoS events; this and lost_so_far() need no
-/// lock.
+/// Counts of an endpoint's matched and incompatible-QoS events. Like lost_so_far(), needs no lock.
 MatchedCount matched_of(const EndpointEntry & entry);
 IncompatibleCount incompatible_of(const EndpointEntry & entry);
 
-/// Messages that a subscription lost, as far as anybody can know: those that the publication
-/// sequence numbers have shown to be missing, or what pushers have displaced since the subscriber
-/// looked last, if that is more.
+/// Messages that a subscription has lost as far as is known: those found missing by publication
+/// sequence number, or the hints displaced since the subscriber last checked, whichever is more.
 uint64_t lost_so_far(const EndpointEntry & entry, const SubscriptionHeader & header);
 
-/// Wakes the threads that wait for a subscription's messages, or for events of a process.
+/// Wakes threads that wait for messages of the subscription, or for events of the process.
 void notify_watchers(Registry & registry, const SubscriptionHeader & header);
 void notify_event_watchers(Registry & registry, uint32_t process);
 
-/// The topic DSM of a source, or nullptr when its publisher's endpoint is gone and its memory may
-/// be another's. Throws OutOfReach.
+/// Topic DSM of a source, or nullptr if the publisher's slot no longer owns it and the memory may
+/// be reused. Throws ClusterUnmappable.
 TopicDsmHeader * topic_dsm_of(Registry & registry, const SourceEntry & source);
 
 }  // namespace manycore

@@ -10,15 +10,15 @@
 
 namespace manycore {
 
-/// A table of entries in a cluster's SMEM, found through its EntryBlocks. Damaged offsets are not
-/// followed out of the cluster.
+/// A table of entries in a cluster's SMEM, located through its EntryBlocks. Damaged offsets never
+/// lead out of the cluster.
 template<typename Entry>
 class EntryTable {
 public:
   EntryTable(const Cluster & cluster, EntryBlocks & blocks) noexcept
   : cluster_(cluster), blocks_(blocks) {}
 
-  /// Calls `visit(Entry &, index)` for each entry from `from` on, used or not, until it returns
+  /// Calls `visit(Entry &, index)` for each entry from `from` on, used or free, until it returns
   /// true.
   template<typename Visit>
   void visit(uint32_t from, Visit visit) const {
@@ -36,7 +36,7 @@ public:
     }
   }
 
-  /// Nullptr where the table is shorter.
+  /// Nullptr beyond the end of the table.
   Entry * find(uint32_t index) const noexcept {
     const uint32_t block = 31 - static_cast<uint32_t>(__builtin_clz(index / capacity(0) + 1));
     Entry * const entries = block < max_entry_blocks ? entries_of(block) : nullptr;
@@ -56,7 +56,23 @@ public:
     return std::nullopt;
   }
 
-  /// Calls `visit(offset, bytes)` for each block; it may be freed thereby.
+  /// Frees the last block and returns its size, 0 if there is none. The caller holds the registry
+  /// lock.
+  uint64_t free_last(Cluster & cluster) const noexcept {
+    uint32_t count = 0;
+    while (count < max_entry_blocks && entries_of(count) != nullptr) {
+      ++count;
+    }
+    if (count == 0) {
+      return 0;
+    }
+    std::atomic<uint64_t> & last = blocks_.offsets[count - 1];
+    cluster.free(last.load(), bytes_of(count - 1));
+    last.store(0, std::memory_order_release);
+    return bytes_of(count - 1);
+  }
+
+  /// Calls `visit(offset, bytes)` for each block.
   template<typename Visit>
   void visit_memory(Visit visit) const {
     for (uint32_t block = 0; block < max_entry_blocks && entries_of(block) != nullptr; ++block) {
@@ -64,8 +80,8 @@ public:
     }
   }
 
-  /// Adds a block of cleared entries, and returns the first of them; the caller holds the registry
-  /// lock, and `cluster` is the table's. Throws Error{no_space|corrupt}.
+  /// Adds a block of cleared entries and returns its first entry. The caller holds the registry
+  /// lock and passes the table's own cluster. Throws Error{no_space|corrupt}.
   Entry & grow(Cluster & cluster) {
     uint32_t block = 0;
     while (block < max_entry_blocks && entries_of(block) != nullptr) {
@@ -89,7 +105,7 @@ private:
     return static_cast<uint32_t>(bytes_of(block) / sizeof(Entry));
   }
   uint32_t first_index(uint32_t block) const noexcept { return ((1u << block) - 1) * capacity(0); }
-  /// Nullptr where there is no such block.
+  /// Nullptr if the block is not allocated.
   Entry * entries_of(uint32_t block) const noexcept {
     const uint64_t offset = blocks_.offsets[block].load(std::memory_order_acquire);
     return offset == 0 ? nullptr : cluster_.find<Entry>(offset, bytes_of(block));

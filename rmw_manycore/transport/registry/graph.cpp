@@ -13,7 +13,8 @@ CounterValues read_counters(Registry & registry, const EndpointEntry & entry) {
   const EndpointCounters & counters = entry.counters;
   CounterValues values{counters.messages.load(), counters.bytes.load(),
                        counters.lost.load(),     counters.expired.load(),
-                       counters.refused.load(),  counters.overwritten.load()};
+                       counters.refused.load(),  counters.overwritten.load(),
+                       counters.dropped.load()};
   if (entry.kind == EndpointKind::subscription) {
     const auto * const header = registry.clusters().find<SubscriptionHeader>(entry.block);
     values.lost = header == nullptr ? values.lost : lost_so_far(entry, *header);
@@ -53,6 +54,7 @@ EndpointInfo describe(Registry & registry, const EndpointEntry & entry) {
   info.cluster = entry.cluster;
   info.matched = matched_of(entry);
   info.incompatible = incompatible_of(entry);
+  info.transfer = entry.transfer;
   return info;
 }
 
@@ -144,7 +146,7 @@ std::vector<Death> Graph::deaths() const {
 
 std::vector<EndpointInfo> Graph::endpoints_of(const std::string & topic) const {
   return read_between_changes(registry_, [&](bool is_changing) {
-    // A change takes chains apart: then all endpoints are looked at.
+    // A change in progress may break chains: scan all endpoints instead.
     return of_topic(
       topic, is_changing ? all_endpoints(registry_) : chained_endpoints(registry_, topic));
   });

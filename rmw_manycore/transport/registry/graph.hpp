@@ -11,6 +11,7 @@ namespace manycore {
 
 class Registry;
 
+/// A node in a snapshot of the graph.
 struct NodeInfo {
   uint32_t handle = 0;
   uint32_t process = 0;  ///< process slot
@@ -19,16 +20,18 @@ struct NodeInfo {
   std::string enclave;
 };
 
-/// What an endpoint has done so far.
+/// Counters of an endpoint since its creation.
 struct CounterValues {
   uint64_t messages = 0;     ///< published or taken
-  uint64_t bytes = 0;        ///< of serialized data
-  uint64_t lost = 0;         ///< subscription: gone before they were taken
-  uint64_t expired = 0;      ///< subscription: older than their lifespan when their turn came
-  uint64_t refused = 0;      ///< publisher: did not fit
-  uint64_t overwritten = 0;  ///< publisher: recycled while a reader still wanted them
+  uint64_t bytes = 0;        ///< size of serialized data
+  uint64_t lost = 0;         ///< subscription: messages gone before they were taken
+  uint64_t expired = 0;      ///< subscription: messages past their lifespan when about to be taken
+  uint64_t refused = 0;      ///< publisher: messages that did not fit
+  uint64_t overwritten = 0;  ///< publisher: records recycled while a reader still wanted them
+  uint64_t dropped = 0;      ///< publisher: records that did not reach a cluster
 };
 
+/// A process in a snapshot of the graph.
 struct ProcessInfo {
   uint32_t slot = 0;
   int32_t pid = 0;
@@ -38,16 +41,18 @@ struct ProcessInfo {
   std::string label;
 };
 
+/// A cluster in a snapshot of the graph.
 struct ClusterInfo {
   uint32_t id = 0;
   uint64_t smem_bytes = 0;
-  uint64_t used_bytes = 0;     ///< of smem_bytes
-  uint64_t charged_bytes = 0;  ///< of used_bytes: memory of processes outside the segment
+  uint64_t used_bytes = 0;     ///< part of smem_bytes, allocated or charged
+  uint64_t charged_bytes = 0;  ///< part of used_bytes: memory of processes outside the segment
   int32_t receive_thread_pid = 0;
-  uint64_t messages = 0;       ///< eMCOS messages handled
+  uint64_t messages = 0;       ///< eMCOS messages handled by the receive thread
   uint64_t notifications = 0;  ///< hints pushed by the receive thread
 };
 
+/// An endpoint in a snapshot of the graph.
 struct EndpointInfo {
   EndpointKind kind = EndpointKind::publisher;
   EndpointRole role = EndpointRole::topic;
@@ -56,42 +61,43 @@ struct EndpointInfo {
   TypeHash type_hash;
   Gid gid{};
   Qos qos;
-  uint32_t node = 0;     ///< handle of its node
+  uint32_t node = 0;     ///< node handle
   uint32_t process = 0;  ///< process slot
   uint32_t cluster = 0;
   MatchedCount matched;
   IncompatibleCount incompatible;
   CounterValues counters;
+  Transfer transfer = Transfer::dsm;  ///< of the topic
 };
 
-/// What changes with every message: the counters of an endpoint, and its queue.
+/// State of an endpoint that changes with each message: counters and queue.
 struct Activity {
-  uint64_t endpoint = 0;  ///< slot and incarnation, as endpoint_in() its gid
+  uint64_t endpoint = 0;  ///< slot and incarnation, as endpoint_in(gid)
   CounterValues counters;
-  uint64_t queued = 0;    ///< subscription: hints in its queue, not what a resync has set aside
-  uint64_t capacity = 0;  ///< subscription: hints that its queue can hold
-  uint64_t deadlines_missed = 0;  ///< subscription: periods of its deadline without a message
+  uint64_t queued = 0;    ///< subscription: hints in its queue, without the backlog of a resync
+  uint64_t capacity = 0;  ///< subscription: queue capacity in hints
+  uint64_t deadlines_missed = 0;  ///< subscription: missed periods of the requested deadline
 };
-static_assert(sizeof(Activity) == 80);
+static_assert(sizeof(Activity) == 88);
 
-/// Consistent snapshots of who is on the platform, without the registry lock. Any thread; never on
-/// the data path.
+/// Consistent snapshots of the platform's processes, clusters, nodes and endpoints. Takes no
+/// registry lock. Thread-safe; not for use on the data path.
 class Graph {
 public:
   explicit Graph(Registry & registry) noexcept : registry_(registry) {}
 
-  /// Changes whenever a node or endpoint comes or goes.
+  /// Incremented whenever a node or endpoint is added or removed.
   uint64_t generation() const noexcept;
   std::vector<ProcessInfo> processes() const;
   std::vector<ClusterInfo> clusters() const;
   std::vector<NodeInfo> nodes() const;
   std::vector<EndpointInfo> endpoints() const;
-  /// A small part of endpoints(), for those that look often. Each row is whole; they may be of
-  /// different moments.
+  /// A small part of endpoints(), for frequent polling. Each row is consistent in itself; rows may
+  /// be of different moments.
   std::vector<Activity> activity() const;
-  /// The deaths that are still known, oldest first.
+  /// Deaths still recorded, oldest first.
   std::vector<Death> deaths() const;
-  /// Endpoints of one topic or service only (constant-time lookup by name).
+  /// Endpoints of one topic or service; a constant-time lookup by name.
   std::vector<EndpointInfo> endpoints_of(const std::string & topic) const;
 
 private:

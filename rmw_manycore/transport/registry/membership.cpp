@@ -16,12 +16,12 @@ void Membership::refuse() const {
     throw Error(
       ErrorCode::system,
       "the platform's files were removed while it ran (systemd-logind does so at logout, if "
-      "RemoveIPC is on: see 'manycore doctor'); start this process again");
+      "RemoveIPC is on: see 'manycore doctor'); restart this process");
   }
   throw Error(
     ErrorCode::system,
-    "this process is no member of its platform any more: it was removed as dead, or the "
-    "platform's memory is damaged; start it again");
+    "this process is no longer a member of its platform: it was removed as dead, or the "
+    "platform's memory is damaged; restart it");
 }
 
 }  // namespace manycore

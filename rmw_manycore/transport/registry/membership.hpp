@@ -6,8 +6,8 @@
 
 namespace manycore {
 
-/// Says whether a slot of the registry is still what its holder took: not when the holder was taken
-/// for dead, nor when the platform's files were removed, nor in a child that inherited it.
+/// Checks that a registry slot still belongs to its holder. It does not after the holder was reaped
+/// as dead, after the platform's files were removed, or in a child of fork().
 class Membership {
 public:
   Membership(const Registry & registry, const Slot & slot) noexcept
@@ -20,9 +20,9 @@ public:
     return !is_inherited() && slot_.state.load(std::memory_order_relaxed) == SlotState::live &&
            slot_.incarnation.load(std::memory_order_relaxed) == incarnation_;
   }
-  /// True once the platform's files were removed. The memory is there until the last one leaves.
+  /// True once the platform's files are removed. The memory exists until the last process leaves.
   bool is_cut_off() const noexcept { return removed_.load(std::memory_order_relaxed) != 0; }
-  /// Throws Error{system} that says what to do unless it holds.
+  /// Throws Error{system}, saying what to do, unless the slot is held and the platform exists.
   void require() const {
     if (!holds() || is_cut_off()) {
       refuse();

@@ -6,16 +6,17 @@
 
 namespace manycore {
 
-/// While it lives, the phase of its thread is odd: the thread may follow references into memory
-/// that others free only when they saw the phase change. See docs/design/topic_dsm.md, Freeing.
+/// Keeps a thread's phase odd during its lifetime. The thread may then follow references into
+/// memory that another process frees only after it has seen the phase even or changed. See
+/// docs/design/freeing.md.
 class OddPhase {
 public:
-  /// A phase that a dead predecessor left odd stays so. seq_cst: Dekker with the one that frees,
-  /// which removes the references before it looks at the phase.
+  /// A phase left odd by a dead predecessor stays odd. seq_cst: Dekker with the process that frees,
+  /// which removes the references before it loads the phase.
   static void begin(std::atomic<uint64_t> & phase) noexcept {
     phase.store(phase.load(std::memory_order_relaxed) | 1, std::memory_order_seq_cst);
   }
-  /// Release: what was read through the references was read before.
+  /// Release: all reads through the references happen before this store.
   static void end(std::atomic<uint64_t> & phase) noexcept {
     phase.store(phase.load(std::memory_order_relaxed) + 1, std::memory_order_release);
   }

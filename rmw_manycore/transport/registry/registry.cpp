@@ -24,7 +24,7 @@ uint64_t random_nonce() {
 }
 
 SharedMemory open_registry(const PlatformPaths & paths) {
-  // The version before the size: a registry of another version may well be smaller.
+  // Check the version before the size: a registry of another version may be smaller.
   SharedMemory memory = SharedMemory::open(paths.registry(), sizeof(SegmentHeader));
   check_segment(
     memory.at<SegmentHeader>(0), registry_magic, memory.size(), paths.registry().c_str());
@@ -38,6 +38,15 @@ SharedMemory open_registry(const PlatformPaths & paths) {
     throw Error(ErrorCode::corrupt, damaged);
   }
   return memory;
+}
+
+/// The landings of a transferred topic mirror its topic DSM, so its size must not change.
+void require_fixed_size(const TopicConfiguration & topic) {
+  if (topic.transfer.kind != Transfer::dsm && topic.dsm_size_bytes == 0) {
+    throw Error(
+      ErrorCode::invalid_argument,
+      "topic '" + topic.name + "' is transferred: expected a topic_dsm_size, found none");
+  }
 }
 
 bool is_gone(const std::string & path) {
@@ -89,10 +98,12 @@ void Registry::create(
   for (size_t i = 0; i < topics.size(); ++i) {
     auto & entry = memory.at<TopicEntry>(topic_table_offset + i * sizeof(TopicEntry));
     store_name(entry.name, topics[i].name, "topic");
+    require_fixed_size(topics[i]);
     entry.topic_hash = hash_name(entry.name);
     entry.topic_id = topics[i].id;
     entry.topic_dsm_size = topics[i].dsm_size_bytes;
     entry.receiver_clusters = topics[i].receiver_clusters;
+    entry.transfer = topics[i].transfer;
   }
   header.segment.magic.store(registry_magic, std::memory_order_release);
 }
@@ -118,7 +129,7 @@ bool Registry::is_current() const noexcept {
   return memory_.is_file(paths_.registry()) && lifelines_.is_file(paths_.alive());
 }
 
-Cluster * Registry::reach(uint32_t cluster) {
+Cluster * Registry::map_cluster(uint32_t cluster) {
   const bool is_cluster = cluster != 0 && cluster <= max_clusters;
   if (!is_cluster || (header().clusters_present.load() >> (cluster - 1) & 1) == 0) {
     return nullptr;
@@ -129,9 +140,9 @@ Cluster * Registry::reach(uint32_t cluster) {
     if (error.code() == ErrorCode::corrupt) {
       return nullptr;
     }
-    throw OutOfReach(
+    throw ClusterUnmappable(
       error.code(),
-      "cluster " + std::to_string(cluster) + " is out of reach of this process: " + error.what());
+      "this process cannot map cluster " + std::to_string(cluster) + ": " + error.what());
   }
 }
 
@@ -144,10 +155,11 @@ Registry::Lock::Lock(Registry & registry, WhileOwnersRun)
 Registry::Lock::Lock(Registry & registry, RobustMutex::Outcome outcome) : registry_(registry) {
   RegistryHeader & header = registry.header();
   header.changes.store(header.changes.load(std::memory_order_relaxed) | 1);
-  // A reader that sees any of the changes to come sees this, too.
+  // Release fence: a reader that sees any of the following changes also sees `changes` odd.
   std::atomic_thread_fence(std::memory_order_release);
   if (outcome == RobustMutex::Outcome::owner_died) {
-    header.needs_repair = 1;  // first: from then on the mutex does not tell
+    // Before mark_consistent(): after it the mutex no longer reports the death
+    header.needs_repair = 1;
     header.mutex.mark_consistent();
   }
   if (header.needs_repair != 0) {
@@ -162,8 +174,8 @@ Registry::Lock::Lock(Registry & registry, RobustMutex::Outcome outcome) : regist
   }
 }
 
-/// A thread that is woken needs about 50 us to run; without this, one that creates many endpoints
-/// in a row has the lock again each time before it.
+/// A woken thread needs about 50 us to run. Without this wait, a thread that creates many endpoints
+/// in a row would retake the lock each time before a waiting thread runs.
 void Registry::let_others_go_first() const noexcept {
   const int64_t until_ns = others_first_until_ns_.load(std::memory_order_relaxed);
   if (monotonic_ns() < until_ns) {
@@ -232,18 +244,19 @@ std::atomic<uint32_t> & Registry::bucket_of(uint64_t topic_hash) const noexcept 
   return header().topic_buckets[topic_hash % topic_bucket_count];
 }
 
-// Under the lock nothing else changes a chain; graph reads without it look afterwards whether it
-// held. So no order of loads and stores matters, but for the walk of for_each_older().
+// The lock excludes concurrent changes of chains. Graph reads without the lock check afterwards
+// whether a change interfered. The order of loads and stores therefore matters only to
+// for_each_older().
 constexpr auto chained = std::memory_order_relaxed;
 
-/// A chain holds at each instruction what it held before or after: should this process die in
-/// between, only `previous_of_topic` and what repair() builds anew may be wrong.
+/// At each instruction a chain holds its old or its new content. If this process dies in between,
+/// only `previous_of_topic` and what repair() rebuilds may be wrong.
 void Registry::link_endpoint(uint32_t slot) noexcept {
   EndpointEntry & entry = endpoints_[slot];
   std::atomic<uint32_t> & bucket = bucket_of(entry.topic_hash);
   const uint32_t next = bucket.load(chained);
   entry.previous_of_topic = nothing;
-  // Release: a walk that reads it finds the slot's new incarnation.
+  // Release: a walk that loads the link also sees the slot's new incarnation.
   entry.next_of_topic.store(next, std::memory_order_release);
   if (next < endpoints_.high_water()) {
     endpoints_[next].previous_of_topic = slot;
@@ -251,7 +264,8 @@ void Registry::link_endpoint(uint32_t slot) noexcept {
   bucket.store(slot, chained);
 }
 
-/// What leads to an endpoint in its chain. Where `previous_of_topic` is damaged, it is looked for.
+/// The link that leads to an endpoint in its chain. Searches the chain if `previous_of_topic` is
+/// damaged.
 std::atomic<uint32_t> * Registry::link_to(uint32_t slot) noexcept {
   EndpointEntry & entry = endpoints_[slot];
   std::atomic<uint32_t> * link = &bucket_of(entry.topic_hash);
@@ -262,7 +276,7 @@ std::atomic<uint32_t> * Registry::link_to(uint32_t slot) noexcept {
     }
   }
   uint32_t linked = link->load(chained);
-  // A damaged chain is not followed out of the table, nor round and round.
+  // Bounded: a damaged chain never leads out of the table or into an endless loop.
   for (uint32_t i = 0; linked != slot && linked < endpoints_.high_water() && i < endpoint_capacity;
        ++i) {
     link = &endpoints_[linked].next_of_topic;
@@ -284,7 +298,8 @@ void Registry::unlink_endpoint(uint32_t slot) noexcept {
   }
 }
 
-/// The next in its chain, if the endpoint was still in it after that was read (chains.pml).
+/// Next endpoint of the chain, provided that this one was still in it after the link was loaded
+/// (docs/model/chains.pml).
 std::optional<uint32_t> Registry::next_of(uint32_t slot, uint32_t incarnation) const noexcept {
   const EndpointEntry & entry = endpoints_[slot];
   const uint32_t next = entry.next_of_topic.load(std::memory_order_acquire);
@@ -292,23 +307,34 @@ std::optional<uint32_t> Registry::next_of(uint32_t slot, uint32_t incarnation) c
   return was_in_it ? std::optional(next) : std::nullopt;
 }
 
-bool Registry::for_each_older(
+/// If the current endpoint has left the chain, the walk goes back to the last endpoint of its path
+/// that has not left: all older endpoints still follow that one.
+void Registry::for_each_older(
   uint32_t slot, const std::function<void(uint32_t, uint32_t)> & visit) const {
-  uint32_t incarnation = endpoints_[slot].slot.incarnation.load();
-  for (uint32_t i = 0; i < endpoint_capacity; ++i) {
-    const std::optional<uint32_t> next = next_of(slot, incarnation);
-    if (next && *next >= endpoints_.high_water()) {
-      return true;
+  struct Place {
+    uint32_t slot;
+    uint32_t incarnation;
+  };
+  std::vector<Place> path{{slot, endpoints_[slot].slot.incarnation.load()}};
+  // Each endpoint is visited once and leaves once. The limit ends the walk in a damaged chain,
+  // which may have a cycle.
+  for (uint32_t i = 0; !path.empty() && i < 4 * endpoint_capacity; ++i) {
+    const auto [at, incarnation] = path.back();
+    const std::optional<uint32_t> next = next_of(at, incarnation);
+    if (!next) {
+      path.pop_back();
+      continue;
     }
-    const uint32_t incarnation_of_next = next ? endpoints_[*next].slot.incarnation.load() : 0;
-    if (!next || next_of(slot, incarnation) != next) {
-      return false;  // that one may have left meanwhile, and its slot be another chain's
+    if (*next >= endpoints_.high_water()) {
+      return;
     }
-    slot = *next;
-    incarnation = incarnation_of_next;
-    visit(slot, incarnation);
+    const uint32_t incarnation_of_next = endpoints_[*next].slot.incarnation.load();
+    if (next_of(at, incarnation) != next) {
+      continue;  // the next endpoint may have left, and its slot may be in another chain
+    }
+    path.push_back({*next, incarnation_of_next});
+    visit(*next, incarnation_of_next);
   }
-  return true;  // damaged
 }
 
 void Registry::for_each_of_bucket(

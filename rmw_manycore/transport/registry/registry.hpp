@@ -16,7 +16,8 @@
 
 namespace manycore {
 
-/// A table of slots in the registry. Adding and removing need the registry lock; looking does not.
+/// A table of slots in the registry. take(), publish() and give_back() require the registry lock;
+/// reads do not.
 template<typename Entry>
 class Table {
 public:
@@ -35,7 +36,8 @@ public:
            (*this)[slot].slot.state.load(std::memory_order_acquire) == SlotState::live;
   }
 
-  /// A slot to fill in; it exists for others only after publish(). Throws Error{no_space}.
+  /// Takes a slot to fill in; other processes see it only after publish(). Throws
+  /// Error{no_space|corrupt}.
   uint32_t take(const char * what);
   void publish(uint32_t slot) const noexcept {
     (*this)[slot].slot.state.store(SlotState::live, std::memory_order_release);
@@ -56,7 +58,7 @@ public:
   }
 
 private:
-  /// A reader that sees anything of what is filled in from now on sees this incarnation, too.
+  /// Release fence: a reader that sees any field filled in from now on also sees this incarnation.
   void begin_use(uint32_t slot, uint32_t incarnation) const noexcept {
     (*this)[slot].slot.incarnation.store(incarnation, std::memory_order_relaxed);
     std::atomic_thread_fence(std::memory_order_release);
@@ -68,19 +70,21 @@ private:
   uint32_t capacity_;
 };
 
-/// A cluster is there, but this process cannot map it now: it has no descriptor left, say. Its
-/// objects are in use all the same, so nothing that depends on them may be taken for done.
-class OutOfReach : public Error {
+/// The cluster exists, but this process cannot map it at present, for example because it has no
+/// file descriptor left. Its objects are in use, so nothing that depends on them may be treated as
+/// done.
+class ClusterUnmappable : public Error {
 public:
   using Error::Error;
 };
 
-/// One line for the topic table of a new platform.
+/// One line of a new platform's topic table.
 struct TopicConfiguration {
   std::string name;
   uint32_t id = 0;
   uint32_t dsm_size_bytes = 0;  ///< 0 = grows
   uint64_t receiver_clusters = 0;
+  TransferSettings transfer{};
 };
 
 /// The platform's table of processes, nodes, endpoints and topics. Changed under its robust lock,
@@ -90,10 +94,10 @@ public:
   static void create(
     const PlatformPaths & paths, const Profile & profile,
     const std::vector<TopicConfiguration> & topics);
-  /// Throws Error{corrupt}.
+  /// Throws Error{corrupt|system} if the file cannot be mapped or is damaged.
   explicit Registry(const PlatformPaths & paths);
 
-  /// Holds the registry lock while alive.
+  /// Holds the registry lock during its lifetime.
   class Lock {
   public:
     static constexpr long usual_wait_ns = 5'000'000'000;
@@ -101,12 +105,12 @@ public:
     static constexpr long no_wait_ns = 0;
     struct WhileOwnersRun {};
 
-    /// A process that had the lock and comes back at once lets those go first that waited for it,
-    /// but for short waits. Throws Error{timeout} when the lock is not to be had within `wait_ns`;
-    /// OutOfReach when a former owner died and this process cannot map all that is to be repaired.
+    /// Throws Error{timeout} if the lock is not available within `wait_ns`, and ClusterUnmappable
+    /// if a former owner died and this process cannot map all clusters to repair them. A thread
+    /// that retakes the lock at once first lets waiting threads run, unless `wait_ns` is short.
     explicit Lock(Registry & registry, long wait_ns = usual_wait_ns);
-    /// Waits as usual for owners that run, or wait for a CPU themselves; for one that is stopped,
-    /// or not visible here, only `short_wait_ns`.
+    /// Waits `usual_wait_ns` while owners run or wait for a CPU, but only `short_wait_ns` for an
+    /// owner that is stopped or not visible in this PID namespace.
     Lock(Registry & registry, WhileOwnersRun wait);
     ~Lock();
     Lock(const Lock &) = delete;
@@ -118,8 +122,8 @@ public:
     Registry & registry_;
   };
 
-  /// How long to wait for the lock to take something away, of which a process has many at its end:
-  /// short once the lock stayed taken, until it is to be had again.
+  /// Time to wait for the lock when a process removes its many objects at its end: short once the
+  /// lock timed out, until it was acquired again.
   long parting_wait_ns() const noexcept;
 
   RegistryHeader & header() const noexcept { return memory_.at<RegistryHeader>(0); }
@@ -127,20 +131,20 @@ public:
   Table<NodeEntry> & nodes() noexcept { return nodes_; }
   Table<EndpointEntry> & endpoints() noexcept { return endpoints_; }
   Clusters & clusters() noexcept { return clusters_; }
-  /// A cluster that is present, or nullptr when there is none or its segment is damaged. Unlike
-  /// clusters().find() it throws OutOfReach when the cluster cannot be mapped.
-  Cluster * reach(uint32_t cluster);
-  /// The object behind a reference, or nullptr when it leads nowhere. Throws OutOfReach.
+  /// A cluster that exists, or nullptr if there is none or its segment is damaged. Unlike
+  /// clusters().find(), throws ClusterUnmappable if the cluster cannot be mapped.
+  Cluster * map_cluster(uint32_t cluster);
+  /// Object behind a reference, or nullptr if the reference is invalid. Throws ClusterUnmappable.
   template<typename T>
-  T * reach(SegmentRef ref) {
-    Cluster * const cluster = reach(ref.cluster());
+  T * map(SegmentRef ref) {
+    Cluster * const cluster = map_cluster(ref.cluster());
     return cluster == nullptr ? nullptr : cluster->find<T>(ref.offset());
   }
   const Lifelines & lifelines() const noexcept { return lifelines_; }
-  /// Records what this process does through this view of the registry.
+  /// Traces the actions of this process on the platform.
   Tracer & tracer() noexcept { return tracer_; }
   const PlatformPaths & paths() const noexcept { return paths_; }
-  /// True while the platform's directory still holds what is mapped here, and not a later platform
+  /// True while the platform's directory holds the files mapped here, not those of a later platform
   /// of the same name.
   bool is_current() const noexcept;
   uint64_t nonce() const noexcept { return header().segment.platform_nonce; }
@@ -151,19 +155,19 @@ public:
   /// Line of the topic table, or nullptr.
   const TopicEntry * find_topic(const std::string & name) const noexcept;
 
-  /// Chains of endpoints by topic, from the youngest to the oldest; the caller holds the lock.
+  /// Chains of endpoints by topic, from the youngest to the oldest. The caller holds the lock.
   void link_endpoint(uint32_t slot) noexcept;
   void unlink_endpoint(uint32_t slot) noexcept;
-  /// Visits the slots of a topic's bucket, which it may share with other topics. Without the lock,
-  /// a change may lead to other buckets, but not out of the table.
+  /// Visits the slots in a topic's bucket, which other topics may share. Without the lock, a
+  /// concurrent change may lead the walk to other buckets, but not out of the table.
   void for_each_of_bucket(const char * topic, const std::function<void(uint32_t)> & visit) const;
 
-  /// Calls `visit(slot, incarnation)` for those that are older than an endpoint that is in its
-  /// chain and stays there, in its bucket, which topics may share. Needs no lock. False when
-  /// another one left the chain just where the walk stood: some may then be missing.
-  bool for_each_older(uint32_t slot, const std::function<void(uint32_t, uint32_t)> & visit) const;
+  /// Calls `visit(slot, incarnation)` for each older endpoint in the bucket of a live endpoint;
+  /// other topics may share the bucket. Needs no lock. Endpoints that leave
+  /// meanwhile may be visited or missed; all others are visited.
+  void for_each_older(uint32_t slot, const std::function<void(uint32_t, uint32_t)> & visit) const;
 
-  /// Raises the graph generation and the epochs of processes that watch it.
+  /// Increments the graph generation and wakes the threads that wait for graph changes.
   void graph_changed() noexcept;
 
 private:
@@ -174,7 +178,7 @@ private:
   RobustMutex::Outcome lock_within(long wait_ns);
   RobustMutex::Outcome lock_while_owners_run();
   void let_others_go_first() const noexcept;
-  /// Throws OutOfReach before it changes anything.
+  /// Throws ClusterUnmappable before anything is changed.
   void repair();
   void mark_blocks_of(EndpointEntry & entry) noexcept;
 
@@ -190,13 +194,13 @@ private:
   std::atomic<int64_t> others_first_until_ns_{0};  ///< CLOCK_MONOTONIC
 };
 
-/// FNV-1a; a hash of names that is equal in every process.
+/// FNV-1a; equal for equal names in all processes.
 uint64_t hash_name(const char * name) noexcept;
 
-/// Copies a name into a fixed field; throws Error{invalid_argument} when it does not fit.
+/// Copies a name into a fixed field. Throws Error{invalid_argument} if it is too long.
 void store_name(char (&field)[name_bytes], const std::string & name, const char * what);
 
-/// The text in a field; in a damaged registry it may fill the field, without a zero at its end.
+/// Text of a field. In a damaged registry the terminating NUL may be missing.
 template<size_t size>
 std::string text_of(const char (&field)[size]) {
   return {field, strnlen(field, size)};

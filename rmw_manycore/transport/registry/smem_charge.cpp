@@ -17,7 +17,8 @@ uint32_t process_of(Registry & registry, pid_t pid) {
     ErrorCode::invalid_argument, "process " + std::to_string(pid) + " is not on the platform");
 }
 
-// A death between the two counts leaves the lock to the next owner, who adds up the entries' anew.
+// If this process dies between the two updates, the next owner of the lock sums up the entries
+// anew.
 void charge_smem(Registry & registry, pid_t pid, uint64_t size_bytes) {
   const Registry::Lock lock(registry);
   ProcessEntry & entry = registry.processes()[process_of(registry, pid)];

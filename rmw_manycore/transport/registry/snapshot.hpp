@@ -9,11 +9,11 @@
 
 namespace manycore {
 
-/// Looking at the registry without its lock: a reader that stands still holds up no change. See
-/// docs/design/platform.md, Registry.
+/// Reads of the registry without its lock: a stopped reader delays no change. See
+/// docs/design/registry.md.
 
-/// A copy of one table entry. It is whole if the slot was live, and the same use of it, before and
-/// after the copy.
+/// A copy of one table entry. It is consistent if the slot was live, with the same incarnation,
+/// before and after the copy.
 template<typename Entry>
 class EntryCopy {
 public:
@@ -25,7 +25,7 @@ public:
   }
 
   const Entry & operator*() const noexcept { return *reinterpret_cast<const Entry *>(bytes_); }
-  /// True when what was copied is one entry, and was there all the time until now.
+  /// True if the copy is consistent and the entry still exists.
   bool holds() const noexcept {
     std::atomic_thread_fence(std::memory_order_acquire);
     return was_live_ && slot_.state.load(std::memory_order_relaxed) == SlotState::live &&
@@ -36,8 +36,9 @@ private:
   using Word __attribute__((may_alias)) = uint64_t;
   static_assert(sizeof(Entry) % sizeof(Word) == 0);
 
-  /// Beside its writer, whose stores are no atomics: each word is loaded once, and holds() tells
-  /// whether they belong together. Volatile, because sanitizers watch atomics even here.
+  /// Runs concurrently with the writer, whose stores are not atomic: each word is loaded once, and
+  /// holds() tells whether the words belong together. Volatile because sanitizers instrument
+  /// atomics even here.
   __attribute__((no_sanitize("thread"))) void copy_words(const Entry * entry) noexcept {
     const auto * const from = reinterpret_cast<const volatile Word *>(entry);
     for (size_t i = 0; i < sizeof(Entry) / sizeof(Word); ++i) {
@@ -47,12 +48,13 @@ private:
   }
 
   const Slot & slot_;
-  uint32_t incarnation_;  ///< before the state: a use that began in between is not this one
+  /// Loaded before the state, so a use of the slot that begins in between is detected.
+  uint32_t incarnation_;
   bool was_live_;
   alignas(Entry) std::byte bytes_[sizeof(Entry)];
 };
 
-/// Appends `describe(slot, entry)` of a live entry, unless it was gone before that was done.
+/// Appends `describe(slot, entry)` of a live entry, unless the entry was removed meanwhile.
 template<typename Entry, typename Info, typename Describe>
 void append_live(
   const Table<Entry> & table, uint32_t slot, std::vector<Info> & all, Describe describe) {
@@ -68,7 +70,7 @@ void append_live(
   }
 }
 
-/// The same of each entry of a table.
+/// The same for all entries of a table.
 template<typename Info, typename Entry, typename Describe>
 std::vector<Info> list_live(const Table<Entry> & table, Describe describe) {
   std::vector<Info> all;
@@ -78,8 +80,9 @@ std::vector<Info> list_live(const Table<Entry> & table, Describe describe) {
   return all;
 }
 
-/// What `read()` returns while nothing changes. Where changes do not cease, or their author stands
-/// still, what it returned last: then each entry is whole, but they may be of different moments.
+/// Result of a `read()` during which nothing changed. If changes do not cease, or the lock's owner
+/// is stopped, the result of the last attempt: each entry is consistent, but entries may be of
+/// different moments.
 template<typename Read>
 auto read_between_changes(const Registry & registry, Read read) {
   constexpr int attempts = 16;

@@ -10,13 +10,13 @@
 
 namespace manycore {
 
-/// Records that a resync found, oldest first; they are taken before those of the queue. One thread
-/// at a time (the subscription's mutex), but for size().
+/// Records found by a resync, oldest first; taken before those of the queue. Used by one thread at
+/// a time (the subscription's mutex), except size().
 class Backlog {
 public:
   bool empty() const noexcept { return records_.empty(); }
-  /// From any thread: the queue's state is asked without the mutex.
-  /// seq_cst: a thread that finds it empty sleeps (see Watchers).
+  /// Callable from any thread: the queue's state is read without the mutex. seq_cst, because a
+  /// thread that finds it empty sleeps (see Watchers).
   size_t size() const noexcept { return size_.load(std::memory_order_seq_cst); }
 
   void append(const std::vector<Source::Waiting> & records) {

@@ -9,11 +9,11 @@
 namespace manycore {
 
 Claim::Claim(
-  Subscription & subscription, std::unique_lock<std::mutex> && lock, Source & source,
+  Subscription & subscription, std::unique_lock<HandoverMutex> && lock, Source & source,
   uint64_t number) noexcept
 : subscription_(subscription), lock_(std::move(lock)), source_(source), number_(number) {}
 
-/// Step 3 of Fig. 4, end: release.
+/// Step 3 of ROS-lite2 Fig. 4, end: release.
 Claim::~Claim() {
   if (!lock_.owns_lock()) {
     return;
@@ -22,10 +22,12 @@ Claim::~Claim() {
     lock_.release();
     return;
   }
-  const uint32_t publisher = source_.publisher_slot();  // before the topic DSM may go
+  // Read before release(): the topic DSM may be freed after it
+  const uint32_t publisher = source_.publisher_slot();
   const bool finished = source_.release(number_);
   subscription_.impl_->registry.tracer().note(
     TraceKind::release, subscription_.impl_->slot, number_, endpoint_in(info_.publisher));
+  subscription_.impl_->settle_after_last();
   lock_.unlock();
   if (finished) {
     subscription_.impl_->sweep(publisher);

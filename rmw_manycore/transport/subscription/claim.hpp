@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <mutex>
 
+#include "platform/handover_mutex.hpp"
 #include "transport/layout/endpoint.hpp"
 
 namespace manycore {
@@ -23,9 +24,10 @@ struct RecordInfo {
   bool from_this_process = false;
 };
 
-/// A record that this subscription is reading: claim, deserialize, release (by destruction).
-/// The publisher cannot recycle it meanwhile. Holds the subscription's mutex; stays in one thread.
-/// In a child of fork() it ends without effect.
+/// A record that this subscription is reading: claim, deserialize, release (by destruction). The
+/// publisher cannot recycle the record meanwhile. Holds the subscription's mutex, so a
+/// subscription has one claim at a time; any thread may destroy it. In a child of fork() the
+/// destructor has no effect.
 class Claim {
 public:
   Claim(Claim && other) noexcept = default;
@@ -36,17 +38,17 @@ public:
   size_t size() const noexcept { return size_; }
   const RecordInfo & info() const noexcept { return info_; }
 
-  /// Counts the record as lost instead of taken: its bytes are no message.
+  /// Counts the record as lost instead of taken, because its bytes could not be deserialized.
   void reject() noexcept;
 
 private:
   friend class Subscription;
   Claim(
-    Subscription & subscription, std::unique_lock<std::mutex> && lock, Source & source,
+    Subscription & subscription, std::unique_lock<HandoverMutex> && lock, Source & source,
     uint64_t number) noexcept;
 
   Subscription & subscription_;
-  std::unique_lock<std::mutex> lock_;  ///< not owned once moved from
+  std::unique_lock<HandoverMutex> lock_;  ///< not owned after a move
   Source & source_;
   uint64_t number_;
   const uint8_t * data_ = nullptr;

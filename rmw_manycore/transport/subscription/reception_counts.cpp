@@ -36,7 +36,7 @@ void ReceptionCounts::count_lost_replies(uint64_t count) noexcept {
   }
 }
 
-/// In both of the words of which lost_so_far() takes the larger.
+/// Adds to both words whose maximum lost_so_far() returns.
 void ReceptionCounts::count_lost(uint64_t count) noexcept {
   entry_.counters.lost.fetch_add(count, std::memory_order_relaxed);
   header_.lost_beside_dropped.fetch_add(count, std::memory_order_relaxed);

@@ -9,8 +9,8 @@
 
 namespace manycore {
 
-/// What one subscription took and lost. See docs/design/topic_dsm.md, Counting what is lost. One
-/// thread at a time (the subscription's mutex), but for lost().
+/// Messages taken and lost by one subscription; see docs/design/losses.md. Used
+/// by one thread at a time (the subscription's mutex), except lost().
 class ReceptionCounts {
 public:
   ReceptionCounts(EndpointEntry & entry, SubscriptionHeader & header) noexcept
@@ -18,19 +18,23 @@ public:
 
   /// Returns the reception sequence number.
   uint64_t count_taken(uint64_t bytes) noexcept;
-  /// What was counted as taken was no message.
+  /// Undoes count_taken() for a record that could not be deserialized, and counts it as lost.
   void count_rejected(uint64_t bytes) noexcept;
   void count_expired() noexcept;
-  /// Replies that displacement does not count. The publisher numbers its replies to all clients
-  /// together, so a client counts its own one by one as it misses them; nothing for other roles.
+  /// Counts lost replies other than displaced ones; no effect for other roles. A publisher numbers
+  /// its replies to all clients in one sequence, so a client counts its own one by one as it misses
+  /// them.
   void count_lost_replies(uint64_t count) noexcept;
-  /// Messages may be missing that no later one has shown to be.
+  /// Messages may be missing that no later message has revealed yet.
   void suspect_losses() noexcept { unsettled_ = true; }
+  bool is_unsettled() const noexcept { return unsettled_; }
+  /// The same, or hints were displaced, for which `lost` may be too high until all is settled.
   bool needs_settling() const noexcept;
-  /// Every message is accounted for, as one of `dropped` displaced hints or as lost otherwise.
+  /// Called when each message is accounted for, either as one of `dropped` displaced hints or as
+  /// lost.
   void note_settled(uint64_t dropped) noexcept;
 
-  /// Never falls, though what displaced hints suggest may turn out to be too much.
+  /// Never decreases, although displaced hints may overestimate the losses.
   uint64_t lost() const noexcept;
 
 private:
@@ -41,7 +45,7 @@ private:
   SubscriptionHeader & header_;
   uint64_t received_ = 0;
   bool unsettled_ = false;
-  uint64_t settled_dropped_ = 0;  ///< of the header's `dropped`, when all was accounted for
+  uint64_t settled_dropped_ = 0;  ///< value of the header's `dropped` when all was accounted for
   mutable std::atomic<uint64_t> reported_lost_{0};
 };
 

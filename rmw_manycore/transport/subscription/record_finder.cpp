@@ -11,11 +11,12 @@ RecordFinder::RecordFinder(
   Registry & registry, Cluster & cluster, SubscriptionHeader & header, EndpointEntry & entry,
   ReceptionCounts & counts) noexcept
 : registry_(registry),
+  cluster_(cluster),
   header_(header),
   counts_(counts),
   sources_(registry, cluster, header, entry) {}
 
-bool RecordFinder::has_some() const noexcept {
+bool RecordFinder::has_records() const noexcept {
   return !subscriber_queue::empty(header_) || backlog_.size() != 0 || has_to_resync();
 }
 
@@ -37,7 +38,7 @@ std::optional<RecordFinder::Candidate> RecordFinder::next() {
   while (true) {
     resync_if_asked();
     if (header_.keep_all == 0 && !backlog_.empty() && waiting() > header_.depth) {
-      resync();  // newer messages displace those of the backlog
+      resync();  // newer messages displace those in the backlog
     }
     if (const std::optional<Candidate> candidate = next_of_backlog()) {
       return candidate;
@@ -47,9 +48,10 @@ std::optional<RecordFinder::Candidate> RecordFinder::next() {
       settle();
       return std::nullopt;
     }
-    // Looking into all sources finds what the hint announced as well. Where hints before it are
-    // missing, `resync` was set before it was pushed, but perhaps after the look above. A hint of a
-    // new source may overtake the matcher's resync, and with it the source's history.
+    // A resync scans all sources, so it finds this hint's record too. If earlier hints are missing,
+    // `resync` was set before this hint was pushed, but possibly after the check above. The first
+    // hint of a new source may overtake the matcher's `resync`, and with it the history of the
+    // source.
     if (take_request_to_resync() || sources_.renew()) {
       resync(hint);
     } else if (const std::optional<Candidate> candidate = candidate_of(*hint)) {
@@ -72,11 +74,11 @@ std::optional<RecordFinder::Candidate> RecordFinder::next_of_backlog() {
 std::optional<RecordFinder::Candidate> RecordFinder::candidate_of(const Hint & hint) noexcept {
   Source * const source = sources_.find(hint.source, hint.source_incarnation);
   if (source == nullptr) {
-    return std::nullopt;  // its topic DSM is gone
+    return std::nullopt;  // the source is gone, and so is its topic DSM
   }
   const std::optional<uint64_t> number = source->published_number(hint.number);
   if (!number || *number <= source->noted() || source->is_given_up(*number)) {
-    return std::nullopt;  // a double, or not of this source
+    return std::nullopt;  // a duplicate, or a hint of a former use of the source entry
   }
   return Candidate{source, *number};
 }
@@ -92,7 +94,7 @@ bool RecordFinder::take_request_to_resync() noexcept {
          header_.resync.exchange(0, std::memory_order_seq_cst) != 0;
 }
 
-/// Hints may be missing: forget those that are there and look into every topic DSM instead.
+/// Hints may be missing: discards the queued ones and scans all topic DSMs instead.
 void RecordFinder::resync(std::optional<Hint> popped) {
   sources_.renew();
   drain_queue(popped);
@@ -104,21 +106,21 @@ void RecordFinder::resync(std::optional<Hint> popped) {
     return a.source_timestamp_ns < b.source_timestamp_ns;
   });
   backlog_.append(found_);
-  // Stale hints do not make up for others: a listener that was told of them finds fewer messages,
-  // never more.
+  // Count only records that no hint announced. Stale hints are not subtracted: a listener notified
+  // of them finds fewer messages than arrivals, never more.
   const uint64_t announced = count_announced(found_);
   counts_.count_lost_replies(announced_.size() - announced);
   counts_.suspect_losses();
   if (found_.size() > announced) {
     arrivals_by_resync_.fetch_add(found_.size() - announced, std::memory_order_relaxed);
-    if (header_.note_arrival()) {  // from now on a deadline is due
+    if (header_.note_arrival()) {  // a deadline just started
       notify_event_watchers(registry_, header_.process.load(std::memory_order_relaxed));
     }
   }
   drop_beyond_depth();
   if (!backlog_.empty()) {
-    // A thread that looked while the hints were gone and the backlog was not there yet may be about
-    // to sleep.
+    // A thread that checked after the hints were drained and before the backlog was filled may be
+    // about to sleep.
     notify_watchers(registry_, header_);
   }
 }
@@ -134,7 +136,7 @@ void RecordFinder::drain_queue(std::optional<Hint> popped) {
   announced_.erase(std::unique(announced_.begin(), announced_.end()), announced_.end());
 }
 
-/// How many of these records the drained hints named.
+/// Number of these records that the drained hints announced.
 uint64_t RecordFinder::count_announced(const std::vector<Source::Waiting> & found) const {
   return static_cast<uint64_t>(
     std::count_if(found.begin(), found.end(), [&](const Source::Waiting & waiting) {
@@ -157,14 +159,20 @@ void RecordFinder::settle() noexcept {
   if (!counts_.needs_settling()) {
     return;
   }
-  // Before the sources are asked: what is displaced meanwhile is for the next time.
+  // Load before the sources are checked: later displacements count next time.
   const uint64_t dropped = header_.dropped.load(std::memory_order_relaxed);
   bool all = true;
+  bool some_finished = false;
   for (Source & source : sources_) {
-    all = source.settle() && all;
+    const Source::Settled settled = source.settle();
+    all = all && settled != Source::Settled::no;
+    some_finished = some_finished || settled == Source::Settled::finished;
   }
   if (all) {
     counts_.note_settled(dropped);
+  }
+  if (some_finished) {
+    cluster_.wake_reaper();  // to free topic DSMs
   }
 }
 

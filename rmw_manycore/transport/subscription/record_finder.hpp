@@ -14,9 +14,9 @@
 
 namespace manycore {
 
-/// Finds the next record that a subscription has to read: in its queue, or by looking into its
-/// sources. See docs/design/topic_dsm.md, Take and Resync. One thread at a time (the subscription's
-/// mutex), but for has_some(), waiting() and has_to_resync().
+/// Finds the next record that a subscription has to read, in its queue or by scanning its sources.
+/// See docs/design/topic_dsm.md, Take and Resync. Used by one thread at a time (the subscription's
+/// mutex), except has_records(), waiting() and has_to_resync().
 class RecordFinder {
 public:
   struct Candidate {
@@ -28,41 +28,42 @@ public:
     Registry & registry, Cluster & cluster, SubscriptionHeader & header, EndpointEntry & entry,
     ReceptionCounts & counts) noexcept;
 
-  /// It may turn out to be gone when it is claimed.
+  /// Next record to claim. The claim may find that it is gone.
   std::optional<Candidate> next();
   void resync_if_asked();
+  /// Accounts for messages lost after the last one taken from each source. Called when there is
+  /// nothing left to take.
+  void settle() noexcept;
 
-  /// May be mistaken; never where a record waits that was announced.
-  bool has_some() const noexcept;
+  /// May be true without a record; never false while an announced record waits.
+  bool has_records() const noexcept;
   bool has_to_resync() const noexcept;
-  /// Records in backlog and queue; some may be stale or doubles.
+  /// Records in backlog and queue; some may be stale or duplicates.
   uint64_t waiting() const noexcept;
-  /// Notifications since creation, and records that a resync found without one.
+  /// Hints pushed since creation, and records that a resync found without a hint.
   uint64_t arrivals() const noexcept;
 
 private:
   std::optional<Candidate> next_of_backlog();
-  /// True once for each time that `resync` was set; the caller then has to.
+  /// Resets `resync`. True if it was set: the caller must then call resync().
   bool take_request_to_resync() noexcept;
-  /// The record that a hint of the queue names, or nothing when it is stale.
+  /// The record announced by a hint, or nothing if the hint is stale.
   std::optional<Candidate> candidate_of(const Hint & hint) noexcept;
-  /// `popped`: a hint that its caller has not used.
+  /// `popped` is a hint taken from the queue and not used yet.
   void resync(std::optional<Hint> popped = std::nullopt);
   void drain_queue(std::optional<Hint> popped);
   uint64_t count_announced(const std::vector<Source::Waiting> & found) const;
   void drop_beyond_depth();
-  /// With nothing left to take: accounts for what was lost after the last message taken of each
-  /// source.
-  void settle() noexcept;
-
   Registry & registry_;
+  const Cluster & cluster_;
   SubscriptionHeader & header_;
   ReceptionCounts & counts_;
   SourceList sources_;
   Backlog backlog_;
-  std::atomic<uint64_t> arrivals_by_resync_{0};  ///< those that no hint announced
-  std::vector<Source::Waiting> found_;           ///< by a resync; a member to keep its memory
-  std::vector<std::pair<uint32_t, uint64_t>> announced_;  ///< source and number of each hint
+  std::atomic<uint64_t> arrivals_by_resync_{0};  ///< records found without a hint
+  std::vector<Source::Waiting> found_;  ///< result of a resync; a member to reuse its memory
+  /// Source index and record number of each drained hint.
+  std::vector<std::pair<uint32_t, uint64_t>> announced_;
 };
 
 }  // namespace manycore

@@ -9,7 +9,7 @@
 namespace manycore {
 namespace {
 
-constexpr uint64_t look_again = UINT64_MAX;  ///< no generation
+constexpr uint64_t outdated = UINT64_MAX;  ///< matches no `source_generation`
 
 }  // namespace
 
@@ -21,9 +21,9 @@ bool SourceList::renew() {
   seen_generation_ = generation;
   bool has_new = false;
   std::vector<Source> renewed;
-  auto known = sources_.begin();  // in the order of their indices, as the table is
+  auto known = sources_.begin();  // sorted by index, like the table
   visit_source_table(cluster_, header_, [&](SourceEntry & entry, uint32_t index) {
-    // Before the state: a use of the entry that begins in between is not this one.
+    // Load before the state: a use of the entry that begins in between is detected.
     const uint32_t incarnation = entry.incarnation.load(std::memory_order_acquire);
     if (entry.state.load(std::memory_order_acquire) != SourceState::active) {
       return false;
@@ -35,7 +35,7 @@ bool SourceList::renew() {
       has_new = has_new || !is_known;
       renewed.push_back(source);
     } else {
-      seen_generation_ = look_again;  // its cluster may be out of reach for now only
+      seen_generation_ = outdated;  // its cluster cannot be mapped at present
     }
     return false;
   });

@@ -9,8 +9,8 @@
 
 namespace manycore {
 
-/// The sources of one subscription, as its source table has them. One thread at a time (the
-/// subscription's mutex).
+/// A subscription's copy of its source table. Used by one thread at a time (the subscription's
+/// mutex).
 class SourceList {
 public:
   SourceList(
@@ -18,16 +18,16 @@ public:
     EndpointEntry & entry) noexcept
   : registry_(registry), cluster_(cluster), header_(header), entry_(entry) {}
 
-  /// Follows the source table; true when it has a source that was not known yet.
+  /// Updates the copy if the table changed. True if there is a new source.
   bool renew();
-  /// nullptr when the source is gone.
+  /// Nullptr if the source is gone.
   Source * find(uint32_t index, uint32_t incarnation) noexcept;
 
   std::vector<Source>::iterator begin() noexcept { return sources_.begin(); }
   std::vector<Source>::iterator end() noexcept { return sources_.end(); }
 
 private:
-  /// The first source from there on whose index is at least `index`.
+  /// The first source at or after `from` whose index is at least `index`.
   std::vector<Source>::iterator at_or_after(
     std::vector<Source>::iterator from, uint32_t index) noexcept;
 

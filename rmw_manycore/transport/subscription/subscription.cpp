@@ -14,7 +14,7 @@ namespace manycore {
 
 namespace {
 
-/// Notes what a look for the next record showed to be lost.
+/// Traces the messages found lost during its lifetime.
 class LossTrace {
 public:
   explicit LossTrace(Subscription::Impl & impl) noexcept : impl_(impl), before_(now()) {}
@@ -49,18 +49,20 @@ const Gid & Subscription::gid() const noexcept { return impl_->entry.gid; }
 
 const Qos & Subscription::qos() const noexcept { return impl_->entry.qos; }
 
+Transfer Subscription::transfer() const noexcept { return impl_->entry.transfer; }
+
 const char * Subscription::topic() const noexcept { return impl_->entry.topic; }
 
 const char * Subscription::type() const noexcept { return impl_->entry.type; }
 
-bool Subscription::has_data() const noexcept { return impl_->finder.has_some(); }
+bool Subscription::has_data() const noexcept { return impl_->finder.has_records(); }
 
 Watchers & Subscription::watchers() noexcept { return impl_->header.watchers; }
 
 std::optional<Claim> Subscription::claim() {
   Impl & impl = *impl_;
   impl.membership.require();
-  std::unique_lock<std::mutex> lock(impl.mutex);
+  std::unique_lock<HandoverMutex> lock(impl.mutex);
   const LossTrace losses(impl);
   while (const auto candidate = impl.finder.next()) {
     Source & source = *candidate->source;
@@ -100,7 +102,7 @@ std::optional<Claim> Subscription::claim() {
 uint64_t Subscription::arrivals() const noexcept {
   Impl & impl = *impl_;
   if (impl.finder.has_to_resync()) {
-    const std::lock_guard<std::mutex> lock(impl.mutex);
+    const std::lock_guard<HandoverMutex> lock(impl.mutex);
     impl.finder.resync_if_asked();
   }
   return impl.finder.arrivals();
@@ -135,6 +137,14 @@ void Subscription::Impl::trace_claim(const RecordInfo & info, uint64_t number) n
     tracer.note(
       asked ? TraceKind::request : TraceKind::reply, slot, number,
       static_cast<uint64_t>(info.correlation.number));
+  }
+}
+
+void Subscription::Impl::settle_after_last() noexcept {
+  // Displaced hints alone are counted already.
+  if (counts.is_unsettled() && !finder.has_records()) {
+    const LossTrace losses(*this);
+    finder.settle();
   }
 }
 

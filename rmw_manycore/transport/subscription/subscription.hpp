@@ -6,12 +6,13 @@
 #include <optional>
 
 #include "transport/layout/endpoint.hpp"
+#include "transport/layout/transfer_layout.hpp"
 #include "transport/layout/wake_words.hpp"
 #include "transport/subscription/claim.hpp"
 
 namespace manycore {
 
-/// The reading role: one subscriber queue (capacity = depth) over any number of topic DSMs.
+/// Reading side: one subscriber queue (capacity = depth) over any number of topic DSMs.
 /// Thread-safe.
 class Subscription {
 public:
@@ -21,27 +22,29 @@ public:
 
   const Gid & gid() const noexcept;
   const Qos & qos() const noexcept;
+  Transfer transfer() const noexcept;
   const char * topic() const noexcept;
   const char * type() const noexcept;
 
-  /// True when claim() is worth calling (it may still find nothing: expired or overwritten).
+  /// True if claim() may find a record. It may still find none: the record may be expired or
+  /// overwritten.
   bool has_data() const noexcept;
 
-  /// Those that arrivals wake. At first the process's common word.
+  /// Threads that arrivals wake; initially the process's common word.
   Watchers & watchers() noexcept;
 
-  /// Step 3 of Fig. 4: pops the queue and claims the record in its topic DSM.
+  /// Step 3 of ROS-lite2 Fig. 4: pops the queue and claims the record in its topic DSM.
   std::optional<Claim> claim();
 
-  /// Notifications received since creation (for on_new_message callbacks).
+  /// Notifications since creation (for on_new_message callbacks).
   uint64_t arrivals() const noexcept;
 
-  /// Notifications that wait to be claimed; some may be stale or doubles.
+  /// Notifications not claimed yet; some may be stale or duplicates.
   uint64_t waiting() const noexcept;
 
-  /// Messages that were published for this subscription and are gone (overwritten before taken) or
-  /// were rejected, as far as known: those of a publisher are counted by the time a later one of
-  /// its messages is taken.
+  /// Messages published for this subscription and overwritten before they were taken, or rejected,
+  /// as far as known: the losses of a publisher are counted at the latest when a later message of
+  /// it is taken.
   uint64_t lost() const noexcept;
 
   MatchedCount matched() const;

@@ -6,8 +6,8 @@
 
 namespace manycore::subscription_block {
 
-/// Allocates header and queue of a subscription in its cluster; the caller holds the registry lock.
-/// Throws Error{no_space}.
+/// Allocates header and queue of a subscription in its cluster. The caller holds the registry lock.
+/// Throws Error{no_space|corrupt}.
 SubscriptionHeader & create(Registry & registry, uint32_t endpoint_slot);
 
 }  // namespace manycore::subscription_block

@@ -1,14 +1,14 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <mutex>
-
+#include "platform/handover_mutex.hpp"
 #include "transport/registry/membership.hpp"
 #include "transport/subscription/record_finder.hpp"
 #include "transport/subscription/subscription.hpp"
 
 namespace manycore {
 
+/// State of a subscription in its process; shared state is in the endpoint entry and the header.
 struct Subscription::Impl {
   Impl(Registry & registry_, uint32_t slot_)
   : registry(registry_),
@@ -21,7 +21,10 @@ struct Subscription::Impl {
     finder(registry_, cluster, header, entry, counts) {}
 
   void trace_claim(const RecordInfo & info, uint64_t number) noexcept;
-  /// A finished topic DSM may have waited for this reader only: frees it.
+  /// Called after each message. An executor takes only what is there, so it may never find out by a
+  /// take that nothing is left.
+  void settle_after_last() noexcept;
+  /// Frees a finished topic DSM if it was waiting for this reader only.
   void sweep(uint32_t publisher) noexcept;
 
   Registry & registry;
@@ -30,7 +33,7 @@ struct Subscription::Impl {
   Membership membership;
   Cluster & cluster;
   SubscriptionHeader & header;
-  std::mutex mutex;  ///< held while a claim lives
+  HandoverMutex mutex;  ///< held during the lifetime of a Claim
   ReceptionCounts counts;
   RecordFinder finder;
 };

@@ -8,15 +8,15 @@
 
 namespace manycore {
 
-/// Bytes of a data area that hold a record, or did and are still being read.
+/// Bytes of a data area that hold a record, or held one that a reader still has pinned.
 struct Block {
   uint64_t begin;
   uint64_t end;
   uint64_t number;
 };
 
-/// A publisher's private list of blocks, in the order in which its cursor will meet them. Grows,
-/// never shrinks, so that the steady state allocates nothing.
+/// A publisher's private list of blocks, in the order in which its cursor meets them. The storage
+/// grows and never shrinks, so the steady state allocates nothing.
 class BlockRing {
 public:
   BlockRing() : slots_(64) {}
@@ -45,7 +45,7 @@ public:
     bytes_ -= back().end - back().begin;
     --count_;
   }
-  /// The last block needs less than was set aside for it.
+  /// Reduces the last block to the bytes that its record used.
   void shrink_back(uint64_t end) noexcept {
     bytes_ -= back().end - end;
     back().end = end;

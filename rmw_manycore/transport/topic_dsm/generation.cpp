@@ -5,12 +5,14 @@
 
 namespace manycore {
 
-/// `offset` last: a repairer of the registry goes by it, and then needs the size.
+/// Stores `offset` last: the repair of the registry treats an entry with an offset as allocated,
+/// and needs its size.
 void Generation::reserve(
   Cluster & cluster, GenerationEntry & entry, uint64_t data_bytes, uint64_t count) {
   const uint64_t offset = cluster.reserve(extent_bytes(data_bytes, count));
   entry.descriptor_count.store(static_cast<uint32_t>(count), std::memory_order_relaxed);
   entry.data_bytes.store(data_bytes, std::memory_order_relaxed);
+  entry.kept_pieces.store(0, std::memory_order_relaxed);
   entry.offset.store(offset, std::memory_order_release);
 }
 
@@ -23,18 +25,22 @@ void Generation::open(const Cluster & cluster, GenerationEntry & entry, uint64_t
   entry.first.store(first, std::memory_order_release);
 }
 
-bool Generation::release_some(const Cluster & cluster) noexcept {
-  constexpr uint64_t step_bytes = 512 << 10;  // a quarter of a millisecond
-  const uint64_t all_bytes = entry->extent_bytes();
-  const uint64_t bytes = std::min(step_bytes, all_bytes - released_bytes);
-  cluster.release(entry->offset.load(std::memory_order_relaxed) + released_bytes, bytes);
-  released_bytes += bytes;
-  return released_bytes == all_bytes;
-}
-
-void Generation::free(Cluster & cluster, GenerationEntry & entry) noexcept {
-  cluster.free(entry.offset.load(std::memory_order_relaxed), entry.extent_bytes());
+/// Frees the last piece that is left, so that one store to the entry suffices per piece. The store
+/// comes after the piece was freed: if this process dies in between, repair marks the piece as used
+/// again, because the entry still holds it.
+bool Generation::free_some(Cluster & cluster, GenerationEntry & entry) noexcept {
+  const uint64_t begin = entry.offset.load(std::memory_order_relaxed);
+  const uint64_t bytes = entry.extent_bytes();
+  const bool is_sound = bytes != 0 && cluster.contains(begin, bytes);
+  const uint64_t last_piece = is_sound ? (begin + bytes - 1) / freed_piece_bytes : 0;
+  const uint64_t from = std::max(begin, last_piece * freed_piece_bytes);
+  cluster.free(from, begin + bytes - from);
+  if (from != begin) {
+    entry.kept_pieces.store(static_cast<uint32_t>(last_piece), std::memory_order_release);
+    return false;
+  }
   entry.offset.store(0, std::memory_order_release);
+  return true;
 }
 
 Generation Generation::view(const Cluster & cluster, GenerationEntry & entry) noexcept {
@@ -43,7 +49,7 @@ Generation Generation::view(const Cluster & cluster, GenerationEntry & entry) no
   generation.count = entry.descriptor_count.load(std::memory_order_relaxed);
   const uint64_t offset = entry.offset.load(std::memory_order_relaxed);
   generation.descriptors = cluster.find<RecordDescriptor>(offset);
-  generation.data_offset = offset + generation.count * sizeof(RecordDescriptor);
+  generation.data_offset = entry.data_offset();
   generation.data_bytes = entry.data_bytes.load(std::memory_order_relaxed);
   generation.first = entry.first.load(std::memory_order_relaxed);
   return generation;

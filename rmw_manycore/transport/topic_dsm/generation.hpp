@@ -10,7 +10,7 @@ constexpr uint64_t record_alignment = 64;
 constexpr uint64_t first_data_bytes = 2048;
 constexpr uint64_t first_descriptor_count = 16;
 
-/// Descriptor counts are powers of two.
+/// Rounds up to a descriptor count, which is a power of two.
 constexpr uint64_t power_of_two_at_least(uint64_t x) {
   uint64_t power = 1;
   while (power < x) {
@@ -24,13 +24,13 @@ struct Generation {
   GenerationEntry * entry = nullptr;
   RecordDescriptor * descriptors = nullptr;
   uint64_t count = 0;        ///< of descriptors
-  uint64_t data_offset = 0;  ///< in the cluster segment
+  uint64_t data_offset = 0;  ///< offset in the cluster segment
   uint64_t data_bytes = 0;
   uint64_t first = 0;  ///< number of its first record
-  // Of an old one:
-  uint64_t end = 0;             ///< number behind its last record
-  uint64_t drained_before = 0;  ///< nothing below this number is in it any more
-  uint64_t released_bytes = 0;  ///< given back to the system
+  // Valid in an old generation:
+  uint64_t end = 0;             ///< one past the number of its last record
+  uint64_t drained_before = 0;  ///< records below this number are drained
+  bool is_unread = false;       ///< closed, and no reader reads from it
 
   RecordDescriptor & descriptor(uint64_t number) const noexcept {
     return descriptors[number & (count - 1)];
@@ -39,16 +39,17 @@ struct Generation {
   static constexpr uint64_t extent_bytes(uint64_t data_bytes, uint64_t count) {
     return count * sizeof(RecordDescriptor) + data_bytes;
   }
-  /// Takes SMEM for a generation; the caller holds the registry lock. Throws
+  /// Reserves SMEM for a generation. The caller holds the registry lock. Throws
   /// Error{no_space|corrupt}.
   static void reserve(
     Cluster & cluster, GenerationEntry & entry, uint64_t data_bytes, uint64_t count);
-  /// Backs it with memory, then shows it to readers; needs no lock. Throws Error{no_space}.
+  /// Backs the SMEM with memory, then opens the generation to readers. Needs no lock. Throws
+  /// Error{no_space}.
   static void open(const Cluster & cluster, GenerationEntry & entry, uint64_t first);
-  /// A step of giving the memory back to the system, a few ms at most; true when it was the last.
-  bool release_some(const Cluster & cluster) noexcept;
-  /// Gives the SMEM back, and the memory behind it; the caller holds the registry lock.
-  static void free(Cluster & cluster, GenerationEntry & entry) noexcept;
+  /// Frees one piece of the generation's SMEM and the memory behind it. Returns true when no piece
+  /// is left. The caller holds the registry lock and releases it between pieces. The entry always
+  /// describes what is left, so that any process can continue.
+  static bool free_some(Cluster & cluster, GenerationEntry & entry) noexcept;
   static Generation view(const Cluster & cluster, GenerationEntry & entry) noexcept;
 };
 

@@ -5,17 +5,18 @@
 
 namespace manycore {
 
-/// The newest message of a topic DSM. Some record numbers are skipped, so the two differ.
+/// The newest message of a topic DSM. Record number and sequence number differ because some record
+/// numbers are skipped.
 struct LastPublished {
-  uint64_t number;    ///< of its record
-  uint64_t sequence;  ///< how many messages the publisher has published with it
-  bool exact;  ///< false when the publisher stands still at a moment where the two may not fit
-               ///< together
+  uint64_t number;    ///< record number
+  uint64_t sequence;  ///< publication sequence number
+  /// False when the two may not belong together: the publisher is stopped between its stores.
+  bool exact;
 };
 
-/// The publisher stores `skipped_before`, `last`, `skipped_after` in this order. Read the other way
-/// round, equal outer values mean that `last` was stored under this count. Never waits for a
-/// publisher that was stopped in between.
+/// The publisher stores `skipped_before`, `last`, `skipped_after` in this order. The reader loads
+/// them in the opposite order: if the two outer values are equal, `last` was stored with this
+/// count. Bounded: never waits for a publisher that is stopped between its stores.
 inline LastPublished last_published(const TopicDsmHeader & dsm) noexcept {
   constexpr int tries = 100;
   LastPublished published{};

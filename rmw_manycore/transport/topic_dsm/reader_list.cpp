@@ -2,18 +2,19 @@
 #include "transport/topic_dsm/reader_list.hpp"
 
 #include <algorithm>
+#include <numeric>
 
 #include "transport/topic_dsm/reader_table.hpp"
 
 namespace manycore {
 namespace {
 
-constexpr uint64_t look_again = UINT64_MAX;  ///< no generation
+constexpr uint64_t outdated = UINT64_MAX;  ///< matches no `match_generation`
 
 }  // namespace
 
-/// Acquire, as in ReceiveThread::push_to_readers(): who reads a value of a later reader finds the
-/// generation raised.
+/// Acquire, as in ReceiveThread::push_to_readers(): a process that reads a field of the entry's
+/// next reader also finds `match_generation` incremented.
 Reader ReaderList::resolve(ReaderEntry & entry) {
   Reader reader;
   reader.endpoint = entry.endpoint.load(std::memory_order_acquire);
@@ -43,7 +44,7 @@ Reader ReaderList::resolve(ReaderEntry & entry) {
 void ReaderList::throw_unresolved(const std::string & topic) const {
   throw Error(
     unresolved_->code(),
-    "publish on '" + topic + "': a subscription is out of reach: " + unresolved_->what());
+    "cannot publish on '" + topic + "': cannot reach a subscription: " + unresolved_->what());
 }
 
 void ReaderList::rebuild() {
@@ -60,12 +61,25 @@ void ReaderList::rebuild() {
     });
   } while (dsm_.match_generation.load(std::memory_order_seq_cst) != seen_);
   if (unresolved_) {
-    seen_ = look_again;
+    seen_ = outdated;
   }
-  // Readers of one process stand together, so that it is woken once.
+  // Group readers by process, so that each process is woken once.
   std::sort(readers_.begin(), readers_.end(), [](const Reader & a, const Reader & b) {
     return a.wake < b.wake;
   });
+  by_gid_.resize(readers_.size());
+  std::iota(by_gid_.begin(), by_gid_.end(), 0);
+  std::sort(by_gid_.begin(), by_gid_.end(), [this](uint32_t a, uint32_t b) {
+    return readers_[a].gid < readers_[b].gid;
+  });
+}
+
+Readers ReaderList::with_gid(const Gid & gid) const noexcept {
+  const auto found = std::lower_bound(
+    by_gid_.begin(), by_gid_.end(), gid,
+    [this](uint32_t index, const Gid & wanted) { return readers_[index].gid < wanted; });
+  const bool is_there = found != by_gid_.end() && readers_[*found].gid == gid;
+  return is_there ? Readers(&readers_[*found], 1) : Readers(nullptr, 0);
 }
 
 }  // namespace manycore

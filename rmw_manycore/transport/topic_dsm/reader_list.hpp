@@ -12,7 +12,7 @@
 
 namespace manycore {
 
-/// One reader of the own topic DSM, resolved to addresses of this process.
+/// One reader of the publisher's own topic DSM, resolved to addresses in this process.
 struct Reader {
   SourceEntry * source = nullptr;
   SubscriptionHeader * subscription = nullptr;
@@ -24,37 +24,55 @@ struct Reader {
   bool reliable = false;
   Gid gid{};
 
+  /// seq_cst: a waiting publisher loads the state after it stored `writer_waits` (see
+  /// notify_waiting_publisher()).
   bool active() const noexcept {
-    return source->state.load(std::memory_order_acquire) == SourceState::active;
+    return source->state.load(std::memory_order_seq_cst) == SourceState::active;
   }
 };
 
-/// A publisher's private copy of its reader table, renewed when the table changes. The addresses in
-/// it are good while the publisher's phase is odd (see docs/design/topic_dsm.md, Freeing).
+/// Consecutive readers of a ReaderList, valid until it is rebuilt.
+class Readers {
+public:
+  Readers(const Reader * first, size_t count) noexcept : first_(first), count_(count) {}
+
+  const Reader * begin() const noexcept { return first_; }
+  const Reader * end() const noexcept { return first_ + count_; }
+  size_t size() const noexcept { return count_; }
+
+private:
+  const Reader * first_;
+  size_t count_;
+};
+
+/// A publisher's private copy of its reader table, rebuilt when the table changes. Its addresses
+/// are valid while the publisher's phase is odd (see docs/design/freeing.md).
 class ReaderList {
 public:
   ReaderList(Registry & registry, Cluster & cluster, TopicDsmHeader & dsm) noexcept
   : registry_(registry), cluster_(cluster), dsm_(dsm) {}
 
-  /// Renews the copy if the table changed. The load is seq_cst: it must not move before the
-  /// caller's preceding seq_cst store of `phase`, `number` or `last`.
+  /// Rebuilds the copy if the table changed. The load is seq_cst: it must not be reordered before
+  /// the caller's preceding seq_cst store of `phase`, `number` or `last`.
   void refresh() {
     if (dsm_.match_generation.load(std::memory_order_seq_cst) != seen_) {
       rebuild();
     }
   }
 
-  const std::vector<Reader> & readers() const noexcept { return readers_; }
+  Readers all() const noexcept { return {readers_.data(), readers_.size()}; }
+  /// The reader with this gid, or none. Takes O(log readers): a server has one reader per client.
+  Readers with_gid(const Gid & gid) const noexcept;
 
-  /// Throws Error{system|permission|corrupt} naming the topic when a reader cannot be resolved.
+  /// Throws Error{system|permission|corrupt} naming the topic if a reader cannot be resolved.
   void require_all(const char * topic) const {
     if (unresolved_) {
       throw_unresolved(topic);
     }
   }
 
-  /// True while some reader holds a claim on record `number`, or may: the claims of one that cannot
-  /// be resolved are not to be seen.
+  /// True while a reader has, or may have, a claim on record `number`. The claims of a reader that
+  /// cannot be resolved are invisible, so it may have one on any record.
   bool is_pinned(uint64_t number) const noexcept {
     if (unresolved_) {
       return true;
@@ -67,7 +85,7 @@ public:
     return false;
   }
 
-  /// True while some reader holds a claim on a record in [first, last], or scans, or may.
+  /// True while a reader scans, or has or may have a claim on a record in [first, last].
   bool is_any_pinned(uint64_t first, uint64_t last) const noexcept {
     if (unresolved_) {
       return true;
@@ -84,14 +102,15 @@ public:
 private:
   [[noreturn]] void throw_unresolved(const std::string & topic) const;
   void rebuild();
-  /// Throws Error: its cluster cannot be mapped, or its entry leads nowhere.
+  /// Throws Error if the cluster cannot be mapped or the entry is invalid.
   Reader resolve(ReaderEntry & entry);
 
   Registry & registry_;
   Cluster & cluster_;
   TopicDsmHeader & dsm_;
-  uint64_t seen_ = 0;  ///< `match_generation` of the copy
+  uint64_t seen_ = 0;  ///< value of `match_generation` when copied
   std::vector<Reader> readers_;
+  std::vector<uint32_t> by_gid_;     ///< indices of readers_, ordered by gid
   std::optional<Error> unresolved_;  ///< why a reader is missing from the copy
 };
 

@@ -9,14 +9,14 @@
 
 namespace manycore {
 
-/// Readers that the header has no room for; their indices go on after those in the header.
+/// Readers beyond those in the header; their indices continue after readers_in_header.
 inline EntryTable<ReaderEntry> further_readers(
   const Cluster & cluster, TopicDsmHeader & dsm) noexcept {
   return {cluster, dsm.further_readers};
 }
 
-/// Calls `visit(ReaderEntry &, index)` for each entry of a topic DSM's reader table from index
-/// `from` on, used or not, until it returns true.
+/// Calls `visit(ReaderEntry &, index)` for each entry from index `from` on, used or free, until it
+/// returns true.
 template<typename Visit>
 void visit_reader_table(
   const Cluster & cluster, TopicDsmHeader & dsm, Visit visit, uint32_t from = 0) {
@@ -31,6 +31,7 @@ void visit_reader_table(
       [&](ReaderEntry & entry, uint32_t i) { return visit(entry, i + readers_in_header); });
 }
 
+/// Index of an entry of this reader table; nothing for any other entry.
 inline std::optional<uint32_t> index_of_reader(
   const Cluster & cluster, TopicDsmHeader & dsm, const ReaderEntry & reader) noexcept {
   if (&reader >= dsm.readers && &reader < dsm.readers + readers_in_header) {
@@ -40,7 +41,7 @@ inline std::optional<uint32_t> index_of_reader(
   return index ? std::optional(*index + readers_in_header) : std::nullopt;
 }
 
-/// Frees an entry; the caller holds the registry lock.
+/// Frees an entry. The caller holds the registry lock.
 inline void free_reader_entry(
   const Cluster & cluster, TopicDsmHeader & dsm, ReaderEntry & reader) noexcept {
   const uint32_t index = index_of_reader(cluster, dsm, reader).value_or(0);
@@ -48,7 +49,7 @@ inline void free_reader_entry(
   reader.active.store(0, std::memory_order_release);
 }
 
-/// As visit_reader_table, active entries only, no early end.
+/// Calls `visit(ReaderEntry &)` for each active entry.
 template<typename Visit>
 void for_each_reader(const Cluster & cluster, TopicDsmHeader & dsm, Visit visit) {
   visit_reader_table(cluster, dsm, [&](ReaderEntry & entry, uint32_t) {

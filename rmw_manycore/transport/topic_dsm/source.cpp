@@ -6,12 +6,13 @@
 #include "platform/clock.hpp"
 #include "transport/queue/displaced.hpp"
 #include "transport/topic_dsm/last_published.hpp"
+#include "transport/topic_dsm/waiting_publisher.hpp"
 
 namespace manycore {
 namespace {
 
-/// By number; and no timestamp before an earlier record's, so that merging sources keeps each one's
-/// order even where the clock was set back.
+/// Sorts by number and makes timestamps monotonic, so that merging sources by timestamp keeps the
+/// order of each source even if CLOCK_REALTIME was set back.
 void order(std::vector<Source::Waiting> & all, ptrdiff_t begin) {
   using Waiting = Source::Waiting;
   std::sort(all.begin() + begin, all.end(), [](const Waiting & a, const Waiting & b) {
@@ -33,6 +34,7 @@ Source::Source(Registry & registry, SourceEntry & entry, Use use, EndpointEntry 
   subscription_(&subscription) {
   const SegmentRef ref{entry.topic_dsm.load(std::memory_order_relaxed)};
   cluster_ = registry.clusters().find(ref.cluster());
+  own_cluster_ = registry.clusters().find(subscription.cluster);
   dsm_ = registry.clusters().find<TopicDsmHeader>(ref);
 }
 
@@ -41,8 +43,9 @@ bool Source::is_given_up(uint64_t number) const noexcept {
          Displaced::covers(entry_->displaced, incarnation_, number);
 }
 
-/// The latest published with these low bits: what a queue holds is younger than a period, however
-/// long nothing was taken. Where nothing was published with them it wraps to more than `latest`.
+/// The newest published number with these low bits. A queued hint is less than one period (2^28)
+/// old, however long nothing was taken. If no number with these bits was published, the result
+/// wraps and is greater than `latest`.
 uint64_t Source::full_number(uint64_t low_bits, uint64_t latest) noexcept {
   constexpr uint64_t period = uint64_t{1} << 28;
   return latest - ((latest - low_bits) & (period - 1));
@@ -52,7 +55,7 @@ std::optional<uint64_t> Source::published_number(uint64_t low_bits) noexcept {
   std::optional<uint64_t> number;
   entry_->reading.store(every_record, std::memory_order_seq_cst);
   if (may_look()) {
-    const uint64_t latest = last();  // once: it rises meanwhile
+    const uint64_t latest = last();  // load once: it increases concurrently
     number = full_number(low_bits, latest);
     if (*number > latest) {
       number.reset();
@@ -62,9 +65,10 @@ std::optional<uint64_t> Source::published_number(uint64_t low_bits) noexcept {
   return number;
 }
 
-/// Dekker with retire(): `first` is loaded after `reading` is stored, both seq_cst, so a generation
-/// that holds `number` and is still open here is not given back before the claim ends. One that is
-/// chosen because a younger one was closed meanwhile is protected if it is open after that.
+/// Dekker with retire(): `first` is loaded after `reading` is stored, both seq_cst. A generation
+/// that holds `number` and is still open here is therefore not freed before the claim ends. If this
+/// generation was chosen because a younger one was closed concurrently, it is protected if it is
+/// still open in the second load.
 const GenerationEntry * Source::generation_of(uint64_t number) const noexcept {
   const GenerationEntry * best = nullptr;
   uint64_t best_first = 0;
@@ -94,7 +98,7 @@ bool Source::is_for_us(const RecordDescriptor & record) const noexcept {
          record.correlation.client == subscription_->gid;
 }
 
-/// The shorter of the publisher's lifespan and the subscription's counts.
+/// The shorter lifespan of publisher and subscription applies.
 bool Source::is_expired(const RecordDescriptor & record) const noexcept {
   const int64_t lifespan_ns = std::min(dsm_->lifespan_ns, subscription_->qos.lifespan_ns);
   return lifespan_ns != infinite_ns &&
@@ -106,10 +110,10 @@ bool Source::may_look() const noexcept {
          entry_->incarnation.load(std::memory_order_seq_cst) == incarnation_;
 }
 
-/// Dekker with take_back(): `reading` is stored before `number` is loaded, both seq_cst, so either
-/// the publisher sees the claim and leaves the bytes alone, or the number is gone here. The same
-/// with revoke() and the source's state: nothing of the topic DSM is touched unless the state was
-/// still `active` after the store.
+/// Dekker with reclaim(): `reading` is stored before `number` is loaded, both seq_cst, so either
+/// the publisher sees the claim and leaves the bytes alone, or this reader sees that the number is
+/// gone. The same holds for revoke() and the state of the source: the topic DSM is accessed only if
+/// the state is still `active` after the store.
 Source::ClaimResult Source::claim(uint64_t number, View & view) noexcept {
   entry_->reading.store(number, std::memory_order_seq_cst);
   if (!may_look()) {
@@ -131,9 +135,11 @@ Source::ClaimResult Source::look_at(uint64_t number, View & view) noexcept {
     return ClaimResult::gone;
   }
   RecordDescriptor & record = descriptors.begin[number & (descriptors.count - 1)];
-  if (
-    record.number.load(std::memory_order_seq_cst) != number ||
-    !cluster_->contains(record.offset, record.size_bytes)) {
+  if (record.number.load(std::memory_order_seq_cst) != number) {
+    return ClaimResult::gone;
+  }
+  const uint8_t * const data = data_of(*generation, record, number);
+  if (data == nullptr) {
     return ClaimResult::gone;
   }
   if (!is_for_us(record)) {
@@ -145,13 +151,13 @@ Source::ClaimResult Source::look_at(uint64_t number, View & view) noexcept {
     return ClaimResult::expired;
   }
   view.record = &record;
-  view.data = cluster_->find<uint8_t>(record.offset, record.size_bytes);
+  view.data = data;
   return ClaimResult::claimed;
 }
 
-/// `reading` last: once it is empty the topic DSM may be freed. The publisher waits for `taken`
-/// only, so it is told in time (seq_cst: it raises `writer_waits` before it looks at `taken` once
-/// more).
+/// Stores `reading` last: once it is empty, the topic DSM may be freed. The publisher waits for
+/// `taken` only, so it is notified before that. `taken` is stored seq_cst: the publisher sets
+/// `writer_waits` before it loads `taken` again.
 bool Source::release(uint64_t number) noexcept {
   if (number > entry_->taken.load(std::memory_order_relaxed)) {
     entry_->taken.store(number, std::memory_order_seq_cst);
@@ -159,15 +165,15 @@ bool Source::release(uint64_t number) noexcept {
   if (number > noted_) {
     noted_ = number;
   }
-  tell_waiting_publisher();
+  notify_waiting_publisher(*dsm_);
   const bool finished = is_finished();
-  if (finished) {  // the last look at it
+  if (finished) {  // last access to the topic DSM
     const LastPublished published = last_published(*dsm_);
     if (published.exact) {
       count_missing(published.sequence);
     }
   }
-  // seq_cst: revoke() stores the state before it looks at `reading`.
+  // seq_cst: revoke() stores the state before it loads `reading`.
   entry_->reading.store(no_record, std::memory_order_seq_cst);
   return finished || entry_->state.load(std::memory_order_seq_cst) == SourceState::revoked;
 }
@@ -180,26 +186,41 @@ void Source::skip(uint64_t number) noexcept {
   entry_->reading.store(no_record, std::memory_order_release);
 }
 
-void Source::tell_waiting_publisher() noexcept {
-  if (dsm_->writer_waits.load(std::memory_order_seq_cst) != 0) {
-    dsm_->progress.fetch_add(1, std::memory_order_seq_cst);
-    futex_wake_all(dsm_->progress);
+uint64_t Source::last() const noexcept {
+  if (is_transferred()) {
+    const Landing here = landing();
+    return here ? here.arrived() : no_record;
   }
+  return dsm_->last.load(std::memory_order_seq_cst);
 }
 
-uint64_t Source::last() const noexcept { return dsm_->last.load(std::memory_order_seq_cst); }
+const uint8_t * Source::data_of(
+  const GenerationEntry & generation, const RecordDescriptor & record,
+  uint64_t number) const noexcept {
+  if (!is_transferred()) {
+    return cluster_->find<uint8_t>(record.offset, record.size_bytes);
+  }
+  const Landing here = landing();
+  const RecordPlace place{record.offset - generation.data_offset(), record.size_bytes};
+  return here && here.has(number) ? here.find(place) : nullptr;
+}
 
-/// Holds one record after the other, so that a scan that is stopped costs one record like any
-/// claim. The generation is held all the time: each value of `reading` is inside it.
+/// Pins one record after the other, so a reader stopped in a scan costs one record, like any claim.
+/// The generation stays pinned throughout: each value of `reading` is a record in it, or
+/// every_record.
 void Source::scan(
   const GenerationEntry & generation, uint64_t last, std::vector<Waiting> & out) noexcept {
   entry_->reading.store(every_record, std::memory_order_seq_cst);
   const bool open = generation.first.load(std::memory_order_seq_cst) != 0;
   const Descriptors descriptors = open ? descriptors_of(generation) : Descriptors{};
+  const bool must_arrive = is_transferred();
+  const Landing here = must_arrive ? landing() : Landing();
   for (uint64_t i = 0; i < descriptors.count; ++i) {
     RecordDescriptor & record = descriptors.begin[i];
     const uint64_t number = record.number.load(std::memory_order_relaxed);
-    if (number <= noted_ || number > last || is_given_up(number)) {
+    if (
+      number <= noted_ || number > last || is_given_up(number) ||
+      (must_arrive && !(here && here.has(number)))) {
       continue;
     }
     entry_->reading.store(number, std::memory_order_seq_cst);
@@ -214,17 +235,19 @@ void Source::list_waiting(std::vector<Waiting> & out) noexcept {
   const auto own_part = static_cast<ptrdiff_t>(out.size());
   entry_->reading.store(every_record, std::memory_order_seq_cst);
   if (may_look()) {
-    const uint64_t last = dsm_->last.load(std::memory_order_seq_cst);
-    for (const GenerationEntry & generation : dsm_->generations) {
-      scan(generation, last, out);
+    // Most sources have no new record: a subscription resyncs for each publisher that joins.
+    if (const uint64_t last = this->last(); last > noted_) {
+      for (const GenerationEntry & generation : dsm_->generations) {
+        scan(generation, last, out);
+      }
+      noted_ = last;
     }
-    noted_ = std::max(noted_, last);
   }
   entry_->reading.store(no_record, std::memory_order_release);
   order(out, own_part);
 }
 
-/// Sequence numbers count the replies to all clients: see ReceptionCounts::count_lost_replies().
+/// Sequence numbers count the replies to all clients; see ReceptionCounts::count_lost_replies().
 void Source::count_missing(uint64_t last_sequence) noexcept {
   const uint64_t missing = account_for(last_sequence);
   if (missing != 0 && static_cast<EndpointRole>(dsm_->role) != EndpointRole::reply) {
@@ -241,19 +264,30 @@ uint64_t Source::account_for(uint64_t last_sequence) noexcept {
   return last_sequence - before;
 }
 
-bool Source::settle() noexcept {
-  bool settled = false;
+/// Where records are transferred, some up to `published` may be on their way.
+bool Source::is_known(uint64_t published, uint64_t known) const noexcept {
+  if (!is_transferred()) {
+    return published <= known;
+  }
+  const Landing here = landing();
+  return here && here.is_settled(published, known);
+}
+
+Source::Settled Source::settle() noexcept {
+  Settled settled = Settled::no;
   entry_->reading.store(every_record, std::memory_order_seq_cst);
   if (may_look()) {
     const LastPublished published = last_published(*dsm_);
     const std::optional<uint64_t> displaced = Displaced::read(entry_->displaced, incarnation_);
     const uint64_t known = displaced ? std::max(noted_, full_number(*displaced, last())) : noted_;
-    settled = published.exact && published.number <= known;
-    if (settled) {
+    if (published.exact && is_known(published.number, known)) {
       count_missing(published.sequence);
-      release(
-        published
-          .number);  // what was counted as lost may not be found by a later look at the topic DSM
+      const bool was_finished = is_finished();
+      // Records counted as lost must not be found by a later scan.
+      const bool is_over = release(published.number);
+      // Revoked meanwhile: this look may have stood in a sweeper's way.
+      const bool is_revoked = entry_->state.load(std::memory_order_seq_cst) == SourceState::revoked;
+      settled = is_over && (!was_finished || is_revoked) ? Settled::finished : Settled::yes;
     }
   }
   entry_->reading.store(no_record, std::memory_order_release);

@@ -7,20 +7,21 @@
 #include "transport/layout/subscription_layout.hpp"
 #include "transport/layout/topic_dsm_layout.hpp"
 #include "transport/registry/registry.hpp"
+#include "transport/transfer/landing.hpp"
 
 namespace manycore {
 
-/// A topic DSM as one subscription sees it: finds, claims and releases records. One thread at a
-/// time (the subscription's mutex). See docs/design/topic_dsm.md, Take.
+/// A topic DSM as seen by one subscription: finds, claims and releases records. Used by one thread
+/// at a time (the subscription's mutex). See docs/design/topic_dsm.md, Take.
 class Source {
 public:
-  /// Which use of which entry of the source table.
+  /// An entry of the source table and its incarnation.
   struct Use {
     uint32_t index;
     uint32_t incarnation;
   };
-  /// Nullptr-like (operator bool) when the source leads nowhere.
-  /// `subscription` has the gid, and the count of lost messages.
+  /// `subscription` provides the gid and the counter of lost messages. The result is false
+  /// (operator bool) if the entry leads nowhere.
   Source(Registry & registry, SourceEntry & entry, Use use, EndpointEntry & subscription);
 
   explicit operator bool() const noexcept { return dsm_ != nullptr; }
@@ -30,14 +31,13 @@ public:
     return &entry == entry_ && entry.incarnation.load() == incarnation_;
   }
 
-  /// Highest record number that needs no further look: taken, or in the backlog.
+  /// Highest record number that is taken or in the backlog.
   uint64_t noted() const noexcept { return noted_; }
-  /// A reply whose hint was displaced: counted as lost, and not to be delivered any more. Missing
-  /// messages of other roles are counted by their sequence numbers, so those may still be
-  /// delivered.
+  /// True for a reply whose hint was displaced: it is counted as lost and must not be delivered any
+  /// more. Messages of other roles are counted by sequence number, so they may still be delivered.
   bool is_given_up(uint64_t number) const noexcept;
-  /// The full number of which a hint carries the low 28 bits; nothing when no such record was
-  /// published, or the topic DSM may be gone.
+  /// Full number of a record from the low 28 bits in a hint. Nothing if no such record was
+  /// published, or the topic DSM may be freed.
   std::optional<uint64_t> published_number(uint64_t low_bits) noexcept;
 
   enum class ClaimResult { claimed, gone, not_ours, expired };
@@ -45,12 +45,12 @@ public:
     const RecordDescriptor * record = nullptr;
     const uint8_t * data = nullptr;
   };
-  /// On `claimed`, release() must follow; any other result has released already.
+  /// After `claimed` the caller must call release(); every other result has released already.
   ClaimResult claim(uint64_t number, View & view) noexcept;
-  /// Ends a claim: everything up to `number` is done for this reader. True when the publisher is
-  /// gone and its topic DSM may have waited for this reader only.
+  /// Ends a claim: the reader is done with all records up to `number`. True if the publisher is
+  /// gone and its topic DSM may have been waiting for this reader only.
   bool release(uint64_t number) noexcept;
-  /// The same without a claim.
+  /// Like release(), without a claim.
   void skip(uint64_t number) noexcept;
   uint64_t taken() const noexcept { return entry_->taken.load(std::memory_order_relaxed); }
 
@@ -60,12 +60,18 @@ public:
     uint32_t source;
     uint32_t incarnation;  ///< of the source
   };
-  /// Step of a resync: appends the live records above noted() to `out`, in order, and notes them.
+  /// Step of a resync: appends the live records above noted() to `out` in order, and raises
+  /// noted().
   void list_waiting(std::vector<Waiting> & out) noexcept;
 
-  /// With no hint and no backlog left: counts what was lost since the last message accounted for.
-  /// False while a hint is on its way.
-  bool settle() noexcept;
+  enum class Settled : uint8_t {
+    no,  ///< a hint may still be on its way, or the source was revoked
+    yes,
+    finished,  ///< and its topic DSM, whose publisher is gone, waits for this reader no more
+  };
+  /// Counts what was lost since the last message accounted for. Called when queue and backlog are
+  /// empty.
+  Settled settle() noexcept;
 
   const Gid & publisher() const noexcept { return dsm_->gid; }
   uint32_t publisher_process() const noexcept { return dsm_->process; }
@@ -74,34 +80,46 @@ public:
   }
 
 private:
-  /// Of one generation; empty where the entry leads nowhere.
+  /// Descriptors of one generation; empty if its entry is invalid.
   struct Descriptors {
     RecordDescriptor * begin = nullptr;
     uint64_t count = 0;
   };
 
   static uint64_t full_number(uint64_t low_bits, uint64_t latest) noexcept;
-  /// Highest record number published; under a claim.
+  /// True if records reach this subscription in a landing. Requires a claim, as does landing().
+  bool is_transferred() const noexcept {
+    return dsm_->transfer != static_cast<uint8_t>(Transfer::dsm) && cluster_ != own_cluster_;
+  }
+  Landing landing() const noexcept {
+    return own_cluster_ == nullptr ? Landing() : Landing::of(*cluster_, *dsm_, *own_cluster_);
+  }
+  /// The bytes of a record; nullptr if they are out of bounds or have not arrived.
+  const uint8_t * data_of(
+    const GenerationEntry & generation, const RecordDescriptor & record,
+    uint64_t number) const noexcept;
+  /// Highest record number published, or, where transferred, arrived. Requires a claim.
   uint64_t last() const noexcept;
-  /// The generation that holds `number`, or nullptr.
+  /// True if no record up to `published` needs a look, given all up to `known` had one.
+  bool is_known(uint64_t published, uint64_t known) const noexcept;
+  /// The open generation that holds `number`, or nullptr.
   const GenerationEntry * generation_of(uint64_t number) const noexcept;
   ClaimResult look_at(uint64_t number, View & view) noexcept;
   Descriptors descriptors_of(const GenerationEntry & generation) const noexcept;
   bool is_for_us(const RecordDescriptor & record) const noexcept;
   bool is_expired(const RecordDescriptor & record) const noexcept;
-  /// The source is still this one, and open: to be asked after storing `reading`.
+  /// True if the source is active and of the same incarnation. Call after storing `reading`.
   bool may_look() const noexcept;
   void scan(const GenerationEntry & generation, uint64_t last, std::vector<Waiting> & out) noexcept;
-  /// Counts messages up to this publication sequence number as lost where they are not accounted
-  /// for.
+  /// Counts messages up to this publication sequence number as lost, unless they are accounted for.
   void count_missing(uint64_t last_sequence) noexcept;
-  /// Raises SourceEntry::accounted; by how much.
+  /// Raises SourceEntry::accounted; returns by how much.
   uint64_t account_for(uint64_t last_sequence) noexcept;
-  /// The publisher is gone and everything it left has been taken.
+  /// True if the publisher is gone and everything it left is taken.
   bool is_finished() const noexcept;
-  void tell_waiting_publisher() noexcept;
 
   Cluster * cluster_ = nullptr;
+  Cluster * own_cluster_ = nullptr;
   TopicDsmHeader * dsm_ = nullptr;
   SourceEntry * entry_;
   uint32_t index_;

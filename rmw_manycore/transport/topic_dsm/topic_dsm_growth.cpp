@@ -1,5 +1,5 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-// The part of TopicDsmWriter that adds generations and gives old ones back.
+// Part of TopicDsmWriter: adds generations and frees old ones.
 
 #include <algorithm>
 #include <utility>
@@ -12,15 +12,16 @@ namespace {
 
 constexpr uint64_t descriptor_limit = 1 << 16;
 constexpr uint64_t many_bytes = 16 << 20;
-constexpr uint64_t least_worth_bytes = 16 << 10;  ///< a smaller ring does not shrink
+constexpr int pieces_per_message = 8;               ///< freed: about 0.25 ms
+constexpr uint64_t min_shrinking_bytes = 16 << 10;  ///< smaller rings do not shrink
 
 uint64_t half_as_much_again(uint64_t bytes) { return align_up(bytes * 3 / 2, record_alignment); }
 
 }  // namespace
 
-/// Takes back what no reader wants in an old generation, from its oldest record to the first that
-/// is wanted; true when nothing is left. A deep history is so looked at once, and not at each
-/// publish.
+/// Takes back the records of an old generation that no reader wants, from the oldest to the first
+/// wanted one. True when none is left. `drained_before` keeps the position, so a deep history is
+/// checked once, not once per publish.
 bool TopicDsmWriter::drain(Generation & old) {
   for (; old.drained_before < old.end; ++old.drained_before) {
     const uint64_t number = old.drained_before;
@@ -36,55 +37,65 @@ bool TopicDsmWriter::drain(Generation & old) {
   return true;
 }
 
-/// Closes an old generation once nothing is left in it; true when no reader looks into it any more.
-/// Under the lock: a sweeper that holds it may look as well.
+/// Closes an old generation once it is drained. True when no reader accesses it any more. The
+/// registry lock is required to close it, because a sweeper that holds the lock may be reading it.
 bool TopicDsmWriter::retire(Generation & old) {
+  if (old.is_unread) {
+    return true;
+  }
   if (old.entry->first.load(std::memory_order_relaxed) != 0) {
     if (!drain(old)) {
       return false;
     }
     const Registry::Lock lock(registry_, Registry::Lock::no_wait_ns);
-    // Dekker with the claim: the reader stores `reading` before it loads `first`. A reader that
-    // joined just now counts too, so the list is renewed after the store.
+    // Dekker with the claim: the reader stores `reading` before it loads `first`. Rebuild the
+    // reader list after the store, so that a reader that has just joined is checked as well.
     old.entry->first.store(0, std::memory_order_seq_cst);
   }
   readers_.refresh();
-  // A reader that looks for a record of a younger generation, closed by now, may have come to this
-  // one.
-  return !readers_.is_any_pinned(old.first, current_.first - 1);
+  // A reader that looked for a record of a younger generation, closed since, may have arrived at
+  // this one.
+  old.is_unread = !readers_.is_any_pinned(old.first, current_.first - 1);
+  return old.is_unread;
 }
 
-/// The memory goes back to the system a step at each message, and then the SMEM to the cluster.
-/// Under the lock, which a killed process gives back only when its system call has ended: it makes
-/// no hole where the memory is another's by then.
+/// Frees some pieces per message: returns the SMEM to the cluster and the memory to the system.
+/// Frees each piece under the registry lock: a killed process releases the lock only after its
+/// system call has completed, so it cannot punch a hole in memory that meanwhile belongs to another
+/// process.
 void TopicDsmWriter::free_old_generations() noexcept {
   try {
     for (size_t i = 0; i < old_.size();) {
-      Generation & old = old_[i];
-      if (!retire(old)) {
+      if (retire(old_[i]) && free_some_of(*old_[i].entry)) {
+        old_.erase(old_.begin() + static_cast<ptrdiff_t>(i));
+      } else {
         ++i;
-        continue;
       }
-      const Registry::Lock lock(registry_, Registry::Lock::no_wait_ns);
-      if (!old.release_some(cluster_)) {
-        ++i;
-        continue;
-      }
-      Generation::free(cluster_, *old.entry);
-      old_.erase(old_.begin() + static_cast<ptrdiff_t>(i));
     }
   } catch (const Error &) {
-    // Another process holds the registry lock: the next publish tries again.
+    // Another process holds the registry lock; the next publish tries again.
   }
+}
+
+/// Stops when another process waits for the registry lock.
+bool TopicDsmWriter::free_some_of(GenerationEntry & entry) {
+  bool is_free = false;
+  bool is_waited_for = false;
+  for (int piece = 0; piece < pieces_per_message && !is_free && !is_waited_for; ++piece) {
+    const Registry::Lock lock(registry_, Registry::Lock::no_wait_ns);
+    is_free = Generation::free_some(cluster_, entry);
+    is_waited_for = registry_.header().mutex.is_waited_for();
+  }
+  return is_free;
 }
 
 uint64_t TopicDsmWriter::data_limit() const noexcept {
   return endpoint_.topic_dsm_size != 0 ? current_.data_bytes : cluster_.size() / 2;
 }
 
-/// Of a message that needs the room, or would displace another, more would be lost than time, so
-/// the lock is waited for while its owners run. A process that stands still holding it must not
-/// hold up each record, nor each publish: no hold is waited for twice.
+/// A message that would be refused, or would displace another one, is worth more than the time to
+/// wait for the lock, so wait while its owners run. A stopped owner must not delay each record, nor
+/// each publish: the same hold is waited for only once.
 Registry::Lock TopicDsmWriter::lock_to_grow() {
   if (registry_.header().changes.load() == waited_for_) {
     return Registry::Lock(registry_, Registry::Lock::no_wait_ns);
@@ -100,7 +111,7 @@ Registry::Lock TopicDsmWriter::lock_to_grow() {
 void TopicDsmWriter::reserve_generation(
   GenerationEntry & entry, uint64_t data_bytes, uint64_t descriptor_count) {
   const uint64_t extent = Generation::extent_bytes(data_bytes, descriptor_count);
-  if (extent <= current_.entry->extent_bytes()) {  // a smaller one makes room in the end
+  if (extent <= current_.entry->extent_bytes()) {  // shrinking releases memory in the end
     const Registry::Lock lock(registry_, Registry::Lock::no_wait_ns);
     Generation::reserve(cluster_, entry, data_bytes, descriptor_count);
     return;
@@ -110,8 +121,8 @@ void TopicDsmWriter::reserve_generation(
   Generation::reserve(cluster_, entry, data_bytes, descriptor_count);
 }
 
-/// Without the lock, which others want meanwhile. The entry holds the reservation, for a reaper to
-/// undo.
+/// Without the registry lock, so that other processes can take it. If this process dies, the reaper
+/// finds the reservation in the entry.
 void TopicDsmWriter::open_generation(GenerationEntry & entry) {
   try {
     if (entry.extent_bytes() > current_.entry->extent_bytes()) {
@@ -124,11 +135,13 @@ void TopicDsmWriter::open_generation(GenerationEntry & entry) {
   }
 }
 
-/// Where the lock is not to be had it counts as an old generation, without records.
+/// If the lock is not available, the entry is kept as an old generation without records.
 void TopicDsmWriter::free_unopened(GenerationEntry & entry) {
   try {
-    const Registry::Lock lock(registry_, Registry::Lock::short_wait_ns);
-    Generation::free(cluster_, entry);
+    for (bool is_free = false; !is_free;) {
+      const Registry::Lock lock(registry_, Registry::Lock::short_wait_ns);
+      is_free = Generation::free_some(cluster_, entry);
+    }
   } catch (const Error &) {
     old_.push_back(Generation::view(cluster_, entry));
     old_.back().first = next_number_;
@@ -147,7 +160,7 @@ bool TopicDsmWriter::add_generation(uint64_t data_bytes, uint64_t descriptor_cou
   const bool larger = data_bytes > current_.data_bytes || descriptor_count > current_.count;
   if (
     endpoint_.topic_dsm_size != 0 || !larger || data_bytes > data_limit() ||
-    descriptor_count > most_descriptors() || !start_generation(data_bytes, descriptor_count)) {
+    descriptor_count > max_descriptors() || !start_generation(data_bytes, descriptor_count)) {
     return false;
   }
   demand_.note_grown();
@@ -162,9 +175,9 @@ bool TopicDsmWriter::start_generation(uint64_t data_bytes, uint64_t descriptor_c
     return false;
   }
   if (next_number_ == current_.first) {
-    ++next_number_;  // a reader tells generations apart by their first numbers
+    ++next_number_;  // readers tell generations apart by their first numbers
   }
-  // Without memory for these nothing is begun: readers would look where no record goes.
+  // Allocate before anything changes: readers would look into a generation that gets no record.
   std::vector<uint64_t> pinned(descriptor_count, no_record);
   old_.reserve(old_.size() + 1);
   reserve_generation(*free_entry, data_bytes, descriptor_count);
@@ -179,8 +192,8 @@ bool TopicDsmWriter::start_generation(uint64_t data_bytes, uint64_t descriptor_c
   return true;
 }
 
-/// Twice of what was used, if that is half of what there is: a ring that is in use as it was for
-/// the last messages neither grows nor shrinks.
+/// New size: twice the peak usage, if that is at most half of the present size. A ring whose usage
+/// stays the same neither grows nor shrinks.
 void TopicDsmWriter::shrink(uint64_t need_bytes) noexcept {
   demand_.note(blocks_.size() + 1, blocks_.bytes() + need_bytes);
   const uint64_t bytes = std::max(first_data_bytes, 2 * demand_.bytes());
@@ -189,7 +202,7 @@ void TopicDsmWriter::shrink(uint64_t need_bytes) noexcept {
   demand_.start_over();
   const uint64_t extent = current_.entry->extent_bytes();
   if (
-    endpoint_.topic_dsm_size != 0 || !old_.empty() || extent < least_worth_bytes ||
+    endpoint_.topic_dsm_size != 0 || !old_.empty() || extent < min_shrinking_bytes ||
     Generation::extent_bytes(bytes, records) > extent / 2) {
     return;
   }
@@ -198,18 +211,20 @@ void TopicDsmWriter::shrink(uint64_t need_bytes) noexcept {
       demand_.note_shrunk();
     }
   } catch (const std::exception &) {
-    // The registry is locked, or there is no room for both: it is tried again.
+    // The registry is locked, or there is no room for both generations. A later publish tries
+    // again.
   }
 }
 
-uint64_t TopicDsmWriter::most_descriptors() const noexcept {
+uint64_t TopicDsmWriter::max_descriptors() const noexcept {
   return dsm_.keep_all != 0 ? keep_all_capacity : descriptor_limit;
 }
 
-/// The most records that are wanted at a time. Each reply is for one client, so theirs add up.
+/// Number of records that may be wanted at a time. Each reply is for one client, so their depths
+/// add up.
 uint64_t TopicDsmWriter::deepest_history() const noexcept {
   uint64_t deepest = dsm_.transient_local != 0 ? dsm_.depth : 1;
-  for (const Reader & reader : readers_.readers()) {
+  for (const Reader & reader : readers_.all()) {
     const bool unbounded = reader.subscription->keep_all != 0 || dsm_.keep_all != 0;
     const uint64_t wanted = unbounded ? keep_all_capacity : reader.subscription->depth;
     deepest = endpoint_.role == EndpointRole::reply ? deepest + wanted : std::max(deepest, wanted);
@@ -217,9 +232,10 @@ uint64_t TopicDsmWriter::deepest_history() const noexcept {
   return deepest;
 }
 
-/// Four times the records, descriptors and bytes alike, but no more than are ever wanted: few
-/// generations, since the old ones stay while their records are wanted. Twice the records where
-/// they are many bytes. Half as many bytes more at least: records of mixed sizes leave gaps.
+/// New capacity: four times the records, in descriptors and bytes, but no more than are ever
+/// wanted. Few generations result, because old ones stay while their records are wanted. Only twice
+/// the records if they are large. At least half as many bytes again, because records of mixed sizes
+/// leave gaps.
 bool TopicDsmWriter::grow_to_hold_more(uint64_t need_bytes) {
   const uint64_t held = std::max<uint64_t>(blocks_.size(), 1);
   const uint64_t bytes_per_record = std::max(need_bytes, blocks_.bytes() / held);
@@ -231,11 +247,11 @@ bool TopicDsmWriter::grow_to_hold_more(uint64_t need_bytes) {
     half_as_much_again(current_.data_bytes));
   return grow(
     std::min(bytes, std::max(data_limit(), current_.data_bytes)),
-    std::clamp(power_of_two_at_least(records), current_.count, most_descriptors()));
+    std::clamp(power_of_two_at_least(records), current_.count, max_descriptors()));
 }
 
-/// Room for such a message, and where there is any for half as much again as there was: messages
-/// that become larger bit by bit would else each add a generation.
+/// Asks for half as much again as there is now, if the limit allows it; otherwise for this message
+/// only. Messages that grow little by little would otherwise add a generation each.
 bool TopicDsmWriter::add_generation_for(uint64_t need_bytes) {
   try {
     const uint64_t more = std::min(half_as_much_again(current_.data_bytes), data_limit());
@@ -249,12 +265,12 @@ bool TopicDsmWriter::add_generation_for(uint64_t need_bytes) {
 }
 
 void TopicDsmWriter::require_data_bytes(uint64_t need_bytes) {
-  if (need_bytes > UINT32_MAX) {  // of RecordDescriptor::size_bytes
+  if (need_bytes > UINT32_MAX) {  // limit of RecordDescriptor::size_bytes
     endpoint_.counters.refused.fetch_add(1, std::memory_order_relaxed);
     throw Error(
       ErrorCode::too_large, "a message of " + std::to_string(need_bytes) + " bytes on '" +
                               endpoint_.topic +
-                              "' is larger than 4 GiB, the most that a record holds");
+                              "' is larger than 4 GiB, the maximum size of a record");
   }
   if (need_bytes <= current_.data_bytes) {
     return;

@@ -7,14 +7,15 @@
 #include "platform/error.hpp"
 #include "transport/queue/displaced.hpp"
 #include "transport/registry/odd_phase.hpp"
+#include "transport/transfer/landing.hpp"
 
 namespace manycore {
 namespace {
 
-/// What Fast DDS waits for by default (max_blocking_time).
+/// Default max_blocking_time of Fast DDS.
 constexpr int64_t max_blocking_ns = 100'000'000;
 
-/// A fixed topic DSM cannot get more descriptors later.
+/// A topic DSM of fixed size cannot add descriptors later.
 uint64_t initial_descriptor_count(const EndpointEntry & endpoint) {
   if (endpoint.topic_dsm_size == 0) {
     return first_descriptor_count;
@@ -29,7 +30,8 @@ uint64_t initial_descriptor_count(const EndpointEntry & endpoint) {
 TopicDsmHeader & TopicDsmWriter::create(Registry & registry, uint32_t endpoint_slot) {
   EndpointEntry & endpoint = registry.endpoints()[endpoint_slot];
   Cluster & cluster = registry.clusters().at(endpoint.cluster);
-  TopicDsmHeader & dsm = cluster.allocate_cleared<TopicDsmHeader>();
+  auto & dsm = cluster.allocate_cleared<TopicDsmHeader>(header_bytes(endpoint.transfer));
+  dsm.transfer = static_cast<uint8_t>(endpoint.transfer);
   dsm.endpoint.store(endpoint_slot);
   dsm.incarnation.store(endpoint.slot.incarnation);
   dsm.lifespan_ns = endpoint.qos.lifespan_ns;
@@ -45,21 +47,25 @@ TopicDsmHeader & TopicDsmWriter::create(Registry & registry, uint32_t endpoint_s
                                   : align_up(endpoint.topic_dsm_size, record_alignment);
     const uint64_t descriptor_count = initial_descriptor_count(endpoint);
     if (endpoint.topic_dsm_size != 0) {
-      const uint64_t extent = Generation::extent_bytes(data_bytes, descriptor_count);
-      cluster.require_message_room(extent);
-      cluster.require_file_system_room(extent);
+      cluster.require_message_room(Generation::extent_bytes(data_bytes, descriptor_count));
     }
     Generation::reserve(cluster, dsm.generations[0], data_bytes, descriptor_count);
-    Generation::open(cluster, dsm.generations[0], 1);
   } catch (...) {
-    if (dsm.generations[0].offset.load() != 0) {
-      Generation::free(cluster, dsm.generations[0]);
-    }
-    cluster.free(cluster.ref_of(&dsm).offset(), sizeof dsm);
+    cluster.free(cluster.ref_of(&dsm).offset(), header_bytes(dsm));
     throw;
   }
   dsm.magic.store(topic_dsm_magic, std::memory_order_release);
   return dsm;
+}
+
+void TopicDsmWriter::open_first_generation(Registry & registry, uint32_t endpoint_slot) {
+  const EndpointEntry & endpoint = registry.endpoints()[endpoint_slot];
+  const Cluster & cluster = registry.clusters().at(endpoint.cluster);
+  GenerationEntry & first = cluster.find<TopicDsmHeader>(endpoint.block.offset())->generations[0];
+  if (endpoint.topic_dsm_size != 0) {
+    cluster.require_file_system_room(first.extent_bytes());
+  }
+  Generation::open(cluster, first, 1);
 }
 
 TopicDsmWriter::TopicDsmWriter(Registry & registry, Cluster & cluster, EndpointEntry & endpoint)
@@ -78,25 +84,27 @@ void TopicDsmWriter::enter() noexcept {
 
 void TopicDsmWriter::leave() noexcept { OddPhase::end(dsm_.phase); }
 
-/// Among the last `depth` messages, the one about to be written included. Record numbers do not
-/// tell: some are skipped.
+/// True for the last `depth` messages, including the one about to be written. Compares sequence
+/// numbers because some record numbers are skipped.
 bool TopicDsmWriter::is_among_last(uint32_t depth, const RecordDescriptor & record) const noexcept {
   return record.publication_sequence_number + depth > last_sequence_number_ + 1;
 }
 
-/// KEEP_LAST readers want the last `depth` only. A client's replies are not numbered one by one
-/// among those to others, so it wants what its queue has not displaced.
+/// A reply has one reader: the client that it answers.
+Readers TopicDsmWriter::readers_of(const RecordDescriptor & record) const noexcept {
+  return endpoint_.role == EndpointRole::reply ? readers_.with_gid(record.correlation.client)
+                                               : readers_.all();
+}
+
+/// KEEP_LAST readers want the last `depth` messages. Replies to one client have no sequence of
+/// their own, so a client wants each reply to it whose hint was not displaced from its queue.
 bool TopicDsmWriter::wants(
   const Reader & reader, uint64_t number, const RecordDescriptor & record) const noexcept {
-  const bool is_reply = endpoint_.role == EndpointRole::reply;
-  if (is_reply && record.correlation.client != reader.gid) {
-    return false;  // first, of many clients: nothing of theirs is touched
-  }
   if (reader.source->taken.load(std::memory_order_seq_cst) >= number || !reader.active()) {
     return false;
   }
   const bool keeps_all = reader.subscription->keep_all != 0;
-  if (is_reply) {
+  if (endpoint_.role == EndpointRole::reply) {
     return keeps_all ||
            !Displaced::covers(reader.source->displaced, reader.source_incarnation, number);
   }
@@ -113,7 +121,7 @@ bool TopicDsmWriter::is_wanted(uint64_t number, const RecordDescriptor & record)
   if (dsm_.transient_local != 0 && is_among_last(dsm_.depth, record)) {
     return true;
   }
-  for (const Reader & reader : readers_.readers()) {
+  for (const Reader & reader : readers_of(record)) {
     if (wants(reader, number, record)) {
       return true;
     }
@@ -121,39 +129,39 @@ bool TopicDsmWriter::is_wanted(uint64_t number, const RecordDescriptor & record)
   return false;
 }
 
-/// RELIABLE + KEEP_ALL and a reliable reader still wants it: must not be overwritten.
+/// RELIABLE + KEEP_ALL, and a reliable reader still wants the record: it must not be overwritten.
 bool TopicDsmWriter::is_owed(uint64_t number) const noexcept {
-  const std::vector<Reader> & readers = readers_.readers();
+  const RecordDescriptor & record = current_.descriptor(number);
+  const Readers readers = readers_of(record);
   return dsm_.keep_all != 0 && endpoint_.qos.reliability == Reliability::reliable &&
          std::any_of(readers.begin(), readers.end(), [&](const Reader & reader) {
-           return reader.reliable && wants(reader, number, current_.descriptor(number));
+           return reader.reliable && wants(reader, number, record);
          });
 }
 
-TopicDsmWriter::TakeBack TopicDsmWriter::take_back(uint64_t number, bool force) {
+TopicDsmWriter::Reclaim TopicDsmWriter::reclaim(uint64_t number, bool force) {
   RecordDescriptor & record = current_.descriptor(number);
   if (record.number.load(std::memory_order_relaxed) == number) {
     const bool wanted = is_wanted(number, record);
     if (wanted && !force) {
-      return TakeBack::wanted;
+      return Reclaim::wanted;
     }
     if (wanted) {
       endpoint_.counters.overwritten.fetch_add(1, std::memory_order_relaxed);
     }
-    // Dekker with the claim: the reader stores `reading` before it loads `number`. A reader that
-    // joined just now counts too, so the list is renewed after the store.
+    // Dekker with the claim: the reader stores `reading` before it loads `number`. Rebuild the
+    // reader list after the store, so that a reader that has just joined is checked as well.
     record.number.store(no_record, std::memory_order_seq_cst);
     readers_.refresh();
     pinned_in_slot_[number & (current_.count - 1)] = number;  // until seen unpinned
   }
-  return readers_.is_pinned(number) ? TakeBack::pinned : TakeBack::freed;
+  return readers_.is_pinned(number) ? Reclaim::pinned : Reclaim::freed;
 }
 
-/// Early release (ROS-lite2 III-B: deleted once all subscribers have deserialized). An empty ring
-/// starts again at its beginning, so that a stream whose readers keep up stays in the same cache
-/// lines.
-void TopicDsmWriter::take_back_free_records() {
-  while (!blocks_.empty() && take_back(blocks_.front().number, false) == TakeBack::freed) {
+/// Frees records early (ROS-lite2 III-B: deleted once all subscribers have deserialized). An empty
+/// ring restarts at its beginning, so a stream whose readers keep up reuses the same cache lines.
+void TopicDsmWriter::reclaim_free_records() {
+  while (!blocks_.empty() && reclaim(blocks_.front().number, false) == Reclaim::freed) {
     blocks_.pop_front();
   }
   if (blocks_.empty()) {
@@ -177,7 +185,7 @@ void TopicDsmWriter::wait_for_progress(uint64_t number) {
   dsm_.writer_waits.store(1, std::memory_order_seq_cst);
   if (is_owed(number)) {
     registry_.tracer().note(TraceKind::blocked, dsm_.endpoint.load(), number);
-    leave();  // nobody needs to wait for this publisher's references meanwhile
+    leave();  // no other process has to wait for this publisher's phase meanwhile
     futex_wait(dsm_.progress, seen, blocked_until_ns_);
     enter();
   }
@@ -192,22 +200,24 @@ void TopicDsmWriter::make_place(uint64_t number, uint64_t need_bytes) {
     wait_for_progress(number);
     return;
   }
-  take_back(number, true);
+  reclaim(number, true);
 }
 
-/// Makes next_number_ one whose descriptor may be written. A number whose descriptor a reader still
-/// holds is skipped: readers count what they miss by publication sequence, not by record number.
+/// Advances next_number_ to a number whose descriptor may be written. Numbers whose descriptor a
+/// reader still has pinned are skipped: readers count losses by publication sequence number, not by
+/// record number.
 void TopicDsmWriter::claim_descriptor(uint64_t need_bytes) {
-  const uint64_t most_skipped = current_.count * (readers_.readers().size() + 1);
-  for (uint64_t skipped = 0; skipped < most_skipped;) {
+  const uint64_t max_skipped = current_.count * (readers_.all().size() + 1);
+  for (uint64_t skipped = 0; skipped < max_skipped;) {
     RecordDescriptor & record = current_.descriptor(next_number_);
     const uint64_t old = record.number.load(std::memory_order_relaxed);
     if (old != no_record && &current_.descriptor(old) != &record) {
-      record.number.store(no_record, std::memory_order_seq_cst);  // damaged: never was here
+      // Damaged: no such number belongs here
+      record.number.store(no_record, std::memory_order_seq_cst);
       continue;
     }
     if (old != no_record) {
-      if (take_back(old, false) == TakeBack::wanted) {
+      if (reclaim(old, false) == Reclaim::wanted) {
         make_place(old, need_bytes);
       }
       continue;
@@ -222,16 +232,16 @@ void TopicDsmWriter::claim_descriptor(uint64_t need_bytes) {
   }
   endpoint_.counters.refused.fetch_add(1, std::memory_order_relaxed);
   throw Error(
-    ErrorCode::no_space, "every record of '" + std::string(endpoint_.topic) +
-                           "' is being read; nothing can be published");
+    ErrorCode::no_space, "cannot publish on '" + std::string(endpoint_.topic) +
+                           "': subscriptions are reading every record of its topic DSM");
 }
 
-/// Places a block of `need_bytes` at the cursor or after it; false when wanted or pinned records
-/// leave no room within one round.
+/// Places a block of `need_bytes` at or after the cursor. False if wanted or pinned records leave
+/// no room within one round.
 bool TopicDsmWriter::try_place(uint64_t need_bytes) {
-  // Quick readers may each hold, in turn, just the record that the cursor meets; each tries a
-  // cleared record once.
-  const size_t rounds = readers_.readers().size() + 1;
+  // Each reader may in turn pin the very record that the cursor meets, but it tries to claim a
+  // cleared record only once. That bounds the rounds.
+  const size_t rounds = readers_.all().size() + 1;
   size_t pinned_seen = 0;
   size_t wraps = 0;
   while (true) {
@@ -250,11 +260,11 @@ bool TopicDsmWriter::try_place(uint64_t need_bytes) {
       continue;
     }
     const Block block = blocks_.front();
-    switch (take_back(block.number, false)) {
-      case TakeBack::freed:
+    switch (reclaim(block.number, false)) {
+      case Reclaim::freed:
         blocks_.pop_front();
         break;
-      case TakeBack::pinned:  // a hole: passed over now, met again in the next round
+      case Reclaim::pinned:  // a hole: skipped now, met again in the next round
         if (++pinned_seen > blocks_.size() * rounds) {
           return false;
         }
@@ -262,7 +272,7 @@ bool TopicDsmWriter::try_place(uint64_t need_bytes) {
         blocks_.push_back(block);
         cursor_ = block.end;
         break;
-      case TakeBack::wanted: {
+      case Reclaim::wanted: {
         const GenerationEntry * const before = current_.entry;
         make_place(block.number, need_bytes);
         wraps = current_.entry == before ? wraps : size_t{0};
@@ -279,7 +289,7 @@ TopicDsmWriter::Room TopicDsmWriter::find_room(uint64_t size_bytes) {
   if (!old_.empty()) {
     free_old_generations();
   }
-  take_back_free_records();
+  reclaim_free_records();
   if (demand_.is_known()) {
     shrink(need);
   }
@@ -318,12 +328,12 @@ uint64_t TopicDsmWriter::commit(
   record.source_timestamp_ns.store(source_timestamp_ns, std::memory_order_relaxed);
   record.publication_sequence_number = publication_sequence_number;
   record.correlation = correlation;
-  // Release: whoever finds the number finds the bytes and the fields above.
+  // Release: a reader that loads the number also sees the bytes and the fields above.
   record.number.store(next_number_, std::memory_order_release);
   last_sequence_number_ = publication_sequence_number;
   const uint64_t skipped = next_number_ - publication_sequence_number;
   dsm_.skipped_before.store(skipped, std::memory_order_relaxed);
-  // Dekker with a late joiner: it activates its reader entry before it loads `last`.
+  // Dekker with a late joiner: its matcher activates the reader entry before it loads `last`.
   dsm_.last.store(next_number_, std::memory_order_seq_cst);
   dsm_.skipped_after.store(skipped, std::memory_order_release);
   readers_.refresh();

@@ -10,8 +10,8 @@
 
 namespace manycore {
 
-/// The writing side of one topic DSM: finds room, makes records, takes them back. One thread at a
-/// time (see Writing). See docs/design/topic_dsm.md, Publish.
+/// Writing side of one topic DSM: finds room, commits records, takes them back. Used by one thread
+/// at a time (see Writing). See docs/design/topic_dsm.md, Publish.
 class TopicDsmWriter {
 public:
   struct Room {
@@ -21,58 +21,69 @@ public:
 
   TopicDsmWriter(Registry & registry, Cluster & cluster, EndpointEntry & endpoint);
 
-  /// Allocates header and first generation; the caller holds the registry lock.
+  /// Allocates the header and reserves the first generation. The caller holds the registry lock.
+  /// Throws Error{no_space|corrupt}.
   static TopicDsmHeader & create(Registry & registry, uint32_t endpoint_slot);
+  /// Backs the first generation with memory. Called once, after the endpoint became live and before
+  /// its writer is created. Needs no lock: if this process dies, the generation's entry describes
+  /// what the reaper must free.
+  /// Throws Error{no_space}.
+  static void open_first_generation(Registry & registry, uint32_t endpoint_slot);
 
-  /// From here to leave(), references to readers may be followed: for Writing.
+  /// Makes the phase odd: until leave(), references to readers may be followed. Called by Writing.
   void enter() noexcept;
   void leave() noexcept;
 
-  /// Room for one record. Throws Error{too_large|no_space|timeout}.
+  /// Finds room for one record. Throws Error{too_large|no_space|timeout}.
   Room find_room(uint64_t size_bytes);
-  /// Gives the room of the last find_room() back.
+  /// Gives back the room of the last find_room().
   void abandon_room() noexcept;
-  /// Makes the room's first `size_bytes` record; returns its number. Readers are up to date
-  /// afterwards.
+  /// Publishes the first `size_bytes` of the room as a record and returns its number. The reader
+  /// list is up to date afterwards.
   uint64_t commit(
     uint64_t size_bytes, int64_t source_timestamp_ns, uint64_t publication_sequence_number,
     const Correlation & correlation);
 
-  /// Of the record that commit() makes, after find_room().
+  /// Number of the record that the next commit() makes. Valid after find_room().
   uint64_t next_number() const noexcept { return next_number_; }
 
   const ReaderList & readers() const noexcept { return readers_; }
   TopicDsmHeader & header() const noexcept { return dsm_; }
 
 private:
-  enum class TakeBack { freed, pinned, wanted };
+  enum class Reclaim { freed, pinned, wanted };
 
+  /// Readers that may want a record.
+  Readers readers_of(const RecordDescriptor & record) const noexcept;
   bool wants(
     const Reader & reader, uint64_t number, const RecordDescriptor & record) const noexcept;
   bool is_among_last(uint32_t depth, const RecordDescriptor & record) const noexcept;
   bool is_wanted(uint64_t number, const RecordDescriptor & record) const noexcept;
   bool is_owed(uint64_t number) const noexcept;
-  TakeBack take_back(uint64_t number, bool force);
-  void take_back_free_records();
+  Reclaim reclaim(uint64_t number, bool force);
+  void reclaim_free_records();
   bool drain(Generation & old);
   bool retire(Generation & old);
   void free_old_generations() noexcept;
+  /// Throws if another process holds the registry lock.
+  bool free_some_of(GenerationEntry & entry);
   void free_unopened(GenerationEntry & entry);
-  /// Makes place where a wanted record stands: grows, waits (RELIABLE + KEEP_ALL) or overwrites.
+  /// Makes room where a wanted record lies: grows the ring, waits (RELIABLE + KEEP_ALL) or
+  /// overwrites.
   void make_place(uint64_t number, uint64_t need_bytes);
   void claim_descriptor(uint64_t need_bytes);
   bool try_place(uint64_t need_bytes);
-  uint64_t most_descriptors() const noexcept;
+  uint64_t max_descriptors() const noexcept;
   uint64_t deepest_history() const noexcept;
   bool grow_to_hold_more(uint64_t need_bytes);
   bool grow(uint64_t data_bytes, uint64_t descriptor_count);
-  /// As grow(), but throws what keeps it from growing as far as it may:
+  /// Like grow(), but throws the cause if the ring cannot grow although its limits allow it:
   /// Error{no_space|corrupt|timeout}.
   bool add_generation(uint64_t data_bytes, uint64_t descriptor_count);
   bool add_generation_for(uint64_t need_bytes);
-  /// False when all entries are in use. Throws as add_generation().
+  /// False if all generation entries are in use. Throws like add_generation().
   bool start_generation(uint64_t data_bytes, uint64_t descriptor_count);
-  /// Goes over to a smaller generation when a quarter of this one was enough for long.
+  /// Switches to a smaller generation if a quarter of this one was enough over the last window.
   void shrink(uint64_t need_bytes) noexcept;
   Registry::Lock lock_to_grow();
   void reserve_generation(GenerationEntry & entry, uint64_t data_bytes, uint64_t descriptor_count);
@@ -90,13 +101,14 @@ private:
   std::vector<Generation> old_;
   BlockRing blocks_;
   Demand demand_;
-  std::vector<uint64_t>
-    pinned_in_slot_;     ///< by descriptor: number that a reader may still hold, or 0
-  uint64_t cursor_ = 0;  ///< next free byte of the data area
+  /// By descriptor: number that a reader may still have pinned, or no_record.
+  std::vector<uint64_t> pinned_in_slot_;
+  uint64_t cursor_ = 0;  ///< offset of the next free byte in the data area
   uint64_t next_number_ = 1;
   uint64_t last_sequence_number_ = 0;
   int64_t blocked_until_ns_ = 0;
-  uint64_t waited_for_ = 0;  ///< in vain: `changes` of the hold of the registry lock
+  /// Value of `changes` during a hold of the registry lock that was waited for in vain.
+  uint64_t waited_for_ = 0;
 };
 
 }  // namespace manycore

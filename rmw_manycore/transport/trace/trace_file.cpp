@@ -14,10 +14,10 @@
 namespace manycore {
 namespace {
 
-/// Backed at a time: 8,192 events. Larger steps would keep a thread from its work for longer.
+/// Backed at a time: 8,192 events. A larger step would delay the traced thread for longer.
 constexpr uint64_t step_bytes = 256 << 10;
 
-/// Of the file system: what a trace leaves to messages and control blocks.
+/// Fraction of the file system that a trace leaves to messages and control blocks: one eighth.
 constexpr uint64_t share_left = 8;
 
 uint32_t line_of(const TraceIdentity & identity) {
@@ -87,7 +87,7 @@ bool TraceFile::try_back(uint64_t offset, uint64_t length) const noexcept {
 uint64_t TraceFile::back(const TraceRing & ring, uint64_t backed) const noexcept {
   const uint64_t capacity = uint64_t{1} << header().events_log2;
   const uint64_t more = std::min(step_bytes / sizeof(TraceEvent), capacity - backed);
-  // Where there was no memory, it is asked for once more after so many events.
+  // After a failure, ask for memory again only after this many lost events.
   constexpr uint64_t between_tries = 1024;
   if (
     ring.lost.load(std::memory_order_relaxed) % between_tries != 0 ||
@@ -97,8 +97,8 @@ uint64_t TraceFile::back(const TraceRing & ring, uint64_t backed) const noexcept
   return backed + more;
 }
 
-/// One that has ended and whose events were saved, or a new one. The saver stores `read` when it
-/// is done with name and events.
+/// An ended ring whose events are saved, or a new one. The saver stores `read` after it has copied
+/// the thread's name and events.
 TraceRing * TraceFile::free_ring() noexcept {
   TraceFileHeader & head = header();
   const uint32_t count = head.ring_count.load(std::memory_order_relaxed);

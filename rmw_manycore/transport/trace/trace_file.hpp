@@ -12,7 +12,7 @@
 
 namespace manycore {
 
-/// Of which process a trace file is.
+/// Identity of the process that writes a trace file.
 struct TraceIdentity {
   uint64_t platform_nonce = 0;
   uint32_t cluster = 0;
@@ -23,40 +23,39 @@ struct TraceIdentity {
   std::string label;
 };
 
-/// A trace file that is not complete, as its name tells: savers do not look for it, and where the
-/// process that makes it has ended it is in no use.
+/// A trace file under construction, recognized by its name. Savers ignore it; if its process has
+/// ended, it can be removed.
 struct UnfinishedTrace {
-  uint32_t line;  ///< lifeline of that process
-  pid_t pid;      ///< of it, in its own PID namespace
+  uint32_t line;  ///< lifeline of its process
+  pid_t pid;      ///< in the PID namespace of its process
 
-  /// What the file is called until it becomes `path`.
+  /// Name of the file until it is renamed to `path`.
   static std::string path_of(const std::string & path, const TraceIdentity & identity);
-  /// Nothing for a file of another kind.
+  /// Nothing if `name` is not an unfinished trace file.
   static std::optional<UnfinishedTrace> of(const std::string & name);
 };
 
-/// The file that a traced process writes its events to: a ring for each thread, and the names of
-/// the endpoints they are about. It outlives its process. Thread-safe; useless in a child of
-/// fork().
+/// The file to which a traced process writes its events: one ring per thread, and the names of the
+/// endpoints in the events. Outlives its process. Thread-safe; not usable in a child of fork().
 class TraceFile {
 public:
   /// Throws Error{no_space|system}.
   TraceFile(const std::string & path, const TraceIdentity & identity, uint32_t events_log2);
 
-  /// A ring of the calling thread's own; nothing when all are taken or there is no memory.
+  /// A ring for the calling thread; nothing if all rings are in use or there is no memory.
   std::optional<TraceRingWriter> add_ring() noexcept;
   void push(TraceRingWriter & ring, const TraceEvent & event) noexcept {
     ring.push(event, [&](uint64_t backed) { return back(ring.ring(), backed); });
   }
-  /// Of what is noted again and again: where there is no room, the next one will do.
+  /// For periodic samples: a dropped one is not counted as lost.
   void push_sample(TraceRingWriter & ring, const TraceEvent & event) noexcept {
     ring.try_push(event, [&](uint64_t backed) { return back(ring.ring(), backed); });
   }
   void count_unplaced() noexcept { header().unplaced.fetch_add(1, std::memory_order_relaxed); }
-  /// Drops it silently where there is no room: the event then has a number in place of a name.
+  /// Drops the name if there is no room; the event then has a slot number only.
   void add_name(const TraceName & name) noexcept;
   bool is_inherited() const noexcept { return side_.is_inherited(); }
-  /// True once for each period: the process's counters are to be noted.
+  /// True once per period, for one caller: the process's counters should be sampled.
   bool is_sample_due(int64_t now_ns) noexcept {
     int64_t due_ns = sample_due_ns_.load(std::memory_order_relaxed);
     return now_ns >= due_ns && sample_due_ns_.compare_exchange_strong(
@@ -69,14 +68,14 @@ private:
   void describe(const TraceIdentity & identity, uint32_t events_log2) const noexcept;
   TraceFileHeader & header() const noexcept { return memory_.at<TraceFileHeader>(0); }
   TraceRing * free_ring() noexcept;
-  /// Backs a step of a ring's events; returns how many are backed.
+  /// Backs the next step of a ring's events; returns how many are backed.
   uint64_t back(const TraceRing & ring, uint64_t backed) const noexcept;
   bool try_back(uint64_t offset, uint64_t length) const noexcept;
 
   const ForkSide side_;
   SharedMemory memory_;
   std::atomic<int64_t> sample_due_ns_{0};
-  std::mutex mutex_;  ///< of rings and names being added
+  std::mutex mutex_;  ///< guards adding rings and names
 };
 
 }  // namespace manycore

@@ -18,7 +18,7 @@ TraceReader::TraceReader(const std::string & path, uint64_t platform_nonce)
   if (
     events_log2 < min_trace_events_log2 || events_log2 > max_trace_events_log2 ||
     memory_.size() != trace_file_bytes(events_log2)) {
-    refuse("is damaged: its size does not fit its header");
+    refuse("is damaged: its size does not match its header");
   }
 }
 
@@ -53,8 +53,8 @@ uint64_t TraceReader::lost() const noexcept {
   return sum;
 }
 
-/// `written` (acquire) before the thread's name and the events: they were stored before it. The
-/// losses after it: those of events that came later count in the next trace.
+/// Loads `written` (acquire) before the thread's name and events, which the writer stores before
+/// it. Loads `lost` before `written`: later losses are reported in the next trace.
 ThreadTrace TraceReader::read_ring(uint32_t index) {
   const TraceRing & ring = header().rings[index];
   Position & seen = seen_[index];
@@ -65,7 +65,7 @@ ThreadTrace TraceReader::read_ring(uint32_t index) {
     trace_events_offset + uint64_t{index} * (sizeof(TraceEvent) << header().events_log2);
   const uint64_t used = std::min(seen.written, capacity());
   if (seen.written - read > capacity() || (used != 0 && ring.offset != offset)) {
-    refuse("is damaged: a ring's positions do not fit each other");
+    refuse("is damaged: the positions of a ring are inconsistent");
   }
   ThreadTrace thread;
   thread.tid = ring.tid;
@@ -102,7 +102,7 @@ void TraceReader::free_read() noexcept {
   for (uint32_t i = 0; i < rings_seen_; ++i) {
     TraceRing & ring = header().rings[i];
     ring.lost_saved.store(seen_[i].lost, std::memory_order_relaxed);
-    // Release: the writer fills these places again.
+    // Release: the writer may reuse the space of these events.
     ring.read.store(seen_[i].written, std::memory_order_release);
   }
 }

@@ -10,15 +10,15 @@
 
 namespace manycore {
 
-/// What one thread recorded and was not saved yet.
+/// Events that one thread recorded and that are not saved yet.
 struct ThreadTrace {
   int32_t tid = 0;
   std::string name;
   std::vector<TraceEvent> events;  ///< oldest first
-  uint64_t lost = 0;               ///< further events, for which there was no room
+  uint64_t lost = 0;               ///< events dropped because the ring was full
 };
 
-/// The saving role of one trace file; one at a time (see TraceSaver). Never waits for the writers.
+/// Reading side of one trace file; one at a time (see TraceSaver). Never blocks the writers.
 class TraceReader {
 public:
   /// Throws Error{corrupt|system} naming the file.
@@ -26,19 +26,19 @@ public:
 
   const std::string & path() const noexcept { return memory_.path(); }
   const TraceFileHeader & header() const noexcept { return memory_.at<TraceFileHeader>(0); }
-  /// Events that are there now.
+  /// Events currently in the file.
   uint64_t pending() const noexcept;
-  /// Events that were lost and not told in a saved trace, now.
+  /// Lost events not reported in a saved trace yet.
   uint64_t lost() const noexcept;
 
-  /// Copies what is there. Throws Error{corrupt}.
+  /// Copies the recorded events. Throws Error{corrupt}.
   std::vector<ThreadTrace> read();
   std::vector<TraceName> names() const;
-  /// Of the last read().
+  /// Unplaced events, as of the last read().
   uint64_t unplaced() const noexcept { return unplaced_; }
-  /// Frees what the last read() gave, as it is saved.
+  /// Marks the events of the last read() as saved and frees their space.
   void free_read() noexcept;
-  /// True when nothing was recorded since the last read().
+  /// True if nothing was recorded since the last read().
   bool is_drained() const noexcept;
 
 private:

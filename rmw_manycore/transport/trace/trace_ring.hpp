@@ -5,10 +5,10 @@
 
 namespace manycore {
 
-/// The writing role of one ring; one thread. Publish by counter: an event is filled in, then
-/// `written` is raised (release), so the saver that loads it (acquire) finds the event whole. A
-/// place is filled again only after `read` (acquire) says that the saver is done with it. Never
-/// waits: without room the event is counted as lost.
+/// Writing side of one ring; used by one thread. An event is filled in before `written` is
+/// incremented (release), so a saver that loads `written` (acquire) finds the event complete. Space
+/// is reused only after `read` (acquire) shows that the saver has copied it. Never blocks: an event
+/// without room is counted as lost.
 class TraceRingWriter {
 public:
   TraceRingWriter(TraceRing & ring, TraceEvent * events, uint32_t events_log2) noexcept
@@ -18,14 +18,14 @@ public:
     written_(ring.written.load(std::memory_order_relaxed)),
     read_(ring.read.load(std::memory_order_acquire)) {}
 
-  /// `back(first)` makes memory for events from `first` on, and returns how many have some then.
+  /// Calls `back(first)` to back events from index `first` on; it returns how many are backed then.
   template<typename Back>
   void push(const TraceEvent & event, Back back) noexcept {
     if (!try_push(event, back)) {
       ring_->lost.store(ring_->lost.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
     }
   }
-  /// False where there is no room; not counted as lost.
+  /// As push(), but returns false instead of counting a lost event.
   template<typename Back>
   bool try_push(const TraceEvent & event, Back back) noexcept {
     if (written_ - read_ >= capacity_) {
@@ -54,7 +54,7 @@ private:
   TraceEvent * events_;
   uint64_t capacity_;
   uint64_t written_;
-  uint64_t read_;  ///< as seen last
+  uint64_t read_;  ///< last value loaded
 };
 
 }  // namespace manycore

@@ -11,10 +11,10 @@
 
 namespace manycore {
 
-/// What a thread writes to, of one platform.
+/// The ring of one thread for one platform.
 struct ThreadRing {
   uint64_t tracer;
-  std::shared_ptr<TraceFile> file;  ///< keeps the memory while the thread lives
+  std::shared_ptr<TraceFile> file;  ///< keeps the mapping during the thread's lifetime
   TraceRingWriter writer;
 };
 
@@ -22,16 +22,16 @@ namespace {
 
 constexpr TraceSwitch never{TraceScope::off};
 
-/// The ring that a thread used last. Plain data, found without a call: a site that is on costs less
-/// than a look at the clock.
+/// Ring that the thread used last. Plain data accessed without a function call, so an active trace
+/// site costs less than reading the clock.
 struct LastRing {
   uint64_t tracer;
   ThreadRing * ring;
-  bool is_ending;  ///< the thread's rings are gone, other things of it may still be noted
+  bool is_ending;  ///< the thread's rings are destroyed; later destructors may still trace
 };
 [[gnu::tls_model("initial-exec")]] thread_local LastRing last_ring{};
 
-/// A thread's rings, one for each platform it serves.
+/// The rings of a thread, one for each platform.
 class ThreadRings {
 public:
   ~ThreadRings() {
@@ -49,7 +49,7 @@ public:
 
   ThreadRing * add(ThreadRing && fresh) {
     last_ring = {};
-    // Those of platforms that the process has left.
+    // Drop rings of platforms that the process has left.
     const auto gone = std::remove_if(rings_.begin(), rings_.end(), [](const ThreadRing & ring) {
       return ring.file.use_count() == 1;
     });
@@ -164,7 +164,7 @@ void Tracer::sample(ThreadRing & ring, int64_t time_ns) noexcept {
   }
 }
 
-/// Where only some nodes are traced: theirs, and what they do to other processes' endpoints.
+/// In scope some_nodes: events of traced nodes, and hints for endpoints of other processes.
 bool Tracer::is_wanted(const EndpointEntry & endpoint) const noexcept {
   if (
     switch_.load(std::memory_order_relaxed)->load(std::memory_order_relaxed) !=
@@ -207,7 +207,7 @@ ThreadRing * Tracer::add_ring() noexcept {
 }
 
 std::shared_ptr<TraceFile> Tracer::file() noexcept {
-  // Making one fails for a while where it failed: no descriptors, no memory.
+  // After a failure (no file descriptors, no memory), try again only after this many events.
   constexpr uint64_t between_tries = 1024;
   const std::lock_guard<std::mutex> lock(mutex_);
   if (file_ != nullptr || failures_ % between_tries != 0) {

@@ -10,7 +10,8 @@
 namespace manycore {
 namespace {
 
-/// Counted as a sleeper of each platform: see WakeWord::notify for why no wake-up is lost.
+/// Counts this thread as a sleeper on each platform; see WakeWord::notify() for why no wake-up is
+/// lost.
 class CountedSleeper {
 public:
   explicit CountedSleeper(const std::vector<std::atomic<uint32_t> *> & counts) noexcept

@@ -9,14 +9,14 @@
 
 namespace manycore {
 
-/// Where to sleep, and the epoch that was seen there.
+/// A waiter and the epoch last seen there.
 struct SeenEpoch {
   Waiter * waiter;
   uint32_t epoch;
 };
 
-/// As Waiter::wait, on several platforms at once: true when one of the epochs is no longer the seen
-/// one, false at `deadline_ns`. Never spins, whatever the wait modes are.
+/// As Waiter::wait(), on several platforms at once: true when one of the epochs has changed, false
+/// at `deadline_ns` (CLOCK_MONOTONIC; unset = no limit). Never spins, whatever the wait modes.
 bool wait_for_any(const std::vector<SeenEpoch> & seen, std::optional<int64_t> deadline_ns);
 
 }  // namespace manycore

@@ -9,12 +9,12 @@ namespace {
 constexpr uint32_t numbers_per_part = 64;
 constexpr uint32_t parts = (thread_numbers + numbers_per_part - 1) / numbers_per_part;
 
-/// No mutex guards them: a child of fork() could find it locked for ever.
+/// Atomics instead of a mutex, which a child of fork() could find locked forever.
 std::atomic<uint64_t> taken[parts];
-std::atomic<uint32_t> sharing{0};  ///< threads that found all numbers taken
+std::atomic<uint32_t> sharing{0};  ///< threads that share a number because all were taken
 std::atomic<uint32_t> next_shared{0};
 
-/// Bits of numbers that there are.
+/// Mask of the numbers in a part.
 constexpr uint64_t all_of(uint32_t part) {
   return thread_numbers - part * numbers_per_part >= numbers_per_part
            ? ~uint64_t{0}

@@ -7,11 +7,11 @@ namespace manycore {
 
 constexpr uint32_t thread_numbers = 127;
 
-/// The calling thread's number, below `thread_numbers`: from its first call to its end its own,
-/// while no more threads than that have one; further threads share numbers.
+/// Number of the calling thread, below `thread_numbers`. Unique from the thread's first call to its
+/// end while at most `thread_numbers` threads have one; further threads share numbers.
 uint32_t thread_number() noexcept;
 
-/// True while some thread shares its number.
+/// True while any thread shares its number.
 bool are_thread_numbers_shared() noexcept;
 
 }  // namespace manycore

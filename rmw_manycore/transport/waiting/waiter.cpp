@@ -11,14 +11,14 @@ namespace manycore {
 namespace {
 
 /// Twice the cost of waking a process on another CPU of a virtual machine (about 20 us): spinning
-/// longer than that for a message that comes later wins nothing.
+/// longer for a message gains nothing.
 constexpr int64_t spin_budget_ns = 50'000;
 
-/// The score counts recent waits that spinning served (or would have served).
+/// The score counts recent waits in which spinning succeeded, or would have.
 constexpr uint32_t score_limit = 16;
 constexpr uint32_t score_of_success = 4;
 
-/// Between looks at the clock.
+/// Epoch loads between two reads of the clock.
 constexpr int looks_per_check = 64;
 
 }  // namespace
@@ -36,7 +36,7 @@ bool Waiter::spin(uint32_t seen, std::optional<int64_t> deadline_ns) noexcept {
       }
       pause_cpu();
     }
-    // The receive thread that will bring the message may share this CPU.
+    // The receive thread that forwards the message may need this CPU.
     yield_cpu();
   }
   return epoch() != seen;
@@ -49,23 +49,25 @@ void Waiter::learn(bool served) noexcept {
     std::memory_order_relaxed);
 }
 
-bool Waiter::sleep(uint32_t seen, std::optional<int64_t> deadline_ns) noexcept {
+bool Waiter::sleep(uint32_t seen, std::optional<int64_t> deadline_ns, OnSignal on_signal) noexcept {
   sleepers_.fetch_add(1, std::memory_order_seq_cst);
   word_.sleepers.fetch_add(1, std::memory_order_seq_cst);
   while (epoch() == seen && (!deadline_ns || monotonic_ns() < *deadline_ns)) {
-    futex_wait(word_.epoch, seen, deadline_ns);
+    if (futex_wait(word_.epoch, seen, deadline_ns) && on_signal == OnSignal::give_up) {
+      break;
+    }
   }
   word_.sleepers.fetch_sub(1, std::memory_order_relaxed);
   sleepers_.fetch_sub(1, std::memory_order_relaxed);
   return epoch() != seen;
 }
 
-bool Waiter::wait(uint32_t seen, std::optional<int64_t> deadline_ns) noexcept {
+bool Waiter::wait(uint32_t seen, std::optional<int64_t> deadline_ns, OnSignal on_signal) noexcept {
   if (mode_ == WaitMode::spin) {
     return spin(seen, deadline_ns);
   }
   if (mode_ == WaitMode::block) {
-    return sleep(seen, deadline_ns);
+    return sleep(seen, deadline_ns, on_signal);
   }
   const int64_t start = monotonic_ns();
   const int64_t spin_end = start + spin_budget_ns;
@@ -75,17 +77,17 @@ bool Waiter::wait(uint32_t seen, std::optional<int64_t> deadline_ns) noexcept {
       return true;
     }
     learn(false);
-    return sleep(seen, deadline_ns);
+    return sleep(seen, deadline_ns, on_signal);
   }
-  const bool woken = sleep(seen, deadline_ns);
+  const bool woken = sleep(seen, deadline_ns, on_signal);
   if (woken && monotonic_ns() < spin_end) {
-    learn(true);  // the message came so soon that spinning would have met it
+    learn(true);  // spinning would have caught this message
   }
   return woken;
 }
 
-/// Sleepers of this process are counted in its own memory, too: what ends it must wake it, whatever
-/// became of the count in shared memory.
+/// Sleepers of this process are also counted in its private memory: shutdown must wake them even if
+/// the count in shared memory is damaged.
 void Waiter::notify() noexcept {
   word_.notify();
   if (sleepers_.load(std::memory_order_seq_cst) != 0) {

@@ -11,16 +11,22 @@ namespace manycore {
 struct SeenEpoch;
 struct WakeWord;
 
-/// How a process waits for its next notification.
+/// How a process waits for notifications.
 enum class WaitMode : uint8_t {
   block,     ///< sleeps at once
   adaptive,  ///< spins for a learned, bounded time, then sleeps
-  spin,      ///< never sleeps; for cores that belong to one node alone
+  spin,      ///< never sleeps; for cores reserved for a single node
 };
 
-/// Where threads sleep: on one wake word. Every notification (message, guard condition, graph
-/// change while watched) raises the epoch. Use: have the word among the Watchers of all entities,
-/// read epoch(), look at all entities, then wait(epoch).
+/// What a sleep does after a signal handler ran.
+enum class OnSignal : uint8_t {
+  resume,
+  give_up,  ///< for callers whose handlers only record the signal, as Python's do
+};
+
+/// Waiter that blocked threads sleep on, backed by one wake word. Each notification (message, guard
+/// condition, watched graph change) increments the epoch. Usage: add the word to the Watchers of
+/// all entities, read epoch(), check all entities, then wait(epoch).
 class Waiter {
 public:
   Waiter(WakeWord & word, WaitMode mode) noexcept;
@@ -28,16 +34,18 @@ public:
   uint32_t epoch() const noexcept;
 
   /// Returns true when the epoch is no longer `seen`, false at `deadline_ns` (CLOCK_MONOTONIC;
-  /// unset = no limit). Any number of threads.
-  bool wait(uint32_t seen, std::optional<int64_t> deadline_ns) noexcept;
+  /// unset = no limit) or after it gave up on a signal, which spinning ignores. Thread-safe.
+  bool wait(
+    uint32_t seen, std::optional<int64_t> deadline_ns,
+    OnSignal on_signal = OnSignal::resume) noexcept;
 
-  /// Raises the epoch and wakes this process's sleepers (guard conditions).
+  /// Increments the epoch and wakes the sleepers of this process (guard conditions).
   void notify() noexcept;
 
 private:
   friend bool wait_for_any(const std::vector<SeenEpoch> &, std::optional<int64_t>);
   bool spin(uint32_t seen, std::optional<int64_t> deadline_ns) noexcept;
-  bool sleep(uint32_t seen, std::optional<int64_t> deadline_ns) noexcept;
+  bool sleep(uint32_t seen, std::optional<int64_t> deadline_ns, OnSignal on_signal) noexcept;
   void learn(bool served) noexcept;
 
   WakeWord & word_;

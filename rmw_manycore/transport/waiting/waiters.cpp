@@ -25,7 +25,7 @@ void Waiters::notify_all() noexcept {
   }
 }
 
-/// A word that threads share stays: one of them may wait where another was woken for nothing.
+/// A shared word stays: one thread may wait on it while another was woken for nothing.
 void Waiters::forget_this_thread() noexcept {
   if (are_thread_numbers_shared()) {
     return;

@@ -11,19 +11,19 @@
 
 namespace manycore {
 
-/// Where the threads of this process sleep: each on a wake word of its own, so that a message wakes
-/// only those that wait for it. Thread-safe.
+/// The waiters of this process: one wake word per thread, so that a message wakes only the threads
+/// that wait for it. Thread-safe.
 class Waiters {
 public:
   Waiters(WakeWords & words, WaitMode mode);
   Waiters(const Waiters &) = delete;
   Waiters & operator=(const Waiters &) = delete;
 
-  /// For what arrives at subscriptions whose watchers were not set.
+  /// For arrivals at subscriptions whose watchers were not changed.
   Waiter & common() noexcept { return waiters_.front(); }
-  /// Shared by some once more than `thread_numbers` threads wait.
+  /// Shared by several threads once more than `thread_numbers` threads wait.
   Waiter & of_this_thread() noexcept { return waiters_[word_of_this_thread()]; }
-  /// To be added to the Watchers of all that this thread waits for.
+  /// Word to add to the Watchers of everything that this thread waits for.
   static uint32_t word_of_this_thread() noexcept;
 
   Watchers & graph_watchers() noexcept { return words_.graph; }
@@ -32,22 +32,22 @@ public:
   void notify(const Watchers & watchers) noexcept;
   void notify_all() noexcept;
 
-  /// To be called when this thread was woken for nothing: what it waited for earlier wakes it no
-  /// more. What it waits for now has to be watched again.
+  /// Call when this thread was woken for nothing: removes its word from all watchers, so that
+  /// former waits wake it no more. Add the word again to what it waits for now.
   void forget_this_thread() noexcept;
 
 private:
   friend class Watched;
 
   WakeWords & words_;
-  /// In a child of fork() the mutex may be locked for ever.
+  /// In a child of fork() the mutex may be locked forever.
   const ForkSide side_;
   std::deque<Waiter> waiters_;  ///< one per word
-  std::mutex mutex_;            ///< of watched_
+  std::mutex mutex_;            ///< guards watched_
   std::unordered_set<Watchers *> watched_;
 };
 
-/// Watchers that forget_this_thread() knows of.
+/// Registers Watchers for forget_this_thread() during its lifetime.
 class Watched {
 public:
   Watched(Waiters & waiters, Watchers & watchers);

@@ -1,0 +1,57 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+
+#include "transport/registry/registry.hpp"
+#include "transport/transfer/carrier.hpp"
+
+namespace manycore {
+
+/// Hands the records of one publisher over to clusters that have subscriptions. One thread at a
+/// time, in the publisher's phase (see Writing). See docs/design/transfers.md.
+class TransferSender {
+public:
+  /// What a synchronous publish waits for at most, in all.
+  static constexpr int64_t max_blocking_ns = 100'000'000;
+
+  /// Nullptr for a topic that is not transferred. Throws Error{system}.
+  static std::unique_ptr<TransferSender> of(
+    Registry & registry, Cluster & own, EndpointEntry & publisher);
+  TransferSender(
+    Registry & registry, Cluster & own, EndpointEntry & publisher,
+    const TransferSettings & settings);
+
+  /// False when the subscriptions there have to be told to look for themselves: the record is there
+  /// without an announcement, or given up already, or was dropped, and no record is under way after
+  /// which they look.
+  bool hand_over(const EmcosMessage & announcement, const Cluster & receiver) noexcept;
+
+  /// Throws Error{timeout} when the last record was to be received in time and was not.
+  void require_received();
+
+private:
+  void begin(uint64_t number) noexcept;
+  Carried carry(
+    const EmcosMessage & announcement, const Landing & landing, const Cluster & receiver) noexcept;
+  /// False when a mover was killed meanwhile that may have had the record in hand.
+  bool note_handed(
+    LandingHeader & landing, const std::atomic<uint64_t> & successors, uint64_t before) noexcept;
+  void note_dropped(uint32_t cluster) noexcept;
+  bool is_told_of_drop(const LandingHeader & landing, uint32_t cluster) noexcept;
+  /// True when the mover gave it up before `closed` was stored: readers looked too early.
+  bool is_given_up(const Landing & landing) const noexcept;
+
+  Registry & registry_;
+  Cluster & own_;
+  EndpointEntry & publisher_;
+  TopicDsmHeader & dsm_;
+  std::unique_ptr<Carrier> carrier_;
+  const bool is_synchronous_;
+  uint64_t number_ = 0;        ///< of the record that is being handed over, or was last
+  int64_t until_ns_ = 0;       ///< CLOCK_MONOTONIC, of that record
+  uint32_t late_cluster_ = 0;  ///< has not confirmed that record in time
+  uint64_t dropping_ = 0;      ///< bit c - 1: cluster c was not given the record before
+};
+
+}  // namespace manycore
