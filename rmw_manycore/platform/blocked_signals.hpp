@@ -7,7 +7,8 @@
 
 namespace manycore {
 
-/// Signals are the program's business: a thread that is started while this lives receives none.
+/// Blocks all signals during its lifetime: a thread started meanwhile receives none, so signals are
+/// handled by the program's own threads.
 class BlockedSignals {
 public:
   BlockedSignals() noexcept {

@@ -20,7 +20,8 @@ extern char ** environ;
 namespace manycore {
 namespace {
 
-/// A child must not be stopped by our terminal's Ctrl-C, nor keep our pipes and files open.
+/// Settings of a child that must not receive the terminal's Ctrl-C nor keep this process's
+/// descriptors open.
 class SpawnSettings {
 public:
   SpawnSettings() {
@@ -96,7 +97,7 @@ bool ChildProcess::has_ended() const noexcept {
 }
 
 void ChildProcess::kill() const noexcept {
-  // Not waited for yet, so the number cannot be another process's.
+  // not reaped yet, so the pid cannot belong to another process
   ::kill(pid_, SIGKILL);
 }
 

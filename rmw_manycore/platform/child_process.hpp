@@ -10,21 +10,21 @@
 
 namespace manycore {
 
-/// A process that this one started and ends: killed and waited for by the destructor.
+/// A child process owned by this process: the destructor kills it and waits for it.
 class ChildProcess {
 public:
   ChildProcess() = default;
-  /// Starts a program without inherited descriptors (errors still go to our standard error).
-  /// Throws Error{system} when it cannot be started.
+  /// Starts a program without inherited descriptors, except standard error. Throws Error{system} if
+  /// it cannot be started.
   explicit ChildProcess(const std::vector<std::string> & arguments);
   ChildProcess(ChildProcess && other) noexcept;
   ChildProcess & operator=(ChildProcess && other) noexcept;
   ~ChildProcess();
 
   pid_t pid() const noexcept { return pid_; }
-  /// Tells whether there is no such process any more, which its pidfd proves.
+  /// True if the process has ended, as its pidfd proves.
   bool has_ended() const noexcept;
-  /// Ends it, whatever it is doing.
+  /// Sends SIGKILL.
   void kill() const noexcept;
 
 private:
@@ -32,7 +32,7 @@ private:
   FileDescriptor pidfd_;
 };
 
-/// Starts a thread that ends this process when `parent`, the process that started it, has ended.
+/// Starts a thread that ends this process when `parent`, its parent process, has ended.
 void end_with_parent(pid_t parent);
 
 }  // namespace manycore

@@ -15,10 +15,10 @@ inline int64_t clock_ns(clockid_t clock) noexcept {
   return t.tv_sec * ns_per_s + t.tv_nsec;
 }
 
-/// For deadlines and waits.
+/// Clock of deadlines and waits.
 inline int64_t monotonic_ns() noexcept { return clock_ns(CLOCK_MONOTONIC); }
 
-/// For message timestamps.
+/// Clock of message timestamps.
 inline int64_t realtime_ns() noexcept { return clock_ns(CLOCK_REALTIME); }
 
 inline timespec to_timespec(int64_t ns) noexcept {

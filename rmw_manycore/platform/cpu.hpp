@@ -5,7 +5,7 @@
 
 namespace manycore {
 
-/// Between two looks at a word that another CPU will write.
+/// Spin-wait hint, for use between two loads of a word that another CPU writes.
 inline void pause_cpu() noexcept {
 #if defined(__x86_64__) || defined(__i386__)
   __builtin_ia32_pause();
@@ -14,10 +14,10 @@ inline void pause_cpu() noexcept {
 #endif
 }
 
-/// Lets a thread that is ready on this CPU run first.
+/// Lets another thread that is runnable on this CPU run first.
 inline void yield_cpu() noexcept { sched_yield(); }
 
-/// The only host CPU this thread may use, or -1 when there are several.
+/// The only host CPU in this thread's affinity mask, or -1 if there are several.
 inline int only_cpu() noexcept {
   cpu_set_t cpus;
   if (sched_getaffinity(0, sizeof cpus, &cpus) != 0 || CPU_COUNT(&cpus) != 1) {

@@ -6,19 +6,19 @@
 
 namespace manycore {
 
-/// What went wrong, coarse enough for a caller to choose its answer.
+/// Kind of an error, for callers that react to it.
 enum class ErrorCode {
-  invalid_argument,  ///< the caller asked for something that has no meaning
-  unsupported,       ///< a QoS or feature that is not honoured (never accepted silently)
-  no_space,          ///< the cluster's SMEM, /dev/shm or a table is full
-  too_large,         ///< a message that cannot fit its topic DSM
-  timeout,           ///< a bound was reached (registry lock, RELIABLE + KEEP_ALL publish)
-  corrupt,           ///< a segment or pipe that is truncated, foreign or of another layout
-  permission,        ///< not ours to open
+  invalid_argument,  ///< an argument without meaning
+  unsupported,       ///< a QoS or feature that is not supported; never accepted silently
+  no_space,          ///< the cluster's SMEM, its file system or a table is full
+  too_large,         ///< a message larger than its topic DSM can be
+  timeout,           ///< a time limit was reached (registry lock, RELIABLE + KEEP_ALL publish)
+  corrupt,           ///< a segment or pipe is damaged, foreign or of another layout
+  permission,        ///< access is denied, or an object is not private to this user
   system,            ///< any other operating-system error
 };
 
-/// The one exception of the transport; its text says what to do.
+/// The exception of all layers below rmw. Its text says what to do.
 class Error : public std::runtime_error {
 public:
   Error(ErrorCode code, const std::string & what) : std::runtime_error(what), code_(code) {}
@@ -28,7 +28,8 @@ private:
   ErrorCode code_;
 };
 
-/// Throws Error{system or permission} with errno's text and, at a limit, how to raise it.
+/// Throws Error{system|permission} with the text of errno and, at a resource limit, how to raise
+/// it.
 [[noreturn]] void throw_errno(const std::string & what);
 
 }  // namespace manycore

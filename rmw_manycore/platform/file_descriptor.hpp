@@ -24,7 +24,7 @@ public:
   }
 
   int get() const noexcept { return fd_; }
-  /// The caller closes it.
+  /// Gives up ownership: the caller closes it.
   int release() noexcept { return std::exchange(fd_, -1); }
   explicit operator bool() const noexcept { return fd_ >= 0; }
 

@@ -40,8 +40,7 @@ std::optional<FileLock> FileLock::acquire(const std::string & path, int timeout_
     if (!fd) {
       throw_errno("cannot open " + path);
     }
-    // Joining holds the lock for well under a millisecond, so a short pause between tries is
-    // enough.
+    // Joining holds the lock for far less than a millisecond, so polling is sufficient.
     while (flock(fd.get(), LOCK_EX | LOCK_NB) != 0) {
       if (errno != EWOULDBLOCK && errno != EINTR) {
         throw_errno("cannot lock " + path);

@@ -8,16 +8,16 @@
 
 namespace manycore {
 
-/// Exclusive lock of a whole file (flock), held while alive. The file may be unlinked by its
-/// holder; acquiring checks that the locked file is still the one at `path`.
+/// Exclusive lock of a whole file (flock), held during its lifetime. The holder may unlink the
+/// file: acquire() checks that the locked file is still the one at `path`.
 class FileLock {
 public:
-  /// Waits at most `timeout_ms`; throws Error{timeout} naming the file. Empty when the file's
-  /// directory is missing (its last user has just removed it).
+  /// Waits at most `timeout_ms`; throws Error{timeout} naming the file and its owner. Empty if the
+  /// directory of the file is missing, because its last user has just removed it.
   static std::optional<FileLock> acquire(const std::string & path, int timeout_ms);
   FileLock(FileLock &&) = default;
   FileLock & operator=(FileLock &&) = default;
-  /// Unlocks before it closes: a child that was forked meanwhile has the same lock.
+  /// Unlocks before closing: a child of fork() may share the open file, which holds the lock.
   ~FileLock();
 
 private:

@@ -7,7 +7,7 @@ namespace manycore {
 
 std::atomic<uint32_t> ForkSide::forks{0};
 
-/// Before main(): a fork that nothing of this library knows of has to be counted, too.
+/// Registered before main(), so that forks by other libraries are counted as well.
 const int ForkSide::registered = pthread_atfork(nullptr, nullptr, [] { count_fork(); });
 
 }  // namespace manycore

@@ -6,20 +6,20 @@
 
 namespace manycore {
 
-/// Remembers in which process it was made. What a child of fork() inherits looks like its parent's,
-/// but threads, locks and memberships stay with the parent.
+/// Remembers the process that created it. A child of fork() inherits copies of its parent's
+/// objects, but threads, locks and memberships belong to the parent.
 class ForkSide {
 public:
   ForkSide() noexcept : made_in_(forks.load(std::memory_order_relaxed)) {}
 
-  /// True in a child of the process that made this.
+  /// True in a child of the process that created this object.
   bool is_inherited() const noexcept { return made_in_ != forks.load(std::memory_order_relaxed); }
 
 private:
   static void count_fork() noexcept { forks.fetch_add(1, std::memory_order_relaxed); }
   static const int registered;
 
-  /// Forks between the first process and this one.
+  /// Number of forks between the first process and this one.
   static std::atomic<uint32_t> forks;
 
   uint32_t made_in_;

@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <cerrno>
 #include <climits>
 #include <cstdint>
 #include <optional>
@@ -17,17 +18,19 @@ namespace manycore {
 using FutexWord = std::atomic<uint32_t>;
 static_assert(sizeof(FutexWord) == 4 && FutexWord::is_always_lock_free);
 
-/// Sleeps while `word` is `seen`, at most until `deadline_ns` (CLOCK_MONOTONIC). May return early.
-inline void futex_wait(
+/// Sleeps while `word` equals `seen`, until `deadline_ns` (CLOCK_MONOTONIC) at the latest. May
+/// return early: true after a signal handler ran that was installed without SA_RESTART.
+inline bool futex_wait(
   FutexWord & word, uint32_t seen, std::optional<int64_t> deadline_ns) noexcept {
   timespec until{};
   if (deadline_ns) {
     until = to_timespec(*deadline_ns);
   }
-  // FUTEX_WAIT_BITSET takes an absolute time, so an interrupted wait needs no arithmetic.
-  syscall(
+  // FUTEX_WAIT_BITSET takes an absolute timeout, so an interrupted wait needs no recomputation.
+  const long result = syscall(
     SYS_futex, &word, FUTEX_WAIT_BITSET, seen, deadline_ns ? &until : nullptr, nullptr,
     FUTEX_BITSET_MATCH_ANY);
+  return result != 0 && errno == EINTR;
 }
 
 inline void futex_wake_all(FutexWord & word) noexcept {

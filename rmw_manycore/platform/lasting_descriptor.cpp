@@ -23,7 +23,7 @@ LastingDescriptor::LastingDescriptor(LastingDescriptor && other) noexcept {
   *this = std::move(other);
 }
 
-/// Before any other thread knows of either.
+/// Call before other threads use either object.
 LastingDescriptor & LastingDescriptor::operator=(LastingDescriptor && other) noexcept {
   std::swap(path_, other.path_);
   std::swap(flags_, other.flags_);
@@ -47,7 +47,7 @@ bool LastingDescriptor::is_own(int fd) const noexcept {
 bool LastingDescriptor::is_at(const std::string & path) const noexcept {
   struct stat status {};
   if (stat(path.c_str(), &status) != 0) {
-    return errno != ENOENT && errno != ENOTDIR;  // what cannot be looked at may be there
+    return errno != ENOENT && errno != ENOTDIR;  // on other errors the file may exist
   }
   return status.st_dev == device_ && status.st_ino == inode_;
 }

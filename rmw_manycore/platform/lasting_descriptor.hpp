@@ -11,22 +11,22 @@
 
 namespace manycore {
 
-/// A descriptor that a program may close although it is ours: programs that become daemons close
-/// all, and the number may then be another file's. So each use asks whether it still is this
-/// file's, and opens the file again where it is not. Thread-safe.
+/// A descriptor that survives being closed by the program. Programs that become daemons close all
+/// descriptors, after which the number may refer to another file. Each use therefore checks that
+/// the number still refers to this file, and otherwise opens the file again. Thread-safe.
 class LastingDescriptor {
 public:
   LastingDescriptor() = default;
-  /// `flags` are those to open `path` with again; what has no path stays closed.
+  /// `flags` reopen `path`; without a path the file is not reopened.
   explicit LastingDescriptor(FileDescriptor fd, std::string path = {}, int flags = 0) noexcept;
   LastingDescriptor(LastingDescriptor && other) noexcept;
   LastingDescriptor & operator=(LastingDescriptor && other) noexcept;
-  /// Leaves a number alone that is another file's.
+  /// Does not close a number that refers to another file by now.
   ~LastingDescriptor();
 
-  /// -1 with errno when the file is closed and cannot be opened again, as it is gone or replaced.
+  /// -1 with errno set if the descriptor is closed and the file was removed or replaced.
   int get() const noexcept;
-  /// Whether `path` names this file now. Needs no descriptor.
+  /// True if `path` names this file now. Needs no descriptor.
   bool is_at(const std::string & path) const noexcept;
 
 private:
@@ -34,7 +34,7 @@ private:
 
   std::string path_;
   int flags_ = 0;
-  dev_t device_ = 0;  ///< with inode_: which file it is
+  dev_t device_ = 0;  ///< identifies the file, together with inode_
   ino_t inode_ = 0;
   mutable std::atomic<int> fd_{-1};
   mutable std::mutex reopening_;

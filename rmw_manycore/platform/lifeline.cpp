@@ -20,7 +20,7 @@ namespace {
 constexpr uint64_t lifelines_magic = 0x4d43'4c49'4645'4c4e;  // "MCLIFELN"
 constexpr long no_wait_ns = 0;
 
-/// False when another thread has it.
+/// False if another thread holds it.
 bool try_lock(RobustMutex & mutex) {
   try {
     if (mutex.lock(no_wait_ns) == RobustMutex::Outcome::owner_died) {
@@ -35,16 +35,17 @@ bool try_lock(RobustMutex & mutex) {
   }
 }
 
-/// Threads of a killed process end one by one, in no order, and this one's held the line: others
-/// may still run on their CPUs. They need no more than an interrupt to stop, or the end of a system
-/// call, of which those that give memory back are made under the registry lock. A process that
-/// became another program (exec) goes on under its pid, so the wait is bounded.
+/// When a process is killed, its threads end one by one in no particular order. The thread that
+/// held the lifeline has ended, but others may still be running on their CPUs. They stop at the
+/// next interrupt or at the end of their system call; system calls that return memory are made
+/// under the registry lock. The wait is bounded, because a process that called exec() keeps its
+/// pid.
 void wait_for_stragglers(const ProcessIdentity & dying) {
   constexpr int enough_ms = 10;
   try {
     dying.wait_for_end(enough_ms);
   } catch (const Error &) {
-    timespec left = to_timespec(enough_ms * ns_per_s / 1000);  // no descriptor left to wait on
+    timespec left = to_timespec(enough_ms * ns_per_s / 1000);  // no descriptor left for a pidfd
     while (nanosleep(&left, &left) != 0) {
     }
   }
@@ -52,15 +53,16 @@ void wait_for_stragglers(const ProcessIdentity & dying) {
 
 }  // namespace
 
-/// First line of the file; the same in every version, so that each can tell whether another's
-/// platform lives. `magic` is written last.
+/// First line of the file. Its layout is the same in all versions, so that each version can tell
+/// whether a platform of another version lives. `magic` is stored last.
 struct Lifelines::Header {
   std::atomic<uint64_t> magic;
   uint32_t count;
   char reserved[52];
 };
 
-/// The thread never unlocks: ending is what lets go, here as for the killed.
+/// The thread never unlocks the mutex: the kernel releases it when the thread ends, by intent or by
+/// a kill.
 struct HeldLifeline::Holder {
   explicit Holder(std::shared_ptr<SharedMemory> memory_, Lifeline & line_)
   : memory(std::move(memory_)), line(line_) {}
@@ -123,15 +125,16 @@ HeldLifeline::~HeldLifeline() {
     return;
   }
   if (holder_->side.is_inherited()) {
-    holder_.release();  // the thread is the parent's, and what it locks cannot be destroyed here
+    // The thread belongs to the parent, and a mutex it holds cannot be destroyed here.
+    holder_.release();
     return;
   }
-  holder_->line.pid = 0;  // this process lives on, without the line
+  holder_->line.pid = 0;  // this process lives on without the line
   holder_->let_go();
 }
 
-/// Under another name until it is whole: killed in between, it leaves a directory without
-/// lifelines, which the next process wipes.
+/// Creates the file under another name and renames it when it is complete: a process killed in
+/// between leaves a directory without lifelines, which the next process removes.
 void Lifelines::create(const std::string & path, uint32_t count) {
   const uint64_t bytes = sizeof(Header) + uint64_t{count} * sizeof(Lifeline);
   const std::string unfinished = path + ".new";
@@ -184,9 +187,10 @@ std::optional<HeldLifeline> Lifelines::try_hold(uint32_t line) const {
   return std::nullopt;
 }
 
+bool Lifelines::is_locked(uint32_t line) const { return at(line).mutex.is_locked(); }
+
 bool Lifelines::is_held(uint32_t line) const {
-  const Lifeline & lifeline = at(line);
-  if (lifeline.mutex.is_locked()) {
+  if (is_locked(line)) {
     return true;
   }
   const ProcessIdentity last = holder(line);

@@ -12,19 +12,19 @@
 
 namespace manycore {
 
-/// One line of a file of lifelines. Its mutex is held by a thread that does nothing else: the
-/// kernel marks the mutex when the thread ends, whatever ended it.
+/// One line of a lifeline file. A dedicated thread holds its mutex; the kernel marks the mutex when
+/// the thread ends for any reason.
 struct Lifeline {
   RobustMutex mutex;
-  /// ProcessIdentity of the holder, or of the last one; pid 0 once it let go.
+  /// ProcessIdentity of the current or last holder; pid 0 after the holder released the line.
   std::atomic<pid_t> pid;
   std::atomic<uint64_t> start_time;
   std::atomic<uint64_t> pid_namespace;
 };
 static_assert(sizeof(Lifeline) == 64);
 
-/// A line held by this process, from construction to destruction. A child of fork() holds nothing,
-/// and lets nothing go.
+/// A line held by this process during the object's lifetime. A child of fork() neither holds nor
+/// releases it.
 class HeldLifeline {
 public:
   HeldLifeline(HeldLifeline &&) noexcept;
@@ -38,24 +38,27 @@ private:
   std::unique_ptr<Holder> holder_;
 };
 
-/// A file of lifelines: proof that the processes which hold a line live. It needs no descriptor
-/// that stays open, is not inherited by fork(), holds across PID namespaces and within one process.
+/// A file of lifelines, which prove that the processes that hold them live. Needs no open
+/// descriptor, is not inherited by fork(), and works across PID namespaces and within one process.
 class Lifelines {
 public:
   static void create(const std::string & path, uint32_t count);
-  /// Throws Error{corrupt} for what is no file of lifelines.
+  /// Throws Error{corrupt} if the file is not a lifeline file.
   static Lifelines open(const std::string & path);
 
-  /// Empty when the line is held already. Throws Error{corrupt} on a damaged line and
-  /// std::system_error when there is no room for a thread.
+  /// Empty if the line is already held. Throws Error{corrupt} if the line is damaged, and
+  /// std::system_error if no thread can be created.
   std::optional<HeldLifeline> try_hold(uint32_t line) const;
-  /// False once the holder has ended. Of a holder in another PID namespace nothing tells that the
-  /// last of its threads has stopped, a moment after the one that held the line.
+  /// False once the holder has ended. For a holder in another PID namespace, its last threads may
+  /// still be running for a moment after the one that held the line.
   bool is_held(uint32_t line) const;
+  /// As is_held(), but without a system call: a single load. For a holder in any PID namespace, its
+  /// last threads may still be running for a moment after this returns false.
+  bool is_locked(uint32_t line) const;
   bool is_any_held() const;
-  /// As SharedMemory::is_file().
+  /// See SharedMemory::is_file().
   bool is_file(const std::string & path) const noexcept { return memory_->is_file(path); }
-  /// The process that holds the line, or held it last.
+  /// The current or last holder of the line.
   ProcessIdentity holder(uint32_t line) const;
 
 private:

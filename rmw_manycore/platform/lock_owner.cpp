@@ -18,7 +18,7 @@ struct ThreadStatus {
   char state = '?';  ///< as in proc(5): R, S, D, T, t, Z, X
 };
 
-/// Empty when there is no such thread.
+/// Empty if there is no such thread.
 std::optional<ThreadStatus> status_of(pid_t thread) {
   std::ifstream file("/proc/" + std::to_string(thread) + "/status");
   ThreadStatus status;
@@ -37,14 +37,15 @@ std::optional<ThreadStatus> status_of(pid_t thread) {
   return status.process.empty() ? std::nullopt : std::optional<ThreadStatus>(status);
 }
 
-/// How /proc/locks names a file: "fe:00:2149051".
+/// Name of a file in /proc/locks: "fe:00:2149051".
 std::string name_in_locks(const struct stat & file) {
   char device[32];
   std::snprintf(device, sizeof device, "%02x:%02x:", major(file.st_dev), minor(file.st_dev));
   return device + std::to_string(file.st_ino);
 }
 
-/// Process that holds flock() on a file. Empty when none does, or one of another pid namespace.
+/// Process that holds flock() on a file. Empty if there is none, or if it is in another PID
+/// namespace.
 std::optional<pid_t> flock_owner_of(const std::string & file) {
   std::ifstream locks("/proc/locks");
   for (std::string line; std::getline(locks, line);) {
@@ -63,7 +64,7 @@ std::optional<pid_t> flock_owner_of(const std::string & file) {
 
 std::string describe_lock_owner(pid_t thread) {
   if (thread == 0) {
-    return "no process holds it any more; try again";
+    return "its owner has just released it; try again";
   }
   const std::optional<ThreadStatus> owner = status_of(thread);
   if (!owner) {

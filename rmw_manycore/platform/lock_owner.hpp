@@ -7,15 +7,15 @@
 
 namespace manycore {
 
-/// What /proc says about the thread that a lock names as its owner, and what to do about it.
-/// `thread`: 0 for a lock that no thread owns at this moment.
+/// Describes the owner of a lock from /proc, and what to do about it. `thread` is 0 for a lock
+/// without an owner at this moment.
 std::string describe_lock_owner(pid_t thread);
 
-/// True when the owner of a lock may come to give it back: it runs, sleeps or waits for a CPU, or
-/// `thread` is 0. False for one that is stopped, or not visible here.
+/// True if the owner of a lock may still release it: it runs, sleeps or waits for a CPU, or
+/// `thread` is 0. False if it is stopped or not visible here.
 bool may_unlock(pid_t thread);
 
-/// As describe_lock_owner(), of an open file that another process has locked with flock().
+/// As describe_lock_owner(), for a file that another process has locked with flock().
 std::string describe_flock_owner(int fd);
 
 }  // namespace manycore

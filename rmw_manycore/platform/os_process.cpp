@@ -66,7 +66,7 @@ std::string program_name() {
     }
     if (words[i][0] != '-') {
       const std::string script = base_name(words[i]);
-      // Runs a module of ours: startup/rmw_manycore_program.py.
+      // startup/rmw_manycore_program.py runs a module of this project
       const bool runs_module = script == "rmw_manycore_program.py" && i + 1 < words.size();
       return runs_module ? words[i + 1] : script;
     }
@@ -107,7 +107,7 @@ int spawn_daemon(const std::vector<std::string> & arguments) {
   int status = 0;
   while (waitpid(pid, &status, 0) < 0) {
     if (errno != EINTR) {
-      return 0;  // a program that ignores SIGCHLD: its children leave no status
+      return 0;  // the program ignores SIGCHLD, so its children leave no status
     }
   }
   return WIFEXITED(status) ? WEXITSTATUS(status) : 1;
@@ -115,8 +115,8 @@ int spawn_daemon(const std::vector<std::string> & arguments) {
 
 namespace {
 
-/// What a daemon would have of the program that happened to start it, and keep for good. What needs
-/// privileges stays as it is.
+/// Resets attributes that a daemon would inherit for good from the program that happened to start
+/// it. Those that need privileges stay as they are.
 void shed_inherited_attributes() noexcept {
   const int moved = chdir("/");
   static_cast<void>(moved);
@@ -154,9 +154,9 @@ Daemon Daemon::detach() {
     } while (got < 0 && errno == EINTR);
     _exit(got == 1 ? 0 : 1);
   }
-  // A group of its own keeps the terminal's Ctrl-C away. Not a session of its own: the kernel's
-  // autogroup would then make it compete with its cluster's nodes as a whole, which costs
-  // milliseconds on a loaded CPU.
+  // Own process group, so that the terminal's Ctrl-C does not reach the daemon. No own session: the
+  // kernel's autogroup scheduling would then weigh the daemon against all nodes of its cluster
+  // together, which costs milliseconds on a loaded CPU.
   setpgid(0, 0);
   signal(SIGHUP, SIG_IGN);
   shed_inherited_attributes();
@@ -165,10 +165,10 @@ Daemon Daemon::detach() {
 
 void Daemon::ready() noexcept {
   const int null = open("/dev/null", O_RDWR | O_CLOEXEC);
-  dup2(null, STDERR_FILENO);  // until now errors went to the starter's terminal
+  dup2(null, STDERR_FILENO);  // until now errors went to the parent's terminal
   close(null);
   const ssize_t told = write(status_.get(), "1", 1);
-  static_cast<void>(told);  // a starter that is gone needs no answer
+  static_cast<void>(told);  // the parent may have ended
   status_ = FileDescriptor();
 }
 

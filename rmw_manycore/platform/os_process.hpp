@@ -10,21 +10,24 @@
 
 namespace manycore {
 
-/// A descriptor that becomes readable when `pid` ends; empty when there is no such process.
+/// A pidfd, which becomes readable when `pid` ends; empty if there is no such process.
 FileDescriptor open_pidfd(pid_t pid);
 
-/// Pins the calling thread (and threads it starts later) to one host CPU; false when not allowed.
+/// Pins the calling thread, and threads that it starts later, to one host CPU. False if not
+/// permitted.
 bool pin_to_cpu(int host_cpu) noexcept;
 
-/// Name of this program, for labels: the script of an interpreter, else the executable.
+/// Name of this program, for labels: the script of an interpreter, otherwise the executable.
 std::string program_name();
 
-/// Starts `arguments` as a daemon (own process group, no inherited descriptors) and waits until
-/// it reports readiness by exiting its parent half; returns that exit status, -1 when not started.
+/// Starts `arguments` as a daemon (own process group, no inherited descriptors) and waits until its
+/// parent half exits, which reports readiness. Returns the exit status, or -1 if it was not
+/// started.
 int spawn_daemon(const std::vector<std::string> & arguments);
 
-/// Called by a daemon at its start: forks, and lets the parent half exit once the child has called
-/// the returned object's ready(), or with status 1 when the child dies before that.
+/// Called by a daemon at its start: forks, and keeps the parent half until the child calls ready()
+/// on the returned object. The parent half exits with status 0 then, and with status 1 if the child
+/// dies before.
 class Daemon {
 public:
   static Daemon detach();

@@ -2,18 +2,22 @@
 #include "platform/pipe.hpp"
 
 #include <fcntl.h>
+#include <poll.h>
+#include <sys/ioctl.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <utility>
 
+#include "platform/clock.hpp"
 #include "platform/error.hpp"
 
 namespace manycore {
 namespace {
 
-/// The most an ordinary user may ask for; 16,384 messages of 64 bytes.
+/// Default limit for unprivileged users; 16,384 messages of 64 bytes.
 constexpr int pipe_capacity_bytes = 1 << 20;
 
 LastingDescriptor open_end(const std::string & path, int more_flags) {
@@ -40,7 +44,8 @@ void Pipe::create(const std::string & path) {
 Pipe Pipe::open(const std::string & path) {
   LastingDescriptor sender = open_end(path, O_NONBLOCK);
   LastingDescriptor receiver = open_end(path, 0);
-  fcntl(sender.get(), F_SETPIPE_SZ, pipe_capacity_bytes);  // best effort: user quota may forbid it
+  // Best effort: a user's pipe quota may forbid it.
+  fcntl(sender.get(), F_SETPIPE_SZ, pipe_capacity_bytes);
   return Pipe(std::move(sender), std::move(receiver));
 }
 
@@ -53,10 +58,10 @@ bool Pipe::try_send(const void * message, size_t size_bytes) const noexcept {
 }
 
 void Pipe::send_last(const void * message, size_t size_bytes) const noexcept {
-  char unread[4096];  // a page: less may make no room
+  char unread[4096];  // one page: smaller reads may free no room
   while (!try_send(message, size_bytes) && sender_.get() >= 0) {
     const ssize_t taken = ::read(sender_.get(), unread, sizeof unread);
-    static_cast<void>(taken);  // none when the receiver was faster
+    static_cast<void>(taken);  // the receiver may have emptied the pipe
   }
 }
 
@@ -66,6 +71,38 @@ size_t Pipe::receive(void * buffer, size_t capacity_bytes) const {
     throw_errno("cannot read the cluster's pipe");
   }
   return got < 0 ? 0 : static_cast<size_t>(got);
+}
+
+bool Pipe::wait_for_room(int64_t until_ns) const noexcept {
+  pollfd end{sender_.get(), POLLOUT, 0};
+  const int64_t left_ns = until_ns - monotonic_ns();
+  if (left_ns <= 0 || end.fd < 0) {
+    return false;
+  }
+  const timespec timeout = to_timespec(left_ns);
+  return ppoll(&end, 1, &timeout, nullptr) == 1 || errno == EINTR;
+}
+
+size_t Pipe::waiting_bytes() const noexcept {
+  int bytes = 0;
+  return ioctl(receiver_.get(), FIONREAD, &bytes) == 0 ? static_cast<size_t>(bytes) : 0;
+}
+
+size_t Pipe::wait_for_first(const std::vector<Pipe> & pipes) {
+  std::vector<pollfd> ends;
+  for (const Pipe & pipe : pipes) {
+    ends.push_back({pipe.receiver_.get(), POLLIN, 0});
+  }
+  while (true) {
+    if (poll(ends.data(), ends.size(), -1) < 0 && errno != EINTR) {
+      throw_errno("cannot wait for a pipe");
+    }
+    const auto readable = std::find_if(
+      ends.begin(), ends.end(), [](const pollfd & end) { return (end.revents & POLLIN) != 0; });
+    if (readable != ends.end()) {
+      return static_cast<size_t>(readable - ends.begin());
+    }
+  }
 }
 
 }  // namespace manycore

@@ -15,13 +15,13 @@
 namespace manycore {
 namespace {
 
-/// 0 when there is no such process, or no /proc.
+/// 0 if there is no such process, or no /proc.
 uint64_t start_time_of(pid_t pid) {
   constexpr int fields_between = 19;  // state, field 3, to starttime, field 22
   std::ifstream file("/proc/" + std::to_string(pid) + "/stat");
   std::string line;
   std::getline(file, line);
-  const size_t end_of_name = line.rfind(')');  // the name may hold anything
+  const size_t end_of_name = line.rfind(')');  // the name may contain any character
   if (end_of_name == std::string::npos) {
     return 0;
   }
@@ -56,7 +56,7 @@ void ProcessIdentity::wait_for_end(int timeout_ms) const {
     const int64_t deadline_ns = monotonic_ns() + int64_t{timeout_ms} * (ns_per_s / 1000);
     pollfd end{pidfd.get(), POLLIN, 0};
     int left_ms = timeout_ms;
-    while (poll(&end, 1, left_ms) < 0 && left_ms > 0) {  // a signal handler ran
+    while (poll(&end, 1, left_ms) < 0 && left_ms > 0) {  // interrupted by a signal handler
       left_ms = static_cast<int>((deadline_ns - monotonic_ns()) / (ns_per_s / 1000));
     }
   }

@@ -27,8 +27,8 @@ namespace {
 
 int lock_until(pthread_mutex_t & mutex, const timespec & until) {
 #if MANYCORE_THREAD_SANITIZER
-  // The thread sanitizers of gcc 12 and clang 14 know pthread_mutex_unlock, but not this way to
-  // lock.
+  // The thread sanitizers of gcc 12 and clang 14 intercept pthread_mutex_unlock, but not
+  // pthread_mutex_clocklock.
   __tsan_mutex_pre_lock(&mutex, 0);
   const int error = pthread_mutex_clocklock(&mutex, CLOCK_MONOTONIC, &until);
   const bool locked = error == 0 || error == EOWNERDEAD;
@@ -40,8 +40,8 @@ int lock_until(pthread_mutex_t & mutex, const timespec & until) {
 #endif
 }
 
-/// The kernel's futex word of a robust mutex: thread id of the owner, from which the kernel takes
-/// the thread when it ends, and whether others wait.
+/// Futex word of a robust mutex: thread id of the owner, which the kernel clears when the thread
+/// ends, and a flag that threads wait.
 uint32_t futex_word_of(const pthread_mutex_t & mutex) {
   return static_cast<uint32_t>(__atomic_load_n(&mutex.__data.__lock, __ATOMIC_ACQUIRE));
 }
@@ -68,7 +68,7 @@ RobustMutex::Outcome RobustMutex::lock(long timeout_ns) {
     case EOWNERDEAD:
       return Outcome::owner_died;
     case ETIMEDOUT:
-      // A caller that did not wait tries again by itself, so it is not told about the owner.
+      // A caller that does not wait retries by itself, so the owner is not described.
       throw Error(
         ErrorCode::timeout,
         timeout_ns == 0 ? "the platform's registry is locked"

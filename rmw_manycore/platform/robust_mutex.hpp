@@ -12,18 +12,18 @@ class RobustMutex {
 public:
   enum class Outcome { locked, owner_died };
 
-  /// Once, by the creator of the segment.
+  /// Called once, by the creator of the segment.
   void initialize();
-  /// Throws Error{timeout} after `timeout_ns`, whose text says what state the owner is in, and
-  /// Error{corrupt} on a word that is no mutex.
+  /// Throws Error{timeout} after `timeout_ns`, describing the owner's state, and Error{corrupt} if
+  /// the word is not a mutex.
   Outcome lock(long timeout_ns);
   void unlock() noexcept;
-  /// The thread that locked it; 0 for none or a dead one. Any thread may ask.
+  /// Thread id of the owner; 0 if there is none or it is dead. Thread-safe.
   pid_t owner() const noexcept;
   bool is_locked() const noexcept { return owner() != 0; }
-  /// True when some thread may sleep until its owner, the caller, unlocks it.
+  /// True if a thread may be sleeping until the caller, the owner, unlocks the mutex.
   bool is_waited_for() const noexcept;
-  /// After owner_died, once the protected state has been repaired.
+  /// Call after owner_died, once the protected state is repaired.
   void mark_consistent() noexcept;
 
 private:

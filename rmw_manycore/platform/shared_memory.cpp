@@ -17,7 +17,7 @@ namespace manycore {
 namespace {
 
 constexpr uint64_t page = 4096;
-constexpr uint64_t step_bytes = 4 << 20;  ///< about 3 ms to back
+constexpr uint64_t step_bytes = 4 << 20;  ///< takes about 3 ms to back
 
 uint64_t page_floor(uint64_t x) { return x & ~(page - 1); }
 uint64_t page_ceil(uint64_t x) { return page_floor(x + page - 1); }
@@ -32,7 +32,7 @@ SharedMemory::SharedMemory(
   if (mapped == MAP_FAILED) {
     throw_errno("cannot map " + path);
   }
-  // A core dump of one node must not contain the whole platform.
+  // Keep the platform's memory out of core dumps.
   madvise(mapped, size_bytes, MADV_DONTDUMP);
   data_ = static_cast<std::byte *>(mapped);
 }
@@ -66,15 +66,15 @@ SharedMemory SharedMemory::create(const std::string & path, size_t size_bytes) {
   return SharedMemory(std::move(fd), path, size_bytes, O_RDWR | O_CLOEXEC | O_NOFOLLOW);
 }
 
-SharedMemory SharedMemory::open(const std::string & path, size_t least_size_bytes) {
-  return open(path, least_size_bytes, O_NOFOLLOW);
+SharedMemory SharedMemory::open(const std::string & path, size_t min_size_bytes) {
+  return open(path, min_size_bytes, O_NOFOLLOW);
 }
 
 SharedMemory SharedMemory::attach(const std::string & shared_path) {
-  return open(shared_path, 1, 0);  // the path is a link of the kernel's
+  return open(shared_path, 1, 0);  // the path is a symbolic link in /proc
 }
 
-SharedMemory SharedMemory::open(const std::string & path, size_t least_size_bytes, int more_flags) {
+SharedMemory SharedMemory::open(const std::string & path, size_t min_size_bytes, int more_flags) {
   const int flags = O_RDWR | O_CLOEXEC | more_flags;
   FileDescriptor fd(::open(path.c_str(), flags));
   if (!fd) {
@@ -84,12 +84,11 @@ SharedMemory SharedMemory::open(const std::string & path, size_t least_size_byte
   if (fstat(fd.get(), &status) != 0) {
     throw_errno("cannot examine " + path);
   }
-  if (!S_ISREG(status.st_mode) || static_cast<size_t>(status.st_size) < least_size_bytes) {
+  if (!S_ISREG(status.st_mode) || static_cast<size_t>(status.st_size) < min_size_bytes) {
     throw Error(
       ErrorCode::corrupt, path + " is truncated or not a segment (" +
                             std::to_string(status.st_size) + " bytes, expected at least " +
-                            std::to_string(least_size_bytes) +
-                            "); remove it with 'manycore clean'");
+                            std::to_string(min_size_bytes) + "); remove it with 'manycore clean'");
   }
   return SharedMemory(std::move(fd), path, static_cast<size_t>(status.st_size), flags);
 }
@@ -159,7 +158,7 @@ void SharedMemory::reserve_and_populate(uint64_t offset, uint64_t length) const 
 
 void SharedMemory::populate(uint64_t offset, uint64_t length) const noexcept {
   const uint64_t first = page_floor(offset);
-  // Kernels before 5.14 refuse the advice; pages are then mapped by their first use.
+  // Kernels before 5.14 reject the advice; the first access then maps each page.
   madvise(data_ + first, page_ceil(offset + length) - first, MADV_POPULATE_WRITE);
 }
 

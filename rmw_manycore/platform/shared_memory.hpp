@@ -9,14 +9,14 @@
 
 namespace manycore {
 
-/// Of a file system, as far as its ordinary users may fill it.
+/// Room of a file system for unprivileged users.
 struct FileSystemRoom {
   uint64_t free_bytes = 0;
   uint64_t total_bytes = 0;
 };
 
-/// A shared mapping of one file in /dev/shm. The file is sparse: only reserved ranges hold memory,
-/// so a small /dev/shm shows at reserve() and never as SIGBUS.
+/// A shared mapping of one file, usually in /dev/shm. The file is sparse: only reserved ranges have
+/// memory, so a full file system causes an error in reserve(), never SIGBUS.
 class SharedMemory {
 public:
   SharedMemory() = default;
@@ -24,23 +24,24 @@ public:
   SharedMemory & operator=(SharedMemory && other) noexcept;
   ~SharedMemory();
 
-  /// Creates `path` (mode 0600, must not exist) with `size_bytes`, nothing reserved.
+  /// Creates `path` with mode 0600 and `size_bytes`, nothing reserved. The file must not exist.
   static SharedMemory create(const std::string & path, size_t size_bytes);
-  /// Maps an existing file of this user. Throws Error{corrupt} below `least_size_bytes`.
-  static SharedMemory open(const std::string & path, size_t least_size_bytes);
-  /// Memory without a file, all of it reserved: it is gone with the last process that maps it.
-  /// `label` shows in /proc/<pid>/maps. Others attach() to its shared_path().
+  /// Maps an existing file of this user. Throws Error{corrupt} if it is smaller than
+  /// `min_size_bytes`.
+  static SharedMemory open(const std::string & path, size_t min_size_bytes);
+  /// Memory without a file, completely reserved; it is freed with the last process that maps it.
+  /// `label` is shown in /proc/<pid>/maps. Other processes attach() to its shared_path().
   static SharedMemory anonymous(const std::string & label, size_t size_bytes);
 
-  /// Maps the memory that another process made with anonymous() and named by shared_path().
+  /// Maps memory that another process created with anonymous(), by its shared_path().
   static SharedMemory attach(const std::string & shared_path);
 
   std::byte * data() const noexcept { return data_; }
   const std::string & path() const noexcept { return path_; }
   size_t size() const noexcept { return size_; }
-  /// False once its file was removed or replaced. Needs no descriptor.
+  /// True while `path` names the mapped file. Needs no descriptor.
   bool is_file(const std::string & path) const noexcept { return file_.is_at(path); }
-  /// Where another process of this user finds the same memory while this one lives.
+  /// Path by which other processes of this user can map the same memory while this process lives.
   std::string shared_path() const;
   explicit operator bool() const noexcept { return data_ != nullptr; }
 
@@ -49,23 +50,23 @@ public:
     return *reinterpret_cast<T *>(data_ + offset);
   }
 
-  /// Of the file system that its file is in.
+  /// Room of the file system that holds the file.
   FileSystemRoom file_system_room() const noexcept;
-  /// Backs [offset, offset + length) with memory; throws Error{no_space} naming the size needed.
+  /// Backs [offset, offset + length) with memory. Throws Error{no_space} naming the size needed.
   void reserve(uint64_t offset, uint64_t length) const;
-  /// reserve() and populate() in steps. The kernel locks the file for one step at a time, so that
-  /// others can back their memory meanwhile. What was backed before an Error stays backed.
+  /// reserve() and populate() in steps. The kernel locks the file for one step at a time, so other
+  /// processes can back memory in between. After an Error, completed steps stay backed.
   void reserve_and_populate(uint64_t offset, uint64_t length) const;
-  /// Maps the pages of a reserved range into this process, so that first use does not fault.
+  /// Maps the pages of a reserved range into this process, so that the first access does not fault.
   void populate(uint64_t offset, uint64_t length) const noexcept;
-  /// Gives the whole pages inside the range back to the system; they read as zero afterwards.
+  /// Returns the whole pages inside the range to the system; they read as zero afterwards.
   void release(uint64_t offset, uint64_t length) const noexcept;
 
 private:
-  static SharedMemory open(const std::string & path, size_t least_size_bytes, int flags);
+  static SharedMemory open(const std::string & path, size_t min_size_bytes, int flags);
   SharedMemory(FileDescriptor fd, const std::string & path, size_t size_bytes, int flags);
   void unmap() noexcept;
-  /// An errno.
+  /// Returns an errno.
   int try_reserve(uint64_t first, uint64_t bytes) const noexcept;
   [[noreturn]] void throw_no_space(uint64_t bytes) const;
 

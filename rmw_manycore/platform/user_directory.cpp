@@ -24,15 +24,15 @@ std::string quoted(const std::string & path) { return std::string(variable) + "=
 void check_chosen(const std::string & path) {
   struct stat status {};
   if (path[0] != '/') {
-    throw Error(ErrorCode::invalid_argument, quoted(path) + "is no absolute path");
+    throw Error(ErrorCode::invalid_argument, quoted(path) + "is not an absolute path");
   }
   if (stat(path.c_str(), &status) != 0) {
     throw Error(
-      ErrorCode::invalid_argument,
-      quoted(path) + "is not there (" + std::strerror(errno) + "): mkdir -m 700 " + path);
+      ErrorCode::invalid_argument, quoted(path) + "cannot be examined (" + std::strerror(errno) +
+                                     "); create it: mkdir -m 700 " + path);
   }
   if (!S_ISDIR(status.st_mode)) {
-    throw Error(ErrorCode::invalid_argument, quoted(path) + "is no directory");
+    throw Error(ErrorCode::invalid_argument, quoted(path) + "is not a directory");
   }
   if (status.st_uid != geteuid()) {
     throw Error(
@@ -62,7 +62,7 @@ void require_feature(bool there, const char * what, const std::string & director
   }
 }
 
-/// Removed when this goes.
+/// Path of a test file, removed on construction and destruction.
 struct Probe {
   explicit Probe(const std::string & path_) : path(path_) { unlink(path.c_str()); }
   ~Probe() { unlink(path.c_str()); }

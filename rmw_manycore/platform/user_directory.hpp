@@ -5,20 +5,21 @@
 
 namespace manycore {
 
-/// The directory that this user's platforms lie in.
+/// The directory that holds this user's platforms.
 struct UserDirectory {
   std::string path;
-  bool is_chosen = false;  ///< by MANYCORE_DIRECTORY: then it is the user's, to make and to remove
+  bool is_chosen = false;  ///< by MANYCORE_DIRECTORY: the user creates and removes it
 
-  /// /dev/shm/manycore-<uid>, which need not exist, or MANYCORE_DIRECTORY. Throws
-  /// Error{invalid_argument|permission} when that is no private directory of this user.
+  /// MANYCORE_DIRECTORY, or /dev/shm/manycore-<uid>, which need not exist. Throws
+  /// Error{invalid_argument|permission} if MANYCORE_DIRECTORY is not a private directory of this
+  /// user.
   static UserDirectory from_environment();
-  /// A directory that exists on its file system.
+  /// An existing directory on the same file system.
   std::string place() const { return is_chosen ? path : "/dev/shm"; }
 };
 
-/// Tries in `directory` what segments and pipes need of a file system, and leaves nothing there.
-/// Throws Error{unsupported} that says what it cannot do.
+/// Tests in `directory` the file system features that segments and pipes need, and leaves no files
+/// there. Throws Error{unsupported} naming the missing feature.
 void require_file_system_features(const std::string & directory);
 
 }  // namespace manycore
