@@ -7,16 +7,16 @@
 #include "rmw/common/identifier.hpp"
 #include "rmw/error_handling.h"
 
-/// Invariants that most entry points share. Macros, because each returns from its caller.
+/// Invariants shared by most entry points. Macros, because each returns from its caller.
 
-/// The handle is there and of this RMW.
+/// The handle is not null and belongs to this RMW.
 #define MANYCORE_CHECK_HANDLE(handle)                                      \
   RMW_CHECK_ARGUMENT_FOR_NULL(handle, RMW_RET_INVALID_ARGUMENT);           \
   RMW_CHECK_TYPE_IDENTIFIERS_MATCH(                                        \
     handle, (handle)->implementation_identifier, rmw_manycore::identifier, \
     return RMW_RET_INCORRECT_RMW_IMPLEMENTATION)
 
-/// The same in functions that return a handle.
+/// The same, for functions that return a handle.
 #define MANYCORE_CHECK_HANDLE_OR_NULL(handle)   \
   RMW_CHECK_ARGUMENT_FOR_NULL(handle, nullptr); \
   RMW_CHECK_TYPE_IDENTIFIERS_MATCH(             \

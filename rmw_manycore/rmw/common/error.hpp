@@ -7,10 +7,10 @@
 
 namespace rmw_manycore {
 
-/// Turns the exception in flight into rmw's error state and the return code that fits it.
+/// Translates the current exception into rmw's error state and a matching return code.
 rmw_ret_t report_exception() noexcept;
 
-/// The edge of the C interface: no exception of `body` gets past it.
+/// Boundary of the C interface: no exception of `body` crosses it.
 template<typename Body>
 rmw_ret_t guarded(Body && body) noexcept {
   try {
@@ -20,10 +20,10 @@ rmw_ret_t guarded(Body && body) noexcept {
   }
 }
 
-/// For failures while undoing: the error that is being handled matters more.
+/// Ignores a failure during cleanup: the error already being handled matters more.
 inline void ignore(rmw_ret_t) noexcept {}
 
-/// The same as guarded for functions that return a handle; nullptr after an exception.
+/// As guarded(), for functions that return a handle; returns nullptr after an exception.
 template<typename Body>
 auto guarded_handle(Body && body) noexcept -> decltype(body()) {
   try {
@@ -34,7 +34,7 @@ auto guarded_handle(Body && body) noexcept -> decltype(body()) {
   }
 }
 
-/// For calls into rmw's helper library, which report by return code and error state.
+/// Failure of a function of rmw's helper library, which has already set the error state.
 class RmwError {
 public:
   explicit RmwError(rmw_ret_t code) : code_(code) {}
@@ -44,7 +44,7 @@ private:
   rmw_ret_t code_;
 };
 
-/// Throws RmwError unless `code` is RMW_RET_OK; the error state is set already.
+/// Throws RmwError unless `code` is RMW_RET_OK. The error state is already set.
 inline void check(rmw_ret_t code) {
   if (code != RMW_RET_OK) {
     throw RmwError(code);

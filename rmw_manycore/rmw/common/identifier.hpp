@@ -3,7 +3,7 @@
 
 namespace rmw_manycore {
 
-/// Name of this RMW in every handle. Compared by address, as rmw's own checks do.
+/// Implementation identifier in each handle. Compared by address, as rmw's own checks do.
 extern const char * const identifier;
 
 }  // namespace rmw_manycore

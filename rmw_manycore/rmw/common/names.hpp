@@ -5,12 +5,13 @@
 
 namespace rmw_manycore {
 
-/// Throw manycore::Error{invalid_argument} that says what is wrong with the name.
+/// Throw manycore::Error{invalid_argument} that says why the name is invalid.
 void check_node_name(const char * name);
 void check_namespace(const char * ns);
-/// Fully qualified name of a topic or service.
+/// Checks the fully qualified name of a topic or service.
 void check_full_name(const char * name);
-/// The same unless the profile asks for names outside ROS; never empty.
+/// As check_full_name(), unless the profile avoids ROS name conventions; rejects empty names
+/// always.
 void check_endpoint_name(const char * name, const rmw_qos_profile_t & profile);
 
 }  // namespace rmw_manycore

@@ -8,7 +8,7 @@
 
 namespace rmw_manycore {
 
-/// A string array of rcutils in the making: freed unless released to the caller.
+/// A string array of rcutils under construction; freed unless released to the caller.
 class StringArray {
 public:
   StringArray(size_t size, rcutils_allocator_t allocator) {

@@ -6,7 +6,7 @@
 namespace rmw_manycore {
 namespace {
 
-/// What another library puts in its place by LD_PRELOAD comes first, as with linked functions.
+/// Prefers a definition preloaded by LD_PRELOAD, as for linked functions.
 template<typename Function>
 void find(Function *& function, void * library, const char * name) noexcept {
   void * found = dlsym(RTLD_DEFAULT, name);
@@ -17,7 +17,8 @@ void find(Function *& function, void * library, const char * name) noexcept {
 }
 
 Tracepoints find_all() noexcept {
-  // Python loads its modules, and what they need, out of the sight of others.
+  // Python loads extension modules and their dependencies with local scope, so RTLD_DEFAULT misses
+  // them.
   void * const library = dlopen("libtracetools.so", RTLD_LAZY | RTLD_NOLOAD);
   Tracepoints found{};
   find(found.publisher_init, library, "ros_trace_rmw_publisher_init");

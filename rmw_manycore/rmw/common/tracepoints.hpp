@@ -5,19 +5,19 @@
 
 namespace rmw_manycore {
 
-/// The rmw's tracepoints of libtracetools (LTTng), with the fields that rmw_fastrtps_cpp gives, for
-/// ros2_tracing and CARET. Taken from the library that the process has loaded already, as rcl does:
-/// this one needs none. Null where there is none.
+/// The rmw tracepoints of libtracetools (LTTng), with the same fields as in rmw_fastrtps_cpp, for
+/// ros2_tracing and CARET. Resolved in the library that the process has already loaded for rcl, so
+/// this library does not depend on it. Null if it is not loaded.
 struct Tracepoints {
   void (*publisher_init)(const void * publisher, const uint8_t * gid);
   void (*publish)(const void * publisher, const void * message, int64_t timestamp_ns);
   void (*subscription_init)(const void * subscription, const uint8_t * gid);
-  /// `source_timestamp_ns`: 0 where the caller did not ask for it.
+  /// `source_timestamp_ns` is 0 if the caller did not ask for message info.
   void (*take)(
     const void * subscription, const void * message, int64_t source_timestamp_ns, bool taken);
 };
 
-/// Found at the first call.
+/// Resolved on the first call.
 const Tracepoints & tracepoints() noexcept;
 
 }  // namespace rmw_manycore

@@ -8,7 +8,7 @@
 #include "rmw/init.h"
 #include "transport/process.hpp"
 
-/// What a context owns. rmw fixes the name of the type and its global namespace.
+/// State of a context. rmw prescribes the type's name and its global namespace.
 struct rmw_context_impl_s {
   explicit rmw_context_impl_s(std::shared_ptr<manycore::Process> joined)
   : process(std::move(joined)), callback_thread(process->waiters()) {}

@@ -10,8 +10,8 @@
 
 namespace rmw_manycore {
 
-/// Something a wait set can wait for besides messages: a trigger of this program, or a change of
-/// the graph. Keeps its platform joined, so that a trigger is safe at any time. Thread-safe.
+/// A condition that wait sets can wait for: a trigger by the program, or a change of the graph.
+/// Keeps the platform joined, so it may be triggered at any time. Thread-safe.
 class GuardCondition {
 public:
   enum class Source { trigger, graph };
@@ -27,7 +27,7 @@ public:
   manycore::Watchers & watchers() noexcept { return watchers_; }
   void trigger() noexcept;
   bool ready() const noexcept;
-  /// As `ready`, and resets: the next wait needs a new trigger or change.
+  /// As ready(), and resets the condition: the next wait needs a new trigger or change.
   bool take() noexcept;
 
 private:
@@ -36,7 +36,7 @@ private:
   manycore::Watchers watchers_{};
   const manycore::Watched watched_;
   std::atomic<bool> triggered_{false};
-  std::atomic<uint64_t> seen_generation_;  ///< of the graph, at the last take
+  std::atomic<uint64_t> seen_generation_;  ///< graph generation at the last take()
 };
 
 }  // namespace rmw_manycore

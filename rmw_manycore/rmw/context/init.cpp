@@ -16,17 +16,17 @@
 namespace rmw_manycore {
 namespace {
 
-/// Security enclaves are a matter of DDS; a platform is private to its user by file permissions.
+/// DDS security enclaves are not supported; file permissions keep a platform private to its user.
 void refuse_security(const rmw_security_options_t & security) {
   if (security.enforce_security == RMW_SECURITY_ENFORCEMENT_ENFORCE) {
     throw manycore::Error(
       manycore::ErrorCode::unsupported,
-      "rmw_manycore has no DDS security: unset ROS_SECURITY_STRATEGY=Enforce or "
-      "ROS_SECURITY_ENABLE; a platform is private to its user by file permissions");
+      "rmw_manycore does not support DDS security: unset ROS_SECURITY_STRATEGY=Enforce or "
+      "ROS_SECURITY_ENABLE; file permissions keep a platform private to its user");
   }
 }
 
-/// A platform never leaves the machine, so every discovery range but OFF comes to the same.
+/// A platform is local to the machine, so all discovery ranges except OFF are equivalent.
 manycore::Placement placement_of(const rmw_init_options_t & options, size_t domain_id) {
   const rmw_discovery_options_t & discovery = options.discovery_options;
   manycore::Placement placement = manycore::Placement::from_environment(domain_id);
@@ -36,8 +36,8 @@ manycore::Placement placement_of(const rmw_init_options_t & options, size_t doma
   if (discovery.static_peers_count != 0) {
     RCUTILS_LOG_WARN_NAMED(
       identifier,
-      "static discovery peers are ignored: rmw_manycore does not leave the machine, "
-      "a bridge joins topics to other machines");
+      "static discovery peers are ignored: rmw_manycore uses no network; "
+      "a bridge connects topics with other machines");
   }
   return placement;
 }
@@ -115,7 +115,7 @@ rmw_ret_t rmw_context_fini(rmw_context_t * context) {
   const rmw_ret_t result = rmw_init_options_fini(&context->options);
   if (!context->impl->process->is_inherited()) {
     delete context->impl;
-  }  // else threads of the parent stand behind it, which nothing here can join
+  }  // else it is left to the parent, which owns the threads
   *context = rmw_get_zero_initialized_context();
   return result;
 }

@@ -9,7 +9,7 @@
 
 namespace rmw_manycore {
 
-/// A node: a line in the registry and a guard condition for changes of the graph.
+/// A node: an entry in the registry and a guard condition for graph changes.
 class Node {
 public:
   /// Throws manycore::Error.
@@ -24,7 +24,7 @@ public:
 
   manycore::Process & process() const noexcept { return *context_.process; }
   CallbackThread & callback_thread() const noexcept { return context_.callback_thread; }
-  /// Its handle in the registry.
+  /// Handle of the node in the registry.
   uint32_t registered() const noexcept { return registered_; }
   const GuardCondition & graph_changed() const noexcept { return graph_changed_; }
 

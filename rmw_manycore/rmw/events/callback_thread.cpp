@@ -18,7 +18,7 @@ void CallbackThread::add(Callback & callback) {
     thread_ = std::thread([this] { run(); });
   }
   wake_.notify_all();
-  wake_sleep();  // one that has begun knows neither its watchers nor when it is due
+  wake_sleep();  // a sleeping thread has neither this callback's watchers nor its due time
 }
 
 void CallbackThread::remove(Callback & callback) noexcept {
@@ -51,8 +51,8 @@ void CallbackThread::run() noexcept {
       wake_.wait(lock);
       continue;
     }
-    // Watchers, epoch and due time come before the look: what happens or falls due in between ends
-    // the wait at once.
+    // Register watchers and read epoch and due time before checking: anything that happens or falls
+    // due in between ends the wait at once.
     watch_all(word);
     const uint32_t epoch = waiter.epoch();
     const std::optional<int64_t> due_ns = next_due_ns();

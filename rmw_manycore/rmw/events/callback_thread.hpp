@@ -18,8 +18,8 @@ namespace rmw_manycore {
 
 class Callback;
 
-/// Calls the "on new message / request / response / event" callbacks of one context. It runs only
-/// once a callback was set, sleeps on its own wake word, and touches nothing else. Thread-safe.
+/// Calls the "on new message / request / response / event" callbacks of one context. Started when
+/// the first callback is set; sleeps on its own wake word. Thread-safe.
 class CallbackThread {
 public:
   explicit CallbackThread(manycore::Waiters & waiters) noexcept : waiters_(waiters) {}
@@ -28,7 +28,7 @@ public:
   CallbackThread & operator=(const CallbackThread &) = delete;
 
   manycore::Waiters & waiters() const noexcept { return waiters_; }
-  /// After it no callback is called any more. Not from within a callback.
+  /// Stops the thread; no callback is called afterwards. Must not be called from a callback.
   void stop() noexcept;
 
 private:
@@ -42,29 +42,29 @@ private:
   std::optional<int64_t> next_due_ns() const;
 
   manycore::Waiters & waiters_;
-  /// In a child of fork() there is no thread, and the mutex may be locked for ever.
+  /// In a child of fork() the thread does not exist, and the mutex may be locked forever.
   const manycore::ForkSide side_;
-  /// Held while a callback runs, so that none runs after it was taken away; recursive, because a
+  /// Held while a callback runs, so that none runs after it was cleared. Recursive, because a
   /// callback may set or clear callbacks.
   std::recursive_mutex mutex_;
   std::condition_variable_any wake_;
   std::vector<Callback *> active_;
-  manycore::Waiter * sleeping_ = nullptr;  ///< the thread's, once it runs
+  manycore::Waiter * sleeping_ = nullptr;  ///< the waiter of the thread while it runs
   bool changed_ = false;
   bool stopping_ = false;
   std::thread thread_;
 };
 
-/// One settable callback: a count that only rises, and who hears of each rise.
+/// A settable callback: a count that only rises, and the function to call for each rise.
 class Callback {
 public:
   using Count = std::function<uint64_t()>;
   using Due = std::function<int64_t()>;
   static int64_t never() noexcept { return manycore::infinite_ns; }
 
-  /// `watchers` are those to be woken when `arrivals` rises. `arrivals` counts since creation;
-  /// `unread` says how many of them still wait to be taken. `next_due_ns` says when time alone may
-  /// raise `arrivals` (CLOCK_MONOTONIC).
+  /// `watchers` are notified when `arrivals` rises. `arrivals` counts since creation; `unread` is
+  /// how many of these are not taken yet. `next_due_ns` is when the passage of time may raise
+  /// `arrivals` (CLOCK_MONOTONIC).
   Callback(
     CallbackThread & thread, manycore::Watchers & watchers, Count arrivals, Count unread,
     Due next_due_ns = never)
@@ -77,10 +77,10 @@ public:
   Callback(const Callback &) = delete;
   Callback & operator=(const Callback &) = delete;
 
-  /// Sets, replaces or (nullptr) clears. What arrived before and is neither reported nor taken is
-  /// reported at once, from the calling thread.
+  /// Sets, replaces or (nullptr) clears the function. Earlier arrivals that are neither reported
+  /// nor taken are reported at once, from the calling thread.
   void set(rmw_event_callback_t function, const void * user_data);
-  /// Reports from the calling thread what is not reported yet, if a function is set.
+  /// Reports new arrivals from the calling thread if a function is set.
   void report_now();
 
 private:

@@ -13,8 +13,8 @@
 
 namespace rmw_manycore {
 
-/// The events of one publisher or subscription. The transport only counts; here is what of it was
-/// told to the user. `rmw_event_t::data` points to it. Thread-safe.
+/// The events of one publisher or subscription. The transport counts occurrences; this class
+/// remembers which of them the user has been told. `rmw_event_t::data` points to it. Thread-safe.
 class EndpointEvents {
 public:
   explicit EndpointEvents(CallbackThread & thread) noexcept : thread_(thread) {}
@@ -24,18 +24,18 @@ public:
 
   manycore::Waiters & waiters() const noexcept { return thread_.waiters(); }
   bool ready(rmw_event_type_t type) const { return untold(type) != 0; }
-  /// When the event may become ready by the passing of time alone (CLOCK_MONOTONIC).
+  /// When the passage of time alone may make the event ready (CLOCK_MONOTONIC).
   int64_t next_due_ns(rmw_event_type_t type) const { return counts(type).next_due_ns; }
-  /// Writes the status structure of `type` to `status`; its changes are told thereby.
+  /// Writes the status structure of `type` to `status` and marks its changes as reported.
   void take(rmw_event_type_t type, void * status);
   void set_callback(rmw_event_type_t type, rmw_event_callback_t function, const void * user_data);
-  /// Calls the callback now, if there is one, for what the callback thread has not got to yet.
+  /// Calls the callback now, if set, for changes that the callback thread has not reported yet.
   void report(rmw_event_type_t type);
 
 protected:
-  /// What the endpoint counts for events of `type`; thread-safe.
+  /// Counts of the endpoint for events of `type`. Must be thread-safe.
   virtual EventCounts counts(rmw_event_type_t type) const = 0;
-  /// Callbacks use the above: to be called by the destructor of the derived class.
+  /// Callbacks use the derived class, so its destructor must call this.
   void clear_callbacks() noexcept;
 
 private:
@@ -45,7 +45,7 @@ private:
   Callback & callback(rmw_event_type_t type);
 
   CallbackThread & thread_;
-  std::mutex mutex_;  ///< of told_ and callbacks_; never held while user code runs
+  std::mutex mutex_;  ///< guards told_ and callbacks_; never held while user code runs
   std::array<EventCounts, RMW_EVENT_INVALID> told_;
   std::array<std::atomic<uint64_t>, RMW_EVENT_INVALID> told_changes_{};
   std::array<std::unique_ptr<Callback>, RMW_EVENT_INVALID> callbacks_;

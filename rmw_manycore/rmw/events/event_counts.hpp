@@ -9,14 +9,15 @@
 
 namespace rmw_manycore {
 
-/// What stands behind one event of an endpoint.
+/// Counts behind one event of an endpoint.
 struct EventCounts {
-  uint64_t changes = 0;    ///< only rises; the event is ready while more than what was told
-  uint64_t total = 0;      ///< how often it happened
-  uint64_t current = 0;    ///< matched: now; liveliness: alive now
-  uint64_t not_alive = 0;  ///< liveliness: matched, and not alive now
-  manycore::QosPolicy last_policy = manycore::QosPolicy::none;  ///< incompatible QoS
-  int64_t next_due_ns = manycore::infinite_ns;  ///< when time alone changes it (CLOCK_MONOTONIC)
+  uint64_t changes = 0;    ///< only rises; the event is ready while it exceeds the reported count
+  uint64_t total = 0;      ///< number of occurrences
+  uint64_t current = 0;    ///< matched: current matches; liveliness: publishers alive
+  uint64_t not_alive = 0;  ///< liveliness: matched publishers not alive
+  manycore::QosPolicy last_policy = manycore::QosPolicy::none;  ///< incompatible QoS: the policy
+  /// When time alone changes the counts (CLOCK_MONOTONIC).
+  int64_t next_due_ns = manycore::infinite_ns;
 
   static EventCounts of(uint64_t total) { return of(manycore::TimedCount{total}); }
   static EventCounts of(const manycore::TimedCount & count) {
@@ -25,14 +26,14 @@ struct EventCounts {
   static EventCounts of(const manycore::IncompatibleCount & count) {
     return {count.total, count.total, count.total, 0, count.last_policy, manycore::infinite_ns};
   }
-  /// Beginnings and ends.
+  /// `changes` counts matches and their ends.
   static EventCounts of(const manycore::MatchedCount & count) {
     return {
       2 * count.total - count.current, count.total, count.current, 0, {}, manycore::infinite_ns};
   }
 };
 
-/// Turns what can be seen of liveliness now into a count of changes. Thread-safe.
+/// Converts observed liveliness into a count of changes. Thread-safe.
 class LivelinessChanges {
 public:
   EventCounts observe(const manycore::LivelinessCount & now) {
@@ -50,7 +51,7 @@ private:
   uint64_t changes_ = 0;
 };
 
-/// Writes the structure that rmw has for `type`, from what is and what was told before.
+/// Writes the rmw status structure of `type`, from current counts and those reported before.
 void fill_status(
   rmw_event_type_t type, const EventCounts & now, const EventCounts & told, void * status);
 

@@ -29,7 +29,8 @@ void Inbox::warn_of_drop(size_t size, const char * reason) noexcept {
     now_ns >= next_ns &&
     next_warning_ns_.compare_exchange_strong(next_ns, now_ns + manycore::ns_per_s)) {
     RCUTILS_LOG_WARN_NAMED(
-      identifier, "dropped %zu bytes on '%s' that are no %s: %s (%lu messages lost so far)", size,
+      identifier,
+      "dropped %zu bytes on '%s' that are not a valid %s: %s (%lu messages lost so far)", size,
       subscription_->topic(), subscription_->type(), reason, subscription_->lost());
   }
 }

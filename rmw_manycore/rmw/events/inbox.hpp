@@ -11,7 +11,7 @@
 
 namespace rmw_manycore {
 
-/// The reading end of a subscription, service or client, and the callback for what arrives at it.
+/// Receiving side of a subscription, service or client, and its on-arrival callback.
 class Inbox {
 public:
   Inbox(std::unique_ptr<manycore::Subscription> subscription, CallbackThread & thread)
@@ -20,7 +20,7 @@ public:
     on_arrival_(
       thread, watched_.watchers(), [this] { return subscription_->arrivals(); },
       [this] { return unread(); }) {
-    watched_.watchers().reset();  // threads that wait for arrivals add their own
+    watched_.watchers().reset();  // waiting threads add their own words
   }
 
   const manycore::Subscription & transport() const noexcept { return *subscription_; }
@@ -29,15 +29,16 @@ public:
   bool has_data() const noexcept { return subscription_->has_data(); }
 
   std::optional<manycore::Claim> claim() { return subscription_->claim(); }
-  /// Takes the next message that `cdr` can read, straight out of its topic DSM; nothing when there
-  /// is none. What it cannot read is dropped and counted as lost: bytes of the network end no node.
+  /// Takes the next message that `cdr` can deserialize, directly out of its topic DSM; nothing if
+  /// there is none. Malformed messages are dropped and counted as lost, so bytes from the network
+  /// cannot end a node.
   std::optional<manycore::RecordInfo> take(const Cdr & cdr, void * message);
 
 private:
-  /// At most once a second.
+  /// Logs at most once per second.
   void warn_of_drop(size_t size, const char * reason) noexcept;
 
-  /// How many arrivals wait to be claimed. An estimate while others push or claim.
+  /// Arrivals not claimed yet; an estimate while other threads push or claim.
   uint64_t unread() const;
 
   std::unique_ptr<manycore::Subscription> subscription_;

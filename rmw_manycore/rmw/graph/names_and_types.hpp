@@ -11,10 +11,10 @@
 
 namespace rmw_manycore {
 
-/// Topics or services with their types; both sorted, each once.
+/// Topics or services with their types, both sorted and unique.
 using NamesAndTypes = std::map<std::string, std::set<std::string>>;
 
-/// Names and types of the endpoints that `wanted` selects.
+/// Names and types of the endpoints selected by `wanted`.
 template<typename Predicate>
 NamesAndTypes names_and_types(
   const std::vector<manycore::EndpointInfo> & endpoints, Predicate && wanted) {
@@ -27,13 +27,13 @@ NamesAndTypes names_and_types(
   return result;
 }
 
-/// Whether a topic is shown: names without a leading slash are not of ROS.
+/// True if a topic is listed. Names without a leading slash are not ROS names.
 inline bool is_shown(const manycore::EndpointInfo & endpoint, bool no_demangle) {
   return endpoint.role == manycore::EndpointRole::topic &&
          (no_demangle || endpoint.topic.front() == '/');
 }
 
-/// Fills the zero-initialized `result`; leaves it so when something fails or there is nothing.
+/// Fills the zero-initialized `result`. Leaves it unchanged if `found` is empty or on failure.
 void write(
   const NamesAndTypes & found, rcutils_allocator_t & allocator, rmw_names_and_types_t & result);
 

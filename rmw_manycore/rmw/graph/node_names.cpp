@@ -11,7 +11,7 @@ namespace {
 
 using manycore::NodeInfo;
 
-/// One attribute of all nodes.
+/// Writes one attribute of all nodes.
 void fill(
   StringArray & array, const std::vector<NodeInfo> & nodes, std::string NodeInfo::*attribute) {
   for (size_t i = 0; i < nodes.size(); ++i) {

@@ -16,7 +16,7 @@ using manycore::EndpointKind;
 using manycore::EndpointRole;
 using manycore::NodeInfo;
 
-/// Handles of the nodes of this name: ROS allows several.
+/// Handles of all nodes with this name; ROS allows several.
 std::set<uint32_t> find_nodes(
   const std::vector<NodeInfo> & nodes, const char * name, const char * ns) {
   std::set<uint32_t> found;

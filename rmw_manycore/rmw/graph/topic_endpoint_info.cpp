@@ -38,7 +38,7 @@ void write(
   check(rmw_topic_endpoint_info_set_qos_profile(&info, &profile));
 }
 
-/// A node that left between the two looks at the graph has lost its name.
+/// The node may have been removed between the two graph reads; its name is then unknown.
 NodeInfo find_node(const std::vector<NodeInfo> & nodes, uint32_t handle) {
   const auto found = std::find_if(
     nodes.begin(), nodes.end(), [&](const NodeInfo & node) { return node.handle == handle; });
@@ -92,7 +92,7 @@ rmw_ret_t write_found(
 }  // namespace
 }  // namespace rmw_manycore
 
-// Names are not mangled here, so `no_mangle` makes no difference.
+// Names are not mangled, so `no_mangle` has no effect.
 
 rmw_ret_t rmw_get_publishers_info_by_topic(
   const rmw_node_t * node, rcutils_allocator_t * allocator, const char * topic_name,

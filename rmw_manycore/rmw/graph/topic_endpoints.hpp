@@ -9,7 +9,7 @@
 
 namespace rmw_manycore {
 
-/// The endpoints of one name that have this kind and role, as the graph shows them now.
+/// Current endpoints of this name, kind and role.
 std::vector<manycore::EndpointInfo> endpoints_of(
   const Node & node, const char * name, manycore::EndpointKind kind, manycore::EndpointRole role);
 

@@ -19,7 +19,7 @@ using manycore::EndpointKind;
     std::string("the QoS profile has an unknown ") + policy + " policy");
 }
 
-/// Unspecified, infinite and too long to count all mean no limit.
+/// Unspecified, infinite and overflowing durations all mean no limit.
 int64_t to_ns(const rmw_time_t & duration) {
   const int64_t ns = rmw_time_total_nsec(duration);
   return ns == 0 ? manycore::infinite_ns : ns;

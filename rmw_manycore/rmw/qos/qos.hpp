@@ -8,7 +8,7 @@ namespace rmw_manycore {
 
 /// Resolves system defaults as rmw_fastrtps_cpp does (publishers: reliable and transient local;
 /// subscriptions: best effort and volatile; depth 1). Throws manycore::Error{invalid_argument} for
-/// a policy that has no meaning, the MANUAL_BY_NODE that ROS 2 gave up included.
+/// an invalid policy, including MANUAL_BY_NODE, which ROS 2 has removed.
 manycore::Qos to_transport(const rmw_qos_profile_t & profile, manycore::EndpointKind kind);
 
 rmw_qos_profile_t to_rmw(const manycore::Qos & qos);

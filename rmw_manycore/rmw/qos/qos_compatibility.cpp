@@ -13,13 +13,13 @@ namespace {
 
 constexpr rmw_time_t unspecified = RMW_DURATION_UNSPECIFIED;
 
-/// Whether the policy's value is decided only when the endpoint exists.
+/// True if the policy's value is only known once the endpoint exists.
 template<typename Policy>
 bool is_open(Policy policy, Policy system_default, Policy unknown) {
   return policy == system_default || policy == unknown;
 }
 
-/// An error when the subscription asks for more than the publisher promises; else nullptr.
+/// Error text if the subscription requests more than the publisher offers, else nullptr.
 const char * duration_error(
   const rmw_time_t & offered, const rmw_time_t & requested, const char * none,
   const char * longer) {
@@ -32,7 +32,7 @@ const char * duration_error(
   return rmw_time_total_nsec(requested) < rmw_time_total_nsec(offered) ? longer : nullptr;
 }
 
-/// In the words of the other middlewares: `ros2 doctor` and its tests look for them.
+/// Same wording as other middlewares: `ros2 doctor` and its tests match it.
 std::string errors(const rmw_qos_profile_t & offered, const rmw_qos_profile_t & requested) {
   std::string text;
   const auto add = [&](const char * error) {
@@ -65,7 +65,8 @@ std::string errors(const rmw_qos_profile_t & offered, const rmw_qos_profile_t & 
   return text;
 }
 
-/// A warning when the pair could fail: the offer is open or weak, the request open or strong.
+/// A warning if the pair may be incompatible: the offer is open or weak, the request open or
+/// strong.
 template<typename Policy>
 std::string warning(
   const char * name, Policy offered, Policy requested, Policy weak, Policy strong,

@@ -2,12 +2,13 @@
 #include "rmw/error_handling.h"
 #include "rmw/rmw.h"
 
-// Nothing is allocated per message, so there is nothing to allocate ahead.
+// Publishing and taking allocate nothing per message, so preallocation is not supported.
 
 namespace {
 
 rmw_ret_t refuse() {
-  RMW_SET_ERROR_MSG("rmw_manycore has no use for preallocation: it allocates nothing per message");
+  RMW_SET_ERROR_MSG(
+    "rmw_manycore does not support preallocation: it allocates nothing per message");
   return RMW_RET_UNSUPPORTED;
 }
 

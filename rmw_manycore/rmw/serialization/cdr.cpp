@@ -12,7 +12,7 @@
 namespace rmw_manycore {
 namespace {
 
-/// Of the second byte of the encapsulation header: XCDR version 2, in whatever form.
+/// Second byte of the encapsulation header: the first value that means XCDR version 2.
 constexpr uint8_t first_of_xcdr2 = 6;
 
 }  // namespace
@@ -52,8 +52,8 @@ size_t Cdr::serialize(const void * message, uint8_t * data, size_t capacity) con
   return cdr.get_serialized_data_length();
 }
 
-/// What ROS 2 does not write is not read either: in XCDR2 the C++ type support would resize
-/// sequences of strings by whatever length they have.
+/// Rejects encodings that ROS 2 never writes: for XCDR2, the C++ type support would resize
+/// sequences of strings to any length found in the data.
 const char * Cdr::why_unreadable(const uint8_t * data, size_t size) const {
   if (size < encapsulation_bytes) {
     return "it has no encapsulation header";
@@ -68,7 +68,7 @@ void Cdr::deserialize(const uint8_t * data, size_t size, void * message) const {
   if (const char * const reason = why_unreadable(data, size)) {
     throw manycore::Error(manycore::ErrorCode::corrupt, reason);
   }
-  // Fast CDR has no buffer of const bytes; it only reads here.
+  // FastBuffer takes no const data; deserialization only reads.
   eprosima::fastcdr::FastBuffer buffer(reinterpret_cast<char *>(const_cast<uint8_t *>(data)), size);
   eprosima::fastcdr::Cdr cdr(buffer, eprosima::fastcdr::Cdr::DEFAULT_ENDIAN);
   cdr.read_encapsulation();

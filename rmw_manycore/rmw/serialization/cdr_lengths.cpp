@@ -10,7 +10,7 @@
 namespace rmw_manycore {
 namespace {
 
-// As rosidl compares them: by text, so that the libraries need not be linked.
+// Compared by text, as rosidl does, so that the introspection libraries need not be linked.
 constexpr const char * c_identifier = "rosidl_typesupport_introspection_c";
 constexpr const char * cpp_identifier = "rosidl_typesupport_introspection_cpp";
 
@@ -19,7 +19,7 @@ using CServiceMembers = rosidl_typesupport_introspection_c__ServiceMembers;
 using CppMembers = rosidl_typesupport_introspection_cpp::MessageMembers;
 using CppServiceMembers = rosidl_typesupport_introspection_cpp::ServiceMembers;
 
-/// Of the second byte, which says how the rest is encoded.
+/// Bit of the second byte of the encapsulation header.
 constexpr uint8_t little_endian_bit = 1;
 constexpr bool is_little_endian = __BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__;
 

@@ -13,9 +13,9 @@ namespace rmw_manycore {
 
 constexpr size_t encapsulation_bytes = 4;
 
-/// Compares the lengths in a message's CDR with the bytes that are left. The generated type support
-/// resizes a wide string before it reads it, takes one byte per element for enough whatever the
-/// element, and goes on when a nested message has failed: a few bytes from the network could claim
+/// Checks the lengths in a message's CDR against the remaining bytes. The generated type support
+/// resizes a wide string before reading it, assumes one byte per element whatever its size, and
+/// continues after a nested message has failed, so a few bytes from the network could claim
 /// gigabytes. Thread-safe.
 class CdrLengths {
 public:
@@ -26,13 +26,13 @@ public:
   CdrLengths(const rosidl_service_type_support_t & service, Part part) noexcept
   : service_(&service), part_(part) {}
 
-  /// False when a length claims more than there is. The CDR is version 1, and has its encapsulation
+  /// False if a length exceeds the remaining bytes. Requires CDR version 1 with encapsulation
   /// header.
   bool fit(const uint8_t * cdr, size_t size) const;
 
 private:
-  /// At the first message: it loads the introspection library, which a publisher never needs. Of a
-  /// type without introspection nothing is checked.
+  /// Called for the first message, because it loads the introspection library, which a publisher
+  /// never needs. For a type without introspection nothing is checked.
   LengthPlan make_plan() const;
   template<typename Members, typename ServiceMembers>
   const Members * find(const char * identifier) const;

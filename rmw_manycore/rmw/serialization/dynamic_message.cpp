@@ -2,12 +2,12 @@
 #include "rmw/common/checks.hpp"
 #include "rmw/dynamic_message_type_support.h"
 
-// Dynamic messages are an affair of Fast DDS, which is not here. rmw_feature_supported says so too.
+// Dynamic messages require Fast DDS. rmw_feature_supported() reports them as unsupported.
 
 namespace {
 
 rmw_ret_t refuse() {
-  RMW_SET_ERROR_MSG("rmw_manycore has no dynamic messages");
+  RMW_SET_ERROR_MSG("rmw_manycore does not support dynamic messages");
   return RMW_RET_UNSUPPORTED;
 }
 

@@ -7,8 +7,8 @@
 namespace rmw_manycore {
 namespace {
 
-/// Their addresses alone do not tell types apart: a library may be unloaded, and another one loaded
-/// in its place.
+/// The address alone does not identify a type: its library may be unloaded and another one loaded
+/// at the same address.
 struct Known {
   const rosidl_message_type_support_t * type;
   std::string ns;
@@ -31,7 +31,7 @@ struct KnownTypes {
 
 std::shared_ptr<const CdrLengths> lengths_of(
   const rosidl_message_type_support_t & type, const message_type_support_callbacks_t & callbacks) {
-  static KnownTypes & types = *new KnownTypes;  // never destroyed: threads may read at exit
+  static KnownTypes & types = *new KnownTypes;  // never destroyed: threads may still use it at exit
   const std::lock_guard<std::mutex> lock(types.mutex);
   Known & known = types.by_callbacks[&callbacks];
   if (known.lengths == nullptr || !known.is_of(type, callbacks)) {

@@ -8,8 +8,8 @@
 
 namespace rmw_manycore {
 
-/// The lengths of a type, which its entities and calls of rmw_deserialize share: finding them out
-/// takes longer than reading a small message. Thread safe.
+/// The length check of a type, shared by its entities and by calls of rmw_deserialize: creating it
+/// takes longer than reading a small message. Thread-safe.
 std::shared_ptr<const CdrLengths> lengths_of(
   const rosidl_message_type_support_t & type, const message_type_support_callbacks_t & callbacks);
 

@@ -15,7 +15,7 @@ namespace {
 constexpr size_t length_bytes = 4;
 constexpr size_t wide_character_bytes = 4;
 
-/// The same numbers in C and in C++; 0 for types that are no primitives, or not defined in CDR.
+/// Type ids are equal in C and C++. 0 for types that are not primitive or not defined in CDR.
 constexpr size_t primitive_bytes(uint8_t type_id) noexcept {
   switch (type_id) {
     case rosidl_typesupport_introspection_c__ROS_TYPE_CHAR:
@@ -42,8 +42,8 @@ constexpr size_t primitive_bytes(uint8_t type_id) noexcept {
 
 }  // namespace
 
-/// Makes the plan of one type. Ends it where it meets a type whose CDR is not defined (long double,
-/// wide character): what follows cannot be told.
+/// Makes the plan of one type. Stops at a type whose CDR is undefined (long double, wide
+/// character), because the position of everything after it is unknown.
 template<typename Members>
 class LengthPlanner {
 public:
@@ -79,7 +79,7 @@ private:
     }
   }
   void add_messages(LengthPlan & plan, LengthPlan part, bool is_sequence, size_t count) {
-    const size_t bytes = std::max<size_t>(part.least_bytes(), 1);
+    const size_t bytes = std::max<size_t>(part.min_bytes(), 1);
     if (part.is_one_block()) {
       plan.add({Kind::fixed, is_sequence, count, part.steps_[0].alignment, bytes, nullptr});
     } else if (is_sequence || count != 1) {
@@ -116,7 +116,7 @@ bool LengthPlan::reserves() const {
     steps_.begin(), steps_.end(), [](const Step & step) { return reserves(step); });
 }
 
-size_t LengthPlan::least_bytes() const {
+size_t LengthPlan::min_bytes() const {
   size_t sum = 0;
   for (const Step & step : steps_) {
     sum += step.is_sequence ? length_bytes : step.count * step.bytes;
@@ -124,7 +124,7 @@ size_t LengthPlan::least_bytes() const {
   return sum;
 }
 
-/// Primitives of one size side by side become one block.
+/// Merges adjacent primitives of equal size into one block.
 void LengthPlan::add(Step step) {
   if (step.kind == Step::Kind::fixed && !step.is_sequence) {
     step.bytes *= std::exchange(step.count, 1);
@@ -140,7 +140,7 @@ void LengthPlan::add(Step step) {
   steps_.push_back(std::move(step));
 }
 
-/// Fast CDR itself looks at the lengths of strings, and at whether there are bytes left.
+/// Fast CDR itself checks the lengths of strings, and that enough bytes remain.
 void LengthPlan::end_at_last_length() {
   while (!steps_.empty() && !reserves(steps_.back())) {
     steps_.pop_back();
@@ -156,7 +156,7 @@ void LengthPlan::end_at_last_length() {
   }
 }
 
-/// Follows a plan along the CDR of one message. Only reads.
+/// Follows a plan through the CDR of one message. Read-only.
 class LengthWalk {
 public:
   LengthWalk(const uint8_t * data, size_t size, bool swapped) noexcept

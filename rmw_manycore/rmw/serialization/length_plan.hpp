@@ -8,16 +8,16 @@
 
 namespace rmw_manycore {
 
-/// Where in the CDR of a type's messages lengths stand, made once for the type: what has a fixed
-/// size between them is passed over in one step, and nothing is looked at behind the last one.
+/// Positions of the lengths in the CDR of a type's messages, computed once per type. Members of
+/// fixed size in between are skipped in one step, and nothing is checked after the last length.
 class LengthPlan {
 public:
-  /// `Members` describes the fields of a type, as introspection in C or in C++ does.
+  /// `Members` describes the fields of a type by introspection, in C or C++.
   template<typename Members>
   static LengthPlan of(const Members & type);
 
-  /// False when a length claims more elements or characters than the bytes left can hold. `data`
-  /// starts behind the encapsulation header; `swapped`: it is in the other byte order.
+  /// False if a length claims more elements or characters than the remaining bytes can hold. `data`
+  /// starts after the encapsulation header; `swapped` means the opposite byte order.
   bool fits(const uint8_t * data, size_t size, bool swapped) const;
 
 private:
@@ -30,22 +30,22 @@ private:
       fixed,        ///< `bytes` of primitives, aligned
       string,       ///< length, characters
       wide_string,  ///< length, characters of four bytes
-      messages,     ///< as in `part`
-      passed_over,  ///< only their number matters: no length follows that memory is reserved by
+      messages,     ///< nested messages, described by `part`
+      passed_over,  ///< only their number is checked: no length that reserves memory follows
     };
     Kind kind;
     bool is_sequence;  ///< the number of elements is in the CDR
-    size_t count;      ///< of elements, unless it is
+    size_t count;      ///< number of elements, unless is_sequence
     size_t alignment;
-    size_t bytes;  ///< of an element, at least
+    size_t bytes;  ///< minimum size of an element
     std::shared_ptr<const LengthPlan> part;
   };
 
-  /// Memory is reserved by a length in it before the elements are read.
+  /// True if the step contains a length for which memory is reserved before the elements are read.
   static bool reserves(const Step & step);
   bool reserves() const;
-  size_t least_bytes() const;
-  /// A message of primitives of one size has no padding, also in sequences.
+  size_t min_bytes() const;
+  /// True for a message of equal-sized primitives, which has no padding, not even in sequences.
   bool is_one_block() const {
     return steps_.size() == 1 && steps_[0].kind == Step::Kind::fixed && !steps_[0].is_sequence;
   }

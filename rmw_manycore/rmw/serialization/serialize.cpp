@@ -22,7 +22,7 @@ rmw_ret_t rmw_serialize(
       rmw_manycore::check(rmw_serialized_message_resize(serialized_message, bound));
     }
     const size_t size = cdr.serialize(ros_message, serialized_message->buffer, bound);
-    // The length includes the rounding, as with rmw_fastrtps_cpp.
+    // The length includes the rounding, as in rmw_fastrtps_cpp.
     std::memset(serialized_message->buffer + size, 0, bound - size);
     serialized_message->buffer_length = bound;
     return RMW_RET_OK;
@@ -47,6 +47,6 @@ rmw_ret_t rmw_deserialize(
 
 rmw_ret_t rmw_get_serialized_message_size(
   const rosidl_message_type_support_t *, const rosidl_runtime_c__Sequence__bound *, size_t *) {
-  RMW_SET_ERROR_MSG("rmw_manycore does not compute sizes from bounds");
+  RMW_SET_ERROR_MSG("rmw_manycore does not support computing a message's size from its bounds");
   return RMW_RET_UNSUPPORTED;
 }

@@ -14,7 +14,7 @@
 namespace rmw_manycore {
 namespace {
 
-/// Looks for the C type support, then for the C++ one. `Find` is rosidl's function for it.
+/// Finds the C type support, or else the C++ one, with rosidl's `find_handle`.
 template<typename TypeSupport>
 const TypeSupport * find(
   const TypeSupport * type_support,
@@ -40,7 +40,7 @@ void replace_all(std::string & text, std::string_view from, std::string_view to)
   }
 }
 
-/// "std_msgs::msg" (C++) or "std_msgs__msg" (C) with "String" gives "std_msgs/msg/String".
+/// Converts "std_msgs::msg" (C++) or "std_msgs__msg" (C) and "String" to "std_msgs/msg/String".
 std::string ros_name(const char * ns, const char * name) {
   std::string result = ns;
   replace_all(result, "::", "/");

@@ -10,28 +10,28 @@
 
 namespace rmw_manycore {
 
-/// A message type: its name, its hash, and how it becomes CDR.
+/// A message type: name, type hash and CDR serialization.
 struct MessageType {
   std::string name;  ///< "std_msgs/msg/String"
   manycore::TypeHash hash;
   Cdr cdr;
 
-  /// Throws manycore::Error{invalid_argument} without type support for Fast CDR (C or C++).
+  /// Throws manycore::Error{invalid_argument} if there is no type support for Fast CDR (C or C++).
   static MessageType of(const rosidl_message_type_support_t * type_support);
 };
 
-/// A service type; name and hash are those of the service.
+/// A service type; name and hash belong to the service.
 struct ServiceType {
   std::string name;  ///< "std_srvs/srv/SetBool"
   manycore::TypeHash hash;
   Cdr request;
   Cdr response;
 
-  /// As MessageType::of.
+  /// Throws as MessageType::of().
   static ServiceType of(const rosidl_service_type_support_t * type_support);
 };
 
-/// The CDR of a message type alone, as MessageType::of.
+/// CDR serialization of a message type. Throws as MessageType::of().
 Cdr cdr_of(const rosidl_message_type_support_t * type_support);
 
 }  // namespace rmw_manycore

@@ -13,8 +13,8 @@
 
 namespace rmw_manycore {
 
-/// A service client: writes requests, reads replies. It can be replied to before its first request,
-/// and until its last one is gone.
+/// A service client: sends requests, receives replies. Its reply subscription exists before the
+/// first request is sent and until after the last one.
 class Client {
 public:
   /// Throws manycore::Error.
@@ -30,7 +30,7 @@ public:
   manycore::Publisher & requests() const noexcept { return *requests_; }
   Inbox & replies() noexcept { return replies_; }
 
-  /// Who asks; names the client in requests and replies.
+  /// Identifies the client in requests and replies.
   const manycore::Gid & gid() const noexcept { return replies_.transport().gid(); }
   manycore::Correlation next_request() noexcept { return {gid(), ++last_number_}; }
 

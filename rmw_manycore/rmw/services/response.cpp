@@ -14,7 +14,7 @@ rmw_ret_t rmw_send_response(
   MANYCORE_CHECK_ARGUMENT(request_header);
   MANYCORE_CHECK_ARGUMENT(ros_response);
 
-  // Implementation: a client that is gone by now receives nothing, which is no error
+  // Implementation: a reply to a client that has left is dropped without an error
   return rmw_manycore::guarded([&] {
     auto & serving = rmw_manycore::Service::of(service);
     const rmw_manycore::Cdr & cdr = serving.type().response;

@@ -12,8 +12,8 @@
 
 namespace rmw_manycore {
 
-/// A service server: reads requests, writes replies. The replies' publisher is there before the
-/// first request can arrive, and goes after the last.
+/// A service server: receives requests, sends replies. Its reply publisher exists before the first
+/// request can arrive and until after the last one.
 class Service {
 public:
   /// Throws manycore::Error.

@@ -6,7 +6,7 @@
 
 rmw_ret_t rmw_service_server_is_available(
   const rmw_node_t * node, const rmw_client_t * client, bool * is_available) {
-  // Invariants: rmw wants RMW_RET_ERROR for null here
+  // Invariants: rmw requires RMW_RET_ERROR for null here
   RMW_CHECK_ARGUMENT_FOR_NULL(node, RMW_RET_ERROR);
   RMW_CHECK_ARGUMENT_FOR_NULL(client, RMW_RET_ERROR);
   RMW_CHECK_ARGUMENT_FOR_NULL(is_available, RMW_RET_ERROR);

@@ -1,8 +1,8 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 //
-// The stand-in for librmw_fastrtps_cpp.so. It brings librmw_manycore.so with it, and leaves a
-// program to Fast DDS whose RMW_IMPLEMENTATION is not rmw_manycore: that program has inherited a
-// search path made for another one. See docs/design/substitution.md.
+// Stand-in for librmw_fastrtps_cpp.so. Loads librmw_manycore.so, and hands a program over to Fast
+// DDS if its RMW_IMPLEMENTATION is not rmw_manycore: the program has then inherited a library path
+// made for another one. See docs/design/substitution.md.
 
 #include <dlfcn.h>
 #include <unistd.h>
@@ -22,15 +22,16 @@ extern "C" __attribute__((visibility("default"))) const char rmw_manycore_standi
 namespace {
 
 constexpr char library_path_variable[] = "LD_LIBRARY_PATH";
-constexpr int mismatch_status = 102;  // rcl's, for a middleware other than RMW_IMPLEMENTATION
+// Exit status of rcl when the middleware does not match RMW_IMPLEMENTATION.
+constexpr int mismatch_status = 102;
 
 std::string variable(const char * name) {
   const char * value = std::getenv(name);
   return value == nullptr ? "" : value;
 }
 
-/// Tell a library that was loaded before main() from one that a running program has opened: only
-/// the first is in the scope of the program's own libraries.
+/// True if this library was loaded before main(), false if a running program opened it: only in the
+/// first case it is in the scope of the program's own libraries.
 bool is_loaded_with_program() {
   void * program = dlopen(nullptr, RTLD_LAZY);
   return program != nullptr && dlsym(program, "rmw_manycore_standin") != nullptr;
@@ -42,7 +43,7 @@ fs::path own_directory() {
   return is_known ? fs::path(info.dli_fname).parent_path() : fs::path();
 }
 
-/// Return the loader's search path without a directory, unless that is not in it.
+/// The loader's search path without `directory`; nothing if `directory` is not in it.
 std::optional<std::string> library_path_without(const fs::path & directory) {
   std::istringstream before(variable(library_path_variable));
   std::string after;
@@ -58,7 +59,7 @@ std::optional<std::string> library_path_without(const fs::path & directory) {
   return is_found ? std::optional(after) : std::nullopt;
 }
 
-/// Start the program anew with another search path; returns if that fails.
+/// Restarts the program with another library path. Returns on failure.
 void restart(char ** argv, const std::string & library_path) {
   std::error_code error;
   const fs::path program = fs::read_symlink("/proc/self/exe", error);
@@ -70,7 +71,7 @@ void restart(char ** argv, const std::string & library_path) {
 [[noreturn]] void refuse(const std::string & wanted, const fs::path & directory) {
   std::fprintf(
     stderr,
-    "rmw_manycore: RMW_IMPLEMENTATION is %s, but rmw_manycore was loaded in the place of Fast DDS; "
+    "rmw_manycore: RMW_IMPLEMENTATION is %s, but rmw_manycore was loaded in place of Fast DDS; "
     "start the program without %s in %s\n",
     wanted.c_str(), directory.c_str(), library_path_variable);
   std::exit(mismatch_status);

@@ -2,12 +2,12 @@
 #include "rmw/common/checks.hpp"
 #include "rmw/rmw.h"
 
-// Filtering is up to the caller: subscriptions say so by `is_cft_enabled`.
+// Filtering is up to the caller, as `is_cft_enabled` of each subscription says.
 
 namespace {
 
 rmw_ret_t refuse() {
-  RMW_SET_ERROR_MSG("rmw_manycore does not filter by content");
+  RMW_SET_ERROR_MSG("rmw_manycore does not support content filters");
   return RMW_RET_UNSUPPORTED;
 }
 

@@ -9,7 +9,7 @@
 
 namespace rmw_manycore {
 
-/// What the transport is asked for: one endpoint of `node`. QoS as in to_transport.
+/// Parameters of one endpoint of `node`. QoS as in to_transport().
 template<typename Type>
 manycore::EndpointSpec endpoint_spec(
   const Node & node, manycore::EndpointRole role, const char * topic, const Type & type,

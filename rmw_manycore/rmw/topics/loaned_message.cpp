@@ -6,24 +6,25 @@
 #include "rmw/topics/publisher.hpp"
 #include "rmw/topics/subscription.hpp"
 
-// Messages of plain types are lent: those whose memory is their CDR, as with rmw_fastrtps_cpp. A
-// loan saves the user the message, not the copy into or out of the topic DSM.
+// Only plain types, whose memory layout is their CDR, can be loaned, as in rmw_fastrtps_cpp. A loan
+// saves the user a message object, not the copy into or out of the topic DSM.
 
 using rmw_manycore::Publisher;
 using rmw_manycore::Subscription;
 
-/// Publisher or subscription, and its type is lent.
-#define MANYCORE_CHECK_LENDS(handle)                                                            \
-  MANYCORE_CHECK_HANDLE(handle);                                                                \
-  if (!(handle)->can_loan_messages) {                                                           \
-    RMW_SET_ERROR_MSG("messages of this type are not lent: their size or layout is not fixed"); \
-    return RMW_RET_UNSUPPORTED;                                                                 \
+/// The endpoint is valid and its type can be loaned.
+#define MANYCORE_CHECK_LENDS(handle)                                                \
+  MANYCORE_CHECK_HANDLE(handle);                                                    \
+  if (!(handle)->can_loan_messages) {                                               \
+    RMW_SET_ERROR_MSG(                                                              \
+      "messages of this type cannot be loaned: their size or layout is not fixed"); \
+    return RMW_RET_UNSUPPORTED;                                                     \
   }
 
 namespace {
 
 rmw_ret_t refuse_stranger() {
-  RMW_SET_ERROR_MSG("this message was not borrowed here, or has been given back");
+  RMW_SET_ERROR_MSG("this message is not on loan from this endpoint, or was already returned");
   return RMW_RET_ERROR;
 }
 
@@ -64,7 +65,7 @@ rmw_ret_t rmw_borrow_loaned_message(
   MANYCORE_CHECK_ARGUMENT(type_support);
   MANYCORE_CHECK_ARGUMENT(ros_message);
   if (*ros_message != nullptr) {
-    RMW_SET_ERROR_MSG("expected a pointer to null, to be set to the loan");
+    RMW_SET_ERROR_MSG("expected ros_message to point to a null pointer");
     return RMW_RET_INVALID_ARGUMENT;
   }
 
@@ -91,7 +92,7 @@ rmw_ret_t rmw_publish_loaned_message(
   MANYCORE_CHECK_LENDS(publisher);
   MANYCORE_CHECK_ARGUMENT(ros_message);
 
-  // Implementation: what could not be published stays with its borrower
+  // Implementation: a message that could not be published stays on loan
   return rmw_manycore::guarded([&] {
     if (!Publisher::of(publisher).loans().is_lent(ros_message)) {
       return refuse_stranger();

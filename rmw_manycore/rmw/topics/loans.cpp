@@ -6,7 +6,7 @@
 
 namespace rmw_manycore {
 
-// The array form of new aligns for every fundamental type, and plain types hold nothing else.
+// operator new[] aligns for all fundamental types, and plain types contain nothing else.
 
 Loans::Messages::const_iterator Loans::find(const void * message) const {
   return std::find_if(

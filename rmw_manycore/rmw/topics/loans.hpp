@@ -8,19 +8,19 @@
 
 namespace rmw_manycore {
 
-/// Messages of one plain type that an endpoint lends to its user. What is given back is lent again,
-/// so a steady user allocates nothing. A loan belongs to its endpoint, and goes with it at the
-/// latest. Thread-safe.
+/// Messages of one plain type that an endpoint loans to its user. Returned messages are reused, so
+/// the steady state allocates nothing. A loan belongs to its endpoint and ends with it.
+/// Thread-safe.
 class Loans {
 public:
-  /// `message_bytes`: size of the type in memory; 0 = of a type that is not lent.
+  /// `message_bytes` is the size of the type in memory; 0 = the type cannot be loaned.
   explicit Loans(size_t message_bytes) : message_bytes_(message_bytes) {}
 
   bool lends() const noexcept { return message_bytes_ != 0; }
-  /// A message of zeros, aligned for any plain type.
+  /// Returns a zeroed message, aligned for any plain type.
   void * lend();
   bool is_lent(const void * message) const;
-  /// False when it is not lent.
+  /// False if the message is not on loan.
   bool give_back(const void * message);
 
 private:

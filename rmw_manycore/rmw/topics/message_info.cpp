@@ -23,7 +23,8 @@ rmw_message_info_t to_rmw(const manycore::RecordInfo & info) {
   result.publication_sequence_number = info.publication_sequence_number;
   result.reception_sequence_number = info.reception_sequence_number;
   result.publisher_gid = to_rmw(info.publisher);
-  result.from_intra_process = false;  // means rclcpp's own shortcut, which bypasses the RMW
+  // Refers to rclcpp's own intra-process path, which bypasses the RMW.
+  result.from_intra_process = false;
   return result;
 }
 

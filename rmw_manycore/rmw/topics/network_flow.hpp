@@ -5,7 +5,7 @@
 
 namespace rmw_manycore {
 
-/// Throws manycore::Error{unsupported} where an endpoint insists on network flows of its own.
+/// Throws manycore::Error{unsupported} if unique network flow endpoints are strictly required.
 void check_network_flow(rmw_unique_network_flow_endpoints_requirement_t requirement);
 
 }  // namespace rmw_manycore

@@ -26,7 +26,7 @@ rmw_ret_t rmw_publish(
   MANYCORE_CHECK_HANDLE(publisher);
   MANYCORE_CHECK_ARGUMENT(ros_message);
 
-  // Implementation: straight into the topic DSM
+  // Implementation: serializes directly into the topic DSM
   return rmw_manycore::guarded([&] {
     const Publisher & sender = Publisher::of(publisher);
     const int64_t now_ns = manycore::realtime_ns();

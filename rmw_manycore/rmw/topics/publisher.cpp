@@ -29,7 +29,7 @@ Publisher::Publisher(
   handle.data = this;
   handle.topic_name = topic_.c_str();
   handle.options = options;
-  handle.can_loan_messages = loans_.lends();
+  handle.can_loan_messages = loans_.lends() && transport_->transfer() == manycore::Transfer::dsm;
 }
 
 EventCounts Publisher::counts(rmw_event_type_t type) const {
@@ -129,7 +129,7 @@ rmw_ret_t rmw_publisher_wait_for_all_acked(
   // Invariants
   MANYCORE_CHECK_HANDLE(publisher);
 
-  // Implementation: an acknowledgement says that a message is with its readers' middleware, taken
-  // or not. Here it is from publication on, and stays there whatever becomes of the publisher.
+  // Implementation: a message is acknowledged when it has reached the middleware of its readers,
+  // taken or not. Here that is the case from publication on, whatever happens to the publisher.
   return RMW_RET_OK;
 }

@@ -13,6 +13,7 @@
 
 namespace rmw_manycore {
 
+/// A publisher of rmw: its handle, serialization, events and loans.
 class Publisher final : public EndpointEvents {
 public:
   /// Throws manycore::Error.

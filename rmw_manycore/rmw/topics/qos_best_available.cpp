@@ -42,7 +42,8 @@ bool has_best_available(const rmw_qos_profile_t & profile) {
 rmw_qos_profile_t resolve_for_subscription(
   rmw_qos_profile_t profile, const std::vector<EndpointInfo> & others) {
   const auto all = [&](auto && has) { return std::all_of(others.begin(), others.end(), has); };
-  // The longest of the publishers' durations; no limit when one of them (or nobody) has none.
+  // The longest duration of the publishers; no limit if one of them has none, or without
+  // publishers.
   const auto longest = [&](int64_t manycore::Qos::*duration) {
     int64_t ns = others.empty() ? manycore::infinite_ns : 0;
     for (const EndpointInfo & other : others) {

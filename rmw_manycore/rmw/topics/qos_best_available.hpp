@@ -6,13 +6,13 @@
 
 namespace rmw_manycore {
 
-/// Replace "best available" policies by the highest level of service that matches the endpoints
-/// that `topic` has now on the other side. Policies of other values are left as they are.
+/// Replace each "best available" policy by the highest level of service that is compatible with the
+/// current endpoints on the other side of `topic`. Other policies are unchanged.
 rmw_qos_profile_t best_available_for_subscription(
   const Node & node, const char * topic, const rmw_qos_profile_t & profile);
 rmw_qos_profile_t best_available_for_publisher(
   const Node & node, const char * topic, const rmw_qos_profile_t & profile);
-/// Services do not look at who is there.
+/// For services, existing endpoints are not considered.
 rmw_qos_profile_t best_available_for_service(rmw_qos_profile_t profile);
 
 }  // namespace rmw_manycore

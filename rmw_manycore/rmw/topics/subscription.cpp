@@ -41,7 +41,7 @@ Subscription::Subscription(
   handle.data = this;
   handle.topic_name = topic_.c_str();
   handle.options = options;
-  handle.can_loan_messages = loans_.lends();
+  handle.can_loan_messages = loans_.lends() && transport().transfer() == manycore::Transfer::dsm;
   handle.is_cft_enabled = false;
 }
 

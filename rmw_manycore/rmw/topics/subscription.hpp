@@ -12,6 +12,7 @@
 
 namespace rmw_manycore {
 
+/// A subscription of rmw: its handle, serialization, events, loans and inbox.
 class Subscription final : public EndpointEvents {
 public:
   /// Throws manycore::Error.

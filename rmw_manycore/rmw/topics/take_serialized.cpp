@@ -11,7 +11,8 @@
 namespace rmw_manycore {
 namespace {
 
-/// RTPS carries whole words, so subscribers of raw messages know them as padded with zeros.
+/// RTPS transfers whole words, so subscribers of serialized messages expect zero padding to 4
+/// bytes.
 constexpr size_t word_bytes = 4;
 
 /// `info` may be null.

@@ -9,7 +9,7 @@ Sleep::Sleep(manycore::Waiters & own, const Waited & waited) : own_(own), waited
   waited.for_each_place([this](const Place & place) { add(place.waiters); });
 }
 
-/// The thread's word has the same number on each platform.
+/// The thread's word has the same number on all platforms.
 void Sleep::watch() noexcept {
   const uint32_t word = manycore::Waiters::word_of_this_thread();
   waited_.for_each_place([&](const Place & place) { place.watchers.add(word); });

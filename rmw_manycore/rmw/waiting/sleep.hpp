@@ -10,21 +10,21 @@
 
 namespace rmw_manycore {
 
-/// Where one call sleeps: on its thread's wake word of the platform of its wait set, and on those
-/// of the platforms of entities of other contexts, which few programs have.
+/// The waiters that one rmw_wait() call sleeps on: the thread's wake word on the platform of the
+/// wait set, and on the platforms of entities of other contexts, which are rare.
 class Sleep {
 public:
   Sleep(manycore::Waiters & own, const Waited & waited);
   Sleep(const Sleep &) = delete;
   Sleep & operator=(const Sleep &) = delete;
 
-  /// From here on all that is waited for raises the epochs.
+  /// Registers the thread as a watcher of all entities.
   void watch() noexcept;
-  /// As watch, and what is not waited for no longer does: after a wake-up for nothing.
+  /// As watch(), after removing the thread from all watchers. Call after a spurious wake-up.
   void watch_afresh() noexcept;
-  /// To be called before a look at the entities: what happens from then on ends `until` at once.
+  /// Call before checking the entities: anything that happens afterwards ends until() at once.
   void read_epochs() noexcept;
-  /// True when something happened, false at `deadline_ns` (CLOCK_MONOTONIC; unset = no limit).
+  /// True if something happened, false at `deadline_ns` (CLOCK_MONOTONIC; unset = no limit).
   bool until(std::optional<int64_t> deadline_ns);
 
 private:

@@ -27,7 +27,7 @@ std::optional<int64_t> deadline_of(const rmw_time_t * timeout) noexcept {
   return now_ns + timeout_ns;
 }
 
-/// The earlier of the deadline and the moment when time alone makes an event ready.
+/// The earlier of the deadline and the time at which an event becomes ready by itself.
 std::optional<int64_t> with_due_events(const Waited & waited, std::optional<int64_t> deadline_ns) {
   int64_t soonest = deadline_ns.value_or(manycore::infinite_ns);
   waited.events.for_each([&](const rmw_event_t & event) {
@@ -37,19 +37,19 @@ std::optional<int64_t> with_due_events(const Waited & waited, std::optional<int6
   return soonest == manycore::infinite_ns ? std::nullopt : std::optional(soonest);
 }
 
-/// How a wait ended. Only the passing of the caller's timeout is RMW_RET_TIMEOUT: rclcpp's graph
-/// listener, which waits without one, takes that answer as an error and ends its process.
+/// How a wait ended. RMW_RET_TIMEOUT is returned only if the caller's timeout has passed: rclcpp's
+/// graph listener waits without one, and treats that return code as a fatal error.
 enum class Ended { woken, by_timeout };
 
-/// Ends with the context as well: rclpy triggers its guard conditions before it shuts its contexts
-/// down on SIGTERM, and would wait for ever if it came back here in between.
+/// Also ends when the context is shut down: on SIGTERM, rclpy triggers its guard conditions before
+/// it shuts down its contexts, and would wait forever if it re-entered the wait in between.
 Ended sleep_until_ready(
   const WaitSet & wait_set, const Waited & waited, std::optional<int64_t> deadline_ns) {
   Sleep sleep(wait_set.waiters(), waited);
   sleep.watch();
   while (true) {
-    // Epochs and due time are read before the entities: what happens or falls due in between ends
-    // the wait at once.
+    // Read epochs and due times before checking the entities: anything that happens or falls due in
+    // between ends the wait at once.
     sleep.read_epochs();
     const std::optional<int64_t> until_ns = with_due_events(waited, deadline_ns);
     if (wait_set.is_shutdown() || wait_set.is_cut_off() || waited.any_ready()) {

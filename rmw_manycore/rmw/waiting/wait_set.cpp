@@ -28,7 +28,7 @@ rmw_wait_set_t * rmw_create_wait_set(rmw_context_t * context, size_t /*max_condi
 }
 
 rmw_ret_t rmw_destroy_wait_set(rmw_wait_set_t * wait_set) {
-  // Invariants: rmw wants RMW_RET_ERROR for null here
+  // Invariants: rmw requires RMW_RET_ERROR for null here
   RMW_CHECK_ARGUMENT_FOR_NULL(wait_set, RMW_RET_ERROR);
   MANYCORE_CHECK_HANDLE(wait_set);
 

@@ -9,7 +9,8 @@
 
 namespace rmw_manycore {
 
-/// rmw hands the entities to each wait, so a wait set only knows where its process sleeps.
+/// rmw passes the entities to each wait, so a wait set only holds the process whose waiters it
+/// uses.
 class WaitSet {
 public:
   explicit WaitSet(rmw_context_t & context);
@@ -21,7 +22,7 @@ public:
   manycore::Waiters & waiters() const noexcept { return process_->waiters(); }
   manycore::Tracer & tracer() const noexcept { return process_->tracer(); }
   bool is_cut_off() const noexcept { return process_->is_cut_off(); }
-  /// Throws manycore::Error where nothing would ever wake it.
+  /// Throws manycore::Error if no notification could ever wake this process.
   void require_membership() const { process_->require_membership(); }
   bool is_shutdown() const noexcept { return *is_shutdown_; }
 

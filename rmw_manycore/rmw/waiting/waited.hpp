@@ -9,7 +9,7 @@
 
 namespace rmw_manycore {
 
-/// Whether a wait for it would end at once.
+/// True if a wait for the entity would return at once.
 inline bool is_ready(Subscription & subscription) { return subscription.inbox().has_data(); }
 inline bool is_ready(Service & service) { return service.requests().has_data(); }
 inline bool is_ready(Client & client) { return client.replies().has_data(); }
@@ -18,7 +18,7 @@ inline bool is_ready(const rmw_event_t & event) {
   return static_cast<const EndpointEvents *>(event.data)->ready(event.event_type);
 }
 
-/// Where threads that wait for it sleep, and how it knows of them.
+/// The waiters that threads waiting for an entity sleep on, and the watchers to register with.
 struct Place {
   manycore::Waiters & waiters;
   manycore::Watchers & watchers;
@@ -37,9 +37,10 @@ inline Place place_of(const rmw_event_t & event) {
   return {waiters, waiters.event_watchers()};
 }
 
-/// As is_ready, at the end of a wait: a guard condition is reset by it.
+/// As is_ready(), at the end of a wait; resets a guard condition.
 inline bool take(GuardCondition & condition) { return condition.take(); }
-/// Who is told of an event by a wait finds its callback called, as with other middlewares.
+/// As with other middlewares, the callback of an event has been called when a wait reports the
+/// event.
 inline bool take(rmw_event_t & event) {
   const bool ready = is_ready(event);
   if (ready) {
@@ -52,7 +53,7 @@ bool take(Entity & entity) {
   return is_ready(entity);
 }
 
-/// One of the five arrays that rmw_wait is given, as entities. Entries may be null.
+/// One of the five entity arrays passed to rmw_wait. Entries may be null.
 template<typename Entity>
 class Entities {
 public:
@@ -81,7 +82,7 @@ public:
     return any([](Entity & entity) { return is_ready(entity); });
   }
 
-  /// Leaves only those that are ready; true if there are some. Resets guard conditions.
+  /// Sets entries that are not ready to null; true if some are ready. Resets guard conditions.
   bool keep_ready() {
     bool some = false;
     for (size_t i = 0; i < count_; ++i) {
@@ -101,7 +102,7 @@ private:
   size_t count_;
 };
 
-/// All that one call waits for.
+/// All entities of one rmw_wait() call.
 struct Waited {
   Entities<Subscription> subscriptions;
   Entities<GuardCondition> conditions;
