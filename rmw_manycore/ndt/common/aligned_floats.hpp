@@ -7,7 +7,8 @@
 
 namespace manycore::ndt {
 
-/// Floats on a cache line's boundary; grows, never shrinks, forgets what it held when it grows.
+/// Floats aligned to 64 bytes. The storage grows and never shrinks; its content is lost when it
+/// grows.
 class AlignedFloats {
 public:
   float * with_room_for(size_t count) {

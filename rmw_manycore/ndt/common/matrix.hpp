@@ -50,13 +50,13 @@ bool is_finite(const Vector<N> & a) {
   return true;
 }
 
-/// Eigenvalues, and eigenvectors as columns, of a symmetric matrix.
+/// Eigenvalues of a symmetric matrix, and its eigenvectors as columns.
 template<size_t N>
 struct Eigen {
   Vector<N> values{};
   Matrix<N> vectors{};
 
-  /// The matrix with the same eigenvectors and f(eigenvalue) for each eigenvalue.
+  /// Matrix with the same eigenvectors and f(eigenvalue) for each eigenvalue.
   template<typename F>
   Matrix<N> map(F && f) const {
     Matrix<N> out{};
@@ -72,7 +72,7 @@ struct Eigen {
   }
 };
 
-/// Jacobi's method: slow for large matrices, exact and simple for 3 x 3 and 6 x 6.
+/// Jacobi's method: slow for large matrices, but exact and simple for 3 x 3 and 6 x 6.
 template<size_t N>
 Eigen<N> symmetric_eigen(Matrix<N> a) {
   constexpr int sweeps = 30;  // convergence is quadratic: about 6 are needed

@@ -59,7 +59,7 @@ Derivatives derivatives(const TangentSums & sums, const Gaussian & gaussian, con
       d.hessian[i][3 + k] = d.hessian[3 + k][i] = scale * turned[i];
     }
     for (size_t l = k; l < 3; ++l) {
-      // The last two terms are f . (a_k x (a_l x q)) summed.
+      // The last two terms are the sum of f . (a_k x (a_l x q)).
       const double second =
         dot(axes[k], transposed_times(fq, axes[l])) - trace * dot(axes[k], axes[l]);
       d.hessian[3 + k][3 + l] = d.hessian[3 + l][3 + k] =

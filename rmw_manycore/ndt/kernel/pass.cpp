@@ -41,9 +41,9 @@ Simd choose_simd() {
     }
   }
   throw Error(
-    ErrorCode::invalid_argument, "MANYCORE_NDT_SIMD: expected portable, avx2 or avx512 up to " +
-                                   std::string(name_of(most)) + ", which this CPU has, found '" +
-                                   wanted + "'");
+    ErrorCode::invalid_argument,
+    "MANYCORE_NDT_SIMD: expected portable, avx2 or avx512, on this CPU at most " +
+      std::string(name_of(most)) + ", found '" + wanted + "'");
 }
 
 Kernel kernel_of(Simd simd) noexcept {

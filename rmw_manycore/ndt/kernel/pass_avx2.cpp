@@ -1,5 +1,5 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-// For CPUs with AVX2 and FMA: eight points at a time.
+// Kernel for CPUs with AVX2 and FMA: eight points at a time.
 
 #include "ndt/kernel/pass.hpp"
 
@@ -10,7 +10,7 @@
 
 #include "ndt/map/table.hpp"
 
-// All functions from here on, and no others, are compiled for these CPUs.
+// The functions from here on, and only these, are compiled for AVX2.
 #if defined(__clang__)
 #pragma clang attribute push(__attribute__((target("avx2,fma"))), apply_to = function)
 #else
@@ -39,12 +39,12 @@ struct Lanes {
     return reinterpret_cast<F>(reinterpret_cast<I>(f) + (n << 23));
   }
 
-  /// Four fields of lines i and 4 + i, in that order.
+  /// Four fields of lines i and 4 + i, in this order.
   static F half(const float * const (&lines)[width], size_t i, size_t field) {
     const __m256 low = _mm256_castps128_ps256(_mm_load_ps(lines[i] + field));
     return _mm256_insertf128_ps(low, _mm_load_ps(lines[4 + i] + field), 1);
   }
-  /// Four fields of all lines, transposed; the lines come out in their order.
+  /// Four fields of all lines, transposed, in line order.
   static void load_four(const float * const (&lines)[width], size_t field, F * out) {
     const F a = half(lines, 0, field);
     const F b = half(lines, 1, field);

@@ -1,12 +1,11 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-// For CPUs with AVX-512: sixteen points at a time, a voxel line to a register.
+// Kernel for CPUs with AVX-512: sixteen points at a time, one voxel line per register.
 
 #include "ndt/kernel/pass.hpp"
 
 #if defined(__x86_64__)
 #if defined(__GNUC__) && !defined(__clang__)
-// GCC 12 takes the deliberately undefined operands in its own header for a mistake (its bug
-// 105593).
+// GCC 12 warns about intentionally undefined operands in its own header (GCC bug 105593).
 #pragma GCC diagnostic ignored "-Wuninitialized"
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
 #endif
@@ -16,7 +15,7 @@
 
 #include "ndt/map/table.hpp"
 
-// All functions from here on, and no others, are compiled for these CPUs.
+// The functions from here on, and only these, are compiled for AVX-512.
 #if defined(__clang__)
 #pragma clang attribute push( \
   __attribute__((target("avx512f,avx512dq,avx512vl,avx512bw,avx2,fma"))), apply_to = function)
@@ -48,14 +47,14 @@ struct Lanes {
     return reinterpret_cast<F>(reinterpret_cast<I>(f) + (n << 23));
   }
 
-  /// Four fields of lines i, 4 + i, 8 + i, 12 + i, in that order.
+  /// Four fields of lines i, 4 + i, 8 + i, 12 + i, in this order.
   static F quarter(const float * const (&lines)[width], size_t i, size_t field) {
     __m512 out = _mm512_castps128_ps512(_mm_load_ps(lines[i] + field));
     out = _mm512_insertf32x4(out, _mm_load_ps(lines[4 + i] + field), 1);
     out = _mm512_insertf32x4(out, _mm_load_ps(lines[8 + i] + field), 2);
     return _mm512_insertf32x4(out, _mm_load_ps(lines[12 + i] + field), 3);
   }
-  /// Four fields of all lines, transposed; the lines come out in their order.
+  /// Four fields of all lines, transposed, in line order.
   static void load_four(const float * const (&lines)[width], size_t field, F * out) {
     const F a = quarter(lines, 0, field);
     const F b = quarter(lines, 1, field);

@@ -1,6 +1,6 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-// The hot loop, for any width of registers. Included by pass_<simd>.cpp inside a namespace of its
-// own, after that file defined `Lanes`:
+// The hot loops, for any register width. Included by pass_<simd>.cpp inside its own namespace,
+// after that file has defined `Lanes`:
 //   width                 lanes of a register
 //   F, I                  registers of floats and of 32-bit integers, with C's operators
 //   load, store, set1     of floats
@@ -14,9 +14,10 @@
 using F = Lanes::F;
 using I = Lanes::I;
 
-/// Of a voxel line: mean, weight, inverse covariance.
+/// Fields of a voxel line: mean, weight, inverse covariance.
 constexpr size_t line_fields = 10;
 
+/// Constants of a pass, one value per lane.
 struct Constants {
   F rotation[9];
   F translation[3];
@@ -24,7 +25,7 @@ struct Constants {
   F first_cell[3];
   F last_cell[3];
   F squared_size;
-  F exponent;  // of 2, per unit of x'Bx: -d2 / 2 / ln 2
+  F exponent;  // base 2, per unit of x'Bx: -d2 / 2 / ln 2
   F minus_d2;
   int32_t cells_x;
   int32_t cells_y;
@@ -50,7 +51,7 @@ Constants constants_of(const MapHeader & map, const PassPose & pose, float d2) {
   return c;
 }
 
-/// 2^x for x <= 0, to 2e-7; 0 below 2^-126. The polynomial is Taylor's for 2^r on [-1/2, 1/2].
+/// 2^x for x <= 0, accurate to 2e-7; 0 below 2^-126. Taylor polynomial of 2^r on [-1/2, 1/2].
 inline F exp2_negative(F x) {
   const F bounded = Lanes::max(x, Lanes::set1(-126));
   const I n = Lanes::to_int(bounded - Lanes::set1(0.5F));
@@ -65,14 +66,14 @@ inline F exp2_negative(F x) {
   return Lanes::at_most(Lanes::set1(-126), x, Lanes::shift_exponent(p, n));
 }
 
-/// The lanes' points: turned into the map frame (q), and their lists of voxels.
+/// One point per lane: rotated into the map frame (q), and its voxel list.
 struct Sight {
   F q[3];
-  F p[3];  // q moved to its place, relative to the map's origin
+  F p[3];  // q translated, relative to the map's origin
   const uint32_t * lists[Lanes::width];
 };
 
-/// Finds the lists of cells in the map's table; neighbours in memory often share a cell.
+/// Looks up the voxel lists in the map's table; points adjacent in memory often share a cell.
 struct LookUp {
   void operator()(const MapView & map, size_t, const I & key, Sight & s) const {
     uint32_t keys[Lanes::width];
@@ -85,7 +86,7 @@ struct LookUp {
   }
 };
 
-/// Takes the lists that somebody else found.
+/// Uses voxel lists found by an earlier search().
 struct Found {
   const uint32_t * list_of_point;
 
@@ -108,8 +109,8 @@ inline Sight look(
     const F * const row = c.rotation + 3 * i;
     s.q[i] = Lanes::fma(row[0], x, Lanes::fma(row[1], y, row[2] * z));
     s.p[i] = s.q[i] + c.translation[i];
-    // Outside the grid is its border, which is in no table; cells are counted from 0, so cutting
-    // off the fraction is rounding down.
+    // Points outside the grid are clamped to its border, which is in no table. Cells are counted
+    // from 0, so truncation rounds down.
     const F place = Lanes::fma(s.p[i], c.inverse_size, -c.first_cell[i]);
     cell[i] = Lanes::to_int(Lanes::min(Lanes::max(place, Lanes::set1(0)), c.last_cell[i]));
   }
@@ -118,7 +119,8 @@ inline Sight look(
   return s;
 }
 
-/// Takes the next voxel of each lane's list, line 0 where a list is at its end; false when all are.
+/// Advances to the next voxel of each lane's list, line 0 at the end of a list. False when all
+/// lists are at their end.
 inline bool next_voxels(const MapView & map, Sight & s, const float * (&lines)[Lanes::width]) {
   uint32_t any = 0;
   for (size_t lane = 0; lane < Lanes::width; ++lane) {
@@ -130,7 +132,7 @@ inline bool next_voxels(const MapView & map, Sight & s, const float * (&lines)[L
   return any != 0;
 }
 
-/// What the lanes' points add over the voxels they see: no term of q yet.
+/// Sums over the voxels of each lane's point, without the factors of q.
 struct PointSums {
   F score;
   F nearest;
@@ -172,14 +174,14 @@ inline void add_voxels(
   }
 }
 
-/// M (e_k x q), k = 0, 1, 2, for one row of M.
+/// M (e_k x q) for k = 0, 1, 2, for one row of M.
 inline void turn(const F (&row)[3], const F (&q)[3], F (&out)[3]) {
   out[0] = Lanes::fma(row[2], q[1], -(row[1] * q[2]));
   out[1] = Lanes::fma(row[0], q[2], -(row[2] * q[0]));
   out[2] = Lanes::fma(row[1], q[0], -(row[0] * q[1]));
 }
 
-/// Adds the points' sums with their factors of q.
+/// Adds the points' sums, multiplied by their factors of q.
 inline void add_points(const Sight & s, const PointSums & p, F (&sums)[sum_count]) {
   sums[sum_score] += p.score;
   sums[sum_nearest] += p.nearest;
@@ -209,7 +211,7 @@ inline void add_points(const Sight & s, const PointSums & p, F (&sums)[sum_count
   }
 }
 
-/// Moves the lanes' sums to double precision; halves are added first, which the compiler does in
+/// Moves the lanes' sums to double precision. Adds them in halves, which the compiler does in
 /// registers.
 inline void drain(F (&sums)[sum_count], TangentSums & out) {
   for (size_t i = 0; i < sum_count; ++i) {
@@ -228,7 +230,7 @@ inline void drain(F (&sums)[sum_count], TangentSums & out) {
 template<bool by_radius, typename Find>
 TangentSums run(
   const MapView & map, const ScanView & scan, const Constants & c, size_t bin, Find find) {
-  // Single precision is exact enough for the terms, not for sums of very many of them.
+  // Single precision suffices for the terms, but not for sums of very many of them.
   constexpr size_t groups_per_drain = 32;
   F sums[sum_count] = {};
   TangentSums out;

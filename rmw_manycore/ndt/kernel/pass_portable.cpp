@@ -1,5 +1,5 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-// For any CPU: the compiler's own vectors of four, which are SSE2 on x86-64 and NEON on ARM.
+// Kernel for any CPU, with the compiler's vectors of four: SSE2 on x86-64, NEON on ARM.
 
 #include <cstring>
 

@@ -12,20 +12,7 @@
 namespace manycore::ndt {
 namespace {
 
-/// The list of voxels that a place sees; outside of the grid is its border, which sees none.
-const uint32_t * voxels_at(const MapView & map, const float (&place_m)[3]) {
-  const MapHeader & header = *map.header;
-  uint32_t cell[3];
-  for (size_t i = 0; i < 3; ++i) {
-    const double from_first = place_m[i] / header.voxel_size_m - header.first_cell[i];
-    cell[i] = static_cast<uint32_t>(std::clamp<double>(from_first, 0, header.cells[i] - 1));
-  }
-  const auto width = static_cast<uint32_t>(header.cells[0]);
-  const auto depth = static_cast<uint32_t>(header.cells[1]);
-  return map.lists + find_list(map, cell[0] + (cell[1] + cell[2] * depth) * width);
-}
-
-/// x'Bx of eq. 6.9; infinity where the search does not let the place see the voxel.
+/// x'Bx of eq. 6.9; infinity if the voxel is out of the search range.
 double distance(const MapHeader & map, const VoxelLine & line, const float (&place_m)[3]) {
   double x[3];
   for (size_t i = 0; i < 3; ++i) {

@@ -8,9 +8,9 @@
 
 namespace manycore::ndt {
 
-/// Writes for each of count points (x, y, z [m], sensor frame) at a pose the score of the voxel it
-/// fits best, NaN where it sees none. Their mean over points that see a voxel is the likelihood of
-/// the nearest voxels. For pictures: one point after the other, on the calling thread.
+/// Writes the score of the best voxel for each of `count` points (x, y, z [m], sensor frame) at a
+/// pose, or NaN for points without a voxel. The mean over points with a voxel is the nearest-voxel
+/// likelihood. For visualization: runs point by point on the calling thread.
 void point_scores(
   const MapView & map, double outlier_ratio, const Pose6 & pose, const float * xyz_m, size_t count,
   float * scores);

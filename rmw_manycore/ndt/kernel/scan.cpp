@@ -10,13 +10,14 @@ namespace manycore::ndt {
 namespace {
 
 constexpr float far_away_m = 1e9F;
-/// Cubes as large as a usual voxel; beyond 64 m they repeat, which costs order, not correctness.
+/// Cubes of the size of a typical voxel. Beyond 64 m their codes repeat, which degrades the order
+/// only.
 constexpr float cube_m = 2;
 constexpr uint32_t cubes_per_axis_bits = 5;
 constexpr uint32_t cube_count = 1 << (3 * cubes_per_axis_bits);
 constexpr uint16_t no_cube = 0xFFFF;
 
-/// Spreads the low 5 bits of x so that two zeros follow each.
+/// Inserts two zero bits after each of the low 5 bits of x.
 constexpr uint32_t spread(uint32_t x) {
   uint32_t out = 0;
   for (uint32_t bit = 0; bit < cubes_per_axis_bits; ++bit) {
@@ -35,12 +36,12 @@ struct SpreadTable {
 };
 constexpr SpreadTable spread_table;
 
-/// Place of a point's cube on the Morton curve; no_cube for a point that does not count.
+/// Morton code of a point's cube; no_cube for a point that is ignored.
 uint16_t cube_of(const float * xyz_m) {
   constexpr float farthest_m = 1e6F;
   uint32_t code = 0;
   for (uint32_t i = 0; i < 3; ++i) {
-    if (!(std::abs(xyz_m[i]) <= far_away_m)) {  // nor where it is not a number
+    if (!(std::abs(xyz_m[i]) <= far_away_m)) {  // also false for NaN
       return no_cube;
     }
     const float place_m = std::clamp(xyz_m[i], -farthest_m, farthest_m) + farthest_m;
@@ -54,7 +55,7 @@ uint16_t cube_of(const float * xyz_m) {
 
 ScanView lay_out_scan(const float * xyz_m, size_t count, float * floats) {
   std::vector<uint16_t> cubes(count);
-  std::vector<uint32_t> next(cube_count + 1);  // of each cube the place of its next point
+  std::vector<uint32_t> next(cube_count + 1);  // index of the next point of each cube
   for (size_t i = 0; i < count; ++i) {
     cubes[i] = cube_of(xyz_m + 3 * i);
     next[cubes[i] == no_cube ? cube_count : cubes[i]]++;

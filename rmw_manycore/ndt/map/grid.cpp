@@ -11,8 +11,8 @@
 namespace manycore::ndt {
 namespace {
 
-// Cells are counted in single precision by the kernel, which is exact up to here.
-constexpr double most_cells_per_axis = 1 << 22;
+// The kernel counts cells in single precision, which is exact up to this limit.
+constexpr double max_cells_per_axis = 1 << 22;
 
 [[noreturn]] void refuse(double voxel_size_m) {
   throw Error(
@@ -48,7 +48,7 @@ Grid grid_around(const std::vector<std::array<double, 3>> & points_m, double vox
     const double first = std::floor((*low)[i] / voxel_size_m);
     const double last = std::floor((*high)[i] / voxel_size_m);
     const double count = last - first + 1 + 2 * Grid::margin;
-    if (!(count < most_cells_per_axis)) {
+    if (!(count < max_cells_per_axis)) {
       refuse(voxel_size_m);
     }
     const double middle = std::floor((first + last) / 2);

@@ -1,5 +1,5 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-// From points to the memory image of a voxel map.
+// Builds the memory image of a voxel map from points.
 
 #include <unistd.h>
 
@@ -46,10 +46,10 @@ VoxelLine line_of(const Grid & grid, const Scatter & scatter, const Matrix3 & in
   return line;
 }
 
-/// The voxels with enough points, in the order of their keys.
+/// Voxels with enough points, sorted by key.
 std::vector<PlacedVoxel> voxels_of(
   const Grid & grid, const Points & points, const MapOptions & options) {
-  std::vector<std::pair<uint32_t, uint32_t>> order;  // key of the cell, point
+  std::vector<std::pair<uint32_t, uint32_t>> order;  // cell key, point index
   order.reserve(points.size());
   for (size_t i = 0; i < points.size(); ++i) {
     order.emplace_back(grid.key_of(grid.cell_of(points[i].data())), static_cast<uint32_t>(i));
@@ -89,7 +89,7 @@ MapHeader lay_out(const Grid & grid, Search search, size_t voxels, const Neighbo
   h.voxel_count = static_cast<uint32_t>(voxels);
   h.cell_count = static_cast<uint32_t>(seen.cells.size());
   h.list_length = static_cast<uint32_t>(seen.lists.size());
-  // At most a third full, so that most cells are found where they are first looked for.
+  // Load factor of at most one third, so that most lookups hit the first slot.
   uint32_t bits = 4;
   while ((uint64_t{1} << bits) < 3 * seen.cells.size()) {
     ++bits;

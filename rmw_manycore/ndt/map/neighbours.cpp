@@ -24,7 +24,7 @@ std::vector<Cell> offsets_of(Search search) {
   return offsets;
 }
 
-/// Tells whether some point of the cell may be within one voxel size of the voxel's mean.
+/// True if a point of the cell may be within one voxel size of the voxel's mean.
 bool is_in_reach(const Grid & grid, const PlacedVoxel & voxel, const Cell & cell) {
   double squared_m2 = 0;
   for (size_t i = 0; i < 3; ++i) {
@@ -41,7 +41,7 @@ bool is_in_reach(const Grid & grid, const PlacedVoxel & voxel, const Cell & cell
 
 NeighbourLists neighbour_lists(
   const Grid & grid, const std::vector<PlacedVoxel> & voxels, Search search) {
-  std::vector<std::pair<uint32_t, uint32_t>> seen;  // key of a cell, line
+  std::vector<std::pair<uint32_t, uint32_t>> seen;  // cell key, line
   const std::vector<Cell> offsets = offsets_of(search);
   for (size_t i = 0; i < voxels.size(); ++i) {
     for (const Cell & offset : offsets) {
@@ -57,7 +57,7 @@ NeighbourLists neighbour_lists(
   std::sort(seen.begin(), seen.end());
 
   NeighbourLists out;
-  out.lists.push_back(0);  // the list of cells that see nothing
+  out.lists.push_back(0);  // list of cells without voxels
   for (const auto & [key, line] : seen) {
     if (out.cells.empty() || out.cells.back().key != key) {
       if (!out.cells.empty()) {

@@ -10,19 +10,19 @@
 
 namespace manycore::ndt {
 
-/// For every cell from which a voxel can be seen, the lines of the voxels it sees.
+/// For each cell with voxels in range, the lines of these voxels.
 struct NeighbourLists {
   std::vector<TableSlot> cells;  ///< key and first list index of each cell
-  std::vector<uint32_t> lists;   ///< lines in rising order, each list ended by 0
+  std::vector<uint32_t> lists;   ///< lines in ascending order; each list ends with 0
 };
 
-/// A voxel and the cell it fills.
+/// A voxel and its cell.
 struct PlacedVoxel {
   Cell cell;
   VoxelLine line;
 };
 
-/// `voxels` in the order of their lines, of which the first is line 1.
+/// `voxels` are in the order of their lines; the first one is line 1.
 NeighbourLists neighbour_lists(
   const Grid & grid, const std::vector<PlacedVoxel> & voxels, Search search);
 

@@ -6,7 +6,7 @@
 namespace manycore::ndt {
 namespace {
 
-constexpr double least_eigenvalue_ratio = 0.01;
+constexpr double min_eigenvalue_ratio = 0.01;
 
 Matrix3 covariance(const Scatter & scatter, const MapOptions & options) {
   const VoxelCovariance kind = options.covariance;
@@ -43,11 +43,11 @@ void Scatter::add(const Vector3 & point) {
 std::optional<Matrix3> inverse_covariance(const Scatter & scatter, const MapOptions & options) {
   const Eigen<3> eigen = symmetric_eigen(covariance(scatter, options));
   const double largest = *std::max_element(eigen.values.begin(), eigen.values.end());
-  if (!(largest > 0) || !std::isfinite(1 / (least_eigenvalue_ratio * largest))) {
+  if (!(largest > 0) || !std::isfinite(1 / (min_eigenvalue_ratio * largest))) {
     return std::nullopt;
   }
   return eigen.map(
-    [&](double value) { return 1 / std::max(value, least_eigenvalue_ratio * largest); });
+    [&](double value) { return 1 / std::max(value, min_eigenvalue_ratio * largest); });
 }
 
 }  // namespace manycore::ndt

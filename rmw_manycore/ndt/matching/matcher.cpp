@@ -9,8 +9,8 @@
 namespace manycore::ndt {
 namespace {
 
-/// Steps shorter than this share of a voxel end a level that a finer one follows: the finer one
-/// takes over from anywhere within a voxel.
+/// Convergence threshold of coarse levels, as a fraction of the voxel size: the next finer level
+/// converges from anywhere within a voxel.
 constexpr double coarse_epsilon_voxels = 0.025;
 
 MatchOptions options_of(const MatchOptions & options, const MapView & level, bool is_last) {

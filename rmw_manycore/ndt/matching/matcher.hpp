@@ -12,12 +12,12 @@
 
 namespace manycore::ndt {
 
-/// Maps of the same points with smaller and smaller voxels; a scan is aligned to each, from where
-/// the one before has led. The last one's alignment counts. Borrowed for the call.
+/// Maps of the same points with decreasing voxel sizes. A scan is aligned to each in turn, starting
+/// from the previous result; the last level's result counts. Borrowed during the call.
 using Levels = std::vector<const VoxelMap *>;
 constexpr size_t max_levels = 4;
 
-/// What is matched: a scan to a map.
+/// A scan, the map it is matched to, and the options.
 struct Problem {
   MapView map;
   ScanView scan;
@@ -25,30 +25,30 @@ struct Problem {
   std::optional<Regularization> regularization;
 };
 
-/// d2 of eq. 6.8 as the kernel takes it.
+/// Constant d2 of eq. 6.8, in the kernel's precision.
 float kernel_d2(const Problem & problem);
 
-/// All bins' sums added in the order of the bins, whoever computed them.
+/// Adds the bins' sums in the order of the bins, whichever worker computed them.
 TangentSums add_bins(const TangentSums (&bins)[bin_count]);
 
-/// Derivatives at a pose, from the sums of all bins there.
+/// Derivatives at a pose, from the sums of all bins at that pose.
 Derivatives finish_pass(const Problem & problem, const TangentSums & sums, const Pose6 & pose);
 
 /// Derivatives of a problem at a pose.
 using EvaluateProblem = std::function<Derivatives(const Problem &, const Pose6 &)>;
 
-/// Aligns level by level, coarsest first; problem.map is set to each. Iterations and path are those
-/// of all levels together, the rest is the last level's.
+/// Aligns level by level, coarsest first; sets problem.map to each level. Iterations and path cover
+/// all levels; the other results are the last level's.
 NewtonResult descend(
   const std::vector<MapView> & levels, Problem & problem, const Pose6 & guess,
   const EvaluateProblem & evaluate);
 
-/// Throws Error{invalid_argument} unless there are 1 to max_levels.
+/// Throws Error{invalid_argument} unless there are 1 to max_levels levels, none of them null.
 void check_levels(const Levels & levels);
 
 std::vector<MapView> views_of(const Levels & levels);
 
-/// One core does all bins.
+/// Computes all bins on the calling thread.
 Derivatives evaluate_alone(const Problem & problem, const Kernel & kernel, const Pose6 & pose);
 
 }  // namespace manycore::ndt

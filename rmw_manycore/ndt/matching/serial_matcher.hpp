@@ -14,7 +14,7 @@ public:
   explicit SerialMatcher(const MatchOptions & options)
   : options_(options), kernel_(kernel_of(choose_simd())) {}
 
-  /// Points x, y, z [m] in the sensor frame, of which the finite ones count.
+  /// Aligns points x, y, z [m] in the sensor frame; ignores those that are not finite.
   NewtonResult align(
     const Levels & levels, const float * xyz_m, size_t count, const Pose6 & guess,
     const std::optional<Regularization> & regularization);

@@ -10,7 +10,7 @@
 namespace manycore::ndt {
 namespace {
 
-/// Thrown through the optimiser when the others cannot go on.
+/// Thrown through the optimiser when the job is aborted.
 struct Aborted {};
 
 }  // namespace
@@ -25,7 +25,7 @@ Worker::Worker(SharedMemory session, uint32_t index)
 }
 
 void Worker::run() {
-  // The coordinator noted here which job was the last one before we came.
+  // The coordinator stored the last job's number here before it started this worker.
   uint32_t seen = own_.finished.load(std::memory_order_acquire);
   for (;;) {
     uint32_t job = session_.job.load(std::memory_order_acquire);
@@ -42,7 +42,7 @@ void Worker::run() {
   }
 }
 
-/// Of those who end a job at the same time at least one sees that all have.
+/// Of workers that finish a job concurrently, at least one sees all of them finished (seq_cst).
 bool Worker::all_finished(uint32_t job) const noexcept {
   for (uint32_t i = 0; i < session_.workers; ++i) {
     if (session_.lines[i].finished.load(std::memory_order_seq_cst) != job) {
@@ -62,7 +62,7 @@ void Worker::attach() {
   }
 }
 
-/// Keeps the maps that the last job had too, and lets go of the others.
+/// Keeps maps used by the previous job, and detaches the others.
 void Worker::attach_maps() {
   const Job & what = session_.what;
   std::vector<AttachedMap> levels;
@@ -85,7 +85,7 @@ void Worker::attach_maps() {
 void Worker::do_job(uint32_t job) {
   const Job & what = session_.what;
   if (what.levels == 0) {
-    return;  // a first job, only to see whether everybody is there
+    return;  // a first job, which only checks that all workers run
   }
   attach();
   const int64_t start_ns = monotonic_ns();
@@ -127,7 +127,7 @@ std::optional<TangentSums> Worker::pass(const Problem & problem, const Pose6 & p
   const uint64_t ticket = ticket_of(job_, ++pass_);
   const int64_t begin_ns = monotonic_ns();
   const uint32_t workers = session_.workers;
-  // First the own share, then what others, disturbed on their CPUs, have not begun.
+  // First the own share, then bins that workers delayed on their CPUs have not begun.
   for (uint32_t i = 0; i < workers; ++i) {
     const uint32_t owner = (index_ + i) % workers;
     while (const auto bin = session_.shares[owner].begin(ticket, owner, workers)) {
@@ -161,9 +161,9 @@ bool Worker::wait_for_all(uint64_t ticket) {
     return true;
   };
   const int64_t start_ns = monotonic_ns();
-  const int64_t patience_ns = start_ns + session_.what.spin_ns;
+  const int64_t deadline_ns = start_ns + session_.what.spin_ns;
   bool here = all_are_here();
-  while (!here && monotonic_ns() < patience_ns) {
+  while (!here && monotonic_ns() < deadline_ns) {
     pause_cpu();
     here = all_are_here();
   }

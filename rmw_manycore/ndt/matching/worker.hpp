@@ -10,9 +10,10 @@
 
 namespace manycore::ndt {
 
-/// The loop of one worker process: sleeps until there is a job, then does its share of the bins of
-/// every pass, in step with the other workers. Each worker adds up all bins and takes Newton's step
-/// itself: the same numbers in the same order give the same pose, so one barrier a pass is enough.
+/// Main loop of a worker process: sleeps until there is a job, then computes its share of the bins
+/// of each pass, in step with the other workers. Each worker sums all bins and takes Newton's step
+/// itself: the same numbers in the same order yield the same pose, so one barrier per pass
+/// suffices.
 class Worker {
 public:
   Worker(SharedMemory session, uint32_t index);
@@ -28,9 +29,9 @@ private:
   void attach();
   void attach_maps();
   void do_job(uint32_t job);
-  /// The sums of all bins at a pose; empty when the job is aborted.
+  /// Sums of all bins at a pose; empty if the job is aborted.
   std::optional<TangentSums> pass(const Problem & problem, const Pose6 & pose);
-  /// Keeps when the share of the present pass was done.
+  /// Records begin and end of the share of the current pass.
   void log(int64_t begin_ns) noexcept;
   bool wait_for_all(uint64_t ticket);
 
@@ -39,7 +40,7 @@ private:
   WorkerLine & own_;
   uint32_t index_;
   Kernel kernel_;
-  std::vector<AttachedMap> maps_;  ///< the levels of the last job
+  std::vector<AttachedMap> maps_;  ///< levels of the last job
   SharedMemory scan_;
   uint64_t scan_id_ = 0;
   uint32_t job_ = 0;

@@ -13,14 +13,15 @@
 namespace manycore::ndt {
 namespace {
 
-/// The pidfds are looked at this often while a job runs; a healthy job is over before that.
+/// Interval of checking the pidfds while a job runs; a healthy job takes less.
 constexpr int64_t look_ns = 10'000'000;
-/// A worker that does not reach a barrier the others wait at for so long is stopped or stuck. The
-/// longest pass there is, 2 million points by radius in portable code, takes 0.5 s on one core.
+/// A worker that has not reached a barrier for this long, while others wait there, is stopped or
+/// stuck. The longest realistic pass, 2 million points by radius in portable code, takes 0.5 s on
+/// one core.
 constexpr int64_t stuck_ns = 5 * ns_per_s;
-/// Waiting for a worker on another CPU is over within this time unless something goes wrong.
+/// Workers on other CPUs reach a barrier within this time unless something is wrong.
 constexpr int64_t spin_ns = 200'000;
-constexpr int most_attempts = 5;
+constexpr int max_attempts = 5;
 constexpr size_t first_scan_points = 100'000;
 
 void name_part(SharedPart & part, uint64_t id, const SharedMemory & memory) {
@@ -41,13 +42,13 @@ WorkerGroup::WorkerGroup(
   options_(options),
   memory_(SharedMemory::anonymous("manycore-ndt-session", sizeof(Session))),
   session_(memory_.at<Session>(0)) {
-  if (host_cpus.empty() || host_cpus.size() > most_workers) {
+  if (host_cpus.empty() || host_cpus.size() > max_workers) {
     throw Error(
-      ErrorCode::invalid_argument, "host_cpus: expected 1 to " + std::to_string(most_workers) +
+      ErrorCode::invalid_argument, "host_cpus: expected 1 to " + std::to_string(max_workers) +
                                      " CPUs, found " + std::to_string(host_cpus.size()));
   }
   session_.workers = static_cast<uint32_t>(host_cpus.size());
-  // Workers that share a CPU must not keep it from each other.
+  // Spinning would keep the CPU from workers that share it.
   const bool share = std::set<int>(host_cpus.begin(), host_cpus.end()).size() < host_cpus.size();
   session_.what.spin_ns = share ? 0 : spin_ns;
   workers_.resize(host_cpus.size());
@@ -57,7 +58,7 @@ WorkerGroup::WorkerGroup(
       throw Error(
         ErrorCode::invalid_argument,
         "host CPU " + std::to_string(host_cpus[i]) +
-          " cannot be had: expected one that this process may use (see nproc, taskset)");
+          " is not in this process's affinity mask (see nproc, taskset)");
     }
   }
   put_scan(nullptr, 0);
@@ -143,18 +144,18 @@ std::vector<std::vector<WorkerPass>> WorkerGroup::passes() const {
 }
 
 NewtonResult WorkerGroup::run_job() {
-  for (int i = 0; i < most_attempts; ++i) {
+  for (int i = 0; i < max_attempts; ++i) {
     replace_ended_workers();
     if (attempt()) {
       return session_.result;
     }
   }
   throw Error(
-    ErrorCode::system, "the workers ended " + std::to_string(most_attempts) +
-                         " times in one alignment: see what kills them (memory limit, signals)");
+    ErrorCode::system, "the workers ended " + std::to_string(max_attempts) +
+                         " times in one alignment: check what kills them (memory limit, signals)");
 }
 
-/// One try with all workers; false when one died, and then all others sleep again.
+/// One attempt with all workers. False if a worker died; all others are asleep again then.
 bool WorkerGroup::attempt() {
   const uint32_t job = session_.job.fetch_add(1, std::memory_order_release) + 1;
   futex_wake_all(session_.job);
@@ -162,7 +163,8 @@ bool WorkerGroup::attempt() {
   if (all_finished(job) && session_.aborted.load(std::memory_order_relaxed) != job) {
     return true;
   }
-  session_.barrier.sleepers.store(0, std::memory_order_relaxed);  // the dead may have been counted
+  // A dead worker may have been counted.
+  session_.barrier.sleepers.store(0, std::memory_order_relaxed);
   return false;
 }
 
@@ -188,7 +190,7 @@ void WorkerGroup::wait_for_workers(uint32_t job) {
   }
 }
 
-/// Of those that still live all are done; a dead one will not become so.
+/// True if each worker has finished the job, or has died and the job is aborted.
 bool WorkerGroup::all_finished(uint32_t job) const noexcept {
   const bool aborted = session_.aborted.load(std::memory_order_acquire) == job;
   for (size_t i = 0; i < workers_.size(); ++i) {

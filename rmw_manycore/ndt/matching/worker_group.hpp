@@ -16,8 +16,8 @@ namespace manycore::ndt {
 /// Matches on worker processes, one per host CPU. The calling thread sleeps meanwhile.
 class WorkerGroup {
 public:
-  /// Starts `program` once per host CPU. Throws Error{invalid_argument} for a CPU that cannot be
-  /// had.
+  /// Starts `program` once per host CPU. Throws Error{invalid_argument} if this process may not use
+  /// one of the CPUs.
   WorkerGroup(
     const MatchOptions & options, const std::string & program, const std::vector<int> & host_cpus);
 
@@ -27,16 +27,17 @@ public:
   /// Derivatives at a pose, on the last level.
   Derivatives evaluate(
     const Levels & levels, const float * xyz_m, size_t count, const Pose6 & pose);
-  /// Lets the workers map them, so that the next alignment need not wait for that.
+  /// Makes the workers map the levels, so that the next alignment does not have to wait for it.
   void prepare(const Levels & levels);
 
   std::vector<int> pids() const;
-  /// Time each worker was busy in the last job.
+  /// Time in ns that each worker was busy in the last job.
   std::vector<double> busy_ns() const;
-  /// When each worker worked for each pass of the last job, as far as kept. Not while one runs.
+  /// Begin and end of each worker's share of each recorded pass of the last job. Must not be called
+  /// while a job runs.
   std::vector<std::vector<WorkerPass>> passes() const;
   uint64_t replaced() const noexcept { return replaced_; }
-  /// Memory shared with the workers, beside the map, once a scan of `points` points was aligned.
+  /// Bytes shared with the workers, without the map, after a scan of `points` points.
   uint64_t memory_bytes(size_t points) const noexcept;
 
 private:

@@ -1,5 +1,6 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-// manycore_ndt_worker: SESSION INDEX HOST_CPU PARENT, started by a coordinator and ended by it.
+// manycore_ndt_worker SESSION INDEX HOST_CPU PARENT: a worker process, started and ended by its
+// coordinator, the process PARENT.
 
 #include <cstdio>
 #include <cstdlib>

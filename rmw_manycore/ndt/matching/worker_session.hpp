@@ -13,62 +13,62 @@
 
 namespace manycore::ndt {
 
-constexpr size_t most_workers = 64;
+constexpr size_t max_workers = 64;
 
-/// A part of shared memory that others attach to; `id` changes when it is another.
+/// A shared memory object to attach to; `id` changes when it is replaced.
 struct SharedPart {
   uint64_t id;
   char path[64];
 };
 
-/// What the workers are to do; written by the coordinator while all of them sleep.
+/// Parameters of a job; written by the coordinator while all workers sleep.
 struct Job {
-  SharedPart maps[max_levels];  ///< coarsest first; workers keep these attached and no others
-  uint32_t levels;              ///< 0: only to see whether all workers are there
-  uint32_t first_level;         ///< to align on
+  SharedPart maps[max_levels];  ///< coarsest first; workers keep only these attached
+  uint32_t levels;              ///< 0 = only check that all workers run
+  uint32_t first_level;         ///< level to start the alignment on
   SharedPart scan;
   uint64_t points;
   MatchOptions options;
   Pose6 guess;
   bool has_regularization;
   Regularization regularization;
-  int64_t spin_ns;  ///< how long to look before sleeping at a barrier
+  int64_t spin_ns;  ///< time in ns to spin at a barrier before sleeping
 };
 static_assert(std::is_trivially_copyable_v<Job>);
 
-/// A worker's own cache line, which the others read.
+/// One cache line per worker, read by the others.
 struct alignas(64) WorkerLine {
-  std::atomic<uint64_t> arrived;   ///< ticket of the pass it has reached the barrier of
-  std::atomic<uint32_t> finished;  ///< job it is done with
-  std::atomic<uint32_t> pinned;    ///< 1 once it runs on its host CPU alone
+  std::atomic<uint64_t> arrived;   ///< ticket of the pass whose barrier it has reached
+  std::atomic<uint32_t> finished;  ///< number of the last job it has finished
+  std::atomic<uint32_t> pinned;    ///< 1 once its affinity mask is a single host CPU
   std::atomic<uint64_t> busy_ns;   ///< time of the last job outside barriers
 };
 static_assert(sizeof(WorkerLine) == 64 && std::atomic<uint64_t>::is_always_lock_free);
 
-/// When a worker worked for a pass, CLOCK_MONOTONIC.
+/// Begin and end of a worker's share of a pass, CLOCK_MONOTONIC.
 struct WorkerPass {
   int64_t begin_ns;
   int64_t end_ns;
 };
-/// Passes of an alignment that are kept: more than one takes, but for options out of the ordinary.
+/// Recorded passes per alignment; more than an alignment takes with usual options.
 constexpr uint32_t max_kept_passes = 256;
 
-/// What a worker did in the last job; written by it, read once the job is over.
+/// Log of a worker for the last job; written by the worker, read after the job.
 struct WorkerLog {
-  uint32_t passes;  ///< in all, also those that are not kept
+  uint32_t passes;  ///< number of passes, including those not recorded
   std::array<WorkerPass, max_kept_passes> kept;
 };
 
-/// A pass of a job; greater than all before it.
+/// Identifies a pass of a job; greater than all earlier tickets.
 inline uint64_t ticket_of(uint32_t job, uint32_t pass) { return (uint64_t{job} << 24) + pass; }
 inline uint32_t job_of(uint64_t ticket) { return static_cast<uint32_t>(ticket >> 24); }
 
-/// A worker's bins of a pass: those from its index in steps of the number of workers. It begins
-/// them in this order, and so does everybody who is done with his own.
+/// A worker's bins of a pass: from its index on, in steps of the number of workers. The worker
+/// begins them in this order, and so do workers that have finished their own share.
 struct alignas(64) Share {
-  std::atomic<uint64_t> begun;  ///< ticket * 2^8 + how many are begun
+  std::atomic<uint64_t> begun;  ///< ticket * 2^8 + number of bins begun
 
-  /// Begins another bin; empty when all of this pass are begun.
+  /// Begins the next bin; empty if all bins of this pass are begun.
   std::optional<size_t> begin(uint64_t ticket, size_t first, size_t workers) noexcept {
     uint64_t seen = begun.load(std::memory_order_relaxed);
     for (;;) {
@@ -86,30 +86,32 @@ struct alignas(64) Share {
 };
 static_assert(bin_count < 256);
 
-/// Where processes wait for what others do. Zero is its initial state.
+/// Event counter on which processes wait for each other. Zero-initialized.
 struct alignas(64) Gate {
   FutexWord events;
   std::atomic<uint32_t> sleepers;
 };
 
-/// The shared memory of a coordinator and its workers. Zero is its initial state.
+/// Memory shared by a coordinator and its workers. Zero-initialized.
 struct Session {
   /// Number of the last job; workers sleep on it.
   alignas(64) FutexWord job;
-  /// A job that cannot be finished because a worker died.
+  /// Number of a job that cannot be finished because a worker died.
   alignas(64) std::atomic<uint32_t> aborted;
   Gate barrier;  ///< workers wait for each other between passes
   Gate end;      ///< the coordinator waits for the end of a job
   uint32_t workers;
   Job what;
   NewtonResult result;  ///< written by worker 0
-  std::array<WorkerLine, most_workers> lines;
-  std::array<Share, most_workers> shares;
-  std::array<WorkerLog, most_workers> logs;
-  /// Of even and odd passes: who is ahead by one must not overwrite what others still add up.
+  std::array<WorkerLine, max_workers> lines;
+  std::array<Share, max_workers> shares;
+  std::array<WorkerLog, max_workers> logs;
+  /// Bins of even and odd passes: a worker one pass ahead must not overwrite bins that others still
+  /// sum.
   alignas(64) TangentSums bins[2][bin_count];
 };
 
+/// Wakes the processes that sleep at the gate, to check their condition again.
 inline void announce(Gate & gate) noexcept {
   gate.events.fetch_add(1, std::memory_order_seq_cst);
   if (gate.sleepers.load(std::memory_order_seq_cst) != 0) {
@@ -117,9 +119,11 @@ inline void announce(Gate & gate) noexcept {
   }
 }
 
-/// Sleeps until `is_due` holds or the time has come; announce() makes sleepers look again. Between
-/// the count of sleepers and the sleep lies another look: whoever announces after it finds us
-/// counted, whoever announced before it has changed `events`.
+/// Sleeps until `is_due` holds or `deadline_ns` (CLOCK_MONOTONIC) passes; announce() makes sleepers
+/// check again. No wake-up is lost: the sleeper increments `sleepers` before it loads `events` and
+/// checks, and an announcer increments `events` before it loads `sleepers`, all seq_cst. An
+/// announcer that misses the sleeper has changed `events` before the sleeper loaded it, so the
+/// sleeper's check sees the cause.
 template<typename Condition>
 bool sleep_until(Gate & gate, Condition is_due, std::optional<int64_t> deadline_ns) {
   gate.sleepers.fetch_add(1, std::memory_order_seq_cst);

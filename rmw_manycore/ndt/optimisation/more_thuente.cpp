@@ -9,9 +9,9 @@ namespace {
 
 constexpr double sufficient_decrease = 1e-4;
 constexpr double curvature = 0.9;
-constexpr int most_trials = 10;
+constexpr int max_trials = 10;
 
-/// Minimiser of the cubic through two points with their slopes.
+/// Minimiser of the cubic through two points with given slopes.
 double cubic(const LinePoint & a, const LinePoint & b) {
   const double z = 3 * (b.value - a.value) / (b.length - a.length) - b.slope - a.slope;
   const double w = std::sqrt(std::max(z * z - b.slope * a.slope, 0.0));
@@ -29,7 +29,7 @@ double secant(const LinePoint & a, const LinePoint & b) {
   return a.length - (a.length - b.length) / (a.slope - b.slope) * a.slope;
 }
 
-/// Section 4 of the paper: where to look next, given the best point and the other end.
+/// Section 4 of the paper: next trial length, given the best point and the other end.
 double next_length(const LinePoint & best, const LinePoint & other, const LinePoint & trial) {
   const auto distance = [](double from, double to) { return std::abs(from - to); };
   if (trial.value > best.value) {
@@ -52,7 +52,7 @@ double next_length(const LinePoint & best, const LinePoint & other, const LinePo
   return cubic(other, trial);
 }
 
-/// Section 2's updating of the interval; true when it has shrunk to a point.
+/// Updates the interval (section 2); true when it has shrunk to a point.
 bool shrink(LinePoint & best, LinePoint & other, const LinePoint & trial) {
   if (trial.value > best.value) {
     other = trial;
@@ -71,7 +71,7 @@ bool shrink(LinePoint & best, LinePoint & other, const LinePoint & trial) {
 double more_thuente(
   const LinePoint & origin, double first, double least, double most,
   const std::function<LinePoint(double)> & evaluate) {
-  // Until the interval is closed the search is for a minimum of psi (eq. 2.1) instead of phi.
+  // Until the interval is closed, search for a minimum of psi (eq. 2.1) instead of phi.
   const double tilt = sufficient_decrease * origin.slope;
   const auto psi = [&](const LinePoint & phi) {
     return LinePoint{phi.length, phi.value - origin.value - tilt * phi.length, phi.slope - tilt};
@@ -83,8 +83,8 @@ double more_thuente(
   LinePoint other = best;
   LinePoint phi = evaluate(first);
   bool is_open = true;
-  for (int trial = 0; trial < most_trials; ++trial) {
-    // As in PCL a slope that still falls steeply is accepted: the next iteration goes on from
+  for (int trial = 0; trial < max_trials; ++trial) {
+    // As in PCL, a slope that still descends steeply is accepted: the next iteration continues from
     // there.
     const bool is_good = psi(phi).value <= 0 && phi.slope <= -curvature * origin.slope;
     if (is_good) {

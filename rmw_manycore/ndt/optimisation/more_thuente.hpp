@@ -5,7 +5,7 @@
 
 namespace manycore::ndt {
 
-/// A function of one variable: value and slope at a length along a line.
+/// Value and slope of a function of one variable, at a length along a line.
 struct LinePoint {
   double length;
   double value;
@@ -13,8 +13,8 @@ struct LinePoint {
 };
 
 /// More and Thuente's line search (1994) with PCL's constants: at most 10 trials, sufficient
-/// decrease 1e-4, curvature 0.9. Returns the last length that `evaluate` was called with, between
-/// least and most. `origin` is the point at length 0, where the slope is negative.
+/// decrease 1e-4, curvature 0.9. Returns the last length passed to `evaluate`, between least and
+/// most. `origin` is the point at length 0, where the slope is negative.
 double more_thuente(
   const LinePoint & origin, double first, double least, double most,
   const std::function<LinePoint(double)> & evaluate);

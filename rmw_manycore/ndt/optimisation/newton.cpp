@@ -18,8 +18,8 @@ Pose6 moved(const Pose6 & pose, const Vector6 & direction, double length) {
   return out;
 }
 
-/// A rule of the published matchers: Newton's direction, then how far. Returns how far, 0 where
-/// there is no direction.
+/// Step rules of published matchers: Newton's direction, then a step length. Returns the length, 0
+/// if there is no direction.
 double step_along_newton(
   NewtonResult & result, const MatchOptions & options, const Evaluate & evaluate) {
   Vector6 direction = newton_step(result.at.hessian, result.at.gradient);
@@ -27,7 +27,7 @@ double step_along_newton(
   if (!std::isfinite(newton_length) || newton_length == 0) {
     return 0;
   }
-  // Where the score is not concave Newton's step may lead downhill: then the other way.
+  // Where the score is not concave, Newton's step may descend: reverse it then.
   const double way = dot(direction, result.at.gradient) < 0 ? -1 : 1;
   for (double & element : direction) {
     element *= way / newton_length;
@@ -38,7 +38,7 @@ double step_along_newton(
   const auto try_length = [&](double length) {
     result.pose = moved(start, direction, length);
     result.at = evaluate(result.pose);
-    // Line searches minimise: value and slope of the negative score.
+    // Line searches minimise, so use value and slope of the negative score.
     return LinePoint{length, -result.at.score, -dot(result.at.gradient, direction)};
   };
   if (options.step_rule == StepRule::clamped) {

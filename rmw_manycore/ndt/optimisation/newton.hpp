@@ -14,12 +14,12 @@ namespace manycore::ndt {
 enum class Outcome : uint32_t {
   converged,
   iteration_limit,  ///< still moving after max_iterations
-  no_overlap,       ///< no point sees a voxel at the pose reached
-  degenerate,       ///< the derivatives say nothing: not finite, or all zero
+  no_overlap,       ///< no point has a voxel in range at the resulting pose
+  degenerate,       ///< the derivatives are not finite, or all zero
 };
 
-/// The way of an alignment: its guess, and the pose after each step. Of steps beyond its capacity
-/// nothing is kept; an alignment takes about ten.
+/// Poses of an alignment: the guess and the pose after each step. Steps beyond the capacity are not
+/// kept; an alignment takes about ten.
 struct Path {
   static constexpr size_t capacity = 64;
 
@@ -33,22 +33,23 @@ struct Path {
   }
 };
 
+/// Result of an alignment.
 struct NewtonResult {
   Outcome outcome = Outcome::iteration_limit;
   uint32_t iterations = 0;
   Pose6 pose{};
-  Derivatives at{};     ///< this pose
-  Derivatives first{};  ///< where the steps began
+  Derivatives at{};     ///< at `pose`
+  Derivatives first{};  ///< at the guess
   Path path{};
 };
 
-/// Derivatives at a pose; the same for the same pose, bit for bit.
+/// Derivatives at a pose; must be deterministic, bit for bit.
 using Evaluate = std::function<Derivatives(const Pose6 &)>;
 
-/// Magnusson's algorithm 2: Newton's method on the score from a guess.
+/// Magnusson's algorithm 2: maximises the score by Newton's method, starting from a guess.
 NewtonResult maximise(const Pose6 & guess, const MatchOptions & options, const Evaluate & evaluate);
 
-/// Newton's step: the solution s of H s = -g, with directions of which H knows nothing left out.
+/// Newton's step: the solution s of H s = -g, without the directions in H's null space.
 Vector6 newton_step(const Matrix6 & hessian, const Vector6 & gradient);
 
 }  // namespace manycore::ndt

@@ -7,7 +7,8 @@
 namespace manycore::ndt {
 namespace {
 
-/// The score near a pose as a quadratic function of a step in metres: angles times the lever.
+/// Quadratic model of the score near a pose, for steps in metres: angles are multiplied by the
+/// lever.
 struct Model {
   Vector6 gradient;
   Matrix6 hessian;
@@ -32,7 +33,7 @@ Vector6 uphill_step(const Model & model) {
   for (const double value : eigen.values) {
     largest = std::max(largest, std::abs(value));
   }
-  // A direction that is flat to rounding is bounded by the radius alone.
+  // The radius alone bounds a direction that is flat to rounding.
   const double flat = 1e-12 * largest;
   return eigen.map([&](double value) { return 1 / std::max(std::abs(value), flat); }) *
          model.gradient;

@@ -5,21 +5,21 @@
 
 namespace manycore::ndt {
 
-/// A step rule of our own. Far from the optimum the score is not concave, and Newton's step leads
-/// away from it along every direction that curves upwards; here each eigenvalue of the Hessian
-/// counts by its size, so every step leads uphill. Its length is bounded by a radius that follows
-/// how well the quadratic model foretold the gain (Nocedal and Wright, Numerical Optimization,
-/// algorithm 4.1). A step that lowered the score is taken back.
+/// A step rule of this project. Far from the optimum the score is not concave, and Newton's step
+/// leads away from it along each direction of positive curvature. Here each eigenvalue of the
+/// Hessian counts by its magnitude, so each step ascends. A radius bounds the step length, adapted
+/// by how well the quadratic model predicted the gain (Nocedal and Wright, Numerical Optimization,
+/// algorithm 4.1). A step that lowers the score is undone.
 class TrustRegion {
 public:
-  /// One evaluation. Returns the bound on the next step's error: the length of the step taken, or
-  /// the radius left after one that was taken back; 0 where there is no direction.
+  /// One step, with one evaluation. Returns the bound on the error of the next step: the length of
+  /// the step, or the remaining radius if the step was undone; 0 if there is no direction.
   double step(NewtonResult & result, const Evaluate & evaluate);
 
 private:
   static constexpr double first_radius_m = 0.5;
   static constexpr double largest_radius_m = 1.0;
-  /// A turn by an angle counts as the way of a point so far off.
+  /// A rotation counts as the displacement of a point at this distance.
   static constexpr double lever_m = 10.0;
 
   double radius_m_ = first_radius_m;
