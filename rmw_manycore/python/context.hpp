@@ -5,7 +5,7 @@
 
 namespace manycore::python {
 
-/// Makes a class with close() a context manager: `with` closes the object at the end of its block.
+/// Makes a class with close() a context manager, which calls close() at the end of the block.
 template<typename Class>
 void bind_context(nanobind::class_<Class> & bound) {
   bound.def("close", &Class::close)

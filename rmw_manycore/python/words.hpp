@@ -11,13 +11,13 @@
 
 namespace manycore::python {
 
-/// Python sees an enumeration as words, which it types as Literal: files, parameters and JSON hold
-/// the same words. A specialisation has `name`, for messages, and `all`, in the order of the
-/// values.
+/// Maps an enumeration to strings for Python, where it is typed as Literal; files, parameters and
+/// JSON use the same strings. A specialisation has `name`, for error texts, and `all`, in the order
+/// of the values.
 template<typename Enum>
 struct Words;
 
-/// Throws Error{corrupt} for a value from shared memory that the enumeration does not have.
+/// Throws Error{corrupt} if a value from shared memory is not in the enumeration.
 template<typename Enum>
 const char * word_of(Enum value) {
   const auto index = static_cast<size_t>(value);
@@ -29,7 +29,7 @@ const char * word_of(Enum value) {
   return Words<Enum>::all[index];
 }
 
-/// ValueError in Python for a word that the enumeration does not have.
+/// Raises ValueError in Python if the enumeration has no such word.
 template<typename Enum>
 Enum from_word(const std::string & word) {
   constexpr auto & all = Words<Enum>::all;
@@ -44,8 +44,7 @@ Enum from_word(const std::string & word) {
   throw nanobind::value_error((name + ": expected " + expected + ", found '" + word + "'").c_str());
 }
 
-/// The getter of an attribute that is an enumeration; `Class` is the bound one, which may derive
-/// it.
+/// Getter for def_prop_ro: an enumeration member of `Class` or of its base class.
 template<typename Class, typename Base, typename Enum>
 auto word(Enum Base::*member) {
   return [member](const Class & self) { return word_of(self.*member); };

@@ -10,6 +10,7 @@
 
 namespace manycore::ndt::python {
 
+/// Arrays as Python passes them: points (n, 3) in metres, poses (4, 4) row-major.
 using DoublePoints = nanobind::ndarray<
   const double, nanobind::shape<-1, 3>, nanobind::c_contig, nanobind::device::cpu>;
 using FloatPoints =

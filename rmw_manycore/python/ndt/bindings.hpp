@@ -5,9 +5,11 @@
 
 namespace manycore::ndt::python {
 
+/// Each function binds the classes of one source file.
 void bind_options(nanobind::module_ & module);
 void bind_voxel_map(nanobind::module_ & module);
 void bind_results(nanobind::module_ & module);
 void bind_matchers(nanobind::module_ & module);
+void bind_pairs(nanobind::module_ & module);
 
 }  // namespace manycore::ndt::python

@@ -16,7 +16,7 @@
 
 namespace manycore::ndt::python {
 
-/// A matcher that Python calls; it works without the GIL.
+/// A matcher bound to Python; releases the GIL while it computes.
 template<typename Matcher>
 class Bound {
 public:
@@ -47,7 +47,7 @@ private:
   Matcher matcher_;
 };
 
-/// Binds what all matchers have in common.
+/// Binds the methods common to all matchers.
 template<typename Matcher>
 nanobind::class_<Bound<Matcher>> bind_matcher(nanobind::module_ & module, const char * name) {
   using Self = Bound<Matcher>;

@@ -1,5 +1,5 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-// The matchers, alone and with workers: one signature.
+// Bindings of the matchers, serial and with workers; both have the same signature.
 
 #include <nanobind/nanobind.h>
 #include <nanobind/stl/string.h>
@@ -25,7 +25,7 @@ void prepare(Group & group, const Levels & maps) {
   group.matcher().prepare(maps);
 }
 
-/// (worker, pass, begin, end) of the last answer; times in ns.
+/// (worker, pass, begin, end) of the last align() or evaluate(); times in ns.
 std::vector<std::tuple<size_t, size_t, int64_t, int64_t>> passes(Group & group) {
   std::vector<std::tuple<size_t, size_t, int64_t, int64_t>> rows;
   const auto workers = group.matcher().passes();

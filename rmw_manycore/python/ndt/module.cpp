@@ -15,5 +15,6 @@ NB_MODULE(_ndt, module) {
   python::bind_voxel_map(module);
   python::bind_results(module);
   python::bind_matchers(module);
+  python::bind_pairs(module);
   module.def("simd", [] { return name_of(choose_simd()); });
 }

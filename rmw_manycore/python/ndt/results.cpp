@@ -1,5 +1,5 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-// What a matcher found: the kernel's own structs.
+// Bindings of the results, which are the kernel's own structs.
 
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
@@ -27,7 +27,7 @@ nb::object pose(const NewtonResult & result) {
   return View<4, 4>(matrix.data(), {4, 4}).cast(nb::rv_policy::copy);
 }
 
-/// The poses of the path (n, 4, 4).
+/// Poses of the iterations, shape (n, 4, 4).
 nb::object path(const NewtonResult & result) {
   std::vector<Pose4x4> matrices;
   for (uint32_t i = 0; i < result.path.count; ++i) {

@@ -7,6 +7,7 @@
 
 namespace manycore::python {
 
+/// Words of the scan matcher's enumerations in Python.
 template<>
 struct Words<ndt::Search> {
   static constexpr const char * name = "search";

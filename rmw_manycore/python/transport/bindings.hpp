@@ -5,6 +5,7 @@
 
 namespace manycore::python {
 
+/// Each function binds the classes of one source file.
 void bind_qos(nanobind::module_ & module);
 void bind_rows(nanobind::module_ & module);
 void bind_platform(nanobind::module_ & module);

@@ -11,6 +11,7 @@
 #include "python/context.hpp"
 #include "python/transport/bindings.hpp"
 #include "python/transport/text.hpp"
+#include "python/transport/words.hpp"
 
 namespace nb = nanobind;
 
@@ -35,7 +36,7 @@ Profile profile_of(
   return profile;
 }
 
-/// A configurator that ends before its Python object does.
+/// A configurator that can end before its Python object is destroyed.
 class BoundConfigurator {
 public:
   BoundConfigurator(
@@ -54,8 +55,15 @@ private:
 
 void init_topic(
   TopicConfiguration * topic, const std::string & name, uint32_t id, uint32_t dsm_size_bytes,
-  uint64_t receiver_clusters) {
-  new (topic) TopicConfiguration{name, id, dsm_size_bytes, receiver_clusters};
+  uint64_t receiver_clusters, const std::string & transfer, uint8_t priority, bool synchronous) {
+  if (priority >= transfer_priorities) {
+    throw nb::value_error("priority: expected 0 to 7");
+  }
+  TransferSettings settings;
+  settings.kind = from_word<Transfer>(transfer);
+  settings.priority = priority;
+  settings.synchronous = synchronous ? 1 : 0;
+  new (topic) TopicConfiguration{name, id, dsm_size_bytes, receiver_clusters, settings};
 }
 
 }  // namespace
@@ -64,11 +72,19 @@ void bind_configurator(nb::module_ & module) {
   nb::class_<TopicConfiguration>(module, "TopicConfiguration")
     .def(
       "__init__", &init_topic, nb::arg("name"), nb::kw_only(), nb::arg("id"),
-      nb::arg("dsm_size_bytes"), nb::arg("receiver_clusters"))
+      nb::arg("dsm_size_bytes"), nb::arg("receiver_clusters"), nb::arg("transfer") = "dsm",
+      nb::arg("priority") = 0, nb::arg("synchronous") = false)
     .def_prop_ro("name", name<TopicConfiguration>(&TopicConfiguration::name))
     .def_ro("id", &TopicConfiguration::id)
     .def_ro("dsm_size_bytes", &TopicConfiguration::dsm_size_bytes)
-    .def_ro("receiver_clusters", &TopicConfiguration::receiver_clusters);
+    .def_ro("receiver_clusters", &TopicConfiguration::receiver_clusters)
+    .def_prop_ro(
+      "transfer", [](const TopicConfiguration & topic) { return word_of(topic.transfer.kind); })
+    .def_prop_ro(
+      "priority", [](const TopicConfiguration & topic) { return topic.transfer.priority; })
+    .def_prop_ro("synchronous", [](const TopicConfiguration & topic) {
+      return topic.transfer.synchronous != 0;
+    });
   nb::class_<BoundConfigurator> bound(module, "Configurator");
   bound.def(
     nb::init<

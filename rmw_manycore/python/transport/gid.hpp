@@ -7,6 +7,7 @@
 
 namespace manycore::python {
 
+/// A gid as 16 bytes in Python.
 inline nanobind::bytes to_bytes(const Gid & gid) { return nanobind::bytes(gid.data(), gid.size()); }
 
 }  // namespace manycore::python

@@ -11,7 +11,7 @@ namespace nb = nanobind;
 NB_MODULE(_transport, module) {
   using namespace manycore::python;
   module.doc() =
-    "The transport of rmw_manycore without ROS: platforms seen, configured and joined.";
+    "The transport of rmw_manycore without ROS: inspects, configures and joins platforms.";
   const nb::exception<manycore::Error> error(module, "PlatformError", PyExc_RuntimeError);
   bind_qos(module);
   bind_rows(module);

@@ -1,5 +1,5 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-// The view of a platform: does not join, does not keep it alive.
+// Binding of a read-only view of a platform, which neither joins it nor keeps it alive.
 
 #include <nanobind/nanobind.h>
 #include <nanobind/stl/string.h>
@@ -71,7 +71,8 @@ public:
     for (uint32_t i = 0; i < registry.header().topic_count; ++i) {
       const TopicEntry & topic = registry.topic(i);
       rows.push_back(
-        {text_of(topic.name), topic.topic_id, topic.topic_dsm_size, topic.receiver_clusters});
+        {text_of(topic.name), topic.topic_id, topic.topic_dsm_size, topic.receiver_clusters,
+         topic.transfer});
     }
     return rows;
   }

@@ -1,5 +1,5 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-// Members of a platform without ROS: the inside of the bridge, and the tools.
+// Binding of a platform's member process without ROS, for the bridge and the tools.
 
 #include "transport/process.hpp"
 
@@ -9,7 +9,10 @@
 #include <nanobind/stl/unique_ptr.h>
 #include <nanobind/stl/vector.h>
 
+#include <algorithm>
+
 #include "platform/clock.hpp"
+#include "platform/error.hpp"
 #include "python/context.hpp"
 #include "python/transport/bindings.hpp"
 #include "python/transport/publisher.hpp"
@@ -23,18 +26,65 @@ namespace nb = nanobind;
 namespace manycore::python {
 namespace {
 
-/// A member process with one node, named after its label.
+/// How long a spinning wait may leave signals unnoticed; sleeping ones notice them at once.
+constexpr int64_t max_spin_ns = 10'000'000;
+
+std::optional<int64_t> end_of_turn(
+  const Process & process, const std::optional<int64_t> & deadline_ns) {
+  if (process.placement().wait_mode != WaitMode::spin) {
+    return deadline_ns;
+  }
+  const int64_t turn_ns = monotonic_ns() + max_spin_ns;
+  return deadline_ns ? std::min(*deadline_ns, turn_ns) : turn_ns;
+}
+
+/// Sleeps without the GIL until the epoch is another than `seen`; false at the deadline. Ends with
+/// what a signal handler of Python raises, as KeyboardInterrupt.
+bool sleep(Process & process, uint32_t seen, const std::optional<int64_t> & deadline_ns) {
+  while (true) {
+    {
+      const nb::gil_scoped_release released;
+      const auto turn_ns = end_of_turn(process, deadline_ns);
+      if (process.waiters().common().wait(seen, turn_ns, OnSignal::give_up)) {
+        return true;
+      }
+    }
+    if (PyErr_CheckSignals() != 0) {
+      throw nb::python_error();
+    }
+    if (deadline_ns && monotonic_ns() >= *deadline_ns) {
+      return false;
+    }
+  }
+}
+
+/// A process has one place on a platform: whatever joins it again has to name the same one.
+void check_joined_there(const Process & process, const Placement & asked) {
+  const Placement & placement = process.placement();
+  if (placement.cluster == asked.cluster && (!asked.core || placement.core == asked.core)) {
+    return;
+  }
+  const std::string core = placement.core ? ", core " + std::to_string(*placement.core) : "";
+  throw Error(
+    ErrorCode::invalid_argument, "this process has joined platform '" + placement.platform +
+                                   "' in cluster " + std::to_string(placement.cluster) + core +
+                                   " already: join it there, or from another process");
+}
+
+/// A member process with one node, named by its label.
 class BoundProcess {
 public:
   BoundProcess(
     const std::string & platform, uint32_t cluster, std::optional<uint32_t> core,
-    const std::string & label) {
+    const std::string & label, const std::string & wait) {
     Placement placement;
     placement.platform = platform;
     placement.cluster = cluster;
     placement.core = core;
     placement.label = label;
+    placement.wait_mode = from_word<WaitMode>(wait);
     process_ = Process::join(placement);
+    check_joined_there(*process_, placement);
     node_ = process_->add_node(label, "/", "/");
   }
 
@@ -60,13 +110,14 @@ public:
     if (timeout_s) {
       deadline_ns = monotonic_ns() + static_cast<int64_t>(*timeout_s * ns_per_s);
     }
-    const std::shared_ptr<Process> process = member();  // another thread may close this object
-    const nb::gil_scoped_release released;
+    // Keeps it alive: another thread may close this object.
+    const std::shared_ptr<Process> process = member();
     process->tracer().note(TraceKind::wait_begin, nothing, 0, UINT64_MAX);
-    const bool woken = process->waiters().common().wait(seen, deadline_ns);
+    const bool woken = sleep(*process, seen, deadline_ns);
     process->tracer().note(TraceKind::wait_end, nothing, 0, woken ? 1 : 0);
     return woken;
   }
+  void require_membership() const { member()->require_membership(); }
   void notify() { member()->waiters().common().notify(); }
   void close() { process_.reset(); }
 
@@ -103,9 +154,11 @@ void bind_process(nb::module_ & module) {
   nb::class_<BoundProcess> bound(module, "Process");
   bound
     .def(
-      nb::init<const std::string &, uint32_t, std::optional<uint32_t>, const std::string &>(),
+      nb::init<
+        const std::string &, uint32_t, std::optional<uint32_t>, const std::string &,
+        const std::string &>(),
       nb::arg("platform"), nb::arg("cluster") = 1, nb::arg("core") = nb::none(),
-      nb::arg("label") = "tool")
+      nb::arg("label") = "tool", nb::arg("wait") = word_of(WaitMode::block))
     .def(
       "publisher", &BoundProcess::publisher, nb::arg("topic"), nb::arg("type"), nb::arg("qos"),
       nb::arg("role") = "topic", nb::arg("type_hash") = "")
@@ -117,6 +170,7 @@ void bind_process(nb::module_ & module) {
     .def("watch_graph", &BoundProcess::watch_graph)
     .def("epoch", &BoundProcess::epoch)
     .def("wait", &BoundProcess::wait, nb::arg("seen"), nb::arg("timeout_s") = nb::none())
+    .def("require_membership", &BoundProcess::require_membership)
     .def("notify", &BoundProcess::notify);
   bind_context(bound);
 }

@@ -29,36 +29,82 @@ Correlation correlation_from(const std::optional<nb::bytes> & client, int64_t nu
   return correlation;
 }
 
+/// The bytes of an object with Python's buffer protocol, in one piece. To be made and unmade with
+/// the GIL.
+class BufferView {
+public:
+  explicit BufferView(const nb::object & object) {
+    if (PyObject_GetBuffer(object.ptr(), &view_, PyBUF_SIMPLE) != 0) {
+      throw nb::python_error();
+    }
+  }
+  ~BufferView() { PyBuffer_Release(&view_); }
+  BufferView(const BufferView &) = delete;
+  BufferView & operator=(const BufferView &) = delete;
+
+  std::string_view bytes() const {
+    return {static_cast<const char *>(view_.buf), static_cast<size_t>(view_.len)};
+  }
+
+private:
+  Py_buffer view_{};
+};
+
 }  // namespace
 
 BoundPublisher::BoundPublisher(std::shared_ptr<Process> process, const EndpointSpec & spec)
-: process_(std::move(process)), publisher_(process_->create_publisher(spec)) {}
+: shared_(std::make_shared<SharedPublisher>(std::move(process), spec)) {}
 
 uint64_t BoundPublisher::publish(
   const nb::bytes & data, std::optional<int64_t> source_timestamp_ns,
   const std::optional<nb::bytes> & client, int64_t number) {
-  return send(data.c_str(), data.size(), source_timestamp_ns, correlation_from(client, number));
+  const std::string_view bytes(data.c_str(), data.size());
+  return send({bytes}, source_timestamp_ns, correlation_from(client, number));
 }
 
 uint64_t BoundPublisher::publish_from(
   uintptr_t address, size_t size, std::optional<int64_t> source_timestamp_ns) {
-  if (source_timestamp_ns && process_->tracer().is_on()) {
-    const auto slot = static_cast<uint32_t>(endpoint_in(publisher_->gid()));
+  Tracer & tracer = held()->process->tracer();
+  if (source_timestamp_ns && tracer.is_on()) {
+    const auto slot = static_cast<uint32_t>(endpoint_in(held()->publisher->gid()));
     const int64_t age_ns = std::max<int64_t>(realtime_ns() - *source_timestamp_ns, 0);
-    process_->tracer().note(TraceKind::bridge_in, slot, 0, static_cast<uint64_t>(age_ns));
+    tracer.note(TraceKind::bridge_in, slot, 0, static_cast<uint64_t>(age_ns));
   }
-  return send(reinterpret_cast<const void *>(address), size, source_timestamp_ns, {});
+  return send({{reinterpret_cast<const char *>(address), size}}, source_timestamp_ns, {});
 }
 
-nb::bytes BoundPublisher::gid() const { return to_bytes(publisher_->gid()); }
+uint64_t BoundPublisher::publish_parts(const nb::bytes & head, const nb::object & body) {
+  const BufferView view(body);
+  return send({{head.c_str(), head.size()}, view.bytes()}, std::nullopt, {});
+}
+
+nb::bytes BoundPublisher::gid() const { return to_bytes(held()->publisher->gid()); }
+
+const std::shared_ptr<SharedPublisher> & BoundPublisher::held() const {
+  if (!shared_) {
+    throw nb::value_error("the publisher is closed");
+  }
+  return shared_;
+}
 
 uint64_t BoundPublisher::send(
-  const void * bytes, size_t size, std::optional<int64_t> source_timestamp_ns,
+  std::initializer_list<std::string_view> parts, std::optional<int64_t> source_timestamp_ns,
   const Correlation & correlation) {
+  const std::shared_ptr<SharedPublisher> shared = held();
   const nb::gil_scoped_release released;
-  Draft draft = publisher_->draft(size);
-  std::memcpy(draft.data(), bytes, size);
-  return publisher_->publish(
+  size_t size = 0;
+  for (const std::string_view & part : parts) {
+    size += part.size();
+  }
+  Draft draft = shared->publisher->draft(size);
+  uint8_t * end = draft.data();
+  for (const std::string_view & part : parts) {
+    if (!part.empty()) {
+      std::memcpy(end, part.data(), part.size());
+      end += part.size();
+    }
+  }
+  return shared->publisher->publish(
     std::move(draft), size, source_timestamp_ns.value_or(realtime_ns()), correlation);
 }
 
@@ -71,8 +117,10 @@ void bind_publisher(nb::module_ & module) {
     .def(
       "publish_from", &BoundPublisher::publish_from, nb::arg("address"), nb::arg("size"),
       nb::arg("source_timestamp_ns") = nb::none())
+    .def("publish_parts", &BoundPublisher::publish_parts, nb::arg("head"), nb::arg("body"))
     .def_prop_ro("gid", &BoundPublisher::gid)
-    .def("matched", &BoundPublisher::matched);
+    .def("matched", &BoundPublisher::matched)
+    .def("close", &BoundPublisher::close);
 }
 
 }  // namespace manycore::python

@@ -3,14 +3,27 @@
 
 #include <nanobind/nanobind.h>
 
+#include <initializer_list>
 #include <memory>
 #include <optional>
+#include <string_view>
+#include <utility>
 
 #include "transport/process.hpp"
 
 namespace manycore::python {
 
-/// A publisher and the membership it needs.
+/// A publisher, and the membership that it requires. Shared with publishes that go on while another
+/// thread closes.
+struct SharedPublisher {
+  SharedPublisher(std::shared_ptr<Process> process_, const EndpointSpec & spec)
+  : process(std::move(process_)), publisher(process->create_publisher(spec)) {}
+
+  std::shared_ptr<Process> process;
+  std::unique_ptr<Publisher> publisher;
+};
+
+/// A publisher as Python has it, until closed.
 class BoundPublisher {
 public:
   BoundPublisher(std::shared_ptr<Process> process, const EndpointSpec & spec);
@@ -19,16 +32,19 @@ public:
     const nanobind::bytes & data, std::optional<int64_t> source_timestamp_ns,
     const std::optional<nanobind::bytes> & client, int64_t number);
   uint64_t publish_from(uintptr_t address, size_t size, std::optional<int64_t> source_timestamp_ns);
+  uint64_t publish_parts(const nanobind::bytes & head, const nanobind::object & body);
   nanobind::bytes gid() const;
-  uint64_t matched() const { return publisher_->matched().current; }
+  uint64_t matched() const { return held()->publisher->matched().current; }
+  void close() { shared_.reset(); }
 
 private:
   uint64_t send(
-    const void * bytes, size_t size, std::optional<int64_t> source_timestamp_ns,
+    std::initializer_list<std::string_view> parts, std::optional<int64_t> source_timestamp_ns,
     const Correlation & correlation);
 
-  std::shared_ptr<Process> process_;
-  std::unique_ptr<Publisher> publisher_;
+  const std::shared_ptr<SharedPublisher> & held() const;
+
+  std::shared_ptr<SharedPublisher> shared_;
 };
 
 }  // namespace manycore::python

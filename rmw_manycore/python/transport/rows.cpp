@@ -1,5 +1,5 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-// What a platform consists of, row by row.
+// Bindings of a platform's processes, clusters, nodes and endpoints, row by row.
 
 #include "python/transport/rows.hpp"
 
@@ -83,7 +83,8 @@ void bind_counter_values(nb::module_ & module) {
     .def_ro("lost", &CounterValues::lost)
     .def_ro("expired", &CounterValues::expired)
     .def_ro("refused", &CounterValues::refused)
-    .def_ro("overwritten", &CounterValues::overwritten);
+    .def_ro("overwritten", &CounterValues::overwritten)
+    .def_ro("dropped", &CounterValues::dropped);
 }
 
 void bind_endpoint_info(nb::module_ & module) {
@@ -100,7 +101,8 @@ void bind_endpoint_info(nb::module_ & module) {
     .def_ro("process", &EndpointRow::process)
     .def_ro("qos", &EndpointRow::qos)
     .def_prop_ro("matched", [](const EndpointRow & row) { return row.matched.current; })
-    .def_ro("counters", &EndpointRow::counters);
+    .def_ro("counters", &EndpointRow::counters)
+    .def_prop_ro("transfer", word<EndpointRow>(&EndpointRow::transfer));
 }
 
 }  // namespace

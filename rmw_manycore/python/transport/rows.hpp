@@ -9,19 +9,21 @@
 
 namespace manycore::python {
 
-/// The shape of a platform, and whether anything of it lives.
+/// Shape of a platform, and whether any of its processes lives.
 struct PlatformRow {
   std::string name;
   Profile profile;
   bool alive;
 };
 
+/// A process, and whether it lives.
 struct ProcessRow : ProcessInfo {
   bool alive;
 };
 
+/// A cluster, and whether its receive thread lives.
 struct ClusterRow : ClusterInfo {
-  bool alive;  ///< its receive thread
+  bool alive;  ///< its receive thread lives
 };
 
 /// An endpoint with the name of its node.
@@ -30,6 +32,7 @@ struct EndpointRow : EndpointInfo {
   std::string node_namespace;
 };
 
+/// Adds to each endpoint the name and namespace of its node; empty if the node is gone.
 std::vector<EndpointRow> with_node_names(
   std::vector<EndpointInfo> endpoints, const std::vector<NodeInfo> & nodes);
 

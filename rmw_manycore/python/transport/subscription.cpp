@@ -10,6 +10,27 @@
 namespace nb = nanobind;
 
 namespace manycore::python {
+namespace {
+
+int get_buffer(PyObject * self, Py_buffer * view, int flags) noexcept {
+  return nb::inst_ptr<BoundClaim>(self)->add_view(self, view, flags);
+}
+
+void release_buffer(PyObject * self, Py_buffer *) noexcept {
+  nb::inst_ptr<BoundClaim>(self)->remove_view();
+}
+
+PyType_Slot claim_slots[] = {
+  {Py_bf_getbuffer, reinterpret_cast<void *>(&get_buffer)},
+  {Py_bf_releasebuffer, reinterpret_cast<void *>(&release_buffer)},
+  {0, nullptr}};
+
+}  // namespace
+
+BoundClaim::BoundClaim(std::shared_ptr<SharedSubscription> source, Claim && claim)
+: source_(std::move(source)), claim_(std::move(claim)) {
+  source_->is_claimed = true;
+}
 
 nb::bytes BoundClaim::publisher() const { return to_bytes(held().info().publisher); }
 
@@ -22,25 +43,67 @@ const Claim & BoundClaim::held() const {
   return *claim_;
 }
 
-BoundSubscription::BoundSubscription(std::shared_ptr<Process> process, const EndpointSpec & spec)
-: process_(std::move(process)), subscription_(process_->create_subscription(spec)) {}
-
-std::unique_ptr<BoundClaim> BoundSubscription::claim() {
-  std::optional<Claim> claim = subscription_->claim();
-  return claim ? std::make_unique<BoundClaim>(std::move(*claim)) : nullptr;
+void BoundClaim::release() {
+  if (views_ != 0) {
+    throw nb::buffer_error("the record is still viewed, as by an array");
+  }
+  end();
 }
 
-void BoundSubscription::note_bridged() {
-  if (process_->tracer().is_on()) {
-    const auto slot = static_cast<uint32_t>(endpoint_in(subscription_->gid()));
-    process_->tracer().note(TraceKind::bridge_out, slot);
+int BoundClaim::add_view(PyObject * self, Py_buffer * view, int flags) noexcept {
+  if (!claim_) {
+    view->obj = nullptr;
+    PyErr_SetString(PyExc_ValueError, "the claim has been released");
+    return -1;
+  }
+  const auto size = static_cast<Py_ssize_t>(claim_->size());
+  constexpr int is_read_only = 1;
+  void * const data = const_cast<uint8_t *>(claim_->data());
+  if (PyBuffer_FillInfo(view, self, data, size, is_read_only, flags) != 0) {
+    return -1;
+  }
+  ++views_;
+  return 0;
+}
+
+void BoundClaim::end() noexcept {
+  if (claim_) {
+    claim_.reset();
+    source_->is_claimed = false;
+    source_.reset();
   }
 }
 
-nb::bytes BoundSubscription::gid() const { return to_bytes(subscription_->gid()); }
+BoundSubscription::BoundSubscription(std::shared_ptr<Process> process, const EndpointSpec & spec)
+: shared_(std::make_shared<SharedSubscription>(std::move(process), spec)) {}
+
+std::unique_ptr<BoundClaim> BoundSubscription::claim() {
+  if (held()->is_claimed) {
+    shared_->process->require_membership();
+    throw nb::buffer_error("the record claimed before has not been released");
+  }
+  std::optional<Claim> claim = subscription().claim();
+  return claim ? std::make_unique<BoundClaim>(shared_, std::move(*claim)) : nullptr;
+}
+
+void BoundSubscription::note_bridged() {
+  if (held()->process->tracer().is_on()) {
+    const auto slot = static_cast<uint32_t>(endpoint_in(subscription().gid()));
+    shared_->process->tracer().note(TraceKind::bridge_out, slot);
+  }
+}
+
+const std::shared_ptr<SharedSubscription> & BoundSubscription::held() const {
+  if (!shared_) {
+    throw nb::value_error("the subscription is closed");
+  }
+  return shared_;
+}
+
+nb::bytes BoundSubscription::gid() const { return to_bytes(subscription().gid()); }
 
 void bind_subscription(nb::module_ & module) {
-  nb::class_<BoundClaim>(module, "Claim")
+  nb::class_<BoundClaim>(module, "Claim", nb::type_slots(claim_slots))
     .def_prop_ro("address", &BoundClaim::address)
     .def_prop_ro("size", &BoundClaim::size)
     .def_prop_ro("data", &BoundClaim::data)
@@ -56,7 +119,8 @@ void bind_subscription(nb::module_ & module) {
     .def_prop_ro("gid", &BoundSubscription::gid)
     .def("has_data", &BoundSubscription::has_data)
     .def("matched", &BoundSubscription::matched)
-    .def("lost", &BoundSubscription::lost);
+    .def("lost", &BoundSubscription::lost)
+    .def("close", &BoundSubscription::close);
 }
 
 }  // namespace manycore::python

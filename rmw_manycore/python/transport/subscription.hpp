@@ -11,10 +11,24 @@
 
 namespace manycore::python {
 
-/// A record in its place in the topic DSM, until released.
+/// A subscription and the membership it needs. Shared with its claim, which Python may keep longer.
+struct SharedSubscription {
+  SharedSubscription(std::shared_ptr<Process> process_, const EndpointSpec & spec)
+  : process(std::move(process_)), subscription(process->create_subscription(spec)) {}
+
+  std::shared_ptr<Process> process;
+  std::unique_ptr<Subscription> subscription;
+  bool is_claimed = false;  ///< guarded by the GIL
+};
+
+/// A record claimed in its topic DSM, until released. Supports the buffer protocol: memory that
+/// Python objects still view stays claimed, whatever becomes of this object.
 class BoundClaim {
 public:
-  explicit BoundClaim(Claim && claim) : claim_(std::move(claim)) {}
+  BoundClaim(std::shared_ptr<SharedSubscription> source, Claim && claim);
+  ~BoundClaim() { end(); }
+  BoundClaim(const BoundClaim &) = delete;
+  BoundClaim & operator=(const BoundClaim &) = delete;
 
   uintptr_t address() const { return reinterpret_cast<uintptr_t>(held().data()); }
   size_t size() const { return held().size(); }
@@ -24,30 +38,43 @@ public:
   int64_t number() const { return held().info().correlation.number; }
   int64_t source_timestamp_ns() const { return held().info().source_timestamp_ns; }
   uint64_t sequence() const { return held().info().publication_sequence_number; }
-  void release() { claim_.reset(); }
+  /// BufferError while something views the record.
+  void release();
+
+  /// Of the buffer protocol: -1 with a Python error set, or 0.
+  int add_view(PyObject * self, Py_buffer * view, int flags) noexcept;
+  void remove_view() noexcept { --views_; }
 
 private:
   const Claim & held() const;
+  void end() noexcept;
 
+  std::shared_ptr<SharedSubscription> source_;
   std::optional<Claim> claim_;
+  size_t views_ = 0;
 };
 
-/// A subscription and the membership it needs.
+/// A subscription as Python has it, until closed.
 class BoundSubscription {
 public:
   BoundSubscription(std::shared_ptr<Process> process, const EndpointSpec & spec);
 
+  /// BufferError while the claim before is not released: it could wait for itself.
   std::unique_ptr<BoundClaim> claim();
-  /// For traces: what is claimed was published outside.
+  /// Traces that the claimed message was published outside.
   void note_bridged();
   nanobind::bytes gid() const;
-  uint64_t matched() const { return subscription_->matched().current; }
-  uint64_t lost() const { return subscription_->lost(); }
-  bool has_data() const { return subscription_->has_data(); }
+  uint64_t matched() const { return subscription().matched().current; }
+  /// The claim, if there is one, stays valid.
+  void close() { shared_.reset(); }
+  uint64_t lost() const { return subscription().lost(); }
+  bool has_data() const { return subscription().has_data(); }
 
 private:
-  std::shared_ptr<Process> process_;
-  std::unique_ptr<Subscription> subscription_;
+  const std::shared_ptr<SharedSubscription> & held() const;
+  Subscription & subscription() const { return *held()->subscription; }
+
+  std::shared_ptr<SharedSubscription> shared_;
 };
 
 }  // namespace manycore::python

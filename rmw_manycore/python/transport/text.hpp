@@ -7,7 +7,7 @@
 
 namespace manycore::python {
 
-/// A name of the registry, with U+FFFD in the place of bytes that are no UTF-8.
+/// A text of the registry; bytes that are not UTF-8 become U+FFFD.
 inline nanobind::str text(const std::string & bytes) {
   PyObject * const decoded =
     PyUnicode_DecodeUTF8(bytes.data(), static_cast<Py_ssize_t>(bytes.size()), "replace");
@@ -17,7 +17,7 @@ inline nanobind::str text(const std::string & bytes) {
   return nanobind::steal<nanobind::str>(decoded);
 }
 
-/// For def_prop_ro: a name of a `Row`, which may inherit it.
+/// Getter for def_prop_ro: a text member of `Row` or of its base class.
 template<typename Row, typename Owner>
 auto name(std::string Owner::*member) {
   return [member](const Row & row) { return text(row.*member); };

@@ -1,5 +1,5 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-// Tracing of a platform, from outside: on, off, and what was recorded.
+// Bindings to control the tracing of a platform from outside, and to save its events.
 
 #include <nanobind/nanobind.h>
 #include <nanobind/stl/optional.h>
@@ -27,7 +27,7 @@ void start(
   const std::vector<std::string> & nodes, uint32_t events, bool discard) {
   const nb::gil_scoped_release released;
   Registry registry(PlatformPaths::of(platform));
-  if (discard && trace_state(registry).started_ns == 0) {  // not one that is going on
+  if (discard && trace_state(registry).started_ns == 0) {  // never discards a running trace
     discard_trace(registry);
   }
   start_trace(registry, {clusters, nodes, events});
@@ -66,7 +66,7 @@ private:
   std::unique_ptr<TraceSaver> saver_;
 };
 
-/// Notes what this process does beside its nodes: it is traced as they are.
+/// Traces actions of this process outside its nodes, under the same switch.
 class OwnTracer {
 public:
   explicit OwnTracer(const std::string & platform)

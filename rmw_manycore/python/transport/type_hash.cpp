@@ -27,7 +27,8 @@ TypeHash type_hash_from(const std::string & text) {
   int digits = 0;
   const bool prefixed = std::sscanf(text.c_str(), "RIHS%2u_%n", &version, &digits) == 1;
   if (!prefixed || text.size() != digits + 2 * hash.value.size()) {
-    throw nb::value_error(("no type hash: '" + text + "'").c_str());
+    throw nb::value_error(
+      ("type_hash: expected RIHS01_ and 64 hexadecimal digits, found '" + text + "'").c_str());
   }
   hash.version = static_cast<uint8_t>(version);
   for (uint8_t & byte : hash.value) {

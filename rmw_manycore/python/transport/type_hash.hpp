@@ -7,10 +7,10 @@
 
 namespace manycore::python {
 
-/// "RIHS01_" and 64 hexadecimal digits.
+/// "RIHS01_" and 64 hexadecimal digits (REP 2011).
 std::string to_text(const TypeHash & hash);
 
-/// ValueError in Python for anything but the text of a type hash.
+/// Raises ValueError in Python if `text` is not a type hash.
 TypeHash type_hash_from(const std::string & text);
 
 }  // namespace manycore::python

@@ -3,9 +3,12 @@
 
 #include "python/words.hpp"
 #include "transport/layout/endpoint.hpp"
+#include "transport/layout/transfer_layout.hpp"
+#include "transport/waiting/waiter.hpp"
 
 namespace manycore::python {
 
+/// Words of the transport's enumerations in Python.
 template<>
 struct Words<Reliability> {
   static constexpr const char * name = "reliability";
@@ -31,6 +34,12 @@ struct Words<Liveliness> {
 };
 
 template<>
+struct Words<WaitMode> {
+  static constexpr const char * name = "wait";
+  static constexpr std::array<const char *, 3> all = {"block", "adaptive", "spin"};
+};
+
+template<>
 struct Words<EndpointKind> {
   static constexpr const char * name = "kind";
   static constexpr std::array<const char *, 2> all = {"publisher", "subscription"};
@@ -40,6 +49,12 @@ template<>
 struct Words<EndpointRole> {
   static constexpr const char * name = "role";
   static constexpr std::array<const char *, 3> all = {"topic", "request", "reply"};
+};
+
+template<>
+struct Words<Transfer> {
+  static constexpr const char * name = "transfer";
+  static constexpr std::array<const char *, 4> all = {"dsm", "message", "session", "async"};
 };
 
 }  // namespace manycore::python
