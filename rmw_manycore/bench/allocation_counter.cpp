@@ -5,7 +5,7 @@
 #include <cerrno>
 #include <cstddef>
 
-// The C library's own functions, under the names that stay reachable.
+// The C library's allocation functions, under names that are not interposed.
 extern "C" {
 // NOLINTBEGIN(readability-identifier-naming)
 void * __libc_malloc(size_t size);
@@ -25,8 +25,8 @@ void note() noexcept { count.fetch_add(1, std::memory_order_relaxed); }
 
 uint64_t manycore::bench::allocations() noexcept { return count.load(std::memory_order_relaxed); }
 
-// An executable's definitions come before those of every library. Memory is still the C library's,
-// so its free() needs no counterpart here.
+// Definitions in an executable take precedence over those of libraries. Memory still comes from the
+// C library, so free() needs no replacement.
 #define BENCH_INTERPOSE extern "C" __attribute__((visibility("default")))
 
 BENCH_INTERPOSE void * malloc(size_t size) noexcept {

@@ -5,8 +5,8 @@
 
 namespace manycore::bench {
 
-/// Calls of malloc, calloc, realloc and their aligned kin in this process, by every thread and
-/// library. Linking allocation_counter.cpp into a program puts it in the place of the C library's.
+/// Number of calls to malloc, calloc, realloc and the aligned variants in this process, by all
+/// threads and libraries. Linking allocation_counter.cpp replaces the C library's functions.
 uint64_t allocations() noexcept;
 
 }  // namespace manycore::bench

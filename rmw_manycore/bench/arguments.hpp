@@ -3,12 +3,14 @@
 
 #include <cstddef>
 #include <map>
+#include <sstream>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 namespace manycore::bench {
 
-/// The words `name=value` of a command line.
+/// Arguments `name=value` of a command line.
 class Arguments {
 public:
   Arguments(int argc, char ** argv) {
@@ -31,6 +33,16 @@ public:
   }
 
   size_t number(const std::string & name) const { return std::stoul(text(name)); }
+
+  /// The parts of a text between commas.
+  std::vector<std::string> list(const std::string & name) const {
+    std::vector<std::string> parts;
+    std::istringstream words(text(name));
+    for (std::string part; std::getline(words, part, ',');) {
+      parts.push_back(part);
+    }
+    return parts;
+  }
 
 private:
   std::map<std::string, std::string> values_;

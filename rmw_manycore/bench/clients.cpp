@@ -1,12 +1,12 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-// What do the clients of a service cost each other, at the level of rcl?
+// How much do the clients of a service slow each other down, at the rcl level?
 //
 //   clients role=server
 //   clients role=idle clients=N
 //   clients role=caller warm_up=N iterations=N
 //
-// The service is one that each node has for its parameters. Server and idle clients are ready when
-// they wait, and end with their input. The caller's samples are the times of its calls.
+// The service is one of a node's parameter services. Server and idle clients print "ready" when
+// they wait, and end when their input ends. The caller's samples are the durations of its calls.
 #include <rcl/graph.h>
 #include <rcl_interfaces/srv/get_parameter_types.h>
 
@@ -26,13 +26,13 @@ using manycore::monotonic_ns;
 
 constexpr const char * server_name = "server";
 constexpr const char * service_name = "/server/get_parameter_types";
-constexpr auto look_again_after = std::chrono::milliseconds(5);
+constexpr auto poll_period = std::chrono::milliseconds(5);
 
 const rosidl_service_type_support_t * service_type() {
   return ROSIDL_GET_SRV_TYPE_SUPPORT(rcl_interfaces, srv, GetParameterTypes);
 }
 
-/// Calls `act` after each wait, in a thread of its own, until the input ends.
+/// Calls `act` after each wait, in a separate thread, until the input ends.
 template<typename Act>
 void spin_until_end_of_input(RclContext & context, const RclNode & node, Act act) {
   RclGuardCondition end(context);
@@ -85,7 +85,7 @@ void idle(const Arguments & arguments) {
 }
 
 void wait_for_server(RclNode & node, const rcl_client_t & client) {
-  for (bool is_there = false; !is_there; std::this_thread::sleep_for(look_again_after)) {
+  for (bool is_there = false; !is_there; std::this_thread::sleep_for(poll_period)) {
     check_rcl(
       rcl_service_server_is_available(&node.get(), &client, &is_there), "rcl_service_server");
   }

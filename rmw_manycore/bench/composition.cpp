@@ -1,12 +1,12 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-// What does a message for one thread cost a process in which many wait, each for a topic of its
-// own?
+// What does a message for one thread cost a process in which many threads wait, each for its own
+// topic?
 //
 //   composition role=sink threads=N messages=N
 //   composition role=source threads=N messages=N rate_hz=N
 //
-// The sink counts the times that its threads slept and its CPU time, over all messages but the
-// first, which each thread gets.
+// The sink counts the context switches of its threads and its CPU time, for all messages except the
+// first one of each thread.
 #include <sys/resource.h>
 
 #include <memory>
@@ -21,7 +21,8 @@ using namespace manycore::bench;
 
 std::string topic(size_t thread) { return "/composed_" + std::to_string(thread); }
 
-/// Room for all, the first and the last included: how long a thread gets no CPU does not matter.
+/// Holds all messages, including the first and the last, so a thread may be without CPU for any
+/// time.
 rmw_qos_profile_t qos(const Arguments & arguments) {
   return reliable_qos(arguments.number("messages") + 2);
 }
@@ -67,7 +68,7 @@ void source(const Arguments & arguments) {
   }
 }
 
-/// Takes until the empty message; the first message is not counted.
+/// Takes messages until the empty one. The first message is not counted.
 void take_all(Node & node, Subscription & subscription, size_t messages, Costs & spent) {
   WaitSet wait_set(node);
   Message message;
@@ -103,7 +104,7 @@ void sink(const Arguments & arguments) {
   for (size_t i = 0; i < spent.size(); ++i) {
     threads.emplace_back([&, i] {
       take_all(node, *subscriptions[i], messages, spent[i]);
-      subscriptions[i].reset();  // the source waits for that
+      subscriptions[i].reset();  // the source waits for this
     });
   }
   for (std::thread & thread : threads) {

@@ -1,13 +1,13 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-// How old is a message when each of many subscribers has it, at a steady rate?
+// How old is a message when each of many subscribers takes it, at a constant rate?
 //
 //   fan_out role=sink depth=N best_effort=0|1
 //   fan_out role=source depth=N best_effort=0|1 bytes=N subscribers=N rate_hz=N warm_up=N
 //           iterations=N
 //
-// The source is ready when it has found all sinks, and begins when its input ends. A sink prints
-// the age of each message in the order of arrival, and ends with its input; messages are as many as
-// `iterations` unless some got lost.
+// The source prints "ready" when it is matched with all sinks, and starts when its input ends. A
+// sink prints the age of each message in order of arrival, and ends when its input ends. There are
+// `iterations` samples unless messages were lost.
 #include <optional>
 #include <thread>
 
@@ -60,7 +60,7 @@ void sink(const Arguments & arguments) {
   while (true) {
     take_next(wait_set, *subscription, message);
     if (message.data.empty()) {
-      subscription.reset();  // the source waits for that
+      subscription.reset();  // the source waits for this
       print_samples(samples_ns);
       return wait_for_end_of_input();
     }

@@ -1,9 +1,9 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-// How soon after rmw_init does the first message arrive?
+// How long after rmw_init does the first message arrive?
 //
-//   first_message role=publisher         keeps one message for whoever comes, until its input ends
-//   first_message role=joining           comes to a publisher that is already there
-//   first_message role=alone             publishes to itself, as the first process of all
+//   first_message role=publisher         keeps one message for late subscribers, until its input
+//   ends first_message role=joining           subscribes to an existing publisher first_message
+//   role=alone             publishes to itself, as the first process of the platform
 #include "bench/node.hpp"
 #include "bench/program.hpp"
 #include "platform/clock.hpp"

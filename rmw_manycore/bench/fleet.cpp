@@ -1,13 +1,13 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-// Nodes as people run them by the hundred, at the level of rcl: each has the services of its
-// parameters, is on /rosout and /parameter_events, and two topics that the next node subscribes to.
+// Nodes as they are run by the hundred, at the rcl level: each has the parameter services, uses
+// /rosout and /parameter_events, and publishes two topics to which the next node subscribes.
 //
 //   fleet first=N nodes=N all=N period_ms=N
 //
-// Nodes `first` to `first + nodes - 1` of `all`, in one process with one thread that waits for them
-// all. It is ready when each topic has found its subscription, or, where `all` is 0, at once; from
-// then on a message goes over each topic every `period_ms`, none where that is 0. It ends with its
-// input. The samples are the times that each node took to create.
+// Runs nodes `first` to `first + nodes - 1` of `all` in one process, with one thread that waits for
+// all of them. Prints "ready" when each topic is matched, or at once if `all` is 0. From then on it
+// publishes on each topic every `period_ms`; never if that is 0. Ends when its input ends. The
+// samples are the times to create each node.
 #include <rcl_interfaces/msg/parameter_event.h>
 #include <rmw/qos_profiles.h>
 
@@ -25,7 +25,7 @@ namespace {
 using namespace manycore::bench;
 using manycore::monotonic_ns;
 
-constexpr auto look_again_after = std::chrono::milliseconds(20);
+constexpr auto poll_period = std::chrono::milliseconds(20);
 constexpr size_t topics_of_a_node = 2;
 
 const rosidl_message_type_support_t * event_type() {
@@ -64,7 +64,7 @@ public:
 
   const RclNode & node() const { return node_; }
 
-  /// A message over each of its own topics. From the thread that created it, or after that.
+  /// Publishes on each of the node's topics. Not concurrently with the constructor.
   void publish_all() const {
     rcl_interfaces__msg__ParameterEvent message;
     rcl_interfaces__msg__ParameterEvent__init(&message);
@@ -91,8 +91,8 @@ void take(const rcl_subscription_t & subscription) {
   rcl_interfaces__msg__ParameterEvent__fini(&message);
 }
 
-/// As one executor of all nodes, until `end` is triggered. Where there are no messages, nothing may
-/// wake it.
+/// Acts as a single executor of all nodes until `end` is triggered. Without messages, no wake-up is
+/// allowed.
 void wait_for_anything(
   RclContext & context, const Fleet & fleet, const RclGuardCondition & end, bool has_messages) {
   std::vector<const RclNode *> nodes;
@@ -103,13 +103,13 @@ void wait_for_anything(
   do {
     wait_set.wait();
     if (!wait_set.is_ended() && !has_messages) {
-      throw std::runtime_error("a node of the fleet woke up, and nothing was sent to it");
+      throw std::runtime_error("a node of the fleet woke up without a message");
     }
     wait_set.for_each_ready_subscription(take);
   } while (!wait_set.is_ended());
 }
 
-/// Publishes over all topics, period after period, while it lives.
+/// Publishes on all topics in each period during its lifetime.
 class Speaker {
 public:
   Speaker(const Fleet & fleet, std::chrono::milliseconds period)
@@ -148,7 +148,7 @@ void run(const Arguments & arguments) {
   std::thread waiter([&] { wait_for_anything(context, fleet, end, period.count() > 0); });
   for (const FleetNode & node : fleet) {
     while (arguments.number("all") != 0 && !node.is_matched()) {
-      std::this_thread::sleep_for(look_again_after);
+      std::this_thread::sleep_for(poll_period);
     }
   }
   {

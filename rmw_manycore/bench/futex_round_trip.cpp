@@ -1,10 +1,9 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-// What would a round trip cost if the machine were all there is? Peer of rmw_manycore inside a
-// cluster.
+// What would a round trip cost on the bare machine? Peer of rmw_manycore inside a cluster.
 //
 //   futex_round_trip cpu_1=N cpu_2=N bytes=N warm_up=N iterations=N
 //
-// Two processes, one copy into shared memory and one out of it in each direction, one futex wake.
+// Two processes. Per direction: one copy into shared memory, one out of it, one futex wake-up.
 #include <cstring>
 
 #include "bench/peer.hpp"
@@ -59,7 +58,7 @@ void run(const Arguments & arguments) {
     samples_ns[i] = round_trip(there, back, sent, received, i + 1);
   }
   waitpid(child, nullptr, 0);
-  samples_ns.erase(samples_ns.begin(), samples_ns.begin() + static_cast<ptrdiff_t>(warm_up));
+  drop_warm_up(samples_ns, warm_up);
   print_samples(samples_ns);
 }
 

@@ -1,9 +1,9 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-// What does a node cost that has nothing to do? The orchestrator looks at it from outside.
+// What does an idle node cost? The orchestrator measures it from outside.
 //
 //   idle_node name=NAME
 //
-// Publishes and subscribes to a topic of its own and waits without end, until its input ends.
+// Publishes and subscribes to its own topic and waits without a timeout until its input ends.
 #include <thread>
 
 #include "bench/node.hpp"

@@ -1,9 +1,9 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-// What do many publishers and subscriptions of one topic cost each other?
+// How much do many publishers and subscriptions of one topic slow each other down?
 //
 //   matches endpoints=N iterations=N measure=create|close|beside|publish depth=N
 //
-// With `endpoints` of each kind, one process prints how long it takes
+// With `endpoints` endpoints of each kind, one process prints how long it takes
 //   create   to create one more subscription,
 //   close    to close one subscription,
 //   beside   to create a publisher of another topic, from a second thread, while the first creates
@@ -84,7 +84,7 @@ std::vector<int64_t> publish(Node & node, const Arguments & arguments) {
   message.data.resize(64);
   Publisher & last = *endpoints.publishers.back();
   for (const auto & publisher : endpoints.publishers) {
-    publisher->publish(message);  // with a depth of 1 each queue is full from the first one on
+    publisher->publish(message);  // with a depth of 1, the first message fills each queue
   }
   std::vector<int64_t> samples_ns;
   for (size_t i = 0; i < arguments.number("iterations"); ++i) {

@@ -1,7 +1,7 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-// In the wheels of ROS 2 librcl is linked to the Python conversions of its messages. Those refer to
-// data of the interpreter, which a program without one has to have for the loader's sake; nothing
-// calls them. Linked with its symbols exported.
+// librcl in the ROS 2 wheels is linked to the Python conversions of its messages. These refer to
+// data of the interpreter, which the loader must resolve in a program without Python; nothing uses
+// them. Linked with exported symbols.
 #define FOR_THE_LOADER extern "C" __attribute__((visibility("default")))
 
 // NOLINTBEGIN(readability-identifier-naming): the interpreter's names

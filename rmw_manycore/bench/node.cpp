@@ -29,7 +29,7 @@ const rosidl_message_type_support_t * type_support() {
   throw std::runtime_error(std::string(what) + " failed: " + reason);
 }
 
-/// For destructors, which have nobody to throw to.
+/// For destructors, which must not throw.
 void warn_unless_ok(rmw_ret_t status, const char * what) {
   if (status != RMW_RET_OK) {
     std::fprintf(stderr, "%s failed: %s\n", what, rmw_get_error_string().str);
@@ -47,7 +47,7 @@ Entity * created(Entity * entity, const char * what) {
 
 constexpr auto stop_again_after = std::chrono::seconds(1);
 
-/// Returns false when the condition does not hold by then.
+/// Returns false if the condition does not hold within `time`.
 template<typename Condition>
 bool poll_for(std::chrono::milliseconds time, Condition condition) {
   const auto deadline = std::chrono::steady_clock::now() + time;
@@ -62,7 +62,7 @@ bool poll_for(std::chrono::milliseconds time, Condition condition) {
 
 template<typename Condition>
 void poll(Condition condition, const char * what) {
-  if (!poll_for(patience, condition)) {
+  if (!poll_for(timeout, condition)) {
     throw std::runtime_error(std::string("no ") + what);
   }
 }
@@ -184,8 +184,8 @@ bool WaitSet::wait(
 
 void take_next(WaitSet & wait_set, Subscription & subscription, Message & message) {
   do {
-    if (!wait_set.wait(subscription, patience)) {
-      throw std::runtime_error("no message came within the patience of the bench");
+    if (!wait_set.wait(subscription, timeout)) {
+      throw std::runtime_error("no message arrived within 60 s");
     }
   } while (!subscription.take(message));
 }
@@ -200,7 +200,7 @@ void wait_until_matched(const Publisher & publisher, size_t subscriptions) {
 
 void stop_subscribers(Publisher & publisher) {
   const auto are_gone = [&] { return publisher.matched() == 0; };
-  const auto stop = [&] {  // again where reliability is best effort, and it may be lost
+  const auto stop = [&] {  // repeated, because best effort may lose it
     publisher.publish(Message());
     return poll_for(stop_again_after, are_gone);
   };

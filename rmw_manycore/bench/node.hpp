@@ -10,21 +10,22 @@
 
 #include <std_msgs/msg/u_int8_multi_array.hpp>
 
-/// The least of ROS 2 that a bench needs, straight over the rmw interface: no rcl, no executor.
+/// Minimal ROS 2 for benches, directly over the rmw interface: no rcl, no executor.
 namespace manycore::bench {
 
 using Message = std_msgs::msg::UInt8MultiArray;
 
-/// How long a thing may take that should take milliseconds, before a bench gives up.
-constexpr std::chrono::seconds patience{60};
+/// Timeout of operations that should take milliseconds.
+constexpr std::chrono::seconds timeout{60};
 
 rmw_qos_profile_t reliable_qos(size_t depth);
-/// The last message is kept for subscriptions that come later.
+/// Keeps the last message for late subscriptions.
 rmw_qos_profile_t latched_qos();
 
+/// A node in its own context.
 class Node {
 public:
-  /// Calls rmw_init; the domain is that of ROS_DOMAIN_ID.
+  /// Calls rmw_init in the domain ROS_DOMAIN_ID.
   explicit Node(const std::string & name);
   Node(const Node &) = delete;
   Node & operator=(const Node &) = delete;
@@ -39,6 +40,7 @@ private:
   rmw_node_t * node_;
 };
 
+/// A publisher of Message.
 class Publisher {
 public:
   Publisher(Node & node, const std::string & topic, const rmw_qos_profile_t & qos);
@@ -54,6 +56,7 @@ private:
   rmw_publisher_t * publisher_;
 };
 
+/// A subscription to Message.
 class Subscription {
 public:
   Subscription(Node & node, const std::string & topic, const rmw_qos_profile_t & qos);
@@ -61,7 +64,7 @@ public:
   Subscription & operator=(const Subscription &) = delete;
   ~Subscription();
 
-  /// Fills `message` if there was one to take.
+  /// Fills `message` and returns true if there was a message.
   bool take(Message & message);
   size_t matched() const;
   void * data() const { return subscription_->data; }
@@ -71,7 +74,7 @@ private:
   rmw_subscription_t * subscription_;
 };
 
-/// Waits for one subscription and, where given, one guard condition.
+/// Waits for one subscription and an optional guard condition.
 class WaitSet {
 public:
   explicit WaitSet(Node & node);
@@ -79,7 +82,7 @@ public:
   WaitSet & operator=(const WaitSet &) = delete;
   ~WaitSet();
 
-  /// Returns false after `timeout`; without one it waits for ever.
+  /// Returns false after `timeout`; waits forever without one.
   bool wait(
     const Subscription & subscription, std::optional<std::chrono::milliseconds> timeout,
     rmw_guard_condition_t * guard_condition = nullptr);
@@ -88,22 +91,22 @@ private:
   rmw_wait_set_t * wait_set_;
 };
 
-/// Waits for and takes the next message; throws when none comes within `patience`.
+/// Waits for the next message and takes it. Throws if none arrives within `timeout`.
 void take_next(WaitSet & wait_set, Subscription & subscription, Message & message);
 
-/// Returns when both directions of a conversation have found their other end.
+/// Returns when both directions of a conversation are matched.
 void wait_until_matched(const Publisher & publisher, const Subscription & subscription);
 void wait_until_matched(const Publisher & publisher, size_t subscriptions);
 
-/// Publishes the empty message that ends subscribers, and returns when they have gone: a publisher
-/// that goes first may take the message with it.
+/// Publishes the empty message that ends subscribers, and returns when they are gone: a publisher
+/// that ends earlier may take the message with it.
 void stop_subscribers(Publisher & publisher);
 
-/// Throws with the middleware's own words.
+/// Throws with the middleware's error text unless `status` is RMW_RET_OK.
 void check(rmw_ret_t status, const char * what);
 
-/// Every message carries a number in its first bytes.
-constexpr size_t least_message_bytes = sizeof(uint64_t);
+/// Each message starts with a number.
+constexpr size_t min_message_bytes = sizeof(uint64_t);
 void set_number(Message & message, uint64_t number);
 uint64_t number_of(const Message & message);
 

@@ -16,7 +16,7 @@
 
 #include "platform/futex.hpp"
 
-/// What the peers are made of: the machine's own means, with nothing of a middleware around them.
+/// Building blocks of the peers: system calls only, without any middleware.
 namespace manycore::bench {
 
 inline void pin_to(size_t cpu) {
@@ -28,7 +28,7 @@ inline void pin_to(size_t cpu) {
   }
 }
 
-/// Zeroed memory, already faulted in, that children of this process share.
+/// Zeroed memory, faulted in, shared with children of this process.
 inline std::byte * shared_memory(size_t bytes) {
   void * memory =
     mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS | MAP_POPULATE, -1, 0);
@@ -38,7 +38,7 @@ inline std::byte * shared_memory(size_t bytes) {
   return static_cast<std::byte *>(memory);
 }
 
-/// A place for one message, with one writer and one reader that takes turns.
+/// Buffer for one message at a time, with one writer and one reader.
 struct alignas(64) Slot {
   FutexWord written{0};
 
@@ -47,7 +47,7 @@ struct alignas(64) Slot {
   static Slot & create(size_t payload_bytes) {
     return *new (shared_memory(sizeof(Slot) + payload_bytes)) Slot;
   }
-  /// Sleeps until message `number` (counted from 1) is announced.
+  /// Sleeps until message `number`, counted from 1, is announced.
   void wait_for(uint32_t number) {
     for (uint32_t seen = written.load(); seen != number; seen = written.load()) {
       futex_wait(written, seen, std::nullopt);
@@ -59,7 +59,7 @@ struct alignas(64) Slot {
   }
 };
 
-/// Runs `body` in a child on a CPU. The child ends with it, and with its parent, however that dies.
+/// Runs `body` in a child process on `cpu`. The child ends after it, or when its parent dies.
 template<typename Body>
 pid_t fork_on(size_t cpu, Body body) {
   const pid_t parent = getpid();
@@ -68,12 +68,18 @@ pid_t fork_on(size_t cpu, Body body) {
     return child;
   }
   prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (getppid() != parent) {  // it died before the call
+  if (getppid() != parent) {  // the parent died before prctl()
     _exit(EXIT_FAILURE);
   }
   pin_to(cpu);
   body();
   _exit(EXIT_SUCCESS);
+}
+
+/// Returns when all children have ended.
+inline void wait_for_children() {
+  while (wait(nullptr) > 0) {
+  }
 }
 
 }  // namespace manycore::bench

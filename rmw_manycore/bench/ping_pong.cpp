@@ -19,7 +19,7 @@ Ping::Ping(size_t bytes)
 
 void Ping::connect() {
   wait_until_matched(publisher_, subscription_);
-  // The other side may not have matched our endpoints yet: its first answers can get lost.
+  // The other side may not have matched these endpoints yet, so its first answers can be lost.
   set_number(sent_, 0);
   do {
     publisher_.publish(sent_);

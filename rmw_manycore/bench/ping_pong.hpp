@@ -9,16 +9,16 @@
 
 namespace manycore::bench {
 
-/// The asking half of a conversation of two processes: every message comes back unchanged.
+/// Requesting side of two processes in conversation: each message is returned unchanged.
 class Ping {
 public:
   explicit Ping(size_t bytes);
 
-  /// Returns once a first message has made it there and back.
+  /// Returns after the first message has made the round trip.
   void connect();
-  /// Returns the time from the call of rmw_publish to the return of rmw_take, in ns.
+  /// Returns the time from calling rmw_publish to returning from rmw_take, in ns.
   int64_t round_trip();
-  /// Lets the other half end.
+  /// Makes the other side end.
   void stop();
 
 private:
@@ -31,7 +31,7 @@ private:
   uint64_t number_ = 0;
 };
 
-/// The answering half; `before(number)` is called before each answer, until ping says stop.
+/// Answering side; calls `before(number)` before each answer, until Ping::stop().
 void run_pong(const std::function<void(uint64_t number)> & before);
 
 }  // namespace manycore::bench

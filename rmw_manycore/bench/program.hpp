@@ -1,6 +1,10 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <sys/prctl.h>
+#include <unistd.h>
+
+#include <csignal>
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
@@ -16,7 +20,12 @@ namespace manycore::bench {
 
 using Counts = std::map<std::string, uint64_t>;
 
-/// Ends every program: one line of JSON on standard output, as the Python side reads it.
+/// Removes the first `count` samples.
+inline void drop_warm_up(std::vector<int64_t> & samples_ns, size_t count) {
+  samples_ns.erase(samples_ns.begin(), samples_ns.begin() + static_cast<ptrdiff_t>(count));
+}
+
+/// Prints the result of a program: one line of JSON on standard output, parsed by the Python side.
 inline void print_samples(const std::vector<int64_t> & samples_ns, const Counts & counts = {}) {
   std::printf("{");
   for (const auto & [name, count] : counts) {
@@ -30,23 +39,33 @@ inline void print_samples(const std::vector<int64_t> & samples_ns, const Counts 
   std::fflush(stdout);
 }
 
-/// Tells the orchestrator that the program has done its part of the set-up.
+/// Reports to the orchestrator that the program has completed its set-up.
 inline void announce_ready() {
   std::printf("ready\n");
   std::fflush(stdout);
 }
 
-/// Returns when the orchestrator closes our standard input.
+/// Returns when the orchestrator closes this program's standard input.
 inline void wait_for_end_of_input() {
   while (std::getchar() != EOF) {
   }
 }
 
-/// Calls `body(arguments)`; an exception becomes a line on standard error and a failure.
+/// The kernel kills this program when its parent dies, which must be process `parent`.
+inline void die_with(pid_t parent) {
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (getppid() != parent) {
+    std::exit(EXIT_FAILURE);  // it died before the call
+  }
+}
+
+/// Calls `body(arguments)`. An exception is printed to standard error and becomes a failure status.
 template<typename Body>
 int run_program(int argc, char ** argv, Body body) {
   try {
-    body(Arguments(argc, argv));
+    const Arguments arguments(argc, argv);
+    die_with(static_cast<pid_t>(arguments.number("parent")));
+    body(arguments);
     return EXIT_SUCCESS;
   } catch (const std::exception & error) {
     std::fprintf(stderr, "%s: %s\n", argv[0], error.what());

@@ -187,7 +187,7 @@ void RclWaitSet::wait() {
   check_rcl(rcl_wait_set_clear(&wait_set_), "rcl_wait_set_clear");
   add_all();
   const rcl_ret_t status = rcl_wait(&wait_set_, -1);
-  if (status != RCL_RET_TIMEOUT) {  // what a timer that is due counts as
+  if (status != RCL_RET_TIMEOUT) {  // returned when the timer is due
     check_rcl(status, "rcl_wait");
   }
 }

@@ -7,14 +7,15 @@
 #include <string>
 #include <vector>
 
-/// Nodes at the level of rcl, as rclcpp and rclpy make them.
+/// Nodes at the rcl level, with the entities that rclcpp and rclpy create.
 namespace manycore::bench {
 
-/// Throws with rcl's own words.
+/// Throws with rcl's error text unless `status` is RCL_RET_OK.
 void check_rcl(rcl_ret_t status, const char * what);
-/// Prints them, where nothing can be thrown.
+/// Prints rcl's error text, for destructors.
 void report_rcl(rcl_ret_t status);
 
+/// An rcl context, shut down by the destructor.
 class RclContext {
 public:
   RclContext();
@@ -27,7 +28,7 @@ private:
   rcl_context_t context_ = rcl_get_zero_initialized_context();
 };
 
-/// Ends a wait when it is triggered, from any thread.
+/// Ends a wait when triggered, from any thread.
 class RclGuardCondition {
 public:
   explicit RclGuardCondition(RclContext & context);
@@ -42,8 +43,8 @@ private:
   rcl_guard_condition_t condition_ = rcl_get_zero_initialized_guard_condition();
 };
 
-/// A node with the services of its parameters, on /rosout and /parameter_events. What it has stays
-/// where it is until the node goes.
+/// A node with parameter services, /rosout and /parameter_events. Its entities keep their addresses
+/// for its lifetime.
 class RclNode {
 public:
   RclNode(rcl_context_t & context, const std::string & name);
@@ -75,10 +76,10 @@ private:
   std::deque<rcl_service_t> services_;
 };
 
-/// Waits for all that some nodes have, as the executors of rclcpp and rclpy do.
+/// Waits for all entities of some nodes, as the executors of rclcpp and rclpy do.
 class RclWaitSet {
 public:
-  /// `end` ends a wait; so does `timer`, unless it is nullptr. What the nodes have may not change.
+  /// `end` ends a wait; so does `timer`, unless it is nullptr. The nodes' entities must not change.
   RclWaitSet(
     rcl_context_t & context, std::vector<const RclNode *> nodes, const RclGuardCondition & end,
     rcl_timer_t * timer = nullptr);
@@ -86,7 +87,7 @@ public:
   RclWaitSet & operator=(const RclWaitSet &) = delete;
   ~RclWaitSet() { report_rcl(rcl_wait_set_fini(&wait_set_)); }
 
-  /// Until something is ready.
+  /// Waits until any entity is ready.
   void wait();
 
   bool is_ended() const { return wait_set_.guard_conditions[0] != nullptr; }

@@ -1,13 +1,12 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-// One node of the Autoware reference system at the level of rcl: a node as rclcpp makes it, in a
-// process with one thread for its callbacks, until SIGINT or SIGTERM.
+// One node of the Autoware reference system at the rcl level, with the entities that rclcpp
+// creates, in a process with one thread for its callbacks, until SIGINT or SIGTERM.
 //
 //   reference_node name=N kind=K inputs=A,B outputs=C period_ms=N crunch_us=N message=TYPE
 //     payload=untouched|checked depth=N report_period_ms=N
 //
 // A depth of 0 keeps all messages. Command nodes print the reference system's statistics, at most
-// once in `report_period_ms`; all nodes print "lost N of TOPIC at NANOSECONDS".
-#include <sstream>
+// once per `report_period_ms`; all nodes print "lost N of TOPIC at NANOSECONDS".
 
 #include "bench/program.hpp"
 #include "bench/reference/executor.hpp"
@@ -17,17 +16,8 @@ namespace {
 using namespace manycore::bench;
 using namespace manycore::bench::reference;
 
-// The depth of command nodes where others have 1.
+// Depth of command nodes where other nodes have 1.
 constexpr size_t command_depth = 10;
-
-std::vector<std::string> split(const std::string & text) {
-  std::vector<std::string> parts;
-  std::istringstream stream(text);
-  for (std::string part; std::getline(stream, part, ',');) {
-    parts.push_back(part);
-  }
-  return parts;
-}
 
 Settings settings_of(const Arguments & arguments) {
   const bool is_command = arguments.text("kind") == "command";
@@ -35,8 +25,8 @@ Settings settings_of(const Arguments & arguments) {
   return {
     arguments.text("name"),
     arguments.text("kind"),
-    split(arguments.text("inputs")),
-    is_command ? std::vector<std::string>{} : split(arguments.text("outputs")),
+    arguments.list("inputs"),
+    is_command ? std::vector<std::string>{} : arguments.list("outputs"),
     std::chrono::milliseconds(arguments.number("period_ms")),
     static_cast<int64_t>(arguments.number("crunch_us")) * 1000,
     arguments.number("report_period_ms") * 1'000'000,

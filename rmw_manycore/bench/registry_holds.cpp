@@ -1,24 +1,26 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-// How long is the registry lock held at a time, when a topic has many publishers and subscriptions?
+// How long is the registry lock held at a time if a topic has many publishers and subscriptions?
 //
 //   registry_holds endpoints=N changes=N cpu=N
 //
-// Prints the longest hold in nanoseconds of each operation, and as OPERATION_p99 what 99 % of its
-// holds do not exceed:
-//   create                all endpoints of the topic, each matched with those before it
+// Prints the longest hold of each operation in nanoseconds, and as OPERATION_p99 its 99th
+// percentile:
+//   create                all endpoints of the topic, each matched with the earlier ones
 //   close_subscription    `changes` subscriptions that have taken nothing
-//   close_publisher       `changes` publishers, each of which leaves a message that none has taken
-//   sweep                 freeing what these left, once newer messages have displaced theirs
-//   reap                  a killed process with `changes` of both kinds
-// A thread on the CPU `cpu` watches the word that is odd while the lock is held, and reads the CPU
-// clock of the holder: that the kernel lets others run meanwhile does not count, nor do holds of
-// processes that are about something else. An operation of which it saw no hold, as it got no CPU
-// itself, is left out.
+//   close_publisher       `changes` publishers, each leaving a message that is not taken
+//   sweep                 freeing what these left, after newer messages have displaced theirs
+//   free_large            a publisher whose topic DSM has grown to more than 16 MiB
+//   reap                  a killed process with `changes` endpoints of each kind, and such a
+//   publisher
+// A thread on CPU `cpu` watches the word that is odd while the lock is held, and reads the CPU
+// clock of the holder: time in which the kernel runs other threads does not count, nor do holds of
+// unrelated processes. An operation without an observed hold, because the watching thread got no
+// CPU, is omitted.
 #include <pthread.h>
 
 #include <algorithm>
 #include <atomic>
-#include <map>
+#include <fstream>
 #include <memory>
 #include <mutex>
 #include <thread>
@@ -27,6 +29,8 @@
 #include "bench/peer.hpp"
 #include "bench/program.hpp"
 #include "platform/clock.hpp"
+#include "transport/lifecycle/lifecycle.hpp"
+#include "transport/matching/sweeping.hpp"
 #include "transport/process.hpp"
 #include "transport/registry/registry.hpp"
 
@@ -34,30 +38,17 @@ namespace {
 
 using namespace manycore;
 
-/// A process whose holds count, and the clock they are measured by.
-struct alignas(uint64_t) Holder {  // clang calls a library for an atomic of less alignment
-  pid_t process;
-  clockid_t clock;
-};
-
-Holder this_thread() {
+clockid_t clock_of_this_thread() {
   clockid_t clock{};
   pthread_getcpuclockid(pthread_self(), &clock);
-  return {getpid(), clock};
+  return clock;
 }
 
-Holder process_of(pid_t pid) {
-  clockid_t clock{};
-  if (clock_getcpuclockid(pid, &clock) != 0) {
-    throw std::runtime_error("the receive thread has no CPU clock");
-  }
-  return {pid, clock};
-}
-
-/// How long a holder of the registry lock ran, in nanoseconds.
+/// Measures the CPU time of the thread that creates it during each of its holds of the registry
+/// lock.
 class HoldWatch {
 public:
-  HoldWatch(const RegistryHeader & header, size_t cpu) : header_(header), holder_(this_thread()) {
+  HoldWatch(const RegistryHeader & header, size_t cpu) : header_(header) {
     thread_ = std::thread([this, cpu] {
       bench::pin_to(cpu);
       for (watching_ = true; !done_;) {
@@ -74,35 +65,24 @@ public:
   HoldWatch(const HoldWatch &) = delete;
   HoldWatch & operator=(const HoldWatch &) = delete;
 
-  void follow(Holder holder) { holder_ = holder; }
-  /// Those since the last call.
+  /// Durations in ns of the holds since the last call.
   std::vector<uint64_t> take_holds_ns() {
     const std::lock_guard<std::mutex> guard(mutex_);
     return std::exchange(holds_ns_, {});
   }
 
 private:
-  bool is_thread_of(pid_t process, pid_t thread) {
-    const auto [known, is_new] = threads_.try_emplace({process, thread}, false);
-    if (is_new) {
-      const std::string task =
-        "/proc/" + std::to_string(process) + "/task/" + std::to_string(thread);
-      known->second = access(task.c_str(), F_OK) == 0;
-    }
-    return known->second;
-  }
-  /// Up to the last look at which it was held.
+  /// Measures until the last load that found the lock held.
   void watch_one_hold() {
     const uint64_t seen = header_.changes.load();
     if (seen % 2 == 0) {
       return;
     }
-    const Holder holder = holder_;
-    const int64_t start_ns = clock_ns(holder.clock);
-    const bool counts = is_thread_of(holder.process, header_.mutex.owner());
+    const int64_t start_ns = clock_ns(clock_);
+    const bool counts = header_.mutex.owner() == thread_id_;
     int64_t end_ns = start_ns;
     for (int64_t ran_ns = start_ns; header_.changes.load() == seen && !done_;
-         ran_ns = clock_ns(holder.clock)) {
+         ran_ns = clock_ns(clock_)) {
       end_ns = ran_ns;
     }
     if (counts) {
@@ -112,8 +92,8 @@ private:
   }
 
   const RegistryHeader & header_;
-  std::atomic<Holder> holder_;
-  std::map<std::pair<pid_t, pid_t>, bool> threads_;  ///< by process and thread
+  const pid_t thread_id_ = gettid();
+  const clockid_t clock_ = clock_of_this_thread();
   std::mutex mutex_;
   std::vector<uint64_t> holds_ns_;
   std::atomic<bool> watching_{false};
@@ -124,7 +104,7 @@ private:
 void report(HoldWatch & holds, const std::string & operation, bench::Counts & found) {
   std::vector<uint64_t> holds_ns = holds.take_holds_ns();
   if (holds_ns.empty()) {
-    return;  // what watches got no CPU
+    return;  // the watching thread got no CPU
   }
   std::sort(holds_ns.begin(), holds_ns.end());
   found[operation] = holds_ns.back();
@@ -140,9 +120,18 @@ EndpointSpec spec_of(Process & process) {
   return spec;
 }
 
-void publish(Publisher & publisher) {
-  constexpr size_t bytes = 64;
+void publish(Publisher & publisher, size_t bytes = 64) {
   publisher.publish(publisher.draft(bytes), bytes, realtime_ns());
+}
+
+constexpr size_t large_bytes = 16 << 20;
+
+/// Returns a publisher whose one large message no subscription wants.
+std::unique_ptr<Publisher> large_publisher(Process & process, EndpointSpec spec) {
+  spec.topic = "/large";
+  std::unique_ptr<Publisher> publisher = process.create_publisher(spec);
+  publish(*publisher, large_bytes);
+  return publisher;
 }
 
 struct Endpoints {
@@ -159,7 +148,7 @@ struct Endpoints {
   std::vector<std::unique_ptr<Subscription>> subscriptions;
 };
 
-/// A process with endpoints of the topic, to be killed once it is ready.
+/// A process with endpoints of the topic, which is killed once it is ready.
 class Victim {
 public:
   explicit Victim(size_t count) : child_(fork()) {
@@ -173,6 +162,7 @@ public:
         endpoints.add_one(*process, spec);
       }
       endpoints.publish_all();
+      const auto large = large_publisher(*process, spec);
       raise(SIGSTOP);
       _exit(EXIT_SUCCESS);
     }
@@ -204,21 +194,41 @@ private:
   pid_t child_;
 };
 
-void wait_until_alone(Registry & registry) {
-  const int64_t deadline_ns = monotonic_ns() + 20'000'000'000;
-  const auto live = [&] {
-    uint32_t count = 0;
-    for (uint32_t slot = 0; slot < registry.processes().high_water(); ++slot) {
-      count += registry.processes().is_live(slot) ? 1 : 0;
+/// Stops the receive thread while it does not hold the registry lock. This process then reaps in
+/// its place, because the kernel updates the CPU clock of another process only at timer ticks.
+class Standstill {
+public:
+  explicit Standstill(Registry & registry)
+  : pid_(registry.clusters().at(1).header().receive_thread_pid) {
+    const Registry::Lock lock(registry);
+    ::kill(pid_, SIGSTOP);
+    while (state() != 'T') {
+      std::this_thread::yield();
     }
-    return count;
-  };
-  while (live() > 1) {
-    if (monotonic_ns() > deadline_ns) {
-      throw std::runtime_error("a killed process stays in the registry");
-    }
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
+  ~Standstill() { ::kill(pid_, SIGCONT); }
+  Standstill(const Standstill &) = delete;
+  Standstill & operator=(const Standstill &) = delete;
+
+private:
+  char state() const {
+    std::ifstream file("/proc/" + std::to_string(pid_) + "/stat");
+    std::string skipped;
+    char state = 0;
+    file >> skipped >> skipped >> state;
+    return state;
+  }
+
+  pid_t pid_;
+};
+
+/// Maps the platform's memory anew, as a receive thread does, then reaps.
+void reap(const PlatformPaths & paths) {
+  Registry registry(paths);
+  if (reap_dead(registry, 1) != 1) {
+    throw std::runtime_error("the killed process is not found dead");
+  }
+  sweeping::sweep_all(registry);
 }
 
 void run(const bench::Arguments & arguments) {
@@ -246,15 +256,23 @@ void run(const bench::Arguments & arguments) {
     process->create_publisher(other);
   }
   report(holds, "sweep", found);
+  {
+    auto large = large_publisher(*process, spec);
+    holds.take_holds_ns();
+    large.reset();
+    report(holds, "free_large", found);
+  }
   victim.join_platform();
-  holds.follow(process_of(registry.clusters().at(1).header().receive_thread_pid));
-  holds.take_holds_ns();
-  victim.kill();
-  wait_until_alone(registry);
+  {
+    const Standstill receive_thread(registry);
+    holds.take_holds_ns();
+    victim.kill();
+    reap(registry.paths());
+  }
   report(holds, "reap", found);
   bench::print_samples({}, found);
   std::fflush(stdout);
-  _exit(EXIT_SUCCESS);  // closing them all is no part of the question
+  _exit(EXIT_SUCCESS);  // closing all endpoints is not part of the measurement
 }
 
 }  // namespace

@@ -1,12 +1,12 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-// What would a round trip between clusters cost if the machine were all there is? Peer of
-// rmw_manycore between clusters.
+// What would a round trip between clusters cost on the bare machine? Peer of rmw_manycore between
+// clusters.
 //
 //   relay_round_trip cpu_1=N cpu_2=N bytes=N warm_up=N iterations=N
 //
-// Two processes and a relay for each of them: the payload is copied into shared memory, 64 bytes
-// go through a pipe to the relay of the receiver, which wakes the receiver, which copies out. A
-// relay has the CPU of the process it wakes, as the receive thread of a cluster has here.
+// Two processes, each with a relay. The sender copies the payload into shared memory and writes 64
+// bytes to the pipe of the receiver's relay; the relay wakes the receiver, which copies the payload
+// out. A relay runs on the CPU of the process that it wakes, like a receive thread here.
 #include <array>
 #include <cstring>
 
@@ -21,14 +21,14 @@ using manycore::monotonic_ns;
 
 using Payload = std::vector<std::byte>;
 
-/// As large as an eMCOS message.
+/// Same size as an eMCOS message.
 struct Notice {
   uint32_t number;
   std::array<std::byte, 60> rest;
 };
 static_assert(sizeof(Notice) == 64);
 
-/// One direction: slot, pipe, and what the relay does between them.
+/// One direction: slot, pipe, and the relay between them.
 class Direction {
 public:
   explicit Direction(size_t bytes) : slot_(Slot::create(bytes)) {
@@ -96,9 +96,8 @@ void run(const Arguments & arguments) {
   for (uint32_t i = 0; i < messages; ++i) {
     samples_ns[i] = round_trip(there, back, sent, received, i + 1);
   }
-  while (wait(nullptr) > 0) {
-  }
-  samples_ns.erase(samples_ns.begin(), samples_ns.begin() + static_cast<ptrdiff_t>(warm_up));
+  wait_for_children();
+  drop_warm_up(samples_ns, warm_up);
   print_samples(samples_ns);
 }
 

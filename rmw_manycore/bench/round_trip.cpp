@@ -1,5 +1,5 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-// How long does a message take there and back, at the rmw level?
+// How long does a round trip of a message take, at the rmw level?
 //
 //   round_trip role=pong
 //   round_trip role=ping bytes=N warm_up=N iterations=N

@@ -1,11 +1,11 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-// How many page faults and allocations does a message cost once everything is warm?
+// How many page faults and allocations does a message cost in the steady state?
 //
 //   steady_state role=pong warm_up=N iterations=N
 //   steady_state role=ping warm_up=N iterations=N bytes=N
 //
-// Each process counts its own, all threads, over `iterations` round trips after `warm_up` ones;
-// in each round trip it publishes one message and takes one.
+// Each process counts those of all its threads over `iterations` round trips after `warm_up` ones.
+// In each round trip it publishes one message and takes one.
 #include <sys/resource.h>
 
 #include "bench/allocation_counter.hpp"
@@ -16,7 +16,7 @@ namespace {
 
 using namespace manycore::bench;
 
-/// Made without allocating, unlike Counts: taking it must not be seen in it.
+/// Unlike Counts, copied without allocating, so that reading it is not counted.
 struct Costs {
   uint64_t allocations;
   uint64_t page_faults;

@@ -1,12 +1,12 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-// How many messages a second arrive, none lost, with a bounded number under way?
+// How many messages per second arrive without loss, with a bounded number in flight?
 //
 //   throughput role=sink
 //   throughput role=source bytes=N in_flight=N warm_up=N stretch=N stretches=N
 //
-// The source sends a message as soon as the one `in_flight` before it is acknowledged; the sink
-// acknowledges each message with its number and with how many are missing so far. The samples are
-// the times of stretches of `stretch` messages, from acknowledgement to acknowledgement.
+// The source sends a message as soon as the one `in_flight` earlier is acknowledged. The sink
+// acknowledges each message with its number and the number of messages missing so far. The samples
+// are the durations of stretches of `stretch` messages, from acknowledgement to acknowledgement.
 #include "bench/node.hpp"
 #include "bench/program.hpp"
 #include "platform/clock.hpp"
@@ -16,7 +16,7 @@ namespace {
 using namespace manycore::bench;
 using manycore::monotonic_ns;
 
-// Twice what is under way by default: neither history ever drops one.
+// Twice the default number in flight, so that no history drops a message.
 constexpr size_t depth = 16;
 
 class Source {
@@ -31,7 +31,7 @@ public:
     } while (!wait_set_.wait(acknowledgements_, std::chrono::milliseconds(100)));
   }
 
-  /// Sends `count` messages; on return all but the last `in_flight` - 1 are acknowledged.
+  /// Sends `count` messages. On return all but the last `in_flight` - 1 are acknowledged.
   void send(size_t count) {
     for (size_t i = 0; i < count; ++i) {
       set_number(message_, ++sent_);
@@ -88,7 +88,7 @@ void sink() {
   WaitSet wait_set(node);
   Message message;
   Message acknowledgement;
-  acknowledgement.data.resize(least_message_bytes);
+  acknowledgement.data.resize(min_message_bytes);
   uint64_t previous = 0;
   while (true) {
     take_next(wait_set, subscription, message);

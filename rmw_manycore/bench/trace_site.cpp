@@ -1,11 +1,11 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-// What does a trace site cost, and how many events come through without loss?
+// What does a trace site cost, and how many events are recorded without loss?
 //
 //   trace_site events=N rounds=N
 //
-// Prints picoseconds for each event: of a site while nothing is traced, beyond the same loop
-// without one (`samples_ns`, named for all programs), and while it is (`on_ps`), both as CPU time
-// of the thread; and how many of the events of all rounds were lost.
+// Prints picoseconds of thread CPU time per event: of a site while tracing is off, minus an empty
+// loop (`samples_ns`, the name common to all programs), and while tracing is on (`on_ps`); and how
+// many of the events of all rounds were lost.
 #include <algorithm>
 
 #include "bench/program.hpp"
@@ -20,7 +20,7 @@ using namespace manycore;
 
 constexpr int64_t ps_per_ns = 1000;
 
-/// Keeps the compiler from taking the loop, or what a site loads, for the same each time.
+/// Keeps the compiler from optimizing the loop away or hoisting loads of the site out of it.
 void barrier() noexcept { asm volatile("" ::: "memory"); }
 
 template<typename Body>
@@ -55,7 +55,7 @@ void run(const bench::Arguments & arguments) {
   bench::Counts counts{{"on_ps", 0}, {"lost", 0}};
   std::vector<int64_t> on_ps;
   start_trace(registry, {{}, {}, static_cast<uint32_t>(events + 1)});
-  for (uint64_t round = 0; round <= rounds; ++round) {  // the first one makes the ring
+  for (uint64_t round = 0; round <= rounds; ++round) {  // the first round creates the ring
     const int64_t cost_ps = ps_for_each(events, site);
     counts["lost"] += trace_state(registry).lost;
     discard_trace(registry);

@@ -1,12 +1,13 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-// PCL's NDT, or one with its interface, as a contender of `manycore bench ndt`; built by the bench.
+// PCL's NDT, or one with the same interface, as a peer of `manycore bench ndt`; compiled by the
+// bench.
 //
-//   peer WORLD RESOLUTION [THREADS]     then on standard input, one answer a line:
+//   peer WORLD RESOLUTION [THREADS]     reads commands from standard input, prints a line for each:
 //   evaluate I       -> ns score        derivatives of scan I at its pose
 //   align I          -> ns iterations T_map_sensor (16 numbers, row by row)
 //
-// WORLD: count and points of the map (u64, f32 x 3 each), count of scans, then for each scan its
-// pose and guess (f64 x 16 each, row by row), count and points.
+// WORLD: number and points of the map (u64, f32 x 3 each), number of scans; then for each scan its
+// pose and guess (f64 x 16 each, row-major), number and points.
 
 #include <pcl/common/transforms.h>
 #include <pcl/point_types.h>
@@ -34,7 +35,7 @@ namespace {
 using Cloud = pcl::PointCloud<pcl::PointXYZ>;
 using Base = peer::NormalDistributionsTransform<pcl::PointXYZ, pcl::PointXYZ>;
 
-/// One pass is protected in the peers; nothing else measures what it costs.
+/// Exposes computeDerivatives(), which is protected: no public function measures a single pass.
 struct Ndt : Base {
   double evaluate(Cloud & moved, const Eigen::Matrix4f & pose) {
     const Eigen::Affine3f transform(pose);
@@ -131,7 +132,7 @@ int main(int argc, char ** argv) {
   ndt.setNeighborhoodSearchMethod(pclomp::DIRECT7);
 #endif
   ndt.setInputTarget(map);
-  // The constants of the score are set by an alignment only.
+  // The constants of the score are set only by an alignment.
   ndt.setMaximumIterations(1);
   Cloud moved;
   ndt.setInputSource(scans.front().points);

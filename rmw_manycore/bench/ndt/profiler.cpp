@@ -35,7 +35,7 @@ std::vector<double> Profiler::time_shares_ns(
   const Problem matched = problem(map, xyz_m, count);
   const PassPose at = pass_pose(pose, map.header());
   const float d2 = kernel_d2(matched);
-  evaluate_alone(matched, kernel_, pose);  // or the first share would pay for cold caches
+  evaluate_alone(matched, kernel_, pose);  // warms the caches for the first share
   std::vector<double> times_ns;
   for (size_t worker = 0; worker < workers; ++worker) {
     times_ns.push_back(time_ns([&] {

@@ -10,7 +10,7 @@
 
 namespace manycore::ndt {
 
-/// Where the time of an alignment goes.
+/// Times of the parts of an alignment.
 struct Profile {
   double lay_out_ns;
   double search_ns;
@@ -18,19 +18,20 @@ struct Profile {
   double total_ns;
 };
 
-/// Times the parts of a match on the calling thread. Points are x, y, z [m] in the sensor frame.
+/// Times the parts of an alignment on the calling thread. Points are x, y, z [m] in the sensor
+/// frame.
 class Profiler {
 public:
   explicit Profiler(const MatchOptions & options)
   : options_(options), kernel_(kernel_of(choose_simd())) {}
 
-  /// What each of so many passes at a pose takes, without laying out the scan.
+  /// Time of each of `passes` passes at a pose, without laying out the scan.
   std::vector<double> time_passes_ns(
     const VoxelMap & map, const float * xyz_m, size_t count, const Pose6 & pose, size_t passes);
-  /// What each of so many workers' shares of a pass takes when this thread does all of them.
+  /// Time of each of `workers` shares of a pass, all computed by this thread.
   std::vector<double> time_shares_ns(
     const VoxelMap & map, const float * xyz_m, size_t count, const Pose6 & pose, size_t workers);
-  /// An alignment with search and derivatives one after the other, each timed.
+  /// An alignment with separate, timed search and derivatives.
   Profile profile(const VoxelMap & map, const float * xyz_m, size_t count, const Pose6 & guess);
 
 private:

@@ -10,11 +10,11 @@ namespace {
 
 constexpr int64_t thread_spin_ns = 200'000;
 
-/// Looks for a while, then sleeps.
+/// Spins for `spin_ns`, then sleeps.
 template<typename Condition>
 void wait_at(Gate & gate, Condition is_due, int64_t spin_ns) {
-  const int64_t patience_ns = monotonic_ns() + spin_ns;
-  while (monotonic_ns() < patience_ns) {
+  const int64_t deadline_ns = monotonic_ns() + spin_ns;
+  while (monotonic_ns() < deadline_ns) {
     if (is_due()) {
       return;
     }
@@ -32,7 +32,7 @@ ThreadMatcher::ThreadMatcher(
   kernel_(kernel_of(choose_simd())),
   derivative_threads_(derivative_cpus.size()),
   search_threads_(search_cpus.size()),
-  // The caller must not take a CPU from the threads it waits for.
+  // The caller must not take a CPU from the threads that it waits for.
   caller_spin_ns_(
     derivative_threads_ + search_threads_ < std::thread::hardware_concurrency() ? thread_spin_ns
                                                                                 : 0) {

@@ -13,9 +13,9 @@
 
 namespace manycore::ndt {
 
-/// Matches on threads of this process, woken for every pass: what workers are measured against.
-/// With threads of their own for the search, these find lists bin by bin and others add up behind
-/// them, as ROS-lite spreads the two over clusters (Fig. 15).
+/// Matches on threads of this process, woken for each pass: the reference for the worker processes.
+/// With separate search threads, these search bin by bin while other threads sum the bins found, as
+/// ROS-lite splits the two over clusters (Fig. 15).
 class ThreadMatcher {
 public:
   ThreadMatcher(
@@ -46,7 +46,7 @@ private:
   Problem problem_{};
   PassPose pose_{};
   TangentSums bins_[bin_count];
-  std::atomic<uint32_t> searched_[bin_count] = {};  ///< last pass whose lists of the bin are there
+  std::atomic<uint32_t> searched_[bin_count] = {};  ///< last pass in which the bin was searched
   Gate start_{};
   Gate end_{};
   std::atomic<uint32_t> pass_{0};

@@ -18,8 +18,8 @@ inline bool is_prime(int64_t number) {
   return true;
 }
 
-/// Counts primes until this thread has used so much CPU time: the same work on all machines, where
-/// upstream's limit of the primes has to be calibrated.
+/// Counts primes until this thread has used `cpu_ns` of CPU time: the same work on all machines,
+/// where upstream requires a calibrated limit.
 inline int64_t crunch(int64_t cpu_ns) {
   if (cpu_ns <= 0) {
     return 0;

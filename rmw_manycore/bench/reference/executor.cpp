@@ -45,7 +45,7 @@ void spin(RclContext & context, const RclNode & node, Kind & kind, const Interru
   while (true) {
     wait_set.wait();
     if (wait_set.has_request()) {
-      throw std::runtime_error("a request has come, and this node serves none");
+      throw std::runtime_error("unexpected request to a parameter service of this node");
     }
     if (is_interrupted()) {
       return;

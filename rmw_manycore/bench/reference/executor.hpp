@@ -7,7 +7,7 @@
 
 namespace manycore::bench::reference {
 
-/// Calls the callbacks of `kind` in this thread, one after the other, until an interruption.
+/// Calls the callbacks of `kind` in this thread, one at a time, until an interruption.
 void spin(RclContext & context, const RclNode & node, Kind & kind, const Interruption & end);
 
 }  // namespace manycore::bench::reference

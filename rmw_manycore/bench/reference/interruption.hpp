@@ -7,12 +7,13 @@
 
 namespace manycore::bench::reference {
 
-/// Blocks SIGINT and SIGTERM in this thread and those it starts: call it before any is started.
+/// Blocks SIGINT and SIGTERM in this thread and those that it starts. Call before starting any
+/// thread.
 void block_interruptions();
-/// Whether one of the two has come.
+/// True once one of the two signals has arrived.
 bool is_interrupted();
 
-/// Triggers a guard condition when one of the two comes.
+/// Triggers a guard condition when one of the two signals arrives.
 class Interruption {
 public:
   explicit Interruption(RclContext & context);

@@ -35,7 +35,7 @@ void Kind::publish_cached(uint64_t timestamp_ns) {
 
 namespace {
 
-/// Publishes its own record in every period.
+/// Publishes its own record in each period.
 class Sensor : public Kind {
 public:
   using Kind::Kind;
@@ -43,7 +43,7 @@ public:
   void tick() override { outputs_.front().publish(system_now_ns()); }
 };
 
-/// Publishes one message for each that arrives.
+/// Publishes one message for each received one.
 class Transform : public Kind {
 public:
   using Kind::Kind;
@@ -54,7 +54,7 @@ public:
   }
 };
 
-/// Publishes once all inputs have arrived; of each the newest counts.
+/// Publishes once all inputs have arrived, with the newest message of each.
 class Fusion : public Kind {
 public:
   using Kind::Kind;
@@ -68,7 +68,7 @@ public:
   }
 };
 
-/// Publishes in every period what has arrived in it; of each input the newest counts.
+/// Publishes in each period, with the newest message of each input that has arrived in it.
 class Cyclic : public Kind {
 public:
   using Kind::Kind;
@@ -77,7 +77,7 @@ public:
   void tick() override { publish_cached(system_now_ns()); }
 };
 
-/// As many transforms in one node: the first input has the first output, and so on.
+/// Several transforms in one node: the first input leads to the first output, and so on.
 class Intersection : public Kind {
 public:
   using Kind::Kind;
@@ -88,7 +88,7 @@ public:
   }
 };
 
-/// Prints the path and the statistics of what arrives.
+/// Prints path and statistics of the received messages.
 class Command : public Kind {
 public:
   Command(RclNode & node, const Settings & settings) : Kind(node, settings), path_(settings.name) {}

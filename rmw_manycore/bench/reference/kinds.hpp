@@ -12,6 +12,7 @@
 
 namespace manycore::bench::reference {
 
+/// Parameters of a node of the reference system.
 struct Settings {
   std::string name;
   std::string kind;
@@ -32,15 +33,15 @@ public:
   virtual ~Kind() = default;
 
   std::deque<Input> & inputs() { return inputs_; }
-  /// Of the timer, where the kind has one.
+  /// Timer period, if the kind has a timer.
   virtual std::optional<std::chrono::milliseconds> period() const { return std::nullopt; }
 
-  /// Messages of the input were taken: `message` is in it.
+  /// Called after a message was taken from `input`, which holds it.
   virtual void receive(size_t /*input*/) {}
   virtual void tick() {}
 
 protected:
-  /// Works, and publishes what the inputs have cached; then they have nothing.
+  /// Computes, publishes the cached messages of the inputs, and clears the cache.
   void publish_cached(uint64_t timestamp_ns);
 
   const Settings settings_;
@@ -48,7 +49,7 @@ protected:
   std::deque<Output> outputs_;
 };
 
-/// By the name in `settings.kind`, with the rules of ros-realtime/reference-system.
+/// Creates the kind named `settings.kind`, with the rules of ros-realtime/reference-system.
 std::unique_ptr<Kind> make_kind(RclNode & node, const Settings & settings);
 
 }  // namespace manycore::bench::reference

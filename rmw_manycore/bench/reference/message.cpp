@@ -45,7 +45,7 @@ bool is_of(const Record & record, const Record & other) {
   return std::memcmp(record.node_name, other.node_name, sizeof(record.node_name)) == 0;
 }
 
-/// Beyond the array that the smallest message declares.
+/// The payload extends beyond the array that the smallest message declares.
 int64_t * words_of(Message & message) {
   return reinterpret_cast<int64_t *>(
     reinterpret_cast<std::byte *>(&message) + offsetof(Message, data));

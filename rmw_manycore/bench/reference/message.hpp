@@ -9,8 +9,8 @@
 #include <cstdint>
 #include <string>
 
-/// The messages of the reference system: records of the nodes that they passed, and a payload. All
-/// sizes begin alike, so what is here knows one of them and the bytes of the payload.
+/// Messages of the reference system: records of the nodes they passed, and a payload. All sizes
+/// have the same beginning, so this code uses one type and the number of payload bytes.
 namespace manycore::bench::reference {
 
 using Message = manycore_reference_msgs__msg__Message4kb;
@@ -18,6 +18,7 @@ using Record = manycore_reference_msgs__msg__TransmissionStats;
 
 constexpr uint64_t max_records = manycore_reference_msgs__msg__Message4kb__STATS_CAPACITY;
 
+/// Type support and size of a message type.
 struct MessageType {
   const rosidl_message_type_support_t * support;
   size_t bytes;
@@ -25,7 +26,7 @@ struct MessageType {
   size_t payload_words() const { return (bytes - offsetof(Message, data)) / sizeof(int64_t); }
 };
 
-/// By its full name, as "manycore_reference_msgs/msg/Message4kb".
+/// Type by full name, such as "manycore_reference_msgs/msg/Message4kb".
 MessageType message_type(const std::string & name);
 
 uint64_t system_now_ns();
@@ -33,17 +34,17 @@ uint64_t system_now_ns();
 void add_record(
   Message & message, const std::string & name, uint64_t timestamp_ns, uint32_t sequence,
   uint32_t dropped);
-/// Takes over the records of nodes that `message` has none of.
+/// Copies the records of nodes that `message` has no record of.
 void merge_records(Message & message, const Message & source);
-/// The number that the sender gave to the message: its record is the last one.
+/// Sequence number given by the sender, whose record is the last one.
 uint32_t sequence_of(const Message & message);
 
-/// `data` holds the result of the callback's work, a checksum, and the words that it sums up.
+/// `data` holds the result of the callback's work, a checksum, and the words it sums.
 void write_payload(Message & message, const MessageType & type, uint32_t sequence);
-/// Throws unless the payload adds up.
+/// Throws if the checksum does not match.
 void check_payload(const Message & message, const MessageType & type, const std::string & topic);
 
-/// Counts the numbers that are missing in a sequence, from the first that comes.
+/// Counts missing sequence numbers, starting with the first one received.
 class Gaps {
 public:
   uint32_t before(uint32_t sequence) {

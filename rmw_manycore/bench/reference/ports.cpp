@@ -14,10 +14,11 @@ namespace manycore::bench::reference {
 
 namespace {
 
-// Losses are said at most so often, so that saying them costs a flooded node little.
+// Rate limit of loss reports, so that they cost a flooded node little.
 constexpr uint64_t losses_said_every_ns = 100'000'000;
-// KEEP_ALL blocks for a while and then refuses; subscribers that do not take for so long are gone.
-constexpr std::chrono::seconds patience{20};
+// KEEP_ALL blocks for a while and then refuses; subscribers that have not taken for this long are
+// dead.
+constexpr std::chrono::seconds timeout{20};
 
 rmw_qos_profile_t qos_of(size_t depth) {
   rmw_qos_profile_t qos = rmw_qos_profile_default;
@@ -101,10 +102,10 @@ void Output::fill(
   ++sequence_;
 }
 
-/// A publisher that keeps all is refused while there is no room; the message stays with it.
+/// A KEEP_ALL publisher refuses messages while there is no room; the message stays with the caller.
 template<typename Publish>
 void Output::until_published(Publish publish) {
-  const auto deadline = std::chrono::steady_clock::now() + patience;
+  const auto deadline = std::chrono::steady_clock::now() + timeout;
   rcl_ret_t status = publish();
   while (status != RCL_RET_OK && options_.depth == 0 && !is_interrupted() &&
          std::chrono::steady_clock::now() < deadline) {

@@ -9,13 +9,14 @@
 
 namespace manycore::bench::reference {
 
+/// Parameters of inputs and outputs.
 struct PortOptions {
   MessageType type;
-  bool is_checked;  // write and sum up the payload
+  bool is_checked;  // write and verify the payload
   size_t depth;     // 0 = keep all
 };
 
-/// A message of this process's own memory.
+/// A message in this process's private memory.
 class OwnMessage {
 public:
   explicit OwnMessage(size_t bytes) : words_((bytes + 7) / 8) {}
@@ -25,18 +26,18 @@ private:
   std::vector<uint64_t> words_;
 };
 
-/// A subscription with the last message that came. `missed` follows the messages that the node
-/// works on, what is said to be lost all of them.
+/// A subscription with the last message received. missed() counts gaps among the messages that the
+/// node processes; reported losses count gaps among all messages.
 class Input {
 public:
   Input(RclNode & node, std::string topic, const PortOptions & options);
 
   const rcl_subscription_t & subscription() const { return subscription_; }
-  /// False if there was none.
+  /// False if there was no message.
   bool take();
   const Message & message() { return message_.get(); }
   uint32_t missed() { return processed_.before(sequence_of(message_.get())); }
-  /// Prints how many messages never arrived, unless all did.
+  /// Prints the number of lost messages, unless there are none.
   void say_losses();
 
   bool is_cached = false;
@@ -52,13 +53,13 @@ private:
   uint64_t said_ns_ = 0;
 };
 
-/// A publisher; its messages are lent by the middleware where that lends them.
+/// A publisher that uses loaned messages if the middleware supports them.
 class Output {
 public:
   Output(
     RclNode & node, std::string node_name, const std::string & topic, const PortOptions & options);
 
-  /// Publishes the records of all sources, and one of this node behind them.
+  /// Publishes the records of all sources, followed by a record of this node.
   void publish(
     uint64_t timestamp_ns, const std::vector<Input *> & sources = {}, int64_t result = 0);
 

@@ -15,7 +15,7 @@ constexpr std::array hot_path_nodes = {
   "FrontLidarDriver", "RearLidarDriver", "PointsTransformerFront",   "PointsTransformerRear",
   "PointCloudFusion", "RayGroundFilter", "EuclideanClusterDetector", "ObjectCollisionEstimator"};
 constexpr auto * planner_name = "BehaviorPlanner";
-// The first messages are not counted: nodes are still starting.
+// The first messages are not counted, because nodes are still starting.
 constexpr unsigned uncounted = 9;
 constexpr double ns_per_ms = 1e6;
 constexpr auto * rule = "----------------------------------------------------------";

@@ -10,12 +10,12 @@
 
 namespace manycore::bench::reference {
 
-/// What a command node prints of each message: its path, and the statistics of all so far.
+/// Report of a command node for each message: its path, and statistics of all messages so far.
 class SamplePath {
 public:
   explicit SamplePath(std::string node_name) : node_name_(std::move(node_name)) {}
 
-  /// Takes a message into account, and returns the text to print of it.
+  /// Adds a message and returns the report.
   std::string add(const Message & message, uint64_t timestamp_ns, uint32_t missed);
 
 private:

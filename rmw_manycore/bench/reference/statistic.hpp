@@ -10,8 +10,8 @@
 
 namespace manycore::bench::reference {
 
-/// Smallest, largest, average and deviation of what was added so far (Welford), in the text format
-/// of the reference system's reports.
+/// Minimum, maximum, mean and deviation of the values added so far (Welford), formatted as in the
+/// reference system's reports.
 class Statistic {
 public:
   explicit Statistic(std::string suffix = "") : suffix_(std::move(suffix)) {}
@@ -37,7 +37,7 @@ public:
 private:
   std::string shown(double value) const {
     char digits[32];
-    // The deviation of a single value is nan; its sign means nothing.
+    // The deviation of a single value is nan, and its sign is meaningless.
     std::snprintf(digits, sizeof(digits), "%g", std::isnan(value) ? std::abs(value) : value);
     return digits + suffix_;
   }

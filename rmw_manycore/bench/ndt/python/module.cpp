@@ -1,5 +1,5 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-// What only benches of the scan matcher use; maps, options and results are those of _ndt.
+// Bindings used only by benches of the scan matcher; maps, options and results are those of _ndt.
 
 #include <nanobind/nanobind.h>
 #include <nanobind/stl/vector.h>
