@@ -1,9 +1,9 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #
-# Messages, services and actions that PyPI has no wheels of, from their published definitions in
-# interfaces/: one Python package each, and its libraries.
+# Messages, services and actions for which PyPI has no wheels, built from their published
+# definitions in interfaces/: one Python package each, with its libraries.
 #
-# In a sourced ROS 2 install they are packages of the system.
+# A sourced ROS 2 install provides them as packages of its own.
 if(DEFINED ENV{AMENT_PREFIX_PATH} AND NOT SKBUILD)
   return()
 endif()
@@ -24,14 +24,14 @@ if(generators_missing)
   return()
 endif()
 
-# manycore_interfaces(PACKAGE): everything in interfaces/PACKAGE. rosidl_typesupport_c loads the
-# libraries by their names.
+# manycore_interfaces(PACKAGE): builds everything in interfaces/PACKAGE. rosidl_typesupport_c loads
+# the libraries by name.
 function(manycore_interfaces package)
   set(source ${CMAKE_CURRENT_SOURCE_DIR}/interfaces/${package})
   set(root ${CMAKE_CURRENT_BINARY_DIR}/interfaces)
   file(GLOB_RECURSE definitions CONFIGURE_DEPENDS
     ${source}/*.msg ${source}/*.srv ${source}/*.action)
-  # At configure time: what the generators write is known only afterwards.
+  # At configure time, because the generated file names are known only afterwards.
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS
     ${definitions} ${generator} ${generators})
   execute_process(COMMAND ${Python_EXECUTABLE} ${generator} ${source} ${root} ${ros_prefix}
@@ -57,7 +57,7 @@ function(manycore_interfaces package)
   install(DIRECTORY ${root}/rosidl_generator_py/${package} DESTINATION ${MANYCORE_SITE_PACKAGES}
     FILES_MATCHING PATTERN "*.py")
 
-  # What tools look up in the ament index: the package, its definitions, their hashes.
+  # Entries of the ament index: the package, its definitions and their hashes.
   set(share ${MANYCORE_PREFIX}/share)
   set(index ${share}/ament_index/resource_index)
   set(names "")
@@ -76,7 +76,7 @@ function(manycore_interfaces package)
   endforeach()
 endfunction()
 
-# In the scope of manycore_interfaces.
+# Called by manycore_interfaces, in its scope.
 macro(manycore_generated_sources variable generator)
   set(generated ${root}/${generator}/${package})
   file(GLOB_RECURSE ${variable} ${generated}/*.c ${generated}/*.cpp)
@@ -84,8 +84,8 @@ endmacro()
 
 macro(manycore_interface_target target kind)
   target_compile_features(${target} PRIVATE cxx_std_17)
-  # Many small files that each spend their time on the same headers; one kind of them defines the
-  # same names in each.
+  # Many small files that include the same headers. The description files define the same names in
+  # each, so they are excluded.
   set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 16)
   set(descriptions ${sources})
   list(FILTER descriptions INCLUDE REGEX "__description\\.c$")
@@ -109,9 +109,9 @@ endmacro()
 
 foreach(package
     autoware_adapi_v1_msgs autoware_control_msgs autoware_internal_debug_msgs
-    autoware_internal_localization_msgs autoware_map_msgs autoware_planning_msgs
-    autoware_vehicle_msgs composition_interfaces manycore_reference_msgs tf2_msgs
-    tier4_control_msgs tier4_external_api_msgs tier4_localization_msgs tier4_vehicle_msgs
+    autoware_internal_localization_msgs autoware_map_msgs autoware_msgs autoware_planning_msgs
+    autoware_vehicle_msgs composition_interfaces manycore_reference_msgs manycore_ros_lite_msgs
+    tf2_msgs tier4_control_msgs tier4_external_api_msgs tier4_localization_msgs tier4_vehicle_msgs
     whill_msgs)
   manycore_interfaces(${package})
 endforeach()

@@ -1,6 +1,6 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #
-# Programs in Python: short scripts that start the `main` of a module, wherever that lies.
+# Python programs: short scripts that call `main` of a module.
 
 # manycore_program(NAME MODULE DIRECTORY): <prefix>/DIRECTORY/NAME
 function(manycore_program name module directory)
@@ -9,7 +9,7 @@ function(manycore_program name module directory)
   install(PROGRAMS ${script} DESTINATION ${MANYCORE_PREFIX}/${directory})
 endfunction()
 
-# The examples, for `ros2 run`, launch files and mapfiles: package rmw_manycore, executable talker.
+# Examples for `ros2 run`, launch files and mapfiles: package rmw_manycore, executable talker.
 file(GLOB example_files CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/rmw_manycore_py/examples/*.py)
 foreach(file IN LISTS example_files)
   file(STRINGS ${file} has_main REGEX "^def main\\(")
@@ -19,12 +19,12 @@ foreach(file IN LISTS example_files)
   endif()
 endforeach()
 
-# pip writes the command line tool itself, with the interpreter it is for.
+# pip generates the command line tool itself, for its own interpreter.
 if(NOT SKBUILD)
   manycore_program(manycore rmw_manycore_py.cli bin)
 endif()
 
-# pip also writes the metadata by which `ros2` and `ros2 launch` find what extends them.
+# pip also generates the entry points by which `ros2` and `ros2 launch` find extensions.
 if(NOT SKBUILD)
   file(READ ${CMAKE_CURRENT_SOURCE_DIR}/pyproject.toml settings)
   string(REGEX MATCHALL "\\[project\\.entry-points[^[]*" groups "${settings}")

@@ -1,6 +1,6 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #
-# Finds nanobind and defines `manycore_binding`, where it is found.
+# Finds nanobind and, if it is installed, defines `manycore_binding`.
 
 find_package(Python 3.10 REQUIRED COMPONENTS Interpreter Development.Module)
 execute_process(COMMAND ${Python_EXECUTABLE} -m nanobind --cmake_dir

@@ -1,9 +1,10 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #
-# Defines `manycore_ros`: the headers and libraries of the user's ROS 2.
+# Defines `manycore_ros`: headers and libraries of the user's ROS 2.
 #
-# In a sourced ROS 2 install (as under colcon) the packages are found as ament exports them. The
-# wheels lack ament_cmake and other things that their exports refer to; there plain paths do.
+# In a sourced ROS 2 install (including colcon builds) packages are found by their ament exports.
+# The wheels lack ament_cmake and other dependencies of their exports, so plain paths are used
+# there.
 add_library(manycore_ros INTERFACE)
 
 set(ros_packages rmw rcutils rcpputils rosidl_runtime_c rosidl_runtime_cpp
@@ -26,8 +27,9 @@ if(DEFINED ENV{AMENT_PREFIX_PATH} AND NOT SKBUILD)
   return()
 endif()
 
-# A prefix is what holds lib/pythonX.Y/site-packages. Build front ends hand us only the latter, that
-# of the isolated build environment after that of the python which started the build.
+# A prefix is the directory with lib/pythonX.Y/site-packages. Build front ends pass only
+# site-packages: that of the isolated build environment, after that of the python that started the
+# build.
 set(ros_prefixes ${CMAKE_PREFIX_PATH} $ENV{VIRTUAL_ENV})
 if(SKBUILD)
   set(site_packages ${CMAKE_PREFIX_PATH})
@@ -51,6 +53,6 @@ endforeach()
 foreach(library IN LISTS ros_libraries)
   target_link_libraries(manycore_ros INTERFACE ${ros_prefix}/lib/lib${library}.so)
 endforeach()
-# The ROS libraries need further ones of the prefix; only the loader of the final program looks.
+# The ROS libraries depend on further libraries of the prefix, which only the final program loads.
 target_link_options(manycore_ros INTERFACE
   -Wl,--allow-shlib-undefined -Wl,-rpath-link,${ros_prefix}/lib)

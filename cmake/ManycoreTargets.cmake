@@ -1,12 +1,12 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #
-# How every native target is compiled and where it is installed.
+# Compile options and install locations of all native targets.
 
 if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
   set(CMAKE_BUILD_TYPE RelWithDebInfo CACHE STRING "Build type" FORCE)
 endif()
 
-# A wheel has two roots: site-packages, and the prefix (the "data" scheme).
+# A wheel has two roots: site-packages, and the prefix (its "data" scheme).
 if(SKBUILD)
   set(MANYCORE_PREFIX ${SKBUILD_DATA_DIR})
   set(MANYCORE_SITE_PACKAGES ${SKBUILD_PLATLIB_DIR})
@@ -19,14 +19,14 @@ else()
     FILES_MATCHING REGEX "\\.(py|pyi|json)$")
 endif()
 
-# The build tree has the layout of the installed prefix, so that everything runs from both.
+# The build tree has the layout of the installed prefix, so that everything runs from either.
 set(CMAKE_LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib)
 set(CMAKE_POSITION_INDEPENDENT_CODE ON)
-# Nothing may name the build machine; a library that needs a path sets its own $ORIGIN.
+# Nothing may refer to the build machine; a library that needs a path sets its own $ORIGIN.
 set(CMAKE_BUILD_WITH_INSTALL_RPATH ON)
 
-# Paths in messages and in debug information are those of the checkout, on whatever machine. ccache
-# may hand the compiler relative paths.
+# Makes paths in messages and debug information relative to the checkout. ccache may pass relative
+# paths to the compiler.
 file(RELATIVE_PATH source_from_build ${CMAKE_BINARY_DIR} ${CMAKE_SOURCE_DIR})
 string(REGEX REPLACE "/+$" "" source_from_build "${source_from_build}")
 add_compile_options(
@@ -62,7 +62,7 @@ function(manycore_executable name)
   target_link_libraries(${name} PRIVATE manycore_options)
 endfunction()
 
-# Puts a target under <prefix>/lib/rmw_manycore, out of the way of linkers and PATH.
+# Installs a target under <prefix>/lib/rmw_manycore, where linkers and PATH do not find it.
 function(manycore_install_private name subdirectory)
   set(private lib/rmw_manycore/${subdirectory})
   set_target_properties(${name} PROPERTIES

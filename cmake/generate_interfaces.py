@@ -1,8 +1,8 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Generate C and Python for the interfaces of one package, with ROS 2's generators.
+"""Generate C and Python code for the interfaces of one package, with the generators of ROS 2.
 
-Called by ManycoreInterfaces.cmake, with the directory of the package's definitions, the directory
-for what is generated, and the prefix of the ROS 2 wheels.
+Called by ManycoreInterfaces.cmake with the directory of the definitions, the output directory, and
+the prefix of the ROS 2 wheels.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
-# The package is being built and not installed yet; of it this module needs only what rosidl has.
+# The package is not installed yet while it is being built; this module only needs rosidl.
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 from rmw_manycore_py.interfaces import generator

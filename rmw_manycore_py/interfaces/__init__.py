@@ -1,4 +1,4 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Interface packages of the user: from definitions to packages that Python imports."""
+"""Builds the user's interface packages from definitions, for import in Python."""
 
 from __future__ import annotations

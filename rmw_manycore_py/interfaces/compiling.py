@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""From generated sources to the libraries and the Python module of a package."""
+"""Compiles generated sources to the libraries and the Python module of a package."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from rmw_manycore_py.interfaces.generator import PYTHON, TYPE_SUPPORTS
 from rmw_manycore_py.interfaces.jobs import Job, usable_cpus
 from rmw_manycore_py.interfaces.toolchain import Toolchain
 
-# Optimising more takes half as long again and gains nothing that a message would notice.
+# -O2 takes half as long again without a measurable gain.
 _FLAGS = ("-O1", "-fPIC", "-w", "-fvisibility=default")
-# Sources are compiled together up to these sizes, of small and of large packages: the headers cost
-# more than the sources, but one unit must not keep one CPU busy after the others are done.
+# Maximum size of unity builds, for small and large packages: headers cost more than the sources,
+# but a single unit must not occupy one CPU after the others are done.
 _SMALL_UNIT_BYTES, _LARGE_UNIT_BYTES = 400_000, 1_000_000
-# Each has constants of the same names.
+# Compiled alone: each source defines constants of the same names.
 _ALONE = "__description.c"
-# Libraries in the order in which they need each other, by the generator of their sources.
+# Generators of the libraries, in link order.
 _C_LIBRARIES = ("rosidl_generator_c", *TYPE_SUPPORTS, "rosidl_typesupport_c")
 LIBRARIES = (*_C_LIBRARIES, PYTHON)
 _MODULE = "module"
@@ -27,7 +27,7 @@ _MODULE = "module"
 
 @dataclass(frozen=True)
 class Compilation:
-    """A package to compile: generated sources below `generated`, results below `prefix`."""
+    """A package to compile: sources below `generated`, results below `prefix`."""
 
     package: str
     generated: Path
@@ -35,20 +35,20 @@ class Compilation:
     toolchain: Toolchain
     dependencies: dict[str, Path]  # install prefixes of other packages
 
-    def library(self, kind: str) -> Path:
-        """Return a library of the package: rosidl_typesupport_c and the like."""
+    def shared_object_of(self, kind: str) -> Path:
+        """Return the path of a library of the package, e.g. of rosidl_typesupport_c."""
         return self.prefix / "lib" / f"lib{self.package}__{kind}.so"
 
     @property
     def module(self) -> Path:
-        """Return the native module of the Python package."""
+        """Return the path of the extension module."""
         suffix = sysconfig.get_config_var("EXT_SUFFIX")
         name = f"{self.package}_s__rosidl_typesupport_c{suffix}"
         return self.prefix / "python" / self.package / name
 
 
 def compile_jobs(work: Compilation) -> list[Job]:
-    """Return the commands that compile everything, the longest first."""
+    """Return the compile commands, longest first."""
     jobs = []
     roots = {generator: work.generated / generator / work.package for generator in LIBRARIES}
     total = sum(source.stat().st_size for root in roots.values() for source in _sources(root))
@@ -65,7 +65,7 @@ def compile_jobs(work: Compilation) -> list[Job]:
 
 
 def link_jobs(work: Compilation) -> Iterator[list[Job]]:
-    """Yield the commands that link the libraries; each list needs those before it."""
+    """Yield groups of link commands; each group depends on the previous ones."""
     (work.prefix / "lib").mkdir(parents=True, exist_ok=True)
     generator_c, *type_supports, dispatch, python = LIBRARIES
     yield [_link_job(work, generator_c, [])]
@@ -80,7 +80,7 @@ def _sources(directory: Path) -> list[Path]:
 
 
 def _units(directory: Path, enough_bytes: int) -> Iterator[list[Path]]:
-    """Yield sources to compile together: of one language, and of one of msg, srv and action."""
+    """Yield sources to compile together: same language, same kind (msg, srv, action)."""
     unit: list[Path] = []
     size = 0
     for file in _sources(directory):
@@ -109,22 +109,22 @@ def _compile_job(work: Compilation, unit: Path, sources: Sequence[Path]) -> Job:
 
 
 def _link_job(work: Compilation, kind: str, own: Iterable[str]) -> Job:
-    library = work.library(kind)
+    library = work.shared_object_of(kind)
     others = [prefix / "lib" / f"lib{n}__{kind}.so" for n, prefix in work.dependencies.items()]
-    libraries = [*(work.library(name) for name in own), *filter(Path.exists, others)]
-    # The loader looks beside the library, then among the packages built by the user, once those
-    # of the wheels and of LD_LIBRARY_PATH are found wanting.
+    libraries = [*(work.shared_object_of(name) for name in own), *filter(Path.exists, others)]
+    # Search beside the library, then among the user's built packages, after the wheels and
+    # LD_LIBRARY_PATH.
     flags = [f"-Wl,-soname,{library.name}", "-Wl,-rpath,$ORIGIN:$ORIGIN/../../../current/lib"]
     return _link(work, library, [_objects(work, kind)], libraries, flags)
 
 
 def _module_job(work: Compilation) -> Job:
-    """Link the Python module, which brings along what others look up by name.
+    """Link the extension module together with the libraries that are opened by name.
 
-    rosidl_typesupport_c opens the libraries of the type supports by their bare names. The loader
-    gives it those that the module has already loaded, so no search path has to lead to them.
+    rosidl_typesupport_c opens type support libraries by their bare names. The loader returns those
+    already loaded by the module, so no search path is needed.
     """
-    libraries = [work.library(kind) for kind in LIBRARIES]
+    libraries = [work.shared_object_of(kind) for kind in LIBRARIES]
     flags = ["-Wl,--no-as-needed", "-Wl,-rpath,$ORIGIN/../../lib"]
     return _link(work, work.module, [_objects(work, _MODULE)], libraries, flags)
 

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""One definition: a `.msg`, `.srv`, `.action` or `.idl` file, and the types that it refers to."""
+"""A definition (`.msg`, `.srv`, `.action` or `.idl`) and the types it refers to."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ from rmw_manycore_py.errors import DefinitionError, Problem
 
 KINDS = ("msg", "srv", "action")
 SEPARATOR = "---"
-# Names of the parts of a definition, in their order.
+# Names of the parts of a definition, in order.
 _PARTS = {
     "msg": ("",),
     "srv": ("_Request", "_Response"),
     "action": ("_Goal", "_Result", "_Feedback"),
 }
-# What the generators put into every service and action.
+# Types added by the generators to every service and action.
 _IMPLIED = {
     "msg": (),
     "srv": ("service_msgs/msg/ServiceEventInfo", "builtin_interfaces/msg/Time"),
@@ -34,7 +34,7 @@ _IMPLIED = {
         *("action_msgs/msg/GoalStatusArray", "action_msgs/srv/CancelGoal"),
     ),
 }
-# In generated C and C++ a field has the name that the definition gives it.
+# Keywords that cannot be field names in generated C and C++.
 _C_WORDS = frozenset(
     {
         *("alignas", "alignof", "asm", "auto", "bool", "break", "case", "catch", "char", "class"),
@@ -57,7 +57,7 @@ class Definition:
 
     name: str  # package/msg/Name
     file: Path
-    references: dict[str, int]  # types in it, and the line of the first of them; 0: implied
+    references: dict[str, int]  # types by first line; 0: implied
 
     @property
     def kind(self) -> str:
@@ -66,13 +66,13 @@ class Definition:
 
 
 def read_definition(file: Path, package: str) -> Definition:
-    """Read a definition; the name of its folder is its kind.
+    """Read a definition; its directory name is its kind.
 
-    :raises DefinitionError: with file and line of what is wrong.
+    :raises DefinitionError: with file and line.
     """
     kind, name = file.parent.name, file.stem
     if file.suffix not in (f".{kind}", ".idl"):
-        raise _error(file, 0, name, f"a .{kind} or .idl file in a folder '{kind}'", file.name)
+        raise _error(file, 0, name, f"a .{kind} or .idl file in a directory '{kind}'", file.name)
     if not is_valid_message_name(name) or "_" in name:
         raise _error(file, 0, name, "a name such as PoseStamped", f"'{name}'")
     try:
@@ -110,7 +110,7 @@ def _references(file: Path, full_name: str, text: str) -> dict[str, int]:
 def _fields(
     file: Path, package: str, name: str, lines: list[str], start: int
 ) -> Iterator[tuple[Any, int]]:
-    """Yield the fields of one part of a definition and their lines, counted from 1."""
+    """Yield the fields of one part of a definition with their lines, counted from 1."""
     message = _parsed(file, package, name, lines, start)
     for field in message.fields:
         pattern = re.compile(rf"\s*\S+\s+{field.name}\b")
@@ -122,14 +122,14 @@ def _fields(
 
 
 def _parsed(file: Path, package: str, name: str, lines: list[str], start: int) -> Any:
-    """Return what rosidl makes of a part; as it tells no lines, an error is looked for by line."""
+    """Parse a part with rosidl; on failure, find the line by parsing prefixes."""
     error = None
     for end in (len(lines), *range(1, len(lines) + 1)):
         try:
             with contextlib.redirect_stderr(io.StringIO()):
                 message = parse_message_string(package, name, "\n".join(lines[:end]))
-        except Exception as wrong:  # of a dozen kinds
-            if error is not None:  # up to here, and not before
+        except Exception as wrong:  # rosidl raises many types
+            if error is not None:  # the first prefix that fails
                 text = lines[end - 1].strip()
                 found = f"'{text}'" if str(wrong) in text else f"'{text}': {wrong}"
                 raise _error(file, start + end, "", "a field or a constant", found) from wrong
@@ -146,7 +146,7 @@ def _idl_references(file: Path, full_name: str, text: str) -> dict[str, int]:
 
     try:
         content = parse_idl_string(text)
-    except Exception as error:  # those of lark know the line
+    except Exception as error:  # lark errors have a line
         line = max(getattr(error, "line", 0) or 0, 0)
         raise _error(file, line, "", "IDL 4.2", str(error).splitlines()[0]) from error
     messages = list(content.get_elements_of_type(Message))
@@ -170,7 +170,7 @@ def _idl_references(file: Path, full_name: str, text: str) -> dict[str, int]:
 
 
 def _line_of(text: str, name: str) -> int:
-    """Return the first line that names a type, 0 if there is none."""
+    """Return the first line that names a type; 0 if there is none."""
     return text[: text.find(name)].count("\n") + 1 if name in text else 0
 
 

@@ -1,10 +1,10 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Runs the generators of rosidl; a program of its own, as they keep state and print.
+"""Runs the generators of rosidl, as a separate program since they keep state and print.
 
     python -m rmw_manycore_py.interfaces.generator STEP REQUEST
 
-`describe` makes an .idl file and a description with its hash of each definition; `code` then makes
-C of some of them, `python` Python of all. REQUEST is the JSON file of a `Request`.
+`describe` writes an .idl file and a type description with hash per definition; `code` then
+generates C for some of them, `python` Python for all. REQUEST is the JSON file of a `Request`.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from rosidl_adapter.msg import convert_msg_to_idl
 from rosidl_adapter.srv import convert_srv_to_idl
 from rosidl_parser.parser import parse_idl_file
 
-# rmw_manycore and Fast DDS serialize with the first; Fast DDS describes types with the second.
+# rmw_manycore and Fast DDS serialize with the first; Fast DDS builds its types from the second.
 TYPE_SUPPORTS = ("rosidl_typesupport_fastrtps_c", "rosidl_typesupport_introspection_c")
 DESCRIPTION = "rosidl_generator_type_description"
 PYTHON = "rosidl_generator_py"
@@ -36,17 +36,17 @@ _CONVERT = {
 
 @dataclass(frozen=True)
 class Request:
-    """What to generate; what GENERATOR makes goes to `output`/GENERATOR/`package`."""
+    """What to generate; output goes to `output`/GENERATOR/`package`."""
 
     package: str
     source: str  # directory of the package
-    definitions: list[str]  # files in it: msg/Name.msg
+    definitions: list[str]  # files in `source`: msg/Name.msg
     output: str
-    share: str  # directory share/ of the generators
-    dependencies: dict[str, str]  # directories share/PACKAGE of other packages
+    share: str  # share/ directory of the generators
+    dependencies: dict[str, str]  # share/PACKAGE directories of other packages
 
     def place(self, generator: str) -> Path:
-        """Return where a generator's files of this package are."""
+        """Return the output directory of a generator."""
         return Path(self.output, generator, self.package)
 
     def idl(self) -> list[Path]:
@@ -54,12 +54,12 @@ class Request:
         return [Path(name).with_suffix(".idl") for name in self.definitions]
 
     def description(self, idl: Path) -> Path:
-        """Return the description of what an .idl file defines."""
+        """Return the path of the type description of an .idl file."""
         return self.place(DESCRIPTION) / idl.with_suffix(".json")
 
 
 def describe(request: Request) -> None:
-    """Make an .idl file and a description with its hash of each definition."""
+    """Write an .idl file and a type description with hash per definition."""
     for name in request.definitions:
         file, place = Path(request.source, name), request.place("idl") / Path(name).parent
         if file.suffix == ".idl":
@@ -74,7 +74,7 @@ def describe(request: Request) -> None:
 
 
 def generate_code(request: Request) -> None:
-    """Make the C of definitions that `describe` has described."""
+    """Generate C for definitions processed by `describe`."""
     import rosidl_generator_c
     import rosidl_typesupport_c
     import rosidl_typesupport_fastrtps_c
@@ -94,7 +94,7 @@ def generate_code(request: Request) -> None:
 
 
 def generate_python(request: Request) -> None:
-    """Make the Python package; of all definitions at once, as its modules list them."""
+    """Generate the Python package, from all definitions, since its modules list them."""
     import rosidl_generator_py.generate_py_impl
 
     rosidl_generator_py.generate_py_impl.parse_idl_file = _parsed
@@ -103,7 +103,7 @@ def generate_python(request: Request) -> None:
 
 
 def write_visibility_headers(request: Request) -> None:
-    """Write the headers that say what a library exports."""
+    """Write the headers that control symbol visibility."""
     for generator in ("rosidl_generator_c", *TYPE_SUPPORTS):
         name = f"{generator}__visibility_control.h"
         text = Path(request.share, generator, "resource", f"{name}.in").read_text()
@@ -115,7 +115,7 @@ def write_visibility_headers(request: Request) -> None:
 
 
 def _parse_once() -> None:
-    """Keep what was parsed for the next generator, which would parse it again for seconds."""
+    """Cache parsed definitions for the next generator, which would take seconds to parse them."""
     for module in (rosidl_pycommon, rosidl_generator_type_description):
         module.parse_idl_file = _parsed
 
@@ -131,7 +131,7 @@ def _parsed(locator: Any, png_file: str | None = None) -> Any:
 
 
 def _arguments(request: Request, generator: str, **more: Any) -> str:
-    """Return the file with the arguments of a generator, which is how each wants them."""
+    """Write the argument file of a generator; return its path."""
     place = request.place(generator)
     place.mkdir(parents=True, exist_ok=True)
     arguments = {
@@ -154,7 +154,7 @@ STEPS = {"describe": describe, "code": generate_code, "python": generate_python}
 
 
 def main(step: str, file: str) -> None:
-    """Take one step for the request in a file."""
+    """Run one step of the request in a file."""
     STEPS[step](Request(**json.loads(Path(file).read_text())))
 
 

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Programs that run side by side, as many at a time as there are CPUs."""
+"""Runs programs in parallel, one per CPU."""
 
 from __future__ import annotations
 
@@ -16,19 +16,19 @@ from rmw_manycore_py.parent_death import dies_with_this_process
 
 @dataclass(frozen=True)
 class Job:
-    """A command to run, and what it does, for messages."""
+    """A command, and its description for messages."""
 
     what: str
     command: Sequence[str]
 
 
 def usable_cpus() -> int:
-    """Return the number of CPUs that this process may use."""
+    """Return the number of CPUs of this process's affinity mask."""
     return len(os.sched_getaffinity(0))
 
 
 class JobError(ManycoreError):
-    """A command has failed; `output` is everything that it printed."""
+    """A command has failed; `output` is its complete output."""
 
     def __init__(self, job: Job, status: int, output: str) -> None:
         ending = f"signal {-status}" if status < 0 else f"exit status {status}"
@@ -44,8 +44,8 @@ def run_jobs(
 ) -> None:
     """Run all jobs; none of them outlives this process.
 
-    :param directory: where each finds itself, and where their output goes.
-    :param on_done: called with the number of jobs that have ended so far.
+    :param directory: working directory of the jobs, and directory of their output files.
+    :param on_done: called with the number of finished jobs.
     :raises JobError: for the first one that fails; the others are killed.
     """
     waiting = list(reversed(jobs))
@@ -93,7 +93,7 @@ def _start(
 
 
 def _summary(output: str) -> str:
-    """Return the first line that says what is wrong, or the last one of all."""
+    """Return the first line with an error, else the last line."""
     lines = [line.strip() for line in output.splitlines() if line.strip()]
     wrong = [line[line.index("error:") :] for line in lines if "error:" in line]
     return (wrong or lines[-1:] or ["it printed nothing"])[0]

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Builds one package in a directory of its own."""
+"""Builds one package in its own directory."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ from rmw_manycore_py.interfaces.jobs import Job, JobError, run_jobs, usable_cpus
 from rmw_manycore_py.interfaces.selection import Part
 from rmw_manycore_py.interfaces.toolchain import Toolchain
 
-# An action is as much work for the generators as ten messages. A process of theirs takes as long
-# to start as for the smallest batch.
+# Relative generator time per definition. Starting a generator process takes as long as the smallest
+# batch.
 _WEIGHTS = {"msg": 1, "srv": 3, "action": 10}
 _SMALLEST_BATCH = 8
 
@@ -38,10 +38,10 @@ Progress = Callable[[str], None]
 
 @dataclass(frozen=True)
 class Built:
-    """A package that was built in a directory, which is laid out as an install prefix."""
+    """A package built in a directory with the layout of an install prefix."""
 
     prefix: Path
-    dependencies: dict[str, str]  # hashes of types of other packages that it contains
+    dependencies: dict[str, str]  # hashes of contained types of other packages
 
 
 def build_package(
@@ -51,10 +51,10 @@ def build_package(
     prefixes: Mapping[str, Path],
     on_progress: Progress,
 ) -> Built:
-    """Build a package below an empty directory.
+    """Build a package in an empty directory.
 
-    :param prefixes: where the packages that it may contain types of are installed.
-    :raises DefinitionError: if a generator or a compiler refuses a definition.
+    :param prefixes: install prefixes of packages whose types it may contain.
+    :raises DefinitionError: if a generator or compiler rejects a definition.
     """
     request = _request(part, directory, toolchain, prefixes)
     build = _PackageBuild(part, request, directory, on_progress)
@@ -72,7 +72,7 @@ def build_package(
 
 
 class _PackageBuild:
-    """Generators and compilers at work on a package, with progress and errors in words."""
+    """Runs generators and compilers of a package, reporting progress and errors."""
 
     def __init__(
         self, part: Part, request: generator.Request, directory: Path, on_progress: Progress
@@ -85,7 +85,7 @@ class _PackageBuild:
         self._environment.pop("RMW_IMPLEMENTATION", None)
 
     def generate(self) -> None:
-        """Run the generators: descriptions first, as the code contains their hashes."""
+        """Run the generators: descriptions first, since the code contains their hashes."""
         everything = self._request.definitions
         self.run("reading", [self._job("describe", everything)])
         jobs = [self._job("python", everything)]
@@ -94,7 +94,7 @@ class _PackageBuild:
         generator.write_visibility_headers(self._request)
 
     def run(self, what: str, jobs: Sequence[Job]) -> None:
-        """Run jobs; an error names the definition, as far as its output tells."""
+        """Run jobs; an error names the definition if the output identifies it."""
 
         def on_done(done: int) -> None:
             self._on_progress(f"{what} ({done} of {len(jobs)})")
@@ -111,7 +111,7 @@ class _PackageBuild:
             ) from error
 
     def _blamed(self, output: str) -> Path | None:
-        """Return the definition whose generated files an output mentions first."""
+        """Return the definition whose generated files are mentioned first in an output."""
         found: dict[int, Path] = {}
         for definition in self._part.definitions:
             stem = convert_camel_case_to_lower_case_underscore(definition.file.stem)
@@ -142,7 +142,7 @@ def _request(
 
 
 def _batches(definitions: Sequence[str]) -> Iterator[list[str]]:
-    """Yield what one process generates code for, two batches for each CPU or fewer."""
+    """Yield batches of definitions, at most two per CPU."""
     weights = {name: _WEIGHTS[name.split("/")[0]] for name in definitions}
     enough = max(_SMALLEST_BATCH, sum(weights.values()) / (2 * usable_cpus()))
     batch: list[str] = []
@@ -158,7 +158,7 @@ def _batches(definitions: Sequence[str]) -> Iterator[list[str]]:
 
 
 def _dependencies(request: generator.Request) -> dict[str, str]:
-    """Return the hashes of all types of other packages, directly or not, in the descriptions."""
+    """Return the hashes of all types of other packages used directly or indirectly."""
     found: dict[str, str] = {}
     for idl in request.idl():
         for description in request.description(idl).parent.glob("*.json"):
@@ -169,7 +169,7 @@ def _dependencies(request: generator.Request) -> dict[str, str]:
 
 
 def _install(part: Part, request: generator.Request, prefix: Path) -> None:
-    """Put in place what is not compiled: Python, headers, definitions, entries of the index."""
+    """Install what is not compiled: Python, headers, definitions, index entries."""
     package = part.package
     python = request.place(generator.PYTHON)
     _copy(python, prefix / "python" / package, "*/*.py")

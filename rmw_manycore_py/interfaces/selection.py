@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Which definitions are built, in which order, and what they need of packages that exist."""
+"""Selects the definitions to build, their order, and their dependencies."""
 
 from __future__ import annotations
 
@@ -16,32 +16,32 @@ from rmw_manycore_py.interfaces.definition import Definition
 from rmw_manycore_py.interfaces.sources import Source
 from rmw_manycore_py.ros import ament
 
-# Structures that the generators make of a definition: messages, requests, responses, events.
+# Structures generated per definition: messages, requests, responses, events.
 _STRUCTURES = {"msg": 1, "srv": 3, "action": 10}
 
 
 @dataclass(frozen=True)
 class Part:
-    """What is built of one package."""
+    """Part of a package to build."""
 
     package: str
     directory: Path
     definitions: tuple[Definition, ...]
-    available: int  # definitions of the whole package
-    needed: frozenset[str]  # packages that definitions refer to
-    share_of_code: float  # of what the generators would make of the whole package
+    available: int  # number of definitions in the package
+    needed: frozenset[str]  # packages referred to
+    share_of_code: float  # of the code of the whole package
 
     @property
     def is_whole(self) -> bool:
-        """Tell whether nothing of the package is left out."""
+        """Return whether the whole package is built."""
         return len(self.definitions) == self.available
 
 
 def select(sources: Mapping[str, Source], only: Collection[str]) -> list[Part]:
-    """Return what to build of the sources, packages that others need first.
+    """Return what to build of the sources, in dependency order.
 
-    :param only: types; these and what they refer to. Empty: all.
-    :raises DefinitionError: for references to types that are nowhere, and cycles.
+    :param only: build these types and their dependencies; empty: all.
+    :raises DefinitionError: for references to unknown types, and for cycles.
     """
     types = _Types(sources)
     chosen = _closure(types, only) if only else set(types.local)
@@ -59,16 +59,16 @@ def select(sources: Mapping[str, Source], only: Collection[str]) -> list[Part]:
 
 
 class _Types:
-    """Where each type is defined."""
+    """Location of each type's definition."""
 
     def __init__(self, sources: Mapping[str, Source]) -> None:
         self.sources = sources
         self.local = {n: d for source in sources.values() for n, d in source.definitions.items()}
 
     def is_local(self, user: str, name: str) -> bool:
-        """Tell whether the definition of a type that `user` contains is one of the sources.
+        """Return whether a type used by `user` is taken from the sources.
 
-        A package that is installed wins when programs run, so it is what others are built with.
+        An installed package takes precedence at run time, so it is also used for building.
         """
         package = name.split("/")[0]
         if package == user.split("/")[0]:
@@ -76,7 +76,7 @@ class _Types:
         return name in self.local and not ament.is_installed(package)
 
     def exists(self, user: str, name: str) -> bool:
-        """Tell whether a type that `user` contains is defined anywhere."""
+        """Return whether a type used by `user` is defined anywhere."""
         return name in self.local if self.is_local(user, name) else hash_of(name) is not None
 
 
@@ -97,7 +97,7 @@ def _closure(types: _Types, only: Collection[str]) -> set[str]:
 
 
 def _references(types: _Types, name: str) -> list[str]:
-    """Return those of a type's references that are to be built, too."""
+    """Return the references of a type that have to be built, too."""
     found = types.local[name].references
     return [other for other in found if types.is_local(name, other) and other in types.local]
 
@@ -116,7 +116,7 @@ def _missing(types: _Types, chosen: Collection[str]) -> Iterator[Problem]:
 
 
 def _cycles(graph: Mapping[str, list[str]], types: _Types) -> list[Problem]:
-    """Return what closes a cycle of types, or else of packages."""
+    """Return the edges that close a cycle of types or packages."""
     edges: dict[tuple[str, str], tuple[Definition, int]] = {}
     packages: dict[str, set[str]] = {}
     for name, others in graph.items():
@@ -171,7 +171,7 @@ def _order(parts: Mapping[str, Part]) -> Iterable[str]:
 
 
 def _check_name(package: str, part: Part) -> None:
-    """Refuse the name of a Python module that is not a package of interfaces."""
+    """Raise an error if the package name is that of a Python module without interfaces."""
     if ament.interfaces(package):
         return
     spec = importlib.util.find_spec(package)

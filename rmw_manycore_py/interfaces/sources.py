@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Packages of definitions among the files of the user."""
+"""Finds packages of definitions in the user's directories."""
 
 from __future__ import annotations
 
@@ -16,33 +16,33 @@ from rmw_manycore_py.errors import EXIT_BAD_INPUT, DefinitionError, ManycoreErro
 from rmw_manycore_py.interfaces.definition import KINDS, Definition, read_definition
 
 _SUFFIXES = {*(f".{kind}" for kind in KINDS), ".idl"}
-# As colcon has it: nothing below a folder with such a file is a package.
+# As in colcon: directories with such a file are skipped with their subdirectories.
 _IGNORED = ("COLCON_IGNORE", "AMENT_IGNORE")
-# First line of an .idl file that was made of a .msg, .srv or .action file beside it.
+# First line of an .idl file converted from a .msg, .srv or .action file beside it.
 _CONVERTED = "// generated from rosidl_adapter/"
 
 
 @dataclass(frozen=True)
 class Source:
-    """A package of definitions, by the names of its types."""
+    """Definitions of a package, by type name."""
 
     package: str
     directory: Path
     definitions: dict[str, Definition]
-    available: int  # definitions of the whole package, of which some may have been left out
+    available: int  # number of definitions in the package, possibly more than selected
 
 
 def find_sources(paths: Iterable[Path]) -> dict[str, Source]:
-    """Return the packages at and below paths, by name.
+    """Return the packages in and below paths, by name.
 
-    :raises DefinitionError: for everything that is wrong in any of them.
+    :raises DefinitionError: with all problems found.
     """
     found: dict[str, Source] = {}
     problems: list[Problem] = []
     for path in paths:
         directories = list(_package_directories(path.resolve()))
         if not directories:
-            expected = "expected an interface package, or a folder pkg/{msg,srv,action}"
+            expected = "expected an interface package, or a directory pkg/{msg,srv,action}"
             raise ManycoreError(f"{path}: {expected}, found no definitions", EXIT_BAD_INPUT)
         for directory in directories:
             try:
@@ -87,7 +87,7 @@ def _texts(source: Source) -> dict[str, bytes]:
 
 
 def _alike(definitions: Iterable[Definition]) -> Iterator[Problem]:
-    """Yield types whose generated files would have one name: FooBAR and FooBar."""
+    """Yield types whose generated files would have the same name: FooBAR and FooBar."""
     seen: dict[tuple[str, str], Definition] = {}
     for definition in definitions:
         stem = convert_camel_case_to_lower_case_underscore(definition.file.stem)
@@ -99,7 +99,9 @@ def _alike(definitions: Iterable[Definition]) -> Iterator[Problem]:
 
 def _package_directories(path: Path) -> Iterator[Path]:
     if not path.is_dir():
-        raise ManycoreError(f"{path}: expected a folder, found no such folder", EXIT_BAD_INPUT)
+        raise ManycoreError(
+            f"{path}: expected a directory, found no such directory", EXIT_BAD_INPUT
+        )
     for name, directories, files in os.walk(path):
         directory = Path(name)
         if any(ignored in files for ignored in _IGNORED):

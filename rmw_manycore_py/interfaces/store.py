@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The directory that built packages are kept in, and how a package gets into it at once or not.
+"""Directory of built packages, with atomic updates.
 
 lock                    held by the one build or removal at a time
 building/               what builds work in; leftovers of killed ones
@@ -28,12 +28,12 @@ _INDEX = "share/ament_index/resource_index"
 
 @dataclass(frozen=True)
 class Manifest:
-    """What is known of a built package."""
+    """Description of a built package."""
 
     package: str
-    digest: str  # of everything that decides what is built
+    digest: str  # hash of all inputs of the build
     types: list[str]
-    available: int  # definitions of the whole package
+    available: int  # number of definitions in the package
     dependencies: dict[str, str]  # hashes of the types of other packages, by name
     source: str
     built: str  # local time, ISO 8601
@@ -41,20 +41,20 @@ class Manifest:
 
     @property
     def is_whole(self) -> bool:
-        """Tell whether nothing of the package was left out."""
+        """Return whether the whole package was built."""
         return len(self.types) == self.available
 
 
 class Store:
-    """The packages built for this Python; changes to them are made under `locked()`."""
+    """Packages built for this Python; modified only under `locked()`."""
 
     def __init__(self) -> None:
         self.directory = Path(own_directory())
 
     @contextmanager
     def locked(self, on_wait: Callable[[], None]) -> Iterator[None]:
-        """Be the only build; call `on_wait` if another one is at it, and wait for its end."""
-        with self._writing():  # an error may also name what lies above the directory
+        """Hold the build lock; call `on_wait` before waiting for another build."""
+        with self._writing():  # parent directories may be unwritable, too
             self.directory.mkdir(parents=True, exist_ok=True)
             lock = (self.directory / "lock").open("w")
         with lock:
@@ -68,38 +68,38 @@ class Store:
                 yield
 
     def packages(self) -> dict[str, Manifest]:
-        """Return the packages that programs see, by name."""
+        """Return the visible packages, by name."""
         files = sorted(self.directory.glob(f"current/share/*/{MANIFEST}"))
         manifests = (Manifest(**json.loads(file.read_text())) for file in files)
         return {manifest.package: manifest for manifest in manifests}
 
     def entry(self, package: str, digest: str) -> Path:
-        """Return where a complete package is, or will be: an install prefix of its own."""
+        """Return the install prefix of a complete package, present or future."""
         return self.directory / "store" / f"{package}-{digest}"
 
     def has(self, package: str, digest: str) -> bool:
-        """Tell whether a package was built completely, whether programs see it or not."""
+        """Return whether a package is complete, visible or not."""
         return (self.entry(package, digest) / "share" / package / MANIFEST).is_file()
 
     def new_directory(self) -> Path:
-        """Return an empty directory to build in; it is gone when the next build begins."""
+        """Return an empty build directory; the next build removes it."""
         building = self.directory / "building"
         building.mkdir(exist_ok=True)
         return Path(tempfile.mkdtemp(dir=building))
 
     def add(self, directory: Path, manifest: Manifest) -> Path:
-        """Move a built package to the complete ones, where programs do not see it yet."""
+        """Move a built package into the store, not visible yet."""
         file = directory / "share" / manifest.package / MANIFEST
         file.write_text(json.dumps(asdict(manifest), indent=1))
         entry = self.entry(manifest.package, manifest.digest)
         entry.parent.mkdir(exist_ok=True)
-        if entry.exists():  # without a manifest, so not by this function
+        if entry.exists():  # incomplete: it has no manifest
             shutil.rmtree(entry)
         directory.rename(entry)
         return entry
 
     def show(self, digests: Mapping[str, str]) -> None:
-        """Let programs see these complete packages and no others, all in one moment."""
+        """Make exactly these complete packages visible, atomically."""
         views = self.directory / "views"
         views.mkdir(exist_ok=True)
         view = Path(tempfile.mkdtemp(dir=views))
@@ -113,7 +113,7 @@ class Store:
         self._keep("store", {f"{package}-{digest}" for package, digest in digests.items()})
 
     def _remove_leftovers(self) -> None:
-        """Remove what killed builds and replaced views leave."""
+        """Remove leftovers of killed builds and replaced views."""
         current = self.directory / "current"
         self._keep("building", ())
         self._keep("views", [Path(os.readlink(current)).name] if current.is_symlink() else ())
@@ -135,7 +135,7 @@ class Store:
                 raise
             raise ManycoreError(
                 f"{error.filename}: cannot be written: {error.strerror}; set {DIRECTORY_VARIABLE} "
-                "to a folder where built packages can be kept"
+                "to a writable directory for built packages"
             ) from error
 
 

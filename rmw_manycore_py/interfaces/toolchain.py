@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What generated code is compiled with: compilers, headers and libraries of this environment."""
+"""Compilers, headers and libraries for generated code."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from pathlib import Path
 from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.ros import ament
 
-# Packages whose headers generated code includes, and libraries that it is linked with.
+# Packages whose headers are included by generated code, and libraries it is linked with.
 _HEADERS = (
     *("rcutils", "rmw", "rosidl_dynamic_typesupport", "rosidl_runtime_c", "rosidl_runtime_cpp"),
     *("rosidl_typesupport_c", "rosidl_typesupport_fastrtps_c", "rosidl_typesupport_fastrtps_cpp"),
@@ -29,7 +29,7 @@ _LIBRARIES = (
 
 @dataclass(frozen=True)
 class Toolchain:
-    """Compilers, as the first words of a command, and the prefix of ROS."""
+    """Compiler commands and the prefix of ROS."""
 
     c: tuple[str, ...]
     cpp: tuple[str, ...]
@@ -39,18 +39,18 @@ class Toolchain:
 
     @property
     def includes(self) -> list[Path]:
-        """Return where generated code finds the headers of ROS."""
+        """Return the include directories of ROS."""
         root = self.ros / "include"
         return [root, *(root / package for package in _HEADERS if (root / package).is_dir())]
 
     @property
     def libraries(self) -> list[Path]:
-        """Return the libraries of ROS that generated code is linked with."""
+        """Return the ROS libraries to link with."""
         return [self.ros / "lib" / f"lib{name}.so" for name in _LIBRARIES]
 
 
 def find_toolchain() -> Toolchain:
-    """Find everything that a build needs; what is missing is an error that says how to get it."""
+    """Find everything a build needs; raise ManycoreError with install instructions if missing."""
     ros = _prefix_with("include/rosidl_runtime_c")
     for name in ("rosidl_adapter", "rosidl_generator_py", "rosidl_typesupport_fastrtps_c"):
         if not (ros / "share" / name).is_dir():
