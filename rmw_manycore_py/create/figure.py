@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Fig. 12 of ROS-lite2: lines of code over the number of nodes, with real mapfiles in it."""
+"""Fig. 12 of ROS-lite2: lines of code over the number of nodes, with real mapfiles."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from rmw_manycore_py.mapfile import check
 
 FILE = "figure_12.svg"
 MAX_NODES = 50
-# Of an average ROS 2 node, as the paper estimates it.
+# Of an average ROS 2 node, as estimated in the paper.
 PARAMETERS = TOPICS = 15
 PAPERS_REDUCTION = 0.86
 LINE = f"by hand: N (10 + N_p + 6 N_t), N_p = N_t = {TOPICS}"
@@ -21,7 +21,7 @@ LINE = f"by hand: N (10 + N_p + 6 N_t), N_p = N_t = {TOPICS}"
 
 @dataclass(frozen=True)
 class Dot:
-    """A real mapfile: its nodes, the lines of it, and those that its nodes take by hand."""
+    """A mapfile in the figure: its nodes, its lines, and the lines its nodes take by hand."""
 
     name: str
     nodes: int
@@ -30,12 +30,12 @@ class Dot:
 
     @property
     def reduction(self) -> float:
-        """How much less is written than by hand, from 0 to 1."""
+        """Fraction of lines saved compared with writing by hand, 0 to 1."""
         return 1 - self.written_lines / self.delta_loc if self.delta_loc else 0.0
 
 
 def dot_of(mapfile: Path) -> Dot:
-    """Return what one mapfile is in the figure; what is wrong with it is a ManycoreError."""
+    """Return the dot of a mapfile; raise ManycoreError if it is invalid."""
     placement = check(mapfile)
     return Dot(
         mapfile.stem if mapfile.suffix == ".yaml" else mapfile.name,
@@ -46,12 +46,12 @@ def dot_of(mapfile: Path) -> Dot:
 
 
 def by_hand() -> Sequence[int]:
-    """Return the paper's line: the lines of 0 to 50 average nodes."""
+    """Return the paper's estimate: lines for 0 to 50 average nodes."""
     return [estimated_loc(nodes, PARAMETERS, TOPICS) for nodes in range(MAX_NODES + 1)]
 
 
 def draw(dots: Sequence[Dot], path: Path) -> None:
-    """Draw line and dots."""
+    """Draw the estimate and the dots."""
     figure = load_figure()(figsize=(8, 5), layout="constrained")
     panel = figure.subplots()
     panel.plot(by_hand(), label=LINE, color="tab:gray")

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""How much a mapfile saves: the lines its author wrote against those that were generated."""
+"""Lines saved by a mapfile: lines written against lines generated."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from pathlib import Path
 from rmw_manycore_py.mapfile.placing.parameter_files import parameters_in
 from rmw_manycore_py.mapfile.placing.placement import PlacedNode, Placement
 
-# The terms of ROS-lite2, section V-A: lines per node, and per topic of a node.
+# Terms of ROS-lite2, section V-A: lines per node, and per topic of a node.
 _LINES_PER_NODE = 10
 _LINES_PER_TOPIC = 6
 
 
 @dataclass(frozen=True)
 class CreateReport:
-    """What was created; line counts leave out blank lines and comments."""
+    """Result of `create`; line counts exclude blank lines and comments."""
 
     directory: Path
     files: tuple[Path, ...]
@@ -28,7 +28,7 @@ class CreateReport:
 
     @property
     def summary(self) -> str:
-        """One line: written, generated, and the paper's estimate of what a node set adds."""
+        """One line: lines written, generated, and the paper's estimate."""
         return (
             f"{self.written_lines} lines written, {self.generated_lines} lines generated "
             f"(dLoC = {self.delta_loc} for {len(self.placement.nodes)} nodes)"
@@ -36,7 +36,7 @@ class CreateReport:
 
 
 def estimated_loc(nodes: int, parameters: int, topics: int) -> int:
-    """Return N (10 + N_p + 6 N_t): the lines of so many nodes, each with so much (V-A)."""
+    """Return N (10 + N_p + 6 N_t), the estimated lines of N nodes (ROS-lite2, section V-A)."""
     return nodes * (_LINES_PER_NODE + parameters + _LINES_PER_TOPIC * topics)
 
 

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The launch script of a node: the command with its full environment, for any shell."""
+"""Launch script of a node: its command and full environment, for any shell."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from pathlib import PurePosixPath
 from rmw_manycore_py.mapfile.placing.placement import PlacedNode
 from rmw_manycore_py.mapfile.placing.show import rules_in_words
 
-# What an installation of ROS 2 is found by; taken from the environment of `create`.
+# Variables that locate a ROS 2 installation; copied from the environment of `create`.
 _OF_THE_INSTALLATION = ("AMENT_PREFIX_PATH", "PYTHONPATH", "ROS_DOMAIN_ID")
 
 
 def launch_script(node: PlacedNode, parameter_files: list[PurePosixPath]) -> str:
-    """Return the script; parameter files are given relative to the directory above it."""
+    """Return the script; paths of parameter files are relative to its parent directory."""
     inherited = {key: os.environ[key] for key in _OF_THE_INSTALLATION if key in os.environ}
     lines = [
         "#!/bin/sh",
@@ -36,7 +36,7 @@ def _scheduler(node: PlacedNode) -> str:
 
 
 def _command(node: PlacedNode, parameter_files: list[PurePosixPath]) -> list[str]:
-    """Return the command, one option a line; parameters come from files instead."""
+    """Return the command, one option per line; parameters come from files."""
     options = [" ".join(shlex.quote(word) for word in node.program)]
     words = list(node.ros_arguments)
     if words:

@@ -34,5 +34,5 @@ __all__ = [
 
 
 def check(path: Path | str) -> Placement:
-    """Read a mapfile and find everything it refers to; what is wrong is a MapfileError."""
+    """Read a mapfile and resolve everything it refers to; raise MapfileError for all problems."""
     return resolve(load_mapfile(path))

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The mapfiles that are installed with rmw_manycore, by name."""
+"""Mapfiles installed with rmw_manycore, by name."""
 
 from __future__ import annotations
 
@@ -7,14 +7,14 @@ from pathlib import Path
 
 from rmw_manycore_py.ros import ament
 
-SUFFIXES = (".yaml", ".map")  # where two files have one name, it means the first
+SUFFIXES = (".yaml", ".map")  # in order of precedence
 _PARAMETER_FILE = ".params.yaml"
 _COMMENT = "# "
 _LICENCE = "SPDX-License-Identifier"
 
 
 def installed_mapfiles() -> dict[str, Path]:
-    """Return the installed mapfiles by name; one whose name another has, by its file name."""
+    """Return the installed mapfiles by stem, or by file name if the stem is taken."""
     share = ament.package_share("rmw_manycore")
     found: dict[str, Path] = {}
     for suffix in SUFFIXES:
@@ -25,7 +25,7 @@ def installed_mapfiles() -> dict[str, Path]:
 
 
 def find_mapfile(name: str) -> Path | None:
-    """Return a file of the working directory or an installed one; `name` may lack its suffix."""
+    """Return a file of the working directory, else an installed one; the suffix is optional."""
     names = [name, *(f"{name}{suffix}" for suffix in SUFFIXES)]
     here = (Path(file) for file in names if Path(file).exists() and not Path(file).is_dir())
     known = installed_mapfiles()
@@ -34,7 +34,7 @@ def find_mapfile(name: str) -> Path | None:
 
 
 def description(mapfile: Path) -> str:
-    """Return what a mapfile says of itself in its first comment."""
+    """Return the first comment of a mapfile."""
     lines = []
     for line in mapfile.read_text(encoding="utf-8").splitlines():
         if not line.startswith(_COMMENT):

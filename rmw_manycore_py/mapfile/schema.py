@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The mapfile's JSON Schema, for editors: `python -m rmw_manycore_py.mapfile.schema`."""
+"""JSON Schema of the mapfile, for editors: `python -m rmw_manycore_py.mapfile.schema`."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _ID = "https://json-schema.org/draft/2020-12/schema"
 
 
 def json_schema() -> dict[str, Any]:
-    """Return the schema of a mapfile as people write it, short forms included."""
+    """Return the schema of a mapfile including short forms."""
     schema = MapfileSections.model_json_schema()
     schema |= {"$schema": _ID, "title": "mapfile"}
     properties = schema["properties"]
@@ -28,7 +28,7 @@ def json_schema() -> dict[str, Any]:
 
 
 def _allow_none_entries(node: dict[str, Any]) -> None:
-    """Fig. 8 writes an empty entry as `none:`; param_path is another name of param_file."""
+    """Allow `none:` for empty entries as in Fig. 8, and param_path as an alias of param_file."""
     empty = {"type": "object", "properties": {"none": {"type": "null"}}, "maxProperties": 1}
     node["param_path"] = dict(node["param_file"])
     for key in ("param_file", "param_path"):
@@ -37,14 +37,14 @@ def _allow_none_entries(node: dict[str, Any]) -> None:
     node["respawn"]["anyOf"].insert(0, {"type": "boolean"})
     node["parameters"] = {"anyOf": [node["parameters"], {"const": True}]}
     for key in (*CROSSINGS, "publish", "subscribe"):
-        # A type is checked when the file is read: there also the spellings of ROS 1 are known.
+        # Types are checked on loading, which also accepts the spellings of ROS 1.
         node[key].pop("propertyNames", None)
         node[key].pop("patternProperties", None)
         node[key]["additionalProperties"] = {"type": ["string", "null"]}
 
 
 def schema_text() -> str:
-    """Return the schema as it stands in docs/mapfile.schema.json."""
+    """Return the contents of docs/mapfile.schema.json."""
     return json.dumps(json_schema(), indent=2) + "\n"
 
 

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Makes the template of a mapfile from an application (ROS-lite, Fig. 5 a)."""
+"""Generates a mapfile template from an application (ROS-lite, Fig. 5 a)."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from rmw_manycore_py.mapfile.programs.executables import find_module
 from rmw_manycore_py.mapfile.programs.source import SourceNode, scan
 from rmw_manycore_py.ros.names import full_node_name
 
-_ADVICE = "# Choose the clusters. A node takes the first free core, unless its 'core' is given."
+_ADVICE = "# Choose the clusters. A node gets the first free core unless 'core' is set."
 _LAUNCH_SUFFIXES = (".launch.py", "_launch.py", ".launch", ".xml", ".yaml", ".yml")
 
 
@@ -27,7 +27,7 @@ class _Entry:
     publish: dict[str, str] = field(default_factory=dict)
     subscribe: dict[str, str] = field(default_factory=dict)
     remarks: list[str] = field(default_factory=list)
-    missing: str = ""  # why it cannot run here
+    missing: str = ""  # why it cannot run on this machine
 
 
 def init(
@@ -38,8 +38,8 @@ def init(
 ) -> str:
     """Return a mapfile with the nodes found in Python files, directories and one launch file.
 
-    Only the clusters are left to fill in. `directory` is where the mapfile will stand, `arguments`
-    are those of the launch file.
+    Only the clusters are left to fill in. `directory` is the directory of the future mapfile,
+    `arguments` are those of the launch file.
     """
     directory = (directory or Path.cwd()).resolve()
     launches = [path for path in sources if path.is_file() and _is_launch_file(path)]
@@ -89,7 +89,7 @@ def _is_hidden(file: Path, top: Path) -> bool:
 
 
 def _entries_of(file: Path, directory: Path) -> list[_Entry]:
-    """Return the process a file starts; several nodes in a file run in one process."""
+    """Return the process started by a file; several nodes in a file share a process."""
     nodes = scan(file)
     if not nodes:
         return []
@@ -113,7 +113,7 @@ def _entries_of_launch(launch: Path, arguments: Mapping[str, str], directory: Pa
     nodes: list[Launched] = []
     for node in read_launch_file(launch.resolve(), arguments).nodes:
         nodes.append(node)
-        if _missing(node, directory):  # then its components, as far as they run alone
+        if _missing(node, directory):  # then use its components, if they can run standalone
             nodes += [one for one in node.components if not _missing(one, directory)]
     several = [node.label for node in nodes]
     return [
@@ -159,7 +159,7 @@ def _relative(path: Path, directory: Path) -> str:
 
 
 def _with_own_names(entries: Iterable[_Entry]) -> list[_Entry]:
-    """Merge sources with the nodes of the launch file, and number names that come again."""
+    """Merge sources with the nodes of the launch file; number duplicate names."""
     named: dict[str, _Entry] = {}
     for entry in entries:
         known = named.get(entry.name)

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""YAML within bounds: no file, however it is made, takes the reader all memory or all day."""
+"""Bounded YAML loader: no input exhausts memory or time."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from rmw_manycore_py.errors import shorten
 MAX_BYTES = 1 << 20
 MAX_DEPTH = 50
 MAX_VALUES = 100_000
-# A text of so many characters counts as one more value: an alias repeats it, too.
+# A scalar counts as one more value per this many characters, since aliases repeat it.
 _CHARACTERS_OF_A_VALUE = 100
 _MAX_SHOWN = 60
-# More characters than any number of 64 bits or date needs.
+# Longer than any 64-bit number or date.
 _MAX_NUMBER_CHARACTERS = 400
 _MIN_INTEGER, _MAX_INTEGER = -(1 << 63), (1 << 64) - 1
 _NUMBERS = {"int": "an integer of at most 64 bits", "float": "a number", "timestamp": "a date"}
@@ -25,7 +25,7 @@ _SCALARS = {**_NUMBERS, "bool": "true or false", "binary": "base64"}
 
 
 class BoundError(yaml.MarkedYAMLError):
-    """YAML that is refused although its syntax may be right."""
+    """YAML that exceeds a bound, although its syntax may be valid."""
 
     def __init__(self, expected: str, found: str, mark: yaml.Mark) -> None:
         super().__init__(problem=found, problem_mark=mark)
@@ -33,7 +33,7 @@ class BoundError(yaml.MarkedYAMLError):
 
 
 class BoundedLoader(yaml.SafeLoader):
-    """Composes nodes; counts each alias as what it stands for, before anything expands it."""
+    """Composes nodes; counts each alias with its expanded size before anything expands it."""
 
     def __init__(self, text: str) -> None:
         super().__init__(text)
@@ -43,14 +43,14 @@ class BoundedLoader(yaml.SafeLoader):
         self._anchored: dict[str, tuple[int, int]] = {}
 
     def compose_node(self, parent: yaml.Node | None, index: int) -> yaml.Node | None:
-        """Compose a node and note how many values it holds, and how deep they are."""
+        """Compose a node; record its number of values and its depth."""
         event: Any = self.peek_event()  # type: ignore[no-untyped-call]
         outer, before = self._deepest, self._values
         self._depth += 1
         self._deepest = self._depth
         self._check(event)
         node = super().compose_node(parent, index)
-        # The node of an alias inside of itself is still open, and refused later.
+        # An alias inside its own anchor is still open; it is rejected later.
         aliased = isinstance(event, yaml.AliasEvent)
         values, height = self._anchored.get(event.anchor, (1, 0)) if aliased else (1, 0)
         self._values += values + len(getattr(event, "value", "")) // _CHARACTERS_OF_A_VALUE
@@ -63,7 +63,7 @@ class BoundedLoader(yaml.SafeLoader):
         return node
 
     def scalar(self, node: yaml.Node) -> Any:
-        """Return the value of a scalar; text that its tag does not allow is a BoundError."""
+        """Return the value of a scalar; raise BoundError if its text does not match its tag."""
         kind = node.tag.rpartition(":")[2]
         try:
             if kind in _NUMBERS and len(node.value) > _MAX_NUMBER_CHARACTERS:
@@ -88,13 +88,13 @@ class BoundedLoader(yaml.SafeLoader):
             raise BoundError(expected, "more", event.start_mark)
 
 
-# As rcl reads numbers, where YAML 1.1 wants a point and a sign: 1e-9.
+# Numbers accepted by rcl; YAML 1.1 requires a point and a sign in 1e-9.
 _EXPONENT = re.compile(r"[-+]?(\d+(\.\d*)?|\.\d+)[eE][-+]?\d+$")
 BoundedLoader.add_implicit_resolver("tag:yaml.org,2002:float", _EXPONENT, list("-+.0123456789"))
 
 
 def is_number_to_rcl(text: str) -> bool:
-    """Tell whether a text is a number to rcl, and none to YAML 1.1."""
+    """Return whether rcl reads a text as a number and YAML 1.1 does not."""
     return _EXPONENT.match(text) is not None
 
 

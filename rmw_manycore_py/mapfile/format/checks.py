@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What the types of a mapfile cannot say: places, ways to start, files that are referred to."""
+"""Checks beyond types: placement, ways to start, referenced files."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from rmw_manycore_py.mapfile.format.mapfile import Mapfile
 from rmw_manycore_py.mapfile.format.model import NodeSection
 from rmw_manycore_py.topology import Core
 
-# These follow from the placement; a node that is told otherwise would be somewhere else.
+# Set from the placement; overriding them would move a node elsewhere.
 PLACE_VARIABLES = (
     *("MANYCORE_DIRECTORY", "MANYCORE_PLATFORM"),
     *("MANYCORE_CLUSTER", "MANYCORE_CORE"),
@@ -21,7 +21,7 @@ WAYS_TO_START = ("module", "script", "executable", "command")
 
 
 def check_placement(mapfile: Mapfile) -> Iterator[Problem]:
-    """Yield nodes outside of a cluster, on reserved cores, or two on one core."""
+    """Yield nodes outside a cluster, on reserved cores, or sharing a core."""
     taken: dict[Core, str] = {}
     for name, node in mapfile.sections.nodes.items():
         problem = _misplaced(mapfile, name, node)
@@ -58,7 +58,7 @@ def _misplaced(mapfile: Mapfile, name: str, node: NodeSection) -> Problem | None
 
 
 def check_starts(mapfile: Mapfile) -> Iterator[Problem]:
-    """Yield nodes with no way to start, or with more than one."""
+    """Yield nodes with no way to start, or with several."""
     for name, node in mapfile.sections.nodes.items():
         ways = [way for way in WAYS_TO_START if getattr(node, way) is not None]
         path = ("nodes", name)
@@ -79,7 +79,7 @@ def check_starts(mapfile: Mapfile) -> Iterator[Problem]:
 
 
 def check_environment(mapfile: Mapfile) -> Iterator[Problem]:
-    """Yield variables by which a node would be elsewhere than where it is placed."""
+    """Yield environment variables that would override a node's placement."""
     for name, node in mapfile.sections.nodes.items():
         for variable in PLACE_VARIABLES:
             if variable in node.env:
@@ -89,7 +89,7 @@ def check_environment(mapfile: Mapfile) -> Iterator[Problem]:
 
 
 def check_files(mapfile: Mapfile) -> Iterator[Problem]:
-    """Yield files that the mapfile names and that do not exist."""
+    """Yield files named in the mapfile that do not exist."""
     named: list[tuple[KeyPath, str | None]] = [(("launch_path",), mapfile.sections.launch_path)]
     for name, node in mapfile.sections.nodes.items():
         named.append((("nodes", name, "script"), node.script))

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""A YAML file as plain data that still knows the line of every key."""
+"""A YAML file as plain data with the line of every key."""
 
 from __future__ import annotations
 
@@ -18,30 +18,30 @@ KeyPath = tuple[Any, ...]
 
 @dataclass
 class Document:
-    """Data with the line of each key path; shortened paths give the line of what is around them."""
+    """Data with the line of each key path; unknown paths map to the line of their parent."""
 
     file: Path
     data: Any = None
     lines: dict[KeyPath, int] = field(default_factory=dict)
 
     def line(self, path: KeyPath) -> int:
-        """Return the line of a key, or of the nearest thing around it."""
+        """Return the line of a key, or of its nearest known parent."""
         while path and path not in self.lines:
             path = path[:-1]
         return self.lines.get(path, 1)
 
     def problem(self, path: KeyPath, expected: str, found: str) -> Problem:
-        """Return what is wrong with the key at that path."""
+        """Return a Problem with the key at that path."""
         return Problem(self.file, self.line(path), dotted(path), expected, found)
 
 
 def dotted(path: KeyPath) -> str:
-    """Write a key path as people do: nodes.talker.core."""
+    """Format a key path as nodes.talker.core."""
     return ".".join(str(part) for part in path)
 
 
 def read_text(path: Path, problem: Problem | None = None) -> str:
-    """Return a file's text; `problem` says who asked for it."""
+    """Return a file's text; `problem` replaces the default problem if it cannot be read."""
     try:
         with path.open("rb") as file:
             content = file.read(MAX_BYTES + 1)
@@ -62,9 +62,9 @@ def read_yaml(path: Path, repeated: Collection[str] = ()) -> Document:
 
 
 def parse_yaml(text: str, path: Path, repeated: Collection[str] = ()) -> Document:
-    """Read the text of a YAML file; duplicate keys are errors, all of them reported.
+    """Parse a YAML text; report all duplicate keys in one error.
 
-    Mappings of the top-level keys in `repeated` become lists of pairs, whose keys may be equal.
+    The mappings of top-level keys in `repeated` become lists of pairs and may repeat keys.
     """
     loader = None
     try:
@@ -101,7 +101,7 @@ def _problem(path: Path, error: yaml.MarkedYAMLError, key: str = "") -> Problem:
 
 
 class _Reader:
-    """Turns YAML nodes into data, noting lines and duplicate keys."""
+    """Converts YAML nodes to data; records lines and duplicate keys."""
 
     def __init__(self, file: Path, loader: BoundedLoader, repeated: Collection[str]) -> None:
         self._file = file
@@ -175,7 +175,7 @@ class _Reader:
 
 
 def _is_none_entry(key: Any, node: yaml.MappingNode) -> bool:
-    """Fig. 8 writes `none:` for an empty entry, more than once in a node as it is printed."""
+    """Return whether a key is `none:`, which Fig. 8 uses, repeatedly, for an empty entry."""
     return key == "none" and all(
         value.tag == "tag:yaml.org,2002:null" for name, value in node.value if name.value == "none"
     )

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Reads a mapfile; everything that is wrong with it comes in one error."""
+"""Loads a mapfile; reports all problems in one error."""
 
 from __future__ import annotations
 
@@ -24,9 +24,11 @@ from rmw_manycore_py.topology import Topology, profile
 
 
 def load_mapfile(path: Path | str, *, starts_nodes: bool = True) -> Mapfile:
-    """Read and check a mapfile or a .map list.
+    """Read and validate a mapfile or a .map list.
 
-    With `starts_nodes` False something else starts the nodes, so none needs a way to start.
+    With `starts_nodes=False` nodes need no way to start, since another launcher starts them.
+
+    :raises MapfileError: with all problems found.
     """
     path = Path(path)
     document = read_yaml(path)

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""A mapfile as it was read."""
+"""A loaded mapfile."""
 
 from __future__ import annotations
 
@@ -14,7 +14,14 @@ from rmw_manycore_py.topology import Topology
 
 @dataclass(frozen=True)
 class Mapfile:
-    """A mapfile that is valid in itself; whether its executables exist is `resolve`'s business."""
+    """A mapfile that is valid in itself; `resolve` checks whether its executables exist.
+
+    :param path: the file.
+    :param sections: what it says, section by section.
+    :param topology: clusters and cores of the platform that it describes.
+    :param document: where in the file each key stands, for errors.
+    :param notices: what the user should know, although nothing is wrong.
+    """
 
     path: Path
     sections: MapfileSections
@@ -23,5 +30,5 @@ class Mapfile:
     notices: tuple[str, ...]
 
     def file(self, name: str) -> Path:
-        """Return a file the mapfile names: relative to the mapfile, `~` expanded."""
+        """Return the path of a referenced file: relative to the mapfile, `~` expanded."""
         return Path(os.path.realpath(self.path.parent / os.path.expanduser(name)))

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What a mapfile may say: Fig. 8 of ROS-lite2, extended; docs/mapfile.md explains every key."""
+"""Schema of a mapfile: Fig. 8 of ROS-lite2, extended; docs/reference/mapfile has all keys."""
 
 from __future__ import annotations
 
@@ -33,32 +33,31 @@ from rmw_manycore_py.mapfile.format.values import (
     refusal,
 )
 from rmw_manycore_py.ros.domain import MAX_DOMAIN, PLATFORM_NAME
+from rmw_manycore_py.ros.names import MAX_NODE_NAME, MAX_TOPIC_NAME, NAME_PART
 from rmw_manycore_py.ros.patterns import is_pattern
 from rmw_manycore_py.scheduling import MAX_PRIORITY, MIN_PRIORITY, REAL_TIME
+from rmw_manycore_py.words import Transfer, WaitMode
 
-# Receiver clusters are a mask of 64 bits.
+# Receiver clusters are a 64-bit mask.
 MAX_CLUSTERS = 64
-# As many as the registry has places for processes.
+# Process slots of the registry.
 MAX_CORES = 1024
 # Each is a pair of processes.
 MAX_LANES = MAX_CORES // 2
-# A node without topics of its own takes almost the one; a process can map some dozens of the other.
+# A node without topics of its own needs almost 64 KiB of a cluster.
 MIN_SMEM_BYTES = 64 << 10
 MAX_SMEM_BYTES = 1 << 40
-# The topic table has 32 bits for it.
+# Limited by a 32-bit field of the topic table.
 MAX_TOPIC_DSM_BYTES = (1 << 32) - 1
-# rmw's limits, as Fast DDS has them too.
-MAX_TOPIC_NAME = 247
-MAX_NODE_NAME = 255
+# Priorities of eMCOS messages are 0 to this.
+MAX_MESSAGE_PRIORITY = 7
 Positive = Annotated[StrictInt, Field(ge=1)]
 WorkerCount = Annotated[StrictInt, Field(ge=0, le=64)]
 CoreNumber = Annotated[StrictInt, Field(ge=0)]
 Text = Annotated[str, StringConstraints(min_length=1)]
-# Letters of ASCII alone, as rcl has it.
-_PART = "[A-Za-z_][A-Za-z0-9_]*"
-_PARTS = f"{_PART}(/{_PART})*"
+_PARTS = f"{NAME_PART}(/{NAME_PART})*"
 TopicName = Annotated[str, StringConstraints(pattern=f"^~?/?{_PARTS}$", max_length=MAX_TOPIC_NAME)]
-# Of a bridge's topics: with `*` for a part of a name, `**` for parts.
+# Part of a topic pattern: `*` within one part, `**` for any number of parts.
 _PATTERN_PART = r"(\*\*|[A-Za-z_*][A-Za-z0-9_*]*)"
 TopicPattern = Annotated[
     str,
@@ -68,75 +67,98 @@ TopicPattern = Annotated[
 ]
 OutsideName = Annotated[str, StringConstraints(pattern=f"^/?{_PARTS}$", max_length=MAX_TOPIC_NAME)]
 NodeName = Annotated[str, StringConstraints(pattern=f"^/?{_PARTS}$", max_length=MAX_NODE_NAME)]
-# Whatever rcl may know in a rule, but no spaces or dashes: node:~/topic, rosservice:///ns/{node}.
+# Everything rcl may accept in a rule, without spaces and dashes: node:~/topic,
+# rosservice:///ns/{node}.
 RemapRule = Annotated[str, StringConstraints(pattern=r"^[A-Za-z0-9_/~:{}]+$")]
 Namespace = Annotated[str, StringConstraints(pattern=f"^/?({_PARTS})?$")]
 PlatformName = Annotated[str, StringConstraints(pattern=PLATFORM_NAME)]
-WaitMode = Literal["block", "adaptive", "spin"]
+ReceiveDesign = Literal["queue", "per_topic"]
 
 
 class Section(BaseModel):
-    """A part of a mapfile: immutable, and a key it does not know is an error."""
+    """Section of a mapfile: immutable; unknown keys are errors."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
 
 class PlatformSection(Section):
-    """The machine the nodes are placed on: a profile, or a profile with other sizes."""
+    """The machine: a profile, optionally with other sizes."""
 
     profile: Literal["host", "coolidge", "bostan"] = Field(
-        default="host", description="Shape to start from"
+        default="host", description="Base profile"
     )
     name: PlatformName | None = Field(
-        default=None, description="Name, instead of domain-<ROS_DOMAIN_ID>"
+        default=None, description="Name; default: domain-<ROS_DOMAIN_ID>"
     )
     clusters: Annotated[StrictInt, Field(ge=1, le=MAX_CLUSTERS)] | None = Field(
         default=None, description="Number of clusters"
     )
     cores_per_cluster: Annotated[StrictInt, Field(ge=2, le=MAX_CORES)] | None = Field(
-        default=None, description="Cores of each cluster, the reserved ones included"
+        default=None, description="Cores per cluster, including reserved ones"
     )
     smem_size: Annotated[Size, Field(ge=MIN_SMEM_BYTES, le=MAX_SMEM_BYTES)] | None = Field(
-        default=None, description="Local memory of each cluster, in bytes"
+        default=None, description="Local memory per cluster, in bytes"
     )
 
 
 class TopicSection(Section):
-    """A row of the topic table that is fixed by hand (Fig. 7)."""
+    """A fixed row of the topic table (Fig. 7)."""
 
     type: MessageType | None = Field(default=None, description="Message type, package/msg/Name")
     topic_dsm_size: Annotated[Size, Field(le=MAX_TOPIC_DSM_BYTES)] | None = Field(
-        default=None, description="Bytes of the ring of each publisher of this topic"
+        default=None, description="Size of the topic DSM of each publisher, in bytes"
     )
+    transfer: Transfer = Field(
+        default="dsm", description="How its messages reach other clusters; dsm is the default"
+    )
+    priority: Annotated[StrictInt, Field(ge=0, le=MAX_MESSAGE_PRIORITY)] | None = Field(
+        default=None, description="Of messages, 0 to 7; the highest is received first"
+    )
+    synchronous: StrictBool = Field(
+        default=False, description="Publishing waits until other clusters have the message"
+    )
+
+    @model_validator(mode="after")
+    def _check_transfer(self) -> Self:
+        if self.transfer != "dsm" and self.topic_dsm_size is None:
+            expected = f"a topic_dsm_size, as the topic is transferred ({self.transfer})"
+            raise refusal(expected, found=None, name="topic_dsm_size")
+        if self.transfer != "message":
+            expected = f"transfer: message beside it, not {self.transfer}"
+            if self.priority is not None:
+                raise refusal(expected, found=self.priority, name="priority")
+            if self.synchronous:
+                raise refusal(expected, found=True, name="synchronous")
+        return self
 
 
 Domain = Annotated[StrictInt, Field(ge=0, le=MAX_DOMAIN)]
-# A message in eleven days, and as long a wait: what lies beyond no clock of the bridge can tell.
+# At least one message per 11.6 days: keeps periods and timeouts within the clock's range.
 Rate = Annotated[float, Field(ge=1e-6, allow_inf_nan=False)]
 Timeout = Annotated[float, Field(gt=0, le=1e6, allow_inf_nan=False)]
 
 
 class QosSection(Section):
-    """Policies of a topic's endpoints, where they are not to be the publishers' own."""
+    """QoS overrides of the bridge's endpoints of a topic."""
 
     reliability: Literal["reliable", "best_effort"] | None = Field(
-        default=None, description="Instead of the publishers' own"
+        default=None, description="Default: that of the publishers"
     )
     durability: Literal["volatile", "transient_local"] | None = Field(
-        default=None, description="Instead of the publishers' own"
+        default=None, description="Default: that of the publishers"
     )
     history: Literal["keep_last", "keep_all"] | None = Field(
         default=None, description="keep_last is the default"
     )
-    depth: Positive | None = Field(default=None, description="Messages kept, for keep_last")
+    depth: Positive | None = Field(default=None, description="Queue depth, for keep_last")
     deadline: StrictInt | Literal["auto"] | None = Field(
-        default=None, description="Nanoseconds, -1 = none; auto = the publishers' own"
+        default=None, description="Nanoseconds, -1 = none; auto = that of the publishers"
     )
     lifespan: StrictInt | Literal["auto"] | None = Field(
-        default=None, description="Nanoseconds, -1 = none; auto = the publishers' own"
+        default=None, description="Nanoseconds, -1 = none; auto = that of the publishers"
     )
     liveliness: Literal["automatic", "manual_by_topic", "system_default"] | None = Field(
-        default=None, description="Instead of the publishers' own"
+        default=None, description="Default: that of the publishers"
     )
     liveliness_lease_duration: StrictInt | None = Field(
         default=None, description="Nanoseconds, -1 = none"
@@ -144,38 +166,37 @@ class QosSection(Section):
 
 
 class RouteSection(Section):
-    """How one topic, service or action crosses."""
+    """Bridge settings of one topic, service or action."""
 
     name: OutsideName | None = Field(default=None, description="Full name outside")
     domain: Domain | None = Field(default=None, description="ROS domain outside")
     qos: QosSection = Field(default=QosSection(), description="QoS of the bridge's endpoints")
-    max_hz: Rate | None = Field(default=None, description="Most messages per second")
+    max_hz: Rate | None = Field(default=None, description="Maximum messages per second")
     max_size: Size | None = Field(default=None, description="Largest message, in bytes")
-    timeout: Timeout | None = Field(
-        default=None, description="Seconds that a request may stay unanswered"
-    )
+    timeout: Timeout | None = Field(default=None, description="Timeout of a request in seconds")
 
 
 class BridgeSection(Section):
-    """The bridge to DDS domains outside."""
+    """The bridge to external DDS domains."""
 
     domain: Domain | None = Field(
-        default=None, description="ROS domain outside; $ROS_DOMAIN_ID is the default"
+        default=None, description="External ROS domain; default: $ROS_DOMAIN_ID"
     )
-    prefix: Namespace | None = Field(default=None, description="Namespace of all names outside")
+    prefix: Namespace | None = Field(default=None, description="Namespace of all external names")
     lanes: Annotated[StrictInt, Field(ge=1, le=MAX_LANES)] = Field(
-        default=1, description="Pairs of processes"
+        default=1, description="Lanes: pairs of bridge processes"
     )
     host_cpu: HostCpus | None = Field(
-        default=None, description="CPUs of the host that its processes run on; all unless named"
+        default=None, description="Host CPUs of the bridge processes; default: all"
     )
     routes: dict[TopicPattern, RouteSection] = Field(
-        default_factory=dict, description="Topics, services and actions that need more than a type"
+        default_factory=dict,
+        description="Settings of topics, services and actions besides the type",
     )
 
 
 def _check_crossings(types: dict[str, str | None]) -> dict[str, str | None]:
-    """Take no type for a pattern, for the graph has it; ask for one otherwise."""
+    """Require a type, except for patterns, which must not have one."""
     for name, type_name in types.items():
         if is_pattern(name) == (type_name is not None):
             expected = "no type: each topic that fits has its own" if type_name else _A_TYPE
@@ -188,18 +209,18 @@ Crossings = Annotated[dict[TopicPattern, InterfaceType | None], AfterValidator(_
 
 
 class RespawnSection(Section):
-    """A node is started again when it ends by itself."""
+    """Restart of a node that ends by itself."""
 
     delay: Annotated[float, Field(ge=0, le=1e6, allow_inf_nan=False)] = Field(
-        default=1.0, description="Seconds from its end to its next start"
+        default=1.0, description="Delay before the restart, in seconds"
     )
     max_retries: Annotated[StrictInt, Field(ge=0)] | None = Field(
-        default=None, description="How often; without end unless given"
+        default=None, description="Maximum number of restarts; default: unlimited"
     )
 
 
 class SchedulingSection(Section):
-    """How the operating system schedules a node."""
+    """Scheduling policy and priority of a node."""
 
     policy: Literal["fifo", "rr", "other"] = Field(description="Policy of sched(7)")
     priority: Annotated[StrictInt, Field(ge=MIN_PRIORITY, le=MAX_PRIORITY)] | None = Field(
@@ -217,22 +238,21 @@ class SchedulingSection(Section):
 
 
 class NodeSection(Section):
-    """A node: where it runs, how it is started, what it says to the outside."""
+    """A node: placement, command, and topics and services bridged to DDS."""
 
-    cluster: Positive = Field(description="Cluster, counted from 1")
+    cluster: Positive = Field(description="Cluster number, from 1")
     core: CoreNumber | None = Field(
-        default=None, description="Core, counted from 0; the first free one"
+        default=None, description="Core number, from 0; default: the first free core"
     )
-    host_cpu: CoreNumber | None = Field(
-        default=None, description="CPU of the host, instead of the next"
-    )
+    host_cpu: CoreNumber | None = Field(default=None, description="Host CPU; default: the next one")
     module: Text | None = Field(default=None, description="Python module, run with python -m")
     script: Text | None = Field(default=None, description="Python file, relative to the mapfile")
-    package: Text | None = Field(default=None, description="ROS package that has the executable")
+    package: Text | None = Field(default=None, description="ROS package of the executable")
     executable: Text | None = Field(default=None, description="Executable of the package")
     command: Command | None = Field(default=None, description="Any command")
     ros_arguments: StrictBool = Field(
-        default=True, description="Append --ros-args to the command; false for what is not a node"
+        default=True,
+        description="Append --ros-args to the command; false for programs that are no nodes",
     )
     namespace: Namespace | None = Field(default=None, description="Namespace of the node")
     parameters: Parameters = Field(default_factory=dict, description="Parameters by name")
@@ -241,46 +261,49 @@ class NodeSection(Section):
     arguments: Arguments = Field(default=(), description="Arguments before the ROS arguments")
     env: dict[Text, EnvironmentValue] = Field(default_factory=dict, description="Environment")
     wait: WaitMode | None = Field(
-        default=None, description="How the node waits; block is the default"
+        default=None, description="How the node waits for messages; default: block"
+    )
+    receive: ReceiveDesign | None = Field(
+        default=None, description="How its subscriptions are served; as its program does it"
     )
     scheduling: SchedulingSection | None = Field(
-        default=None, description="Policy and priority; those of manycore run unless given"
+        default=None, description="Policy and priority; default: those of manycore run"
     )
     respawn: Annotated[RespawnSection, OrBool] | None = Field(
-        default=None, description="Start the node again when it ends; true, or how"
+        default=None, description="Restart the node when it ends; true, or settings"
     )
     terminal: StrictBool = Field(
         default=False, description="Give the node a terminal, for manycore attach"
     )
     workers: WorkerCount = Field(
-        default=0, description="Further cores of the cluster, for workers of the node"
+        default=0, description="Number of cores in the cluster for workers of the node"
     )
     publish: dict[TopicName, MessageType] = Field(
-        default_factory=dict, description="Topics published, where the source does not show them"
+        default_factory=dict, description="Published topics that the source does not reveal"
     )
     subscribe: dict[TopicName, MessageType] = Field(
-        default_factory=dict, description="Topics subscribed, where the source does not show them"
+        default_factory=dict, description="Subscribed topics that the source does not reveal"
     )
     topic_in: Crossings = Field(
-        default_factory=dict, description="Topics and services received from outside"
+        default_factory=dict, description="Topics and services bridged inward"
     )
     topic_to: Crossings = Field(
-        default_factory=dict, description="Topics and services sent outside"
+        default_factory=dict, description="Topics and services bridged outward"
     )
     service_in: dict[TopicName, ServiceType] = Field(
-        default_factory=dict, description="Services of this node that are called from outside"
+        default_factory=dict, description="Services of this node called from DDS"
     )
     service_to: dict[TopicName, ServiceType] = Field(
-        default_factory=dict, description="Services outside that this node calls"
+        default_factory=dict, description="DDS services called by this node"
     )
     action_in: dict[TopicName, ActionType] = Field(
-        default_factory=dict, description="Actions of this node that get goals from outside"
+        default_factory=dict, description="Actions of this node called from DDS"
     )
     action_to: dict[TopicName, ActionType] = Field(
-        default_factory=dict, description="Actions outside that this node sends goals to"
+        default_factory=dict, description="DDS actions called by this node"
     )
     parameters_in: StrictBool = Field(
-        default=False, description="Parameters are read and set from outside too"
+        default=False, description="Expose the parameter services to DDS"
     )
 
 
@@ -302,13 +325,13 @@ class MapfileSections(Section):
     )
     malloc_tuning: StrictBool = Field(
         default=True,
-        description="Keep glibc from giving memory back to the system after each message",
+        description="Keep glibc from returning memory to the system after each message",
     )
     bridge: BridgeSection = Field(
-        default=BridgeSection(), description="How topics and services cross to the outside"
+        default=BridgeSection(), description="Bridge to external DDS domains"
     )
     topics: dict[TopicName, TopicSection] = Field(
-        default_factory=dict, description="Topics whose type or topic DSM size is fixed"
+        default_factory=dict, description="Topics with a fixed type, topic DSM size or transfer"
     )
     nodes: Annotated[dict[NodeName, NodeSection], Field(min_length=1)] = Field(
         description="Nodes by name"

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Brings the spellings of the papers into the one form the model knows, with a notice for each."""
+"""Converts the spellings of the papers to the form of the model, with a notice for each."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _EMPTIED_BY_NONE = (*_TOPIC_KEYS, "param_file", "param_path", "parameters", "rem
 
 
 def normalise(document: Document) -> list[str]:
-    """Rewrite the document in place; return a notice for each spelling that was corrected."""
+    """Rewrite the document in place; return a notice per corrected spelling."""
     notices: list[str] = []
     data = document.data
     if isinstance(data.get("platform"), str):

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The sections of a ROS 2 parameter file that concern a node."""
+"""Sections of a ROS 2 parameter file that apply to a node."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any
 
 
 def sections_of(data: Any, full_name: str) -> list[Mapping[str, Any]]:
-    """Return the sections for a node, those for many nodes first."""
+    """Return the sections that apply to a node, wildcards first."""
     namespace, _, name = full_name.rpartition("/")
     found = []
     for key in ("/**", f"{namespace}/*", name if not namespace else None, full_name):
@@ -21,7 +21,7 @@ def sections_of(data: Any, full_name: str) -> list[Mapping[str, Any]]:
 
 
 def _nested(data: Mapping[str, Any], full_name: str) -> Any:
-    """Follow a name that is written one namespace below the other."""
+    """Look up a name written as nested namespaces."""
     section: Any = data
     for part in full_name.strip("/").split("/"):
         section = section.get(part, section.get(f"/{part}")) if isinstance(section, dict) else None

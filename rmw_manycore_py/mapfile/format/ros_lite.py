@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The .map list of ROS-lite (its Fig. 7), turned into the mapfile's form."""
+"""Converts the .map list of ROS-lite (its Fig. 7) to the mapfile's form."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ from rmw_manycore_py.errors import MapfileError, Problem
 from rmw_manycore_py.mapfile.format.document import Document, KeyPath
 from rmw_manycore_py.mapfile.format.validation import describe
 
-# ROS-lite's maps describe the MPPA-256; they have no place to say so.
+# ROS-lite's maps are for the MPPA-256 and have no key for the platform.
 _PLATFORM = "bostan"
 
 
 def from_list(document: Document) -> Document:
-    """Return the same nodes as a mapping by name; lines stay those of the list."""
+    """Return the nodes as a mapping by name; line numbers remain those of the list."""
     result = Document(document.file, {"platform": _PLATFORM, "nodes": {}}, {(): 1})
     problems: list[Problem] = []
     lines: dict[int, dict[KeyPath, int]] = {}

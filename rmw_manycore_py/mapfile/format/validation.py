@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Says what pydantic found wrong in the words of a mapfile: key, line, expected, found."""
+"""Translates pydantic errors to mapfile problems: key, line, expected, found."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ _LONGEST_VALUE = 60
 
 
 def problems_of(error: ValidationError, document: Document) -> list[Problem]:
-    """Return one problem for each thing pydantic refused."""
+    """Return one Problem per pydantic error."""
     return [_problem(details, document) for details in error.errors()]
 
 
@@ -85,7 +85,7 @@ def _problem(details: ErrorDetails, document: Document) -> Problem:
 
 
 def _is_of_key(details: ErrorDetails) -> bool:
-    """Tell what is wrong with a key from what is wrong with the value of a key named [key]."""
+    """Return whether an error concerns a key itself, not the value of a key named [key]."""
     path = details["loc"]
     return len(path) > 2 and path[-1] == "[key]" and str(details["input"]) == str(path[-2])
 
@@ -101,7 +101,7 @@ def _expected(details: ErrorDetails, path: KeyPath) -> str:
 
 
 def describe(value: Any) -> str:
-    """Name a value and its kind: string 'one'."""
+    """Return a value with its kind: string 'one'."""
     kinds = {bool: "", int: "", float: "", str: "string ", list: "list ", dict: "mapping "}
     if value is None:
         return "nothing"
@@ -112,7 +112,7 @@ def describe(value: Any) -> str:
 
 
 def _beginning(value: Any) -> str:
-    """Return as much of a value's repr as is shown; a large value is not written out."""
+    """Return the beginning of a value's repr, without formatting a large value."""
     text = ""
     for piece in _pieces(value):
         text += piece

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The kinds of value a mapfile holds; each says what was expected when it refuses one."""
+"""Value types of a mapfile; each error says what was expected."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _SCALARS = (bool, int, float, str)
 
 
 def refusal(text: str, **found: Any) -> PydanticCustomError:
-    """Return an error that says what was expected, for pydantic."""
+    """Return a pydantic error that says what was expected."""
     return PydanticCustomError("expected", "{expected}", {"expected": text, **found})
 
 
@@ -64,7 +64,7 @@ def _one_or_more(value: Any) -> tuple[str, ...]:
 
 
 def _is_array(value: Any) -> bool:
-    """ROS knows arrays of one kind of scalar; integers among floats are floats."""
+    """Return whether a value is a ROS array: scalars of one kind; integers among floats count."""
     if not isinstance(value, (list, tuple)) or not value:
         return False
     kinds = {type(item) for item in value}
@@ -81,7 +81,7 @@ def _host_cpus(value: Any) -> tuple[int, ...]:
 
 
 def _respawn(value: Any) -> Any:
-    """Read true as a mapping without keys, false as no retries: the launch file's are overruled."""
+    """Read true as an empty mapping, and false as no restarts, overriding the launch file."""
     if isinstance(value, bool):
         return {} if value else {"max_retries": 0}
     if not isinstance(value, dict):
@@ -90,7 +90,7 @@ def _respawn(value: Any) -> Any:
 
 
 def flatten_parameters(value: Any, prefix: str = "") -> dict[str, Any]:
-    """Return nested parameters under their dotted names."""
+    """Return nested parameters by dotted name."""
     if not isinstance(value, dict):
         raise refusal("a mapping from parameter names to values")
     flat: dict[str, Any] = {}
@@ -155,7 +155,7 @@ OneOrMore = Annotated[
 Parameters = Annotated[
     dict[str, Any], BeforeValidator(flatten_parameters), WithJsonSchema({"type": "object"})
 ]
-# Before a section: also true and false.
+# Precedes a section: also accepts true and false.
 OrBool = BeforeValidator(_respawn)
 MessageType = Annotated[str, StringConstraints(pattern=r"^[A-Za-z]\w*/msg/[A-Z][A-Za-z0-9]*$")]
 InterfaceType = Annotated[

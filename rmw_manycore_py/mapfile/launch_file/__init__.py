@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Launch files of ROS 2 in XML, YAML and Python: what they start, read without starting it."""
+"""Reads ROS 2 launch files (XML, YAML, Python) without starting anything."""
 
 from rmw_manycore_py.mapfile.launch_file.launched import (
     LaunchedComponent,

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The actions of ROS 2 launch, under their own names; executing one records what it would do."""
+"""Stand-ins of the actions of ROS 2 launch; executing one records its effect."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ from rmw_manycore_py.errors import ManycoreError, Problem
 from rmw_manycore_py.mapfile.launch_file.context import (
     Later,
     LaunchContext,
+    LaunchFileError,
     MissingText,
     NotInstalledError,
-    RefusedError,
 )
 from rmw_manycore_py.mapfile.launch_file.guard import failure, guarded
 from rmw_manycore_py.mapfile.launch_file.substitutions import is_true, perform
@@ -26,10 +26,10 @@ _HERE = str(Path(__file__).parent)
 
 
 class Condition:
-    """Decides whether an action takes place."""
+    """Condition of an action."""
 
     def evaluate(self, context: LaunchContext) -> bool:
-        """Return whether it does."""
+        """Return whether the condition holds."""
         raise NotImplementedError
 
 
@@ -53,7 +53,7 @@ class UnlessCondition(IfCondition):
 
 
 class LaunchConfigurationEquals(Condition):
-    """Compares a launch argument with a text; one that is not set equals None."""
+    """Compares a launch argument with a text; an unset argument equals None."""
 
     def __init__(self, launch_configuration_name: str, expected_value: Any) -> None:
         self.name, self.expected_value = launch_configuration_name, expected_value
@@ -66,7 +66,7 @@ class LaunchConfigurationEquals(Condition):
 
 
 class LaunchConfigurationNotEquals(LaunchConfigurationEquals):
-    """The opposite."""
+    """Negation of LaunchConfigurationEquals."""
 
     @override
     def evaluate(self, context: LaunchContext) -> bool:
@@ -74,7 +74,7 @@ class LaunchConfigurationNotEquals(LaunchConfigurationEquals):
 
 
 class Action:
-    """One thing a launch file does; knows the line it stands in."""
+    """One action of a launch file, with its line."""
 
     starts_process = False
 
@@ -83,7 +83,7 @@ class Action:
         self.line = calling_line()
 
     def visit(self, context: LaunchContext) -> None:
-        """Do it, unless its condition says otherwise."""
+        """Execute the action if its condition holds."""
         try:
             if self.condition is None or self.condition.evaluate(context):
                 visit_all(context, self.execute(context) or ())
@@ -91,22 +91,22 @@ class Action:
             self.cannot_run(context, error.at(context.file, self.line))
         except (ManycoreError, KeyboardInterrupt):
             raise
-        except BaseException as error:  # values of kinds that launch does not expect either
+        except BaseException as error:  # launch does not expect such values either
             raise failure(context.file, error, self.line) from error
 
     def execute(self, context: LaunchContext) -> Any:
-        """Do it; actions that launch files define themselves may return others."""
+        """Record the action; custom actions of launch files may return other actions."""
         raise NotImplementedError
 
     def cannot_run(self, context: LaunchContext, problem: Problem) -> None:
-        """Note that something it needs is not installed."""
+        """Record that a dependency is not installed."""
         context.notice(
             self.line, f"cannot run here: expected {problem.expected}, found {problem.found}"
         )
 
 
 class LaunchDescription(Action):
-    """The content of a launch file."""
+    """Contents of a launch file."""
 
     def __init__(
         self, initial_entities: Iterable[Any] | None = None, *, deprecated_reason: Any = None
@@ -149,10 +149,10 @@ class DeclareLaunchArgument(Action):
         if self.name not in values:
             if self.default_value is None:
                 expected = f"a value for the launch argument '{self.name}', in launch_arguments"
-                raise RefusedError(expected, "none, and it has no default", self.name)
+                raise LaunchFileError(expected, "none, and it has no default", self.name)
             values[self.name] = text_or_missing(context, self.default_value)
         if self.choices is not None and values[self.name] not in self.choices:
-            raise RefusedError(
+            raise LaunchFileError(
                 f"one of {', '.join(self.choices)}", f"'{values[self.name]}'", self.name
             )
 
@@ -171,7 +171,7 @@ class SetLaunchConfiguration(Action):
 
 
 class SetEnvironmentVariable(Action):
-    """`set_env`: for the processes that follow."""
+    """`set_env`: for processes started later."""
 
     def __init__(self, name: Any, value: Any, *, condition: Condition | None = None) -> None:
         super().__init__(condition=condition)
@@ -183,7 +183,7 @@ class SetEnvironmentVariable(Action):
 
 
 class GroupAction(Action):
-    """`group`: actions whose settings end with it."""
+    """`group`: actions with scoped settings."""
 
     def __init__(
         self,
@@ -215,7 +215,7 @@ class GroupAction(Action):
 
 
 class OpaqueFunction(Action):
-    """Python code of the launch file that returns actions."""
+    """Python function of the launch file that returns actions."""
 
     def __init__(
         self,
@@ -235,7 +235,7 @@ class OpaqueFunction(Action):
 
 
 class LogInfo(Action):
-    """`log`: something to tell whoever starts the launch file."""
+    """`log`: a message for the user."""
 
     def __init__(self, *, msg: Any, condition: Condition | None = None) -> None:
         super().__init__(condition=condition)
@@ -247,7 +247,7 @@ class LogInfo(Action):
 
 
 class TimerAction(Action):
-    """`timer`: actions that come later."""
+    """`timer`: delayed actions."""
 
     def __init__(
         self,
@@ -266,7 +266,7 @@ class TimerAction(Action):
         try:
             period_s = float(perform(context, text))
         except ValueError:
-            raise RefusedError("a number of seconds", repr(perform(context, text))) from None
+            raise LaunchFileError("a number of seconds", repr(perform(context, text))) from None
         start = replace(context.start, delay_s=context.start.delay_s + period_s)
         actions = self.actions
         context.later.append(Later(start, context.file, lambda: visit_all(context, actions)))
@@ -276,7 +276,7 @@ class TimerAction(Action):
 
 
 def text_or_missing(context: LaunchContext, value: Any) -> str:
-    """Return a text for a launch argument; what is not installed matters only where it is used."""
+    """Return the text of a launch argument; defer a missing package until the text is used."""
     try:
         return perform(context, value)
     except NotInstalledError as error:
@@ -284,18 +284,18 @@ def text_or_missing(context: LaunchContext, value: Any) -> str:
 
 
 def visit_all(context: LaunchContext, entities: Iterable[Any]) -> None:
-    """Execute actions in their order."""
+    """Execute actions in order."""
     for entity in [entities] if isinstance(entities, Action) else entities:
         if isinstance(entity, (list, tuple)):
             visit_all(context, entity)
             continue
         if not isinstance(entity, Action):
-            raise RefusedError("a launch action", type(entity).__name__)
+            raise LaunchFileError("a launch action", type(entity).__name__)
         entity.visit(context)
 
 
 def calling_line() -> int:
-    """Return the line of the launch file in Python that makes an action."""
+    """Return the line of the Python launch file that creates an action."""
     frame = sys._getframe(1)
     while frame.f_back is not None and frame.f_code.co_filename.startswith(_HERE):
         frame = frame.f_back

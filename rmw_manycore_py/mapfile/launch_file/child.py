@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Programs that launch files run to get a text, within bounds of time and output."""
+"""Programs run by launch files for their output, with limits on time and output."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ _READ_BYTES = 1 << 16
 
 
 class ChildBoundError(Exception):
-    """The program runs too long or prints too much."""
+    """The program exceeds its time or output limit."""
 
 
 @dataclass(frozen=True)
 class Finished:
-    """What a program left; a negative `returncode` is the signal that ended it."""
+    """Result of a program; a negative `returncode` is the signal that ended it."""
 
     returncode: int
     stdout: str
@@ -34,7 +34,7 @@ class Finished:
 def run_child(
     words: Sequence[str], environment: Mapping[str, str], timeout_s: float, given: bytes = b""
 ) -> Finished:
-    """Run a program with `given` on its standard input; stop it and its children at a bound."""
+    """Run a program with `given` on standard input; kill it and its children at a limit."""
     with tempfile.TemporaryFile() as stdin:
         stdin.write(given)
         stdin.seek(0)
@@ -57,7 +57,7 @@ def run_child(
 
 
 def _output(child: subprocess.Popen[bytes], end_s: float, timeout_s: float) -> tuple[bytes, bytes]:
-    """Return all that a program prints, once it has ended."""
+    """Return the output of a program after its end."""
     assert child.stdout is not None
     assert child.stderr is not None
     read = {child.stdout: b"", child.stderr: b""}

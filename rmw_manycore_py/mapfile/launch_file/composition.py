@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Containers, and the components that are loaded into them."""
+"""Component containers and the components loaded into them."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from rmw_manycore_py.mapfile.launch_file.substitutions import perform
 
 
 class ComposableNode:
-    """`composable_node`: the description of a component."""
+    """`composable_node`: description of a component."""
 
     def __init__(
         self,
@@ -37,11 +37,11 @@ class ComposableNode:
         self.condition_of_node, self.line = condition, calling_line()
 
     def condition(self) -> Condition | None:
-        """Return what decides whether the component is loaded."""
+        """Return the condition for loading the component."""
         return self.condition_of_node
 
     def evaluate(self, context: LaunchContext) -> LaunchedComponent:
-        """Return the component as it is loaded at this point of the launch file."""
+        """Return the component with the settings at this point of the launch file."""
         name = None if self.name is None else perform(context, self.name) or None
         given = "" if self.namespace is None else perform(context, self.namespace)
         namespace = join_namespace(context.scope.namespace, given)
@@ -61,7 +61,7 @@ class ComposableNode:
 
 
 def load(context: LaunchContext, container: str, descriptions: Iterable[Any]) -> None:
-    """Record that components are loaded into a container."""
+    """Record the loading of components into a container."""
     for one in descriptions:
         condition = one.condition()
         if condition is None or condition.evaluate(context):
@@ -89,7 +89,7 @@ class ComposableNodeContainer(Node):
 
 
 class LoadComposableNodes(Action):
-    """`load_composable_node`: loads components into a container that is named."""
+    """`load_composable_node`: loads components into a named container."""
 
     def __init__(
         self,

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What is known while a launch file is read, and what is found in it."""
+"""State while a launch file is read, and the nodes found in it."""
 
 from __future__ import annotations
 
@@ -21,30 +21,30 @@ from rmw_manycore_py.mapfile.launch_file.launched import (
 )
 
 
-class RefusedError(Exception):
-    """What a launch file says cannot be honoured; the action around it knows file and line."""
+class LaunchFileError(Exception):
+    """Unsupported or invalid content of a launch file; the action adds file and line."""
 
     def __init__(self, expected: str, found: str, key: str = "") -> None:
         super().__init__(f"expected {expected}, found {found}")
         self.expected, self.found, self.key = expected, found, key
 
     def at(self, file: Path, line: int) -> Problem:
-        """Return the same with its place."""
+        """Return the Problem at a file and line."""
         return Problem(file, line, self.key, self.expected, self.found)
 
 
-class NotInstalledError(RefusedError):
-    """A package, program or file is not on this machine; only what needs it is concerned."""
+class NotInstalledError(LaunchFileError):
+    """A package, program or file is missing; only affects what uses it."""
 
 
 class MissingText(str):
-    """The value of a launch argument that is not known for want of something; `error` says what."""
+    """Value of a launch argument that depends on something missing; `error` says what."""
 
     error: NotInstalledError
 
     @classmethod
     def of(cls, error: NotInstalledError) -> MissingText:
-        """Return the value that raises `error` where it is used."""
+        """Return a value that raises `error` when used."""
         text = cls(error.found)
         text.error = error
         return text
@@ -52,7 +52,7 @@ class MissingText(str):
 
 @dataclass
 class Scope:
-    """What a scoped group restores when it ends."""
+    """State restored at the end of a scoped group."""
 
     configurations: dict[str, str] = field(default_factory=dict)
     environment: dict[str, str] = field(default_factory=dict)
@@ -62,7 +62,7 @@ class Scope:
     unset: frozenset[str] = frozenset()
 
     def copy(self) -> Scope:
-        """Return a scope that can be changed without changing this one."""
+        """Return an independent copy."""
         return Scope(
             dict(self.configurations),
             dict(self.environment),
@@ -75,7 +75,7 @@ class Scope:
 
 @dataclass(frozen=True)
 class Later:
-    """Actions that are not executed at once."""
+    """Deferred actions."""
 
     start: Start
     file: Path
@@ -83,14 +83,14 @@ class Later:
 
 
 class LaunchContext:
-    """The state of reading; launch files in Python get it under this name too."""
+    """State of reading; Python launch files receive it as their LaunchContext."""
 
     def __init__(self, file: Path = Path(), arguments: Mapping[str, str] | None = None) -> None:
         self.file = file
         self.scope = Scope(dict(arguments or {}))
         self.nodes: list[LaunchedNode] = []
         self.loads: list[tuple[str, LaunchedComponent]] = []
-        self.serials: dict[int, tuple[int, Any]] = {}  # of actions that start processes, by id
+        self.serials: dict[int, tuple[int, Any]] = {}  # of process actions, by id
         self.start = Start()
         self.later: list[Later] = []
         self.handlers: list[Any] = []
@@ -100,24 +100,24 @@ class LaunchContext:
         self.environments: list[dict[str, str]] = []
         self.configurations: list[dict[str, str]] = []
         self.notices: list[str] = []
-        self.missing: set[Path] = set()  # prefixes of packages that are not installed
+        self.missing: set[Path] = set()  # fake prefixes of packages that are not installed
         self.declared: set[str] = set()
         self.depth = 0
         self.files = 0
 
     @property
     def launch_configurations(self) -> dict[str, str]:
-        """The launch arguments and what `let` set."""
+        """Launch arguments, and values set by `let`."""
         return self.scope.configurations
 
     @property
     def environment(self) -> dict[str, str]:
-        """The environment at this point of the launch file."""
+        """Environment at this point of the launch file."""
         outer = {k: v for k, v in os.environ.items() if k not in self.scope.unset}
         return {**outer, **self.scope.environment}
 
     def serial(self, action: Any) -> int:
-        """Return the number of the process that an action starts, also before it is executed."""
+        """Return the serial of the process an action starts; also before the action is executed."""
         return self.serials.setdefault(id(action), (len(self.serials) + 1, action))[0]
 
     def perform_substitution(self, substitution: Any) -> str:
@@ -125,17 +125,17 @@ class LaunchContext:
         return str(substitution.perform(self))
 
     def notice(self, line: int, text: str) -> None:
-        """Note something that does not act here as it does under ros2 launch."""
+        """Record a difference from the behaviour under ros2 launch."""
         place = f"{self.file}:{line}" if line else str(self.file)
         if (text := f"{place}: {text}") not in self.notices:
             self.notices.append(text)
 
     def is_missing(self, path: Path) -> bool:
-        """Tell whether a path leads into a package that is not installed."""
+        """Return whether a path is in a package that is not installed."""
         return any(prefix in path.parents for prefix in self.missing)
 
     def result(self) -> list[LaunchedNode]:
-        """Return the nodes with what was found of them elsewhere in the launch file."""
+        """Return the nodes, completed with settings found elsewhere in the launch file."""
         containers: dict[str, list[LaunchedComponent]] = {}
         for container, component in self.loads:
             containers.setdefault(container, []).append(component)
@@ -160,7 +160,7 @@ class LaunchContext:
         return nodes
 
     def finish(self) -> None:
-        """Do what timers and event handlers do, with what is set when all else is done."""
+        """Execute timers and event handlers with the final settings."""
         while self.later:
             later = self.later.pop(0)
             self.start = later.start
@@ -170,7 +170,7 @@ class LaunchContext:
 
     @contextmanager
     def scoped(self) -> Iterator[None]:
-        """Undo on leaving what was set inside."""
+        """Restore the scope at the end of the block."""
         outer, self.scope = self.scope, self.scope.copy()
         try:
             yield
@@ -179,7 +179,7 @@ class LaunchContext:
 
     @contextmanager
     def reading(self, file: Path) -> Iterator[None]:
-        """Make `file` the launch file that is being read."""
+        """Set the launch file that is being read."""
         outer, self.file = self.file, file
         try:
             yield
@@ -188,7 +188,7 @@ class LaunchContext:
 
 
 def join_namespace(base: str, namespace: str) -> str:
-    """Return `namespace` below `base`, or itself where it is absolute."""
+    """Return `namespace` below `base`, or unchanged if it is absolute."""
     if namespace.startswith("/"):
         return namespace.rstrip("/") or "/"
     return "/" + "/".join(part for part in (base.strip("/"), namespace.strip("/")) if part)

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The common form of launch files in XML and YAML: tags with attributes, children and lines."""
+"""Common form of XML and YAML launch files: tags with attributes, children and lines."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from rmw_manycore_py.errors import MapfileError, Problem
 from rmw_manycore_py.mapfile.format.bounded_yaml import MAX_DEPTH
 from rmw_manycore_py.mapfile.format.document import Document, KeyPath, read_text, read_yaml
 
-# In YAML these keys hold children; everything else is an attribute.
+# Keys that hold children in YAML; all others are attributes.
 _CHILD_LISTS = (
     *("param", "remap", "env", "arg", "let", "keep", "choice"),
     *("composable_node", "extra_arg"),
@@ -22,7 +22,7 @@ _CHILD_BLOCKS = ("group", "timer")
 
 @dataclass
 class Element:
-    """A tag; `used` collects the attributes someone asked for."""
+    """A tag; `used` collects the attributes that were read."""
 
     file: Path
     line: int
@@ -36,12 +36,12 @@ class Element:
         return MapfileError(Problem(self.file, self.line, self.tag, expected, found))
 
     def get(self, *names: str) -> Any:
-        """Return the first attribute of these names that is given."""
+        """Return the first of these attributes that is set."""
         self.used.update(names)
         return next((self.attributes[name] for name in names if name in self.attributes), None)
 
     def require(self, *names: str) -> Any:
-        """Return an attribute that must be given."""
+        """Return a required attribute."""
         value = self.get(*names)
         if value is None:
             raise self.problem(f"the attribute '{names[0]}'", "no such attribute")
@@ -54,7 +54,7 @@ class Element:
         return taken
 
     def check_all_used(self) -> None:
-        """Refuse attributes and children that nobody asked for."""
+        """Raise an error for attributes and children that were not read."""
         unknown = [name for name in self.attributes if name not in self.used]
         if unknown:
             raise self.problem(f"one of {', '.join(sorted(self.used))}", f"'{unknown[0]}'")

@@ -1,8 +1,8 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Event handlers of launch and launch_ros: what follows the start or the end of a process.
+"""Event handlers of launch and launch_ros: actions after the start or end of a process.
 
-No event happens while a launch file is read. What a handler does once a process has started or
-ended is recorded with that condition; what else it waits for is left out with a notice.
+No event happens while a launch file is read. The actions of handlers for process starts and ends
+are recorded with that condition; other handlers are skipped with a notice.
 """
 
 from __future__ import annotations
@@ -19,18 +19,18 @@ from rmw_manycore_py.mapfile.launch_file.substitutions import perform
 
 
 class Event:
-    """Something that happens while launch runs; here it only carries what it was made of."""
+    """Event of launch; only holds its arguments."""
 
     def __init__(self, **described: Any) -> None:
         vars(self).update(described)
 
 
 class Shutdown(Event):
-    """The event that ends the launch."""
+    """Ends the launch."""
 
 
 class ChangeState(Event):
-    """Asks lifecycle nodes for a transition."""
+    """Requests a transition of lifecycle nodes."""
 
     lifecycle_node_matcher: Any
     transition_id: int
@@ -52,7 +52,7 @@ class SignalProcess(Event):
 
 
 class EventHandler:
-    """Actions for an event; `matcher` and kind decide for which."""
+    """Actions for an event; `matcher` and class select the events."""
 
     what = "an event handler of its own kind"
 
@@ -68,11 +68,11 @@ class EventHandler:
         self.target_action = target_action
 
     def register(self, context: LaunchContext, line: int) -> None:
-        """Record what the handler will do."""
+        """Record the effect of the handler."""
         context.notice(line, f"{self.what} has no effect here")
 
     def actions(self, context: LaunchContext, line: int) -> list[Any]:
-        """Return the actions, without code that wants the event itself."""
+        """Return the actions, except code that needs the event itself."""
         entities = self.entities or ()
         listed = [entities] if isinstance(entities, Action) else entities
         if callable(listed) or not isinstance(listed, Iterable):
@@ -85,7 +85,7 @@ class EventHandler:
 
 
 class _OfProcess(EventHandler):
-    """Acts at the start or end of a process, or of all that are started by then."""
+    """Handler of the start or end of a process, or of all processes started so far."""
 
     on_exit = False
 
@@ -113,14 +113,14 @@ class _OfProcess(EventHandler):
 
 
 class OnProcessStart(_OfProcess):
-    """Acts when a process has started."""
+    """Runs actions after a process has started."""
 
     def __init__(self, *, on_start: Any = None, target_action: Any = None, **named: Any) -> None:
         super().__init__(entities=on_start, target_action=target_action, **named)
 
 
 class OnProcessExit(_OfProcess):
-    """Acts when a process has ended."""
+    """Runs actions after a process has ended."""
 
     on_exit = True
 
@@ -129,7 +129,7 @@ class OnProcessExit(_OfProcess):
 
 
 class OnExecutionComplete(EventHandler):
-    """Acts when an action is done: here that is when a process ends, else at once."""
+    """Runs actions after an action is complete: when its process ends, else at once."""
 
     def __init__(
         self, *, on_completion: Any = None, target_action: Any = None, **named: Any
@@ -149,7 +149,7 @@ class OnExecutionComplete(EventHandler):
 
 
 class OnShutdown(EventHandler):
-    """Acts when the launch ends."""
+    """Runs actions at shutdown."""
 
     what = "what is done on shutdown"
 
@@ -158,7 +158,7 @@ class OnShutdown(EventHandler):
 
 
 class OnProcessIO(EventHandler):
-    """Acts on what a process prints."""
+    """Runs actions on the output of a process."""
 
     what = "what is done with the output of a process"
 
@@ -167,11 +167,11 @@ class OnProcessIO(EventHandler):
 
 
 class OnIncludeLaunchDescription(EventHandler):
-    """Acts when a launch file is included."""
+    """Runs actions when a launch file is included."""
 
 
 class OnStateTransition(EventHandler):
-    """Acts when a lifecycle node reaches a state, which it does by transitions asked for here."""
+    """Runs actions when a lifecycle node reaches a state through recorded transitions."""
 
     def __init__(
         self,
@@ -190,12 +190,12 @@ class OnStateTransition(EventHandler):
         context.handlers.append((self, line))
 
 
-# The states that the transitions of lifecycle_msgs lead to.
+# Target states of the transitions of lifecycle_msgs.
 _GOALS = {1: "inactive", 2: "unconfigured", 3: "active", 4: "inactive"}
 
 
 def change_state(context: LaunchContext, serials: Iterable[int], transition: int) -> None:
-    """Record a transition of lifecycle nodes, and what is done when they have made it."""
+    """Record a transition of lifecycle nodes and the actions that follow it."""
     by_serial = dict(context.serials.values())
     for serial in serials:
         context.transitions.setdefault(serial, []).append(transition)
@@ -220,7 +220,7 @@ class RegisterEventHandler(Action):
 
 
 class UnregisterEventHandler(RegisterEventHandler):
-    """Takes an event handler away."""
+    """Removes an event handler."""
 
     @override
     def execute(self, context: LaunchContext) -> None:
@@ -228,7 +228,7 @@ class UnregisterEventHandler(RegisterEventHandler):
 
 
 class EmitEvent(Action):
-    """Emits an event: shutdown and transitions of lifecycle nodes take effect."""
+    """Emits an event; only shutdown and lifecycle transitions take effect."""
 
     def __init__(self, *, event: Any, condition: Condition | None = None) -> None:
         super().__init__(condition=condition)
@@ -240,7 +240,7 @@ class EmitEvent(Action):
         if isinstance(event, ChangeState):
             start = context.start
 
-            # Also of nodes that stand behind this action.
+            # Deferred, to include nodes declared after this action.
             def ask() -> None:
                 change_state(context, _matching(context, event), event.transition_id)
 
@@ -252,7 +252,7 @@ class EmitEvent(Action):
 
 
 class EndLaunch(Action):
-    """`shutdown`: the action Shutdown."""
+    """`shutdown`: ends the launch."""
 
     def __init__(self, *, reason: Any = "", condition: Condition | None = None) -> None:
         super().__init__(condition=condition)
@@ -264,7 +264,7 @@ class EndLaunch(Action):
 
 
 def end_run(context: LaunchContext, line: int) -> None:
-    """Record that the run ends with the process whose end is waited for."""
+    """Record that the run ends with the process whose exit triggers this action."""
     start = context.start
     if start.after is not None and start.on_exit and not start.delay_s:
         context.ending.add(start.after)
@@ -273,12 +273,12 @@ def end_run(context: LaunchContext, line: int) -> None:
 
 
 def matches_action(target_action: Any) -> Any:
-    """Return the matcher of an action."""
+    """Return a matcher for an action."""
     return lambda action: action is target_action
 
 
 def matches_node_name(node_name: str) -> Any:
-    """Return the matcher of the full name of a node."""
+    """Return a matcher for the full name of a node."""
     return _NodeName(node_name)
 
 
@@ -297,7 +297,7 @@ def _matching(context: LaunchContext, event: ChangeState) -> list[int]:
 
 
 class LifecycleTransition(Action):
-    """Brings lifecycle nodes through transitions."""
+    """Drives lifecycle nodes through transitions."""
 
     def __init__(
         self,

@@ -1,8 +1,8 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Evaluates the Python expression of `$(eval)`, in a process that can be stopped.
+"""Evaluates the Python expression of `$(eval)` in a separate process with limits.
 
-No check of an expression tells whether it ends, and `9**9**9` holds the interpreter lock: only
-another process can bound its time and memory. That process runs this file as its program.
+Whether an expression terminates cannot be checked in advance, and `9**9**9` holds the interpreter
+lock: only another process can bound time and memory. That process runs this file.
 """
 
 from __future__ import annotations
@@ -18,16 +18,16 @@ import time
 from collections.abc import Sequence
 from typing import Any
 
-# Beyond what the interpreter and the imported modules take.
+# In addition to the interpreter and the imported modules.
 CPU_S = 2
 MEMORY_BYTES = 1 << 30
-# For expressions that wait.
+# Wall-clock limit, for expressions that block.
 TIMEOUT_S = 30
 
 
 def evaluate(text: str, modules: Sequence[str]) -> str:
-    """Return the value of an expression as text; what goes wrong is a ValueError."""
-    # Imported here, as the process that runs this file needs nothing of the package.
+    """Return the value of an expression as text; raise ValueError on any failure."""
+    # Imported here: the child process that runs this file does not need the package.
     from rmw_manycore_py.mapfile.launch_file.child import ChildBoundError, run_child
 
     request = json.dumps({"text": text, "modules": list(modules), "path": sys.path})
@@ -55,7 +55,7 @@ def _main() -> None:
         answer = {"value": _value(request["text"], request["modules"])}
     except BaseException as error:
         answer = {"error": str(error) or type(error).__name__}
-    # After whatever the expression itself has printed.
+    # Follows any output of the expression itself.
     sys.stdout.write(f"\n{json.dumps(answer)}")
 
 
@@ -64,7 +64,7 @@ def _value(text: str, names: Sequence[str]) -> str:
     _limit(resource.RLIMIT_CORE, 0)
     _limit(resource.RLIMIT_CPU, math.ceil(time.process_time()) + CPU_S)
     _limit(resource.RLIMIT_AS, _address_space_bytes() + MEMORY_BYTES)
-    # As in ros2 launch, the names of the module math need no prefix.
+    # Names of the module math need no prefix, as in ros2 launch.
     return str(eval(text, {**vars(modules.get("math", os)), **modules}))
 
 

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Substitutions that stand for files, directories and names made up while launch runs."""
+"""Substitutions for files, directories and generated names."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from typing_extensions import override
 from rmw_manycore_py.mapfile.format.bounded_yaml import MAX_BYTES
 from rmw_manycore_py.mapfile.launch_file.context import (
     LaunchContext,
+    LaunchFileError,
     NotInstalledError,
-    RefusedError,
 )
 from rmw_manycore_py.mapfile.launch_file.substitutions import (
     PathJoinSubstitution,
@@ -24,7 +24,7 @@ from rmw_manycore_py.mapfile.launch_file.substitutions import (
 
 
 class PathSubstitution(PathJoinSubstitution):
-    """A path that `/` extends."""
+    """A path that can be extended with `/`."""
 
     def __init__(self, path: Any) -> None:
         super().__init__([path])
@@ -58,12 +58,12 @@ class FileContent(Substitution):
             reason = getattr(error, "strerror", None) or "it is no text"
             raise NotInstalledError("a readable file", f"'{path}': {reason}") from error
         if len(content) > MAX_BYTES:
-            raise RefusedError(f"a file of at most {MAX_BYTES} characters", f"'{path}'")
+            raise LaunchFileError(f"a file of at most {MAX_BYTES} characters", f"'{path}'")
         return content
 
 
 class LaunchLogDir(Substitution):
-    """`$(launch_log_dir)`: `manycore run` writes no log files, so it is that of temporary files."""
+    """`$(launch_log_dir)`: the directory of temporary files; `manycore run` has no such logs."""
 
     @override
     def perform(self, context: LaunchContext) -> str:
@@ -71,7 +71,7 @@ class LaunchLogDir(Substitution):
 
 
 class AnonName(Substitution):
-    """`$(anon name)`: a name that ends in numbers; the same each time, so that mapfiles hold."""
+    """`$(anon name)`: a name with a numeric suffix, deterministic so that mapfiles can use it."""
 
     def __init__(self, name: Any) -> None:
         self.name = name
@@ -82,7 +82,7 @@ class AnonName(Substitution):
 
 
 class BooleanSubstitution(Substitution):
-    """True or false as text."""
+    """`true` or `false` as text."""
 
     def __init__(self, value: Any) -> None:
         self.value = value
@@ -93,7 +93,7 @@ class BooleanSubstitution(Substitution):
 
 
 class LocalSubstitution(Substitution):
-    """What only launch itself knows while an event is handled."""
+    """Values that launch only knows while it handles an event."""
 
     def __init__(self, expression: str, description: str = "") -> None:
         super().__init__()
@@ -101,11 +101,11 @@ class LocalSubstitution(Substitution):
 
     @override
     def perform(self, context: LaunchContext) -> str:
-        raise RefusedError("a text that is known before anything runs", f"'{self.expression}'")
+        raise LaunchFileError("a text that is known before anything runs", f"'{self.expression}'")
 
 
 class Parameter(Substitution):
-    """`$(param name)`: a parameter that was set for all nodes that follow."""
+    """`$(param name)`: a parameter set for all later nodes."""
 
     def __init__(self, name: Any, *, default: Any = None) -> None:
         self.name, self.default = name, default
@@ -117,5 +117,5 @@ class Parameter(Substitution):
             if isinstance(source, dict) and name in source:
                 return str(source[name])
         if self.default is None:
-            raise RefusedError("a parameter that 'set_parameter' has set", f"'{name}'")
+            raise LaunchFileError("a parameter that 'set_parameter' has set", f"'{name}'")
         return perform(context, self.default)

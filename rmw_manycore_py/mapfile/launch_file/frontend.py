@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Turns the tags of XML and YAML launch files into the actions they stand for."""
+"""Converts the tags of XML and YAML launch files to actions."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from rmw_manycore_py.mapfile.launch_file import process_actions as x
 from rmw_manycore_py.mapfile.launch_file import ros_actions as r
 from rmw_manycore_py.mapfile.launch_file import settings as t
 from rmw_manycore_py.mapfile.launch_file import text
-from rmw_manycore_py.mapfile.launch_file.context import RefusedError
+from rmw_manycore_py.mapfile.launch_file.context import LaunchFileError
 from rmw_manycore_py.mapfile.launch_file.elements import Element
 from rmw_manycore_py.mapfile.launch_file.include import (
     IncludeLaunchDescription,
@@ -54,7 +54,7 @@ def _action(element: Element) -> a.Action:
         action = make(element)
         action.line, action.condition = element.line, condition
         element.check_all_used()
-    except RefusedError as refused:
+    except LaunchFileError as refused:
         raise MapfileError(refused.at(element.file, element.line)) from refused
     return action
 
@@ -73,9 +73,9 @@ def _text(value: Any) -> text.Parts | None:
 
 
 def _plain(value: Any) -> str:
-    """Return an attribute that is no list or mapping as text, as XML has it anyway."""
+    """Return a scalar attribute as text, as XML has it."""
     if isinstance(value, (dict, list)):
-        raise RefusedError("a text or a number", describe(value))
+        raise LaunchFileError("a text or a number", describe(value))
     return str(value).lower() if isinstance(value, bool) else str(value)
 
 

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Launch files that launch files include."""
+"""Included launch files."""
 
 from __future__ import annotations
 
@@ -19,20 +19,20 @@ from rmw_manycore_py.mapfile.launch_file.actions import (
 )
 from rmw_manycore_py.mapfile.launch_file.context import (
     LaunchContext,
+    LaunchFileError,
     NotInstalledError,
-    RefusedError,
 )
 from rmw_manycore_py.mapfile.launch_file.substitutions import perform
 
 Frontend = Callable[[Path], LaunchDescription]
-# Suffix of the file name to what reads it; filled by `reader`, which knows all of them.
+# Reader by file suffix; filled by `reader`.
 FRONTENDS: dict[str, Frontend] = {}
 _DEEPEST_INCLUDE = 50
 _MAX_FILES = 1000
 
 
 class LaunchDescriptionSource:
-    """Names a launch file; what reads it follows from the name's suffix."""
+    """Path of a launch file; its suffix selects the reader."""
 
     def __init__(self, launch_file_path: Any) -> None:
         self.launch_file_path = launch_file_path
@@ -63,7 +63,7 @@ class IncludeLaunchDescription(Action):
         file = Path(perform(context, path))
         if not os.path.isfile(file):
             missing = context.is_missing(file)
-            error = NotInstalledError if missing else RefusedError
+            error = NotInstalledError if missing else LaunchFileError
             raise error("an existing launch file", str(file))
         self._set_arguments(context)
         read_into(context, file)
@@ -79,9 +79,9 @@ def read_into(context: LaunchContext, file: Path) -> None:
     context.depth += 1
     context.files += 1
     if context.depth > _DEEPEST_INCLUDE:
-        raise RefusedError("launch files that do not include themselves", str(file))
+        raise LaunchFileError("launch files that do not include themselves", str(file))
     if context.files > _MAX_FILES:
-        raise RefusedError(f"at most {_MAX_FILES} launch files, each include counted", str(file))
+        raise LaunchFileError(f"at most {_MAX_FILES} launch files, each include counted", str(file))
     frontend = next(
         (read for suffix, read in FRONTENDS.items() if file.name.endswith(suffix)), None
     )

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What a launch file starts: nodes, the components in them, and what happens at their ends."""
+"""Result of reading a launch file: nodes, components, and what follows their exits."""
 
 from __future__ import annotations
 
@@ -17,19 +17,19 @@ ParameterSource = dict[str, Any] | Path
 
 @dataclass(frozen=True)
 class Start:
-    """When a process starts: with the others, or once another one started or ended.
+    """Start condition of a process: at once, or after another one has started or ended.
 
-    `after` is the `serial` of the other one; the delay in seconds counts from then.
+    `after` is the `serial` of the other process; the delay in seconds counts from its start or end.
     """
 
     delay_s: float = 0.0
     after: int | None = None
-    on_exit: bool = False  # of the other one; else when that starts
+    on_exit: bool = False  # after the end of the other one; else after its start
 
 
 @dataclass(frozen=True)
 class Respawn:
-    """A process is started again when it ends; `max_retries` below 0 is without end."""
+    """Restart of a process when it ends; a negative `max_retries` means unlimited."""
 
     delay_s: float = 0.0
     max_retries: int = -1
@@ -37,7 +37,7 @@ class Respawn:
 
 @dataclass(frozen=True)
 class LaunchedComponent:
-    """A node that a container loads from a plugin."""
+    """A component loaded into a container."""
 
     file: Path
     line: int
@@ -51,13 +51,13 @@ class LaunchedComponent:
 
     @property
     def label(self) -> str:
-        """The name a mapfile uses: that of the node, else of the plugin's class."""
+        """Name in the mapfile: that of the node, else of the plugin's class."""
         return self.name or as_name(self.plugin.rpartition("::")[2])
 
 
 @dataclass(frozen=True)
 class LaunchedNode:
-    """A node or executable as a launch file starts it."""
+    """A node or executable started by a launch file."""
 
     file: Path
     line: int
@@ -72,21 +72,21 @@ class LaunchedNode:
     ros_arguments: tuple[str, ...]
     env: Mapping[str, str]
     serial: int = 0
-    number: int = 1  # of those with the same name
+    number: int = 1  # among nodes of the same name
     prefix: tuple[str, ...] = ()
     cwd: str | None = None
     start: Start = Start()
     respawn: Respawn | None = None
-    ends_run: bool = False  # what is left is stopped when it ends
-    transitions: tuple[int, ...] = ()  # of its lifecycle, once it runs
+    ends_run: bool = False  # its end stops the run
+    transitions: tuple[int, ...] = ()  # lifecycle transitions after its start
     components: tuple[LaunchedComponent, ...] = ()
-    problem: Problem | None = None  # why it cannot run here
+    problem: Problem | None = None  # why it cannot run on this machine
 
     @property
     def label(self) -> str:
-        """The name a mapfile uses: that of the node, else of the executable.
+        """Name in the mapfile: that of the node, else of the executable.
 
-        Of several that would have one name in one namespace, those behind the first have a number.
+        Duplicates within a namespace get a numeric suffix, except the first.
         """
         program = self.executable or (*self.command, "?")[0]
         label = self.name or as_name(Path(program).name.removesuffix(".py"))
@@ -94,7 +94,7 @@ class LaunchedNode:
 
 
 def numbered(node: LaunchedNode, taken: set[str]) -> LaunchedNode:
-    """Return the node with the first number that gives it a name of its own, and take that name."""
+    """Return the node with the first number that makes its name unique; add the name to `taken`."""
     number = 1
     while (full_name := _full_label(replace(node, number=number))) in taken:
         number += 1
@@ -107,5 +107,5 @@ def _full_label(node: LaunchedNode) -> str:
 
 
 def as_name(text: str) -> str:
-    """Return a text as the name of a node: letters, digits and underscores."""
+    """Convert a text to a valid node name: letters, digits and underscores."""
     return re.sub(r"\W", "_", text, flags=re.ASCII)

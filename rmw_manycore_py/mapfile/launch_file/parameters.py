@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Parameters in launch files: values, substitutions that yield values, and parameter files."""
+"""Parameters in launch files: values, substitutions, and parameter files."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ from rmw_manycore_py.mapfile.format.validation import describe
 from rmw_manycore_py.mapfile.launch_file import text
 from rmw_manycore_py.mapfile.launch_file.context import (
     LaunchContext,
+    LaunchFileError,
     NotInstalledError,
-    RefusedError,
 )
 from rmw_manycore_py.mapfile.launch_file.launched import ParameterSource
 from rmw_manycore_py.mapfile.launch_file.substitutions import Substitution, is_true, perform
@@ -28,13 +28,13 @@ _TYPES = {bool: "bool", int: "int", float: "float", str: "str"}
 
 
 class ParameterValue:
-    """A value with its type given, so that the text of a substitution is not guessed at."""
+    """A value with an explicit type, so that the text of a substitution is not guessed."""
 
     def __init__(self, value: Any, *, value_type: Any = None) -> None:
         self.value, self.value_type = value, value_type
 
     def evaluate(self, context: LaunchContext) -> Any:
-        """Return the value in its type."""
+        """Return the value converted to its type."""
         if self.value_type is None:
             return _value(context, self.value)
         if self.value_type is str:
@@ -43,25 +43,25 @@ class ParameterValue:
         if self.value_type is float and type(value) is int:
             return float(value)
         if self.value_type in _TYPES and type(value) is not self.value_type:
-            raise RefusedError(f"a parameter of type {_TYPES[self.value_type]}", repr(value))
+            raise LaunchFileError(f"a parameter of type {_TYPES[self.value_type]}", repr(value))
         return value
 
 
 class Parameter:
-    """A parameter with its name."""
+    """A named parameter."""
 
     def __init__(self, name: Any, value: Any, *, value_type: Any = None) -> None:
         self.name, self.value = name, ParameterValue(value, value_type=value_type)
 
 
 class ParameterFile:
-    """A parameter file, in which substitutions may stand."""
+    """A parameter file, optionally with substitutions."""
 
     def __init__(self, param_file: Any, *, allow_substs: Any = False) -> None:
         self.param_file, self.allow_substs = param_file, allow_substs
 
     def evaluate(self, context: LaunchContext, node: str) -> ParameterSource:
-        """Return the file, or what it says for `node` where substitutions had to be made."""
+        """Return the file or, if it has substitutions, its parameters for `node`."""
         path = Path(os.path.expanduser(perform(context, self.param_file)))
         if not os.path.isfile(path):
             if context.is_missing(path) or is_true(context, self.allow_substs):
@@ -74,7 +74,7 @@ class ParameterFile:
 
 
 def evaluate_all(context: LaunchContext, sources: Any, node: str) -> tuple[ParameterSource, ...]:
-    """Return the parameters of a node in their order; the later ones win."""
+    """Return the parameters of a node in order; later ones take precedence."""
     return tuple(_evaluate(context, source, node) for source in sources or ())
 
 
@@ -110,11 +110,11 @@ def _value(context: LaunchContext, value: Any) -> Any:
         if any(isinstance(part, Substitution) for part in value):
             return _typed(perform(context, value))
         return _of_one_type([_value(context, part) for part in value])
-    raise RefusedError("a parameter value", repr(value))
+    raise LaunchFileError("a parameter value", repr(value))
 
 
 def _of_one_type(items: list[Any]) -> list[Any]:
-    """Return an array as ROS 2 launch makes one of mixed values: of floats, else of strings."""
+    """Convert an array of mixed types as ROS 2 launch does: to floats, else to strings."""
     kinds = {type(item) for item in items}
     if len(kinds) > 1:
         convert = float if kinds == {int, float} else str
@@ -123,15 +123,15 @@ def _of_one_type(items: list[Any]) -> list[Any]:
 
 
 def _typed(words: str) -> Any:
-    """Return what YAML makes of a text: that is how ROS 2 launch types substitutions."""
+    """Parse a text as YAML, as ROS 2 launch does to type substitutions."""
     try:
         value = parse_yaml(words, Path()).data
     except MapfileError:
         return words
     if isinstance(value, list) and not all(isinstance(part, _SCALARS) for part in value):
-        raise RefusedError("a list of bools, numbers or strings", repr(words))
+        raise LaunchFileError("a list of bools, numbers or strings", repr(words))
     if isinstance(value, float) and not isinstance(yaml.safe_load(words), float):
-        return words  # 1e-9, which is a number only to rcl
+        return words  # 1e-9 is a number for rcl, but not in YAML 1.1
     return value if isinstance(value, (bool, int, float, str, list)) else words
 
 

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What all processes of a launch file have in common, and those that are no nodes."""
+"""Common part of process actions, and processes that are not nodes."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from typing_extensions import override
 
 from rmw_manycore_py.errors import Problem
 from rmw_manycore_py.mapfile.launch_file.actions import Action, Condition
-from rmw_manycore_py.mapfile.launch_file.context import LaunchContext, RefusedError
+from rmw_manycore_py.mapfile.launch_file.context import LaunchContext, LaunchFileError
 from rmw_manycore_py.mapfile.launch_file.events import OnProcessExit
 from rmw_manycore_py.mapfile.launch_file.launched import LaunchedNode, Respawn
 from rmw_manycore_py.mapfile.launch_file.substitutions import is_true, perform
 
-# How output is shown and when a process is killed is for `manycore run` to say.
+# Options without effect, since `manycore run` decides on output and signals.
 _WITHOUT_EFFECT = frozenset(
     {"output", "emulate_tty", "log_cmd", "sigterm_timeout", "sigkill_timeout", "exec_name"}
     | {"output_format", "cached_output", "description", "prefix_filter", "autostart"}
@@ -29,7 +29,7 @@ _OPTIONS = frozenset(
 
 @dataclass(frozen=True)
 class ProcessOptions:
-    """The options that nodes and other processes share."""
+    """Options shared by nodes and other processes."""
 
     env: dict[str, str]
     prefix: tuple[str, ...]
@@ -56,11 +56,13 @@ class ProcessAction(Action):
         self.exec_name: Any = None
 
     def evaluate_options(self, context: LaunchContext) -> ProcessOptions:
-        """Return the options as they are at this point of the launch file."""
+        """Return the options with the settings at this point of the launch file."""
         given = {name: value for name, value in self.options.items() if value is not None}
         unknown = [name for name in given if name not in _OPTIONS | _WITHOUT_EFFECT]
         if unknown:
-            raise RefusedError("an option of a node or executable", f"'{unknown[0]}'", unknown[0])
+            raise LaunchFileError(
+                "an option of a node or executable", f"'{unknown[0]}'", unknown[0]
+            )
         own = {**dict(given.get("env") or {}), **self.additional_env}
         env = {perform(context, name): perform(context, value) for name, value in own.items()}
         if on_exit := given.get("on_exit"):
@@ -78,7 +80,7 @@ class ProcessAction(Action):
         return tuple(shlex.split(perform(context, own if given is None else given)))
 
     def label(self, context: LaunchContext) -> tuple[str | None, str]:
-        """Return name and namespace, as far as they are known."""
+        """Return name and namespace as far as known."""
         return (None if self.exec_name is None else perform(context, self.exec_name)), "/"
 
     @override
@@ -102,16 +104,16 @@ def _respawn(context: LaunchContext, given: Mapping[str, Any]) -> Respawn | None
 
 
 def number(context: LaunchContext, value: Any) -> float:
-    """Return a number that may be given as text or substitution."""
+    """Return a number given as number, text or substitution."""
     text = str(value) if isinstance(value, (int, float)) else perform(context, value)
     try:
         return float(text)
     except ValueError:
-        raise RefusedError("a number", repr(text)) from None
+        raise LaunchFileError("a number", repr(text)) from None
 
 
 class ExecuteProcess(ProcessAction):
-    """`executable`: a process that is not declared as a node."""
+    """`executable`: a process not declared as a node."""
 
     def __init__(self, *, cmd: Iterable[Any], name: Any = None, **options: Any) -> None:
         super().__init__(**options)
@@ -122,7 +124,7 @@ class ExecuteProcess(ProcessAction):
         options = self.evaluate_options(context)
         command = tuple(perform(context, word) for word in self.cmd)
         if not command or not command[0]:
-            raise RefusedError("a program and its arguments", "none")
+            raise LaunchFileError("a program and its arguments", "none")
         label = self.label(context)[0]
         if options.shell:
             label = label or shlex.split(command[0])[0].rpartition("/")[2]

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Runs Python launch files against stand-ins of `launch` and `launch_ros` that only record."""
+"""Runs Python launch files with recording stand-ins of `launch` and `launch_ros`."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from rmw_manycore_py.mapfile.launch_file.guard import guarded
 
 
 def read_python(path: Path) -> a.LaunchDescription:
-    """Run a launch file and return its description."""
+    """Run a launch file and return its LaunchDescription."""
     namespace: dict[str, Any] = {"__file__": str(path), "__name__": "launch_file"}
     code = guarded(path, lambda: compile(path.read_bytes(), str(path), "exec"))
     guarded(path, exec, code, namespace)

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Reads a launch file of any kind, without the package `launch`."""
+"""Reads launch files of any kind without the package `launch`."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from rmw_manycore_py.errors import MapfileError
-from rmw_manycore_py.mapfile.launch_file.context import LaunchContext, RefusedError
+from rmw_manycore_py.mapfile.launch_file.context import LaunchContext, LaunchFileError
 from rmw_manycore_py.mapfile.launch_file.elements import read_xml, read_yaml_elements
 from rmw_manycore_py.mapfile.launch_file.frontend import description
 from rmw_manycore_py.mapfile.launch_file.include import FRONTENDS, read_into
@@ -29,7 +29,7 @@ FRONTENDS.update(
 
 @dataclass(frozen=True)
 class LaunchFile:
-    """What a launch file starts."""
+    """Contents of a launch file."""
 
     file: Path
     nodes: tuple[LaunchedNode, ...]
@@ -38,14 +38,14 @@ class LaunchFile:
 
 
 def read_launch_file(file: Path, arguments: Mapping[str, str] | None = None) -> LaunchFile:
-    """Read a launch file with values for its arguments."""
+    """Read a launch file with the given launch arguments."""
     context = LaunchContext(file, arguments or {})
     try:
         with stand_ins(context):
             read_into(context, file)
             with context.reading(file):
                 context.finish()
-    except RefusedError as refused:
+    except LaunchFileError as refused:
         raise MapfileError(refused.at(file, 0)) from refused
     declared = frozenset(context.declared)
     nodes = tuple(context.result())

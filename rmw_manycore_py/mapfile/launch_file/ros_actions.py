@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The actions of launch_ros, under their own names."""
+"""Stand-ins of the actions of launch_ros."""
 
 from __future__ import annotations
 
@@ -9,7 +9,11 @@ from typing import Any
 from typing_extensions import override
 
 from rmw_manycore_py.mapfile.launch_file.actions import Action, Condition
-from rmw_manycore_py.mapfile.launch_file.context import LaunchContext, RefusedError, join_namespace
+from rmw_manycore_py.mapfile.launch_file.context import (
+    LaunchContext,
+    LaunchFileError,
+    join_namespace,
+)
 from rmw_manycore_py.mapfile.launch_file.events import change_state
 from rmw_manycore_py.mapfile.launch_file.launched import LaunchedNode
 from rmw_manycore_py.mapfile.launch_file.parameters import ParameterFile, evaluate_all
@@ -41,7 +45,7 @@ class Node(ProcessAction):
         self.known_name = ""
 
     def full_name(self, context: LaunchContext) -> str:
-        """Return the full name, as it is where the node stands, or as known at this point."""
+        """Return the full name: that of the executed action, or as far as known at this point."""
         return self.known_name or self._names(context)[2]
 
     def _names(self, context: LaunchContext) -> tuple[str | None, str, str]:
@@ -55,7 +59,7 @@ class Node(ProcessAction):
     def label(self, context: LaunchContext) -> tuple[str | None, str]:
         try:
             _, namespace, full_name = self._names(context)
-        except RefusedError:
+        except LaunchFileError:
             return None, "/"
         return full_name.rpartition("/")[2], namespace
 
@@ -92,7 +96,7 @@ class Node(ProcessAction):
 
 
 class LifecycleNode(Node):
-    """A node with managed states."""
+    """A node with a managed lifecycle."""
 
     def __init__(self, *, autostart: Any = False, **described: Any) -> None:
         super().__init__(**described)
@@ -107,7 +111,7 @@ class LifecycleNode(Node):
 
 
 class PushROSNamespace(Action):
-    """`push-ros-namespace`: puts the nodes that follow below a namespace."""
+    """`push-ros-namespace`: prefixes the namespace of later nodes."""
 
     def __init__(self, namespace: Any, *, condition: Condition | None = None) -> None:
         super().__init__(condition=condition)
@@ -120,7 +124,7 @@ class PushROSNamespace(Action):
 
 
 class SetRemap(Action):
-    """`set_remap`: for the nodes that follow."""
+    """`set_remap`: for later nodes."""
 
     def __init__(self, src: Any, dst: Any, *, condition: Condition | None = None) -> None:
         super().__init__(condition=condition)
@@ -132,7 +136,7 @@ class SetRemap(Action):
 
 
 class SetParameter(Action):
-    """`set_parameter`: for the nodes that follow."""
+    """`set_parameter`: for later nodes."""
 
     def __init__(self, name: Any, value: Any, *, condition: Condition | None = None) -> None:
         super().__init__(condition=condition)
@@ -145,7 +149,7 @@ class SetParameter(Action):
 
 
 class SetParametersFromFile(Action):
-    """`set_parameters_from_file`: for the nodes that follow."""
+    """`set_parameters_from_file`: for later nodes."""
 
     def __init__(self, filename: Any, *, condition: Condition | None = None, **_named: Any) -> None:
         super().__init__(condition=condition)
@@ -164,7 +168,7 @@ class SetUseSimTime(SetParameter):
 
 
 class SetROSLogDir(Action):
-    """`set_ros_log_dir`: for the processes that follow."""
+    """`set_ros_log_dir`: for later processes."""
 
     def __init__(self, new_log_dir: Any, *, condition: Condition | None = None) -> None:
         super().__init__(condition=condition)

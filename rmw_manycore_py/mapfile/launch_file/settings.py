@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The actions of ROS 2 launch that change the environment and the launch arguments."""
+"""Actions of ROS 2 launch that change the environment and launch arguments."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from typing import Any
 from typing_extensions import override
 
 from rmw_manycore_py.mapfile.launch_file.actions import Action, Condition
-from rmw_manycore_py.mapfile.launch_file.context import LaunchContext, RefusedError
+from rmw_manycore_py.mapfile.launch_file.context import LaunchContext, LaunchFileError
 from rmw_manycore_py.mapfile.launch_file.substitutions import is_true, perform
 
 
 class AppendEnvironmentVariable(Action):
-    """`append_env`: adds to a variable for the processes that follow."""
+    """`append_env`: appends to a variable for later processes."""
 
     def __init__(
         self,
@@ -69,7 +69,7 @@ class UnsetLaunchConfiguration(Action):
 
 
 class PushEnvironment(Action):
-    """Keeps the environment until it is popped."""
+    """Pushes the environment on a stack."""
 
     @override
     def execute(self, context: LaunchContext) -> None:
@@ -77,7 +77,7 @@ class PushEnvironment(Action):
 
 
 class PopEnvironment(Action):
-    """Goes back to the environment that was pushed last."""
+    """Restores the environment pushed last."""
 
     @override
     def execute(self, context: LaunchContext) -> None:
@@ -85,7 +85,7 @@ class PopEnvironment(Action):
 
 
 class ResetEnvironment(Action):
-    """Goes back to the environment that launch was started with."""
+    """Restores the initial environment of the launch."""
 
     @override
     def execute(self, context: LaunchContext) -> None:
@@ -93,7 +93,7 @@ class ResetEnvironment(Action):
 
 
 class PushLaunchConfigurations(Action):
-    """Keeps the launch arguments until they are popped."""
+    """Pushes the launch arguments on a stack."""
 
     @override
     def execute(self, context: LaunchContext) -> None:
@@ -101,7 +101,7 @@ class PushLaunchConfigurations(Action):
 
 
 class PopLaunchConfigurations(Action):
-    """Goes back to the launch arguments that were pushed last."""
+    """Restores the launch arguments pushed last."""
 
     @override
     def execute(self, context: LaunchContext) -> None:
@@ -109,7 +109,7 @@ class PopLaunchConfigurations(Action):
 
 
 class ResetLaunchConfigurations(Action):
-    """`reset`: leaves only the given launch arguments."""
+    """`reset`: keeps only the given launch arguments."""
 
     def __init__(
         self,
@@ -131,5 +131,5 @@ class ResetLaunchConfigurations(Action):
 
 def _popped(stack: list[dict[str, str]]) -> dict[str, str]:
     if not stack:
-        raise RefusedError("a push before each pop", "none")
+        raise LaunchFileError("a push before each pop", "none")
     return stack.pop()

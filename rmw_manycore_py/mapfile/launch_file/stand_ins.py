@@ -1,8 +1,8 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 """Stand-ins of `launch` and `launch_ros`, in `sys.modules` only while a launch file is read.
 
-They are used even where the real packages are installed: what a mapfile means does not depend on
-the machine.
+They also replace installed packages, so that the meaning of a mapfile does not depend on the
+machine.
 """
 
 from __future__ import annotations
@@ -145,7 +145,7 @@ _CONTENTS: dict[str, dict[str, Any]] = {
     "launch_yaml": {},
     "launch_yaml.launch_description_sources": _SOURCES,
 }
-# The modules of launch that hold one class each, under the class's name in lower case.
+# Modules of launch with one class each, named after the class in lower case.
 _ONE_EACH = {
     "launch.actions": _ACTIONS,
     "launch.event_handlers": _HANDLERS,
@@ -157,7 +157,7 @@ _ONE_EACH = {
 
 @contextmanager
 def stand_ins(context: LaunchContext) -> Iterator[None]:
-    """Put the stand-ins where `import launch` finds them, and take them away again."""
+    """Install the stand-ins for `import launch`, and remove them at the end."""
     real = {name: module for name, module in sys.modules.items() if _is_ours(name)}
     before = set(sys.modules)
     path = list(sys.path)
@@ -183,7 +183,7 @@ def _is_ours(name: str) -> bool:
 
 
 def _uses_ours(name: str) -> bool:
-    """Tell whether a module has imported stand-ins, so that nothing else may get it."""
+    """Return whether a module has imported stand-ins and must be dropped afterwards."""
     found = list(vars(sys.modules[name]).values())
     kinds = [one for one in found if isinstance(one, (type, ModuleType))]
     return any(
@@ -212,9 +212,10 @@ def _module_of_one(package: str, name: str, thing: Any) -> None:
 
 @contextmanager
 def _lenient_index(context: LaunchContext) -> Iterator[None]:
-    """Let packages that are not installed have a directory, which does not exist.
+    """Give packages that are not installed a share directory that does not exist.
 
-    So a launch file that looks for one can be read on; what needs a file of it cannot run.
+    This lets a launch file that only looks up such a package be read; what uses its files cannot
+    run.
     """
     try:
         import ament_index_python

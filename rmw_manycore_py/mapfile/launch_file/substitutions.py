@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The substitutions of ROS 2 launch, under their own names."""
+"""Stand-ins of the substitutions of ROS 2 launch."""
 
 from __future__ import annotations
 
@@ -18,34 +18,34 @@ from rmw_manycore_py.mapfile.launch_file import expression
 from rmw_manycore_py.mapfile.launch_file.child import ChildBoundError, run_child
 from rmw_manycore_py.mapfile.launch_file.context import (
     LaunchContext,
+    LaunchFileError,
     MissingText,
     NotInstalledError,
-    RefusedError,
 )
 from rmw_manycore_py.ros import ament
 
-# Enough of an expression or command to know it by, before what is wrong with it.
+# Length at which expressions and commands are truncated in errors.
 _MAX_QUOTED = 100
 COMMAND_TIMEOUT_S = 60
 
 
 class Substitution:
-    """A text that is known only while the launch file is read."""
+    """A text that is evaluated while the launch file is read."""
 
     def __init__(self) -> None:
-        """Exist, as subclasses in launch files call it."""
+        """Accept the call from subclasses in launch files."""
 
     def describe(self) -> str:
-        """Return what it is, for launch files that print it."""
+        """Return a description, for launch files that print it."""
         return type(self).__name__
 
     def perform(self, context: LaunchContext) -> str:
-        """Return the text."""
+        """Evaluate the substitution."""
         raise NotImplementedError
 
 
 def perform(context: LaunchContext, value: Any) -> str:
-    """Return the text of a string, a substitution, or a sequence of these."""
+    """Evaluate a string, a substitution, or a sequence of these."""
     if isinstance(value, (str, os.PathLike)):
         return os.fspath(value)
     if isinstance(value, Substitution):
@@ -53,16 +53,16 @@ def perform(context: LaunchContext, value: Any) -> str:
     if isinstance(value, Iterable):
         text = "".join(perform(context, part) for part in value)
         if len(text) > MAX_BYTES:
-            raise RefusedError(f"a text of at most {MAX_BYTES} characters", str(len(text)))
+            raise LaunchFileError(f"a text of at most {MAX_BYTES} characters", str(len(text)))
         return text
-    raise RefusedError("a string or a substitution", repr(value))
+    raise LaunchFileError("a string or a substitution", repr(value))
 
 
 def is_true(context: LaunchContext, value: Any) -> bool:
-    """Return the truth of a condition: true, false, 1 or 0."""
+    """Evaluate a condition: true, false, 1 or 0."""
     text = str(value) if isinstance(value, bool) else perform(context, value)
     if text.strip().lower() not in ("true", "false", "1", "0"):
-        raise RefusedError("a condition that is true, false, 1 or 0", repr(text))
+        raise LaunchFileError("a condition that is true, false, 1 or 0", repr(text))
     return text.strip().lower() in ("true", "1")
 
 
@@ -93,7 +93,7 @@ class LaunchConfiguration(Substitution):
             return value
         if self.default is None:
             known = ", ".join(sorted(context.launch_configurations)) or "none"
-            raise RefusedError(f"a declared launch argument ({known})", f"'{name}'")
+            raise LaunchFileError(f"a declared launch argument ({known})", f"'{name}'")
         if isinstance(self.default, (bool, int, float)):
             return str(self.default)
         return perform(context, self.default)
@@ -111,7 +111,7 @@ class EnvironmentVariable(Substitution):
         if name in context.environment:
             return context.environment[name]
         if self.default_value is None:
-            raise RefusedError(f"the environment variable {name} to be set", "it is not")
+            raise LaunchFileError(f"the environment variable {name} to be set", "it is not")
         return perform(context, self.default_value)
 
 
@@ -126,7 +126,7 @@ class FindPackagePrefix(Substitution):
         return str(self.found(context, ament.package_prefix))
 
     def found(self, context: LaunchContext, find: Callable[[str], Path | None]) -> Path:
-        """Return what is found of the package, which must be installed."""
+        """Return the result of `find` for the package; raise NotInstalledError if it is None."""
         name = perform(context, self.package)
         path = find(name)
         if path is None:
@@ -223,11 +223,11 @@ class PythonExpression(Substitution):
         try:
             return expression.evaluate(text, names)
         except ValueError as error:
-            raise RefusedError("a Python expression", f"{_quoted(text)}: {error}") from error
+            raise LaunchFileError("a Python expression", f"{_quoted(text)}: {error}") from error
 
 
 class Command(Substitution):
-    """`$(command 'line')`: what a command prints."""
+    """`$(command 'line')`: the output of a command."""
 
     def __init__(self, command: Any, *, on_stderr: Any = "fail") -> None:
         self.command, self.on_stderr = command, on_stderr
@@ -239,12 +239,12 @@ class Command(Substitution):
             done = run_child(shlex.split(line) or [""], context.environment, COMMAND_TIMEOUT_S)
         except OSError as error:
             found = f"{_quoted(line)}: {error.strerror}"
-            raise RefusedError("a command that runs", found) from error
+            raise LaunchFileError("a command that runs", found) from error
         except (ChildBoundError, ValueError) as error:
-            raise RefusedError("a command that runs", f"{_quoted(line)}: {error}") from error
+            raise LaunchFileError("a command that runs", f"{_quoted(line)}: {error}") from error
         if done.returncode != 0 or (done.stderr and perform(context, self.on_stderr) == "fail"):
             found = f"{_quoted(line)}: {done.stderr.strip()}"
-            raise RefusedError("a command that succeeds", found)
+            raise LaunchFileError("a command that succeeds", found)
         return done.stdout
 
 

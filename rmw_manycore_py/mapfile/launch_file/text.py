@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Reads `$(name argument ...)` in the texts of XML and YAML launch files."""
+"""Parses `$(name argument ...)` in XML and YAML launch files."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import Any
 from rmw_manycore_py.mapfile.format.bounded_yaml import MAX_DEPTH
 from rmw_manycore_py.mapfile.launch_file import file_substitutions as f
 from rmw_manycore_py.mapfile.launch_file import substitutions as s
-from rmw_manycore_py.mapfile.launch_file.context import RefusedError
+from rmw_manycore_py.mapfile.launch_file.context import LaunchFileError
 
 Parts = list[s.Substitution]
 _BY_NAME: dict[str, tuple[int, int, Callable[..., s.Substitution]]] = {
@@ -40,19 +40,19 @@ _BY_NAME: dict[str, tuple[int, int, Callable[..., s.Substitution]]] = {
 }
 
 
-# Private-use characters stand for substitutions while a line is split.
+# Private-use characters replace substitutions while a line is split.
 _PLACEHOLDER = 0xF0000
 
 
 def parse(text: str) -> Parts:
-    """Return the parts of a text: plain ones and substitutions."""
+    """Split a text into literal parts and substitutions."""
     reader = _Reader(text)
     parts = reader.parts(lambda _char: False)
     return parts or [s.TextSubstitution(text="")]
 
 
 def split_words(parts: Parts) -> list[Parts]:
-    """Split a command line at its spaces; what a substitution yields is never split."""
+    """Split a command line at spaces; the values of substitutions are never split."""
     line = "".join(
         part.text if isinstance(part, s.TextSubstitution) else chr(_PLACEHOLDER + index)
         for index, part in enumerate(parts)
@@ -60,7 +60,7 @@ def split_words(parts: Parts) -> list[Parts]:
     try:
         words = shlex.split(line)
     except ValueError as error:
-        raise RefusedError("a command line as in a shell", f"{line!r}: {error}") from error
+        raise LaunchFileError("a command line as in a shell", f"{line!r}: {error}") from error
     return [[_part(char, parts) for char in word] for word in words]
 
 
@@ -76,7 +76,7 @@ class _Reader:
         self._depth = 0
 
     def parts(self, ends: Callable[[str], bool]) -> Parts:
-        """Read up to the first character for which `ends` holds, outside of substitutions."""
+        """Parse up to the first character outside substitutions for which `ends` holds."""
         parts: Parts = []
         plain = ""
         while self._at < len(self._text) and not ends(self._text[self._at]):
@@ -94,7 +94,7 @@ class _Reader:
     def _substitution(self) -> s.Substitution:
         self._depth += 1
         if self._depth > MAX_DEPTH:
-            raise RefusedError(f"at most {MAX_DEPTH} levels of substitutions", "more")
+            raise LaunchFileError(f"at most {MAX_DEPTH} levels of substitutions", "more")
         self._at += len("$(")
         start = self._at
         while self._at < len(self._text) and self._text[self._at] not in " \t\n)":
@@ -102,11 +102,11 @@ class _Reader:
         name = self._text[start : self._at]
         arguments = self._arguments()
         if name not in _BY_NAME:
-            raise RefusedError(f"one of the substitutions {', '.join(_BY_NAME)}", f"'$({name})'")
+            raise LaunchFileError(f"one of the substitutions {', '.join(_BY_NAME)}", f"'$({name})'")
         fewest, most, make = _BY_NAME[name]
         if not fewest <= len(arguments) <= most:
             count = f"{fewest}" if fewest == most else f"{fewest} to {most}"
-            raise RefusedError(f"{count} argument(s) of $({name})", str(len(arguments)))
+            raise LaunchFileError(f"{count} argument(s) of $({name})", str(len(arguments)))
         self._depth -= 1
         return make(*arguments)
 
@@ -116,7 +116,7 @@ class _Reader:
             while self._at < len(self._text) and self._text[self._at] in " \t\n":
                 self._at += 1
             if self._at >= len(self._text):
-                raise RefusedError("a closing ')'", repr(self._text))
+                raise LaunchFileError("a closing ')'", repr(self._text))
             if self._text[self._at] == ")":
                 self._at += 1
                 return arguments
@@ -128,6 +128,6 @@ class _Reader:
         self._at += 1
         parts = self.parts(lambda char: char == quote)
         if self._at >= len(self._text):
-            raise RefusedError(f"a closing {quote}", repr(self._text))
+            raise LaunchFileError(f"a closing {quote}", repr(self._text))
         self._at += 1
         return parts or [s.TextSubstitution(text="")]

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The functions and small types of launch that launch files in Python call besides its actions."""
+"""Other functions and small types of launch used by Python launch files."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from collections.abc import Iterable
 from typing import Any
 
 from rmw_manycore_py.mapfile.launch_file.actions import Action
-from rmw_manycore_py.mapfile.launch_file.context import LaunchContext, RefusedError
+from rmw_manycore_py.mapfile.launch_file.context import LaunchContext, LaunchFileError
 from rmw_manycore_py.mapfile.launch_file.substitutions import (
     Substitution,
     TextSubstitution,
@@ -18,35 +18,35 @@ from rmw_manycore_py.mapfile.launch_file.substitutions import (
 
 
 class InvalidLaunchFileError(Exception):
-    """A launch file that launch cannot read."""
+    """Launch cannot read a launch file."""
 
 
 class SubstitutionFailure(RuntimeError):  # noqa: N818  # the name is that of launch
-    """A substitution that has no value."""
+    """A substitution has no value."""
 
 
 class InvalidConditionExpressionError(Exception):
-    """A condition that is neither true nor false."""
+    """A condition is neither true nor false."""
 
 
 class LaunchIntrospector:
-    """Describes launch descriptions."""
+    """Formats launch descriptions."""
 
     def format_launch_description(self, launch_description: Any) -> str:
-        """Return a line for each action at the top."""
+        """Return one line per top-level action."""
         lines = [f"    {type(one).__name__}" for one in launch_description.entities]
         return "\n".join(["<launch_description>", *lines])
 
 
 class LaunchService:
-    """Runs launch descriptions, which no launch file does while it is read."""
+    """Rejects launch files that run launch themselves."""
 
     def __init__(self, **_options: Any) -> None:
-        raise RefusedError("a launch file that returns its description", "one that runs launch")
+        raise LaunchFileError("a launch file that returns its description", "one that runs launch")
 
 
 def normalize_to_list_of_substitutions(subs: Any) -> list[Substitution]:
-    """Return text, a substitution or several of these as a list of substitutions."""
+    """Return text, a substitution, or a sequence of these as a list of substitutions."""
     if isinstance(subs, Substitution):
         return [subs]
     if isinstance(subs, Iterable) and not isinstance(subs, str):
@@ -55,29 +55,29 @@ def normalize_to_list_of_substitutions(subs: Any) -> list[Substitution]:
 
 
 def normalize_to_list_of_entities(entities: Any) -> list[Any]:
-    """Return an action or several as a list."""
+    """Return one or several actions as a list."""
     return [entities] if isinstance(entities, Action) else list(entities)
 
 
 def perform_substitutions(context: LaunchContext, subs: Any) -> str:
-    """Return the text of substitutions, one after the other."""
+    """Return the concatenated text of substitutions."""
     return perform(context, subs)
 
 
 def normalize_typed_substitution(value: Any, _data_type: Any = None) -> Any:
-    """Return what `perform_typed_substitution` takes."""
+    """Return the value unchanged; `perform_typed_substitution` accepts it."""
     return value
 
 
 def perform_typed_substitution(context: LaunchContext, value: Any, data_type: Any) -> Any:
-    """Return the value of a substitution as one of the type."""
+    """Return the value of a substitution, converted to the type."""
     if isinstance(value, (bool, int, float)):
         return value
     return is_true(context, value) if data_type is bool else data_type(perform(context, value))
 
 
 def evaluate_condition_expression(context: LaunchContext, expression: Any) -> bool:
-    """Return the truth of a condition."""
+    """Evaluate a condition."""
     return is_true(context, expression)
 
 
@@ -86,12 +86,12 @@ def ensure_argument_type(*_what: Any) -> None:
 
 
 def is_a(thing: Any, kind: type) -> bool:
-    """Tell whether it is of that kind."""
+    """Return whether `thing` is an instance of `kind`."""
     return isinstance(thing, kind)
 
 
 def expose(_name: str) -> Any:
-    """Return a decorator that changes nothing: tags of other packages are not known here."""
+    """Return a no-op decorator: tags of other packages are not supported."""
     return lambda decorated: decorated
 
 

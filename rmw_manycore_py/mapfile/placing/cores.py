@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Which core each node has, and which CPU of the host each core."""
+"""Assigns cores to nodes, and host CPUs to cores."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ from rmw_manycore_py.topology import (
 
 
 def assign_cores(mapfile: Mapfile, occupied: Collection[Core] = ()) -> dict[str, Core]:
-    """Return each node's core; nodes that name none get the first free ones of their cluster.
+    """Return each node's core; nodes without one get the first free core of their cluster.
 
-    :param occupied: cores that nodes of other runs have on the platform.
+    :param occupied: cores used by nodes of other runs on the platform.
     """
     nodes = mapfile.sections.nodes
     taken = {Core(node.cluster, node.core) for node in nodes.values() if node.core is not None}
@@ -59,10 +59,10 @@ def assign_cpus(
     bridge: BridgePlacement | None,
     cpus: Sequence[int],
 ) -> dict[Core, int]:
-    """Return the CPU of every used core: nodes, workers, then receive threads.
+    """Return the host CPU of every used core: nodes, workers, then receive threads.
 
-    The bridge may run on any CPU, or on those that the mapfile names: its cores have none. CPUs
-    that are isolated from the scheduler are for nodes that name them.
+    The bridge may run on any CPU or on those named in the mapfile: its cores get none. Isolated
+    CPUs are only assigned to nodes that name them.
     """
     fixed: dict[Core, int] = {}
     problems: list[Problem] = []

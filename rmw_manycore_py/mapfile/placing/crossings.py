@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What a mapfile lets cross to the outside, and where the bridge runs."""
+"""What a mapfile bridges to DDS, and where the bridge runs."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from rmw_manycore_py.mapfile.format.mapfile import Mapfile
     from rmw_manycore_py.mapfile.placing.start import NodeStart
 
-# Keys of a node that name what crosses.
+# Keys of a node that define routes.
 CROSSINGS: dict[str, Direction] = {
     "topic_in": "inward",
     "topic_to": "outward",
@@ -42,14 +42,14 @@ CROSSINGS: dict[str, Direction] = {
     "action_to": "outward",
 }
 
-# Keys of a route that say nothing of the other kind; an action is both.
+# Route keys that apply to one kind only; an action is both.
 ONLY_OF = {"max_hz": "topic", "max_size": "topic", "qos": "topic", "timeout": "service"}
 
 
 def bridge_placement(
     mapfile: Mapfile, starts: dict[str, NodeStart], used: Collection[Core]
 ) -> BridgePlacement | None:
-    """Return what crosses; the bridge takes the first cores left in cluster 1, two per lane."""
+    """Return the routes and the bridge's cores: the first free ones of cluster 1, two per lane."""
     bridge = mapfile.sections.bridge
     routes: list[Route] = []
     for name, node in mapfile.sections.nodes.items():
@@ -59,7 +59,7 @@ def bridge_placement(
         return None
     first = mapfile.topology.clusters[0]
     free = [Core(1, core) for core in first.free if Core(1, core) not in used]
-    # With every core taken the bridge shares the last one rather than refuse to run.
+    # If all cores are taken, the bridge shares the last one.
     cores = [*free, *[Core(1, first.free[-1])] * 2 * bridge.lanes]
     lanes = tuple((cores[2 * i], cores[2 * i + 1]) for i in range(bridge.lanes))
     return BridgePlacement(arranged(routes, bridge.lanes), lanes, bridge.host_cpu or ())
@@ -103,7 +103,7 @@ def _section_of(bridge: BridgeSection, inside: str) -> RouteSection:
 
 
 def _check_routes(mapfile: Mapfile, routes: list[Route]) -> None:
-    """Refuse options for what does not cross."""
+    """Raise MapfileError for settings of routes that do not exist."""
     crossing: dict[str, set[str]] = {}
     for route in routes:
         crossing.setdefault(_written_as(route), set()).add(route.kind)
@@ -130,14 +130,14 @@ def _check_routes(mapfile: Mapfile, routes: list[Route]) -> None:
 
 
 def _written_as(route: Route) -> str:
-    """Return the full name inside by which the mapfile knows it: of an action or node, its own."""
+    """Return the name by which the mapfile knows a route; for actions and nodes, their own name."""
     if "/_action/" in route.inside:
         return route.inside.rpartition("/_action/")[0]
     return route.inside.rpartition("/")[0] if route.node is not None else route.inside
 
 
 def overrides(qos: QosSection) -> Policies:
-    """Return the policies that were written."""
+    """Return the policies that are set."""
     found: dict[str, Any] = {
         key: getattr(qos, key)
         for key in ("reliability", "durability", "history", "depth")

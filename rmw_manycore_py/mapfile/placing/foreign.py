@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Nodes that `ros2 launch` starts: the mapfile only says where they run."""
+"""Nodes started by `ros2 launch`, for which the mapfile only defines the placement."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from rmw_manycore_py.ros.names import expand
 if TYPE_CHECKING:
     from rmw_manycore_py.mapfile.format.mapfile import Mapfile
 
-# What a node is started with. Under `ros2 launch` that stands in the launch file alone.
+# Keys that describe the command; under `ros2 launch` only the launch file may set them.
 _KEYS_OF_A_START = (
     *WAYS_TO_START,
     *("package", "namespace", "parameters", "param_file", "remappings", "arguments"),
@@ -23,7 +23,7 @@ _KEYS_OF_A_START = (
 
 
 def foreign_starts(mapfile: Mapfile) -> dict[str, NodeStart]:
-    """Return the nodes with the names that the mapfile gives them, and without a program."""
+    """Return the nodes by their names in the mapfile, without programs."""
     problems = [*_refused_keys(mapfile)]
     if problems:
         raise MapfileError(*problems)

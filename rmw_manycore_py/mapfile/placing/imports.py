@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Interface types that the sources of nodes import, and that a node cannot start without."""
+"""Interface types imported by the sources of nodes, without which a node cannot start."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 def check_imports(mapfile: Mapfile, starts: Mapping[str, NodeStart]) -> Iterator[Problem]:
-    """Yield types that a node imports and whose packages are not installed."""
+    """Yield types imported by a node whose packages are not installed."""
     for name, start in starts.items():
         for type_name, place in _missing(start):
             package = type_name.split("/")[0]
@@ -30,9 +30,10 @@ def check_imports(mapfile: Mapfile, starts: Mapping[str, NodeStart]) -> Iterator
 
 
 def notices_of_imports(starts: Mapping[str, NodeStart]) -> Iterator[str]:
-    """Yield types that a node imports and that their installed packages do not have.
+    """Yield types imported by a node that their installed packages do not define.
 
-    A program may add a type to a package before it imports it, as rosboard does.
+    This is a notice only: a program may add a type to a package before importing it, as rosboard
+    does.
     """
     for name, start in starts.items():
         for type_name, place in _missing(start):
@@ -47,7 +48,7 @@ def _missing(start: NodeStart) -> Iterator[tuple[str, str]]:
 
 
 def _needed(start: NodeStart) -> dict[str, str]:
-    """Return what the source of a node imports, and where, if it runs in this environment."""
+    """Return the types that a node's source imports, with locations, if it runs here."""
     source = start.program.source
     if source is None or "PYTHONPATH" in start.env:
         return {}
@@ -56,11 +57,11 @@ def _needed(start: NodeStart) -> dict[str, str]:
     try:
         imported = imported_interfaces(source)
     except MapfileError:
-        return {}  # Python will say what is wrong with it when it runs.
+        return {}  # Python reports the error at run time.
     return {type_name: f"{source.name}:{line}" for type_name, line in imported.items()}
 
 
 def _is_installed(package: str, type_name: str) -> bool:
     known = ament.interfaces(package)
-    # A package that is not of ROS may have a module `msg` all the same.
+    # A package that is not a ROS package may also have a module `msg`.
     return type_name in known or (not known and importlib.util.find_spec(package) is not None)

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Which node of a launch file a node of the mapfile is, and what the launch file does with it."""
+"""Matches nodes of the mapfile with nodes of the launch file, and extracts their settings."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ Launched = LaunchedNode | LaunchedComponent
 
 
 def find_launched(mapfile: Mapfile, name: str, launch: LaunchFile | None) -> Launched | None:
-    """Return the node in the launch file, which is needed where the mapfile cannot start it."""
+    """Return the node in the launch file; required if the mapfile cannot start it itself."""
     if launch is None:
         return None
     components = [one for node in launch.nodes for one in node.components]
@@ -49,14 +49,14 @@ def find_launched(mapfile: Mapfile, name: str, launch: LaunchFile | None) -> Lau
 
 
 def is_meant(name: str, launched: Launched) -> bool:
-    """Tell whether a mapfile means this node by that name."""
+    """Return whether a name in the mapfile refers to this node."""
     if "/" in name:
         return full_node_name(launched.namespace, launched.label) == f"/{name.strip('/')}"
     return launched.label == name
 
 
 def program_of(launched: Launched, directory: Path) -> Program:
-    """Return what starts a node of a launch file; what is not installed is an error."""
+    """Return the program of a node in a launch file; raise an error if it is not installed."""
     if isinstance(launched, LaunchedComponent):
         return _program_of_component(launched)
     if launched.problem is not None:
@@ -86,7 +86,7 @@ def _program_of_component(component: LaunchedComponent) -> Program:
 
 
 def expected_command(words: tuple[str, ...] | list[str], directory: Path) -> tuple[str, str]:
-    """Return what is expected, and the word of the command that does not name such a thing."""
+    """Return what is expected, and the word of the command that does not match it."""
     word = executables.unfound_script(words, directory)
     if word is None:
         return "an executable", words[0]
@@ -94,7 +94,7 @@ def expected_command(words: tuple[str, ...] | list[str], directory: Path) -> tup
 
 
 def expected_executable(package: str) -> str:
-    """Return what is expected of a package's executables."""
+    """Return a description of a package's executables, for errors."""
     known = executables.executables_of(package)
     if known or ament.package_prefix(package):
         return f"an executable of the package '{package}' ({', '.join(known) or 'it has none'})"
@@ -104,7 +104,7 @@ def expected_executable(package: str) -> str:
 def launch_rules(
     name: str, launched: Mapping[str, Launched | None]
 ) -> tuple[LaunchRules, tuple[str, ...]]:
-    """Return what the launch file wants of a mapped node besides its start, and notices."""
+    """Return the launch file's rules for a mapped node, and notices."""
     own = launched[name]
     if own is None:
         return LaunchRules(), ()
@@ -131,7 +131,7 @@ def launch_rules(
 
 
 def values_on_a_command_line(source: ParameterSource) -> ParameterSource:
-    """Return values as rcl reads them from launch: it writes 1e-9 without quotes, also as text."""
+    """Return values as rcl parses them from launch, which writes 1e-9 unquoted, also as text."""
     if isinstance(source, Path):
         return source
     return {name: _as_rcl_reads(value) for name, value in source.items()}

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What is valid in a mapfile, and yet hardly what its author meant."""
+"""Notices about valid mapfiles that are probably not what the author meant."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 def unpublished(
     mapfile: Mapfile, starts: Mapping[str, NodeStart], nodes: Sequence[PlacedNode]
 ) -> Iterator[str]:
-    """Yield topics in `topic_to` that no source publishes, of nodes whose sources say all."""
+    """Yield topics in `topic_to` that no source publishes, if all sources are conclusive."""
     published = {topic for node in nodes for topic in node.publish}
     for name, section in mapfile.sections.nodes.items():
         start = starts[name]
@@ -38,14 +38,14 @@ def unpublished(
 
 
 def refused_scheduling(nodes: Sequence[PlacedNode]) -> Iterator[str]:
-    """Yield nodes whose policy this user may not set; `manycore run` refuses them."""
+    """Yield nodes whose scheduling policy this user may not set; `manycore run` rejects them."""
     for node in nodes:
         if node.scheduling is not None and (reason := refusal(node.scheduling)):
             yield f"'{node.name}' cannot run here: {reason}"
 
 
 def _says_all(start: NodeStart) -> bool:
-    """Tell whether the source of a node shows all that it publishes itself."""
+    """Return whether a node's source shows everything it publishes."""
     if start.program.source is None:
         return False
     try:

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""ROS 2 parameter files: which of their sections concern a node."""
+"""ROS 2 parameter files: sections that apply to a node."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from rmw_manycore_py.mapfile.format.values import flatten_parameters
 
 
 def parameters_in(file: Path, full_name: str) -> dict[str, Any]:
-    """Return what a parameter file says for a node, under dotted names."""
+    """Return the parameters of a node in a parameter file, by dotted name."""
     document = read_yaml(file)
     if not isinstance(document.data, dict) or not all(map(_is_section, document.data.values())):
         raise MapfileError(_not_a_parameter_file(document))

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The placement: a mapfile with everything found, ready to be run or written out."""
+"""The placement: a resolved mapfile, ready to be run or written out."""
 
 from __future__ import annotations
 
@@ -11,11 +11,13 @@ from typing import Any
 from rmw_manycore_py.routes import DIRECTIONS, Direction, Route
 from rmw_manycore_py.scheduling import Scheduling
 from rmw_manycore_py.topology import Core, Topology
+from rmw_manycore_py.transfers import transfer_text
+from rmw_manycore_py.words import Transfer
 
 
 @dataclass(frozen=True)
 class PlacedComponent:
-    """A node that a container loads, as the request for it has it."""
+    """A component, with the fields of a LoadNode request."""
 
     package: str
     plugin: str
@@ -28,10 +30,10 @@ class PlacedComponent:
 
 @dataclass(frozen=True)
 class LaunchRules:
-    """What a launch file or a mapfile wants of a node besides its command line.
+    """Start and restart rules of a node, from the launch file or mapfile.
 
-    It starts `delay_s` after the others, or after the node `after` has started or ended; it is
-    started again up to `max_respawns` times (below 0: always) unless `respawn_delay_s` is None.
+    It starts `delay_s` after the others, or after the node `after` has started or ended. It is
+    restarted up to `max_respawns` times (negative: unlimited) unless `respawn_delay_s` is None.
     """
 
     after: str | None = None
@@ -49,7 +51,27 @@ NO_RULES = LaunchRules()
 
 @dataclass(frozen=True)
 class PlacedNode:
-    """A node on its core; `env` is what is set on top of the caller's environment."""
+    """A node on its core.
+
+    :param name: as the mapfile has it.
+    :param full_name: with its namespace, as /front/camera.
+    :param cluster: counted from 1.
+    :param core: counted from 0 in its cluster.
+    :param host_cpu: CPU that the node is pinned to.
+    :param argv: command line.
+    :param env: set on top of the caller's environment.
+    :param cwd: working directory.
+    :param program: command line without ROS arguments.
+    :param ros_arguments: what follows `program` in `argv`.
+    :param parameters: by name.
+    :param param_files: parameter files.
+    :param publish: types of published topics, by full name.
+    :param subscribe: types of subscribed topics, by full name.
+    :param workers: cores of its workers, each with its host CPU.
+    :param rules: when it starts, and whether it is started again.
+    :param terminal: whether it has a terminal of its own.
+    :param scheduling: policy and priority; None where the node inherits them.
+    """
 
     name: str
     full_name: str
@@ -65,7 +87,7 @@ class PlacedNode:
     param_files: tuple[Path, ...]
     publish: Mapping[str, str]
     subscribe: Mapping[str, str]
-    workers: tuple[tuple[Core, int], ...]  # with the host CPU of each
+    workers: tuple[tuple[Core, int], ...]  # core and host CPU of each
     rules: LaunchRules = NO_RULES
     terminal: bool = False
     scheduling: Scheduling | None = None
@@ -78,7 +100,7 @@ class PlacedNode:
 
 @dataclass(frozen=True)
 class TopicEntry:
-    """A row of the topic table (Fig. 7); without a size its topic DSM grows as needed."""
+    """Row of the topic table (Fig. 7); without a size the topic DSM grows on demand."""
 
     id: int
     name: str
@@ -86,26 +108,46 @@ class TopicEntry:
     topic_dsm_size: int | None
     publishers: tuple[PlacedNode, ...]
     subscribers: tuple[PlacedNode, ...]
+    transfer: Transfer = "dsm"
+    priority: int = 0
+    synchronous: bool = False
+
+    @property
+    def transfer_text(self) -> str:
+        """The transfer with what belongs to it."""
+        return transfer_text(self.transfer, self.priority, self.synchronous)
+
+    @property
+    def landings(self) -> tuple[tuple[PlacedNode, int], ...]:
+        """Each publisher with each other cluster that its messages are transferred to."""
+        if self.transfer == "dsm":
+            return ()
+        return tuple(
+            (node, cluster)
+            for node in self.publishers
+            for cluster in self.receiver_clusters
+            if cluster != node.cluster
+        )
 
     @property
     def publisher_clusters(self) -> tuple[int, ...]:
-        """The clusters that hold a topic DSM of this topic."""
+        """Clusters that hold a topic DSM of this topic."""
         return tuple(sorted({node.cluster for node in self.publishers}))
 
     @property
     def receiver_clusters(self) -> tuple[int, ...]:
-        """The clusters whose receive thread is told of each message."""
+        """Clusters whose receive thread is notified of each message."""
         return tuple(sorted({node.cluster for node in self.subscribers}))
 
     @property
     def receiver_mask(self) -> int:
-        """The same as bits: bit 0 is cluster 1."""
+        """Receiver clusters as a bit mask; bit 0 is cluster 1."""
         return sum(1 << (cluster - 1) for cluster in self.receiver_clusters)
 
 
 @dataclass(frozen=True)
 class ClusterMemory:
-    """Local memory of a cluster and what fixed topic DSMs take of it, in bytes."""
+    """Local memory of a cluster and its use by fixed topic DSMs, in bytes."""
 
     cluster: int
     smem_size: int
@@ -113,15 +155,15 @@ class ClusterMemory:
 
     @property
     def used(self) -> int:
-        """Bytes that the topic DSMs of fixed size take."""
+        """Bytes used by topic DSMs of fixed size."""
         return sum(self.topic_dsms.values())
 
 
 @dataclass(frozen=True)
 class BridgePlacement:
-    """What crosses the platform's border, and the inward and outward core of each lane.
+    """Routes of the bridge, and the inward and outward core of each lane.
 
-    Without host CPUs its processes run on all that the run may use.
+    If `host_cpus` is empty, its processes run on all CPUs of the run.
     """
 
     routes: tuple[Route, ...]
@@ -129,13 +171,23 @@ class BridgePlacement:
     host_cpus: tuple[int, ...] = ()
 
     def core(self, direction: Direction, lane: int) -> Core:
-        """Return where a process of the bridge runs."""
+        """Return the core of a bridge process."""
         return self.cores[lane][DIRECTIONS.index(direction)]
 
 
 @dataclass(frozen=True)
 class Placement:
-    """A platform and what runs on it."""
+    """A platform and what runs on it.
+
+    :param name: name of the platform.
+    :param topology: its clusters and cores, and the SMEM of each cluster in bytes.
+    :param nodes: in the order of the mapfile.
+    :param topics: topic table, as far as sources and mapfile name topics.
+    :param memory: what topic DSMs of fixed size take of each cluster.
+    :param host_cpus: host CPU of each core in use, those of receive threads and workers included.
+    :param bridge: what crosses to DDS domains; None where nothing does.
+    :param notices: what the user should know, although nothing is wrong.
+    """
 
     name: str
     topology: Topology

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""From a mapfile to a placement: finds programs, cores, host CPUs and topics."""
+"""From a mapfile to a placement: resolves programs, cores, host CPUs and topics."""
 
 from __future__ import annotations
 
@@ -23,6 +23,7 @@ from rmw_manycore_py.mapfile.placing.placement import (
     PlacedNode,
     Placement,
 )
+from rmw_manycore_py.mapfile.placing.sessions import check_sessions
 from rmw_manycore_py.mapfile.placing.start import NodeStart, node_start, ros_arguments
 from rmw_manycore_py.mapfile.placing.topics import (
     check_crossing_types,
@@ -43,23 +44,26 @@ from rmw_manycore_py.topology import (
     usable_cpus,
 )
 
-# Above any message: glibc then keeps freed memory instead of faulting it in again each time.
+# Larger than any message, so that glibc keeps freed memory instead of faulting it in again.
 _MALLOC_THRESHOLD = str(1 << 30)
 
 
 def resolve(mapfile: Mapfile, occupied: Collection[Core] = ()) -> Placement:
-    """Find everything a mapfile refers to; what does not exist is an error.
+    """Resolve everything a mapfile refers to.
 
-    :param occupied: cores that nodes of other runs have on the platform.
+    :param occupied: cores used by nodes of other runs on the platform.
+    :raises MapfileError: for everything that does not exist.
     """
     launch = read_launch(mapfile)
     return _placement(mapfile, node_starts(mapfile, launch), launch, occupied)
 
 
 def resolve_places(mapfile: Mapfile) -> Placement:
-    """Find the core of each node of a mapfile whose nodes `ros2 launch` starts.
+    """Resolve the placement of a mapfile whose nodes are started by `ros2 launch`.
 
-    The command lines of the placed nodes are empty. What is wrong is an error.
+    The command lines of the placed nodes are empty.
+
+    :raises MapfileError: for invalid placements.
     """
     return _placement(mapfile, foreign_starts(mapfile), None, ())
 
@@ -93,6 +97,7 @@ def _placement(
         *check_crossing_types(mapfile, starts, topics),
         *check_imports(mapfile, starts),
         *check_memory(mapfile, memory),
+        *check_sessions(mapfile, topics),
     ]
     if problems:
         raise MapfileError(*problems)
@@ -115,12 +120,12 @@ def _placement(
 
 
 def platform_name(mapfile: Mapfile) -> str:
-    """Return the platform's name, by default that of nodes started by hand."""
+    """Return the platform's name; default: the platform of nodes started by hand."""
     return mapfile.sections.platform.name or default_platform()
 
 
 def read_launch(mapfile: Mapfile) -> LaunchFile | None:
-    """Read the launch file that a mapfile names."""
+    """Read the launch file of a mapfile, if it has one."""
     sections = mapfile.sections
     if sections.launch_path is None:
         return None
@@ -139,7 +144,7 @@ def read_launch(mapfile: Mapfile) -> LaunchFile | None:
 
 
 def node_starts(mapfile: Mapfile, launch: LaunchFile | None) -> dict[str, NodeStart]:
-    """Return how each node is started; what does not exist is an error."""
+    """Return how each node is started; raise MapfileError for what does not exist."""
     starts: dict[str, NodeStart] = {}
     owners: dict[str, str] = {}
     problems: list[Problem] = []
@@ -160,7 +165,7 @@ def node_starts(mapfile: Mapfile, launch: LaunchFile | None) -> dict[str, NodeSt
 
 
 def _has_number(start: NodeStart) -> bool:
-    """Tell whether the launch file itself starts several nodes of one name."""
+    """Return whether the launch file starts several nodes of one name."""
     return isinstance(start.launched, LaunchedNode) and start.launched.number > 1
 
 
@@ -204,7 +209,7 @@ def _scheduling(node: NodeSection) -> Scheduling | None:
 
 
 def _rules(node: NodeSection, launched: LaunchRules) -> LaunchRules:
-    """Return the launch file's rules with what the mapfile says itself."""
+    """Return the launch file's rules, overridden by the mapfile's."""
     if node.respawn is None:
         return launched
     retries = node.respawn.max_retries
@@ -230,9 +235,11 @@ def _environment(mapfile: Mapfile, name: str, core: Core, start: NodeStart) -> d
         "MANYCORE_WAIT": mapfile.sections.nodes[name].wait or "block",
         "PYTHONUNBUFFERED": "1",
     }
+    if design := mapfile.sections.nodes[name].receive:
+        env["MANYCORE_RECEIVE"] = design
     if mapfile.sections.malloc_tuning:
         env["MALLOC_TRIM_THRESHOLD_"] = env["MALLOC_MMAP_THRESHOLD_"] = _MALLOC_THRESHOLD
-    # A launch file may set all but the place.
+    # A launch file may set all variables except those of the placement.
     asked = {name: value for name, value in start.env.items() if name not in PLACE_VARIABLES}
     return {**env, **asked, **place}
 
@@ -240,7 +247,7 @@ def _environment(mapfile: Mapfile, name: str, core: Core, start: NodeStart) -> d
 def _topics_of(
     mapfile: Mapfile, name: str, start: NodeStart
 ) -> tuple[dict[str, str], dict[str, str]]:
-    """Return published and subscribed topics: what the mapfile says, and what the source shows."""
+    """Return published and subscribed topics, from the mapfile and the source."""
     node = mapfile.sections.nodes[name]
     shown = _shown_by_source(start)
     result = []
@@ -262,7 +269,7 @@ def _shown_by_source(start: NodeStart) -> SourceNode | None:
     try:
         nodes = scan(source)
     except MapfileError:
-        return None  # Python will say what is wrong with it when it runs.
+        return None  # Python reports the error at run time.
     return nodes[0] if len(nodes) == 1 else None
 
 

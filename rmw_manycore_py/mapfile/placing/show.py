@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""A placement as plain data, for tables and for --json."""
+"""A placement as plain data, for tables and --json."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from rmw_manycore_py.mapfile.placing.placement import (
 
 
 def as_data(placement: Placement) -> dict[str, Any]:
-    """Return everything a placement says, as JSON has it."""
+    """Return all fields of a placement as JSON data."""
     topology = placement.topology
     return {
         "platform": placement.name,
@@ -77,7 +77,7 @@ def _rules(rules: LaunchRules) -> dict[str, Any]:
     }
 
 
-# Of lifecycle_msgs/msg/Transition.
+# Values of lifecycle_msgs/msg/Transition.
 _TRANSITIONS = {
     1: "configure",
     2: "cleanup",
@@ -90,7 +90,7 @@ _TRANSITIONS = {
 
 
 def rules_in_words(node: PlacedNode) -> list[str]:
-    """Return what `manycore run` does with a node besides starting it at once."""
+    """Describe what `manycore run` does with a node besides starting it at once."""
     data = _rules(node.rules)
     start, respawn, words = data["start"], data["respawn"], []
     if start["delay_s"] or start["after"]:
@@ -121,6 +121,9 @@ def _topic(topic: TopicEntry) -> dict[str, Any]:
         "name": topic.name,
         "type": topic.type,
         "topic_dsm_size": topic.topic_dsm_size,
+        "transfer": topic.transfer,
+        "priority": topic.priority,
+        "synchronous": topic.synchronous,
         "publisher_clusters": list(topic.publisher_clusters),
         "receiver_clusters": list(topic.receiver_clusters),
     }

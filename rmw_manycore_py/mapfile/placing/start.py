@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""How a node is started: what the mapfile says, over what the launch file says."""
+"""How a node is started: settings of the mapfile override those of the launch file."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class NodeStart:
-    """Everything that goes into the command line of a node."""
+    """Everything in the command line of a node."""
 
     full_name: str
     program: Program
@@ -44,13 +44,13 @@ class NodeStart:
     arguments: tuple[str, ...]
     raw_ros_arguments: tuple[str, ...]
     env: dict[str, str]
-    is_named: bool = True  # else the node keeps the name that its code gives it
+    is_named: bool = True  # else the node keeps the name set by its code
     directory: str | None = None
     launched: Launched | None = None
 
 
 def node_start(mapfile: Mapfile, name: str, launch: LaunchFile | None) -> NodeStart:
-    """Return how the node of that name is started; what does not exist is an error."""
+    """Return how a node is started; raise MapfileError if its program does not exist."""
     node = mapfile.sections.nodes[name]
     launched = find_launched(mapfile, name, launch)
     namespace, full_name = _names(name, node, launched)
@@ -66,7 +66,7 @@ def node_start(mapfile: Mapfile, name: str, launch: LaunchFile | None) -> NodeSt
         namespace=namespace,
         parameters=_merged(sources, full_name),
         param_files=tuple(source for source in sources if isinstance(source, Path)),
-        # In rcl the first rule that fits wins.
+        # In rcl the first matching rule takes effect.
         remappings=(*node.remappings.items(), *(launched.remappings if launched else ())),
         arguments=(*(process.arguments if process else ()), *node.arguments),
         raw_ros_arguments=process.ros_arguments if process else (),
@@ -99,7 +99,7 @@ def ros_arguments(
 
 
 def parameter_text(value: Any) -> str:
-    """Write a value so that rcl reads the same type: strings stay strings."""
+    """Format a value such that rcl parses the same type: strings stay strings."""
     if isinstance(value, float) and not math.isfinite(value):
         return ".nan" if math.isnan(value) else ".inf" if value > 0 else "-.inf"
     if isinstance(value, (list, tuple)):
@@ -108,10 +108,10 @@ def parameter_text(value: Any) -> str:
 
 
 def _merged(sources: Sequence[ParameterSource], full_name: str) -> dict[str, Any]:
-    """Return the single values that hold, to be given after all files.
+    """Return the values that are given individually, after all files.
 
-    rcl ranks sections by when their node name first appears, so a value given before a file
-    could win over the file; here a later file always wins.
+    rcl ranks sections by the first occurrence of their node name, so a value given before a file
+    could override it; here a later file always takes precedence.
     """
     values: dict[str, Any] = {}
     for source in sources:
@@ -124,7 +124,7 @@ def _merged(sources: Sequence[ParameterSource], full_name: str) -> dict[str, Any
 
 
 def _names(name: str, node: NodeSection, launched: Launched | None) -> tuple[str | None, str]:
-    """Return the namespace, if one is given, and the full name."""
+    """Return the namespace, if given, and the full name."""
     own, _, last = name.rpartition("/")
     namespace = node.namespace
     if namespace is None and launched is not None and launched.namespace != "/":

@@ -1,10 +1,10 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The topic table, and the memory of the clusters."""
+"""Topic table, and memory of the clusters."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from rmw_manycore_py.errors import Problem
 from rmw_manycore_py.mapfile.placing.crossings import CROSSINGS
@@ -15,11 +15,12 @@ from rmw_manycore_py.topology import room_for_topic_dsms
 
 if TYPE_CHECKING:
     from rmw_manycore_py.mapfile.format.mapfile import Mapfile
+    from rmw_manycore_py.mapfile.format.model import TopicSection
     from rmw_manycore_py.mapfile.placing.start import NodeStart
 
 
 def topic_table(mapfile: Mapfile, nodes: Sequence[PlacedNode]) -> tuple[TopicEntry, ...]:
-    """Return the topics: first those the mapfile lists, then those of the nodes by name."""
+    """Return the topics: those listed in the mapfile, then those of the nodes by name."""
     listed = {expand(name, "/"): topic for name, topic in mapfile.sections.topics.items()}
     seen = {name for node in nodes for name in (*node.publish, *node.subscribe)}
     entries = []
@@ -37,13 +38,22 @@ def topic_table(mapfile: Mapfile, nodes: Sequence[PlacedNode]) -> tuple[TopicEnt
                 topic_dsm_size=section.topic_dsm_size if section else None,
                 publishers=publishers,
                 subscribers=subscribers,
+                **(_transfer(section) if section else {}),
             )
         )
     return tuple(entries)
 
 
+def _transfer(section: TopicSection) -> dict[str, Any]:
+    return {
+        "transfer": section.transfer,
+        "priority": section.priority or 0,
+        "synchronous": section.synchronous,
+    }
+
+
 def check_types(mapfile: Mapfile, topics: Iterable[TopicEntry]) -> Iterator[Problem]:
-    """Yield types that are not installed, and nodes that disagree with the table."""
+    """Yield types that are not installed, and nodes that disagree with the topic table."""
     sections = mapfile.sections
     for name, topic in sections.topics.items():
         if topic.type is not None:
@@ -65,7 +75,7 @@ def check_types(mapfile: Mapfile, topics: Iterable[TopicEntry]) -> Iterator[Prob
 def check_crossing_types(
     mapfile: Mapfile, starts: Mapping[str, NodeStart], topics: Iterable[TopicEntry]
 ) -> Iterator[Problem]:
-    """Yield what crosses as another type than the topic table or an earlier line says."""
+    """Yield routes whose type differs from the topic table or from an earlier line."""
     known = {("msg", entry.name): entry.type for entry in topics if entry.type is not None}
     for node, section in mapfile.sections.nodes.items():
         for key in CROSSINGS:
@@ -91,12 +101,13 @@ def _check_installed(mapfile: Mapfile, path: tuple[str, ...], type_name: str) ->
 
 
 def memory_of_clusters(mapfile: Mapfile, topics: Sequence[TopicEntry]) -> tuple[ClusterMemory, ...]:
-    """Return what the topic DSMs of fixed size take in each cluster: one ring per publisher."""
+    """Return the bytes of fixed-size topic DSMs per cluster: one ring per publisher."""
     result = []
     for cluster in mapfile.topology.clusters:
         sizes = {}
         for topic in topics:
             rings = sum(node.cluster == cluster.id for node in topic.publishers)
+            rings += sum(receiver == cluster.id for _, receiver in topic.landings)
             if rings and topic.topic_dsm_size is not None:
                 sizes[topic.name] = rings * topic.topic_dsm_size
         result.append(ClusterMemory(cluster.id, cluster.smem_size, sizes))
@@ -104,7 +115,7 @@ def memory_of_clusters(mapfile: Mapfile, topics: Sequence[TopicEntry]) -> tuple[
 
 
 def check_memory(mapfile: Mapfile, memory: Iterable[ClusterMemory]) -> Iterator[Problem]:
-    """Yield topics that fit no cluster, or clusters that are too small for all their topics."""
+    """Yield topics that fit no cluster, and clusters too small for all their topics."""
     most = room_for_topic_dsms(mapfile.topology.smem_size)
     for name, topic in mapfile.sections.topics.items():
         if topic.topic_dsm_size is not None and topic.topic_dsm_size > most:
@@ -117,9 +128,10 @@ def check_memory(mapfile: Mapfile, memory: Iterable[ClusterMemory]) -> Iterator[
             largest = max(cluster.topic_dsms, key=lambda name: cluster.topic_dsms[name])
             expected = f"at most {most} bytes of topic DSMs in cluster {cluster.cluster}"
             sizes = ", ".join(f"{name} {size}" for name, size in cluster.topic_dsms.items())
-            path = ("topics", _as_written(mapfile, largest), "topic_dsm_size")
+            path = ("topics", as_written(mapfile, largest), "topic_dsm_size")
             yield mapfile.document.problem(path, expected, f"{cluster.used} ({sizes})")
 
 
-def _as_written(mapfile: Mapfile, topic: str) -> str:
+def as_written(mapfile: Mapfile, topic: str) -> str:
+    """Return a topic's name as the mapfile has it."""
     return next(name for name in mapfile.sections.topics if expand(name, "/") == topic)

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The types that the nodes of a mapfile use, installed or not."""
+"""Types used by the nodes of a mapfile, installed or not."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from rmw_manycore_py.mapfile.programs.source import imported_interfaces
 
 
 def used_types(mapfile: Mapfile) -> set[str]:
-    """Return the types that the mapfile names, and those that the sources of its nodes import."""
+    """Return the types named in the mapfile and imported by the sources of its nodes."""
     sections = mapfile.sections
     found = {topic.type for topic in sections.topics.values()}
     for node in sections.nodes.values():
@@ -22,5 +22,5 @@ def used_types(mapfile: Mapfile) -> set[str]:
             try:
                 found.update(imported_interfaces(start.program.source))
             except MapfileError:
-                continue  # Python will say what is wrong with it when it runs.
+                continue  # Python reports the error at run time.
     return {name for name in found if name is not None}

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Cores for the workers of a node: pinned processes that do a share of its computation."""
+"""Cores for the workers of a node: pinned processes that share its computation."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from rmw_manycore_py.topology import Core
 
 
 def worker_cores(mapfile: Mapfile, used: Collection[Core]) -> dict[str, tuple[Core, ...]]:
-    """Return the cores of each node's workers: the first of its cluster that nobody has."""
+    """Return the cores of each node's workers: the first free ones of its cluster."""
     taken = set(used)
     cores: dict[str, tuple[Core, ...]] = {}
     for name, node in mapfile.sections.nodes.items():

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Finds what a node is started with: modules, scripts, executables of packages, commands."""
+"""Finds programs of nodes: modules, scripts, executables of packages, commands."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from rmw_manycore_py.ros import ament
 
 @dataclass(frozen=True)
 class Program:
-    """The words that start a program, and its source where that is Python."""
+    """Command that starts a program, and its source if it is Python."""
 
     argv: tuple[str, ...]
     source: Path | None = None
@@ -32,10 +32,10 @@ def find_script(file: Path) -> Program:
 
 
 def find_module(module: str, directory: Path) -> Program | None:
-    """Return the program of a Python module, looked for without importing it.
+    """Return the program of a Python module, without importing it.
 
-    Nodes of rmw_manycore are the installed ones, even in a checkout, whose sources lack the
-    native modules.
+    Nodes of rmw_manycore are the installed ones, also in a checkout, whose sources lack the native
+    modules.
     """
     is_own = module.split(".")[0] == "rmw_manycore_py"
     spec = _module_spec(module, None if is_own else directory)
@@ -53,7 +53,7 @@ def _python_source(spec: ModuleSpec | None) -> Path | None:
 
 
 def _module_spec(module: str, directory: Path | None) -> ModuleSpec | None:
-    """Look for a module without importing the packages around it: they may do anything."""
+    """Find a module without importing its parent packages, which could have side effects."""
     first, *rest = module.split(".")
     spec = PathFinder.find_spec(first, [str(directory)]) if directory else None
     spec = spec or _top_level_spec(first)
@@ -74,7 +74,7 @@ def _top_level_spec(name: str) -> ModuleSpec | None:
 
 
 def find_executable(package: str, executable: str) -> Program | None:
-    """Return the program `ros2 run package executable` would start."""
+    """Return the program that `ros2 run package executable` starts."""
     for prefix in ament.prefixes():
         path = prefix / "lib" / package / executable
         if os.path.isfile(path) and os.access(path, os.X_OK):
@@ -83,10 +83,10 @@ def find_executable(package: str, executable: str) -> Program | None:
 
 
 def find_component(package: str, plugin: str) -> Program | None:
-    """Return the program that starts the component `plugin` alone.
+    """Return the program that starts only the component `plugin`.
 
-    rclcpp_components_register_node() makes such programs, with the name of the component's factory
-    in them; nothing else says which it is.
+    Such programs come from rclcpp_components_register_node() and contain the name of the
+    component's factory, which is the only way to identify them.
     """
     factory = f"NodeFactoryTemplate<{plugin}>".encode()
     for prefix in ament.prefixes():
@@ -113,10 +113,10 @@ def executables_of(package: str) -> list[str]:
 
 
 def find_command(words: Sequence[str], directory: Path) -> Program | None:
-    """Return the program of a command; a path in it is relative to `directory`.
+    """Return the program of a command; its path is relative to `directory`.
 
-    A bare name is looked for beside this interpreter first: `python3` is the one that has ROS,
-    whether or not its environment is activated.
+    A bare name is first searched beside this interpreter: `python3` is the one with ROS, whether
+    or not its environment is activated.
     """
     first = Path(os.path.expanduser(words[0]))
     found = str(directory / first) if len(first.parts) > 1 else words[0]
@@ -128,7 +128,7 @@ def find_command(words: Sequence[str], directory: Path) -> Program | None:
 
 
 def unfound_script(words: Sequence[str], directory: Path) -> str | None:
-    """Return the file or module that python is to run, where there is no such thing."""
+    """Return the file or module that Python is to run, if it does not exist."""
     if len(words) < 2 or not _is_python(words[0]):
         return None
     if words[1] == "-m" and len(words) > 2 and words[0] == Path(words[0]).name:
@@ -157,7 +157,7 @@ def _of_file(path: Path) -> Program:
         first_line = file.readline(200)
     if not re.match(rb"#!.*\bpython", first_line):
         return Program((str(path),))
-    # `env python3` finds the interpreter of this environment only where that is activated.
+    # `env python3` finds this environment's interpreter only if the environment is activated.
     by_name = b"/env " in first_line
     module = module_of_script(path)
     source = _python_source(_module_spec(module, path.parent)) if module else None
@@ -169,7 +169,7 @@ def _entry_point(package: str, executable: str) -> Program | None:
     if entry is None:
         return None
     attribute = entry.attr.split(".")[0]
-    # As in the script that pip writes, the working directory is not in the path of imports.
+    # Like the script written by pip, without the working directory in sys.path.
     code = (
         "import sys; sys.path[:] = filter(None, sys.path); "
         f"from {entry.module} import {attribute}; sys.exit({entry.attr}())"

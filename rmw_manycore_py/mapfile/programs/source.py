@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What Python sources of nodes say about themselves: names, topics, types. Nothing is executed."""
+"""Extracts names, topics and types from Python sources of nodes, without executing them."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from rmw_manycore_py.errors import MapfileError, Problem, what_is_wrong
 from rmw_manycore_py.mapfile.format.document import read_text
 
 _CALLS = {"create_publisher": "publish", "create_subscription": "subscribe"}
-# Not the parts of services and actions (SetBool_Request), which no list of types names.
+# Excludes the parts of services and actions (SetBool_Request), which are not listed as types.
 _INTERFACE = re.compile(r"\w+\.(msg|srv|action)\.[A-Z][A-Za-z0-9]*")
 _NODE_CLASSES = ("Node", "LifecycleNode")
 
 
 @dataclass
 class SourceNode:
-    """A node as its source shows it; `unclear` holds the lines of topics that are computed."""
+    """A node found in a source; `unclear` holds the lines of computed topics."""
 
     file: Path
     line: int
@@ -31,7 +31,7 @@ class SourceNode:
 
 
 def scan(file: Path) -> list[SourceNode]:
-    """Return the nodes a Python file makes, in the order of their lines."""
+    """Return the nodes created in a Python file, in line order."""
     tree = _parse(file)
     names = _Names(tree)
     classes = [node for node in ast.walk(tree) if isinstance(node, ast.ClassDef)]
@@ -43,7 +43,7 @@ def scan(file: Path) -> list[SourceNode]:
 
 
 def imported_interfaces(file: Path) -> dict[str, int]:
-    """Return the interface types a Python file cannot run without, each with its line."""
+    """Return the interface types that a Python file imports unconditionally, each with its line."""
     imports = (part for part in _parse(file).body if isinstance(part, ast.ImportFrom))
     return {
         f"{part.module}.{alias.name}".replace(".", "/"): part.lineno
@@ -62,7 +62,7 @@ def _parse(file: Path) -> ast.Module:
 
 
 class _Names:
-    """What names stand for: imported message types and module constants."""
+    """Resolves names: imported message types and module constants."""
 
     def __init__(self, tree: ast.Module) -> None:
         self._imported: dict[str, str] = {}
@@ -86,7 +86,7 @@ class _Names:
                     self._constants[target.id] = node.value.value
 
     def qualified(self, node: ast.expr) -> str:
-        """Return a dotted name with its first part replaced by what was imported."""
+        """Return a dotted name with its first part replaced by its import."""
         if isinstance(node, ast.Name):
             return self._imported.get(node.id, node.id)
         if isinstance(node, ast.Attribute):
@@ -99,7 +99,7 @@ class _Names:
         return "/".join(parts) if len(parts) == 3 and parts[1] == "msg" else None
 
     def text(self, node: ast.expr) -> str | None:
-        """Return the value of a string or of a constant that holds one."""
+        """Return the value of a string literal or string constant."""
         if isinstance(node, ast.Constant) and isinstance(node.value, str):
             return node.value
         return self._constants.get(node.id) if isinstance(node, ast.Name) else None
@@ -119,7 +119,7 @@ def _class_node(file: Path, cls: ast.ClassDef, names: _Names) -> SourceNode | No
 
 
 def _function_nodes(file: Path, rest: list[ast.AST], names: _Names) -> list[SourceNode]:
-    """Return nodes made outside of classes; topics go to the last node made before them."""
+    """Return nodes created outside classes; topics belong to the node created before them."""
     calls = sorted(_calls(rest), key=lambda call: call.lineno)
     nodes: list[SourceNode] = []
     for call in calls:
