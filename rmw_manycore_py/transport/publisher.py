@@ -1,0 +1,107 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Publishers of numpy arrays."""
+
+from __future__ import annotations
+
+from typing import Any, Generic
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rmw_manycore_py import _transport
+from rmw_manycore_py.transport.arguments import Deadline, checked_number
+from rmw_manycore_py.transport.closing import Closing
+from rmw_manycore_py.transport.errors import (
+    TransportError,
+    TransportTimeoutError,
+    native_errors,
+    refusal,
+)
+from rmw_manycore_py.transport.multi_array import Scalar, head_of
+
+MAX_SUBSCRIPTIONS = 32_768
+
+
+class Publisher(Closing, Generic[Scalar]):
+    """Publisher of arrays of one element type, created by `Member.publisher`; thread-safe.
+
+    :ivar topic: full name of the topic.
+    :ivar dtype: element type.
+    """
+
+    def __init__(
+        self,
+        topic: str,
+        dtype: np.dtype[Scalar],
+        process: _transport.Process,
+        native: _transport.Publisher,
+    ) -> None:
+        self.topic = topic
+        self.dtype = dtype
+        self._process = process
+        self._native: _transport.Publisher | None = native
+
+    def __repr__(self) -> str:
+        return f"<Publisher of {self.dtype} on {self.topic}>"
+
+    def publish(self, array: NDArray[Scalar]) -> int:
+        """Publish an array; its elements are copied once, into shared memory.
+
+        With ``keep_all`` it blocks, up to a limit, until subscriptions have taken enough messages;
+        otherwise it does not block.
+
+        :param array: at least one dimension; an array that is not C-contiguous is copied once
+            more.
+        :return: the message's sequence number, from 1.
+        :raises TransportError: if it is not an array of this type, or does not fit the memory.
+        """
+        native = self._opened()
+        contiguous = self._checked(array)
+        with native_errors(self.topic):
+            return native.publish_parts(head_of(contiguous), contiguous.data)
+
+    @property
+    def subscriptions(self) -> int:
+        """Number of matching subscriptions."""
+        return self._opened().matched()
+
+    def wait_for_subscriptions(self, count: int = 1, timeout_s: float | None = None) -> None:
+        """Wait until at least `count` subscriptions match.
+
+        :param timeout_s: in seconds; None waits indefinitely.
+        :raises TransportTimeoutError: if fewer match within the timeout.
+        """
+        checked_number("count", count, 0, MAX_SUBSCRIPTIONS)
+        deadline = Deadline(timeout_s)
+        with native_errors(self.topic):
+            self._process.watch_graph()
+            while True:
+                native = self._opened()
+                self._process.require_membership()
+                seen = self._process.epoch()
+                if (found := native.matched()) >= count:
+                    return
+                if not self._process.wait(seen, deadline.left_s()):
+                    raise TransportTimeoutError(
+                        f"{self.topic}: {found} of {count} subscriptions after {timeout_s:g} s; "
+                        "they match by topic, type and QoS: see `manycore topic info -v`"
+                    )
+
+    def close(self) -> None:
+        """Destroy the publisher; subscriptions can still take its pending messages."""
+        native, self._native = self._native, None
+        if native is not None:
+            native.close()
+
+    def _opened(self) -> _transport.Publisher:
+        if self._native is None:
+            raise TransportError(f"{self.topic}: the publisher is closed")
+        return self._native
+
+    def _checked(self, array: Any) -> NDArray[Scalar]:
+        if not isinstance(array, np.ndarray):
+            raise refusal("array", "a numpy array", type(array).__name__)
+        if array.dtype != self.dtype:
+            expected = f"elements of {self.dtype} on {self.topic} (array.astype('{self.dtype}'))"
+            raise refusal("array", expected, array.dtype)
+        return np.ascontiguousarray(array) if array.ndim else array

@@ -1,0 +1,109 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Subscriptions to numpy arrays."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Generic
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rmw_manycore_py import _transport
+from rmw_manycore_py.transport.arguments import Deadline
+from rmw_manycore_py.transport.closing import Closing
+from rmw_manycore_py.transport.errors import (
+    TransportError,
+    TransportTimeoutError,
+    native_errors,
+)
+from rmw_manycore_py.transport.message import Message
+from rmw_manycore_py.transport.multi_array import Scalar
+
+
+class Subscription(Closing, Generic[Scalar]):
+    """Subscription to arrays of one element type, taken oldest first; see `Member.subscription`.
+
+    The next message can be taken once the previous one was released.
+
+    Any thread may take, and any thread may release. If the process is killed while it holds a
+    message, the message is released.
+
+    :ivar topic: full name of the topic.
+    :ivar dtype: element type.
+    """
+
+    def __init__(
+        self,
+        topic: str,
+        dtype: np.dtype[Scalar],
+        process: _transport.Process,
+        native: _transport.Subscription,
+    ) -> None:
+        self.topic = topic
+        self.dtype = dtype
+        self._process = process
+        self._native: _transport.Subscription | None = native
+
+    def __repr__(self) -> str:
+        return f"<Subscription to {self.dtype} on {self.topic}>"
+
+    def take(self, timeout_s: float | None = None) -> Message[Scalar]:
+        """Wait for the next message and return it; Ctrl-C interrupts the wait.
+
+        :param timeout_s: in seconds; None waits indefinitely.
+        :raises TransportTimeoutError: if none arrives within the timeout.
+        :raises MessageInUseError: if the previous message is still in use.
+        :raises TransportError: if the subscription was closed, or the platform was removed.
+        """
+        deadline = Deadline(timeout_s)
+        while True:
+            self._opened()
+            with native_errors(self.topic):
+                seen = self._process.epoch()
+            message = self.try_take()
+            if message is not None:
+                return message
+            with native_errors(self.topic):
+                if not self._process.wait(seen, deadline.left_s()):
+                    raise TransportTimeoutError(f"{self.topic}: no message within {timeout_s:g} s")
+
+    def try_take(self) -> Message[Scalar] | None:
+        """Return the next message, or None if there is none; otherwise like `take`."""
+        native = self._opened()
+        with native_errors(self.topic):
+            claim = native.claim()
+        return None if claim is None else Message(claim, self.dtype)
+
+    def take_copy(self, timeout_s: float | None = None) -> NDArray[Scalar]:
+        """Return a copy of the next message's array; otherwise like `take`."""
+        with self.take(timeout_s) as message:
+            return message.copy()
+
+    def __iter__(self) -> Iterator[Message[Scalar]]:
+        """Take messages one by one; each is released at the next iteration."""
+        while True:
+            with self.take() as message:
+                yield message
+
+    @property
+    def publishers(self) -> int:
+        """Number of matching publishers."""
+        return self._opened().matched()
+
+    @property
+    def lost(self) -> int:
+        """Number of messages known to be overwritten before they were taken."""
+        return self._opened().lost()
+
+    def close(self) -> None:
+        """Destroy the subscription; a `take` that waits in another thread raises TransportError."""
+        native, self._native = self._native, None
+        if native is not None:
+            native.close()
+            self._process.notify()
+
+    def _opened(self) -> _transport.Subscription:
+        if self._native is None:
+            raise TransportError(f"{self.topic}: the subscription is closed")
+        return self._native
