@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What nav2_simple_commander needs of Nav2 to go to a pose; nothing drives."""
+"""Mock of the parts of Nav2 that nav2_simple_commander needs to go to a pose."""
 
 import time
 from contextlib import suppress
@@ -20,7 +20,7 @@ STEP_S = 0.1
 
 
 class MockNav2(Node):
-    """A localizer and a navigator that are active, and poses that are reached in two seconds."""
+    """An active localizer and navigator; each pose is reached after two seconds."""
 
     def __init__(self) -> None:
         super().__init__("nav2")
@@ -51,7 +51,7 @@ class MockNav2(Node):
 
 
 def main() -> None:
-    """Serve until told to stop."""
+    """Spin until interrupted."""
     rclpy.init()
     with suppress(KeyboardInterrupt, ExternalShutdownException):
         rclpy.spin(MockNav2())

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""A behaviour tree over ROS: writes what it hears on /chatter to its blackboard."""
+"""A behaviour tree that writes messages of /chatter to its blackboard."""
 
 import py_trees
 import py_trees_ros
@@ -10,7 +10,7 @@ from std_msgs.msg import String
 
 
 def main() -> None:
-    """Tick the tree twice a second until it is told to stop."""
+    """Tick the tree twice a second until interrupted."""
     rclpy.init()
     root = py_trees.composites.Sequence("listen", memory=False)
     root.add_child(
