@@ -1,2 +1,2 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Benches: what rmw_manycore costs, beside the machine itself and beside Fast DDS."""
+"""Benchmarks of rmw_manycore against Fast DDS and the limits of the machine."""

@@ -1,8 +1,8 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Round trips and throughput between an rclpy node outside and one inside, and an idle bridge.
+"""Round trips and throughput between external and internal rclpy nodes, and an idle bridge.
 
-There and back a message takes two hops of Fast DDS and two of the platform. So the bridged round
-trip is held against the sum of a round trip in Fast DDS and one on the platform, of the same run.
+A bridged round trip takes two hops of Fast DDS and two of the platform, so it is compared with the
+sum of a round trip in Fast DDS and one on the platform, of the same run.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ import time
 from collections.abc import Sequence
 
 from rmw_manycore_py.bench import images
+from rmw_manycore_py.bench.bridging import bridge_command
 from rmw_manycore_py.bench.contenders import BETWEEN, FAST_DDS, Middleware
 from rmw_manycore_py.bench.idle import cpu_ns, wait_until_quiet
 from rmw_manycore_py.bench.question import PAYLOADS, Question, Run
@@ -18,26 +19,26 @@ from rmw_manycore_py.bench.rclpy_round_trip import WARM_UP, iterations
 from rmw_manycore_py.bench.round_trip import in_us
 from rmw_manycore_py.bench.session import Process, Session
 from rmw_manycore_py.bench.summary import Goal, Result
-from rmw_manycore_py.bridge_plan import Plan
-from rmw_manycore_py.routes import DIRECTIONS, Direction, Route, arranged
+from rmw_manycore_py.routes import DIRECTIONS, Direction, Route
 
 SIZES = ("64 B", "1 MiB")
 INWARD, OUTWARD = "bridged inward", "bridged outward"
 IN_FLIGHT = 8
-STRETCH = 40  # messages of a sample of throughput
+STRETCH = 40  # messages per throughput sample
 STRETCHES = 10
 BRIDGED = "bridged"
 SUM = "Fast DDS + platform"
 IDLE = "idle bridge, CPU"
 WINDOW_S = 10.0
-# Parties whose CPU the inward and the outward process share. In round trips it is that of the node
-# they receive from; in a flood the inside node's: DDS goes from CPU to CPU, bridge or not.
+# Parties whose CPUs the inward and the outward process share. In round trips it is that of the node
+# they receive from; for throughput that of the inside node: DDS goes from CPU to CPU in either
+# case.
 BESIDE_SENDER, BESIDE_INSIDE = (0, 1), (1, 0)
 _TYPE = "std_msgs/msg/UInt8MultiArray"
 
 
 def measure(run: Run) -> list[Result]:
-    """Measure all sizes, then the idle bridge, then images beside load."""
+    """Measure all sizes, then the idle bridge, then images under load."""
     results = []
     for size in SIZES:
         results += _measure_size(run, size)
@@ -86,7 +87,7 @@ def _talk(asking: Session, answering: Session, arguments: Sequence[int]) -> list
 
 
 def _measure_throughput(run: Run) -> list[Result]:
-    """Measure 1 MiB with eight under way, in both directions beside Fast DDS alone."""
+    """Measure 1 MiB with eight messages in flight, in both directions, against Fast DDS alone."""
     lost: dict[str, list[float]] = {}
 
     def direct() -> Sequence[float]:
@@ -139,21 +140,20 @@ def _start_bridge(
     """Start both processes, each on the CPU of a party."""
     ways: tuple[tuple[str, Direction], ...] = (("/ping", "inward"), ("/pong", "outward"))
     routes = [Route("topic", way, name, name, _TYPE, outside.domain) for name, way in ways]
-    plan = Plan(inside.platform, arranged(routes, 1)).to_json()
     return [
-        outside.module("rmw_manycore_bridge", party, plan, way, 0, 1, core)
+        outside.start(bridge_command(inside, routes, way, core), party)
         for core, (party, way) in enumerate(zip(parties, DIRECTIONS, strict=True), 2)
     ]
 
 
 def _idle_ms(run: Run) -> float:
-    """Return milliseconds of CPU a second of both processes, with a node on either side."""
+    """Return the CPU time of both processes in ms per second, with one node on each side."""
     window_s = WINDOW_S * max(run.share, 0.1)
     with Session(BETWEEN, run.cpus) as inside, Session(FAST_DDS, run.cpus) as outside:
         pids = [process.pid for process in _start_bridge(inside, outside)]
         inside.python("pong", 1)
         outside.python("pong", 0)
-        time.sleep(2)  # DDS speaks of itself for a while
+        time.sleep(2)  # wait for DDS discovery traffic to end
         wait_until_quiet(pids)
         before_ns = cpu_ns(pids)
         time.sleep(window_s)

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Who is measured: rmw_manycore in its variants, Fast DDS in two, and the machine itself."""
+"""Contenders: variants of rmw_manycore and Fast DDS, and programs without middleware."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ Wait = Literal["block", "adaptive", "spin"]
 WAITS: tuple[Wait, ...] = ("block", "adaptive", "spin")
 MIB = 1024 * 1024
 
-# The shared-memory segment of Fast DDS is 512 KB unless a profile says otherwise.
+# Fast DDS uses a shared-memory segment of 512 KB unless a profile sets another size.
 TUNED_SEGMENT_BYTES = 128 * MIB
 TUNED_PROFILE = f"""<?xml version="1.0" encoding="UTF-8"?>
 <profiles xmlns="http://www.eprosima.com/XMLSchemas/fastRTPS_Profiles">
@@ -41,26 +41,26 @@ TUNED_PROFILE = f"""<?xml version="1.0" encoding="UTF-8"?>
 
 @dataclass(frozen=True)
 class Middleware:
-    """A middleware as a bench sets it up; its processes are parties, counted from 0."""
+    """Configuration of a middleware; its processes are parties, numbered from 0."""
 
     name: str
     variables: dict[str, str] = field(default_factory=dict, hash=False)
     profile: str | None = None
     clusters: tuple[int, ...] = (1,)
-    library: Path | None = None  # directory of another librmw_manycore.so than the installed one
+    build: Path | None = None  # directory of a librmw_manycore.so other than the installed one
 
     @property
     def is_manycore(self) -> bool:
-        """Tell rmw_manycore from the others."""
+        """Return whether this is rmw_manycore."""
         return self.variables["RMW_IMPLEMENTATION"] == "rmw_manycore"
 
     def cluster_of(self, party: int) -> int:
-        """Return the cluster of a party; further ones are in the cluster of the last."""
+        """Return the cluster of a party; additional parties share the last one's."""
         return self.clusters[min(party, len(self.clusters) - 1)]
 
 
 def manycore(place: Literal["inside", "between"], wait: Wait = "block") -> Middleware:
-    """Return rmw_manycore inside a cluster or between two, waiting in that way."""
+    """Return rmw_manycore inside a cluster or between two, with a wait strategy."""
     return Middleware(
         name=f"manycore {place} ({wait})",
         variables={"RMW_IMPLEMENTATION": "rmw_manycore", "MANYCORE_WAIT": wait},
@@ -78,7 +78,7 @@ TUNED_FAST_DDS = Middleware("Fast DDS, 128 MB segment", _FAST_DDS, TUNED_PROFILE
 
 @dataclass(frozen=True)
 class Peer:
-    """A program that does the same with the machine's own means; it holds all its processes."""
+    """Program that does the same with OS primitives; it contains all parties."""
 
     name: str
     program: str

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The age of a message of 1 MiB when each of eight subscribers has it, at 100 Hz."""
+"""Age of 1 MiB messages at eight subscribers, at 100 Hz."""
 
 from __future__ import annotations
 
@@ -15,15 +15,15 @@ SUBSCRIBERS = 8
 RATE_HZ = 100
 FULL_MESSAGES = 300
 DEPTH = 10
-WARM_UP = 100  # messages, so that every sink has matched and every page is warm
+WARM_UP = 100  # messages; then every sink has matched and every page is warm
 NAME = "fan-out 1 MiB to 8"
 LOST = f"{NAME}, lost"
 
 
 def measure(run: Run) -> list[Result]:
-    """Measure the one-way times of all subscribers together, and what they lost."""
+    """Measure the one-way times of all subscribers, and their losses."""
     messages = run.iterations(FULL_MESSAGES)
-    # A short run asks whether all works, wherever it is: who gets no CPU for a while loses nothing.
+    # A quick run only checks that everything works: deep queues, since CPU may be scarce.
     depth = DEPTH if messages == FULL_MESSAGES else WARM_UP + messages
     lost: dict[str, list[float]] = {}
 

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The time from rmw_init to the first message."""
+"""Time from rmw_init to the first message."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from rmw_manycore_py.bench.summary import Goal, Result
 
 JOINING = "first message, joining a publisher"
 ALONE = "first message, alone"
-# From the call of rmw_init, in milliseconds.
+# In milliseconds from the call of rmw_init.
 GOAL_MS = 10.0
 FULL_ATTEMPTS = 4
 

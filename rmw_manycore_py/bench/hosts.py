@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Two hosts with a cable between them, as network namespaces (ip-netns(8)) of this one."""
+"""Two hosts connected by a cable, emulated by network namespaces (ip-netns(8))."""
 
 from __future__ import annotations
 
@@ -9,20 +9,20 @@ import subprocess
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 
-Host = list[str]  # the words before a command that has it run there
-# Namespaces of one machine share its memory, hosts do not.
+Host = list[str]  # command prefix that runs a program there
+# Namespaces of one machine share memory, hosts do not.
 NETWORK = {"ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET", "FASTDDS_BUILTIN_TRANSPORTS": "UDPv4"}
 _CABLE = "cable"
 
 
 def can_have_hosts() -> bool:
-    """Tell whether this user may make network namespaces."""
+    """Return whether this user may create network namespaces."""
     return os.geteuid() == 0 and shutil.which("ip") is not None
 
 
 @contextmanager
 def two_hosts() -> Iterator[tuple[Host, Host]]:
-    """Make both, and remove them in the end."""
+    """Create both hosts, and remove them at the end."""
     names = [f"bench{os.getpid()}{side}" for side in "ab"]
     with ExitStack() as ending:
         for name in names:

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What many nodes cost that have nothing to do."""
+"""Cost of many idle nodes."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ from rmw_manycore_py.bench.summary import Goal, Result
 
 CLUSTERS = 5
 WINDOW_S = 10.0
-# Each Fast DDS node speaks with each other one: a hundred take minutes to find each other.
+# Fast DDS processes discover each other pairwise: a hundred would take minutes.
 FAST_DDS_NODES = 20
 
 
 def question(nodes: int) -> Question:
-    """Return the question for that many nodes."""
+    """Return the question for this many nodes."""
     own = tuple(_spread(manycore("inside", wait), nodes) for wait in ("block", "adaptive"))
     counts = {**dict.fromkeys(own, nodes), FAST_DDS: min(nodes, FAST_DDS_NODES)}
 
@@ -57,7 +57,7 @@ def _spread(middleware: Middleware, nodes: int) -> Middleware:
 
 
 def _watch(run: Run, middleware: Middleware, nodes: int) -> list[Result]:
-    """Return milliseconds of CPU and wake-ups, both a second, of all processes together."""
+    """Return CPU time in ms and wake-ups, both per second, summed over all processes."""
     window_s = WINDOW_S * max(run.share, 0.1)
     with Session(middleware, run.cpus) as session:
         processes = [
@@ -81,7 +81,7 @@ def _watch(run: Run, middleware: Middleware, nodes: int) -> list[Result]:
 
 
 def wait_until_quiet(pids: Sequence[int], timeout_s: float = 30.0) -> None:
-    """Return after a second in which nothing woke up, or after the timeout."""
+    """Return after a second without wake-ups, or after the timeout."""
     deadline = time.monotonic() + timeout_s
     seen = -1
     while time.monotonic() < deadline and seen != (now := wake_ups(pids)):
@@ -90,12 +90,12 @@ def wait_until_quiet(pids: Sequence[int], timeout_s: float = 30.0) -> None:
 
 
 def cpu_ns(pids: Iterable[int]) -> int:
-    """Return the time that all threads of the processes have run."""
+    """Return the total run time of all threads of the processes in ns."""
     return sum(int(path.read_text().split()[0]) for path in _tasks(pids, "schedstat"))
 
 
 def wake_ups(pids: Iterable[int]) -> int:
-    """Return how often the threads of the processes have gone to sleep by themselves."""
+    """Return the number of voluntary context switches of all threads of the processes."""
     return sum(
         int(line.split()[1])
         for path in _tasks(pids, "status")

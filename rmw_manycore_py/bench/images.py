@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Images that cross to another host, through the bridge or by Fast DDS alone, beside load."""
+"""Images sent to another host through the bridge or by Fast DDS alone, under load."""
 
 from __future__ import annotations
 
@@ -9,26 +9,26 @@ from dataclasses import dataclass, replace
 from functools import partial
 
 from rmw_manycore_program import own_program
+from rmw_manycore_py.bench.bridging import bridge_command
 from rmw_manycore_py.bench.contenders import BETWEEN, FAST_DDS, MIB, Middleware
 from rmw_manycore_py.bench.hosts import NETWORK, Host, can_have_hosts, two_hosts
 from rmw_manycore_py.bench.load import busy
 from rmw_manycore_py.bench.question import Run
-from rmw_manycore_py.bench.session import NODES, PATIENCE_S, Session
+from rmw_manycore_py.bench.session import NODES, TIMEOUT_S, Session
 from rmw_manycore_py.bench.summary import Goal, Result
-from rmw_manycore_py.bridge_plan import Plan
-from rmw_manycore_py.routes import Route, arranged
+from rmw_manycore_py.routes import Route
 
 NAME = "images of 1 MiB at 30 Hz that reach another host"
 BRIDGED = "bridged"
 RATE_HZ, IMAGES = 30, 150
 TYPE = "std_msgs/msg/UInt8MultiArray"
-LAST_S = 1.0  # for what is still under way
+LAST_S = 1.0  # for messages in flight
 RELIABILITIES = ("reliable", "best_effort")
 
 
 @dataclass(frozen=True)
 class Load:
-    """So many endless processes, on the CPU of the camera or on both."""
+    """Endless processes on the CPU of the camera or on both."""
 
     name: str
     processes: int
@@ -43,7 +43,7 @@ LOADS = (
 
 
 def measure(run: Run) -> list[Result]:
-    """Return how many images of a hundred arrive; nothing where hosts cannot be made."""
+    """Return how many of a hundred images arrive; empty if hosts cannot be emulated."""
     if not can_have_hosts():
         run.note(f"{NAME}: left out, as network namespaces need root and ip")
         return []
@@ -76,7 +76,7 @@ def _watch(run: Run, load: Load, reliability: str, *, is_bridged: bool) -> list[
         camera = inside.start([*here, *_camera(reliability, MIB, RATE_HZ, images)], 0)
         counter.wait_until_ready()
         on = run.cpus if load.on_both else run.cpus[:1]
-        with busy(load.processes, on, PATIENCE_S):
+        with busy(load.processes, on, TIMEOUT_S):
             camera.release()
             camera.wait_until_ready()
             time.sleep(LAST_S)
@@ -94,9 +94,8 @@ def _camera(*words: object) -> tuple[str, ...]:
 
 def _start_bridge(run: Run, here: Host, inside: Session, outside: Session) -> None:
     route = Route("topic", "outward", "/images", "/images", TYPE, outside.domain)
-    plan = Plan(inside.platform, arranged([route], 1)).to_json()
-    command = own_program("rmw_manycore_bridge", plan, "outward", "0", "1", "2")
-    outside.start([*here, *command], 0, cpus=run.cpus)  # not pinned, as `manycore run` has it
+    command = bridge_command(inside, [route], "outward")
+    outside.start([*here, *command], 0, cpus=run.cpus)  # not pinned, as under `manycore run`
 
 
 GOALS = tuple(

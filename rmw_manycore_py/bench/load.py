@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Other programs, beside which something is measured."""
+"""Background load."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ _ENDLESS = "while True: pass"
 
 
 @contextmanager
-def busy(processes: int, cpus: Sequence[int], patience_s: float) -> Iterator[None]:
-    """Have so many processes take all the time they get on these CPUs, so long at most."""
+def busy(processes: int, cpus: Sequence[int], timeout_s: float) -> Iterator[None]:
+    """Keep these CPUs busy with endless processes, for at most `timeout_s`."""
     command = [sys.executable, "-c", _ENDLESS]
     with ExitStack() as ending:
         for _ in range(processes):
-            load = Process("load beside", command, dict(os.environ), cpus, patience_s=patience_s)
+            load = Process("load beside", command, dict(os.environ), cpus, timeout_s=timeout_s)
             ending.enter_context(closing(load))
         yield

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What the figures were measured on."""
+"""Description of the machine."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ PACKAGES = ("rmw-manycore", "ros-rclpy", "ros-rmw-fastrtps-cpp", "ros-fastrtps")
 
 
 def machine_header() -> dict[str, str]:
-    """Return names and values for the head of a report."""
+    """Return names and values for the header of a report."""
     return {
         "processor": _processor(),
         "usable CPUs": ", ".join(str(cpu) for cpu in sorted(os.sched_getaffinity(0))),

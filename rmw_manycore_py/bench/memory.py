@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""How much memory a node takes, and how much a cluster."""
+"""Memory use of a node and of a cluster."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ COOLIDGE_SMEM_BYTES = 4 * MIB
 
 
 def measure(run: Run) -> list[Result]:
-    """Return a table like the one of ROS-lite: what the system takes, and what each node adds."""
+    """Return a table like that of ROS-lite: memory of the system, and what each node adds."""
     run.note("memory: rmw_manycore")
     results = _measure_manycore(run) if run.wants(INSIDE.name) else []
     for middleware in (INSIDE, FAST_DDS):
@@ -86,7 +86,7 @@ def _stop_nodes(nodes: list[Process]) -> None:
 
 
 def private_bytes(pid: int) -> int:
-    """Return the memory that only this process has, without shared memory it alone touched."""
+    """Return the private memory of a process, without shared memory that only it has touched."""
     total = 0
     shared = ("/dev/shm/", f"{platforms_directory()}/")  # Fast DDS and rmw_manycore
     counts = False

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""A picture of the results."""
+"""Plot of the results."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from rmw_manycore_py.bench.summary import SPREAD, Result, nearest_rank
 from rmw_manycore_py.figures import load_figure
 
 COLUMNS = 2
-# Beyond this ratio of the longest line to the shortest bar the bar could not be seen.
+# Maximum ratio of the longest line to the shortest bar on a linear scale.
 LINEAR_UP_TO = 20
 
 
 def plot(results: Sequence[Result], path: Path) -> None:
-    """Draw a panel per question: curves, or bars side by side."""
+    """Draw a panel per question: curves or bars."""
     questions = list(dict.fromkeys(r.question for r in results if r.summary.largest > 0))
     rows = math.ceil(len(questions) / COLUMNS)
     figure = load_figure()(figsize=(7 * COLUMNS, 2.8 * rows), layout="constrained")
@@ -33,7 +33,7 @@ def plot(results: Sequence[Result], path: Path) -> None:
 
 
 def _draw_bars(panel: Any, results: Sequence[Result]) -> None:
-    """Draw a bar to the median, and a line to the 99th percentile."""
+    """Draw a bar to the median and a line to the 99th percentile."""
     names = [result.contender for result in results]
     medians = [result.summary.median for result in results]
     tails = [result.summary.p99 - result.summary.median for result in results]
@@ -47,9 +47,9 @@ def _draw_bars(panel: Any, results: Sequence[Result]) -> None:
 
 
 def _draw_curves(panel: Any, results: Sequence[Result]) -> None:
-    """Draw medians over the curve's axis in a band from the 5th to the 95th percentile.
+    """Draw medians over the curve's axis with a band from the 5th to the 95th percentile.
 
-    What is on no curve is a curve of its own: a single mark, its spread a line.
+    A result on no curve is drawn as a single mark with its spread.
     """
     axis = next(r.curve.axis for r in results if r.curve)
     names = list(dict.fromkeys(r.curve.name if r.curve else r.contender for r in results))

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""How long a message takes there and back through rclpy."""
+"""Round-trip time through rclpy."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ from rmw_manycore_py.bench.summary import Goal, Result
 SIZES = ("64 B", "1 MiB", "8 MiB")
 WARM_UP = 20
 
-# As `manycore run` starts its nodes: memory that python gives back is kept for the next message.
+# Memory settings of `manycore run`: freed memory is kept for the next message.
 MALLOC_TUNING = {"MALLOC_TRIM_THRESHOLD_": str(2**30), "MALLOC_MMAP_THRESHOLD_": str(2**30)}
 
 
 def with_malloc_tuning(middleware: Middleware, name: str) -> Middleware:
-    """Return the middleware with the C library's memory settings of `manycore run`."""
+    """Return the middleware with the malloc settings of `manycore run`."""
     return replace(middleware, name=name, variables={**middleware.variables, **MALLOC_TUNING})
 
 
@@ -38,19 +38,19 @@ MIDDLEWARES = (
     RUN_BETWEEN,
     FAST_DDS,
     TUNED_FAST_DDS,
-    # What the memory settings alone do, on either side.
+    # Isolates the effect of the malloc settings, on either side.
     INSIDE,
     with_malloc_tuning(TUNED_FAST_DDS, "Fast DDS, 128 MB segment, malloc"),
 )
 
 
 def iterations(size_bytes: int) -> int:
-    """Return the messages of a full round."""
+    """Return the number of messages of a full round."""
     return 1000 if size_bytes < MIB else 200 if size_bytes == MIB else 50
 
 
 def measure(run: Run) -> list[Result]:
-    """Measure all sizes, one after the other."""
+    """Measure all sizes in sequence."""
     results = []
     for size in SIZES:
         results += _measure_size(run, size)

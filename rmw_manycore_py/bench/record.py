@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Does a recorder keep up, and a player keep time? Without a peer: rosbag2 is not on PyPI."""
+"""Losses of the recorder and timing of the player; no peer, since rosbag2 is not on PyPI."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from rmw_manycore_py.bench.contenders import INSIDE, MIB
 from rmw_manycore_py.bench.question import Question, Run
 from rmw_manycore_py.bench.session import Session
 from rmw_manycore_py.bench.summary import Goal, Result
-from rmw_manycore_py.recording.library import require_library
+from rmw_manycore_py.recording.mcap_support import require_library
 
 TOPIC = "/bench"
 SECONDS = 20.0
@@ -25,7 +25,7 @@ _MEDIAN, _P99 = "median", "p99"
 
 @dataclass(frozen=True)
 class Stream:
-    """Messages of a size at a rate."""
+    """Messages of one size at one rate."""
 
     name: str
     size_bytes: int
@@ -39,7 +39,7 @@ STREAMS = (LARGE, MIDDLE, SMALL)
 
 
 def measure(run: Run) -> list[Result]:
-    """Record each stream, and play what was recorded."""
+    """Record each stream, and play the recording."""
     require_library()
     return [
         result for stream in STREAMS if run.wants(stream.name) for result in _measure(run, stream)
@@ -47,7 +47,7 @@ def measure(run: Run) -> list[Result]:
 
 
 def _measure(run: Run, stream: Stream) -> list[Result]:
-    from rmw_manycore_py.recording.recording import Recording  # needs the library
+    from rmw_manycore_py.recording.recording import Recording  # imported late: loads the library
 
     lost, uncounted, rates, medians, p99s = [], [], [], [], []
     for turn in range(run.rounds):
@@ -73,7 +73,7 @@ def _measure(run: Run, stream: Stream) -> list[Result]:
 
 
 def _record(run: Run, stream: Stream, file: Path) -> tuple[int, float, int]:
-    """Return how many messages were published, bytes per second, and how many it says are lost."""
+    """Return the number of published messages, bytes per second, and reported losses."""
     count = run.iterations(int(SECONDS * stream.rate_hz))
     with Session(INSIDE, run.cpus) as session:
         recorder = session.module(_CLI, 1, "topic", "record", TOPIC, "-o", file, "--json")
@@ -85,7 +85,7 @@ def _record(run: Run, stream: Stream, file: Path) -> tuple[int, float, int]:
 
 
 def _play(run: Run, file: Path) -> tuple[float, float]:
-    """Return by how many ms messages were published late: median and 99th percentile."""
+    """Return the lateness of published messages in ms: median and 99th percentile."""
     with Session(INSIDE, run.cpus) as session:
         found = session.module(_CLI, 0, "topic", "play", file, "--json").finish()
     return float(found["late_ms_p50"]), float(found["late_ms_p99"])

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""How long a message takes there and back, at the rmw level."""
+"""Round-trip time at the rmw level."""
 
 from __future__ import annotations
 
@@ -23,15 +23,15 @@ from rmw_manycore_py.bench.summary import Goal, Result, Statistic
 
 SIZES = ("64 B", "64 KiB", "1 MiB", "8 MiB")
 WARM_UP = 50
-# A node that spins keeps the receive thread of its cluster off the CPU they share here, so
-# `spin` is for nodes with a CPU of their own; between clusters it is left out.
+# A spinning node keeps the receive thread of its cluster off the CPU they share here. `spin` needs
+# a CPU of its own, so it is omitted between clusters.
 OTHER_WAITS = (
     manycore("inside", "adaptive"),
     manycore("inside", "spin"),
     manycore("between", "adaptive"),
 )
 ADAPTIVE_BETWEEN = OTHER_WAITS[2]
-# Two medians of the same thing differ by this much from run to run.
+# Variation of two medians of the same thing between runs.
 NOISE = 1.05
 
 
@@ -41,7 +41,7 @@ def iterations(size_bytes: int) -> int:
 
 
 def measure(run: Run) -> list[Result]:
-    """Measure all sizes, one after the other."""
+    """Measure all sizes in sequence."""
     results = []
     for size in SIZES:
         results += run.interleave(f"round trip {size}", "us", _contenders(run, PAYLOADS[size]))

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Starting the processes of one measurement, each pinned to its CPU."""
+"""Starts the processes of one measurement, each pinned to its CPU."""
 
 from __future__ import annotations
 
@@ -24,23 +24,23 @@ from rmw_manycore_py.bench.contenders import Middleware, Peer
 from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.parent_death import dies_with_this_process
 
-# How long a process may take in all before a bench gives up on it.
-PATIENCE_S = 300.0
+# Total timeout of a process.
+TIMEOUT_S = 300.0
 NODES = "rmw_manycore_py.bench.nodes"
 
-# In the ROS 2 wheels this keeps the start-up hook from rearranging the library path.
+# Keeps the start-up hook of the ROS 2 wheels from rearranging the library path.
 WHEELS_BOOTSTRAPPED = "_ROS_WHEELS_BOOTSTRAP_COMPLETE"
 
 _numbers = itertools.count()
 
 
 def native_directory() -> Path:
-    """Return where the native parts of rmw_manycore are installed."""
+    """Return the directory of the installed native parts."""
     return Path(sys.prefix, "lib", "rmw_manycore")
 
 
 def program_path(name: str) -> Path:
-    """Return a native bench program, or say how to get it."""
+    """Return the path of a native bench program; raise ManycoreError if it was not built."""
     path = native_directory() / "bench" / name
     if not path.exists():
         raise ManycoreError(
@@ -51,19 +51,24 @@ def program_path(name: str) -> Path:
 
 
 def native_command(program: str, **arguments: object) -> list[str | Path]:
-    """Return the command line of a native bench program."""
-    return [program_path(program), *(f"{key}={value}" for key, value in arguments.items())]
+    """Return the command line of a native bench program, which dies with this process."""
+    words = (f"{key}={value}" for key, value in arguments.items())
+    return [program_path(program), _parent(), *words]
+
+
+def _parent() -> str:
+    return f"parent={os.getpid()}"
 
 
 def usable_cpus() -> tuple[int, int]:
-    """Return the two CPUs of the parties; they are one where the machine has no more."""
+    """Return the CPUs of the two parties; equal if the machine has only one."""
     cpus = sorted(os.sched_getaffinity(0))
     return cpus[0], cpus[min(1, len(cpus) - 1)]
 
 
 @contextmanager
 def pinned_to(cpus: Sequence[int]) -> Iterator[None]:
-    """Pin this process, so that those it starts meanwhile are pinned from their first moment."""
+    """Pin this process during the block, so that started processes inherit the affinity."""
     before = os.sched_getaffinity(0)
     os.sched_setaffinity(0, cpus)
     try:
@@ -73,7 +78,7 @@ def pinned_to(cpus: Sequence[int]) -> Iterator[None]:
 
 
 class Process:
-    """A started process that says `ready` when it is, and ends with a line of JSON."""
+    """A process that prints `ready` and finally a line of JSON."""
 
     def __init__(
         self,
@@ -83,11 +88,13 @@ class Process:
         cpus: Sequence[int],
         *,
         output: IO[str] | None = None,
-        patience_s: float = PATIENCE_S,
+        timeout_s: float = TIMEOUT_S,
     ) -> None:
-        """`output`: takes what the process prints, which then says nothing here."""
+        """Start the process; `output` receives what it prints, instead of this object."""
         self._name = name
         self._errors = tempfile.TemporaryFile("w+")  # noqa: SIM115
+        # With a preexec_fn, Python forks, which takes milliseconds with memory as large as this.
+        ties_itself = _parent() in command
         with pinned_to(cpus):
             self.started_ns = time.monotonic_ns()
             self._process = subprocess.Popen(
@@ -97,10 +104,10 @@ class Process:
                 stdin=subprocess.PIPE,
                 stdout=subprocess.PIPE if output is None else output,
                 stderr=self._errors,
-                preexec_fn=dies_with_this_process(),
+                preexec_fn=None if ties_itself else dies_with_this_process(),
             )
-        self._end_of_patience = threading.Timer(patience_s, self._process.kill)
-        self._end_of_patience.start()
+        self._timer = threading.Timer(timeout_s, self._process.kill)
+        self._timer.start()
 
     @property
     def pid(self) -> int:
@@ -108,7 +115,7 @@ class Process:
         return self._process.pid
 
     def wait_until_ready(self) -> None:
-        """Return when the process has done its part of the set-up."""
+        """Wait until the process has reported ready."""
         assert self._process.stdout is not None
         for line in self._process.stdout:
             if line.strip() == "ready":
@@ -116,23 +123,23 @@ class Process:
         self.finish()
 
     def next_line(self) -> str:
-        """Return the next line that the process prints; "" where it has ended."""
+        """Return the next line of output; "" after its end."""
         assert self._process.stdout is not None
         return self._process.stdout.readline()
 
     def release(self) -> None:
-        """End the input of the process, for which some wait before they end themselves."""
+        """Close the process's input, which some programs wait for."""
         assert self._process.stdin is not None
         self._process.stdin.close()
         self._process.stdin = None
 
     def finish(self) -> dict[str, Any]:
-        """Return what the process found, once it has ended well."""
+        """Wait for a successful exit and return the JSON result."""
         output = self._process.communicate()[0] or ""
         if self._process.returncode != 0:
             self._errors.seek(0)
             raise ManycoreError(
-                f"{self._name}: {self._process.args!r} ended with status "
+                f"{self._name}: {self._process.args!r} ended with exit status "
                 f"{self._process.returncode}:\n" + self._errors.read()
             )
         lines = [line for line in output.splitlines() if line.startswith("{")]
@@ -140,18 +147,18 @@ class Process:
         return result
 
     def raise_if_failed(self) -> None:
-        """Raise the error of a process that has ended before it should."""
+        """Raise ManycoreError if the process has ended early."""
         if self._process.poll() is not None:
             self.finish()
             raise ManycoreError(f"{self._name}: {self._process.args!r} has ended early")
 
     def interrupt(self) -> None:
-        """Send the SIGINT that ends nodes."""
+        """Send SIGINT."""
         self._process.send_signal(signal.SIGINT)
 
     def close(self) -> None:
-        """End the process, whatever it is doing, and close our ends of its pipes."""
-        self._end_of_patience.cancel()
+        """Kill the process and close the pipes."""
+        self._timer.cancel()
         if self._process.poll() is None:
             self._process.kill()
         self._process.wait()
@@ -165,18 +172,18 @@ def _close(stream: IO[str] | None) -> None:
 
 
 class Session:
-    """One middleware with a platform and a ROS domain of its own, for one measurement."""
+    """One middleware with its own platform and ROS domain, for one measurement."""
 
     def __init__(
-        self, middleware: Middleware, cpus: Sequence[int], patience_s: float = PATIENCE_S
+        self, middleware: Middleware, cpus: Sequence[int], timeout_s: float = TIMEOUT_S
     ) -> None:
-        """Prepare parties that have the CPUs in turn; after `patience_s` each is killed."""
+        """Prepare parties on alternating CPUs; each is killed after `timeout_s`."""
         self.middleware = middleware
         self.platform = f"bench-{os.getpid()}-{next(_numbers)}"
         self._cpus = cpus
-        self._patience_s = patience_s
+        self._timeout_s = timeout_s
         self._stack = ExitStack()
-        # Fast DDS takes its ports from the domain; above 100 they reach into those of clients.
+        # Fast DDS derives its ports from the domain; above 100 they overlap the ephemeral range.
         self.domain = (os.getpid() + next(_numbers)) % 100 + 1
 
     def __enter__(self) -> Session:
@@ -191,12 +198,12 @@ class Session:
         return self.start(native_command(program, **arguments), party)
 
     def python(self, module: str, party: int, *arguments: object, by_hand: bool = False) -> Process:
-        """Start an rclpy program as a party; by hand means without the library path set."""
+        """Start an rclpy program as a party; `by_hand` leaves the library path unset."""
         command = own_program(f"{NODES}.{module}", *map(str, arguments))
         return self.start(command, party, with_library_path=not by_hand)
 
     def module(self, name: str, party: int, *arguments: object) -> Process:
-        """Start any module of ours as a party."""
+        """Start a module of ours as a party."""
         return self.start(own_program(name, *map(str, arguments)), party)
 
     def start(
@@ -207,9 +214,9 @@ class Session:
         output: IO[str] | None = None,
         cpus: Sequence[int] | None = None,
     ) -> Process:
-        """Start any command as a party; `output` takes what it prints.
+        """Start a command as a party; `output` receives its output.
 
-        :param cpus: instead of the party's.
+        :param cpus: overrides the party's CPU.
         """
         environment = self._environment(party)
         if with_library_path:
@@ -221,7 +228,7 @@ class Session:
             environment,
             cpus or [self._cpus[party % len(self._cpus)]],
             output=output,
-            patience_s=self._patience_s,
+            timeout_s=self._timeout_s,
         )
         self._stack.callback(process.close)
         return process
@@ -230,18 +237,18 @@ class Session:
         """Return the processes of the clusters' receive threads, once all have started."""
         if not self.middleware.is_manycore:
             return []
-        deadline = time.monotonic() + PATIENCE_S
+        deadline = time.monotonic() + TIMEOUT_S
         with Platform(self.platform) as platform:
             while time.monotonic() < deadline:
                 clusters = platform.clusters()
                 pids = [cluster.receive_thread_pid for cluster in clusters if cluster.alive]
-                if len(pids) == len(clusters) and all(pids):  # it lives before it says its pid
+                if len(pids) == len(clusters) and all(pids):  # it is alive before its pid is set
                     return pids
                 time.sleep(0.01)
         raise ManycoreError(f"{self.platform}: a receive thread does not start")
 
     def shared_sizes(self) -> dict[str, int]:
-        """Return the bytes of memory that each file of the platform holds."""
+        """Return the memory in bytes of each file of the platform."""
         files = Path(platform_directory(self.platform)).iterdir()
         return {file.name: file.stat().st_blocks * 512 for file in files}
 
@@ -270,21 +277,28 @@ class Session:
 
 
 def library_path(middleware: Middleware) -> list[str]:
-    """Return the directories that give a program this middleware under the name it asks for."""
+    """Return the library directories that give a program this middleware."""
     prefix = Path(sys.prefix)
     libraries = [prefix / "lib", *sorted(prefix.glob("lib/python*/site-packages/ros_*.libs"))]
     given = plain_environment(os.environ, sys.prefix).get("LD_LIBRARY_PATH", "").split(os.pathsep)
     standin = [native_directory() / "standin"] if middleware.is_manycore else []
-    other = [middleware.library] if middleware.library else []
-    # The stand-ins first: beside the other library there may be the one that they stand in for.
+    other = [middleware.build] if middleware.build else []
+    # Stand-ins first: the directory of the other library may contain the library they replace.
     return [str(path) for path in [*standin, *other, *libraries, *given] if str(path)]
 
 
-def run_peer(peer: Peer, cpus: tuple[int, int], **arguments: object) -> dict[str, Any]:
-    """Run a peer to its end and return what it found."""
-    words = [f"{key}={value}" for key, value in arguments.items()]
-    command = [str(program_path(peer.program)), f"cpu_1={cpus[0]}", f"cpu_2={cpus[1]}", *words]
-    process = Process(peer.name, command, dict(os.environ), sorted(os.sched_getaffinity(0)))
+def run_peer(peer: Peer, cpus: tuple[int, int], **arguments: Any) -> dict[str, Any]:
+    """Run a peer to its end and return its result."""
+    return run_program(peer.program, cpu_1=cpus[0], cpu_2=cpus[1], **arguments)
+
+
+def run_program(
+    program: str, /, *, timeout_s: float = TIMEOUT_S, **arguments: object
+) -> dict[str, Any]:
+    """Run a native bench program, which pins itself, to its end and return its result."""
+    command = native_command(program, **arguments)
+    cpus = sorted(os.sched_getaffinity(0))
+    process = Process(program, command, dict(os.environ), cpus, timeout_s=timeout_s)
     try:
         return process.finish()
     finally:

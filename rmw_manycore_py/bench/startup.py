@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The time from the start of an rclpy process to the first message in its callback."""
+"""Time from the start of an rclpy process to its first callback."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ FULL_ATTEMPTS = 4
 
 
 def measure(run: Run) -> list[Result]:
-    """Measure a node started as a user does, and one started as `manycore run` does."""
+    """Measure a node started by hand, and one started as by `manycore run`."""
     attempts = run.iterations(FULL_ATTEMPTS)
 
     def start(middleware: Middleware, *, by_hand: bool) -> Sequence[float]:

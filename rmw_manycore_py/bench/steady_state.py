@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""How many page faults and allocations a message costs once everything is warm."""
+"""Page faults and allocations per message in the steady state."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ FULL_MESSAGES = 400
 
 
 def measure(run: Run) -> list[Result]:
-    """Count in both processes of a conversation; each takes and publishes every message."""
+    """Count in both processes of a round trip; each takes and publishes every message."""
     results = []
     for size in SIZES:
         for middleware in (INSIDE, BETWEEN, FAST_DDS):

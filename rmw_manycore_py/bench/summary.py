@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What was measured, in numbers, and whether it reaches the goal."""
+"""Statistics of results, and goals."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 Statistic = Literal["median", "mean", "p99", "largest"]
-SPREAD = (0.05, 0.95)  # of the samples, between which most of them lie
+SPREAD = (0.05, 0.95)  # quantiles shown as the spread
 
 
 @dataclass(frozen=True)
 class Summary:
-    """The numbers of a table row, in the unit of the samples."""
+    """Numbers of a table row, in the unit of the samples."""
 
     samples: int
     median: float
@@ -43,7 +43,7 @@ def nearest_rank(ordered: Sequence[float], share: float) -> float:
 
 @dataclass(frozen=True)
 class Curve:
-    """Where a result lies on a curve over a number of cores, or of something else."""
+    """Position of a result on a curve, e.g. over the number of cores."""
 
     name: str
     at: int
@@ -52,7 +52,7 @@ class Curve:
 
 @dataclass(frozen=True)
 class Result:
-    """All samples of one contender at one question, for example "64 B"."""
+    """Samples of one contender at one question."""
 
     question: str
     contender: str
@@ -68,10 +68,10 @@ class Result:
 
 @dataclass(frozen=True)
 class Goal:
-    """What a contender shall reach, against a peer of the same question or as it stands.
+    """Goal of a contender, relative to a peer or absolute.
 
     "within": at most `factor` times the peer (without a peer: at most `factor` units);
-    "better": better than the peer by at least `factor`, whichever direction is the better one.
+    "better": better than the peer by at least `factor`, in the direction that is better.
     """
 
     question: str
@@ -84,20 +84,20 @@ class Goal:
 
 @dataclass(frozen=True)
 class Verdict:
-    """A goal with what was found; `found` is in the terms of the goal's factor."""
+    """A goal and what was measured; `found` is comparable with the goal's factor."""
 
     goal: Goal
     found: float
 
     @property
     def reached(self) -> bool:
-        """Tell whether the goal is reached."""
+        """Return whether the goal is reached."""
         goal = self.goal
         return self.found <= goal.factor if goal.kind == "within" else self.found >= goal.factor
 
 
 def judge(results: Sequence[Result], goals: Sequence[Goal]) -> list[Verdict]:
-    """Hold the results against those goals whose two sides were measured."""
+    """Evaluate the goals whose two sides were measured."""
     by_name = {(result.question, result.contender): result for result in results}
     verdicts = []
     for goal in goals:

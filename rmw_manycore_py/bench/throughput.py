@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""How many messages a second arrive, none lost, with eight under way."""
+"""Messages per second without loss, with eight in flight."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from rmw_manycore_py.bench.summary import Goal, Result
 IN_FLIGHT = 8
 SMALL = ("64 B", "1 KiB")
 LARGE = ("64 KiB", "1 MiB", "8 MiB")
-# Messages of a sample, and samples of a full round.
+# Messages per sample, and samples of a full round.
 STRETCH = {"64 B": 400, "1 KiB": 400, "64 KiB": 160, "1 MiB": 40, "8 MiB": 8}
 FULL_STRETCHES = 50
 WARM_UP_STRETCHES = 3
 
 
 def measure(run: Run) -> list[Result]:
-    """Measure all sizes, one after the other."""
+    """Measure all sizes in sequence."""
     results = []
     for size in (*SMALL, *LARGE):
         results += _measure_size(run, size)

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What tracing costs: a site, a round trip, and saving."""
+"""Cost of tracing: a trace site, a round trip, and saving."""
 
 from __future__ import annotations
 
@@ -26,11 +26,11 @@ SITE_ROUNDS = 10
 EVENTS = 1_000_000
 SAVED_AS = (".json", ".csv", ".pftrace")
 _OFF, _ON = "not traced", "traced"
-_PER_MESSAGE = 8  # events
+_PER_MESSAGE = 8  # events per message
 
 
 def measure(run: Run) -> list[Result]:
-    """Measure sites alone, round trips in turns, and the saving of a million events."""
+    """Measure trace sites, alternating round trips, and saving a million events."""
     return [
         *_sites(run),
         *run.interleave(
@@ -47,7 +47,7 @@ def _sites(run: Run) -> list[Result]:
     with Session(INSIDE, run.cpus) as session:
         found = session.native("trace_site", 0, events=EVENTS, rounds=SITE_ROUNDS).finish()
     return [
-        Result("trace site", _OFF, "ns", tuple(in_us(found["samples_ns"]))),  # picoseconds
+        Result("trace site", _OFF, "ns", tuple(in_us(found["samples_ns"]))),  # from ps
         Result("trace site", _ON, "ns", (found["on_ps"] / 1e3,)),
         Result("events lost of a million at once", _ON, "count", (found["lost"],)),
     ]
@@ -89,7 +89,7 @@ def _saving(run: Run) -> list[Result]:
 
 
 def million() -> Trace:
-    """Return a trace of a million events, as two nodes that talk to each other leave them."""
+    """Return a trace of a million events, as left by two communicating nodes."""
     count = EVENTS // _PER_MESSAGE
     kinds = (
         (Kind.PUBLISH_BEGIN, Kind.SERIALIZE_BEGIN, Kind.WRITE, Kind.HINT, Kind.PUBLISH_END),

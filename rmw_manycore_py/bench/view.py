@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What `manycore view` costs, and how soon it shows what happens."""
+"""Cost of `manycore view`, and its latency."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from rmw_manycore_program import own_program
 from rmw_manycore_py.bench.contenders import manycore
 from rmw_manycore_py.bench.idle import cpu_ns
 from rmw_manycore_py.bench.question import Question, Run
-from rmw_manycore_py.bench.session import PATIENCE_S, Process, Session
+from rmw_manycore_py.bench.session import TIMEOUT_S, Process, Session
 from rmw_manycore_py.bench.summary import Goal, Result
 from rmw_manycore_py.errors import ManycoreError
 
@@ -36,7 +36,7 @@ _LOOK_AGAIN_S = 0.005
 
 
 def measure(run: Run) -> list[Result]:
-    """Return what a viewer and its page take, beside so many nodes."""
+    """Return the cost of a viewer and its page, over the number of nodes."""
     results: list[Result] = []
     for count in NODES[:1] if run.share < 1 else NODES:
         if run.wants(f"{COST}: {_name(count)}"):
@@ -83,7 +83,7 @@ def _watch(run: Run, count: int) -> list[Result]:
 
 
 def _open(session: Session, page: Any) -> tuple[Process, float]:
-    """Start a viewer, and open its page; return the milliseconds until there was a picture."""
+    """Start a viewer and open its page; return the ms until the first picture."""
     command = own_program(
         *("rmw_manycore_py.cli", "view", "--port", "0", "--platform", session.platform)
     )
@@ -94,7 +94,7 @@ def _open(session: Session, page: Any) -> tuple[Process, float]:
 
 
 def _frames_ms(page: Any, count: int) -> list[float]:
-    """Return how long the next frames take, as the page measures it."""
+    """Return the durations of the next frames in ms, as measured by the page."""
     frames: list[float] = []
     seen = None
     while len(frames) < count:
@@ -116,16 +116,16 @@ def _red_ms(page: Any, node: Process, name: str) -> float:
 
 
 def _wait(condition: Callable[[], bool]) -> None:
-    deadline_s = time.monotonic() + PATIENCE_S
+    deadline_s = time.monotonic() + TIMEOUT_S
     while not condition():
         if time.monotonic() > deadline_s:
-            raise ManycoreError(f"the page of manycore view shows nothing within {PATIENCE_S:g} s")
+            raise ManycoreError(f"the page of manycore view shows nothing within {TIMEOUT_S:g} s")
         time.sleep(_LOOK_AGAIN_S)
 
 
 @contextmanager
 def _browser() -> Iterator[Any]:
-    """Yield Chromium without a window."""
+    """Yield headless Chromium."""
     try:
         from selenium import webdriver
     except ImportError as error:

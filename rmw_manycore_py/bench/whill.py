@@ -1,7 +1,7 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The wheelchair of ROS-lite2's case study: off-loaded beside plain Fast DDS, and disturbed.
+"""The wheelchair of ROS-lite2's case study: off-loaded, on plain Fast DDS, and with faults.
 
-Each drive is a `manycore whill drive` of its own, over the whole course.
+Each drive is a separate `manycore whill drive` over the whole course.
 """
 
 from __future__ import annotations
@@ -21,27 +21,27 @@ from rmw_manycore_py.errors import ManycoreError
 
 OFF_LOADED, PLAIN = "off-loaded", "plain Fast DDS"
 OPTIONS = {OFF_LOADED: "--run", PLAIN: "--plain"}
-FAULT_S = 15.0  # after the start; the vehicle is on the first straight
+FAULT_S = 15.0  # after the start, on the first straight
 KILLED = (
     *("pointcloud_map_loader", "ndt_scan_matcher", "ekf_localizer", "simple_trajectory_follower"),
     *("vehicle_cmd_gate", "static_trajectory_publisher", "pose_initializer_node"),
     *("whill_interface", "vehicle_velocity_converter_node", "gyro_odometer"),
     *("bridge inward", "bridge outward"),
 )
-# Without these no command reaches the wheelchair, or none that knows where it is.
+# Without these, no command or none based on a current pose reaches the wheelchair.
 CONTROL_CHAIN = (
     *("ekf_localizer", "simple_trajectory_follower", "vehicle_cmd_gate", "whill_interface"),
     *("bridge inward", "bridge outward"),
 )
 STOPPED = "stop:ndt_scan_matcher"
-PATIENCE_S = 900.0
-STOOD_S = 0.5 + 0.1  # the timeout, and a cycle of the gate's timer, the slowest of all
+TIMEOUT_S = 900.0
+STOOD_S = 0.5 + 0.1  # timeout plus one period of the gate's timer, the slowest
 
 
 def drive_question(course: Path, namespace: str | None = None) -> Question:
-    """Return the question how off-loading compares with the same nodes on the laptop.
+    """Return the question comparing off-loaded nodes with the same nodes on the laptop.
 
-    :param namespace: network namespace for the nodes, whose packets are counted then.
+    :param namespace: network namespace of the nodes; counts its packets.
     """
     place = () if namespace is None else ("--netns", namespace)
     contenders = (OFF_LOADED, PLAIN)
@@ -72,7 +72,7 @@ def drive_question(course: Path, namespace: str | None = None) -> Question:
 
 
 def fault_question(course: Path) -> Question:
-    """Return the question how soon the vehicle stands after a fault, and that it drives on."""
+    """Return the question how soon the vehicle stops after a fault, and whether it continues."""
     goals = [
         *(
             Goal("told to stand after", f"kill -9 {name}", "within", STOOD_S)
@@ -117,14 +117,14 @@ def _disturbed(run: Run, course: Path, contender: str, target: str) -> list[Resu
 
 
 def _driven(run: Run, course: Path, *options: str) -> dict[str, Any]:
-    """Return what a drive came to; one that did not come to its end has figures, too."""
+    """Return the summary of a drive, also of one that did not reach the end."""
     run.note(f"driving: {' '.join(options)}")
     command = own_program(
         "rmw_manycore_py.cli", "whill", "drive", "--course", str(course), "--json", *options
     )
     environment = plain_environment({**os.environ, "RMW_IMPLEMENTATION": "rmw_fastrtps_cpp"}, "")
     drive = subprocess.run(
-        command, env=environment, capture_output=True, text=True, timeout=PATIENCE_S, check=False
+        command, env=environment, capture_output=True, text=True, timeout=TIMEOUT_S, check=False
     )
     try:
         figures: dict[str, Any] = json.loads(drive.stdout)

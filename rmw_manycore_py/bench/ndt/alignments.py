@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Time per scan against the number of workers (ROS-lite2, Fig. 13), and beside other matchers."""
+"""Time per scan over the number of workers (ROS-lite2, Fig. 13), and of other matchers."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ import time
 from collections.abc import Sequence
 from contextlib import ExitStack
 from dataclasses import replace
+from pathlib import Path
 
 from rmw_manycore_py import _ndt_bench
 from rmw_manycore_py.bench.ndt.apart import Align, apart, matchers_apart
@@ -27,21 +28,34 @@ IMBALANCE = "largest share of a pass / mean share"
 MOST_WORKERS = 16
 REPEATS = 5
 SHARE_REPEATS = 100
-TURNS = 4  # in each round; the speed of a host's CPUs may change from one second to the next
+# What the workers of ROS-lite2 are held against (V-B, Fig. 13).
+LAPTOP_THREADS = 4
+LAPTOP = f"pclomp, {LAPTOP_THREADS} threads"
+TURNS = 4  # per round; the speed of a host's CPUs may change within seconds
 
 
 def workers(count: int) -> str:
-    """Return the name of the contender with so many workers."""
+    """Return the name of the contender with this many workers."""
     return f"rmw_manycore {count} worker{'s' if count > 1 else ''}"
 
 
 def threads(count: int) -> str:
-    """Return the name of the contender with so many threads."""
+    """Return the name of the contender with this many threads."""
     return f"{count} thread{'s' if count > 1 else ''}"
 
 
-def measure(run: Run) -> list[Result]:
-    """Return milliseconds per alignment from 0.44 m beside the scan's place."""
+def question(pclomp: Path | None) -> Question:
+    """Return the question; includes pclomp if a checkout is given."""
+    return Question(
+        "time per scan",
+        lambda run: _measure(run, pclomp),
+        _goals(),
+        "workers and threads on the first usable CPUs, pclomp on all, other peers on the first",
+    )
+
+
+def _measure(run: Run, pclomp: Path | None) -> list[Result]:
+    """Return milliseconds per alignment from guesses 0.44 m off."""
     options = one_level()
     voxel_map = map_for(options)
     cpus = usable()
@@ -61,9 +75,13 @@ def measure(run: Run) -> list[Result]:
             curves[threads(count)] = Curve("threads", count)
             alone = stack.enter_context(matchers_apart(options, voxel_map, cpus[:count]))
             contenders[apart(count)] = _own(run, alone)
-        names = [name for name in ("PCL", *PYTHON_PEERS) if run.wants(name)]
-        peers = stack.enter_context(all_peers(cpus[0], VOXEL_SIZE_M, None, names))
+        names = [name for name in ("PCL", *PYTHON_PEERS) if run.wants(f"{NAME}: {name}")]
+        peers = stack.enter_context(all_peers(cpus[:1], VOXEL_SIZE_M, None, names))
         contenders.update({name: _peer(peer) for name, peer in peers.items()})
+        names = ["pclomp"] if run.wants(f"{NAME}: {LAPTOP}") else []
+        laptop = all_peers(cpus, VOXEL_SIZE_M, pclomp, names, LAPTOP_THREADS)
+        for peer in stack.enter_context(laptop).values():
+            contenders[LAPTOP] = _peer(peer)
         results = [
             replace(result, curve=curves.get(result.contender))
             for result in often.interleave(NAME, "ms", contenders)
@@ -90,7 +108,7 @@ def _peer(peer: Peer) -> Measure:
 
 
 def _tail(result: Result) -> Result:
-    """Return each time over the median of its scan: what is left when the same work is repeated."""
+    """Return each time divided by the median of its scan: the variation of identical work."""
     count = len(world().scans)
     medians = [_median(result.samples[scan::count]) for scan in range(count)]
     ratios = (time / medians[i % count] for i, time in enumerate(result.samples))
@@ -98,13 +116,15 @@ def _tail(result: Result) -> Result:
 
 
 def _mixed(result: Result) -> Result:
-    """Return each time over the median of all: hard scans, which need more passes, count too."""
+    """Return each time divided by the overall median: includes scans that need more passes."""
     median = result.summary.median
     return Result(MIXED, result.contender, "x", tuple(time / median for time in result.samples))
 
 
 def _imbalance(run: Run, options: MatcherOptions) -> list[Result]:
-    """Return how evenly a pass is dealt to 16 workers, each scan's shares timed on one CPU."""
+    """Return the balance of a pass over 16 workers, with each share timed on one CPU."""
+    if not run.wants(f"{IMBALANCE}: {workers(MOST_WORKERS)}"):
+        return []
     voxel_map = map_for(options)
     profiler = _ndt_bench.Profiler(match_options(options))
     found = []
@@ -115,7 +135,7 @@ def _imbalance(run: Run, options: MatcherOptions) -> list[Result]:
                 profiler.time_shares_ns(voxel_map.finest, points, pose, MOST_WORKERS)
                 for _ in range(run.iterations(SHARE_REPEATS))
             ]
-            # The fastest of each: what the share itself takes, undisturbed.
+            # The minimum is the undisturbed time of a share.
             times = [min(share) for share in zip(*shares, strict=True)]
             found.append(max(times) * len(times) / sum(times))
     return [Result(IMBALANCE, workers(MOST_WORKERS), "x", tuple(found))]
@@ -130,13 +150,6 @@ def _goals() -> tuple[Goal, ...]:
         Goal(NAME, workers(2), "better", 1.8, workers(1)),
         Goal(NAME, workers(2), "better", 1.8, apart(2)),
         *(Goal(TAIL, workers(count), "within", 1.5, statistic="p99") for count in (1, 2)),
+        Goal(NAME, workers(1), "better", 1, LAPTOP),
         Goal(IMBALANCE, workers(MOST_WORKERS), "within", 1.05),
     )
-
-
-QUESTION = Question(
-    "time per scan",
-    measure,
-    _goals(),
-    "workers and threads on the first usable CPUs, peers on the first of them",
-)

@@ -1,8 +1,8 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The same alignment on several CPUs at once, each by itself: what the machine's CPUs are worth.
+"""The same alignment on several CPUs at once, independently: the actual capacity of the CPUs.
 
-CPUs that share a core's units, or a host with other guests, are slower together than one after the
-other; workers that share an alignment cannot be faster than these allow.
+CPUs that share execution units, or a host with other guests, are slower together than one by one;
+workers that share an alignment cannot exceed this speed-up.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ Align = Callable[[ArrayLike, ArrayLike], object]
 
 
 def apart(count: int) -> str:
-    """Return the name of the contender on so many CPUs."""
+    """Return the name of the contender on this many CPUs."""
     return f"rmw_manycore alone on {f'each of {count} CPUs' if count > 1 else '1 CPU'}"
 
 
@@ -28,7 +28,7 @@ def apart(count: int) -> str:
 def matchers_apart(
     options: MatcherOptions, voxel_map: VoxelMap, cpus: Sequence[int]
 ) -> Iterator[Align]:
-    """Yield what aligns a scan on each CPU, and returns when the last one is done."""
+    """Yield a function that aligns a scan on each CPU and returns when the last has finished."""
     with ExitStack() as stack:
         threads = []
         for cpu in cpus:

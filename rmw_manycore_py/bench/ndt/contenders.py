@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The project's own matchers as contenders."""
+"""The project's matchers as contenders."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ VOXEL_SIZE_M = 2.0
 def one_level(
     search: Search = "direct7", covariance: VoxelCovariance = "autoware"
 ) -> MatcherOptions:
-    """Return the options of the work that PCL, pclomp and Autoware do for a scan."""
+    """Return options for the work that PCL, pclomp and Autoware do per scan."""
     return MatcherOptions(
         voxel_size_m=VOXEL_SIZE_M,
         coarse_levels=(),
@@ -36,7 +36,7 @@ def usable() -> list[int]:
 
 @contextmanager
 def on_cpu(cpu: int) -> Iterator[None]:
-    """Keep the calling thread on one CPU for a while."""
+    """Pin the calling thread to one CPU during the block."""
     before = os.sched_getaffinity(0)
     os.sched_setaffinity(0, {cpu})
     try:
@@ -46,7 +46,7 @@ def on_cpu(cpu: int) -> Iterator[None]:
 
 
 def profiler_of_each_kind(options: MatcherOptions) -> dict[str, _ndt_bench.Profiler]:
-    """Return a profiler for each kind of CPU code that this CPU can run."""
+    """Return a profiler per instruction set variant supported by this CPU."""
     before = os.environ.get(SIMD_VARIABLE)
     found = {}
     for simd in SIMDS:
@@ -62,7 +62,7 @@ def profiler_of_each_kind(options: MatcherOptions) -> dict[str, _ndt_bench.Profi
 
 
 def map_for(options: MatcherOptions) -> VoxelMap:
-    """Return the world's map for these options."""
+    """Return the map of the world for these options."""
     from rmw_manycore_py.bench.ndt.world import world
 
     return VoxelMap.from_points(world().map_points, options)

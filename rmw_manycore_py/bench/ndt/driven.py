@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""A made-up drive played to the whole node, as an engineer would: run, replay, read the table."""
+"""Plays a simulated drive to the complete node with `manycore run` and `ndt replay`."""
 
 from __future__ import annotations
 
@@ -34,19 +34,19 @@ TOPIC_TO = {
     "/diagnostics": "diagnostic_msgs/msg/DiagnosticArray",
 }
 DOMAIN = 90  # benches run one at a time
-END_S = 60.0  # that a run may take to stop
-PATIENCE_S = 600.0  # that one program may take: a drive is 20 s long
+END_S = 60.0  # timeout for stopping a run
+TIMEOUT_S = 600.0  # timeout of one program; a drive takes 20 s
 
 
 @dataclass(frozen=True)
 class Drive:
-    """What `manycore ndt simulate` wrote."""
+    """Files written by `manycore ndt simulate`."""
 
     directory: Path
 
     @classmethod
     def simulated(cls, directory: Path, *options: str) -> Drive:
-        """Make a drive up."""
+        """Simulate a drive."""
         _call("ndt", "simulate", str(directory), *options)
         return cls(directory)
 
@@ -63,27 +63,30 @@ class Drive:
 class Scenario:
     """How a drive is played.
 
-    :param parameters: of the node, beside `activated`.
-    :param busy: processes that take all the CPU time they get.
-    :param rate_hz: of the scans; None: as the drive has them.
-    :param killed_after: answered scans, after which the node is killed; 0: never.
+    :param parameters: of the node, in addition to `activated`.
+    :param busy: number of processes that keep CPUs busy.
+    :param rate_hz: rate of the scans; None uses the stamps of the drive.
+    :param voxel_m: voxel size to which the laptop thins scans; 0 sends them as they are.
+    :param killed_after: number of answered scans after which the node is killed; 0 means never.
     """
 
     parameters: dict[str, Any] = field(default_factory=dict)
     busy: int = 0
     rate_hz: float | None = None
+    voxel_m: float = 0.5
     killed_after: int = 0
 
     def play(self, drive: Drive, directory: Path) -> list[dict[str, str]]:
         """Return the rows of the replay's table."""
         cpus = sorted(os.sched_getaffinity(0))
-        with busy(self.busy, cpus, PATIENCE_S), self._running(directory) as pid_of_node:
+        with busy(self.busy, cpus, TIMEOUT_S), self._running(directory) as pid_of_node:
             rows = directory / "scans.csv"
             pace = () if self.rate_hz is None else ("--rate", str(self.rate_hz))
             source = ("--no-map",) if "map_path" in self.parameters else ()
             words = ("--csv", str(rows), "--motion", "reference", *pace, *source)
+            words += ("--voxel", str(self.voxel_m))
             replay = _started("ndt", "replay", str(drive.directory / "drive.npz"), *words)
-            with _patience(replay):
+            with _time_limit(replay):
                 if self.killed_after:
                     _wait_until_answered(replay, self.killed_after)
                     os.kill(pid_of_node, signal.SIGKILL)
@@ -100,7 +103,7 @@ class Scenario:
         path.write_text(json.dumps(self.mapfile(directory)))
         run = _started("run", str(path), "--json")
         try:
-            with _patience(run):
+            with _time_limit(run):
                 pid = _pid_of_node(run)
             yield pid
         finally:
@@ -112,7 +115,7 @@ class Scenario:
                 run.wait()
 
     def mapfile(self, directory: Path) -> dict[str, Any]:
-        """Return the mapfile of the run, whose node writes to a directory."""
+        """Return the mapfile of the run; its node writes to `directory`."""
         node = {
             "module": f"rmw_manycore_py.ndt.nodes.{NODE}",
             "cluster": 3,
@@ -136,7 +139,7 @@ class Scenario:
 
 def _call(*words: str) -> None:
     process = _started(*words)
-    with _patience(process):
+    with _time_limit(process):
         output, _ = process.communicate()
     if process.returncode != 0:
         how = _how_it_ended(process)
@@ -144,19 +147,19 @@ def _call(*words: str) -> None:
 
 
 @contextmanager
-def _patience(process: subprocess.Popen[str]) -> Iterator[None]:
-    """Kill a process that keeps this waiting for too long: its output then ends."""
-    end_of_patience = threading.Timer(PATIENCE_S, process.kill)
-    end_of_patience.start()
+def _time_limit(process: subprocess.Popen[str]) -> Iterator[None]:
+    """Kill a process that exceeds the timeout, which ends its output."""
+    timer = threading.Timer(TIMEOUT_S, process.kill)
+    timer.start()
     try:
         yield
     finally:
-        end_of_patience.cancel()
+        timer.cancel()
 
 
 def _how_it_ended(process: subprocess.Popen[str]) -> str:
     is_killed = process.returncode == -signal.SIGKILL
-    return f" (not done within {PATIENCE_S:g} s, or killed)" if is_killed else ""
+    return f" (not done within {TIMEOUT_S:g} s, or killed)" if is_killed else ""
 
 
 def _started(*words: str) -> subprocess.Popen[str]:
@@ -173,20 +176,20 @@ def _started(*words: str) -> subprocess.Popen[str]:
 
 
 def _pid_of_node(run: subprocess.Popen[str]) -> int:
-    """Wait until the node has started; go on reading what the run prints."""
+    """Wait for the start of the node; keep draining the run's output afterwards."""
     said = []
     for line in _lines(run):
         said.append(line)
         event = json.loads(line) if line.startswith("{") else {}
         if event.get("event") == "started" and event.get("node") == NODE:
-            # Nothing may wait for the pipe, nor for what reads it.
+            # Drain the pipe, so that the run never blocks on it.
             threading.Thread(target=_lines(run).read, daemon=True).start()
             return int(event["pid"])
-    raise ManycoreError(f"{NODE} did not start within {PATIENCE_S:g} s: {''.join(said)}")
+    raise ManycoreError(f"{NODE} did not start within {TIMEOUT_S:g} s: {''.join(said)}")
 
 
 def _wait_until_answered(replay: subprocess.Popen[str], scans: int) -> None:
-    """Wait for a line of progress that tells of so many scans."""
+    """Wait for a progress line that reports this many answered scans."""
     for line in _lines(replay):
         words = line.split()
         if words[:1] == ["scan"] and int(words[1]) >= scans:

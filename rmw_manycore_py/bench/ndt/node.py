@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The whole node behind the bridge: beside load, with large scans, new maps, and after a kill."""
+"""The complete node behind the bridge: under load, with large scans, new maps, after a kill."""
 
 from __future__ import annotations
 
@@ -16,6 +16,8 @@ from rmw_manycore_py.scheduling import Scheduling, refusal
 NAME = "node"
 LATENCY = "scan to pose, through the bridge"
 LOST = "scans without a pose"
+ERROR = "error of poses, whole node"
+CPU = "CPU time of node and workers, of each scan played"
 LENGTH_M = 160.0  # 200 scans at 8 m/s
 LARGE_LENGTH_M = 40.0  # 50 scans of 200,000 points
 LARGE = ("--beams", "128", "--azimuths", "1600", "--distortion")
@@ -28,7 +30,7 @@ SWAPPED, SIZED, KILLED = "maps swapped", "200,000 points at 20 Hz", "killed once
 
 
 def measure(run: Run) -> list[Result]:
-    """Return latencies of poses, and how many scans have none."""
+    """Return latencies of poses, and the number of scans without one."""
     wanted = [name for name in _scenarios(Path()) if run.wants(f"{NAME}: {name}")]
     if not wanted:
         return []
@@ -52,7 +54,7 @@ def measure(run: Run) -> list[Result]:
 
 
 def _scenarios(tiles: Path) -> dict[str, Scenario]:
-    """Return what is played, by its name."""
+    """Return the scenarios by name."""
     busy = BUSY_PER_CPU * len(os.sched_getaffinity(0))
     swapped = {
         "map_path": str(tiles),
@@ -64,23 +66,39 @@ def _scenarios(tiles: Path) -> dict[str, Scenario]:
     if refusal(Scheduling("fifo", PRIORITY)) is None:
         found[REAL_TIME] = Scenario({"realtime_priority": PRIORITY}, busy)
     found[SWAPPED] = Scenario(swapped)
-    found[SIZED] = Scenario({"sensor_points.deskew": True}, rate_hz=LARGE_HZ)
+    found[SIZED] = Scenario({"sensor_points.deskew": True}, rate_hz=LARGE_HZ, voxel_m=0.0)
     found[KILLED] = Scenario(killed_after=15)
     return found
 
 
 def results(name: str, rows: Sequence[dict[str, str]]) -> list[Result]:
-    """Return what the rows of a replay's table say."""
+    """Convert the rows of a replay's table to results."""
     latencies = tuple(float(row["latency_ms"]) for row in rows if row["latency_ms"])
     lost = float(sum(row["state"] == "lost" for row in rows))
     found = [Result(LOST, name, "scans", (lost,))]
     if latencies:
         found.insert(0, Result(LATENCY, name, "ms", latencies))
-    return found
+    errors_cm = tuple(100.0 * float(row["error_m"]) for row in rows if row.get("error_m"))
+    if errors_cm:
+        found.append(Result(ERROR, name, "cm", errors_cm))
+    return found + _cpu_time(name, rows)
+
+
+def _cpu_time(name: str, rows: Sequence[dict[str, str]]) -> list[Result]:
+    """Return the mean over a run; none if a killed node has begun to count anew."""
+    known = [(i, float(row["cpu_time_s"])) for i, row in enumerate(rows) if row.get("cpu_time_s")]
+    times_s = [time_s for _, time_s in known]
+    if len(known) < 2 or times_s != sorted(times_s):
+        return []
+    (first, begin_s), (last, end_s) = known[0], known[-1]
+    return [Result(CPU, name, "ms", (1e3 * (end_s - begin_s) / (last - first),))]
 
 
 def _goals() -> tuple[Goal, ...]:
-    return (Goal(LOST, KILLED, "within", 10.0, statistic="largest"),)
+    return (
+        Goal(LOST, KILLED, "within", 10.0, statistic="largest"),
+        Goal(LOST, SIZED, "within", 0.0, statistic="largest"),
+    )
 
 
 QUESTION = Question(NAME, measure, _goals(), "the node's cores, as the mapfile has them")

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What a point costs in one pass: search, score, gradient and Hessian."""
+"""Cost per point of one pass: search, score, gradient and Hessian."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from rmw_manycore_py.words import Search, VoxelCovariance
 
 PASSES = 20
 SCORE = "score, off the peer's"
-# What each peer does: its search and its covariance.
+# Search and covariance of each peer.
 KINDS: dict[str, tuple[Search, VoxelCovariance]] = {
     "pclomp": ("direct7", "pclomp"),
     "PCL": ("radius", "pcl"),
@@ -31,24 +31,33 @@ KINDS: dict[str, tuple[Search, VoxelCovariance]] = {
 
 
 def question(pclomp: Path | None) -> Question:
-    """Return the question; pclomp takes part where a checkout of it is given."""
+    """Return the question; includes pclomp if a checkout is given."""
 
     def measure(run: Run) -> list[Result]:
         cpu = usable()[-1]
-        wanted = [name for name in KINDS if run.wants(name)]
-        with on_cpu(cpu), all_peers(cpu, VOXEL_SIZE_M, pclomp, wanted) as peers:
+        wanted = [name for name in KINDS if _wants_pass(run, name) or _wants_score(run, name)]
+        with on_cpu(cpu), all_peers((cpu,), VOXEL_SIZE_M, pclomp, wanted) as peers:
             results = []
             for name, (search, covariance) in KINDS.items():
                 results += _measure_kind(run, search, covariance, peers.get(name))
             for name, peer in peers.items():
-                results.append(_compare(peer, *KINDS[name]))
+                if _wants_score(run, name):
+                    results.append(_compare(peer, *KINDS[name]))
             return results
 
     return Question("pass", measure, _goals(), "all contenders in turn on the last usable CPU")
 
 
+def _wants_pass(run: Run, name: str) -> bool:
+    return run.wants(f"{title(KINDS[name][0])}: {name}")
+
+
+def _wants_score(run: Run, name: str) -> bool:
+    return run.wants(f"{SCORE}: as {name}")
+
+
 def title(search: Search) -> str:
-    """Return the name of the question for one kind of search."""
+    """Return the name of the question for a search."""
     return f"a pass by {search}, {VOXEL_SIZE_M:g} m"
 
 
@@ -87,7 +96,7 @@ def _measure_kind(
 
 
 def _compare(peer: Peer, search: Search, covariance: VoxelCovariance) -> Result:
-    """Return by how much the scores of the scans at their poses differ from the peer's."""
+    """Return the difference of the scores at the scans' poses from the peer's."""
     options = one_level(search, covariance)
     found = []
     with SerialMatcher(options) as matcher:

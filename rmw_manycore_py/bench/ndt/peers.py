@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Published matchers as processes that answer line by line, each on its CPU."""
+"""Published matchers as processes that answer line by line, each on its CPUs."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from rmw_manycore_py.ros.ament import package_share
 
 PCL_PACKAGES = ("pcl_registration", "pcl_registration-1.12", "pcl_registration-1.14")
 PCL_FLAGS = ("-O3", "-DNDEBUG", "-std=c++17")
-# As its own CMakeLists.txt says.
+# Flags of its own CMakeLists.txt.
 PCLOMP_FLAGS = (
     *("-O3", "-DNDEBUG", "-std=c++14", "-fopenmp", "-DPEER_PCLOMP"),
     *("-msse", "-msse2", "-msse3", "-msse4", "-msse4.1", "-msse4.2"),
@@ -31,17 +31,17 @@ PYTHON_PEERS = ("small_gicp", "open3d")
 
 
 class Peer:
-    """One peer; asks it, waits for its answer."""
+    """A peer process with a request-response protocol."""
 
     def __init__(self, name: str, process: subprocess.Popen[str]) -> None:
         self.name = name
         self._process = process
         while (line := self._read()) != "ready":
             if not line:
-                raise ManycoreError(f"{name} ended with status {process.wait()}")
+                raise ManycoreError(f"{name} ended with exit status {process.wait()}")
 
     def ask(self, question: str, scan: int) -> list[float]:
-        """Return the numbers of its answer, of which the first is a time in ns."""
+        """Return the numbers of its answer; the first is a time in ns."""
         assert self._process.stdin is not None
         self._process.stdin.write(f"{question} {scan}\n")
         self._process.stdin.flush()
@@ -54,9 +54,16 @@ class Peer:
 
 @contextmanager
 def all_peers(
-    cpu: int, voxel_size_m: float, pclomp: Path | None, wanted: Sequence[str]
+    cpus: Sequence[int],
+    voxel_size_m: float,
+    pclomp: Path | None,
+    wanted: Sequence[str],
+    threads: int = 1,
 ) -> Iterator[dict[str, Peer]]:
-    """Start the peers that this machine has; what is missing is said on standard error."""
+    """Start the available peers on these CPUs; report missing ones on standard error.
+
+    :param threads: of pclomp.
+    """
     with ExitStack() as stack:
         directory = Path(stack.enter_context(TemporaryDirectory(prefix="manycore-bench-")))
         world().write(directory / "world")
@@ -65,19 +72,23 @@ def all_peers(
             command = _command(name, directory, pclomp)
             if command:
                 words = [*command, str(directory / "world"), str(voxel_size_m)]
-                peers[name] = stack.enter_context(_started(name, words, cpu))
+                if name == "pclomp":
+                    words.append(str(threads))
+                peers[name] = stack.enter_context(_started(name, words, cpus, threads))
         yield peers
 
 
 @contextmanager
-def _started(name: str, command: Sequence[str], cpu: int) -> Iterator[Peer]:
-    with pinned_to((cpu,)):
+def _started(
+    name: str, command: Sequence[str], cpus: Sequence[int], threads: int
+) -> Iterator[Peer]:
+    with pinned_to(tuple(cpus)):
         process = subprocess.Popen(
             command,
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             text=True,
-            env={**os.environ, "OMP_NUM_THREADS": "1"},
+            env={**os.environ, "OMP_NUM_THREADS": str(threads)},
             preexec_fn=dies_with_this_process(),
         )
     try:
@@ -108,7 +119,7 @@ def _command(name: str, directory: Path, pclomp: Path | None) -> list[str]:
 
 
 def _pcl_peer() -> Path:
-    """Return the installed source of the peers that are built against PCL."""
+    """Return the installed source of the peers built against PCL."""
     share = package_share("rmw_manycore")
     if share is None:
         raise ManycoreError("rmw_manycore is not in the ament index: install it again")

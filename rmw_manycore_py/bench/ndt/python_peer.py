@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""small_gicp or Open3D as a peer: `python_peer NAME WORLD VOXEL_SIZE`, then as peer.cpp."""
+"""small_gicp or Open3D as a peer: `python_peer NAME WORLD VOXEL_SIZE`; protocol as in peer.cpp."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 THINNING_M = 0.25
 REACH_M = 1.0
-# Of multi-scale ICP: thinning and reach, the reach of the first as far as guesses are off.
+# (voxel size, correspondence distance) of multi-scale ICP; the first covers the guesses' errors.
 SCALES_M = ((1.0, 5.0), (0.5, 2.0), (THINNING_M, REACH_M))
 ITERATIONS = 30
 
@@ -47,7 +47,7 @@ def read_world(path: Path) -> tuple[Any, list[tuple[Any, Any, Any]]]:
 
 
 def small_gicp_aligner(points: Any) -> Align:
-    """Return GICP on one thread; the map is prepared once, the scan each time."""
+    """Return single-threaded GICP; the map is preprocessed once, scans each time."""
     import small_gicp
 
     target, tree = small_gicp.preprocess_points(points, THINNING_M)
@@ -63,7 +63,7 @@ def small_gicp_aligner(points: Any) -> Align:
 
 
 def open3d_aligner(points: Any) -> Align:
-    """Return point-to-plane ICP; the map is prepared once, the scan each time."""
+    """Return point-to-plane ICP; the map is preprocessed once, scans each time."""
     import open3d
 
     def cloud_of(array: Any) -> Any:
@@ -86,7 +86,7 @@ def open3d_aligner(points: Any) -> Align:
 
 
 def open3d_multi_scale_aligner(points: Any) -> Align:
-    """Return point-to-plane ICP on coarser and coarser clouds, the coarsest first."""
+    """Return point-to-plane ICP on increasingly fine clouds."""
     import open3d
 
     registration = open3d.pipelines.registration
@@ -113,7 +113,7 @@ def open3d_multi_scale_aligner(points: Any) -> Align:
 
 
 def main() -> None:
-    """Answer questions until there are no more."""
+    """Answer requests until end of input."""
     aligners = {"small_gicp": small_gicp_aligner, "open3d": open3d_aligner}
     points, scans = read_world(Path(sys.argv[2]))
     align = aligners[sys.argv[1]](points)

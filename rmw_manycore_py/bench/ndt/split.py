@@ -1,9 +1,10 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Search and derivatives on cores of their own (ROS-lite, Fig. 15), and what share each has."""
+"""Search and derivatives on separate cores (ROS-lite, Fig. 15), and the share of each."""
 
 from __future__ import annotations
 
 import time
+from collections.abc import Callable
 from dataclasses import replace
 
 from rmw_manycore_py import _ndt_bench
@@ -26,7 +27,7 @@ REPEATS = 5
 
 
 def measure(run: Run) -> list[Result]:
-    """Return milliseconds per scan for each way to divide the cores, and the profile."""
+    """Return milliseconds per scan for each partition of the cores, and the profile."""
     options = one_level("radius")
     return _measure_split(run, options) + _measure_profile(run, options)
 
@@ -61,7 +62,7 @@ def _measure_split(run: Run, options: MatcherOptions) -> list[Result]:
 
 
 def _ways(cores: int) -> list[tuple[int, int]]:
-    """Return how many cores have the derivatives, and how many the search."""
+    """Return pairs of numbers of cores, for derivatives and for the search."""
     return [(cores, 0)] + [
         (derivatives, search)
         for search in range(1, MOST_FOR_SEARCH + 1)
@@ -70,31 +71,37 @@ def _ways(cores: int) -> list[tuple[int, int]]:
 
 
 def _measure_profile(run: Run, options: MatcherOptions) -> list[Result]:
+    shares: dict[str, list[float]] = {
+        name: [] for name in SHARES if run.wants(f"{PROFILE}: {name}")
+    }
+    if not shares:
+        return []
     voxel_map = map_for(options)
     profiler = _ndt_bench.Profiler(match_options(options))
-    shares: dict[str, list[float]] = {}
     with on_cpu(usable()[0]):
         for _ in range(run.iterations(REPEATS)):
             for scan, guess in zip(world().scans, world().guesses, strict=True):
                 times = profiler.profile(voxel_map.finest, scan_points(scan), guess)
-                for name, share in _shares(times).items():
-                    shares.setdefault(name, []).append(100 * share)
+                for name, found in shares.items():
+                    found.append(100 * SHARES[name](times))
     return [
         Result(PROFILE, name, "%", tuple(found), higher_is_better=True)
         for name, found in shares.items()
     ]
 
 
-def _shares(times: _ndt_bench.Profile) -> dict[str, float]:
-    """Return the shares of an alignment; ROS-lite2 (Fig. 9) has 99 % for search and derivatives."""
-    both_ns = times.search_ns + times.derivatives_ns
-    return {
-        "laying out the scan": times.lay_out_ns / times.total_ns,
-        "search": times.search_ns / times.total_ns,
-        "derivatives": times.derivatives_ns / times.total_ns,
-        "search + derivatives": both_ns / times.total_ns,
-        PASSES: both_ns / (times.total_ns - times.lay_out_ns),
-    }
+def _both_ns(times: _ndt_bench.Profile) -> float:
+    return times.search_ns + times.derivatives_ns
+
+
+# Shares of an alignment; ROS-lite2 (Fig. 9): 99 % for search and derivatives.
+SHARES: dict[str, Callable[[_ndt_bench.Profile], float]] = {
+    "laying out the scan": lambda times: times.lay_out_ns / times.total_ns,
+    "search": lambda times: times.search_ns / times.total_ns,
+    "derivatives": lambda times: times.derivatives_ns / times.total_ns,
+    "search + derivatives": lambda times: _both_ns(times) / times.total_ns,
+    PASSES: lambda times: _both_ns(times) / (times.total_ns - times.lay_out_ns),
+}
 
 
 QUESTION = Question(

@@ -1,20 +1,20 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""How many wrong poses are believed, and how many right ones refused: no drive judged by itself.
+"""Rates of wrong poses believed and right ones refused, cross-validated over drives.
 
-The shares that make the score's level are chosen anew for each drive, from all the others. Drives
-are aligned and places searched by a process on each usable CPU (trust_helpers.py).
+The shares that define the score level are chosen for each drive from all others. A process per
+usable CPU aligns drives and searches places (trust_helpers.py).
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
 
 from rmw_manycore_py.bench.ndt.contenders import usable
-from rmw_manycore_py.bench.ndt.trust_cases import Case, cases_of, searched
+from rmw_manycore_py.bench.ndt.trust_cases import Case, Shares, cases_of, looked_again, searched
 from rmw_manycore_py.bench.ndt.trust_helpers import Helpers, TrustHelpers
 from rmw_manycore_py.bench.ndt.trust_worlds import drives
 from rmw_manycore_py.bench.question import Question, Run
@@ -23,8 +23,8 @@ from rmw_manycore_py.ndt.geometry import poses
 from rmw_manycore_py.ndt.trust.score_level import FIRST_SHARE, ScoreLevel
 from rmw_manycore_py.ndt.trust.search import Found, Region
 
-CASES = 1000  # right ones, and as many wrong ones
-SCANS = 40  # of each drive
+CASES = 1000  # of right poses, and of wrong ones
+SCANS = 40  # per drive
 BELIEVED, REFUSED = "wrong poses believed", "right poses refused"
 AT_START = "wrong poses believed at a start"
 REFUSED_AT_START = "right poses refused at a start"
@@ -33,29 +33,16 @@ FIRST_SHARES = "share of the map's score for a first pose, chosen without the dr
 OURS, AUTOWARE = "rmw_manycore", "as Autoware"
 AUTOWARE_SCORE = 2.3  # converged_param_nearest_voxel_transformation_likelihood
 SEARCHED, FOUND_WRONG = "right places found by a search", "wrong places found by a search"
-SEARCHES = 8  # of each drive
-# Chosen shares leave 0.3 % of the right poses of other drives below, and some room for a drive that
-# is unlike them: scores of a sparse map vary more along the way. A first pose must fit better than
-# all wrong ones of other drives, and a little more.
+SEARCHES = 8  # per drive
+# The chosen shares leave 0.3 % of the right poses of the other drives below, plus a margin for a
+# different drive: scores of a sparse map vary more along the way. A first pose must fit better than
+# all wrong ones of the other drives, plus a margin.
 LEFT_BELOW, DRIVE_ROOM, MAP_ROOM, FIRST_ROOM = 0.003, 0.07, 0.1, 0.03
 AROUND_M, GLOBAL_M = 5.0, 20.0
 
 
-@dataclass(frozen=True)
-class Shares:
-    """What a level is made of, as :class:`ScoreLevel` takes it."""
-
-    of_map: float
-    of_drive: float
-    of_first: float
-
-    def level(self) -> ScoreLevel:
-        """Return a level that has learned nothing yet."""
-        return ScoreLevel(self.of_map, self.of_drive, self.of_first)
-
-
 def measure(run: Run) -> list[Result]:
-    """Return shares of results that are judged wrongly."""
+    """Return the shares of results that are misjudged."""
     if not run.wants(QUESTION.name):
         return []
     share = min(1.0, run.share)
@@ -72,9 +59,9 @@ def measure(run: Run) -> list[Result]:
 def judged(
     cases: dict[str, list[Case]], count: int, searches: int, helpers: Helpers
 ) -> list[Result]:
-    """Return the results of at most `count` right and wrong cases, as many of each drive.
+    """Return the results of at most `count` right and wrong cases, balanced over drives.
 
-    :param searches: how many searches are done for each drive.
+    :param searches: number of searches per drive.
     """
     shares = {
         name: chosen(
@@ -87,11 +74,14 @@ def judged(
     wrong = _picked(
         [[case for case in pool if case.is_wrong and _is_judged(case)] for pool in pools], count
     )
-    mislead = {id(case): misleads(case, shares[case.drive]) for case in wrong}
+
+    def is_misled(case: Case) -> bool:
+        return misleads(case, shares[case.drive], helpers)
 
     def refused(case: Case) -> bool:
         return is_refused(case, shares[case.drive], helpers)
 
+    mislead = dict(zip(map(id, wrong), helpers.map(is_misled, wrong), strict=True))
     refuse = dict(zip(map(id, right), helpers.map(refused, right), strict=True))
     starts = [replace(case, before=()) for case in right]
     refuse_at_start = list(helpers.map(refused, starts))
@@ -106,7 +96,7 @@ def judged(
     ]
     for name in cases:
         of_drive = [case for case in wrong if case.drive == name]
-        fresh = [misleads(replace(case, before=()), shares[name]) for case in of_drive]
+        fresh = list(helpers.map(is_misled, [replace(case, before=()) for case in of_drive]))
         answers = {
             f"{BELIEVED}: {name}": [mislead[id(case)] for case in of_drive],
             f"{AT_START}: {name}": fresh,
@@ -122,14 +112,14 @@ def judged(
 
 
 def _is_judged(case: Case) -> bool:
-    """Tell whether a wrong case counts: starts of drives are told by AT_START."""
+    """Return whether a wrong case counts; starts of drives are covered by AT_START."""
     return bool(case.before) or not case.is_drive
 
 
 def _searches(
     wrong: Sequence[Case], shares: dict[str, Shares], searches: int, helpers: Helpers
 ) -> list[Result]:
-    """Search where alignments led astray, globally around their guesses."""
+    """Search globally around the guesses of failed alignments."""
     picked = []
     for name in shares:
         picked += [c for c in wrong if c.drive == name and _is_in_reach(c)][:searches]
@@ -142,7 +132,7 @@ def _searches(
 
 
 def _found_by_search(shares: dict[str, Shares], helpers: Helpers, case: Case) -> tuple[bool, bool]:
-    """Tell whether a global search finds a clear place, and whether that is the right one."""
+    """Return whether a global search finds a unique place, and whether it is the right one."""
     region = Region(case.guess, GLOBAL_M, any_yaw=True)
     found = helpers.call(searched, case.drive, case.index, region)
     is_clear = not found.why_unclear(_level_of(case, shares[case.drive]), region)
@@ -158,7 +148,7 @@ def _is_there(found: Found, case: Case) -> bool:
 
 
 def chosen(cases: Sequence[Case]) -> Shares:
-    """Choose the shares by the right poses of some drives."""
+    """Choose the shares from the right poses of some drives."""
     right = [case for case in cases if case.is_right]
     of_map = [case.alignment.nearest_voxel_likelihood / case.own_score for case in right]
     of_drive = [
@@ -176,20 +166,31 @@ def chosen(cases: Sequence[Case]) -> Shares:
     )
 
 
-def misleads(case: Case, shares: Shares) -> bool:
-    """Tell whether a wrong pose is believed, and its covariance does not say how wrong it is."""
-    verdict = case.judged(shares.level())
+def misleads(case: Case, shares: Shares, helpers: Helpers) -> bool:
+    """Return whether a wrong pose is believed with a covariance that does not cover its error.
+
+    If the first look is refused, this is about the pose of the second look, which a first pose of
+    a drive does not get.
+    """
+    verdict = case.judged(shares)
+    if not verdict.is_believed and case.before:
+        case = helpers.call(looked_again, case, shares)
+        verdict = case.judged(shares)
     if not verdict.is_believed:
         return False
     return not verdict.covers(case.alignment.T_map_sensor, case.truth)
 
 
 def is_refused(case: Case, shares: Shares, helpers: Helpers) -> bool:
-    """Tell whether a right pose is refused, and at a start a search does not find it either."""
-    if case.judged(shares.level()).is_believed:
+    """Return whether a right pose is refused and not found by a second look either.
+
+    At a start it is left to a search.
+    """
+    if case.judged(shares).is_believed:
         return False
     if case.before:
-        return True
+        again = helpers.call(looked_again, case, shares)
+        return not (again.judged(shares).is_believed and again.is_right)
     for radius_m, any_yaw in ((AROUND_M, False), (GLOBAL_M, True)):
         region = Region(case.guess, radius_m, any_yaw)
         found = helpers.call(searched, case.drive, case.index, region)
@@ -210,7 +211,7 @@ def _as_autoware(case: Case) -> bool:
 
 
 def _picked(of_drives: Sequence[Sequence[Case]], count: int) -> list[Case]:
-    """Return so many cases, the same number of each drive as far as it has them."""
+    """Return `count` cases, balanced over drives as far as possible."""
     picked: list[Case] = []
     queues = [list(cases) for cases in of_drives]
     while len(picked) < count and any(queues):

@@ -1,7 +1,7 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Right and wrong results of alignments, each with what a judge would have seen before it.
+"""Right and wrong alignments, each with the history that a judge would have seen.
 
-Cases and what a search finds go between processes: a world stays in the process that built it.
+Cases and search results are passed between processes; a world stays in the process that built it.
 """
 
 from __future__ import annotations
@@ -22,24 +22,37 @@ from rmw_manycore_py.ndt.trust.region_search import sketcher_of
 from rmw_manycore_py.ndt.trust.score_level import ScoreLevel
 from rmw_manycore_py.ndt.trust.search import Found, Region, search
 
-OPTIONS = MatcherOptions(search="radius")  # as the node has them
-MATCHED_POINTS = 30_000  # likewise
+OPTIONS = MatcherOptions(search="radius")  # the node's options
+MATCHED_POINTS = 30_000  # the node's limit
 RIGHT_M, RIGHT_DEG = 0.2, 1.0
 WRONG_M, WRONG_DEG = 0.5, 3.0
-# Guesses in a random direction: metres, degrees. The last two go along the drive, as the next
-# period of a street that repeats lies there.
+# Errors of guesses in random directions: metres, degrees. The last two are along the drive, in the
+# direction of the next period of a repetitive street.
 NEAR = ((0.3, 2.0), (1.0, 5.0), (2.0, 10.0))
 FAR = ((3.0, 40.0), (5.0, 20.0), (8.0, 40.0), (15.0, 90.0), (1.0, 180.0))
 ALONG_M = (12.0, 20.0)
 HISTORY = 20
-HISTORY_M, HISTORY_RAD = 0.03, 0.003  # error of the poses before
+HISTORY_M, HISTORY_RAD = 0.03, 0.003  # error of the preceding poses
 SEED = 11
 FEWEST_SCORES_BEFORE = 3
 
 
 @dataclass(frozen=True)
+class Shares:
+    """What a level is made of, as :class:`ScoreLevel` takes it."""
+
+    of_map: float
+    of_drive: float
+    of_first: float
+
+    def level(self) -> ScoreLevel:
+        """Return a level that has learned nothing yet."""
+        return ScoreLevel(self.of_map, self.of_drive, self.of_first)
+
+
+@dataclass(frozen=True)
 class Before:
-    """A scan before the one that is judged: its pose, its guess and its score."""
+    """A preceding scan: its pose, guess and score."""
 
     stamp_s: float
     T: Pose
@@ -49,7 +62,7 @@ class Before:
 
 @dataclass(frozen=True)
 class World:
-    """A drive's map, and matchers to it."""
+    """Map of a drive, and matchers for it."""
 
     drive: Drive
     voxel_map: VoxelMap
@@ -71,12 +84,12 @@ class World:
 
 @cache
 def world_of(drive: str) -> World:
-    """Return the world of a drive, by its name."""
+    """Return the world of the named drive."""
     return World.of(drives()[drive]())
 
 
 def searched(drive: str, index: int, region: Region) -> Found:
-    """Search for a scan of a drive as the node does."""
+    """Search for a scan of a drive like the node does."""
     world = world_of(drive)
     sketcher = sketcher_of(world.voxel_map, OPTIONS)
     return search(sketcher, world.matcher, world.scan(index), region)
@@ -84,12 +97,12 @@ def searched(drive: str, index: int, region: Region) -> Found:
 
 @dataclass(frozen=True)
 class Case:
-    """The result of an alignment.
+    """Result of one alignment.
 
-    :param drive: its name; `index` is that of its scan.
-    :param repeats: nothing in a scan of the drive tells its places apart.
-    :param own_score: of the map's own points.
-    :param before: what was believed before it; empty at a start.
+    :param drive: name of the drive; `index` is that of the scan.
+    :param repeats: places of the drive cannot be told apart by a single scan.
+    :param own_score: score of the map's own points.
+    :param before: previously believed scans; empty at a start.
     :param truth: T_map_sensor.
     """
 
@@ -106,12 +119,12 @@ class Case:
 
     @property
     def is_right(self) -> bool:
-        """Tell whether the result is at the truth."""
+        """Return whether the result is right."""
         return self.error_m < RIGHT_M and self.error_deg < RIGHT_DEG
 
     @property
     def is_wrong(self) -> bool:
-        """Tell whether the result is too far off to be of use; some are neither."""
+        """Return whether the error is too large for the result to be useful; some are neither."""
         return self.error_m > WRONG_M or self.error_deg > WRONG_DEG
 
     @property
@@ -121,11 +134,12 @@ class Case:
 
     @property
     def error_deg(self) -> float:
-        """Return the angle from the truth."""
+        """Return the angle to the truth."""
         return float(np.degrees(poses.angle_rad(self.alignment.T_map_sensor, self.truth)))
 
-    def judged(self, level: ScoreLevel) -> Verdict:
-        """Return what a judge says that has seen what was before."""
+    def judged(self, shares: Shares) -> Verdict:
+        """Return the verdict of a judge that has seen the history."""
+        level = shares.level()
         judge = PoseJudge(level)
         level.map_changed(self.own_score)
         for one in self.before:
@@ -134,10 +148,22 @@ class Case:
         return judge.judge(self.stamp_s, self.alignment, self.guess)
 
 
-def cases_of(name: str, count: int, wanted: int) -> list[Case]:
-    """Return about so many right and so many wrong results of a drive, and those between.
+def looked_again(case: Case, shares: Shares) -> Case:
+    """Return the case after the second look that the node takes at a refused result."""
+    world = world_of(case.drive)
+    found = world.matcher.second_look(
+        case.alignment,
+        world.scan(case.index),
+        case.guess,
+        convinces=lambda found: replace(case, alignment=found).judged(shares).is_believed,
+    )
+    return replace(case, alignment=found)
 
-    :param count: at most so many scans of the drive are aligned.
+
+def cases_of(name: str, count: int, wanted: int) -> list[Case]:
+    """Return about `wanted` right and wrong results of a drive, and those in between.
+
+    :param count: maximum number of aligned scans.
     """
     generator = np.random.default_rng(SEED)
     world = world_of(name)
@@ -151,7 +177,7 @@ def cases_of(name: str, count: int, wanted: int) -> list[Case]:
     for index, scan in scans.items():
         before = _before(drive, index, scores, generator)
         for guess in _guesses(drive.poses[index], rounds, generator):
-            alignment = matcher.align(scan, guess, only_pose=True)
+            alignment = matcher.align_once(scan, guess, only_pose=True)
             found.append(
                 Case(
                     name,
@@ -178,7 +204,7 @@ def _spread(indices: list[int], count: int) -> list[int]:
 def _before(
     drive: Drive, index: int, scores: dict[int, float], generator: np.random.Generator
 ) -> tuple[Before, ...]:
-    """Return the last scans, with scores of the tested ones among or before them."""
+    """Return the preceding scans, with scores of tested ones."""
     if not drive.is_drive or sum(other < index for other in scores) < FEWEST_SCORES_BEFORE:
         return ()
     found = []
@@ -191,7 +217,7 @@ def _before(
 
 
 def _guesses(truth: Pose, rounds: int, generator: np.random.Generator) -> Iterator[Pose]:
-    """Yield guesses near and far, three of each in a round."""
+    """Yield near and far guesses, three of each per round."""
     for turn in range(rounds):
         yield poses.perturbed(truth, *_in_rad(NEAR[turn % len(NEAR)]), generator)
         for kind in range(2):

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Processes that align and search for the bench, one on each CPU, each fed by a thread."""
+"""Worker processes of the bench, one per CPU, each driven by a thread."""
 
 from __future__ import annotations
 
@@ -8,7 +8,6 @@ import threading
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from queue import SimpleQueue
-from types import TracebackType
 from typing import Protocol, TypeVar
 
 from rmw_manycore_py.helper_process import HelperProcess
@@ -18,33 +17,33 @@ R = TypeVar("R")
 
 
 class Helpers(Protocol):
-    """What does the work: several processes, or this one."""
+    """Executes the work, in several processes or in this one."""
 
     def map(self, function: Callable[[T], R], items: Iterable[T]) -> Iterator[R]:
-        """Return what a function says of each item, in their order."""
+        """Return the results of a function for all items, in order."""
         ...
 
     def call(self, function: Callable[..., R], *arguments: object) -> R:
-        """Return what a function of a module returns."""
+        """Return the result of a module-level function."""
         ...
 
 
 class Here:
-    """Does all of it in the calling thread."""
+    """Executes everything in the calling thread."""
 
     def map(self, function: Callable[[T], R], items: Iterable[T]) -> Iterator[R]:
-        """Return what a function says of each item, in their order."""
+        """Return the results of a function for all items, in order."""
         return map(function, items)
 
     def call(self, function: Callable[..., R], *arguments: object) -> R:
-        """Return what a function of a module returns."""
+        """Return the result of a module-level function."""
         return function(*arguments)
 
 
 class TrustHelpers:
-    """A process on each CPU, until it is left.
+    """One process per CPU, until the context exits.
 
-    :param cpus: a thread and a process for each.
+    :param cpus: each gets a thread and a process.
     """
 
     def __init__(self, cpus: Sequence[int]) -> None:
@@ -58,27 +57,22 @@ class TrustHelpers:
     def __enter__(self) -> TrustHelpers:
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         for helper in list(self._helpers):
             helper.close()
         self._executor.shutdown(cancel_futures=True)
 
     def map(self, function: Callable[[T], R], items: Iterable[T]) -> Iterator[R]:
-        """Return what a function says of each item, in their order; on the threads."""
+        """Return the results of a function for all items, in order; runs on the threads."""
         return self._executor.map(function, items)
 
     def call(self, function: Callable[..., R], *arguments: object) -> R:
-        """Return what a function of a module returns in the thread's process."""
+        """Return the result of a module-level function, run in the thread's process."""
         helper: HelperProcess = self._own.helper
         return helper.call(function, *arguments)
 
     def _begin_thread(self) -> None:
-        """Pin the thread, from which its process inherits the CPU."""
+        """Pin the thread; its process inherits the CPU."""
         os.sched_setaffinity(0, {self._free_cpus.get()})
         self._own.helper = HelperProcess("bench", niceness=0)
         self._helpers.append(self._own.helper)

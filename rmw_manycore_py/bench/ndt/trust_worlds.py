@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Drives whose poses are judged: every recording there is, and streets of kinds that mislead."""
+"""Drives for judging poses: all recordings available, and simulated misleading streets."""
 
 from __future__ import annotations
 
@@ -23,20 +23,20 @@ from rmw_manycore_py.ndt.simulation.street import Street, build_street
 LENGTH_M = 120.0
 LIDAR = Lidar(rings=32, azimuths=400)
 STEP_M, PERIOD_S = 1.5, 0.1  # 15 m/s at 10 Hz
-MAPPING_M, SPARSE_MAPPING_M = 4.0, 16.0  # between the scans that make the map
-CONSECUTIVE_S = 1.0  # scans farther apart in time are no drive
+MAPPING_M, SPARSE_MAPPING_M = 4.0, 16.0  # distance between mapping scans
+CONSECUTIVE_S = 1.0  # maximum time between scans of a drive
 
 
 @dataclass(frozen=True)
 class Drive:
-    """A map, and the scans of a drive that the map is not made of.
+    """A map, and the scans of a drive that are not part of the map.
 
-    :param poses: T_map_sensor (S, 4, 4) of all scans, also of those that make the map.
+    :param poses: T_map_sensor (S, 4, 4) of all scans, including those of the map.
     :param stamps_s: (S) in seconds.
     :param tested: indices of the scans that may be judged.
-    :param scan: returns the points (n, 3) of one.
-    :param is_drive: the scans follow each other, so that motion tells.
-    :param repeats: scans fit as well at other places: nothing in one tells them apart.
+    :param scan: returns the points (n, 3) of a scan.
+    :param is_drive: the scans are consecutive, so that motion can be estimated.
+    :param repeats: places cannot be told apart by a single scan.
     """
 
     name: str
@@ -50,7 +50,7 @@ class Drive:
 
 
 def drives() -> dict[str, Callable[[], Drive]]:
-    """Return what makes each of the drives, by their names."""
+    """Return a factory for each drive, by name."""
     return {**_recorded(), **simulated()}
 
 
@@ -65,7 +65,7 @@ def _recorded() -> dict[str, Callable[[], Drive]]:
 
 
 def _scans_in(path: Path) -> int:
-    """Return how many scans a recording has, without reading them; 0 for another kind of data."""
+    """Return the number of scans without reading them; 0 if the file is no recording."""
     try:
         with np.load(path, allow_pickle=False) as file:
             return len(file["offsets"]) - 1 if set(file.files) >= RECORDING_ARRAYS else 0
@@ -88,7 +88,7 @@ def _of_recording(path: Path) -> Drive:
 
 
 def simulated() -> dict[str, Callable[[], Drive]]:
-    """Return what makes the drives in made-up streets, by their names."""
+    """Return a factory for each simulated drive, by name."""
     found: dict[str, Callable[[], Drive]] = {}
     for seed in (1, 2):
         found[f"street {seed}"] = partial(_in_street, f"street {seed}", seed)
@@ -116,7 +116,7 @@ def _in_tunnel(name: str) -> Drive:
 
 
 def repeating_street(period_m: float, generator: np.random.Generator) -> Street:
-    """Return one stretch of a street over and over."""
+    """Return one section of a street, repeated."""
     one = build_street(period_m, generator)
     boxes = (one.lower[:, 0] >= 0.0) & (one.lower[:, 0] < period_m)
     uprights = (one.centres[:, 0] >= 0.0) & (one.centres[:, 0] < period_m)
@@ -137,7 +137,7 @@ def repeating_street(period_m: float, generator: np.random.Generator) -> Street:
 
 
 def tunnel() -> Street:
-    """Return a tube of 9 m by 5 m with a niche's frame every 25 m."""
+    """Return a tube of 9 m by 5 m with the frame of a niche every 25 m."""
     half_m, end_m = 4.5, LENGTH_M + 60.0
     lower = [[-60.0, -half_m - 1, 0.0], [-60.0, half_m, 0.0], [-60.0, -half_m, 5.0]]
     upper = [[end_m, -half_m, 5.0], [end_m, half_m + 1, 5.0], [end_m, half_m, 6.0]]

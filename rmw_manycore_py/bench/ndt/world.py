@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The map and the scans that all contenders get, and their binary form for peers."""
+"""Map and scans for all contenders, and their binary format for peers."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class World:
     :param map_points: (N, 3) [m, map frame].
     :param scans: (n, 3) each [m, sensor frame].
     :param poses: T_map_sensor (S, 4, 4).
-    :param guesses: 0.44 m beside them.
+    :param guesses: poses with an offset of 0.44 m.
     """
 
     name: str
@@ -40,7 +40,7 @@ class World:
     guesses: NDArray[np.float64]
 
     def write(self, path: Path) -> None:
-        """Write what bench/ndt/peer.cpp reads."""
+        """Write the format read by bench/ndt/peer.cpp."""
         with path.open("wb") as file:
             _write_points(file.write, self.map_points)
             file.write(struct.pack("<Q", len(self.scans)))
@@ -55,10 +55,11 @@ def _write_points(write: object, points: NDArray[np.float32]) -> None:
 
 
 @cache
-def world(scans: int = SCANS) -> World:
-    """Return the recorded drive, or a simulated one where there is no recording.
+def world(scans: int = SCANS, first: int = 0, step: int = 2) -> World:
+    """Return the recorded drive, or a simulated one if there is no recording.
 
-    :param scans: how many of those that the map is not made of, at most.
+    :param scans: maximum number of the odd scans, which are not part of the map.
+    :param first: first scan of the map, an even one; `step` to the next one.
     """
     recording, name = _recording()
     last = (len(recording) - 1) // 2 * 2 - 1
@@ -69,7 +70,7 @@ def world(scans: int = SCANS) -> World:
     guesses[:, :3, 3] += GUESS_OFFSET_M
     return World(
         name=name,
-        map_points=recording.accumulated(range(0, len(recording), 2)).astype(np.float32),
+        map_points=recording.accumulated(range(first, len(recording), step)).astype(np.float32),
         scans=[np.ascontiguousarray(recording.scan(i)) for i in odd],
         poses=poses,
         guesses=guesses,

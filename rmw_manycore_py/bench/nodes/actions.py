@@ -1,10 +1,10 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""An action server, one of its clients at work, and clients that only listen.
+"""An action server, an active client, and idle clients.
 
 Usage: actions server | actions idle CLIENTS | actions caller WARM_UP GOALS
 
-Server and idle clients are ready when they listen, and end with their input. The caller prints how
-long each of its goals takes, from sending it to its result.
+Server and idle clients report ready when set up, and exit at the end of their input. The caller
+prints the duration of each goal, from sending it to its result.
 """
 
 from __future__ import annotations
@@ -51,7 +51,7 @@ def _call(node: Node, executor: SingleThreadedExecutor, goals: int) -> list[int]
 
 
 def main() -> None:
-    """Play the role."""
+    """Run the role."""
     role, *numbers = sys.argv[1:]
     rclpy.init()
     node = rclpy.create_node(f"action_{role}")

@@ -1,10 +1,11 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Publishes images at a steady rate, or counts them.
+"""Publishes images at a fixed rate, or counts them.
 
 Usage: camera RELIABILITY BYTES HZ COUNT | camera RELIABILITY count
 
-The camera sends empty messages until its input ends, then the images; it is ready when it has sent
-all. What counts is ready at the first empty message, and ends with its input.
+The camera publishes empty messages until the end of its input, then the images; it reports ready
+when all are sent. The counter reports ready at the first empty message, and exits at the end of its
+input.
 """
 
 from __future__ import annotations
@@ -43,7 +44,7 @@ def _send(node: Node, qos: QoSProfile, size_bytes: int, rate_hz: int, count: int
         time.sleep(max(start_s + number / rate_hz - time.monotonic(), 0))
         publisher.publish(image)
     print("ready", flush=True)
-    threading.Event().wait()  # what was not acknowledged yet is sent again
+    threading.Event().wait()  # stay for retransmissions
 
 
 def _count(node: Node, qos: QoSProfile) -> None:
@@ -69,7 +70,7 @@ def _count(node: Node, qos: QoSProfile) -> None:
 
 
 def main() -> None:
-    """Send or count."""
+    """Publish or count."""
     reliability, *rest = sys.argv[1:]
     rclpy.init()
     node = rclpy.create_node("counter" if rest == ["count"] else "camera")

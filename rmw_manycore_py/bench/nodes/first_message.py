@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Prints when (CLOCK_MONOTONIC) its first message was in the callback, and ends."""
+"""Prints the time (CLOCK_MONOTONIC) of its first callback, and exits."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from std_msgs.msg import UInt8MultiArray
 
 
 def main() -> None:
-    """Wait for the message that the publisher keeps for subscribers to come."""
+    """Wait for the transient-local message of the publisher."""
     arrived_ns: list[int] = []
     rclpy.init()
     node = rclpy.create_node("first_message")

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Does nothing, as a node with one publisher and one subscription, until its input ends.
+"""Idle node with one publisher and one subscription, until the end of its input.
 
 Usage: idle NAME
 """
@@ -15,7 +15,7 @@ from std_msgs.msg import UInt8MultiArray
 
 
 def main() -> None:
-    """Wait for messages that never come."""
+    """Wait for messages that never arrive."""
     name = sys.argv[1]
     rclpy.init()
     node = rclpy.create_node(name)

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Asks: sends messages and times how long each takes there and back.
+"""Sends messages and measures their round-trip times.
 
 Usage: ping BYTES WARM_UP ITERATIONS
 """
@@ -20,7 +20,7 @@ HELLO_PERIOD_S = 0.1
 
 
 class Ping(Node):  # type: ignore[misc]
-    """Sends the next message when the answer to the last one is there."""
+    """Publishes the next message when the previous answer has arrived."""
 
     def __init__(self, size_bytes: int, executor: SingleThreadedExecutor) -> None:
         super().__init__("ping")
@@ -35,7 +35,7 @@ class Ping(Node):  # type: ignore[misc]
         self._answers.add(message.layout.data_offset)
 
     def connect(self) -> None:
-        """Return once a message has made it there and back."""
+        """Wait for the first round trip."""
         while not self._answers:
             self._publisher.publish(self._message)
             self._executor.spin_once(HELLO_PERIOD_S)
@@ -50,14 +50,14 @@ class Ping(Node):  # type: ignore[misc]
         return time.monotonic_ns() - start_ns
 
     def stop(self) -> None:
-        """Let the other side end, and see it go: else the message may go with this node."""
+        """Stop the other side and wait for its end, so that the message is not lost."""
         self._publisher.publish(UInt8MultiArray())
         while self._publisher.get_subscription_count():
             self._executor.spin_once(HELLO_PERIOD_S)
 
 
 def main() -> None:
-    """Time the round trips and print them."""
+    """Measure the round trips and print them."""
     size_bytes, warm_up, iterations = (int(word) for word in sys.argv[1:])
     rclpy.init()
     node = Ping(size_bytes, SingleThreadedExecutor())

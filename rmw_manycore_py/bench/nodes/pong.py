@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Answers: sends every message back, until an empty one comes."""
+"""Returns every message until an empty one arrives."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from std_msgs.msg import UInt8MultiArray
 
 
 class Pong(Node):  # type: ignore[misc]
-    """Sends back what it hears."""
+    """Publishes each message it receives."""
 
     def __init__(self) -> None:
         super().__init__("pong")
@@ -25,7 +25,7 @@ class Pong(Node):  # type: ignore[misc]
 
 
 def main() -> None:
-    """Answer until the other side has had enough."""
+    """Answer until the empty message."""
     rclpy.init()
     node = Pong()
     executor = SingleThreadedExecutor()

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Many nodes in one process: a message goes round from each to the next, one at a time.
+"""Many nodes in one process: a single message circulates from node to node.
 
 Usage: ring EXECUTOR NODES WARM_UP LAPS
 """
@@ -21,7 +21,7 @@ from std_msgs.msg import UInt64
 
 THREADS = 16
 LOOK_S = 0.02
-PATIENCE_S = 1.0
+TIMEOUT_S = 1.0
 EXECUTORS = {
     "single": SingleThreadedExecutor,
     "multi": lambda: MultiThreadedExecutor(num_threads=THREADS),
@@ -30,7 +30,7 @@ EXECUTORS = {
 
 
 class Link(Node):  # type: ignore[misc]
-    """Hands each message on; the first link counts laps, and keeps the last message."""
+    """Forwards each message; the first link counts laps, and keeps the last message."""
 
     def __init__(self, number: int, of: int, laps: int) -> None:
         super().__init__(f"link_{number}")
@@ -50,13 +50,13 @@ class Link(Node):  # type: ignore[misc]
 
 
 def _spin(executor: Any, done: threading.Event) -> None:
-    # Turn by turn: spin() of EventsExecutor does not hear of messages, whatever the middleware.
+    # Do not use spin(): that of EventsExecutor misses messages, with any middleware.
     while not done.is_set():
-        executor.spin_once(PATIENCE_S)
+        executor.spin_once(TIMEOUT_S)
 
 
 def main() -> None:
-    """Time the laps; print how long a message takes from a node to the next."""
+    """Measure the laps; print the time of one hop."""
     kind, *numbers = sys.argv[1:]
     count, warm_up, laps = map(int, numbers)
     rclpy.init()

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Says which message it has had, and in the end how many were missing.
+"""Acknowledges messages by number, and finally reports how many were missing.
 
 Usage: sink TOPIC BACK IN_FLIGHT; it ends when an empty message comes.
 """
@@ -16,7 +16,7 @@ from std_msgs.msg import UInt8MultiArray
 
 
 class Sink(Node):  # type: ignore[misc]
-    """Answers each message with its number alone."""
+    """Answers each message with its number."""
 
     def __init__(self, topic: str, back: str, in_flight: int) -> None:
         super().__init__("sink")
@@ -40,7 +40,7 @@ class Sink(Node):  # type: ignore[misc]
 
 
 def main() -> None:
-    """Answer until the source has had enough."""
+    """Answer until the source stops."""
     topic, back, in_flight = sys.argv[1:]
     rclpy.init()
     node = Sink(topic, back, int(in_flight))

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Sends as fast as its window lets it, and times stretches of messages that have arrived.
+"""Publishes as fast as its window permits, and times batches of acknowledged messages.
 
 Usage: source TOPIC BACK BYTES IN_FLIGHT WARM_UP STRETCH STRETCHES, the last three in messages,
 messages and stretches.
@@ -21,7 +21,7 @@ HELLO_PERIOD_S = 0.1
 
 
 class Source(Node):  # type: ignore[misc]
-    """Has at most `in_flight` messages under way; the sink says which one it has had."""
+    """Keeps at most `in_flight` messages unacknowledged."""
 
     def __init__(self, topic: str, back: str, size_bytes: int, in_flight: int) -> None:
         super().__init__("source")
@@ -29,19 +29,19 @@ class Source(Node):  # type: ignore[misc]
         self._publisher = self.create_publisher(UInt8MultiArray, topic, in_flight + 2)
         self._subscription = self.create_subscription(UInt8MultiArray, back, self._hear, 100)
         self._in_flight, self._sent = in_flight, 0
-        self.arrived = -1  # the number of the last message the sink has had
+        self.arrived = -1  # number of the last acknowledged message
 
     def _hear(self, message: UInt8MultiArray) -> None:
         self.arrived = max(self.arrived, message.layout.data_offset)
 
     def connect(self, executor: SingleThreadedExecutor) -> None:
-        """Return once a message has made it there and back; it has the number 0."""
+        """Wait for the first acknowledgement, of message 0."""
         while self.arrived < 0:
             self._publisher.publish(self._message)
             executor.spin_once(HELLO_PERIOD_S)
 
     def send_until(self, arrived: int, executor: SingleThreadedExecutor) -> None:
-        """Send until the sink has had a message."""
+        """Publish until a message is acknowledged."""
         while self.arrived < arrived:
             while self._sent < self.arrived + self._in_flight:
                 self._sent += 1
@@ -50,7 +50,7 @@ class Source(Node):  # type: ignore[misc]
             executor.spin_once()
 
     def stop(self, executor: SingleThreadedExecutor) -> None:
-        """Let the sink end once it has had all, and see it go."""
+        """Stop the sink after all messages, and wait for its end."""
         while self.arrived < self._sent:
             executor.spin_once()
         self._publisher.publish(UInt8MultiArray())
@@ -59,7 +59,7 @@ class Source(Node):  # type: ignore[misc]
 
 
 def main() -> None:
-    """Time the stretches and print them."""
+    """Measure the batches and print their times."""
     topic, back, *numbers = sys.argv[1:]
     size_bytes, in_flight, warm_up, stretch, stretches = map(int, numbers)
     rclpy.init()

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Publishes serialized messages at a steady rate, once there is a subscription.
+"""Publishes serialized messages at a fixed rate, once there is a subscription.
 
 Usage: steady TOPIC BYTES HZ COUNT.
 """
@@ -16,12 +16,12 @@ from rmw_manycore_py._transport import Process, Qos
 
 TYPE = "std_msgs/msg/UInt8MultiArray"
 _LOOK_S = 0.01
-# Of such a message: the header of CDR, an empty layout, its offset, and the size of the data.
+# Serialized head of a message: CDR header, empty layout, its offset, size of the data.
 _HEAD = struct.Struct("<BBHIII")
 
 
 def main() -> None:
-    """Publish, and print how many there were and how many bytes per second."""
+    """Publish; print the number of messages and bytes per second."""
     topic, *numbers = sys.argv[1:]
     size_bytes, rate_hz, count = map(int, numbers)
     data = _HEAD.pack(0, 1, 0, 0, 0, size_bytes) + bytes(size_bytes)

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What the reference system shall reach on rmw_manycore."""
+"""Goals of rmw_manycore in the reference system."""
 
 from __future__ import annotations
 
@@ -24,10 +24,10 @@ def question(figure: str, setup: str) -> str:
 
 
 def goals(wanted: Wanted) -> tuple[Goal, ...]:
-    """Return the goals that a bench with these options can judge.
+    """Return the goals that apply with these options.
 
-    rclpy's own work hides the middleware, and so does the work of the callbacks: then only losses
-    and jitter are judged.
+    rclpy's overhead and the callbacks' work hide the middleware: with them, only losses and jitter
+    are judged.
     """
     found = [goal for payload in PAYLOADS for goal in _always(payload)]
     if wanted.nodes == "rcl" and wanted.crunch_ms == 0:

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The nodes of the reference system, as its mapfile has them."""
+"""Nodes of the reference system, from its mapfile."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from rmw_manycore_py.reference_system.sample_path import HOT_PATH, PLANNER
 from rmw_manycore_py.scheduling import Scheduling
 
 MAPFILE = "autoware_reference"
-# The priorities that upstream's benches give them.
+# Priorities used by upstream's benchmarks.
 REAL_TIME = {**dict.fromkeys(HOT_PATH, Scheduling("fifo", 1)), PLANNER: Scheduling("fifo", 30)}
 
 
 @dataclass(frozen=True)
 class Member:
-    """A node of the system, and where it runs."""
+    """A node of the system, and its placement."""
 
     name: str
     kind: str
@@ -32,7 +32,7 @@ class Member:
 
 
 def members() -> tuple[Member, ...]:
-    """Return all nodes, placed as `manycore run autoware_reference` places them here."""
+    """Return all nodes, placed as by `manycore run autoware_reference`."""
     path = find_mapfile(MAPFILE)
     if path is None:
         raise ManycoreError(f"the mapfile {MAPFILE} is not installed")
@@ -58,12 +58,12 @@ def in_real_time(system: tuple[Member, ...]) -> tuple[Member, ...]:
 
 
 def in_one_cluster(system: tuple[Member, ...]) -> tuple[Member, ...]:
-    """Return the system with all nodes in cluster 1, which has more cores here than Coolidge's."""
+    """Return the system with all nodes in cluster 1, enlarged beyond Coolidge's 16 cores."""
     return tuple(replace(member, cluster=1) for member in system)
 
 
 def with_hot_path_split(system: tuple[Member, ...]) -> tuple[Member, ...]:
-    """Return the system with each node of the hot path in another cluster than the one before."""
+    """Return the system with each node of the hot path in another cluster than the previous."""
     clusters = sorted({member.cluster for member in system})
     split = {name: clusters[i % len(clusters)] for i, name in enumerate(HOT_PATH)}
     return tuple(replace(m, cluster=split.get(m.name, m.cluster)) for m in system)

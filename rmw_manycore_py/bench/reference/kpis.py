@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The key figures of a run, as the reference system defines them, and some of our own."""
+"""Key figures of a run, those of the reference system and additional ones."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ KIB = 1024
 
 @dataclass(frozen=True)
 class Kpi:
-    """What one run says about one figure."""
+    """Samples of one figure in one run."""
 
     name: str
     unit: str
@@ -38,7 +38,7 @@ class Kpi:
 
 
 def kpis(found: Found) -> list[Kpi]:
-    """Return the figures of a run with upstream's periods, as far as enough was reported."""
+    """Return the figures of a run with upstream's periods, if enough was reported."""
     latencies = [ms * US_PER_MS for ms in values(found.reports, "hot path latency")]
     periods = values(found.reports, "behavior planner period")
     *nodes, receive_threads = found.pss_bytes
@@ -59,7 +59,7 @@ def kpis(found: Found) -> list[Kpi]:
 
 
 def throughput(found: Found) -> list[Kpi]:
-    """Return the figures of a run whose sensors publish without a pause."""
+    """Return the figures of a run whose sensors publish continuously."""
     return [
         Kpi(HOT_PATH_RATE, "1/s", [_rate(found.reports)], higher_is_better=True),
         Kpi(LOST, "count", [lost(found)]),
@@ -67,12 +67,12 @@ def throughput(found: Found) -> list[Kpi]:
 
 
 def lost(found: Found) -> int:
-    """Return how many deliveries failed, of all topics together."""
+    """Return the number of failed deliveries, over all topics."""
     return sum(loss.count for loss in found.losses)
 
 
 def _rate(reports: Sequence[Report]) -> float:
-    """Return the outputs a second of the hot path's last node, by its own records."""
+    """Return the outputs per second of the hot path's last node, from its records."""
     seen = [report for report in reports if HOT_PATH_SINK in report.sequences]
     if len(seen) < 2:
         return 0.0

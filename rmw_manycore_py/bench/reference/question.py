@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What the reference system takes: all figures of all setups, the contenders in turns."""
+"""Runs the reference system: all figures of all setups, alternating contenders."""
 
 from __future__ import annotations
 
@@ -11,14 +11,15 @@ from rmw_manycore_py.bench.question import Question, Run
 from rmw_manycore_py.bench.reference.goals import goals, question
 from rmw_manycore_py.bench.reference.setups import Contender, Setup, Wanted, setups
 from rmw_manycore_py.bench.reference.system import Found, run_system
-from rmw_manycore_py.bench.session import PATIENCE_S
+from rmw_manycore_py.bench.session import TIMEOUT_S
 from rmw_manycore_py.bench.summary import Result
+from rmw_manycore_py.errors import ManycoreError
 
 MIN_DURATION_S = 4.0
 
 
 def reference_question(wanted: Wanted, texts: Path | None) -> Question:
-    """Return the question; the command node's text goes to a directory where one is given."""
+    """Return the question; writes the output of the command node to `texts`, if given."""
 
     def measure(run: Run) -> list[Result]:
         return [r for setup in setups(wanted) for r in _take_turns(run, wanted, setup, texts)]
@@ -33,12 +34,16 @@ def reference_question(wanted: Wanted, texts: Path | None) -> Question:
 
 def _take_turns(run: Run, wanted: Wanted, setup: Setup, texts: Path | None) -> list[Result]:
     collected: dict[tuple[str, str], Result] = {}
+    contenders = {n: c for n, c in setup.contenders.items() if run.wants(f"{setup.name}: {n}")}
     for turn in range(run.rounds):
-        for name, contender in setup.contenders.items():
-            if not run.wants(f"{setup.name}: {name}"):
-                continue
+        for name, contender in tuple(contenders.items()):
             run.note(f"{setup.name}, round {turn + 1} of {run.rounds}: {name}")
-            found = _run(run, wanted, setup, contender)
+            try:
+                found = _run(run, wanted, setup, contender)
+            except ManycoreError as error:
+                run.failures.append(f"{setup.name}: {name}: {error}")
+                del contenders[name]
+                continue
             for kpi in setup.figures(found):
                 asked = question(kpi.name, setup.name)
                 before = collected.get((asked, name))
@@ -54,7 +59,7 @@ def _take_turns(run: Run, wanted: Wanted, setup: Setup, texts: Path | None) -> l
 def _run(run: Run, wanted: Wanted, setup: Setup, contender: Contender) -> Found:
     duration_s = max(setup.duration_s * run.share, MIN_DURATION_S)
     last_cpu = max(os.sched_getaffinity(0))
-    with busy(int(setup.is_beside_a_load), [last_cpu], PATIENCE_S + duration_s):
+    with busy(int(setup.is_beside_a_load), [last_cpu], TIMEOUT_S + duration_s):
         return run_system(
             wanted.nodes, contender.middleware, contender.system, setup.load, duration_s
         )
@@ -63,7 +68,7 @@ def _run(run: Run, wanted: Wanted, setup: Setup, contender: Contender) -> Found:
 def _save(
     texts: Path, wanted: Wanted, setup: Setup, contender: Contender, name: str, found: Found
 ) -> None:
-    """Write what upstream's report scripts read, at the place where they look for it."""
+    """Write the output in the place and format that upstream's report scripts expect."""
     rmw = contender.middleware.variables["RMW_IMPLEMENTATION"]
     run_name = f"{name}, {wanted.nodes}, {wanted.message}, {setup.name}".replace(" ", "_")
     directory = texts / f"{round(found.window_s)}s" / rmw / run_name

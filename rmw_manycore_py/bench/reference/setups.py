@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What is measured: each setup has contenders that take turns, and the figures of their runs."""
+"""Setups: contenders that alternate, and the figures of their runs."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ THROUGHPUT_S = 10.0
 
 @dataclass(frozen=True)
 class Wanted:
-    """The options of `manycore bench reference`."""
+    """Options of `manycore bench reference`."""
 
     nodes: Nodes
     message: str
@@ -49,7 +49,7 @@ class Wanted:
     duration_s: float
 
     def load(self, payload: str) -> Load:
-        """Return what the nodes do, with upstream's periods and depths."""
+        """Return the load of the nodes, with upstream's periods and depths."""
         return Load(
             f"manycore_reference_msgs/msg/{MESSAGES[self.message]}", payload, self.crunch_ms
         )
@@ -57,7 +57,7 @@ class Wanted:
 
 @dataclass(frozen=True)
 class Contender:
-    """A middleware with the system as it is mapped for it."""
+    """A middleware, and the system mapped for it."""
 
     middleware: Middleware
     system: tuple[Member, ...]
@@ -76,7 +76,7 @@ class Setup:
 
 
 def setups(wanted: Wanted) -> list[Setup]:
-    """Return all setups, each with a payload that is left alone and with one that is checked."""
+    """Return all setups, with an untouched and a checked payload."""
     system = members()
     return [
         setup
@@ -102,7 +102,7 @@ def _beside_a_load(wanted: Wanted, system: tuple[Member, ...], payload: str) -> 
 
 
 def _without_pause(wanted: Wanted, system: tuple[Member, ...], payload: str) -> Setup:
-    """Sensors and planner publish at once again; nothing gives way, so they wait for the others."""
+    """Make sensors and planner publish continuously; the publishers block on slow readers."""
     unpaused = tuple(replace(member, period_ms=0) for member in system)
     load = replace(
         wanted.load(payload), crunch_ms=0.0, depth=KEEP_ALL, report_period_ms=REPORT_PERIOD_MS
@@ -128,7 +128,7 @@ def _by_name(system: tuple[Member, ...], middlewares: Sequence[Middleware]) -> d
 
 
 def _in_real_time(system: tuple[Member, ...]) -> dict[str, Contender]:
-    """Return the system with real-time scheduling, where this user may set it."""
+    """Return the system with real-time scheduling, if this user may set it."""
     if any(refusal(scheduling) for scheduling in REAL_TIME.values()):
         return {}
     return {OWN_IN_REAL_TIME.name: Contender(OWN_IN_REAL_TIME, in_real_time(system))}

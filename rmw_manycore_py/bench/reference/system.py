@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The reference system at work: its processes, from their start to what they have printed."""
+"""Runs the reference system: starts its processes and collects their output."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from rmw_manycore_py.bench.contenders import Middleware
 from rmw_manycore_py.bench.idle import cpu_ns
 from rmw_manycore_py.bench.reference.graph import Member
 from rmw_manycore_py.bench.reference.text import Loss, Report, losses_in, reports_in
-from rmw_manycore_py.bench.session import PATIENCE_S, Process, Session, native_command
+from rmw_manycore_py.bench.session import TIMEOUT_S, Process, Session, native_command
 from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.scheduling import scheduled_as
 
@@ -25,11 +25,11 @@ Nodes = Literal["rcl", "rclpy"]
 NATIVE = "reference_node"
 MODULE = "rmw_manycore_py.reference_system"
 LAST = "VehicleDBWSystem"
-# After the first output, until processes have done what they do once.
+# Delay after the first output, for one-time work of the processes.
 SETTLED_AFTER_S = 3.0
-LOOK_AGAIN_AFTER_S = 0.02
+POLL_PERIOD_S = 0.02
 KEEP_ALL = 0
-# The topic DSM of each topic holds so many messages; beside each is a header.
+# Number of messages per topic DSM; each has a header as well.
 KEPT_MESSAGES = 16
 RECORD_BYTES = 128
 US_PER_MS = 1e3
@@ -38,7 +38,7 @@ NS_PER_S = 1e9
 
 @dataclass(frozen=True)
 class Load:
-    """What the nodes do besides passing messages on; a depth of 0 keeps all messages."""
+    """Work of the nodes besides forwarding; a depth of 0 keeps all messages."""
 
     message: str
     payload: str = "untouched"
@@ -48,21 +48,21 @@ class Load:
 
     @property
     def message_bytes(self) -> int:
-        """The size of a message, which its type is named after."""
+        """Size of a message, which its type is named after."""
         return int("".join(filter(str.isdigit, self.message))) * 1024
 
 
 @dataclass(frozen=True)
 class Found:
-    """One run: what was measured from outside, and what the nodes printed in that time."""
+    """One run: external measurements, and the nodes' output in that time."""
 
     start_ms: float
     window_s: float
     cpu_ms_per_s: float
-    pss_bytes: Sequence[int]  # of each node; the receive threads' last, together
+    pss_bytes: Sequence[int]  # per node; last: all receive threads together
     reports: Sequence[Report]
     losses: Sequence[Loss]
-    text: str  # of the command node that has the hot path
+    text: str  # output of the command node at the end of the hot path
 
 
 def run_system(
@@ -72,14 +72,14 @@ def run_system(
     load: Load,
     window_s: float,
 ) -> Found:
-    """Start all nodes, measure for a time once the last one has put something out, stop them."""
+    """Start all nodes, measure for a time after the first output, stop them."""
     clusters = tuple(member.cluster for member in system)
     cpus = [member.host_cpu for member in system]
-    patience_s = PATIENCE_S + window_s
+    timeout_s = TIMEOUT_S + window_s
     placed = replace(middleware, clusters=clusters)
     with ExitStack() as stack:
         directory = Path(stack.enter_context(tempfile.TemporaryDirectory()))
-        session = stack.enter_context(Session(placed, cpus, patience_s))
+        session = stack.enter_context(Session(placed, cpus, timeout_s))
         if middleware.is_manycore:
             stack.enter_context(_platform(session, system, load))
         started_ns = time.time_ns()
@@ -101,10 +101,10 @@ def run_system(
 
 
 def _platform(session: Session, system: Sequence[Member], load: Load) -> Configurator:
-    """Create the platform, with topic DSMs of a fixed size as a mapfile gives them.
+    """Create the platform, with topic DSMs of fixed size as set in a mapfile.
 
-    One that grows takes the registry's lock for it, which a publisher may not get on a machine that
-    is busy with starting 24 nodes; and where all is kept it grows until the SMEM is full.
+    Growing takes the registry lock, which a publisher may not get while 24 nodes start; and with
+    KEEP_ALL it continues until the SMEM is full.
     """
     return Configurator(
         session.platform,
@@ -126,7 +126,7 @@ def _platform(session: Session, system: Sequence[Member], load: Load) -> Configu
 
 @dataclass
 class _Outside:
-    """What the system says of the processes over a window of time."""
+    """Resource usage of the processes over a time window."""
 
     begin_ns: int = 0
     end_ns: int = 0
@@ -148,7 +148,7 @@ def _measured(pids: Sequence[int], session: Session) -> Iterator[_Outside]:
 
 
 def pss_bytes(pid: int) -> int:
-    """Return the memory of a process, of what it shares its part."""
+    """Return the PSS of a process: private memory plus its share of shared memory."""
     for line in Path(f"/proc/{pid}/smaps_rollup").read_text().splitlines():
         if line.startswith("Pss:"):
             return int(line.split()[1]) * 1024
@@ -204,15 +204,15 @@ def _ros_arguments(member: Member, load: Load) -> list[str]:
 
 def _first_output_ns(directory: Path, processes: Sequence[Process]) -> int:
     """Return when the first message arrived at the end of the graph."""
-    deadline = time.monotonic() + PATIENCE_S
+    deadline = time.monotonic() + TIMEOUT_S
     while time.monotonic() < deadline:
         for process in processes:
             process.raise_if_failed()
         reports = reports_in((directory / LAST).read_text())
         if reports and reports[0].stamp_ns:
             return reports[0].stamp_ns
-        time.sleep(LOOK_AGAIN_AFTER_S)
-    raise ManycoreError(f"{LAST} has put nothing out within {PATIENCE_S:g} s")
+        time.sleep(POLL_PERIOD_S)
+    raise ManycoreError(f"{LAST} has put nothing out within {TIMEOUT_S:g} s")
 
 
 def _found(directory: Path, start_ns: int, outside: _Outside) -> Found:

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What nodes of the reference system print, read back."""
+"""Parses the output of the reference system's nodes."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class Report:
 
 @dataclass(frozen=True)
 class Loss:
-    """Messages of a topic that never arrived, as said at that time of the system clock."""
+    """Lost messages of a topic, as reported at a time of the system clock."""
 
     count: int
     topic: str
@@ -35,7 +35,7 @@ class Loss:
 
 
 def reports_in(text: str) -> list[Report]:
-    """Return all messages that command nodes reported, those without statistics too."""
+    """Return all messages reported by command nodes, including those without statistics."""
     reports: list[Report] = []
     for line in text.splitlines():
         if path := _PATH.fullmatch(line):
@@ -46,13 +46,13 @@ def reports_in(text: str) -> list[Report]:
 
 
 def losses_in(text: str) -> list[Loss]:
-    """Return all losses that nodes reported."""
+    """Return all losses reported by nodes."""
     found = (_LOST.fullmatch(line) for line in text.splitlines())
     return [Loss(int(m["count"]), m["topic"], int(m["stamp"])) for m in found if m]
 
 
 def values(reports: Iterable[Report], statistic: str) -> list[float]:
-    """Return the values that a statistic had, one for each report that has it."""
+    """Return the values of a statistic, one per report that has it."""
     return [r.statistics[statistic] for r in reports if statistic in r.statistics]
 
 

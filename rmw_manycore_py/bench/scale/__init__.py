@@ -1,13 +1,22 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What threads, endpoints and nodes cost each other as they become many."""
+"""Scaling over threads, endpoints and nodes."""
 
 from __future__ import annotations
 
 from rmw_manycore_py.bench.question import Question, Run
-from rmw_manycore_py.bench.scale import clients, clock, composed, endpoints, holds, nodes, threads
+from rmw_manycore_py.bench.scale import (
+    clients,
+    clock,
+    composed,
+    endpoints,
+    holds,
+    nodes,
+    sources,
+    threads,
+)
 from rmw_manycore_py.bench.summary import Result
 
-PARTS = (threads, composed, endpoints, holds, clock, clients, nodes)
+PARTS = (threads, composed, endpoints, sources, holds, clock, clients, nodes)
 
 
 def measure(run: Run) -> list[Result]:

@@ -1,16 +1,17 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What the clients of a service cost each other, and those of an action."""
+"""Mutual cost of the clients of a service, and of an action."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 from rmw_manycore_py.bench.contenders import FAST_DDS, Middleware
 from rmw_manycore_py.bench.idle import cpu_ns, wait_until_quiet, wake_ups
 from rmw_manycore_py.bench.question import Run
 from rmw_manycore_py.bench.round_trip import in_us
-from rmw_manycore_py.bench.scale.common import CLUSTERS, OWN, at_count, drawn, on_curve
+from rmw_manycore_py.bench.scale.common import CLUSTERS, OWN, along, at_count, on_curve
 from rmw_manycore_py.bench.session import Process, Session
 from rmw_manycore_py.bench.summary import Goal, Result
 
@@ -19,9 +20,9 @@ IDLE_PROCESSES = 4
 
 @dataclass(frozen=True)
 class Served:
-    """What is called, by as many clients.
+    """A service or action, with this many clients.
 
-    :param start: starts a role as a party, given what that role is told.
+    :param start: starts a role as a party, with the arguments of the role.
     """
 
     question: str
@@ -64,14 +65,13 @@ ACTION = Served(
 
 
 def measure(run: Run) -> list[Result]:
-    """Return what a call takes, and what it costs the others, over the clients."""
+    """Return the time of a call and its cost for other clients, over the clients."""
     results: list[Result] = []
     for served in (SERVICE, ACTION):
         for middleware in (OWN, FAST_DDS):
-            for count in drawn(run, served.clients):
-                if run.wants(f"{served.question}: {middleware.name}"):
-                    run.note(f"{served.question}, {count}: {middleware.name}")
-                    results += _call(run, _apart(middleware), served, count)
+            contender = f"{served.question}: {middleware.name}"
+            measured = partial(_call, run, _apart(middleware), served)
+            results += along(run, contender, served.clients, "clients", measured)
     return results
 
 
@@ -106,7 +106,7 @@ def _call(run: Run, middleware: Middleware, served: Served, clients: int) -> lis
         for process in (server, *idle):
             process.release()
             process.finish()
-    of_all = served.warm_up + calls  # and of the caller's coming and going
+    of_all = served.warm_up + calls  # plus the caller's start and end
     return [
         found(served.question, "us", in_us(samples_ns)),
         found(served.woken, "count", [woken / of_all]),
@@ -115,7 +115,7 @@ def _call(run: Run, middleware: Middleware, served: Served, clients: int) -> lis
 
 
 def _shares(clients: int) -> list[int]:
-    """Return how many clients each idle process has."""
+    """Return the number of clients of each idle process."""
     shares = [len(range(i, clients, IDLE_PROCESSES)) for i in range(IDLE_PROCESSES)]
     return [share for share in shares if share > 0]
 
@@ -127,7 +127,7 @@ def _at(middleware: Middleware, served: Served, place: int) -> str:
 GOALS = (
     Goal(SERVICE.question, _at(OWN, SERVICE, -1), "within", 1.2, _at(OWN, SERVICE, 0)),
     Goal(SERVICE.woken, _at(OWN, SERVICE, -1), "within", 0.1),
-    # Status and feedback of an action go to all of its clients.
+    # Status and feedback of an action are sent to all of its clients.
     Goal(ACTION.question, _at(OWN, ACTION, -1), "better", 1.0, _at(FAST_DDS, ACTION, -1)),
     Goal(ACTION.cpu, _at(OWN, ACTION, -1), "better", 1.0, _at(FAST_DDS, ACTION, -1)),
 )

@@ -1,12 +1,14 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What a message costs from one rclpy node to the next, with many of them in one process."""
+"""Cost of a message between rclpy nodes of one process, over the number of nodes."""
 
 from __future__ import annotations
+
+from functools import partial
 
 from rmw_manycore_py.bench.contenders import FAST_DDS, INSIDE, Middleware
 from rmw_manycore_py.bench.question import Run
 from rmw_manycore_py.bench.round_trip import in_us
-from rmw_manycore_py.bench.scale.common import at_count, drawn, on_curve
+from rmw_manycore_py.bench.scale.common import along, at_count, on_curve
 from rmw_manycore_py.bench.session import Session
 from rmw_manycore_py.bench.summary import Goal, Result
 
@@ -22,14 +24,13 @@ WARM_UP, LAPS = 2, 20
 
 
 def measure(run: Run) -> list[Result]:
-    """Return what a hop takes with each executor, over the nodes of the process."""
+    """Return the time of a hop with each executor, over the nodes of the process."""
     results: list[Result] = []
     for middleware in (INSIDE, FAST_DDS):
         for executor in EXECUTORS:
-            for count in drawn(run, NODES):
-                if run.wants(f"{HOP}: {_curve(middleware, executor)}"):
-                    run.note(f"{count} nodes in a process: {_curve(middleware, executor)}")
-                    results += _go_round(run, middleware, executor, count)
+            contender = f"{HOP}: {_curve(middleware, executor)}"
+            measured = partial(_go_round, run, middleware, executor)
+            results += along(run, contender, NODES, "nodes", measured)
     return results
 
 

@@ -1,11 +1,13 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What many publishers and subscriptions of one topic cost each other."""
+"""Mutual cost of many publishers and subscriptions of one topic."""
 
 from __future__ import annotations
 
+from functools import partial
+
 from rmw_manycore_py.bench.contenders import FAST_DDS, INSIDE, Middleware
 from rmw_manycore_py.bench.question import Run
-from rmw_manycore_py.bench.scale.common import at_count, drawn, on_curve
+from rmw_manycore_py.bench.scale.common import along, at_count, on_curve
 from rmw_manycore_py.bench.session import Session
 from rmw_manycore_py.bench.summary import Goal, Result
 
@@ -14,7 +16,7 @@ CLOSE = "closing a subscription"
 BESIDE = "creating a publisher of another topic meanwhile"
 PUBLISH = "publishing to a topic with as many publishers"
 ENDPOINTS = (25, 50, 100, 200, 400, 800)
-# Fast DDS matches each pair by messages of its own: more take minutes.
+# Fast DDS matches endpoints pairwise by messages: more would take minutes.
 MOST_ENDPOINTS_OF_FAST_DDS = 50
 ITERATIONS = 200
 FULL, ROOM = "queues full", "with room"
@@ -22,14 +24,13 @@ DEPTHS = {FULL: 1, ROOM: 1000}
 
 
 def measure(run: Run) -> list[Result]:
-    """Return what creating and publishing take, over the endpoints of a topic."""
+    """Return the time for creating and publishing, over the endpoints of a topic."""
     results: list[Result] = []
     for middleware in (INSIDE, FAST_DDS):
         most = ENDPOINTS[-1] if middleware.is_manycore else MOST_ENDPOINTS_OF_FAST_DDS
-        for count in drawn(run, (count for count in ENDPOINTS if count <= most)):
-            if run.wants(f"{PUBLISH}: {middleware.name}"):
-                run.note(f"{count} publishers and {count} subscriptions: {middleware.name}")
-                results += _match(run, middleware, count)
+        counts = (count for count in ENDPOINTS if count <= most)
+        measured = partial(_match, run, middleware)
+        results += along(run, f"{PUBLISH}: {middleware.name}", counts, "endpoints", measured)
     return results
 
 
@@ -47,7 +48,7 @@ def _match(run: Run, middleware: Middleware, count: int) -> list[Result]:
         return [sample / 1e3 for sample in found["samples_ns"]]
 
     name = middleware.name
-    # Where the other thread got no CPU while few endpoints were created, it has measured nothing.
+    # If the other thread got no CPU while few endpoints were created, it has no samples.
     beside = samples_us("beside", 1)
     return [
         on_curve(CREATE, name, count, "endpoints", "us", samples_us("create", 1)),

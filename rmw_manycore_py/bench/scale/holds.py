@@ -1,11 +1,13 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""How long the registry lock is held at a time, when a topic has many endpoints."""
+"""Hold times of the registry lock when a topic has many endpoints."""
 
 from __future__ import annotations
 
+from functools import partial
+
 from rmw_manycore_py.bench.contenders import INSIDE
 from rmw_manycore_py.bench.question import Run
-from rmw_manycore_py.bench.scale.common import at_count, drawn, on_curve
+from rmw_manycore_py.bench.scale.common import along, at_count, on_curve
 from rmw_manycore_py.bench.session import Session
 from rmw_manycore_py.bench.summary import Goal, Result
 
@@ -15,6 +17,7 @@ OPERATIONS = {
     "close_subscription": "closing subscriptions",
     "close_publisher": "closing publishers",
     "sweep": "sweeping what they left",
+    "free_large": "freeing a topic DSM of 16 MiB",
     "reap": "reaping a killed process",
 }
 ENDPOINTS = (100, 200, 400, 800)
@@ -23,13 +26,8 @@ MOST_US = 100
 
 
 def measure(run: Run) -> list[Result]:
-    """Return the holds of each operation, over the endpoints; Fast DDS has no such lock."""
-    results: list[Result] = []
-    for count in drawn(run, ENDPOINTS):
-        if run.wants(f"{HOLD}: {INSIDE.name}"):
-            run.note(f"holds of the registry lock, {count} publishers and subscriptions")
-            results += _watch(run, count)
-    return results
+    """Return the hold times of each operation, over the endpoints; rmw_manycore only."""
+    return along(run, f"{HOLD}: {INSIDE.name}", ENDPOINTS, "endpoints", partial(_watch, run))
 
 
 def _watch(run: Run, count: int) -> list[Result]:
@@ -40,7 +38,7 @@ def _watch(run: Run, count: int) -> list[Result]:
                 "registry_holds", 0, endpoints=count, changes=CHANGES, cpu=run.cpus[1]
             ).finish()
         for operation, samples in found.items():
-            if (hold_ns := holds.get(f"{operation}_p99")) is not None:  # it was seen
+            if (hold_ns := holds.get(f"{operation}_p99")) is not None:  # observed at least once
                 samples.append(hold_ns / 1e3)
     return [
         on_curve(HOLD, _curve(operation), count, "endpoints", "us", samples)

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What hundreds of nodes cost each other, each a process with the services of its parameters."""
+"""Mutual cost of hundreds of nodes, each a process with parameter services."""
 
 from __future__ import annotations
 
@@ -9,20 +9,22 @@ import threading
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from functools import partial
 
 from rmw_manycore_py._transport import Platform
 from rmw_manycore_py.bench.contenders import FAST_DDS, Middleware
 from rmw_manycore_py.bench.idle import cpu_ns, wait_until_quiet, wake_ups
 from rmw_manycore_py.bench.question import Run
 from rmw_manycore_py.bench.round_trip import WARM_UP, in_us
-from rmw_manycore_py.bench.scale.common import CLUSTERS, OWN, at_count, drawn, on_curve, spread
-from rmw_manycore_py.bench.session import PATIENCE_S, Process, Session
+from rmw_manycore_py.bench.scale.common import CLUSTERS, OWN, along, at_count, on_curve, spread
+from rmw_manycore_py.bench.session import TIMEOUT_S, Process, Session
 from rmw_manycore_py.bench.summary import Goal, Result
 from rmw_manycore_py.errors import ManycoreError
 
 UP = "starting all nodes, until each topic has its subscription"
 CREATE = "creating one more node"
 WOKEN = "sleeps of all others per node that joins"
+REAPERS = "CPU time of the receive threads per node that joins"
 IDLE = "CPU time of all when nothing happens"
 ROUND_TRIP = "round trip of 64 B beside them"
 GRAPH = "reading all nodes and endpoints of the graph"
@@ -30,9 +32,9 @@ READ = ", its graph read over and over"
 RECLAIM = "until nothing is left of those killed at once"
 
 NODES = (30, 60, 125, 250, 500)
-# Each process of Fast DDS speaks with each other one: more take minutes to find each other.
+# Fast DDS processes discover each other pairwise: more would take minutes.
 MOST_NODES_OF_FAST_DDS = 60
-KILLED = 0.4  # of the nodes
+KILLED = 0.4  # fraction of the nodes
 JOINS = 5
 READS = 20
 ROUND_TRIPS = 1000
@@ -40,15 +42,18 @@ WINDOW_S = 5.0
 
 
 def measure(run: Run) -> list[Result]:
-    """Return what starting, joining, waiting, reading and killing take, over the nodes."""
+    """Return the cost of starting, joining, waiting, reading and killing, over the nodes."""
     results: list[Result] = []
     for middleware in (OWN, FAST_DDS):
         most = NODES[-1] if middleware.is_manycore else MOST_NODES_OF_FAST_DDS
-        for count in drawn(run, (count for count in NODES if count <= most)):
-            if run.wants(f"{UP}: {middleware.name}"):
-                run.note(f"{count} nodes: {middleware.name}")
-                results += _watch(run, spread(middleware, count), count)
+        counts = (count for count in NODES if count <= most)
+        measured = partial(_in_clusters, run, middleware)
+        results += along(run, f"{UP}: {middleware.name}", counts, "nodes", measured)
     return results
+
+
+def _in_clusters(run: Run, middleware: Middleware, count: int) -> list[Result]:
+    return _watch(run, spread(middleware, count), count)
 
 
 def _watch(run: Run, middleware: Middleware, count: int) -> list[Result]:
@@ -68,8 +73,8 @@ def _watch(run: Run, middleware: Middleware, count: int) -> list[Result]:
         wait_until_quiet(pids)
         joins = [_join(session, pids, count + i) for i in range(JOINS)]
         results += [
-            found(CREATE, "ms", [create_ms for create_ms, _ in joins]),
-            found(WOKEN, "count", [woken for _, woken in joins]),
+            found(CREATE, "ms", [create_ms for create_ms, _, _ in joins]),
+            found(WOKEN, "count", [woken for _, woken, _ in joins]),
             found(IDLE, "ms/s", [_idle_ms(session, pids, WINDOW_S * max(run.share, 0.2))]),
             found(ROUND_TRIP, "us", _round_trips_us(run, session)),
         ]
@@ -80,28 +85,31 @@ def _watch(run: Run, middleware: Middleware, count: int) -> list[Result]:
                 results += [
                     on_curve(CREATE, f"{middleware.name}{READ}", count, "nodes", "ms", beside),
                     found(GRAPH, "ms", [_read_ms(platform) for _ in range(READS)]),
+                    found(REAPERS, "us", [reapers_us for _, _, reapers_us in joins]),
                     found(RECLAIM, "ms", [_reclaim_ms(platform, nodes)]),
                 ]
     return results
 
 
-def _join(session: Session, others: Sequence[int], number: int) -> tuple[float, float]:
-    """Return the milliseconds that a node took to create, and how often others woke up."""
-    before = wake_ups(others)
+def _join(session: Session, others: Sequence[int], number: int) -> tuple[float, float, float]:
+    """Return a node's milliseconds to create, sleeps of others, receive threads' microseconds."""
+    receive_threads = session.receive_thread_pids()
+    before, before_ns = wake_ups(others), cpu_ns(receive_threads)
     node = session.native("fleet", 0, first=number, nodes=1, all=0, period_ms=0)
     node.wait_until_ready()
-    woken = wake_ups(others) - before
+    wait_until_quiet(receive_threads)
+    woken, used_ns = wake_ups(others) - before, cpu_ns(receive_threads) - before_ns
     node.release()
-    return node.finish()["samples_ns"][0] / 1e6, woken
+    return node.finish()["samples_ns"][0] / 1e6, woken, used_ns / 1e3
 
 
 @contextmanager
 def _reading(platform: Platform, cpu: int) -> Iterator[None]:
-    """Read the graph all the time, from a CPU that the nodes that join do not have."""
+    """Read the graph continuously, on a CPU other than that of joining nodes."""
     is_over = threading.Event()
 
     def read() -> None:
-        os.sched_setaffinity(0, [cpu])  # of this thread
+        os.sched_setaffinity(0, [cpu])  # this thread only
         while not is_over.is_set():
             platform.nodes()
             platform.endpoints()
@@ -150,7 +158,7 @@ def _reclaim_ms(platform: Platform, nodes: Sequence[Process]) -> float:
     def kill() -> None:
         for victim in victims:
             os.kill(victim.pid, signal.SIGKILL)
-        deadline = time.monotonic() + PATIENCE_S
+        deadline = time.monotonic() + TIMEOUT_S
         while len(platform.processes()) > left or len(platform.nodes()) > left:
             if time.monotonic() > deadline:
                 raise ManycoreError("killed nodes stay in the registry")

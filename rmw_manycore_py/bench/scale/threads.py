@@ -1,11 +1,13 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What a message for one thread costs a process in which many wait."""
+"""Cost of a message for one thread of a process in which many threads wait."""
 
 from __future__ import annotations
 
+from functools import partial
+
 from rmw_manycore_py.bench.contenders import BETWEEN, FAST_DDS, INSIDE, Middleware
 from rmw_manycore_py.bench.question import Run
-from rmw_manycore_py.bench.scale.common import at_count, drawn, on_curve
+from rmw_manycore_py.bench.scale.common import along, at_count, on_curve
 from rmw_manycore_py.bench.session import Session
 from rmw_manycore_py.bench.summary import Goal, Result
 
@@ -17,13 +19,11 @@ RATE_HZ = 200
 
 
 def measure(run: Run) -> list[Result]:
-    """Return how often a process sleeps per message, and its CPU time, over its threads."""
+    """Return voluntary switches and CPU time of a process per message, over its threads."""
     results: list[Result] = []
     for middleware in (INSIDE, BETWEEN, FAST_DDS):
-        for threads in drawn(run, THREADS):
-            if run.wants(f"{SLEEPS}: {middleware.name}"):
-                run.note(f"{threads} threads: {middleware.name}")
-                results += _compose(run, middleware, threads)
+        measured = partial(_compose, run, middleware)
+        results += along(run, f"{SLEEPS}: {middleware.name}", THREADS, "threads", measured)
     return results
 
 
@@ -37,7 +37,7 @@ def _compose(run: Run, middleware: Middleware, threads: int) -> list[Result]:
         )
         source.finish()
         found = sink.finish()
-    counted = messages - 1  # from the first to the last
+    counted = messages - 1  # intervals from the first to the last
     return [
         on_curve(
             question, middleware.name, threads, "threads", unit, [found[key] / counted / scale]
