@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Trajectories and stop commands as Autoware's messages, and back."""
+"""Conversions of trajectories and poses between arrays and Autoware's messages."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from rmw_manycore_py.whill.laws.trajectory import Trajectory
 
 
 def trajectory_message(trajectory: Trajectory, frame: str) -> Any:
-    """Return an autoware_planning_msgs/msg/Trajectory without a stamp, at the height 0."""
+    """Return an autoware_planning_msgs/msg/Trajectory without a stamp, at height 0."""
     message = TrajectoryMessage()
     message.header.frame_id = frame
     message.points = [_point(trajectory, index) for index in range(len(trajectory))]

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The directory of a course: map, trajectory, streets, and a mapfile that names them."""
+"""Directory of a course: map, trajectory, streets, and a mapfile that refers to them."""
 
 from __future__ import annotations
 
@@ -24,15 +24,15 @@ MAP, TRAJECTORY, STREETS, MAPFILE = "map.npz", "trajectory.csv", "streets.npz", 
 WHEEL_BASE_M = 0.45
 MAP_VOXEL_M = 0.2
 MAPPING_STEP_M = 3.0
-MAPPING_SIDE_M = 0.5  # the mapping vehicle drove a little to the left
-CELL_M = 10.0  # around each point of the course, 3 x 3 of them need points of the map
-MIN_MAP_POINTS = 200  # that are not of the ground: it tells nothing of x, y and yaw
+MAPPING_SIDE_M = 0.5  # lateral offset of the mapping vehicle, to the left
+CELL_M = 10.0  # 3 x 3 cells around each point of the course must contain map points
+MIN_MAP_POINTS = 200  # excluding the ground, which does not constrain x, y and yaw
 ABOVE_GROUND_M = 0.5
 
 
 @dataclass(frozen=True)
 class Course:
-    """What is driven, where, and how the surroundings look there."""
+    """A trajectory, its map, and its surroundings."""
 
     trajectory: Trajectory
     map_points: Points
@@ -40,7 +40,7 @@ class Course:
 
 
 def write_course(directory: Path, course: Course, mapfile: Path) -> None:
-    """Write the files of a course, and the mapfile beside them."""
+    """Write the files of a course, including the mapfile."""
     write_points(directory / MAP, course.map_points)
     write_trajectory(directory / TRAJECTORY, course.trajectory)
     if isinstance(course.view, StreetView):
@@ -51,7 +51,7 @@ def write_course(directory: Path, course: Course, mapfile: Path) -> None:
 
 
 def read_course(directory: Path) -> Course:
-    """Return a course that can be driven; without streets the LiDAR sees the map's points."""
+    """Read a drivable course; without streets the LiDAR sees the map's points."""
     if not (directory / TRAJECTORY).is_file():
         raise ManycoreError(
             f"{directory}: expected a course, found no {TRAJECTORY}; make one: "
@@ -67,7 +67,7 @@ def read_course(directory: Path) -> Course:
 
 
 def check_inside(trajectory: Trajectory, map_points: Points, path: Path) -> None:
-    """Raise where a trajectory leaves the map: there no pose can be matched."""
+    """Raise an error if a trajectory leaves the map, where no pose can be matched."""
     upright = map_points[map_points[:, 2] > map_points[:, 2].min() + ABOVE_GROUND_M, :2]
     cells, counts = np.unique(_cells(upright), axis=0, return_counts=True)
     count_of = dict(zip(map(tuple, cells.tolist()), counts.tolist(), strict=True))
@@ -89,7 +89,7 @@ def _cells(places: Points) -> Points:
 
 
 def mapped(view: View, trajectory: Trajectory, generator: np.random.Generator) -> list[Points]:
-    """Return scans (N, 3) in the map frame from beside a trajectory; thin them to make a map."""
+    """Return scans (N, 3) in the map frame from beside a trajectory; downsample them for a map."""
     stride = max(1, round(MAPPING_STEP_M / float(np.median(np.diff(trajectory.along_m())))))
     clouds = []
     for index in range(0, len(trajectory), stride):
@@ -102,5 +102,5 @@ def mapped(view: View, trajectory: Trajectory, generator: np.random.Generator) -
 
 
 def thinned(clouds: list[Points]) -> Points:
-    """Return a map of clouds in the map frame."""
+    """Return a downsampled map of the clouds, in the map frame."""
     return voxel_centroids(np.concatenate(clouds), (MAP_VOXEL_M,) * 3)

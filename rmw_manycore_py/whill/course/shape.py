@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The way of a course: straight, a turn to the left, straight, a turn to the right, straight."""
+"""Shape of a course: straight, left turn, straight, right turn, straight."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ import numpy as np
 from rmw_manycore_py.whill.laws.trajectory import Trajectory, Vector
 
 SPACING_M = 0.2
-ACCELERATION_M_S2 = 0.25  # of the wanted speed, before and behind turns and at the end
-LAST_SPEED_M_S = 0.3  # at the last point but one, from which the vehicle rolls to the end
+ACCELERATION_M_S2 = 0.25  # of the target speed, around turns and at the end
+LAST_SPEED_M_S = 0.3  # at the second last point, from which the vehicle rolls to the end
 
 
 @dataclass(frozen=True)
 class CourseShape:
-    """Lengths in metres, speeds in m/s; a turn is a quarter of a circle."""
+    """Lengths in metres, speeds in m/s; a turn is a quarter circle."""
 
     length_m: float = 150.0
     turn_radius_m: float = 15.0
@@ -26,22 +26,22 @@ class CourseShape:
 
     @property
     def turn_m(self) -> float:
-        """The way through one turn."""
+        """Length of one turn."""
         return 0.5 * np.pi * self.turn_radius_m
 
     @property
     def straight_m(self) -> float:
-        """The way of each of the three straights."""
+        """Length of each of the three straights."""
         return (self.length_m - 2.0 * self.turn_m) / 3.0
 
     def corners(self) -> tuple[tuple[float, float], ...]:
-        """Return where the straights would meet without turns, with both ends."""
+        """Return where the straights would intersect, and both ends."""
         side = self.straight_m + self.turn_radius_m
         middle = self.straight_m + 2.0 * self.turn_radius_m
         return (0.0, 0.0), (side, 0.0), (side, middle), (2.0 * side, middle)
 
     def trajectory(self) -> Trajectory:
-        """Return the trajectory from the origin, first along x."""
+        """Return the trajectory from the origin, starting along x."""
         along = np.linspace(0.0, self.length_m, max(3, int(self.length_m / SPACING_M) + 1))
         middle = 0.5 * (along[1:] + along[:-1])
         steps = np.diff(along)
@@ -53,7 +53,7 @@ class CourseShape:
         return Trajectory(x, y, self._heading(along), self._speeds(along))
 
     def _turns(self) -> Iterator[tuple[float, float]]:
-        """Yield where turns begin, and their curvature."""
+        """Yield the start of each turn, and its curvature."""
         yield self.straight_m, 1.0 / self.turn_radius_m
         yield 2.0 * self.straight_m + self.turn_m, -1.0 / self.turn_radius_m
 
@@ -73,7 +73,7 @@ class CourseShape:
         )
 
     def _speeds(self, along: Vector) -> Vector:
-        """Return speeds that change no faster than the acceleration allows, and 0 at the end."""
+        """Return speeds limited by the acceleration, and 0 at the end."""
         limits = [(self.length_m - along, LAST_SPEED_M_S)]
         for start, _ in self._turns():
             away = np.maximum(np.maximum(start - along, along - start - self.turn_m), 0.0)

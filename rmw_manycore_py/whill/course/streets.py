@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Three synthetic streets along a course, with nothing in the vehicle's way."""
+"""Three synthetic streets along a course, with the vehicle's path cleared."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ from rmw_manycore_py.ndt.simulation.street import Street, build_street
 from rmw_manycore_py.whill.course.shape import CourseShape
 from rmw_manycore_py.whill.laws.trajectory import Trajectory
 
-CLEARANCE_M = 1.5  # from the trajectory to the next thing
+CLEARANCE_M = 1.5  # minimum distance of obstacles from the trajectory
 ARRAYS = ("lower", "upper", "centres", "radii", "heights")
 
 
 def build_streets(
     shape: CourseShape, trajectory: Trajectory, generator: np.random.Generator
 ) -> Street:
-    """Return the streets of `ndt simulate` along the straights, turns cleared."""
+    """Return the streets of `ndt simulate` along the straights, with the path cleared."""
     parts = [
         _placed(build_street(float(np.hypot(*np.subtract(end, start))), generator), start, end)
         for start, end in pairwise(shape.corners())
@@ -32,13 +32,13 @@ def build_streets(
 
 
 def joined(streets: list[Street]) -> Street:
-    """Return one street of several."""
+    """Merge several streets."""
     columns = [np.concatenate([getattr(one, name) for one in streets]) for name in ARRAYS]
     return Street(*columns)
 
 
 def near(street: Street, x_m: float, y_m: float, range_m: float) -> Street:
-    """Return what of a street a sensor of this range can see."""
+    """Return the part of a street within the range of a sensor."""
     place = np.array([x_m, y_m])
     boxes = _box_distances(street, place) < range_m
     uprights = np.hypot(*(street.centres - place).T) - street.radii < range_m
@@ -51,7 +51,7 @@ def save_streets(path: Path, street: Street) -> None:
 
 
 def load_streets(path: Path) -> Street:
-    """Return a street that was saved; a ManycoreError for anything else."""
+    """Return a saved street; raise ManycoreError if the file is invalid."""
     try:
         with path.open("rb") as opened, np.load(opened) as file:
             columns = [np.asarray(file[name], np.float64) for name in ARRAYS]
@@ -65,7 +65,7 @@ def load_streets(path: Path) -> Street:
 
 
 def _placed(street: Street, start: tuple[float, float], end: tuple[float, float]) -> Street:
-    """Return a street along x moved to a start and, if it leads along y, turned to the left."""
+    """Return a street along x moved to a start and, if it leads along y, turned left."""
     if start[1] == end[1]:
         offset = np.array([*start, 0.0])
         lower, upper, centres = street.lower + offset, street.upper + offset, street.centres
@@ -84,7 +84,7 @@ def _turned(places: Matrix) -> Matrix:
 
 
 def _cleared(street: Street, way: Matrix) -> Street:
-    """Return a street without what is nearer to a way (N, 2) than the clearance."""
+    """Return a street without objects within the clearance of a path (N, 2)."""
     boxes = np.full(len(street.lower), np.inf)
     uprights = np.full(len(street.centres), np.inf)
     for place in way:

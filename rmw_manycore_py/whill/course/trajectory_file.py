@@ -17,16 +17,16 @@ HEADER_LINES = 1
 
 
 def write_trajectory(path: Path, trajectory: Trajectory) -> None:
-    """Write a trajectory; to the tenth of a millimetre and of a milliradian."""
+    """Write a trajectory, rounded to 0.1 mm and 0.1 mrad."""
     columns = (trajectory.x_m, trajectory.y_m, trajectory.yaw_rad, trajectory.speed_m_s)
     rows = np.column_stack(columns)
     np.savetxt(path, rows, "%.4f", ",", header=",".join(COLUMNS), comments="")
 
 
 def read_trajectory(path: Path, wheel_base_m: float, max_speed_m_s: float) -> Trajectory:
-    """Return a trajectory that a vehicle can drive.
+    """Read a trajectory and check that a vehicle can drive it.
 
-    :raises FileError: with file and line, for what is no trajectory or cannot be driven.
+    :raises FileError: with file and line, for an invalid or undrivable trajectory.
     """
     trajectory = _parsed(path)
     problem = trajectory.problem(wheel_base_m, max_speed_m_s)

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What the wheelchair's LiDAR sees: of streets, or of a map of points."""
+"""LiDAR views of the surroundings: of streets, or of a point map."""
 
 from __future__ import annotations
 
@@ -15,17 +15,17 @@ from rmw_manycore_py.ndt.simulation.lidar import Lidar
 from rmw_manycore_py.ndt.simulation.street import Street
 from rmw_manycore_py.whill.course.streets import near
 
-SENSOR_HEIGHT_M = 1.2  # above the ground, over the middle of the driven axle
+SENSOR_HEIGHT_M = 1.2  # above the ground, over the centre of the driven axle
 LIDAR = Lidar(rings=16, azimuths=360, lowest_deg=-15.0, highest_deg=15.0, range_m=40.0)
 
 
 class View(Protocol):
-    """Surroundings with a LiDAR in them."""
+    """Surroundings as seen by the LiDAR."""
 
     def scan(
         self, x_m: float, y_m: float, yaw_rad: float, generator: np.random.Generator
     ) -> Points:
-        """Return points (N, 3) in the vehicle's frame: x ahead, y left, z from the ground."""
+        """Return points (N, 3) in the vehicle's frame: x ahead, y left, z up from the ground."""
 
 
 def _sensor_pose(x_m: float, y_m: float, yaw_rad: float) -> Matrix:
@@ -39,7 +39,7 @@ def _above_ground(points: Points) -> Points:
 
 @dataclass(frozen=True)
 class StreetView:
-    """Rays cast into boxes, cylinders and the ground."""
+    """Casts rays into boxes, cylinders and the ground."""
 
     street: Street
     lidar: Lidar = LIDAR
@@ -47,7 +47,7 @@ class StreetView:
     def scan(
         self, x_m: float, y_m: float, yaw_rad: float, generator: np.random.Generator
     ) -> Points:
-        """See View."""
+        """Return the scan; see View."""
         street = near(self.street, x_m, y_m, self.lidar.range_m)
         pose = _sensor_pose(x_m, y_m, yaw_rad)
         return _above_ground(self.lidar.scan(street, pose, generator))
@@ -55,10 +55,9 @@ class StreetView:
 
 @dataclass(frozen=True)
 class PointView:
-    """The nearest point of a map in the direction of each ray.
+    """Returns the nearest point of a map in the direction of each ray.
 
-    What is behind a surface is hidden as far as the map is dense: a ray that slips between two
-    points sees the next surface.
+    Occlusion is only as good as the map is dense: a ray between two points hits the next surface.
     """
 
     points: Points
@@ -67,7 +66,7 @@ class PointView:
     def scan(
         self, x_m: float, y_m: float, yaw_rad: float, generator: np.random.Generator
     ) -> Points:
-        """See View."""
+        """Return the scan; see View."""
         around = np.abs(self.points[:, :2] - (x_m, y_m)).max(axis=1) < self.lidar.range_m
         pose = _sensor_pose(x_m, y_m, yaw_rad)
         seen = transform(inverse(pose), self.points[around].astype(np.float64))

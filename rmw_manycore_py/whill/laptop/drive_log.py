@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What happened on a drive, and the figures of it."""
+"""Log of a drive, and its summary."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ import numpy as np
 
 from rmw_manycore_py.ndt.nodes.support.log_throttle import LogThrottle
 
-STANDING_M_S = 0.02  # slower is standing
+STANDING_M_S = 0.02  # lower speeds count as standing
 REPEAT_S = 10.0
-DEADLINE_S = 0.1  # scan to the first command that used it; later ones count as late
+DEADLINE_S = 0.1  # from scan to the first command based on it; more is late
 
 
 @dataclass
@@ -22,20 +22,20 @@ class Scan:
     """How a scan became a command; times in seconds on the wall clock."""
 
     stamp_s: float
-    pose_s: float | None = None  # its pose has arrived here
-    kinematics_s: float | None = None  # the first prediction made after that
-    control_s: float | None = None  # the first gated command made after that
-    command_s: float | None = None  # the first cmd_vel after that
+    pose_s: float | None = None  # arrival of its pose
+    kinematics_s: float | None = None  # stamp of the first prediction after that
+    control_s: float | None = None  # stamp of the first gated command after that
+    command_s: float | None = None  # arrival of the first cmd_vel after that
 
     @property
     def latency_s(self) -> float | None:
-        """From the stamp to the first cmd_vel that used the scan."""
+        """From the stamp to the first cmd_vel based on the scan."""
         return None if self.command_s is None else self.command_s - self.stamp_s
 
 
 @dataclass(frozen=True)
 class Moment:
-    """Where the vehicle really was."""
+    """True state of the vehicle at a time."""
 
     time_s: float  # wall clock
     x_m: float
@@ -47,7 +47,7 @@ class Moment:
 
 @dataclass(frozen=True)
 class Command:
-    """A cmd_vel that has arrived."""
+    """A received cmd_vel."""
 
     time_s: float
     speed_m_s: float
@@ -56,7 +56,7 @@ class Command:
 
 @dataclass(frozen=True)
 class Incident:
-    """What a program warned of, or that it was started again; a fault."""
+    """Warning or restart of a program, or a fault."""
 
     time_s: float
     text: str
@@ -64,7 +64,7 @@ class Incident:
 
 @dataclass(frozen=True)
 class Injected:
-    """A fault that was injected into a process or a sensor."""
+    """A fault injected into a process or a sensor."""
 
     time_s: float
     target: str
@@ -73,7 +73,7 @@ class Injected:
 
 @dataclass(frozen=True)
 class Summary:
-    """The figures of a drive; latencies and periods in ms, None where nothing was measured."""
+    """Summary of a drive; latencies and periods in ms, None if not measured."""
 
     driven_m: float
     course_m: float
@@ -89,19 +89,19 @@ class Summary:
     scans: int
     scans_lost: int
     scans_late: int
-    stands: int  # how often the vehicle stood before its end
+    stands: int  # number of stops before the end
     bridge_cpu_percent: float | None
     platform_cpu_percent: float | None
     laptop_cpu_s: float
-    packets_in: int | None  # into the stack's network namespace
+    packets_in: int | None  # received by the stack's network namespace
 
 
 @dataclass
 class DriveLog:
-    """All that was noted, from the first command to drive on."""
+    """Everything recorded, from the first driving command on."""
 
     course_m: float
-    scans: dict[int, Scan] = field(default_factory=dict)  # by stamp, ns
+    scans: dict[int, Scan] = field(default_factory=dict)  # by stamp [ns]
     moments: list[Moment] = field(default_factory=list)
     commands: list[Command] = field(default_factory=list)
     incidents: list[Incident] = field(default_factory=list)
@@ -115,20 +115,20 @@ class DriveLog:
     _throttle: LogThrottle = field(default_factory=lambda: LogThrottle(REPEAT_S))
 
     def tell(self, text: str) -> None:
-        """Note an incident; one that goes on, with other numbers, only once in a while.
+        """Add an incident; repetitions that differ only in numbers are rate-limited.
 
-        May be called from any thread.
+        Thread-safe.
         """
         with self._telling:
             if self._throttle.is_due(text):
                 self.incidents.append(Incident(time.time(), text))
 
     def start_s(self) -> float | None:
-        """Return when the vehicle was first told to move."""
+        """Return when the vehicle was first commanded to move."""
         return next((one.time_s for one in self.commands if one.speed_m_s > 0.0), None)
 
     def driven(self) -> list[Moment]:
-        """Return the moments since the vehicle was first told to move."""
+        """Return the moments since the vehicle was first commanded to move."""
         start_s = self.start_s()
         return [] if start_s is None else [m for m in self.moments if m.time_s >= start_s]
 
@@ -141,7 +141,7 @@ class DriveLog:
         return [one for one in self.scans.values() if start_s <= one.stamp_s <= end_s]
 
     def summary(self) -> Summary:
-        """Return the figures."""
+        """Return the summary."""
         driven, scans = self.driven(), self.judged()
         latencies, periods = self.latencies_ms(), self.periods_ms()
         lateral = np.array([one.lateral_m for one in driven] or [np.nan])
@@ -183,7 +183,7 @@ class DriveLog:
         return [] if start_s is None else [c for c in self.commands if c.time_s >= start_s]
 
     def _stands(self, driven: list[Moment]) -> int:
-        """Count the times that a vehicle that moved came to stand, without the end of the way."""
+        """Count the stops of a moving vehicle before the end of the course."""
         moves = [one.speed_m_s > STANDING_M_S for one in driven]
         stops = sum(before and not now for before, now in pairwise(moves))
         stands_at_end = self.is_finished and stops > 0 and not moves[-1]

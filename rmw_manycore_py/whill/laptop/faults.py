@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Faults that a drive is disturbed with: `NODE@T`, `stop:NODE@T`, `lidar@T`."""
+"""Faults injected into a drive: `NODE@T`, `stop:NODE@T`, `lidar@T`."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from enum import Enum
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
 from rmw_manycore_py.whill.laptop.wheelchair import SENSORS
 
-STOP_S = 2.0  # for which a stopped process stays stopped
+STOP_S = 2.0  # duration of a SIGSTOP
 _FAULT = re.compile(r"(?P<stop>stop:)?(?P<target>[^@]+)@(?P<after>\d+(\.\d+)?)")
 
 
@@ -24,10 +24,10 @@ class Kind(Enum):
 
 @dataclass(frozen=True)
 class Fault:
-    """A fault some seconds after the vehicle has begun to drive."""
+    """A fault some seconds after the start of the drive."""
 
     kind: Kind
-    target: str  # a process of the run, or a sensor
+    target: str  # process of the run, or sensor
     after_s: float
 
     def __str__(self) -> str:
@@ -35,9 +35,9 @@ class Fault:
 
 
 def fault_of(text: str) -> Fault:
-    """Return the fault that a text means.
+    """Parse a fault.
 
-    :raises ManycoreError: when it means none.
+    :raises ManycoreError: for an invalid text.
     """
     found = _FAULT.fullmatch(text)
     if found is None:

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The LiDAR's driver, a process of its own: a line with stamp and pose in, a scan out on DDS."""
+"""LiDAR driver process: reads lines with stamp and pose, publishes scans on DDS."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from rmw_manycore_program import own_program
 from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.parent_death import dies_with_this_process
 
-VOXEL_M = 0.4  # of the scans that are sent, as Autoware thins them before it matches
+VOXEL_M = 0.4  # downsampling of published scans, as Autoware does before matching
 READY = "ready"
 
 
 class LidarProcess:
-    """Starts the driver and tells it when to look, and from where."""
+    """Starts the driver and triggers scans at given poses."""
 
     def __init__(self, course: Path, seed: int) -> None:
         self._process = subprocess.Popen(
@@ -42,7 +42,7 @@ class LidarProcess:
             raise ManycoreError("the LiDAR's driver ended before it was ready: see above")
 
     def look(self, stamp_ns: int, x_m: float, y_m: float, yaw_rad: float) -> None:
-        """Have a scan taken from a pose and published with a stamp."""
+        """Trigger a scan at a pose and its publication with a stamp."""
         try:
             stream = _stream(self._process.stdin)
             stream.write(f"{stamp_ns} {x_m:.6f} {y_m:.6f} {yaw_rad:.6f}\n")
@@ -51,7 +51,7 @@ class LidarProcess:
             raise ManycoreError(f"the LiDAR's driver ended unexpectedly: {error}") from error
 
     def close(self) -> None:
-        """End the driver."""
+        """Stop the driver."""
         self._process.kill()
         self._process.communicate()
 
@@ -62,7 +62,7 @@ def _stream(stream: IO[str] | None) -> IO[str]:
 
 
 def main() -> None:
-    """Publish a scan for each line of the standard input."""
+    """Publish a scan for each line of standard input."""
     import signal
 
     import rclpy
@@ -74,7 +74,7 @@ def main() -> None:
     from rmw_manycore_py.whill.course.directory import read_course
     from rmw_manycore_py.whill.laptop.topics import POINTS
 
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the terminal's: the laptop ends this process
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C: the laptop ends this process
     view = read_course(Path(sys.argv[1])).view
     generator = np.random.default_rng(int(sys.argv[2]))
     rclpy.init()

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""A network namespace (ip-netns(8)) that the off-loaded nodes run in, as another host would be."""
+"""Network namespace (ip-netns(8)) for the off-loaded nodes, emulating another host."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
 
 _NAMESPACES = Path("/run/netns")
 _LOOPBACK = "lo"
-_PACKETS = 1  # columns of /proc/PID/net/dev behind the name: bytes, packets received
+_PACKETS = 1  # columns of /proc/PID/net/dev after the name: received bytes, packets
 
 
 def entering(name: str | None) -> list[str]:
-    """Return the words before a command that has it run in a network namespace.
+    """Return the command prefix that runs a program in a network namespace.
 
-    :raises ManycoreError: where there is no such namespace, or only root may enter it.
+    :raises ManycoreError: if the namespace does not exist, or the user is not root.
     """
     if name is None:
         return []
@@ -32,7 +32,7 @@ def entering(name: str | None) -> list[str]:
 
 
 def packets_received(pid: int) -> int | None:
-    """Return what the namespace of a process received from outside; None once it has ended."""
+    """Return the packets received by a process's namespace; None after its end."""
     try:
         rows = Path(f"/proc/{pid}/net/dev").read_text().splitlines()[2:]
     except OSError:

@@ -1,13 +1,13 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Which command used which scan, from stamps and arrivals: an upper bound.
+"""Attributes commands to scans by stamps and arrivals: an upper bound of the latency.
 
 ```
  scan stamped ──► its pose arrives ──► first kinematics stamped after that arrive
               ──► first control_cmd stamped after that arrives ──► next cmd_vel
 ```
 
-Each arrow ends here on the laptop, behind the bridge: the platform's nodes had the message before,
-and may have used it one period earlier than is counted.
+Each arrow ends on the laptop, after the bridge: the nodes on the platform had the message earlier
+and may have used it one period before the counted one.
 """
 
 from __future__ import annotations
@@ -26,24 +26,24 @@ from rmw_manycore_py.whill.laptop.drive_log import DriveLog, Scan
 
 
 class Observer:
-    """Subscriptions that measure; the wheelchair works without them."""
+    """Subscriptions for measurement only; the wheelchair works without them."""
 
     def __init__(self, node: Node, log: DriveLog) -> None:
         self._log = log
-        self._open: list[Scan] = []  # without a command yet
-        self.kinematics_s: float | None = None  # arrival of the newest
+        self._open: list[Scan] = []  # not followed by a command yet
+        self.kinematics_s: float | None = None  # newest arrival
         node.create_subscription(PoseStamped, topics.POSE, self._on_pose, 10)
         node.create_subscription(Odometry, topics.KINEMATICS, self._on_kinematics, 10)
         node.create_subscription(Control, topics.CONTROL, self._on_control, 10)
 
     def sent(self, stamp_ns: int) -> None:
-        """Note that a scan is on its way."""
+        """Record that a scan was sent."""
         scan = Scan(1e-9 * stamp_ns)
         self._log.scans[stamp_ns] = scan
         self._open.append(scan)
 
     def on_command(self, time_s: float) -> None:
-        """Note that a cmd_vel has arrived."""
+        """Record the arrival of a cmd_vel."""
         for scan in self._open:
             if scan.control_s is not None:
                 scan.command_s = time_s

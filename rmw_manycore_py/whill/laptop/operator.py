@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The person at the laptop: engages, shows where the vehicle is, and lets it drive on."""
+"""Simulated operator at the laptop: engages, sets initial poses, and clears stops."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ from rmw_manycore_py.whill.laptop import topics
 from rmw_manycore_py.whill.laptop.drive_log import STANDING_M_S
 from rmw_manycore_py.whill.laptop.plant import Plant
 
-PERIOD_S = 0.1  # of the heartbeat
-ENGAGE_S, CLEAR_S = 1.0, 2.0  # between one try and the next
-INITIAL_POSE_S = 30.0  # longer than a search takes on a busy host: a new pose starts it anew
-LOST_S = 2.0  # without kinematics
-STUCK_S = 10.0  # standing with kinematics: they may be wrong, or too uncertain to drive on
-POINTED_M, POINTED_RAD = 0.3, 0.05  # how far off a pose is that is pointed at on a map
+PERIOD_S = 0.1  # heartbeat period
+ENGAGE_S, CLEAR_S = 1.0, 2.0  # retry periods
+INITIAL_POSE_S = 30.0  # exceeds a search on a busy host, which a new pose restarts
+LOST_S = 2.0  # time without kinematics
+STUCK_S = 10.0  # time standing with kinematics, which may be wrong or too uncertain
+POINTED_M, POINTED_RAD = 0.3, 0.05  # error of an initial pose set on a map
 VARIANCES = (0.25, 0.25, 0.01, 0.01, 0.01, 0.03)
 
 
@@ -37,8 +37,8 @@ class Operator:
         self._plant = plant
         self._newest_kinematics_s = newest_kinematics_s
         self._generator = np.random.default_rng(3)
-        self._moved_s = time.monotonic()  # when the vehicle moved last
-        self._done_s: dict[str, float] = {}  # when each thing was done last
+        self._moved_s = time.monotonic()  # last motion of the vehicle
+        self._done_s: dict[str, float] = {}  # time of each last action
         self._heartbeat = node.create_publisher(Heartbeat, topics.HEARTBEAT, 1)
         self._engage = node.create_publisher(Engage, topics.ENGAGE, 1)
         self._pose = node.create_publisher(PoseWithCovarianceStamped, topics.INITIAL_POSE, 1)
@@ -47,13 +47,13 @@ class Operator:
 
     @property
     def sees_kinematics(self) -> bool:
-        """Tell whether the stack says where the vehicle is."""
+        """Return whether the stack publishes kinematics."""
         newest_s = self._newest_kinematics_s()
         return newest_s is not None and time.time() - newest_s < LOST_S
 
     @property
     def pointed(self) -> bool:
-        """Tell whether a first pose was sent."""
+        """Return whether an initial pose was sent."""
         return "pose" in self._done_s
 
     def _act(self) -> None:
@@ -74,7 +74,7 @@ class Operator:
             self._clear.call_async(Trigger.Request())
 
     def _is_due(self, what: str, period_s: float) -> bool:
-        """Tell whether something may be done again, and count it as done then."""
+        """Return whether an action may be repeated; if so, count it as done."""
         now_s = time.monotonic()
         is_due = now_s - self._done_s.get(what, -np.inf) >= period_s
         if is_due:

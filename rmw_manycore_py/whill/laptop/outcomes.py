@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What a fault came to: when the vehicle stood, which node named the dead, when it drove on."""
+"""Outcome of a fault: when the vehicle stopped, which node reported it, when it drove on."""
 
 from __future__ import annotations
 
@@ -9,18 +9,18 @@ from itertools import pairwise
 from rmw_manycore_py.whill.laptop.drive_log import Command, DriveLog, Injected
 from rmw_manycore_py.whill.laptop.plant import COMMAND_TIMEOUT_S
 
-WINDOW_S = 3.0  # a vehicle that is told to stand later is so for another reason
+WINDOW_S = 3.0  # later stops have another cause
 NAMING_S = 5.0
 GONE, RESTARTED = "is gone", "is started again"
 
 
 @dataclass(frozen=True)
 class Outcome:
-    """Times in seconds after the fault; None: it did not happen.
+    """Times in seconds after the fault; None if it did not happen.
 
-    :param stood_s: the first zero command, or the wheelchair's own timeout.
-    :param drove_on_s: the first command to drive after that.
-    :param named_by: warnings in which a node named the dead one as gone.
+    :param stood_s: first zero command, or the wheelchair's own timeout.
+    :param drove_on_s: first driving command after that.
+    :param named_by: warnings in which a node reported the dead one as gone.
     """
 
     fault: str
@@ -32,13 +32,13 @@ class Outcome:
 
 
 def outcomes(log: DriveLog) -> list[Outcome]:
-    """Return what each fault of a drive came to."""
+    """Return the outcome of each fault of a drive."""
     return [_outcome(log, injected) for injected in log.injected]
 
 
 def _outcome(log: DriveLog, injected: Injected) -> Outcome:
     name = injected.target.strip("()")
-    node = name.replace(" ", "_")  # of the bridge's processes: _manycore_bridge_inward
+    node = name.replace(" ", "_")  # bridge processes are named _manycore_bridge_inward etc.
     since = [i.text for i in log.incidents if 0.0 <= i.time_s - injected.time_s <= NAMING_S]
     stood_s = stands_after_s(log.commands, injected.time_s)
     return Outcome(
@@ -52,7 +52,7 @@ def _outcome(log: DriveLog, injected: Injected) -> Outcome:
 
 
 def stands_after_s(commands: list[Command], fault_s: float) -> float | None:
-    """Return how long after a fault the vehicle was told to stand, or no longer told anything."""
+    """Return the time from a fault to the first zero command or the end of commands."""
     before = [one for one in commands if one.time_s <= fault_s][-1:]
     after = [one for one in commands if fault_s < one.time_s]
     found = [one.time_s - fault_s for one in after if one.speed_m_s == 0.0][:1]

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""A picture of a drive: the course and what was driven; error, speed and latency over time."""
+"""Plot of a drive: course and driven path; error, speed and latency over time."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ INCIDENT = "tab:red"
 
 
 def plot(log: DriveLog, course: Course, path: Path) -> None:
-    """Write the picture; the suffix of the path chooses its format."""
+    """Write the plot; the suffix of the path selects its format."""
     figure = load_figure()(figsize=(15, 9), layout="constrained")
     grid = figure.add_gridspec(3, 2, width_ratios=(1, 1.2))
     _draw_way(figure.add_subplot(grid[:, 0]), log, course)

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The wheelchair as a plant: two driven wheels that follow their command with a lag."""
+"""Plant model of the wheelchair: two driven wheels that follow commands with a lag."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ COMMAND_TIMEOUT_S = 0.5
 
 @dataclass(frozen=True)
 class PlantOptions:
-    """What the plant is like; the wheels' lag is that of a first-order system."""
+    """Parameters of the plant; the wheels are first-order systems."""
 
     tread_m: float = 0.5
     lag_s: float = 0.12
@@ -20,7 +20,7 @@ class PlantOptions:
 
 @dataclass
 class Plant:
-    """Pose in the map frame, wheel speeds in m/s, times in seconds on one clock of the caller's."""
+    """Pose in the map frame, wheel speeds in m/s, times in seconds of one clock."""
 
     options: PlantOptions
     x_m: float
@@ -32,7 +32,7 @@ class Plant:
     _commanded_s: float = -math.inf
 
     def command(self, now_s: float, speed_m_s: float, yaw_rate_rad_s: float) -> None:
-        """Take a command; one that is not finite is a command to stand."""
+        """Set a command; a non-finite one stops the vehicle."""
         is_finite = math.isfinite(speed_m_s) and math.isfinite(yaw_rate_rad_s)
         speed, rate = (speed_m_s, yaw_rate_rad_s) if is_finite else (0.0, 0.0)
         half_turn = 0.5 * self.options.tread_m * rate
@@ -40,11 +40,11 @@ class Plant:
         self._commanded_s = now_s
 
     def is_timed_out(self, now_s: float) -> bool:
-        """Tell whether the last command is too old to be followed."""
+        """Return whether the last command is too old to be followed."""
         return now_s - self._commanded_s > self.options.command_timeout_s
 
     def advance(self, now_s: float, step_s: float) -> None:
-        """Move for a step that ends now: wheels first, then an arc with their new speeds."""
+        """Simulate a step that ends now: wheels first, then an arc with their new speeds."""
         wanted = (0.0, 0.0) if self.is_timed_out(now_s) else self._wanted_m_s
         share = 1.0 - math.exp(-step_s / self.options.lag_s)
         self.left_m_s += share * (wanted[0] - self.left_m_s)
@@ -56,10 +56,10 @@ class Plant:
 
     @property
     def speed_m_s(self) -> float:
-        """The speed forwards."""
+        """Forward speed."""
         return 0.5 * (self.left_m_s + self.right_m_s)
 
     @property
     def yaw_rate_rad_s(self) -> float:
-        """The turn rate, positive to the left."""
+        """Yaw rate, positive to the left."""
         return (self.right_m_s - self.left_m_s) / self.options.tread_m

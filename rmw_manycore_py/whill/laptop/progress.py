@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""How a drive is going: one line that is rewritten on a terminal, else a line now and then."""
+"""Progress of a drive: one updating line on a terminal, else occasional lines."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ TERMINAL_PERIOD_S = 0.2
 
 
 class DriveProgress:
-    """On standard error."""
+    """Writes to standard error."""
 
     def __init__(self) -> None:
         self._console = Console(stderr=True)
@@ -32,8 +32,8 @@ class DriveProgress:
         self._status.stop()
 
     def report(self, log: DriveLog) -> None:
-        """Show incidents at once, and where the vehicle is."""
-        for incident in log.incidents[self._incidents :]:  # another thread may add some meanwhile
+        """Show new incidents, and the position of the vehicle."""
+        for incident in log.incidents[self._incidents :]:  # other threads may append
             self._print(incident.text)
             self._incidents += 1
         period_s = TERMINAL_PERIOD_S if self._is_live else PERIOD_S

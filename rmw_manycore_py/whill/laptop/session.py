@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""One drive from the first pose to the end of the course."""
+"""A drive from the initial pose to the end of the course."""
 
 from __future__ import annotations
 
@@ -35,29 +35,29 @@ from rmw_manycore_py.whill.laptop.plant import Plant, PlantOptions
 from rmw_manycore_py.whill.laptop.stack import Stack, pid_of
 from rmw_manycore_py.whill.laptop.wheelchair import Wheelchair
 
-TURN_S = 0.1  # of the loop that looks after all
-CPU_NOTE_S = 1.0  # seldom: this process's own CPU time is measured
+TURN_S = 0.1  # period of the supervising loop
+CPU_NOTE_S = 1.0  # rarely, since this process's CPU time is measured, too
 ARRIVED_M = 0.5
-GIVE_UP_S = 60.0  # standing on the way
+GIVE_UP_S = 60.0  # time standing before the end
 
 
 @dataclass(frozen=True)
 class DriveOptions:
-    """How long to drive, and what to disturb; seconds.
+    """Limits and faults of a drive, in seconds.
 
-    :param duration_s: from the first motion on; None: until the end of the course.
-    :param patience_s: how long the first motion may take.
+    :param duration_s: from the first motion; None drives to the end of the course.
+    :param timeout_s: maximum time to the first motion.
     """
 
     course: Path
     duration_s: float | None = None
-    patience_s: float = 120.0
+    timeout_s: float = 120.0
     faults: Sequence[Fault] = ()
     seed: int = 1
 
 
 class Drive:
-    """Wheelchair, operator and observer at one node, and the loop that spins it."""
+    """Wheelchair, operator and observer in one node, and the loop that spins it."""
 
     def __init__(self, course: Course, options: DriveOptions, log: DriveLog, stack: Stack | None):
         self._course, self._options, self._log, self._stack = course, options, log, stack
@@ -70,16 +70,16 @@ class Drive:
         self._wheelchair = Wheelchair(self._node, self._plant, self._look, self._heard)
         self._operator = Operator(self._node, self._plant, lambda: self._observer.kinematics_s)
         self._due = sorted(options.faults, key=lambda fault: fault.after_s)
-        self._moved_s = time.monotonic()  # when the vehicle moved last
+        self._moved_s = time.monotonic()  # last motion of the vehicle
         self._cpu_noted_s = 0.0
 
     def run(self, report: Callable[[DriveLog], None]) -> None:
-        """Drive; calls `report` now and then.
+        """Drive; call `report` periodically.
 
-        :raises ManycoreError: where the vehicle does not start, or stands for good.
+        :raises ManycoreError: if the vehicle does not start, or stops for good.
         """
         self._lidar.wait_until_ready()
-        self._spin_until(self._is_moving, self._options.patience_s, report)
+        self._spin_until(self._is_moving, self._options.timeout_s, report)
         if not self._is_moving():
             raise ManycoreError(self._reason_for_standing())
         start_s = time.monotonic()
@@ -91,7 +91,7 @@ class Drive:
             self._log.packets_in = (self._packets() or packets) - packets
 
     def close(self) -> None:
-        """End the LiDAR's driver and the node."""
+        """Stop the LiDAR driver and destroy the node."""
         self._lidar.close()
         self._node.destroy_node()
 
@@ -142,7 +142,7 @@ class Drive:
         return abs(self._plant.speed_m_s) > STANDING_M_S
 
     def _is_over(self, start_s: float) -> bool:
-        """Tell whether the vehicle has arrived; raise where it stands for good."""
+        """Return whether the vehicle has arrived; raise ManycoreError if it stands for good."""
         if self._is_moving():
             return False
         now_s = time.monotonic()
@@ -186,20 +186,24 @@ class Drive:
         self._log.laptop_cpu_s = laptop_s - before[2]
 
     def _reason_for_standing(self) -> str:
-        waited = f"the vehicle has not moved within {self._options.patience_s:g} s"
+        waited = f"the vehicle has not moved within {self._options.timeout_s:g} s"
         if not self._node.count_publishers(topics.CMD_VEL):
             return (
                 f"{waited}: nothing publishes {topics.CMD_VEL}; start the stack first, in the same "
                 f"ROS_DOMAIN_ID: manycore run {self._options.course}/whill.yaml (or give --run)"
             )
         if not self._operator.pointed:
-            return f"{waited}: nothing subscribes {topics.INITIAL_POSE}, so no first pose was sent"
+            return (
+                f"{waited}: {topics.INITIAL_POSE} has no subscription, so no initial pose was sent"
+            )
         if not self._operator.sees_kinematics:
             return (
-                f"{waited}: no {topics.KINEMATICS} after the first pose; the log of "
+                f"{waited}: no {topics.KINEMATICS} after the initial pose; the log of "
                 "pose_initializer_node and ndt_scan_matcher says why"
             )
-        return f"{waited} though {topics.KINEMATICS} comes: see the warnings of the control nodes"
+        return (
+            f"{waited}, but {topics.KINEMATICS} is published: see the warnings of the control nodes"
+        )
 
 
 def run(
@@ -209,9 +213,9 @@ def run(
     stack: Stack | None,
     report: Callable[[DriveLog], None],
 ) -> None:
-    """Drive the course; all goes into the log. SIGTERM interrupts as Ctrl-C does."""
+    """Drive the course and fill the log. SIGTERM interrupts like Ctrl-C."""
     before = signal.signal(signal.SIGTERM, signal.default_int_handler)
-    # rclpy's own handlers would take the context away while the node is spun.
+    # rclpy's own signal handlers would shut down the context while the node is spinning.
     rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
     drive = Drive(course, options, log, stack)
     try:

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The off-loaded nodes, started by the laptop's program too: on the platform, or on plain DDS."""
+"""Off-loaded nodes started by the laptop program, on the platform or on plain DDS."""
 
 from __future__ import annotations
 
@@ -27,34 +27,34 @@ Tell = Callable[[str], None]
 
 
 class Stack(Protocol):
-    """Processes that drive the vehicle."""
+    """Processes of the off-loaded nodes."""
 
     @property
     def pids(self) -> dict[str, int]:
-        """The newest process of each node, and of the bridge."""
+        """Latest process of each node, and of the bridge."""
 
     def check(self) -> None:
-        """Raise where they have ended."""
+        """Raise ManycoreError if they have ended."""
 
     def note_cpu(self) -> None:
-        """Note CPU times that would go with a process that dies; call it now and then."""
+        """Save the CPU times of processes that may die; call it periodically."""
 
     def cpu_s(self) -> tuple[float, float | None]:
-        """Return the CPU time of all, and of the bridge if there is one."""
+        """Return the CPU time of all processes, and of the bridge if there is one."""
 
     def packets_received(self) -> int | None:
-        """Return what came into the network namespace; None where it is the laptop's own."""
+        """Return the packets received by the network namespace; None in the laptop's own."""
 
     def close(self) -> None:
-        """End all."""
+        """Stop all processes."""
 
 
 class PlatformStack:
-    """`manycore run MAPFILE`; what its nodes warn of, and restarts, are told."""
+    """`manycore run MAPFILE`; warnings and restarts of its nodes are reported."""
 
     def __init__(self, mapfile: Path, tell: Tell, namespace: str | None = None) -> None:
         self._tell, self._namespace = tell, namespace
-        self._bridge_cpu_s: dict[int, float] = {}  # by process, as seen last
+        self._bridge_cpu_s: dict[int, float] = {}  # last value by process
         self.pids: dict[str, int] = {}
         self._last_lines: list[str] = []
         self._process = subprocess.Popen(
@@ -65,7 +65,7 @@ class PlatformStack:
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
             text=True,
-            start_new_session=True,  # Ctrl-C is for the laptop, which then ends the run
+            start_new_session=True,  # the laptop handles Ctrl-C and stops the run
             preexec_fn=dies_with_this_process(),
         )
         self._reader = threading.Thread(target=self._read, daemon=True)
@@ -94,29 +94,29 @@ class PlatformStack:
             self._last_lines = [*self._last_lines[-9:], f"{node}: {text}"]
 
     def check(self) -> None:
-        """Raise when the run is over, with what was said last."""
+        """Raise ManycoreError with the last output if the run has ended."""
         if self._process.poll() is not None:
             self._reader.join(timeout=1.0)
             said = "\n  ".join(self._last_lines)
             raise ManycoreError(f"the run of the platform has ended:\n  {said}")
 
     def note_cpu(self) -> None:
-        """See Stack."""
+        """Save CPU times; see Stack."""
         for node, pid in dict(self.pids).items():
             if node.startswith(BRIDGE):
                 self._bridge_cpu_s[pid] = max(process_cpu_s(pid), self._bridge_cpu_s.get(pid, 0.0))
 
     def cpu_s(self) -> tuple[float, float | None]:
-        """See Stack."""
+        """Return CPU times; see Stack."""
         self.note_cpu()
         return tree_cpu_s(self._process.pid), sum(self._bridge_cpu_s.values())
 
     def packets_received(self) -> int | None:
-        """See Stack."""
+        """Return received packets; see Stack."""
         return None if self._namespace is None else packets_received(self._process.pid)
 
     def close(self) -> None:
-        """End the run, as Ctrl-C would."""
+        """Stop the run, like Ctrl-C."""
         if self._process.poll() is None:
             self._process.send_signal(signal.SIGINT)
         try:
@@ -127,7 +127,7 @@ class PlatformStack:
 
 
 class PlainStack:
-    """The nodes of a mapfile as ordinary processes on Fast DDS, each on the same host CPU."""
+    """Nodes of a mapfile as ordinary processes on Fast DDS, each on the same host CPU."""
 
     def __init__(self, mapfile: Path, tell: Tell, namespace: str | None = None) -> None:
         self._namespace = namespace
@@ -149,29 +149,29 @@ class PlainStack:
 
     @property
     def pids(self) -> dict[str, int]:
-        """See Stack."""
+        """Return the processes; see Stack."""
         return {name: process.pid for name, process in self._processes.items()}
 
     def check(self) -> None:
-        """Raise when a node has ended."""
+        """Raise ManycoreError if a node has ended."""
         for name, process in self._processes.items():
             if process.poll() is not None:
-                raise ManycoreError(f"{name} has ended with status {process.returncode}")
+                raise ManycoreError(f"{name} has ended with exit status {process.returncode}")
 
     def note_cpu(self) -> None:
-        """See Stack: there is no bridge."""
+        """Do nothing: there is no bridge."""
 
     def cpu_s(self) -> tuple[float, float | None]:
-        """See Stack."""
+        """Return CPU times; see Stack."""
         return sum(tree_cpu_s(process.pid) for process in self._processes.values()), None
 
     def packets_received(self) -> int | None:
-        """See Stack."""
+        """Return received packets; see Stack."""
         pid = next(iter(self._processes.values())).pid
         return None if self._namespace is None else packets_received(pid)
 
     def close(self) -> None:
-        """End the nodes."""
+        """Stop the nodes."""
         for process in self._processes.values():
             process.send_signal(signal.SIGINT)
         for process in self._processes.values():
@@ -207,7 +207,7 @@ def pid_of(stack: Stack | None, target: str) -> int:
     """Return the process of a fault's target; `bridge inward` means `(bridge inward)`."""
     if stack is None:
         raise ManycoreError(
-            f"--fault: {target} is a process of the stack: start that with --run too",
+            f"--fault: {target} is a process of the stack: start it with --run",
             EXIT_BAD_INPUT,
         )
     pids = stack.pids

@@ -1,9 +1,9 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The topics that cross between laptop and platform, as mapfiles/whill.yaml names them."""
+"""Topics bridged between laptop and platform, as named in mapfiles/whill.yaml."""
 
 from __future__ import annotations
 
-# The wheelchair reads this one alone.
+# The only topic the wheelchair subscribes to.
 CMD_VEL = "/whill/controller/cmd_vel"
 
 STATE = "/whill/states/model_cr2"
@@ -14,7 +14,7 @@ ENGAGE = "/autoware/engage"
 HEARTBEAT = "/external/heartbeat"
 CLEAR_STOP = "/vehicle_cmd_gate/service/clear_external_emergency_stop"
 
-# Read by the observer, which measures.
+# Subscribed by the observer, for measurement.
 POSE = "/localization/pose_estimator/pose"
 KINEMATICS = "/localization/kinematic_state"
 CONTROL = "/control/command/control_cmd"

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The wheelchair on the laptop: its plant moves in real time, its sensors' drivers publish."""
+"""Wheelchair on the laptop: real-time plant, and sensor drivers that publish."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from rmw_manycore_py.whill.laptop.drive_log import Command
 from rmw_manycore_py.whill.laptop.plant import Plant
 from rmw_manycore_py.whill.laws.odometry import motors_of_speed
 
-STEP_S = 0.01  # the IMU's period
+STEP_S = 0.01  # period of the IMU
 STEPS_PER_STATE, STEPS_PER_SCAN = 4, 10
 GYRO_STDDEV_RAD_S, GYRO_BIAS_RAD_S = 0.003, 0.002
 SENSORS = ("lidar", "imu", "wheels")
@@ -28,17 +28,17 @@ Look = Callable[[int, Plant], None]
 
 
 class Wheelchair:
-    """Reads cmd_vel and nothing else.
+    """Subscribes to cmd_vel only.
 
-    :param look: called with stamp (ns) and plant when a scan is due.
-    :param heard: called with each command that has arrived.
+    :param look: called with stamp [ns] and plant when a scan is due.
+    :param heard: called with each received command.
     """
 
     def __init__(self, node: Node, plant: Plant, look: Look, heard: Callable[[Command], None]):
         self._plant = plant
         self._look = look
         self._heard = heard
-        self.stopped: set[str] = set()  # sensors that have stopped, of SENSORS
+        self.stopped: set[str] = set()  # stopped sensors, a subset of SENSORS
         self._steps = 0
         self._moved_s = time.monotonic()
         self._generator = np.random.default_rng(7)
@@ -53,7 +53,7 @@ class Wheelchair:
         self._heard(command)
 
     def _step(self) -> None:
-        """Move for the time that has really passed: a timer may be late."""
+        """Advance by the elapsed time, since timers may be late."""
         now_s = time.monotonic()
         self._plant.advance(now_s, now_s - self._moved_s)
         self._moved_s = now_s

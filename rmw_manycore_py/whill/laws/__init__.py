@@ -1,2 +1,2 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What the nodes compute, without ROS: the rules of the published nodes as plain functions."""
+"""Computations of the nodes as plain functions, without ROS; sources are published nodes."""

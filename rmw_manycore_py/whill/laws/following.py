@@ -1,8 +1,8 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Following a trajectory: linearized pure pursuit, and a speed held in proportion.
+"""Trajectory following: linearized pure pursuit, and proportional speed control.
 
-Source: simple_trajectory_follower of Autoware Universe. Its gains are those of a car with
-a wheel base of 4 m, whatever vehicle it steers.
+Source: simple_trajectory_follower of Autoware Universe. Its gains are those of a car with a wheel
+base of 4 m, regardless of the vehicle.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ MAX_ACCELERATION_M_S2 = 2.0
 
 @dataclass(frozen=True)
 class PlanarPose:
-    """Where a vehicle or a point of a trajectory is, in the map frame."""
+    """Pose of a vehicle or trajectory point in the map frame."""
 
     x_m: float
     y_m: float
@@ -27,17 +27,17 @@ class PlanarPose:
 
 
 def lateral_deviation_m(base: PlanarPose, x_m: float, y_m: float) -> float:
-    """Return how far a position is to the left of a pose."""
+    """Return the lateral offset of a position from a pose, positive to the left."""
     return math.cos(base.yaw_rad) * (y_m - base.y_m) - math.sin(base.yaw_rad) * (x_m - base.x_m)
 
 
 def yaw_deviation_rad(base: PlanarPose, yaw_rad: float) -> float:
-    """Return how far a heading is turned to the left of that of a pose, from -pi to pi."""
+    """Return the heading relative to a pose, positive to the left, from -pi to pi."""
     return math.remainder(yaw_rad - base.yaw_rad, 2.0 * math.pi)
 
 
 def steering_rad(lateral_m: float, yaw_rad: float, speed_m_s: float) -> float:
-    """Return the steering angle that takes both deviations back, positive to the left."""
+    """Return the steering angle that corrects both deviations, positive to the left."""
     lookahead_m = MIN_LOOKAHEAD_M + LOOKAHEAD_TIME_S * abs(speed_m_s)
     kp = 2.0 * GAIN_WHEEL_BASE_M / lookahead_m**2
     kd = 2.0 * GAIN_WHEEL_BASE_M / lookahead_m
@@ -45,7 +45,7 @@ def steering_rad(lateral_m: float, yaw_rad: float, speed_m_s: float) -> float:
 
 
 def acceleration_m_s2(speed_m_s: float, target_m_s: float) -> float:
-    """Return the acceleration towards a speed."""
+    """Return the acceleration towards a target speed."""
     return _clamped(-SPEED_GAIN_1_S * (speed_m_s - target_m_s), MAX_ACCELERATION_M_S2)
 
 

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Which commands reach the vehicle. Source: vehicle_cmd_gate of Autoware Universe.
+"""Decides which commands reach the vehicle. Source: vehicle_cmd_gate of Autoware Universe.
 
 ```
   heartbeat late ──► STOPPED ──clear, heartbeat back──► PASSING
@@ -16,7 +16,7 @@ from enum import Enum
 
 
 class Source(Enum):
-    """Where a command comes from."""
+    """Source of a command."""
 
     AUTO = "auto"
     EXTERNAL = "external"
@@ -24,16 +24,16 @@ class Source(Enum):
 
 
 class Passage(Enum):
-    """What becomes of a command that has come."""
+    """What happens to a received command."""
 
     BLOCKED = "blocked"
-    HELD = "held"  # its steering passes, the vehicle stands
+    HELD = "held"  # passes with its steering and zero speed
     PASSED = "passed"
 
 
 @dataclass(frozen=True)
 class GateOptions:
-    """Which heartbeats have to come, and how often; 0 s: no timeout.
+    """Monitored heartbeats and their timeouts; 0 s disables a timeout.
 
     :param watches_external: no command passes before the first external heartbeat.
     :param watches_system: the same for the state of the emergency handler.
@@ -47,12 +47,12 @@ class GateOptions:
 
 @dataclass
 class Gate:
-    """State of the gate; times in seconds on one clock of the caller's."""
+    """State of the gate; times in seconds of one clock."""
 
     options: GateOptions
     source: Source = Source.AUTO
     is_engaged: bool = False
-    is_stopped: bool = False  # latched, until `clear`
+    is_stopped: bool = False  # latched until `clear`
     is_system_emergency: bool = False
     is_external_late: bool = False
     is_system_late: bool = False
@@ -60,15 +60,15 @@ class Gate:
     _system_s: float | None = None
 
     def external_heartbeat(self, now_s: float) -> None:
-        """Note a heartbeat of the external controller."""
+        """Record a heartbeat of the external controller."""
         self._external_s = now_s
 
     def system_state(self, now_s: float, is_emergency: bool) -> None:
-        """Note what the emergency handler says, which is its heartbeat too."""
+        """Record the state of the emergency handler, which also counts as its heartbeat."""
         self._system_s, self.is_system_emergency = now_s, is_emergency
 
     def missing(self) -> tuple[str, ...]:
-        """Return the heartbeats without which nothing passes, and which never came."""
+        """Return the required heartbeats that have never arrived."""
         watched = (
             ("emergency state", self.options.watches_system, self._system_s),
             ("external heartbeat", self.options.watches_external, self._external_s),
@@ -76,7 +76,7 @@ class Gate:
         return tuple(name for name, is_watched, seen_s in watched if is_watched and seen_s is None)
 
     def tick(self, now_s: float) -> bool:
-        """Look at the heartbeats; tell whether the emergency command is due instead of others."""
+        """Check the heartbeats; return whether the emergency command replaces others."""
         if self.missing():
             return False
         if self.options.watches_system:
@@ -88,7 +88,7 @@ class Gate:
         return self.is_system_late or self.is_stopped
 
     def passage(self, source: Source) -> Passage:
-        """Return what becomes of a command that has just come."""
+        """Return what happens to a received command."""
         if self.missing() or self.is_system_late or self.is_stopped:
             return Passage.BLOCKED
         if source is not self.wanted_source():
@@ -105,7 +105,7 @@ class Gate:
         self.is_stopped = True
 
     def clear(self) -> bool:
-        """Let commands pass again; False while the heartbeat is late, or where nothing stops."""
+        """Release a stop; return False if the heartbeat is late or nothing is stopped."""
         was_stopped = self.is_stopped
         if was_stopped and not self.is_external_late:
             self.is_stopped = False

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""A trajectory to follow, and what keeps one from being driven."""
+"""A trajectory, and checks whether it can be driven."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ from rmw_manycore_py.whill.laws.following import (
 
 Vector = npt.NDArray[np.float64]
 
-MAX_GAP_M = 2.0  # between points: farther apart, the nearest one is no guide
+MAX_GAP_M = 2.0  # maximum distance between points for following the nearest
 MIN_GAP_M = 1e-3
-MAX_HEADING_ERROR_RAD = 0.5  # between a point's yaw and the way to the next one
+MAX_HEADING_ERROR_RAD = 0.5  # maximum angle between a point's yaw and the direction to the next
 
 
 @dataclass(frozen=True)
@@ -39,7 +39,7 @@ class Trajectory:
         return np.column_stack([self.x_m, self.y_m])
 
     def nearest(self, x_m: float, y_m: float) -> int:
-        """Return the number of the point nearest to a position."""
+        """Return the index of the point nearest to a position."""
         offsets = self._positions - (x_m, y_m)
         return int(np.argmin(np.einsum("ij,ij->i", offsets, offsets)))
 
@@ -49,20 +49,20 @@ class Trajectory:
         return PlanarPose(*map(float, place))
 
     def speed(self, index: int) -> float:
-        """Return the speed wanted at a point, m/s."""
+        """Return the target speed at a point in m/s."""
         return float(self.speed_m_s[index])
 
     def distance_m(self, x_m: float, y_m: float) -> float:
-        """Return how far a position is from the nearest point."""
+        """Return the distance of a position from the nearest point."""
         nearest = self._positions[self.nearest(x_m, y_m)]
         return float(np.hypot(*(nearest - (x_m, y_m))))
 
     def lateral_error_m(self, x_m: float, y_m: float) -> float:
-        """Return how far a position is to the left of the trajectory."""
+        """Return the lateral offset of a position from the trajectory, positive to the left."""
         return lateral_deviation_m(self.pose(self.nearest(x_m, y_m)), x_m, y_m)
 
     def along_m(self) -> Vector:
-        """Return the way (N,) from the first point to each."""
+        """Return the distance (N,) from the first point to each, along the trajectory."""
         return np.concatenate([[0.0], np.cumsum(self._gaps_m())])
 
     def _gaps_m(self) -> Vector:
@@ -70,9 +70,9 @@ class Trajectory:
         return gaps
 
     def problem(self, wheel_base_m: float, max_speed_m_s: float) -> tuple[int, str, str] | None:
-        """Return what keeps the trajectory from being driven: point, expected, found.
+        """Return why the trajectory cannot be driven: point index, expected, found; None if it can.
 
-        A vehicle turns no tighter than its largest steering angle and its wheel base let it.
+        The minimum turning radius follows from the maximum steering angle and the wheel base.
         """
         if len(self) < 2:
             return 0, "two points or more", str(len(self))
@@ -113,7 +113,7 @@ class Trajectory:
 def _first(
     is_wrong: npt.NDArray[np.bool_], expected: str, values: Vector
 ) -> tuple[int, str, str] | None:
-    """Return the first point that is wrong, with what it has."""
+    """Return the first invalid point with its value; None if all are valid."""
     found = np.flatnonzero(is_wrong)
     if len(found) == 0:
         return None

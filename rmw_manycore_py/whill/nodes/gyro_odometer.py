@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""`gyro_odometer`: speed of the wheels and turn rate of the gyroscope as one twist."""
+"""`gyro_odometer`: combines wheel speed and gyroscope turn rate into one twist."""
 
 from __future__ import annotations
 
@@ -22,22 +22,22 @@ from rmw_manycore_py.whill.laws.odometry import gyro_covariance, is_stale, is_st
 
 @dataclass(frozen=True)
 class OdometerParameters:
-    """Autoware's."""
+    """Autoware's parameters."""
 
     timeout_s: float = parameter("message_timeout_sec", 0.2, above=0.0)
 
 
 class GyroOdometer(Node):
-    """Publishes a twist per IMU message, as it is (`_raw`) and without the bias at standstill.
+    """Publishes a twist per IMU message: raw (`_raw`), and with zero rates at standstill.
 
-    The IMU's axes have to be those of the vehicle.
+    The axes of the IMU must be those of the vehicle.
     """
 
     def __init__(self) -> None:
         super().__init__("gyro_odometer")
         self._p = declare(self, OdometerParameters)
         self._complain = ThrottledLog(self.get_logger().error)
-        self._twist: Any = None  # the newest of the vehicle
+        self._twist: Any = None  # newest twist of the vehicle
         self._imu_s: float | None = None
         self._raw = self.create_publisher(TwistStamped, "twist_raw", 10)
         self._corrected = self.create_publisher(TwistStamped, "twist", 10)
@@ -61,14 +61,14 @@ class GyroOdometer(Node):
     def _on_twist(self, message: Any) -> None:
         self._twist = message
         if self._imu_s is None:
-            self._complain("there is no message on imu yet")
+            self._complain("no message on imu yet")
         elif is_stale(self._imu_s, clock_s(self), self._p.timeout_s):
             self._complain(self._stale("imu", self._imu_s))
 
     def _on_imu(self, imu: Any) -> None:
         self._imu_s = seconds(imu.header.stamp)
         if self._twist is None:
-            self._complain("there is no message on vehicle/twist_with_covariance yet")
+            self._complain("no message on vehicle/twist_with_covariance yet")
             return
         stamp_s = seconds(self._twist.header.stamp)
         if is_stale(stamp_s, clock_s(self), self._p.timeout_s):
@@ -102,7 +102,7 @@ class GyroOdometer(Node):
 
 
 def main() -> None:
-    """Run the node until it is interrupted."""
+    """Run the node until interrupted."""
     run_node(GyroOdometer)
 
 

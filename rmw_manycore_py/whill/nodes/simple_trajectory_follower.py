@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""`simple_trajectory_follower`: steering and speed that keep the vehicle on a trajectory."""
+"""`simple_trajectory_follower`: commands steering and speed along a trajectory."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ PERIOD_S = 0.03
 
 @dataclass(frozen=True)
 class FollowerParameters:
-    """Autoware's first; then what makes the vehicle stand, where Autoware's node drives on."""
+    """Autoware's parameters first; then conditions for stopping, which Autoware's node lacks."""
 
     use_external_speed: bool = parameter("use_external_target_vel", False)
     external_speed_m_s: float = parameter("external_target_vel", 0.0, least=0.0)
@@ -48,7 +48,7 @@ class FollowerParameters:
 
 
 class SimpleTrajectoryFollower(Node):
-    """Commands each 30 ms, once there are `input/kinematics` and `input/trajectory`."""
+    """Publishes a command every 30 ms once it has `input/kinematics` and `input/trajectory`."""
 
     def __init__(self) -> None:
         super().__init__("simple_trajectory_follower")
@@ -56,8 +56,8 @@ class SimpleTrajectoryFollower(Node):
         self._complain = ThrottledLog(self.get_logger().warning)
         self._odometry: Any = None
         self._trajectory: Trajectory | None = None
-        self._message: Any = None  # that the trajectory was made of
-        self._sure_s = 0.0  # when the speed was last known well enough
+        self._message: Any = None  # message of the current trajectory
+        self._sure_s = 0.0  # when the speed was last certain enough
         self._output = self.create_publisher(Control, "output/control_cmd", 1)
         self.create_subscription(
             Odometry,
@@ -82,7 +82,7 @@ class SimpleTrajectoryFollower(Node):
         if self._message is not None and _is_same(message, self._message):
             return
         if not message.points:
-            self._complain("input/trajectory: expected points, found none: it is passed over")
+            self._complain("input/trajectory ignored: expected points, found none")
             return
         self._message, self._trajectory = message, trajectory_of(message)
 
@@ -93,11 +93,11 @@ class SimpleTrajectoryFollower(Node):
             return
         reason = self._reason_to_stand(self._trajectory)
         if reason:
-            self._complain(f"{reason}: the vehicle is told to stand")
+            self._complain(f"{reason}: commanding standstill")
         self._publish(self._trajectory, must_stand=bool(reason))
 
     def _reason_to_stand(self, trajectory: Trajectory) -> str:
-        """Return why the pose is no ground to drive on, "" where it is."""
+        """Return why the pose cannot be used for driving; "" if it can."""
         stamp_s, now_s = seconds(self._odometry.header.stamp), clock_s(self)
         if is_stale(stamp_s, now_s, self._p.timeout_s):
             return (
@@ -114,12 +114,12 @@ class SimpleTrajectoryFollower(Node):
         return self._reason_to_doubt()
 
     def _reason_to_doubt(self) -> str:
-        """Return why the estimate is too uncertain to drive on, "" where it is not."""
+        """Return why the estimate is too uncertain for driving; "" if it is not."""
         of_pose, of_twist = self._odometry.pose.covariance, self._odometry.twist.covariance
         stddev_m = math.sqrt(max(of_pose[0], of_pose[7], 0.0))
         if not stddev_m <= self._p.max_stddev_m:
             return (
-                f"the position is known to {stddev_m:.2f} m only, expected "
+                f"the standard deviation of the position is {stddev_m:.2f} m, expected at most "
                 f"{self._p.max_stddev_m:g} m (are scans coming, and poses?)"
             )
         stddev_m_s = math.sqrt(max(of_twist[0], 0.0))
@@ -128,7 +128,7 @@ class SimpleTrajectoryFollower(Node):
             self._sure_s = now_s
         if not abs(now_s - self._sure_s) <= self._p.doubt_s:
             return (
-                f"the speed is known to {stddev_m_s:.2f} m/s only, expected "
+                f"the standard deviation of the speed is {stddev_m_s:.2f} m/s, expected at most "
                 f"{self._p.max_stddev_m_s:g} m/s (are wheels and IMU reporting?)"
             )
         return ""
@@ -153,13 +153,13 @@ class SimpleTrajectoryFollower(Node):
 
 
 def _is_same(message: Any, before: Any) -> bool:
-    """Tell whether two messages hold one trajectory; a stamp spares comparing points."""
+    """Return whether two messages hold the same trajectory; equal stamps skip the comparison."""
     has_stamp = message.header.stamp != Time()
     return bool((has_stamp and message.header == before.header) or message.points == before.points)
 
 
 def main() -> None:
-    """Run the node until it is interrupted."""
+    """Run the node until interrupted."""
     run_node(SimpleTrajectoryFollower)
 
 

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""`static_trajectory_publisher`: a trajectory from a file, for all that ask now or later."""
+"""`static_trajectory_publisher`: publishes a trajectory from a file."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from rmw_manycore_py.whill.messages import trajectory_message
 
 @dataclass(frozen=True)
 class PublisherParameters:
-    """Ours; the wheel base and the speed are those of the vehicle that is to drive."""
+    """Own parameters; wheel base and maximum speed are those of the driving vehicle."""
 
     path: str = parameter("trajectory_path", "")
     period_s: float = parameter("publish_period", 1.0, above=0.0)
@@ -30,7 +30,7 @@ class PublisherParameters:
 
 
 class StaticTrajectoryPublisher(Node):
-    """Publishes `trajectory` again and again, for planners' subscribers keep none."""
+    """Publishes `trajectory` periodically, since subscribers of planners are volatile."""
 
     def __init__(self) -> None:
         super().__init__("static_trajectory_publisher")
@@ -54,7 +54,7 @@ class StaticTrajectoryPublisher(Node):
 
 
 def main() -> None:
-    """Run the node until it is interrupted."""
+    """Run the node until interrupted."""
     run_node(StaticTrajectoryPublisher)
 
 

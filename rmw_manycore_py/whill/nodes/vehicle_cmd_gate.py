@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""`vehicle_cmd_gate`: one command for the vehicle, of those that planning and people give."""
+"""`vehicle_cmd_gate`: selects one command for the vehicle from planning and operators."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ MRM_AT_WORK = (MrmState.MRM_OPERATING, MrmState.MRM_SUCCEEDED, MrmState.MRM_FAIL
 
 @dataclass(frozen=True)
 class GateParameters:
-    """Autoware's; its filter of commands is not there: the interface limits the speed."""
+    """Autoware's parameters without its command filter: the interface limits the speed."""
 
     update_rate_hz: float = parameter("update_rate", 10.0, above=0.0, most=1000.0)
     watches_system: bool = parameter("use_emergency_handling", False)
@@ -50,7 +50,7 @@ class GateParameters:
 
 
 class VehicleCmdGate(Node):
-    """Passes commands message by message; stops the vehicle where a heartbeat is late."""
+    """Forwards commands one by one; stops the vehicle if a heartbeat is late."""
 
     def __init__(self) -> None:
         super().__init__("vehicle_cmd_gate")
@@ -149,7 +149,7 @@ class VehicleCmdGate(Node):
 
     def _tick(self) -> None:
         if missing := self._gate.missing():
-            self._complain(f"waiting for {', '.join(missing)}: no command passes")
+            self._complain(f"waiting for {', '.join(missing)}: no command is forwarded")
             return
         if self._gate.tick(clock_s(self)):
             self._complain(self._reason_to_stop())
@@ -158,7 +158,7 @@ class VehicleCmdGate(Node):
             source = self._gate.wanted_source()
             lights = {name: one for (of, name), one in self._lights.items() if of is source}
             self._outputs.pass_lights(lights, self._gate.is_engaged or source is not Source.AUTO)
-        self._outputs.tell_state(self._gate)
+        self._outputs.publish_state(self._gate)
 
     def _reason_to_stop(self) -> str:
         if self._gate.is_external_late:
@@ -171,7 +171,7 @@ class VehicleCmdGate(Node):
         return "emergency stop: call ~/service/clear_external_emergency_stop to drive on"
 
     def _on_kinematics(self, _message: Any) -> None:
-        """Do nothing: only Autoware's filter of commands needs it; the watch names a dead EKF."""
+        """Do nothing: the subscription only serves to report a dead EKF, not a filter."""
 
     def _on_heartbeat(self, _message: Any) -> None:
         self._gate.external_heartbeat(clock_s(self))
@@ -183,7 +183,7 @@ class VehicleCmdGate(Node):
     def _on_gate_mode(self, message: Any) -> None:
         sources = {GateMode.AUTO: Source.AUTO, GateMode.EXTERNAL: Source.EXTERNAL}
         if message.data not in sources:
-            self._complain(f"input/gate_mode: expected 0 or 1, found {message.data}: passed over")
+            self._complain(f"input/gate_mode: expected 0 or 1, found {message.data}: ignored")
             return
         self._gate.source = sources[message.data]
 
@@ -222,7 +222,7 @@ class VehicleCmdGate(Node):
 
 
 def main() -> None:
-    """Run the node until it is interrupted."""
+    """Run the node until interrupted."""
     run_node(VehicleCmdGate)
 
 

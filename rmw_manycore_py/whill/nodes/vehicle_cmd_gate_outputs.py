@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What `vehicle_cmd_gate` publishes: commands, and the state it is in."""
+"""Outputs of `vehicle_cmd_gate`: commands and state."""
 
 from __future__ import annotations
 
@@ -25,14 +25,14 @@ from rmw_manycore_py.whill.laws.gating import Gate, Source
 
 @dataclass(frozen=True)
 class StopLevels:
-    """Accelerations of the two commands to stand, m/s^2."""
+    """Accelerations of the two stop commands, m/s^2."""
 
     hold_m_s2: float
     emergency_m_s2: float
 
 
 class GateOutputs:
-    """Publishers of the gate, and what it needs to fill their messages."""
+    """Publishers of the gate, and the data for their messages."""
 
     def __init__(self, node: Node, levels: StopLevels) -> None:
         self._node = node
@@ -52,17 +52,17 @@ class GateOutputs:
         self._operation_mode = create(OperationModeState, "output/operation_mode", kept)
 
     def note_mode(self, state: Any) -> None:
-        """Remember the operation mode, which the gate repeats."""
+        """Store the operation mode, which the gate repeats."""
         self._mode = state
 
     def pass_on(self, command: Any, is_emergency: bool, is_held: bool) -> None:
-        """Publish a command; a held one keeps its steering, and the vehicle stands."""
+        """Publish a command; if held, with its steering and zero speed."""
         if is_held:
             command.longitudinal = self._standing(self._levels.hold_m_s2)
         self._publish(command, is_emergency)
 
     def stop(self) -> None:
-        """Publish the emergency command: the last steering, no speed, hazard lights."""
+        """Publish the emergency command: last steering, zero speed, hazard lights."""
         stamp = self._now()
         command = Control(stamp=stamp, longitudinal=self._standing(self._levels.emergency_m_s2))
         command.lateral.stamp = stamp
@@ -74,7 +74,7 @@ class GateOutputs:
         self._gear.publish(GearCommand(stamp=stamp))
 
     def pass_lights(self, lights: dict[str, Any], is_engaged: bool) -> None:
-        """Publish gear and lights of the source; lights only once the vehicle is engaged."""
+        """Publish gear and lights of the source; lights only when engaged."""
         stamp = self._now()
         self._gear.publish(lights.get("gear_cmd", GearCommand(stamp=stamp)))
         for publisher, name, kind in (
@@ -84,7 +84,7 @@ class GateOutputs:
             command = lights.get(name) if is_engaged else None
             publisher.publish(kind(stamp=stamp) if command is None else command)
 
-    def tell_state(self, gate: Gate) -> None:
+    def publish_state(self, gate: Gate) -> None:
         """Publish mode, engagement and emergency."""
         stamp = self._now()
         is_external = gate.source is Source.EXTERNAL

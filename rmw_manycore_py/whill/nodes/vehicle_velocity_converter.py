@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""`vehicle_velocity_converter`: the vehicle's report of its speed, as a twist with covariance."""
+"""`vehicle_velocity_converter`: converts the reported speed to a twist with covariance."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from rmw_manycore_py.whill.laws.odometry import velocity_covariance
 
 @dataclass(frozen=True)
 class ConverterParameters:
-    """Autoware's."""
+    """Autoware's parameters."""
 
     stddev_vx_m_s: float = parameter("velocity_stddev_xx", 0.2, least=0.0)
     stddev_wz_rad_s: float = parameter("angular_velocity_stddev_zz", 0.1, least=0.0)
@@ -28,7 +28,7 @@ class ConverterParameters:
 
 
 class VehicleVelocityConverter(Node):
-    """From `velocity_status` to `twist_with_covariance`, message by message."""
+    """Converts `velocity_status` to `twist_with_covariance`, message by message."""
 
     def __init__(self) -> None:
         super().__init__("vehicle_velocity_converter")
@@ -63,7 +63,7 @@ class VehicleVelocityConverter(Node):
 
 
 def main() -> None:
-    """Run the node until it is interrupted."""
+    """Run the node until interrupted."""
     run_node(VehicleVelocityConverter)
 
 

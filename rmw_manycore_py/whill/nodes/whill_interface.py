@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""`whill_interface`: Autoware's commands for the wheelchair, and its state for Autoware."""
+"""`whill_interface`: converts Autoware's commands and the state of the wheelchair."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ REPORTED_GEARS = (GearCommand.PARK, GearCommand.REVERSE, GearCommand.DRIVE, Gear
 
 @dataclass(frozen=True)
 class InterfaceParameters:
-    """Those of tier4's adapter and of Autoware's vehicle information."""
+    """Parameters of tier4's adapter and of Autoware's vehicle information."""
 
     timeout_s: float = parameter("control_cmd_timeout_sec", 0.5, above=0.0)
     rate_hz: float = parameter("loop_rate", 50.0, least=1.0, most=1000.0)
@@ -46,7 +46,7 @@ class InterfaceParameters:
 
 
 class WhillInterface(Node):
-    """Commands at a fixed rate; a zero twist on timeout, in PARK and in an emergency."""
+    """Publishes at a fixed rate; a zero twist on timeout, in PARK and in an emergency."""
 
     def __init__(self) -> None:
         super().__init__("whill_interface")
@@ -110,7 +110,7 @@ class WhillInterface(Node):
             return
         twist = Twist()
         if reason := self._reason_to_stand():
-            self._complain(f"{reason}: the wheelchair is told to stand")
+            self._complain(f"{reason}: commanding standstill")
         else:
             wanted_m_s = self._control.longitudinal.velocity
             if wanted_m_s > self._p.max_speed_m_s:
@@ -125,7 +125,7 @@ class WhillInterface(Node):
         self._twist.publish(twist)
 
     def _reason_to_stand(self) -> str:
-        """Return why no command is followed, "" where the newest one is."""
+        """Return why the newest command is not followed; "" if it is."""
         if self._is_emergency:
             return "there is an emergency"
         if self._gear.command == GearCommand.PARK:
@@ -140,7 +140,7 @@ class WhillInterface(Node):
         return ""
 
     def _on_state(self, state: Any) -> None:
-        """Report the wheelchair's motion; lights and mode it has none of, so they are constant."""
+        """Report the wheelchair's motion; lights and mode are constant, since it has none."""
         stamp = self.get_clock().now().to_msg()
         motors = (state.left_motor_speed, state.right_motor_speed)
         speed_m_s, yaw_rate_rad_s = speed_of_motors(*motors, self._p.tread_m)
@@ -159,7 +159,7 @@ class WhillInterface(Node):
 
 
 def main() -> None:
-    """Run the node until it is interrupted."""
+    """Run the node until interrupted."""
     run_node(WhillInterface)
 
 
