@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Point clouds in files: PCD, and PLY through Open3D."""
+"""Reads point cloud files: PCD, and PLY with Open3D."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from rmw_manycore_py.ndt.geometry.precision import as_they_were
 
 
 def read_cloud(path: Path) -> Points:
-    """Return the points (N, 3) of a PCD or PLY file, finite or not."""
+    """Return the points (N, 3) of a PCD or PLY file, including non-finite ones."""
     read = read_pcd if path.suffix == ".pcd" else _read_ply
     try:
         return as_they_were(read(path))
@@ -35,12 +35,12 @@ def _read_ply(path: Path) -> Points:
 
 
 def load_open3d() -> ModuleType:
-    """Return Open3D; without it an error says how to get it."""
+    """Return the module Open3D; raise ManycoreError with install instructions if missing."""
     try:
         import open3d
     except ImportError as error:
         raise ManycoreError(
-            f"Open3D cannot be loaded ({error}). Maps as PLY, and thinning, need it: "
+            f"Open3D cannot be loaded ({error}). PLY maps and downsampling need it: "
             "pip install 'rmw-manycore[ndt]'; its system libraries: "
             "apt install libusb-1.0-0 libgl1 libegl1 libgomp1 libx11-6"
         ) from error
@@ -50,5 +50,5 @@ def load_open3d() -> ModuleType:
 
 
 def map_error(path: Path, problem: str) -> ManycoreError:
-    """Return the error of a map that cannot be read or written."""
+    """Return the error for a map that cannot be read or written."""
     return ManycoreError(f"map {path}: {problem}", EXIT_BAD_INPUT)

@@ -1,8 +1,8 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Positions in PCD files (PCL's format, version 0.7), in the precision that the file has.
+"""Reads and writes positions in PCD files (PCL's format, version 0.7), in the file's precision.
 
-By pypcd4, not by Open3D: of binary files, one of its readers (0.20) takes doubles for singles, the
-other is led astray by the padding fields that PCL writes.
+Uses pypcd4 instead of Open3D (0.20): of Open3D's readers of binary files, one reads doubles as
+singles, the other fails on the padding fields that PCL writes.
 """
 
 from __future__ import annotations
@@ -18,13 +18,13 @@ from rmw_manycore_py.ndt.files.unreadable import UNREADABLE
 from rmw_manycore_py.ndt.geometry.arrays import Points
 
 AXES = ("x", "y", "z")
-MOST_NUMBERS = 10_000  # of a point: pypcd4 names each of them before it looks for any
+MOST_NUMBERS = 10_000  # per point: pypcd4 generates a name for each
 
 
 def read_pcd(path: Path) -> Points:
-    """Return the positions (N, 3) of a file, finite or not; raises OSError and ValueError."""
+    """Return the positions (N, 3), including non-finite ones; raises OSError and ValueError."""
     _check_counts(path)
-    from pydantic import ValidationError  # pypcd4 has it; other maps do without
+    from pydantic import ValidationError  # a dependency of pypcd4, not of other maps
 
     try:
         cloud = _load_pypcd4().PointCloud.from_path(path)
@@ -34,7 +34,7 @@ def read_pcd(path: Path) -> Points:
     except (OSError, ValueError):
         raise
     except UNREADABLE as error:
-        raise ValueError(f"it is broken: {error!r}") from error  # pypcd4 does not check before
+        raise ValueError(f"it is broken: {error!r}") from error  # pypcd4 does not validate
     missing = [axis for axis in AXES if axis not in cloud.fields]
     if missing:
         raise ValueError(f"it has no field {', '.join(missing)}")
@@ -43,7 +43,7 @@ def read_pcd(path: Path) -> Points:
 
 
 def _check_counts(path: Path) -> None:
-    """Raise a ValueError for a header whose points would take all memory by their fields alone."""
+    """Raise ValueError for a header whose fields alone would exhaust memory."""
     with path.open("rb") as file:
         for line in file:
             if line.startswith(b"DATA"):
@@ -56,7 +56,7 @@ def _check_counts(path: Path) -> None:
 
 
 def write_pcd(path: Path, points: Points) -> None:
-    """Write positions (N, 3), in the precision that they have, as a binary file."""
+    """Write positions (N, 3) in their own precision, as a binary file."""
     _load_pypcd4().PointCloud.from_points(points, AXES, (points.dtype.type,) * 3).save(path)
 
 

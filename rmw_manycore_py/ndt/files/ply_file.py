@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Whether a PLY file has all points that its header announces: Open3D makes up those it lacks."""
+"""Checks that a PLY file is complete: Open3D invents missing points."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ END = b"end_header"
 
 
 def check_ply(path: Path) -> None:
-    """Raise a ValueError for a file that ends before its points do.
+    """Raise ValueError for a truncated file.
 
-    Files whose points are not the first element, or have lists, are not judged.
+    Files whose points are not the first element, or contain lists, are not checked.
     """
     raw = path.read_bytes()
     header, end, _ = raw[:LONGEST_HEADER].partition(END)
@@ -39,7 +39,7 @@ def check_ply(path: Path) -> None:
 
 
 def _first_element(lines: list[list[str]]) -> tuple[int, list[str]]:
-    """Return number and types of the points, 0 where they do not come first."""
+    """Return number and types of the points; 0 if they are not the first element."""
     at = next((i for i, line in enumerate(lines) if line[:1] == ["element"]), len(lines))
     if at == len(lines) or lines[at][1:2] != ["vertex"]:
         return 0, []

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What the readers of files raise of damaged ones, as they believe whatever a header says."""
+"""Exceptions that file readers raise for damaged files, whose headers they trust."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ UNREADABLE = (
     TypeError,
     LookupError,
     EOFError,
-    RuntimeError,  # also: a compression that zip files may name; a password
-    ArithmeticError,  # a size of more than 64 bits
-    MemoryError,  # a size of more than there is
+    RuntimeError,  # also unknown compression, or a password, of zip files
+    ArithmeticError,  # size beyond 64 bits
+    MemoryError,  # size beyond available memory
     struct.error,
     tokenize.TokenError,
     zipfile.BadZipFile,

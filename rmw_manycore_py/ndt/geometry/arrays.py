@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The types of all arrays of points and poses, and arrays as the kernel takes them."""
+"""Array types of points and poses, and conversions for the kernel."""
 
 from __future__ import annotations
 
@@ -22,25 +22,25 @@ FARTHEST_M = 1e9
 
 
 def scan_points(points: ArrayLike) -> ScanPoints:
-    """Return points (N, 3) as contiguous single precision."""
+    """Return points (N, 3) as a contiguous float32 array."""
     return np.ascontiguousarray(_of_three_columns(points), dtype=np.float32)
 
 
 def map_points(points: ArrayLike) -> Matrix:
-    """Return points (N, 3) as contiguous double precision."""
+    """Return points (N, 3) as a contiguous float64 array."""
     return np.ascontiguousarray(_of_three_columns(points), dtype=np.float64)
 
 
 def pose_matrix(pose: ArrayLike) -> Pose:
-    """Return a transform as a contiguous (4, 4); it may hold anything, even NaN."""
+    """Return a transform as a contiguous (4, 4) array; the values are not checked."""
     matrix = np.ascontiguousarray(pose, dtype=np.float64)
     if matrix.shape != (4, 4):
         raise ManycoreError(f"pose: expected shape (4, 4), found {matrix.shape}", EXIT_BAD_INPUT)
     return matrix
 
 
-def why_no_pose(matrix: Pose) -> str:
-    """Return what keeps a (4, 4) from being a pose, "" when nothing does."""
+def pose_error(matrix: Pose) -> str:
+    """Return why a (4, 4) matrix is not a valid pose; "" if it is."""
     if not np.isfinite(matrix).all():
         return "is not finite"
     if np.abs(matrix[:3, 3]).max() > FARTHEST_M:

@@ -1,13 +1,13 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""An extended Kalman filter of a vehicle's pose, from poses that arrive late and from its speed.
+"""Extended Kalman filter of a vehicle's pose, from delayed poses and from its speed.
 
 The state is that of Autoware's ekf_localizer without the yaw bias: x, y, yaw, v (m/s), w (rad/s)
-in the plane, with constant v and w between measurements; z, roll and pitch are filtered one by
-one. Unlike there, the position may also drift sideways: else what slips, or is carried, is left
-behind however well its poses are measured.
+in the plane, with constant v and w between measurements; z, roll and pitch are filtered separately.
+Unlike Autoware's, the model includes sideways drift: otherwise the estimate of a vehicle that slips
+or is carried lags behind, however accurate its measured poses.
 
-The state lives at the time of the newest measurement, and what is asked for is its prediction. A
-measurement older than that is put in its place, and those after it are applied again.
+The state is at the time of the newest measurement; queries return its prediction. A delayed
+measurement is inserted at its time, and later ones are applied again.
 """
 
 from __future__ import annotations
@@ -21,21 +21,21 @@ from rmw_manycore_py.ndt.geometry.arrays import Matrix
 from rmw_manycore_py.ndt.geometry.poses import from_xyz_rpy, to_rpy
 
 X, Y, YAW, V, W = range(5)
-UPRIGHT = (2, 3, 4)  # z, roll, pitch in a covariance (6, 6)
+UPRIGHT = (2, 3, 4)  # indices of z, roll, pitch in a covariance (6, 6)
 PLANAR = (0, 1, 5)  # x, y, yaw
 
 
 @dataclass(frozen=True)
 class FilterOptions:
-    """Standard deviations of what changes within a second, and the times that are dealt with."""
+    """Standard deviations of the process noise after one second, and time limits."""
 
     stddev_sideways_c: float = 0.5  # m
     stddev_yaw_c: float = 0.005  # rad
     stddev_v_c: float = 3.0  # m/s
     stddev_w_c: float = 1.0  # rad/s
     stddev_upright_c: tuple[float, float, float] = (0.5, 0.05, 0.05)  # m, rad, rad
-    history_s: float = 1.0  # how far back
-    ahead_s: float = 0.5  # of the clock: less than the history, which must reach back to now
+    history_s: float = 1.0  # maximum delay of a measurement
+    ahead_s: float = 0.5  # maximum lead over the clock; less than history_s
 
 
 @dataclass(frozen=True)
@@ -61,7 +61,7 @@ class State:
         return full
 
     def twist_covariance(self) -> Matrix:
-        """Return the covariance (6, 6) of the speed along x and the rate about z; else zero."""
+        """Return the covariance (6, 6) of the twist; zero except speed along x, rate about z."""
         full = np.zeros((6, 6))
         full[np.ix_((0, 5), (0, 5))] = self.covariance[V:, V:]
         return full
@@ -80,11 +80,11 @@ class PoseFilter:
 
     @property
     def is_initialized(self) -> bool:
-        """Tell whether there is a pose yet."""
+        """Return whether there is a pose yet."""
         return self._state is not None
 
     def initialize(self, stamp_s: float, T_map_base: Matrix, covariance: Matrix) -> None:
-        """Start anew at a pose, standing still as far as is known."""
+        """Restart from a pose, assuming standstill."""
         roll, pitch, yaw = to_rpy(T_map_base)
         x, y, z = T_map_base[:3, 3]
         planar = np.diag([0.0, 0.0, 0.0, 100.0, 1.0])
@@ -99,18 +99,19 @@ class PoseFilter:
         )
 
     def predicted(self, stamp_s: float) -> State:
-        """Return the state at a time, at the earliest that of the newest measurement."""
+        """Return the state at a time, but not before the newest measurement."""
         assert self._state is not None
         return _predict(self._state, max(stamp_s, self._state.stamp_s), self.options)
 
     def is_ahead(self, stamp_s: float, now_s: float) -> bool:
-        """Tell whether a time is too far ahead to be applied: all later ones would be too old."""
+        """Return whether a stamp is too far ahead: applying it would make later ones too old."""
         return stamp_s > now_s + self.options.ahead_s
 
     def follow_clock(self, now_s: float) -> bool:
-        """Go on from now where the clock has jumped back, True then: the vehicle has not moved.
+        """If the clock has jumped back, move the state to now and return True.
 
-        Without it everything measured from now on would be older than the state.
+        Assumes that the vehicle has not moved. Otherwise all new measurements would be older than
+        the state.
         """
         if self._state is None or not self.is_ahead(self._state.stamp_s, now_s):
             return False
@@ -119,7 +120,7 @@ class PoseFilter:
         return True
 
     def add_pose(self, stamp_s: float, T_map_base: Matrix, covariance: Matrix) -> bool:
-        """Apply a measured pose; False where it is older than what is kept."""
+        """Apply a measured pose; return False if it is older than the history."""
         roll, pitch, yaw = to_rpy(T_map_base)
         x, y, z = T_map_base[:3, 3]
         measured, upright = np.array([x, y, yaw]), np.array([z, roll, pitch])
@@ -140,7 +141,7 @@ class PoseFilter:
         return self._add(stamp_s, lambda state: _corrected(state, H, measured, noise))
 
     def _add(self, stamp_s: float, update: Update) -> bool:
-        """Apply an update at its time, and those after it again."""
+        """Apply an update at its time, then repeat the later ones."""
         assert self._state is not None
         later: list[tuple[float, Update]] = []
         state, applied = self._state, list(self._applied)
@@ -159,7 +160,7 @@ class PoseFilter:
 
 
 def _predict(state: State, stamp_s: float, options: FilterOptions) -> State:
-    """Drive on: a circle's chord for the mean, its derivative for the covariance."""
+    """Predict: the chord of a circle for the mean, its Jacobian for the covariance."""
     dt = stamp_s - state.stamp_s
     if dt <= 0.0:
         return state
@@ -187,7 +188,7 @@ def _predict(state: State, stamp_s: float, options: FilterOptions) -> State:
 def _corrected(
     state: State, H: Matrix, measured: Matrix, noise: Matrix, angle_row: int | None = None
 ) -> State:
-    """Apply a linear measurement; the innovation of the angle in `angle_row` is wrapped."""
+    """Apply a linear measurement; wrap the innovation of the angle in `angle_row`."""
     innovation = measured - H @ state.mean
     if angle_row is not None:
         innovation[angle_row] = (innovation[angle_row] + np.pi) % (2.0 * np.pi) - np.pi

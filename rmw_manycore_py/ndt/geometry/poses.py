@@ -1,8 +1,8 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Rigid transforms as 4x4 matrices; T_a_b takes points of frame b to frame a. Metres, radians.
+"""Rigid transforms as 4x4 matrices; T_a_b maps points of frame b to frame a. Metres, radians.
 
-Quaternions are [x, y, z, w] as in ROS messages; roll, pitch and yaw turn about the fixed axes
-x, y, z in that order (REP 103).
+Quaternions are [x, y, z, w] as in ROS messages; roll, pitch and yaw are rotations about the fixed
+axes x, y, z in that order (REP 103).
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from rmw_manycore_py.ndt.geometry.arrays import Matrix
 
 
 def transform(T_a_b: Matrix, points_b: npt.NDArray[Any]) -> npt.NDArray[Any]:
-    """Return points (N, 3) in frame a, of the type they have."""
+    """Return points (N, 3) in frame a, with the dtype of the input."""
     moved: Matrix = points_b @ T_a_b[:3, :3].T + T_a_b[:3, 3]
     return moved.astype(points_b.dtype, copy=False)
 
@@ -30,7 +30,7 @@ def inverse(T_a_b: Matrix) -> Matrix:
 
 
 def from_xyz_rpy(xyz_m: npt.ArrayLike, rpy_rad: npt.ArrayLike = (0.0, 0.0, 0.0)) -> Matrix:
-    """Return the transform of a position and of roll, pitch, yaw."""
+    """Return the transform (4, 4) of a position and roll, pitch, yaw."""
     (cr, cp, cy), (sr, sp, sy) = np.cos(rpy_rad), np.sin(rpy_rad)
     T = np.eye(4)
     T[:3, :3] = [
@@ -43,13 +43,13 @@ def from_xyz_rpy(xyz_m: npt.ArrayLike, rpy_rad: npt.ArrayLike = (0.0, 0.0, 0.0))
 
 
 def to_rpy(T: Matrix) -> Matrix:
-    """Return roll, pitch, yaw."""
+    """Return roll, pitch, yaw (3)."""
     pitch = np.arctan2(-T[2, 0], np.hypot(T[0, 0], T[1, 0]))
     return np.array([np.arctan2(T[2, 1], T[2, 2]), pitch, np.arctan2(T[1, 0], T[0, 0])])
 
 
 def rotation_vector(R: Matrix) -> Matrix:
-    """Return axis times angle of a rotation matrix (3, 3)."""
+    """Return the rotation vector (axis times angle) of a rotation matrix (3, 3)."""
     x, y, z, w = to_quaternion(R)
     sine = np.sqrt(x * x + y * y + z * z)
     if sine < 1e-12:
@@ -59,15 +59,20 @@ def rotation_vector(R: Matrix) -> Matrix:
 
 
 def from_rotation_vector(vector_rad: npt.ArrayLike) -> Matrix:
-    """Return the rotation matrix (3, 3) of axis times angle (Rodrigues)."""
+    """Return the rotation matrix (3, 3) of a rotation vector (Rodrigues)."""
     vector = np.asarray(vector_rad, dtype=np.float64)
     angle = float(np.linalg.norm(vector))
     if angle < 1e-12:
         return np.eye(3)
-    x, y, z = vector / angle
-    K = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    K = cross_matrix(vector / angle)
     R: Matrix = np.eye(3) + np.sin(angle) * K + (1.0 - np.cos(angle)) * (K @ K)
     return R
+
+
+def cross_matrix(axis: Matrix) -> Matrix:
+    """Return K (3, 3) for which K @ p is the cross product of an axis (3,) and p."""
+    x, y, z = axis
+    return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
 
 
 def to_quaternion(R: Matrix) -> Matrix:
@@ -96,7 +101,7 @@ def to_quaternion(R: Matrix) -> Matrix:
 
 
 def from_quaternion(quaternion: npt.ArrayLike) -> Matrix:
-    """Return the rotation matrix (3, 3) of a quaternion of any length but zero."""
+    """Return the rotation matrix (3, 3) of a quaternion, normalised first; it must not be zero."""
     x, y, z, w = np.asarray(quaternion, dtype=np.float64) / np.linalg.norm(quaternion)
     return np.array(
         [
@@ -108,7 +113,7 @@ def from_quaternion(quaternion: npt.ArrayLike) -> Matrix:
 
 
 def interpolate(T_old: Matrix, T_new: Matrix, share: float) -> Matrix:
-    """Return the pose at a share of the way, 0 to 1: a line, and one axis of rotation."""
+    """Interpolate between two poses, share 0 to 1: linear, and about one rotation axis."""
     T = np.eye(4)
     turn = rotation_vector(T_old[:3, :3].T @ T_new[:3, :3])
     T[:3, :3] = T_old[:3, :3] @ from_rotation_vector(share * turn)
@@ -120,9 +125,9 @@ ROTATION_TOLERANCE = 0.01
 
 
 def rigid(matrices: npt.NDArray[Any]) -> Matrix:
-    """Return (S, 4, 4) or (S, 3, 4) as rigid transforms, free of what rounding did to them.
+    """Return (S, 4, 4) or (S, 3, 4) as rigid transforms, with rounding errors removed.
 
-    A ValueError tells which one is not finite or far from rigid.
+    :raises ValueError: if one is not finite or far from rigid; names its index.
     """
     T = np.tile(np.eye(4), (len(matrices), 1, 1))
     T[:, :3] = matrices[:, :3]

@@ -1,8 +1,8 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Thinning a cloud: to one point per voxel, or to a number of points.
+"""Downsampling of a cloud to one point per voxel, or to a number of points.
 
-In numpy, as scans are thinned by nodes, which must not need Open3D; map files are thinned with
-that (map_file.py).
+Uses numpy, since nodes downsample scans and must not need Open3D; map files are downsampled with
+Open3D (map_file.py).
 """
 
 from __future__ import annotations
@@ -14,14 +14,14 @@ from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
 from rmw_manycore_py.ndt.geometry.arrays import Points
 
 MAX_CELLS = 1 << 62
-SEED = 1  # the same choice each time: a scan repeated gives the same pose, to the last bit
+SEED = 1  # fixed, so that a repeated scan gives a bit-identical pose
 
 
 def voxel_centroids(points: Points, voxel_m: tuple[float, float, float]) -> Points:
-    """Return the mean of the points in each occupied voxel, as PCL's VoxelGrid does; same type.
+    """Return the centroid of the points in each occupied voxel, like PCL's VoxelGrid; same dtype.
 
-    `points` (N, 3 or more) must be finite; columns behind the third are means too. Where voxels
-    are too small for the cloud's extent to be numbered with 62 bits, a ManycoreError says so.
+    :param points: (N, 3 or more), finite; further columns are averaged, too.
+    :raises ManycoreError: if the cloud spans more voxels than 62 bits can number.
     """
     if len(points) == 0:
         return points
@@ -43,11 +43,11 @@ def voxel_centroids(points: Points, voxel_m: tuple[float, float, float]) -> Poin
 
 
 def spread_indices(count: int, wanted: int) -> slice | NDArray[np.int64]:
-    """Return what chooses at most `wanted` of `count` points, evenly spread over their order.
+    """Return a selection of at most `wanted` of `count` points, spread evenly over their order.
 
-    One of each stretch of the order, at a place in it that is drawn: LiDARs put out points ring by
-    ring or column by column, so that every nth point may be of the same few rings. Unlike means of
-    voxels they keep the cloud's density, and with it the score.
+    Stratified sampling: one random point from each interval of the order. LiDARs output points ring
+    by ring or column by column, so every nth point might belong to few rings. Unlike voxel
+    centroids, this preserves the density of the cloud and thus the score.
     """
     if count <= wanted:
         return slice(None)

@@ -1,10 +1,10 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Voxel maps built beside the work that goes on, to be swapped in between two scans.
+"""Builds voxel maps in the background, to be swapped in between two scans.
 
-A thread reads points. Voxels are built in a process of its own (map_process.py), whose CPU time
-counts less: where matcher and thread shared a CPU, scans took several times as long meanwhile. The
-first map is built in the thread: no scan can be matched before it, and a process takes its time to
-start.
+A separate niced process reads tiles and builds voxels (map_process.py): sharing a CPU with a
+building thread made matching several times slower. A thread takes points out of messages and waits
+for that process. It builds the first map itself, since no scan can be matched before it and a
+process takes time to start.
 """
 
 from __future__ import annotations
@@ -18,19 +18,22 @@ from dataclasses import dataclass
 from rmw_manycore_py.errors import what_is_wrong
 from rmw_manycore_py.helper_process import HelperProcess, leave_real_time
 from rmw_manycore_py.ndt.geometry.arrays import Points
-from rmw_manycore_py.ndt.geometry.precision import why_coarse
 from rmw_manycore_py.ndt.maps import map_process
+from rmw_manycore_py.ndt.maps.map_process import HeldMap, Source
 from rmw_manycore_py.ndt.matching.options import MatcherOptions
 from rmw_manycore_py.ndt.matching.voxel_map import VoxelMap
 
 NICENESS = 10
 
+Read = Callable[[], Source | None]
+
 
 @dataclass(frozen=True)
 class BuiltMap:
-    """What came of it: a map, or why there is none; None and no problem: nothing has changed.
+    """Result: a map, or a problem; neither if the map has not changed.
 
-    :param warning: what makes the map worse than it could be.
+    :param points: (N, 3), if the builder returns them.
+    :param warning: reason for reduced map quality.
     """
 
     voxel_map: VoxelMap | None
@@ -41,29 +44,39 @@ class BuiltMap:
 
 
 class MapBuilder:
-    """One thread reads points and has voxels built; of what waits, only the newest is done.
+    """Builds maps, one at a time; of pending requests, only the newest is built.
 
-    Thread-safe, but for `take`, which belongs to one thread.
+    Thread-safe, except that `take` belongs to one thread.
     """
 
-    def __init__(self, options: MatcherOptions, built: Callable[[], None] = lambda: None) -> None:
-        """Start a thread; it calls `built` whenever there is something to take."""
+    def __init__(
+        self,
+        options: MatcherOptions,
+        built: Callable[[], None] = lambda: None,
+        *,
+        with_points: bool = True,
+    ) -> None:
+        """Start the thread; it calls `built` whenever there is a result to take.
+
+        :param with_points: return the points of each map, too.
+        """
         self._options = options
+        self._with_points = with_points
         self._built = built
         self._helper = HelperProcess("map builder", NICENESS)
         self._is_first = True
         self._executor = ThreadPoolExecutor(1, "map", leave_real_time)
         self._running: Future[BuiltMap] | None = None
-        self._waiting: Callable[[], Points | None] | None = None
+        self._waiting: Read | None = None
         self._lock = threading.Lock()
 
     @property
     def is_idle(self) -> bool:
-        """Tell whether nothing is built or waits to be taken."""
+        """Return whether no map is being built or waits to be taken."""
         return self._running is None
 
-    def submit(self, read: Callable[[], Points | None]) -> None:
-        """Build a map of the points that `read` returns, if it returns some."""
+    def submit(self, read: Read) -> None:
+        """Build a map from the points or tiles returned by `read`, if any."""
         with self._lock:
             if self._running is None:
                 self._running = self._start(read)
@@ -71,7 +84,7 @@ class MapBuilder:
                 self._waiting = read
 
     def take(self) -> BuiltMap | None:
-        """Return what is finished, once."""
+        """Return the finished result, once."""
         running = self._running
         if running is None or not running.done():
             return None
@@ -82,36 +95,38 @@ class MapBuilder:
         return built
 
     def close(self) -> None:
-        """End the process, and the thread with what it is doing."""
+        """Stop the process and the thread."""
         self._helper.close()
         self._executor.shutdown(wait=True, cancel_futures=True)
 
-    def _start(self, read: Callable[[], Points | None]) -> Future[BuiltMap]:
+    def _start(self, read: Read) -> Future[BuiltMap]:
         running = self._executor.submit(self._build, read)
         running.add_done_callback(lambda _: self._built())
         return running
 
-    def _build(self, read: Callable[[], Points | None]) -> BuiltMap:
+    def _build(self, read: Read) -> BuiltMap:
         start = time.perf_counter()
-        voxel_map, points, problem, warning = None, None, "", ""
+        voxel_map, held, problem = None, None, ""
         try:
-            points = read()
-            if points is not None:
-                voxel_map = self._voxels_of(points)
-                warning = why_coarse(points)
-        except Exception as error:  # whatever is wrong with a map, the one before it stays
+            source = read()
+            if source is not None:
+                voxel_map, held = self._first(source) if self._is_first else self._next(source)
+        except Exception as error:  # on any error, keep the previous map
             problem = what_is_wrong(error)
         duration_ms = 1e3 * (time.perf_counter() - start)
+        points, warning = (held.points, held.warning) if held is not None else (None, "")
         return BuiltMap(voxel_map, points, problem, warning, duration_ms)
 
-    def _voxels_of(self, points: Points) -> VoxelMap:
-        if self._is_first:
-            first = VoxelMap.from_points(points, self._options)
-            self._is_first = False
-            self._executor.submit(self._helper.call, map_process.let_go)  # starts it
-            return first
-        held = self._helper.call(map_process.build, points, self._options)
+    def _first(self, source: Source) -> tuple[VoxelMap, HeldMap]:
+        built, held = map_process.built(source, self._options, with_points=self._with_points)
+        self._is_first = False
+        self._executor.submit(self._helper.call, map_process.let_go)  # starts the helper
+        return built, held
+
+    def _next(self, source: Source) -> tuple[VoxelMap, HeldMap]:
+        held = self._helper.call(map_process.build, source, self._options, self._with_points)
         try:
-            return VoxelMap.attach(held.shared_paths, self._options, held.own_likelihood)
+            attached = VoxelMap.attach(held.shared_paths, self._options, held.own_likelihood)
+            return attached, held
         finally:
             self._helper.call(map_process.let_go)

@@ -1,7 +1,7 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Point-cloud maps in files: PCD, PLY (through Open3D) and npz (the format of recordings).
+"""Point-cloud map files: PCD, PLY (with Open3D) and npz (the format of recordings).
 
-Points are read in the precision that the file has: double, or single (precision.py).
+Points keep the precision of the file: float64 or float32 (precision.py).
 """
 
 from __future__ import annotations
@@ -22,10 +22,11 @@ SUFFIXES = (".pcd", ".ply", ".npz")
 
 
 def read_points(path: Path, leaf_m: float = 0.0) -> Points:
-    """Return the finite points (N, 3) of a map, thinned to voxels of `leaf_m` unless it is 0.
+    """Return the finite points (N, 3) of a map; downsampled to voxels of `leaf_m` if non-zero.
 
-    An npz file is a recording whose scans are accumulated with their poses. A file that is
-    missing, broken, empty or of another kind is a ManycoreError.
+    An npz file is a recording whose scans are accumulated with their poses.
+
+    :raises ManycoreError: if the file is missing, broken, empty or of another kind.
     """
     if path.suffix not in SUFFIXES:
         raise map_error(path, f"expected a file that ends in {', '.join(SUFFIXES)}")
@@ -38,11 +39,11 @@ def read_points(path: Path, leaf_m: float = 0.0) -> Points:
     try:
         return _thinned(points, leaf_m) if leaf_m > 0.0 else points
     except RuntimeError as error:
-        raise map_error(path, f"it cannot be thinned to {leaf_m:g} m: {error}") from error
+        raise map_error(path, f"it cannot be downsampled to {leaf_m:g} m: {error}") from error
 
 
 def write_points(path: Path, points: Points) -> None:
-    """Write a map of points (N, 3) in the map frame, in single precision where that will do."""
+    """Write a map of points (N, 3) in the map frame, as float32 if that is precise enough."""
     kept = points if needs_doubles(points) else points.astype(np.float32)
     if path.suffix == ".npz":
         _write_npz(path, kept)
@@ -55,7 +56,7 @@ def write_points(path: Path, points: Points) -> None:
 
 
 def _write_npz(path: Path, points: Points) -> None:
-    """Write a recording of one scan whose sensor is the map's origin."""
+    """Write a recording of one scan with the sensor at the map's origin."""
     offsets = np.array([0, len(points)])
     np.savez_compressed(path, points=points, offsets=offsets, poses=np.eye(4)[None], note="map")
 

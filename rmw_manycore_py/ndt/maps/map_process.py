@@ -1,31 +1,56 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What the helper process of `MapBuilder` does, so that building takes no CPU time from scans."""
+"""Functions run in the helper process of `MapBuilder`."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from pathlib import Path
+from typing import TypeAlias
 
 from rmw_manycore_py.ndt.geometry.arrays import Points
+from rmw_manycore_py.ndt.geometry.precision import why_coarse
+from rmw_manycore_py.ndt.maps.map_tiles import TileFiles
 from rmw_manycore_py.ndt.matching.options import MatcherOptions
 from rmw_manycore_py.ndt.matching.voxel_map import VoxelMap
 
-_held: list[VoxelMap] = []  # until others have attached to it
+Source: TypeAlias = Points | TileFiles
+
+_held: list[VoxelMap] = []  # until another process has attached to it
+_tiles: dict[Path, Points] = {}  # of the last map
 
 
 @dataclass(frozen=True)
 class HeldMap:
-    """Where the map is; parameters of :meth:`VoxelMap.attach`."""
+    """Location of a map: arguments of :meth:`VoxelMap.attach`.
+
+    :param points: (N, 3) the map is built from, if requested.
+    :param warning: reason for reduced map quality.
+    """
 
     shared_paths: list[str]
     own_likelihood: float
+    points: Points | None
+    warning: str
 
 
-def build(points: Points, options: MatcherOptions) -> HeldMap:
-    """Build a map of points (N, 3), and hold it until `let_go`."""
-    _held[:] = [VoxelMap.from_points(points, options)]
-    return HeldMap(_held[0].shared_paths, _held[0].own_likelihood)
+def build(source: Source, options: MatcherOptions, with_points: bool) -> HeldMap:
+    """Build a map and hold it until `let_go`."""
+    voxel_map, held = built(source, options, with_points=with_points)
+    _held[:] = [voxel_map]
+    return held
+
+
+def built(
+    source: Source, options: MatcherOptions, *, with_points: bool
+) -> tuple[VoxelMap, HeldMap]:
+    """Return a map of points (N, 3) or of tiles, and its location."""
+    points = source.read(_tiles) if isinstance(source, TileFiles) else source
+    voxel_map = VoxelMap.from_points(points, options)
+    returned = points if with_points else None
+    where = voxel_map.shared_paths, voxel_map.own_likelihood
+    return voxel_map, HeldMap(*where, returned, why_coarse(points))
 
 
 def let_go() -> None:
-    """Forget the map; those that have attached keep it."""
+    """Release the map; processes that have attached keep it."""
     _held.clear()

@@ -1,8 +1,8 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""A map as a folder of tiles, of which those around a place are loaded.
+"""A map as a directory of tiles, of which those around a position are loaded.
 
-Where the folder has Autoware's `pointcloud_map_metadata.yaml` (tile size, and the lower corner of
-each file), no tile is opened before it is needed; else all are read once for their extent.
+With Autoware's `pointcloud_map_metadata.yaml` (tile size, and the lower corner of each file) in the
+directory, tiles are opened on demand; otherwise all are read once for their extent.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ METADATA = "pointcloud_map_metadata.yaml"
 
 @dataclass(frozen=True)
 class Tile:
-    """A file and its extent in x and y, metres in the map frame."""
+    """A file and its extent in x and y, in metres in the map frame."""
 
     path: Path
     lower: tuple[float, float]
@@ -30,38 +30,70 @@ class Tile:
 
     @property
     def is_everywhere(self) -> bool:
-        """Tell whether the extent is not known: a map of one file."""
+        """Return whether the extent is unlimited, as for a map of one file."""
         return not np.isfinite(self.lower).all()
 
     def is_within(self, x: float, y: float, radius_m: float) -> bool:
-        """Tell whether any of the extent lies within a radius."""
+        """Return whether the extent intersects a circle."""
         dx = max(self.lower[0] - x, 0.0, x - self.upper[0])
         dy = max(self.lower[1] - y, 0.0, y - self.upper[1])
         return dx * dx + dy * dy <= radius_m * radius_m
 
 
+@dataclass(frozen=True)
+class TileFiles:
+    """Tiles to read, in this process or in another.
+
+    :param leaf_m: voxel size for thinning; 0 keeps all points.
+    """
+
+    paths: tuple[Path, ...]
+    leaf_m: float
+
+    def read(self, loaded: dict[Path, Points]) -> Points:
+        """Return the points (N, 3) of all tiles; raises ManycoreError.
+
+        :param loaded: points of tiles read before, which are not read again; updated to the points
+            of these tiles.
+        """
+        read = {
+            path: loaded[path] if path in loaded else read_points(path, self.leaf_m)
+            for path in self.paths
+        }
+        loaded.clear()
+        loaded.update(read)
+        clouds = list(read.values())
+        return np.concatenate(clouds) if clouds else np.zeros((0, 3), np.float32)
+
+
 @dataclass
 class TiledMap:
-    """Tiles of a map; keeps the points of those that were returned last."""
+    """Tiles of a map; caches the points returned last."""
 
     tiles: tuple[Tile, ...]
     leaf_m: float = 0.0
     _loaded: dict[Path, Points] = field(default_factory=dict)
 
     def around(self, x: float, y: float, radius_m: float) -> tuple[frozenset[Path], Points]:
-        """Return the files within a radius of a place, and their points (N, 3)."""
-        wanted = [tile.path for tile in self.tiles if tile.is_within(x, y, radius_m)]
-        self._loaded = {path: self._points_of(path) for path in wanted}
-        clouds = list(self._loaded.values())
-        points = np.concatenate(clouds) if clouds else np.zeros((0, 3), np.float32)
-        return frozenset(wanted), points
+        """Return the files within a radius of a position, and their points (N, 3)."""
+        files = self.files_around(x, y, radius_m)
+        return frozenset(files.paths), self.read(files)
 
-    def names_around(self, x: float, y: float, radius_m: float) -> frozenset[Path]:
-        """Return the files within a radius of a place, without loading any."""
-        return frozenset(tile.path for tile in self.tiles if tile.is_within(x, y, radius_m))
+    def files_around(self, x: float, y: float, radius_m: float) -> TileFiles:
+        """Return the files within a radius of a position, without loading them."""
+        near = [tile.path for tile in self.tiles if tile.is_within(x, y, radius_m)]
+        return TileFiles(tuple(near), self.leaf_m)
+
+    def read(self, files: TileFiles) -> Points:
+        """Return the points (N, 3) of files, those that are loaded already from memory."""
+        return files.read(self._loaded)
+
+    def let_go(self) -> None:
+        """Drop the loaded points; they are read again when needed."""
+        self._loaded.clear()
 
     def tile_points(self, tile: Tile) -> Points:
-        """Return the points (N, 3) of one tile, kept or read; raises ManycoreError."""
+        """Return the points (N, 3) of one tile, cached or read; raises ManycoreError."""
         return self._points_of(tile.path)
 
     def _points_of(self, path: Path) -> Points:
@@ -70,10 +102,10 @@ class TiledMap:
 
 
 def open_map(path: Path, leaf_m: float = 0.0, metadata: Path | None = None) -> TiledMap:
-    """Return a map that is one file (its only tile, without limits) or a folder of them.
+    """Return a map that is one file (a single unlimited tile) or a directory of tiles.
 
-    :param metadata: the list of tiles, where it is not the one in the folder.
-    :raises ManycoreError: for what is none, or cannot be read.
+    :param metadata: the list of tiles; default: the one in the directory.
+    :raises ManycoreError: for a path that is no map or cannot be read.
     """
     try:
         return _opened(path, leaf_m, metadata)
@@ -94,7 +126,7 @@ def _opened(path: Path, leaf_m: float, metadata: Path | None) -> TiledMap:
 
 
 def write_tiles(folder: Path, points: Points, size_m: float, suffix: str) -> int:
-    """Write points as square tiles with Autoware's list of them; return their number."""
+    """Write points as square tiles with Autoware's metadata; return the number of tiles."""
     folder.mkdir(exist_ok=True)
     cells = np.floor(points[:, :2] / size_m).astype(int)
     table: dict[str, object] = {"x_resolution": size_m, "y_resolution": size_m}

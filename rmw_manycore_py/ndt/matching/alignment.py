@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What a matcher answers."""
+"""Results of a matcher."""
 
 from __future__ import annotations
 
@@ -15,20 +15,21 @@ from rmw_manycore_py.words import Outcome
 WHY: dict[Outcome, str] = {
     "converged": "",
     "iteration_limit": "still moving after max_iterations steps",
-    "no_overlap": "no point of the scan lies in the map: wrong guess, or a map of another place",
-    "degenerate": "the scan does not say where it fits: too few points, or too far from the map",
+    "no_overlap": "no point of the scan lies in the map: wrong guess or wrong map",
+    "degenerate": "the scan does not constrain the pose: too few points, or too far from the map",
 }
 
 
 @dataclass(frozen=True)
 class Score:
-    """How well a scan fits at a pose, with the words of PCL and Autoware.
+    """How well a scan fits at a pose, in terms of PCL and Autoware.
 
-    :param score: sum over points and the voxels they see (Magnusson, eq. 6.9); higher is better.
+    :param score: sum over points and voxels in their neighbourhood (Magnusson, eq. 6.9); higher is
+        better.
     :param transform_probability: score per finite point of the scan.
-    :param nearest_voxel_likelihood: mean over the points that see a voxel of their best voxel's
-        score.
-    :param points_in_map: points that see a voxel.
+    :param nearest_voxel_likelihood: score of the best voxel, averaged over the points that have
+        voxels in their neighbourhood.
+    :param points_in_map: number of points with voxels in their neighbourhood.
     """
 
     score: float
@@ -38,7 +39,7 @@ class Score:
 
     @classmethod
     def of(cls, found: _ndt.Derivatives) -> Score:
-        """Return the score that the kernel found."""
+        """Return the score computed by the kernel."""
         seen, points = found.points, found.scan_points
         return cls(
             score=found.score,
@@ -50,23 +51,25 @@ class Score:
 
 @dataclass(frozen=True)
 class Alignment:
-    """Where a scan fits best.
+    """Result of an alignment.
 
-    :param T_map_sensor: (4, 4) pose reached; always finite, the guess when nothing could be done,
-        the identity when the guess was no pose either.
+    :param T_map_sensor: (4, 4) final pose; always finite: the guess if alignment was impossible,
+        the identity if the guess was invalid.
     :param covariance: (6, 6) of x, y, z [m], roll, pitch, yaw [rad].
-    :param iterations: steps taken.
-    :param converged: False when the alignment did not end by itself, or at no maximum; ``why`` then
-        says so. It does not tell whether the pose is right: ``ndt.trust`` does.
-    :param share_in_map: of the finite points, those that see a voxel: 0 to 1.
-    :param is_degenerate: nothing can be held of the pose: the score has no maximum there.
-    :param xy_spread_m2: (2, 2) covariance of x and y by the score's curvature, times the number of
-        points: large along a tunnel, whatever the scan's size.
-    :param first: the score where the steps on the finest map began; without a coarser one that is
-        the guess.
+    :param iterations: number of steps.
+    :param converged: False if the alignment hit the iteration limit or ended away from a maximum;
+        ``why`` says which. Says nothing about whether the pose is right: see ``ndt.trust``.
+    :param share_in_map: fraction of finite points with voxels in their neighbourhood, 0 to 1.
+    :param is_degenerate: the score has no maximum at the pose, so the pose is meaningless.
+    :param xy_spread_m2: (2, 2) covariance of x and y from the curvature of the score, times the
+        number of points: large along a tunnel, for any scan size.
+    :param first: score at the start of the steps on the finest map; without coarser maps, the score
+        of the guess.
     :param path: (n, 4, 4) the guess and the pose after each step, on all maps; at most 64.
-    :param guesses_around: (4, 4) poses around the result that its covariance was made of, if any.
-    :param results_around: (4, 4) what alignments from them reached, if there were such.
+    :param looks: number of alignments that this one is the best of.
+    :param is_refused: whether nothing was aligned.
+    :param guesses_around: (4, 4) poses around the result used for its covariance, if any.
+    :param results_around: (4, 4) results of alignments from those poses, if any.
     """
 
     T_map_sensor: Pose
@@ -82,15 +85,17 @@ class Alignment:
     share_in_map: float = 0.0
     is_degenerate: bool = False
     xy_spread_m2: Matrix = field(default_factory=lambda: np.zeros((2, 2)))
+    looks: int = 1
+    is_refused: bool = False
     guesses_around: tuple[Pose, ...] = ()
     results_around: tuple[Pose, ...] = ()
 
     @classmethod
     def of(cls, found: _ndt.NewtonResult, options: MatcherOptions) -> Alignment:
-        """Return the alignment that the kernel found.
+        """Return the alignment computed by the kernel.
 
-        A pose from which the score does not fall in all directions is no result: scans of a few
-        points have no best place.
+        A pose at which the score does not decrease in all directions is degenerate: a scan of few
+        points has no maximum.
         """
         score = Score.of(found.at)
         values, vectors = np.linalg.eigh(-found.at.hessian)
@@ -121,12 +126,12 @@ class Alignment:
 
     @property
     def fit(self) -> float:
-        """Return the likelihood, less for points outside the map: to compare places by."""
+        """Return the likelihood, reduced for points outside the map; for comparing places."""
         return self.nearest_voxel_likelihood * self.share_in_map
 
     @classmethod
     def refused(cls, guess: Pose | None, why: str, options: MatcherOptions) -> Alignment:
-        """Return the answer to what cannot be aligned at all."""
+        """Return the result for input that cannot be aligned."""
         pose = np.eye(4) if guess is None else guess.copy()
         return cls(
             T_map_sensor=pose,
@@ -140,4 +145,5 @@ class Alignment:
             first=Score(0.0, 0.0, 0.0, 0),
             path=pose[None],
             is_degenerate=True,
+            is_refused=True,
         )

@@ -1,8 +1,8 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""How well x and y are known, from what is found around the result.
+"""Estimates the covariance of x and y from the surroundings of the result.
 
-Both ways are those of Autoware's `ndt_scan_matcher`. In a tunnel alignments from points along it
-end at as many places, and the score is as good there as at the result: x along it is not known.
+Both methods are those of Autoware's `ndt_scan_matcher`. In a tunnel, alignments started along it
+end at different places, and the score there is as good as at the result: x along it is unknown.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from rmw_manycore_py.ndt.matching.options import Offsets
 
 
 def poses_around(T_map_sensor: Pose, offsets_m: Offsets) -> list[Pose]:
-    """Return poses (4, 4) that lie so far ahead and to the left of one."""
+    """Return poses (4, 4) at the given offsets ahead of and to the left of a pose."""
     found = []
     for offset in offsets_m:
         T = T_map_sensor.copy()
@@ -27,10 +27,10 @@ def poses_around(T_map_sensor: Pose, offsets_m: Offsets) -> list[Pose]:
 
 
 def from_results(result: Alignment, results: Sequence[Pose]) -> Matrix6:
-    """Return the result's covariance (6, 6), of x and y as results from around it scatter.
+    """Return the result's covariance (6, 6), x and y from the scatter of results around it.
 
-    The mean square deviation is multiplied by (n - 1) / n, n being the number of alignments with
-    the first, as in Autoware.
+    As in Autoware, the mean square deviation is multiplied by (n - 1) / n, n being the number of
+    alignments including the first.
     """
     places = _places(result, results)
     count = len(places)
@@ -41,17 +41,17 @@ def from_results(result: Alignment, results: Sequence[Pose]) -> Matrix6:
 def from_likelihoods(
     result: Alignment, poses: Sequence[Pose], likelihoods: Sequence[float], temperature: float
 ) -> Matrix6:
-    """Return the result's covariance (6, 6), of x and y from the likelihoods of poses around it.
+    """Return the result's covariance (6, 6), x and y from the likelihoods of poses around it.
 
-    Each place weighs exp(likelihood / temperature), the likelihood being that of the nearest
-    voxels (:class:`Score`).
+    Each pose is weighted by exp(likelihood / temperature), with the nearest-voxel likelihood of
+    :class:`Score`.
     """
     weights = _weights([result.nearest_voxel_likelihood, *likelihoods], temperature)
     return _with_xy(result.covariance, _scatter(_places(result, poses), weights))
 
 
 def _places(result: Alignment, poses: Sequence[Pose]) -> Matrix:
-    """Return x and y (n, 2) of the result and of poses around it."""
+    """Return x and y (n, 2) of the result and the poses around it."""
     return np.array([T[:2, 3] for T in (result.T_map_sensor, *poses)])
 
 

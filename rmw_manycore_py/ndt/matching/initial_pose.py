@@ -1,9 +1,9 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Finding the first pose: alignments from many guesses, of which the likeliest result wins.
+"""Finds the initial pose: alignments from many guesses; the likeliest result is chosen.
 
-The first guesses are drawn from the given normal distribution, with any yaw; the others around the
-best results so far, ever closer, which finds the place with fewer of them than drawing at random
-(Autoware uses a Parzen estimator for the same).
+The first guesses are drawn from the given normal distribution, with any yaw; later ones around the
+best results so far with decreasing deviation, which needs fewer guesses than random sampling
+(Autoware uses a tree-structured Parzen estimator).
 """
 
 from __future__ import annotations
@@ -17,22 +17,22 @@ from rmw_manycore_py.ndt.geometry.arrays import Matrix
 from rmw_manycore_py.ndt.geometry.poses import from_xyz_rpy, to_rpy
 from rmw_manycore_py.ndt.matching.alignment import Alignment
 
-BEST = 5  # results that later guesses are drawn around
-LEAST_SHARE = 0.05  # of the first deviations, for the last guesses
+BEST = 5  # number of results around which later guesses are drawn
+LEAST_SHARE = 0.05  # deviation of the last guesses, relative to the first
 
 Align = Callable[[Matrix], Alignment]
 
 
 @dataclass(frozen=True)
 class Particle:
-    """A guess, and the alignment from it."""
+    """A guess and the alignment from it."""
 
     guess: Matrix
     alignment: Alignment
 
     @property
     def score(self) -> float:
-        """Return the likelihood by which the best one is chosen."""
+        """Return the likelihood used to choose the best particle."""
         return self.alignment.nearest_voxel_likelihood
 
 

@@ -1,18 +1,18 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Options as the kernel takes them."""
+"""Converts options to those of the kernel."""
 
 from __future__ import annotations
 
 from rmw_manycore_py import _ndt
 from rmw_manycore_py.ndt.matching.options import MatcherOptions
 
-# Coarse voxels are as thick as this share of their size: a wall pulls from farther off than it is
-# thick. Of 0, 0.05, 0.075, 0.1 and 0.125 the best on recorded scans and synthetic streets.
+# Minimum thickness of coarse voxels relative to their size: a wall then attracts from farther than
+# its thickness. Best of 0, 0.05, 0.075, 0.1 and 0.125 on recorded scans and synthetic streets.
 COARSE_THICKNESS = 0.1
 
 
 def map_options(options: MatcherOptions) -> _ndt.MapOptions:
-    """Return what the finest level is built with."""
+    """Return the build options of the finest level."""
     return _ndt.MapOptions(
         voxel_size_m=options.voxel_size_m,
         search=options.search,
@@ -23,10 +23,9 @@ def map_options(options: MatcherOptions) -> _ndt.MapOptions:
 
 
 def coarse_options(options: MatcherOptions, factor: float) -> _ndt.MapOptions:
-    """Return what a level is built with whose voxels are `factor` times as large.
+    """Return the build options of a level with voxels `factor` times as large.
 
-    Its search is direct7 whatever the finest level's is: half the work of radius, and it found home
-    from farther off.
+    Always searches direct7: half the work of radius, and a larger basin of convergence.
     """
     voxel_size_m = factor * options.voxel_size_m
     return _ndt.MapOptions(
@@ -39,7 +38,7 @@ def coarse_options(options: MatcherOptions, factor: float) -> _ndt.MapOptions:
 
 
 def match_options(options: MatcherOptions) -> _ndt.MatchOptions:
-    """Return what scans are matched with."""
+    """Return the options of matching."""
     return _ndt.MatchOptions(
         step_rule=options.step_rule,
         max_iterations=options.max_iterations,

@@ -1,12 +1,11 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The matcher, on the calling thread or on workers: one signature."""
+"""The matcher: one signature for the calling thread and for workers."""
 
 from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from dataclasses import replace
-from types import TracebackType
+from dataclasses import dataclass, replace
 from typing import Protocol
 
 import numpy as np
@@ -18,25 +17,42 @@ from rmw_manycore_py.native_errors import translate_native_errors
 from rmw_manycore_py.ndt.geometry.arrays import (
     Pose,
     ScanPoints,
+    pose_error,
     pose_matrix,
     scan_points,
-    why_no_pose,
 )
 from rmw_manycore_py.ndt.matching import covariance
 from rmw_manycore_py.ndt.matching.alignment import Alignment, Score
 from rmw_manycore_py.ndt.matching.kernel_options import match_options
 from rmw_manycore_py.ndt.matching.level import levelled
 from rmw_manycore_py.ndt.matching.options import MatcherOptions
+from rmw_manycore_py.ndt.matching.second_look import (
+    CONVINCING_SHARE,
+    Convinces,
+    best_of_second_look,
+)
 from rmw_manycore_py.ndt.matching.voxel_map import VoxelMap
 
 Position = tuple[float, float]
 
-CANNOT_WORK = "the matcher cannot work"  # no memory, or workers die again and again
-FEWEST_POINTS = 6  # a pose has six unknowns, and the surface that a point lies on fixes one
+CANNOT_WORK = "the matcher cannot work"  # out of memory, or workers keep dying
+BUILT_FOR = (  # options that matcher and map must agree on
+    *("voxel_size_m", "coarse_levels", "second_look_levels", "search", "voxel_covariance"),
+)
+FEWEST_POINTS = 6  # a pose has six unknowns; each point on a surface fixes one
+
+
+@dataclass(frozen=True)
+class Question:
+    """A scan (N, 3), its guess (4, 4), and the position of the regularization pose."""
+
+    scan: ScanPoints
+    guess: Pose
+    position: Position | None
 
 
 class NativeMatcher(Protocol):
-    """What the kernel offers, alone or with workers."""
+    """Interface of the kernel, with or without workers."""
 
     def align(
         self,
@@ -45,7 +61,7 @@ class NativeMatcher(Protocol):
         guess: Pose,
         regularization_position_m: Position | None = None,
     ) -> _ndt.NewtonResult:
-        """Align from a guess, to one map after the other."""
+        """Align from a guess to one map after the other."""
         ...
 
     def evaluate(
@@ -54,44 +70,40 @@ class NativeMatcher(Protocol):
         points: ScanPoints,
         pose: Pose,
     ) -> _ndt.Derivatives:
-        """Return score and derivatives at a pose, of the last map."""
+        """Return score and derivatives at a pose on the last map."""
         ...
 
 
 class Matcher:
-    """Matches scans to a map. Not for several threads at once; the map may be swapped in between.
+    """Matches scans to a map. Not thread-safe; the map may be swapped between alignments.
 
-    Bad input is answered, not raised: see :class:`Alignment`. Raised are only mistakes of the
-    calling program (arrays of a wrong shape, no map, a map built for other options), and what
-    keeps the matcher from working: no memory, workers that die again and again. Each is a
-    ManycoreError, and the matcher may be used on.
+    Bad input is reported in the result, see :class:`Alignment`.
+
+    :raises ManycoreError: for programming errors (arrays of a wrong shape, no map, a map built with
+        other options) and if the matcher cannot work (out of memory, workers keep dying). The
+        matcher remains usable.
     """
 
     def __init__(self, options: MatcherOptions, native: NativeMatcher) -> None:
         self.options = options
         self._native = native
         self._map: VoxelMap | None = None
-        # Called after each alignment with its begin [ns, CLOCK_MONOTONIC].
+        # Called after each alignment with its start [ns, CLOCK_MONOTONIC].
         self.on_aligned: Callable[[int], None] | None = None
 
     def __enter__(self) -> Matcher:
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self.close()
 
     def close(self) -> None:
-        """Give back what the matcher holds."""
+        """Release the matcher's resources."""
         self._map = None
 
     def set_map(self, voxel_map: VoxelMap) -> None:
-        """Match to this map from now on."""
-        for name in ("voxel_size_m", "coarse_levels", "search", "voxel_covariance"):
+        """Use this map from now on."""
+        for name in BUILT_FOR:
             found = getattr(voxel_map.options, name)
             expected = getattr(self.options, name)
             if found != expected:
@@ -103,11 +115,11 @@ class Matcher:
 
     @property
     def worker_pids(self) -> list[int]:
-        """Return the process ids of the workers, of which the calling thread needs none."""
+        """Return the process ids of the workers; none on the calling thread."""
         return []
 
     def passes(self) -> list[tuple[int, int, int, int]]:
-        """Return worker, pass, begin and end [ns, CLOCK_MONOTONIC] of the last answer's passes."""
+        """Return worker, pass, start and end [ns, CLOCK_MONOTONIC] of the last result's passes."""
         return []
 
     def shared_bytes(
@@ -115,9 +127,9 @@ class Matcher:
         points: int = 0,  # noqa: ARG002 - on the calling thread nothing is shared
         next_map: VoxelMap | None = None,  # noqa: ARG002
     ) -> int:
-        """Return the memory shared with other processes, once a scan of so many points is aligned.
+        """Return the bytes shared with other processes after aligning a scan of so many points.
 
-        :param next_map: one that is about to follow the present one, beside which it lies then.
+        :param next_map: map about to replace the current one; both are held during the swap.
         """
         return 0
 
@@ -131,41 +143,104 @@ class Matcher:
     ) -> Alignment:
         """Find the pose near the guess (4, 4) at which points (N, 3) [m, sensor frame] fit best.
 
-        :param T_map_regularization: a pose (4, 4) to keep near along the vehicle's axis.
-        :param only_pose: spare the alignments and scores that only the covariance is made of.
+        Takes a second look if the result does not fit well enough (second_look.py).
+
+        :param T_map_guess: (4, 4) initial guess of T_map_sensor.
+        :param T_map_regularization: (4, 4) pose that attracts the result along the vehicle's axis.
+        :param only_pose: skip alignments and scores that only serve the covariance.
+        :raises ManycoreError: see the class; bad input is reported in the result instead.
         """
-        voxel_map = self._require_map()
+        asked = self._asked(points, T_map_guess, T_map_regularization)
+        if isinstance(asked, Alignment):
+            return asked
+        found = self._aligned(asked)
+        if not found.is_refused and not self._convinces(found):
+            found = self._looked_again(found, asked, self._convinces)
+        return found if only_pose else self._with_covariance(found, asked)
+
+    def align_once(
+        self,
+        points: ArrayLike,
+        T_map_guess: ArrayLike,
+        T_map_regularization: ArrayLike | None = None,
+        *,
+        only_pose: bool = False,
+        is_wide: bool = False,
+    ) -> Alignment:
+        """Return the result of :meth:`align` without a second look.
+
+        :param is_wide: align to the levels of a second look first.
+        """
+        asked = self._asked(points, T_map_guess, T_map_regularization)
+        if isinstance(asked, Alignment):
+            return asked
+        found = self._aligned(asked, is_wide=is_wide)
+        return found if only_pose else self._with_covariance(found, asked)
+
+    def second_look(
+        self,
+        first: Alignment,
+        points: ArrayLike,
+        T_map_guess: ArrayLike,
+        T_map_regularization: ArrayLike | None = None,
+        convinces: Convinces | None = None,
+    ) -> Alignment:
+        """Return the best of a second look and of `first`, which :meth:`align_once` found.
+
+        :param convinces: returns whether a result ends the look; None uses the map's own score.
+        """
+        asked = self._asked(points, T_map_guess, T_map_regularization)
+        if isinstance(asked, Alignment) or first.is_refused or not self.options.second_look_levels:
+            return first
+        found = self._looked_again(first, asked, convinces or self._convinces)
+        return self._with_covariance(found, asked)
+
+    def _asked(
+        self, points: ArrayLike, T_map_guess: ArrayLike, T_map_regularization: ArrayLike | None
+    ) -> Question | Alignment:
+        """Return what to align, or the answer if that is not possible."""
+        self._require_map()
         scan = scan_points(points)
         guess = pose_matrix(T_map_guess)
-        wrong = why_no_pose(guess)
+        wrong = pose_error(guess)
         if wrong:
             return Alignment.refused(None, f"the guess {wrong}", self.options)
-        position = None
-        if T_map_regularization is not None:
-            regularization = pose_matrix(T_map_regularization)
-            wrong = why_no_pose(regularization)
-            if wrong:
-                return Alignment.refused(guess, f"the regularization pose {wrong}", self.options)
-            position = (float(regularization[0, 3]), float(regularization[1, 3]))
-        alignment = self._aligned(voxel_map, scan, guess, position)
-        if only_pose or alignment.is_degenerate:
-            return alignment
-        return self._with_covariance(alignment, voxel_map, scan, position)
+        if T_map_regularization is None:
+            return Question(scan, guess, None)
+        regularization = pose_matrix(T_map_regularization)
+        wrong = pose_error(regularization)
+        if wrong:
+            return Alignment.refused(guess, f"the regularization pose {wrong}", self.options)
+        return Question(scan, guess, (float(regularization[0, 3]), float(regularization[1, 3])))
 
-    def _aligned(
-        self, voxel_map: VoxelMap, scan: ScanPoints, guess: Pose, position: Position | None
-    ) -> Alignment:
-        level = levelled(scan, guess)
+    def _convinces(self, alignment: Alignment) -> bool:
+        """Return whether a result needs no second look, by the map's own score."""
+        if not self.options.second_look_levels:
+            return True
+        least = CONVINCING_SHARE * self._require_map().own_likelihood
+        return not alignment.is_degenerate and alignment.fit > least
+
+    def _looked_again(self, first: Alignment, asked: Question, convinces: Convinces) -> Alignment:
+        def aligned_widely(start: Pose) -> Alignment:
+            return self._aligned(replace(asked, guess=start), is_wide=True)
+
+        return best_of_second_look(first, asked.guess, aligned_widely, convinces)
+
+    def _aligned(self, asked: Question, *, is_wide: bool = False) -> Alignment:
+        voxel_map = self._require_map()
+        levels = voxel_map.levels if is_wide else voxel_map.first_levels
+        guess = asked.guess
+        level = levelled(asked.scan, guess)
         begin_ns = time.monotonic_ns()
         with translate_native_errors(CANNOT_WORK):
-            result = self._native.align(voxel_map.levels, level.points, level.guess, position)
+            result = self._native.align(levels, level.points, level.guess, asked.position)
         if self.on_aligned is not None:
             self.on_aligned(begin_ns)
         points = result.at.scan_points
         if points == 0:
             return Alignment.refused(guess, "the scan has no finite point", self.options)
         if points < FEWEST_POINTS:
-            few = f"{points} finite points do not say where a scan fits"
+            few = f"{points} finite points do not constrain a pose"
             return Alignment.refused(guess, f"too few points: {few}", self.options)
         found = Alignment.of(result, self.options)
         return replace(
@@ -174,24 +249,18 @@ class Matcher:
             path=level.result(found.path),
         )
 
-    def _with_covariance(
-        self,
-        alignment: Alignment,
-        voxel_map: VoxelMap,
-        scan: ScanPoints,
-        position: Position | None,
-    ) -> Alignment:
-        """Return the alignment with what takes more than itself to know its covariance."""
+    def _with_covariance(self, alignment: Alignment, asked: Question) -> Alignment:
+        """Return the alignment with a covariance estimated from further evaluations, if needed."""
         kind = self.options.pose_covariance
-        if kind not in ("multi_ndt", "multi_ndt_score"):
+        if alignment.is_degenerate or kind not in ("multi_ndt", "multi_ndt_score"):
             return alignment
         around = covariance.poses_around(alignment.T_map_sensor, self.options.offsets_m)
         results: list[Pose] = []
         if kind == "multi_ndt":
-            results = [self._aligned(voxel_map, scan, T, position).T_map_sensor for T in around]
+            results = [self._aligned(replace(asked, guess=T)).T_map_sensor for T in around]
             found = covariance.from_results(alignment, results)
         else:
-            likelihoods = [self.score(scan, T).nearest_voxel_likelihood for T in around]
+            likelihoods = [self.score(asked.scan, T).nearest_voxel_likelihood for T in around]
             found = covariance.from_likelihoods(
                 alignment, around, likelihoods, self.options.temperature
             )
@@ -203,25 +272,26 @@ class Matcher:
         )
 
     def score(self, points: ArrayLike, T_map_sensor: ArrayLike) -> Score:
-        """Return how well points (N, 3) fit at a pose (4, 4); 0 for what is no scan or no pose."""
+        """Return the score of points (N, 3) at a pose (4, 4); zero for an invalid scan or pose."""
         voxel_map = self._require_map()
         scan = scan_points(points)
         pose = pose_matrix(T_map_sensor)
-        if why_no_pose(pose):
+        if pose_error(pose):
             return Score(0.0, 0.0, 0.0, 0)
         with translate_native_errors(CANNOT_WORK):
-            return Score.of(self._native.evaluate(voxel_map.levels, scan, pose))
+            return Score.of(self._native.evaluate(voxel_map.first_levels, scan, pose))
 
     def point_scores(self, points: ArrayLike, T_map_sensor: ArrayLike) -> NDArray[np.float32]:
         """Return for each of points (N, 3) at a pose (4, 4) the score of its best voxel (N,).
 
-        NaN where a point sees no voxel; the mean of the others is the likelihood of the nearest
-        voxels. On the calling thread alone, one point after the other: for pictures.
+        NaN for points without voxels in their neighbourhood; the mean of the others is the
+        nearest-voxel likelihood. Runs on the calling thread, point by point; meant for
+        visualization.
         """
         voxel_map = self._require_map()
         scan = scan_points(points)
         pose = pose_matrix(T_map_sensor)
-        if why_no_pose(pose):
+        if pose_error(pose):
             return np.full(len(scan), np.nan, np.float32)
         return voxel_map.finest.point_scores(scan, pose, self.options.outlier_ratio)
 
@@ -232,7 +302,7 @@ class Matcher:
 
 
 class SerialMatcher(Matcher):
-    """Matches on the calling thread."""
+    """Matcher on the calling thread."""
 
     def __init__(self, options: MatcherOptions | None = None) -> None:
         options = options or MatcherOptions()

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What can be chosen about a map and a match."""
+"""Options of maps and matching."""
 
 from __future__ import annotations
 
@@ -12,48 +12,52 @@ from rmw_manycore_py.words import Search, StepRule, VoxelCovariance
 
 PoseCovariance = Literal["laplace", "fixed", "multi_ndt", "multi_ndt_score"]
 Offsets = tuple[tuple[float, float], ...]
-MAX_LEVELS = 4  # with the finest one; as the kernel has it
+MAX_LEVELS = 4  # including the finest; limit of the kernel
 
 
 @dataclass(frozen=True)
 class MatcherOptions:
     """Options of map and matcher; the defaults are Autoware's where it has them.
 
-    Two differ, for they find home from farther off (docs/design/ndt.md): ``coarse_levels`` and
-    ``voxel_covariance``.
+    Exceptions are ``coarse_levels``, ``wide_levels`` and ``voxel_covariance``, which enlarge the
+    basin of convergence (docs/design/ndt.md).
 
-    :param voxel_size_m: edge of a voxel; Autoware's and PCL's "resolution".
-    :param coarse_levels: maps that a scan is aligned to first, coarsest first, by how many times as
-        large their voxels are; empty for ``voxel_size_m`` alone, as PCL and Autoware have it.
-    :param search: which voxels a point is held against. ``radius``: those whose mean is within one
-        voxel size (PCL, Autoware); ``direct7``: its own and those across the six faces;
-        ``direct1``: its own.
+    :param voxel_size_m: edge of a voxel; "resolution" in Autoware and PCL.
+    :param coarse_levels: maps a scan is aligned to first, as multiples of the voxel size in
+        decreasing order; empty uses ``voxel_size_m`` only, as PCL and Autoware do.
+    :param wide_levels: maps that precede them in a second look (second_look.py), as multiples of
+        the voxel size; only those coarser than all of ``coarse_levels`` count. Without any, or
+        without coarse levels, no second look is taken.
+    :param search: voxel neighbourhood of a point. ``radius``: voxels whose mean is within one voxel
+        size (PCL, Autoware); ``direct7``: its own and those across the six faces; ``direct1``: its
+        own.
     :param voxel_covariance: covariance of a voxel from the scatter S of its n points. ``pcl``:
         S / (n - 1); ``autoware``: (I + S) / (n - 1); ``pclomp``: (I + S) (n - 1) / n^2. The
         identity, 1 m^2, widens voxels of few points.
-    :param min_points_per_voxel: voxels with fewer points are left out; at least 3.
-    :param step_rule: ``trust_region``: uphill also where the score is not concave, as far as the
-        steps before turned out well (ours; docs/design/ndt.md); ``clamped``: Newton's step, at
-        most ``step_size`` long (Autoware's default); ``more_thuente``: a line search up to
-        ``step_size`` (PCL).
-    :param step_size: longest step of the latter two, in metres and radians together.
+    :param min_points_per_voxel: voxels with fewer points are dropped; at least 3.
+    :param step_rule: ``trust_region``: follows the gradient also where the score is not concave,
+        with a radius adapted to the success of earlier steps (ours; docs/design/ndt.md);
+        ``clamped``: Newton's step, limited to ``step_size`` (Autoware's default);
+        ``more_thuente``: line search up to ``step_size`` (PCL).
+    :param step_size: maximum step of the latter two, in metres and radians together.
     :param trans_epsilon: a shorter step ends the alignment.
-    :param max_iterations: the alignment ends unconverged after so many steps.
-    :param outlier_ratio: share of points expected to belong to nothing in the map.
-    :param regularization_scale_factor: pull towards the regularization pose, along the vehicle's
-        axis; 0 is none.
-    :param pose_covariance: ``laplace``: the inverse of the score's negative Hessian; ``fixed``: the
-        diagonal ``fixed_pose_variances``; ``multi_ndt`` and ``multi_ndt_score``: the same, but x
-        and y as alignments from ``offsets_m`` around the result scatter, and as the likelihoods
-        there say (Autoware's types 2 and 3; covariance.py).
+    :param max_iterations: maximum number of steps; then the alignment has not converged.
+    :param outlier_ratio: expected share of points that match nothing in the map.
+    :param regularization_scale_factor: weight of the regularization pose, along the vehicle's axis;
+        0 disables it.
+    :param pose_covariance: ``laplace``: inverse of the negative Hessian of the score; ``fixed``:
+        diagonal ``fixed_pose_variances``; ``multi_ndt`` and ``multi_ndt_score``: fixed, but x and y
+        from the scatter of alignments started at ``offsets_m`` around the result, or from the
+        likelihoods there (Autoware's types 2 and 3; covariance.py).
     :param fixed_pose_variances: of x, y, z [m^2], roll, pitch, yaw [rad^2].
-    :param offsets_m: ahead and to the left of the result.
-    :param temperature: difference of likelihoods by which a place counts e times less.
-    :raises ManycoreError: when a value is out of its range.
+    :param offsets_m: ahead of and to the left of the result.
+    :param temperature: difference of likelihoods that reduces a weight by the factor e.
+    :raises ManycoreError: if a value is out of range.
     """
 
     voxel_size_m: float = 2.0
     coarse_levels: tuple[float, ...] = (2.0,)
+    wide_levels: tuple[float, ...] = (4.0,)
     search: Search = "direct7"
     voxel_covariance: VoxelCovariance = "pcl"
     min_points_per_voxel: int = 6
@@ -89,6 +93,18 @@ class MatcherOptions:
         self._check_offsets()
         self._check_levels()
 
+    @property
+    def second_look_levels(self) -> tuple[float, ...]:
+        """Return the wide levels that count; empty where no scan is looked at again."""
+        if not self.coarse_levels:
+            return ()
+        return tuple(factor for factor in self.wide_levels if factor > self.coarse_levels[0])
+
+    @property
+    def coarser_levels(self) -> tuple[float, ...]:
+        """Return the levels of a map but the finest one, coarsest first."""
+        return self.second_look_levels + self.coarse_levels
+
     def _check_words(self) -> None:
         hints = get_type_hints(type(self))
         for field in fields(self):
@@ -98,14 +114,17 @@ class MatcherOptions:
                 raise _error(field.name, f"one of {', '.join(words)}", found)
 
     def _check_levels(self) -> None:
-        finer = 1.0
-        for factor in reversed(self.coarse_levels):
-            self._check_number("coarse_levels", factor, 1.0, 100)
-            if factor <= finer:
-                raise _error("coarse_levels", "decreasing numbers above 1", self.coarse_levels)
-            finer = factor
-        if len(self.coarse_levels) >= MAX_LEVELS:
-            raise _error("coarse_levels", f"at most {MAX_LEVELS - 1}", self.coarse_levels)
+        for name in ("coarse_levels", "wide_levels"):
+            factors = getattr(self, name)
+            finer = 1.0
+            for factor in reversed(factors):
+                self._check_number(name, factor, 1.0, 100)
+                if factor <= finer:
+                    raise _error(name, "decreasing numbers above 1", factors)
+                finer = factor
+        if len(self.coarser_levels) >= MAX_LEVELS:
+            most = f"at most {MAX_LEVELS - 1} with wide_levels"
+            raise _error("coarse_levels", most, self.coarser_levels)
 
     def _check_offsets(self) -> None:
         for offset in self.offsets_m:

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""A map as normal distributions."""
+"""A map of normal distributions."""
 
 from __future__ import annotations
 
@@ -20,32 +20,33 @@ from rmw_manycore_py.ndt.matching.kernel_options import (
 )
 from rmw_manycore_py.ndt.matching.options import MatcherOptions
 
-SAMPLE = 20_000  # of a map's points, whose score is taken
+SAMPLE = 20_000  # number of map points scored for own_likelihood
 
 
 class VoxelMap:
-    """The normal distributions of a map; immutable, in memory that workers share.
+    """Normal distributions of a map; immutable, in memory shared with workers.
 
-    A map answers the questions of one search with one series of voxel sizes and one kind of
-    covariance: those of the options it was built with.
+    A map can only be used with the search, voxel sizes and covariance of the options it was built
+    with.
 
-    :param levels: coarsest first.
-    :param own_likelihood: nearest-voxel likelihood of the map's own points, where they lie: what no
-        scan is expected to exceed by much.
+    :param levels: coarsest first, with those of a second look.
+    :param own_likelihood: nearest-voxel likelihood of the map's own points: an approximate upper
+        bound for scans.
     """
 
     def __init__(
         self, levels: list[_ndt.VoxelMap], options: MatcherOptions, own_likelihood: float
     ) -> None:
         self.levels = levels
+        self.first_levels = levels[len(options.second_look_levels) :]
         self.options = options
         self.own_likelihood = own_likelihood
 
     @classmethod
     def from_points(cls, points: ArrayLike, options: MatcherOptions | None = None) -> VoxelMap:
-        """Build a map from points (N, 3) [m, map frame]; those that are not finite are left out.
+        """Build a map from points (N, 3) [m, map frame]; non-finite ones are dropped.
 
-        :raises ManycoreError: when no voxel has enough points, or the points span too many voxels.
+        :raises ManycoreError: if no voxel has enough points, or the points span too many voxels.
         """
         options = options or MatcherOptions()
         with translate_native_errors(exit_status=EXIT_BAD_INPUT):
@@ -53,7 +54,7 @@ class VoxelMap:
             finest = _ndt.VoxelMap(xyz_m, map_options(options))
             coarse = [
                 _ndt.VoxelMap(xyz_m, coarse_options(options, factor))
-                for factor in options.coarse_levels
+                for factor in options.coarser_levels
             ]
             own_likelihood = _likelihood(finest, xyz_m, options)
         return cls([*coarse, finest], options, own_likelihood)
@@ -62,10 +63,10 @@ class VoxelMap:
     def attach(
         cls, shared_paths: Sequence[str], options: MatcherOptions, own_likelihood: float
     ) -> VoxelMap:
-        """Return a map that another process holds, and that outlives it from now on.
+        """Attach to a map held by another process; it stays valid after that process's end.
 
-        :param shared_paths: of its levels, coarsest first.
-        :raises ManycoreError: when there is none any more.
+        :param shared_paths: paths of its levels, coarsest first.
+        :raises ManycoreError: if the map no longer exists.
         """
         with translate_native_errors("the map of another process"):
             levels = [_ndt.VoxelMap.attach(path) for path in shared_paths]
@@ -73,22 +74,22 @@ class VoxelMap:
 
     @property
     def shared_paths(self) -> list[str]:
-        """Return where other processes of this user find the levels while this one lives."""
+        """Return the paths at which this user's processes can attach while this process lives."""
         return [level.shared_path for level in self.levels]
 
     @property
     def finest(self) -> _ndt.VoxelMap:
-        """Return the level that scores and results are of."""
+        """Return the level used for scores and results."""
         return self.levels[-1]
 
     @property
     def voxels(self) -> int:
-        """Return the number of voxels with a normal distribution, of the finest level."""
+        """Return the number of voxels of the finest level."""
         return self.finest.voxels
 
     @property
     def size_bytes(self) -> int:
-        """Return the memory that all levels take."""
+        """Return the memory of all levels in bytes."""
         return sum(level.size_bytes for level in self.levels)
 
 

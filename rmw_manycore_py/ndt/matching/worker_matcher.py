@@ -20,14 +20,15 @@ WORKER = "manycore_ndt_worker"
 
 
 class WorkerMatcher(Matcher):
-    """Matches on workers, one process per host CPU; the caller sleeps meanwhile.
+    """Matches on workers, one process per host CPU; the caller blocks meanwhile.
 
-    Any number of workers finds the same pose as :class:`SerialMatcher`, bit for bit. A worker that
-    is killed is replaced and the alignment repeated; between alignments all of them sleep. They end
-    with :meth:`close`, and with this process however it ends.
+    Results are bit-identical to :class:`SerialMatcher` for any number of workers. A killed worker
+    is replaced and the alignment repeated. Idle workers sleep. They end with :meth:`close`, and
+    with this process however it ends.
 
-    :param host_cpus: one worker for each; a CPU named twice gets two.
-    :raises ManycoreError: when a CPU cannot be had or the worker program is not installed.
+    :param host_cpus: one worker each; a CPU may be listed more than once.
+    :raises ManycoreError: if a CPU is not in the affinity mask, or the worker program is not
+        installed.
     """
 
     def __init__(self, options: MatcherOptions | None, host_cpus: Sequence[int]) -> None:
@@ -40,18 +41,18 @@ class WorkerMatcher(Matcher):
         self._group: _ndt.WorkerGroup | None = group
 
     def set_map(self, voxel_map: VoxelMap) -> None:
-        """Match to this map once all workers have it at hand; if they fail the old one stays."""
+        """Switch to this map once all workers have attached to it; on failure the old one stays."""
         with translate_native_errors(CANNOT_WORK):
             self._require_group().prepare(voxel_map.levels)
         super().set_map(voxel_map)
 
     def shared_bytes(self, points: int = 0, next_map: VoxelMap | None = None) -> int:
-        """Return the size of session, scan and map."""
+        """Return the size of session, scan and map in bytes."""
         maps = sum(voxel_map.size_bytes for voxel_map in (self._map, next_map) if voxel_map)
         return self._require_group().memory_bytes(points) + maps
 
     def close(self) -> None:
-        """End the workers."""
+        """Stop the workers."""
         super().close()
         self._group = None
         self._native = _Closed()
@@ -63,16 +64,16 @@ class WorkerMatcher(Matcher):
 
     @property
     def replaced_workers(self) -> int:
-        """Return how many workers had to be replaced so far."""
+        """Return the number of workers replaced so far."""
         return self._require_group().replaced()
 
     def passes(self) -> list[tuple[int, int, int, int]]:
-        """Return worker, pass, begin and end [ns, CLOCK_MONOTONIC] of the last answer's passes."""
+        """Return worker, pass, start and end [ns, CLOCK_MONOTONIC] of the last result's passes."""
         return self._require_group().passes()
 
     @property
     def busy_ns(self) -> list[float]:
-        """Return how long each worker worked for the last answer, without waiting for others."""
+        """Return the working time of each worker for the last result in ns, without waiting."""
         return self._require_group().busy_ns()
 
     def _require_group(self) -> _ndt.WorkerGroup:
@@ -82,7 +83,7 @@ class WorkerMatcher(Matcher):
 
 
 class _Closed:
-    """Stands in the place of workers that have ended."""
+    """Replaces the native matcher after `close`."""
 
     def align(self, *_: object) -> NoReturn:
         raise ManycoreError("the matcher is closed", EXIT_BAD_INPUT)
@@ -91,7 +92,7 @@ class _Closed:
 
 
 def _worker_program() -> Path:
-    # Installed, site-packages lie in <prefix>/lib/pythonX.Y; in a build tree next to lib.
+    # An installation has site-packages in <prefix>/lib/pythonX.Y, a build tree next to lib.
     here = Path(_ndt.__file__).resolve()
     prefixes = [here.parents[4], here.parents[1], Path(sys.prefix)]
     for prefix in prefixes:

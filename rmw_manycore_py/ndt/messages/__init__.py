@@ -1,2 +1,2 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Poses and point clouds between ROS messages and arrays."""
+"""Conversions of poses and point clouds between ROS messages and arrays."""

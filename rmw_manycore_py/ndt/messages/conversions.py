@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Poses between ROS messages and matrices."""
+"""Conversions of poses between ROS messages and matrices."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ from geometry_msgs.msg import (
 from rmw_manycore_py.ndt.geometry import poses
 from rmw_manycore_py.ndt.geometry.arrays import Matrix
 
-FARTHEST_M = 1e7  # beyond this a position is no position but a mistake
+FARTHEST_M = 1e7  # larger coordinates are treated as errors
 SMALLEST_NORM = 1e-3
 
 
 class PoseError(ValueError):
-    """A pose that is not finite, too far away, or without an orientation."""
+    """A pose that is not finite, too far away, or has a zero quaternion."""
 
 
 def matrix_of(pose: Any) -> Matrix:
@@ -94,17 +94,17 @@ def covariance_of(message: Any) -> Matrix:
 
 
 def seconds(stamp: Any) -> float:
-    """Return a builtin_interfaces/msg/Time in seconds."""
+    """Convert a builtin_interfaces/msg/Time to seconds."""
     return float(stamp.sec) + 1e-9 * float(stamp.nanosec)
 
 
 def nanoseconds(stamp: Any) -> int:
-    """Return a builtin_interfaces/msg/Time in nanoseconds."""
+    """Convert a builtin_interfaces/msg/Time to nanoseconds."""
     return int(stamp.sec) * 1_000_000_000 + int(stamp.nanosec)
 
 
 def stamp_of(time_ns: int) -> Any:
-    """Return nanoseconds as a builtin_interfaces/msg/Time."""
+    """Convert nanoseconds to a builtin_interfaces/msg/Time."""
     return Time(sec=time_ns // 1_000_000_000, nanosec=time_ns % 1_000_000_000)
 
 

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""PointCloud2 messages of any layout to arrays and back."""
+"""Conversions of PointCloud2 messages of any layout."""
 
 from __future__ import annotations
 
@@ -12,44 +12,52 @@ import numpy.typing as npt
 
 from rmw_manycore_py.ndt.geometry.arrays import FARTHEST_M, Points
 from rmw_manycore_py.ndt.geometry.precision import needs_doubles
+from rmw_manycore_py.ndt.geometry.thinning import spread_indices
 
-# sensor_msgs/msg/PointField
+# Datatypes of sensor_msgs/msg/PointField.
 NUMBER_OF_DATATYPE = {1: "i1", 2: "u1", 3: "i2", 4: "u2", 5: "i4", 6: "u4", 7: "f4", 8: "f8"}
 FLOAT32, FLOAT64 = 7, 8
-SINGLES = ("i1", "u1", "i2", "u2", "f4")  # fit into single precision
+SINGLES = ("i1", "u1", "i2", "u2", "f4")  # exactly representable as float32
 AXES = ("x", "y", "z")
 
 Column: TypeAlias = npt.NDArray[Any]  # (N,)
+Field: TypeAlias = tuple[int, np.dtype[Any]]  # offset and number type
+Chosen: TypeAlias = npt.NDArray[np.int64]  # of all points, row by row
 
 
 class CloudError(ValueError):
-    """A PointCloud2 that contradicts itself or has no positions."""
+    """An inconsistent PointCloud2, or one without positions."""
 
 
-def decode(message: Any) -> Points:
-    """Return the positions (N, 3) of a PointCloud2, in its frame.
+def decode(message: Any, most: int | None = None) -> Points:
+    """Return the positions (N, 3) of a PointCloud2, in its frame; raises CloudError.
 
-    Organised or not, with padding, other fields in any order, either byte order, any number type;
-    Points that are not finite, or beyond 1e9 m, are left out. They are doubles where the message
-    has such. Raises CloudError.
+    Accepts organised clouds, padding, any field order, byte order and number type. Drops points
+    that are not finite or beyond 1e9 m. float64 if the message's are, else float32.
+
+    :param most: choose at most so many points of a larger cloud (:func:`spread_indices`), and
+        decode these alone.
     """
-    flat = _positions(message)
+    fields = _position_fields(message)
+    flat = _positions(message, fields, _chosen(message, fields, most))
     is_place = places(flat)
     return flat if is_place.all() else flat[is_place]
 
 
-def decode_with(message: Any, name: str) -> tuple[Points, Column]:
-    """Return what decode() does, and another field (N) of the same points. Raises CloudError."""
+def decode_with(message: Any, name: str, most: int | None = None) -> tuple[Points, Column]:
+    """Return the result of decode(), and another field (N) of these points; raises CloudError."""
     if not _has_points(message):
         return np.zeros((0, 3), np.float32), np.zeros(0)
-    flat = _positions(message)
-    values = _columns(message, [_number(message, name)], np.float64)[:, 0]
+    fields = _position_fields(message)
+    chosen = _chosen(message, fields, most)
+    flat = _positions(message, fields, chosen)
+    values = _columns(message, [_number(message, name)], np.float64, chosen)[:, 0]
     is_place = places(flat)
     return (flat, values) if is_place.all() else (flat[is_place], values[is_place])
 
 
 def places(points: Points) -> npt.NDArray[np.bool_]:
-    """Tell which of points (N, 3) are finite and not beyond 1e9 m."""
+    """Return a mask (N,) of points (N, 3) that are finite and within 1e9 m."""
     with np.errstate(invalid="ignore"):
         near: npt.NDArray[np.bool_] = np.abs(points) <= FARTHEST_M
     is_place: npt.NDArray[np.bool_] = np.all(near, axis=1)
@@ -61,9 +69,9 @@ def encode(
 ) -> Any:
     """Return a PointCloud2 of points (N, 3), unorganised.
 
-    x, y and z are float32, as all programs take them, unless that rounds by more than a millimetre.
+    x, y and z are float32, which all programs accept, unless that rounds by more than a millimetre.
 
-    :param more: further fields (N) by their names, as float32.
+    :param more: further fields (N) by name, as float32.
     """
     from sensor_msgs.msg import PointCloud2, PointField
 
@@ -96,33 +104,52 @@ def _bytes(points: Points, more: Sequence[Column]) -> bytes:
     return np.hstack(rows).tobytes()
 
 
-def _positions(message: Any) -> Points:
-    """Return all positions (N, 3), finite or not."""
-    fields = [_number(message, name) for name in AXES] if _has_points(message) else []
+def _position_fields(message: Any) -> list[Field]:
+    return [_number(message, name) for name in AXES] if _has_points(message) else []
+
+
+def _positions(message: Any, fields: list[Field], chosen: Chosen | None) -> Points:
+    """Return all positions (N, 3), or the chosen ones, including non-finite ones."""
     is_single = all(number.str[1:] in SINGLES for _, number in fields)
-    flat: Points = _columns(message, fields, np.float32 if is_single else np.float64)
+    flat: Points = _columns(message, fields, np.float32 if is_single else np.float64, chosen)
     return flat
+
+
+def _chosen(message: Any, fields: list[Field], most: int | None) -> Chosen | None:
+    """Return which points to look at; None: all. Those without return have no x that is finite."""
+    if most is None or message.width * message.height <= most:
+        return None
+    (x,) = _views(message, fields[:1])
+    with_return = np.flatnonzero(np.isfinite(x))
+    return with_return[spread_indices(len(with_return), most)]
 
 
 def _has_points(message: Any) -> bool:
     return bool(message.width and message.height)
 
 
-def _columns(message: Any, fields: list[tuple[int, np.dtype[Any]]], number: Any) -> Any:
-    """Return fields (N, len(fields)) as numbers of a type."""
-    width, height = message.width, message.height
+def _columns(message: Any, fields: list[Field], number: Any, chosen: Chosen | None) -> Any:
+    """Return fields (N, len(fields)) of all or the chosen points, converted to a number type."""
     if not fields:
         return np.zeros((0, 3), np.float32)
+    shape = (message.height, message.width)
+    where: Any = ... if chosen is None else np.unravel_index(chosen, shape)
+    columns = [view[where].reshape(-1) for view in _views(message, fields)]
+    values = np.empty((len(columns[0]), len(fields)), number)
+    for index, column in enumerate(columns):
+        values[:, index] = column
+    return values
+
+
+def _views(message: Any, fields: list[Field]) -> list[npt.NDArray[Any]]:
+    """Return fields (height, width) as they lie in the message."""
     data = np.frombuffer(message.data, np.uint8)
     _check_extent(message, len(data), fields)
-    values = np.empty((height, width, len(fields)), number)
-    strides = (message.row_step, message.point_step)
-    for index, (offset, kind) in enumerate(fields):
-        values[:, :, index] = np.ndarray((height, width), kind, data, offset, strides)
-    return values.reshape(-1, len(fields))
+    shape, strides = (message.height, message.width), (message.row_step, message.point_step)
+    return [np.ndarray(shape, kind, data, offset, strides) for offset, kind in fields]
 
 
-def _number(message: Any, name: str) -> tuple[int, np.dtype[Any]]:
+def _number(message: Any, name: str) -> Field:
     """Return offset and number type of a field."""
     by_name = {field.name: field for field in message.fields}
     field = by_name.get(name)
@@ -135,8 +162,8 @@ def _number(message: Any, name: str) -> tuple[int, np.dtype[Any]]:
     return field.offset, np.dtype((">" if message.is_bigendian else "<") + number)
 
 
-def _check_extent(message: Any, size: int, fields: list[tuple[int, np.dtype[Any]]]) -> None:
-    """Raise where points or rows overlap, or the data is too short."""
+def _check_extent(message: Any, size: int, fields: list[Field]) -> None:
+    """Raise CloudError if points or rows overlap, or the data is too short."""
     width, height = message.width, message.height
     last = max(offset + number.itemsize for offset, number in fields)
     if last > message.point_step:

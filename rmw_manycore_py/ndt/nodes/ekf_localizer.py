@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""`ekf_localizer`: the vehicle's pose now, from poses that arrive late and from its speed."""
+"""`ekf_localizer`: the current pose of the vehicle, from delayed poses and its speed."""
 
 from __future__ import annotations
 
@@ -35,12 +35,12 @@ from rmw_manycore_py.ndt.nodes.support.log_throttle import ThrottledLog
 from rmw_manycore_py.ndt.nodes.support.running import run_node
 from rmw_manycore_py.ndt.nodes.support.watched import watched
 
-LEAST_VARIANCE = 1e-8  # of a measurement: one without noise cannot be weighed
+LEAST_VARIANCE = 1e-8  # minimum variance of a measurement; zero would be singular
 
 
 @dataclass(frozen=True)
 class EkfParameters:
-    """Autoware's names, and the deviation sideways, which it does not have; frequencies in Hz."""
+    """Parameters with Autoware's names, plus the sideways deviation; frequencies in Hz."""
 
     frequency_hz: float = parameter("predict_frequency", 50.0, least=1.0, most=1000.0)
     pose_frame: str = parameter("pose_frame_id", "map")
@@ -54,7 +54,7 @@ class EkfParameters:
 
 
 class EkfLocalizer(Node):
-    """Publishes predictions for now, at a fixed rate, once it has a first pose."""
+    """Publishes the predicted current pose at a fixed rate after the initial pose."""
 
     def __init__(self) -> None:
         super().__init__("ekf_localizer")
@@ -114,7 +114,7 @@ class EkfLocalizer(Node):
         if not self._filter.is_initialized:
             self._filter.initialize(stamp_s, *measured)
         elif not self._filter.add_pose(stamp_s, *measured):
-            self._complain("a pose is older than what is kept: it is passed over")
+            self._complain("pose ignored: it is older than the history")
 
     def _on_twist(self, message: Any) -> None:
         twist = message.twist.twist
@@ -122,7 +122,7 @@ class EkfLocalizer(Node):
         noise = np.diag(np.maximum(np.diag(covariance)[[0, 5]], LEAST_VARIANCE))
         v, w = float(twist.linear.x), float(twist.angular.z)
         if not np.isfinite([v, w, *noise.ravel()]).all():
-            self._complain("a twist is not finite: it is passed over")
+            self._complain("twist ignored: it is not finite")
         elif self._is_activated and self._filter.is_initialized:
             self._add_twist(seconds(message.header.stamp), v, w, noise)
 
@@ -130,16 +130,16 @@ class EkfLocalizer(Node):
         if self._is_ahead("twist", stamp_s):
             return
         if not self._filter.add_twist(stamp_s, v_m_s, w_rad_s, noise):
-            self._complain("a twist is older than what is kept: it is passed over")
+            self._complain("twist ignored: it is older than the history")
 
     def _is_ahead(self, what: str, stamp_s: float) -> bool:
-        """Tell whether a measurement cannot be used as it is of the future, and warn then."""
+        """Return whether a measurement is too far in the future to be used; warn if so."""
         now_s = clock_s(self)
         self._follow_clock(now_s)
         is_ahead = self._filter.is_ahead(stamp_s, now_s)
         if is_ahead:
             self._complain(
-                f"a {what} is of a time {stamp_s - now_s:.2f} s ahead: it is passed over, check "
+                f"{what} ignored: its stamp is {stamp_s - now_s:.2f} s in the future, check "
                 "the clocks"
             )
         return is_ahead
@@ -147,12 +147,12 @@ class EkfLocalizer(Node):
     def _follow_clock(self, now_s: float) -> None:
         if self._filter.follow_clock(now_s):
             self._complain(
-                "the clock has jumped back: going on from the last pose; if the vehicle is "
+                "the clock has jumped back: continuing from the last pose; if the vehicle is "
                 "elsewhere now, send a new initialpose"
             )
 
     def _measured(self, message: Any) -> tuple[Matrix, Matrix] | None:
-        """Return pose and covariance of a message, None for one that cannot be used."""
+        """Return pose and covariance of a message; None if it is unusable."""
         covariance = covariance_of(message)
         try:
             if not np.isfinite(covariance).all():
@@ -164,7 +164,7 @@ class EkfLocalizer(Node):
                 )
             T = matrix_of(message.pose.pose)
         except PoseError as error:
-            self._complain(f"{error}: it is passed over")
+            self._complain(f"pose ignored: {error}")
             return None
         diagonal = np.maximum(np.diag(covariance), LEAST_VARIANCE) - np.diag(covariance)
         return T, covariance + np.diag(diagonal)
@@ -203,7 +203,7 @@ class EkfLocalizer(Node):
 
 
 def main() -> None:
-    """Run the node until it is interrupted."""
+    """Run the node until interrupted."""
     run_node(EkfLocalizer)
 
 

@@ -1,7 +1,7 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Cells of a map for nodes that ask for them, with the services of Autoware's map loader.
+"""Serves map cells with the services of Autoware's map loader.
 
-A cell is a tile, its id the path of its file.
+A cell is a tile; its id is the path of its file.
 """
 
 from __future__ import annotations
@@ -30,10 +30,10 @@ from rmw_manycore_py.ndt.messages.point_cloud import encode
 
 
 class MapCellServices:
-    """Serves the tiles of a map; what cannot be read is left out, with an error in the log.
+    """Serves the tiles of a map; skips unreadable ones with an error in the log.
 
-    :param partial: serve all tiles of an area too, without regard to what the client has.
-    :param selected: serve tiles by their ids too.
+    :param partial: also serve all tiles of an area, regardless of those the client has.
+    :param selected: also serve tiles by id.
     """
 
     def __init__(
@@ -55,7 +55,7 @@ class MapCellServices:
         self._metadata.publish(self._all_cells())
 
     def _differential(self, request: Any, response: Any) -> Any:
-        """Answer with the tiles of an area that the client lacks, and those it no longer needs."""
+        """Return the tiles of an area that the client lacks, and the ids it no longer needs."""
         wanted = {str(tile.path): tile for tile in self._around(request.area)}
         held = set(request.cached_ids)
         new = (tile for name, tile in wanted.items() if name not in held)

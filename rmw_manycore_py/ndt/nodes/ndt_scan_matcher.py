@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""`ndt_scan_matcher`: the pose of the vehicle from LiDAR scans, with Autoware's interface."""
+"""`ndt_scan_matcher`: pose of the vehicle from LiDAR scans, with Autoware's interface."""
 
 from __future__ import annotations
 
@@ -56,13 +56,13 @@ from rmw_manycore_py.ndt.nodes.support.running import run_node
 from rmw_manycore_py.ndt.nodes.support.watched import watched
 
 MAP_UPDATE_PERIOD_S = 1.0
-SCAN_DEPTH = 5  # what arrives at once is counted where it is skipped, not lost in a queue
+SCAN_DEPTH = 5  # deep enough that bursts are counted as skipped, not lost in a queue
 
 
 class NdtScanMatcher(Node):
-    """Matches each scan against the map around the vehicle.
+    """Matches each scan to the map around the vehicle.
 
-    The executor's thread takes guesses, scans and requests; one other thread owns matcher and map.
+    The executor's thread handles guesses, scans and requests; a second thread owns matcher and map.
     """
 
     def __init__(self) -> None:
@@ -140,7 +140,7 @@ class NdtScanMatcher(Node):
         self.create_timer(MAP_UPDATE_PERIOD_S, self._on_timer)
 
     def destroy_node(self) -> None:
-        """Release map and workers; raises what ended the matching thread, if something did."""
+        """Release map and workers; raise the error that ended the matching thread, if any."""
         try:
             self._thread.close()
         finally:
@@ -169,7 +169,7 @@ class NdtScanMatcher(Node):
         report.clear()
         report.value("topic_time_stamp", seconds(message.header.stamp))
         report.value("skipped_scans", self._skipped)
-        report.warn("skipped: a newer scan was there when its turn came")
+        report.warn("skipped: a newer scan has arrived")
         report.publish(message.header.stamp)
 
     def _on_turn_of_scan(self, message: Any) -> None:
@@ -186,13 +186,13 @@ class NdtScanMatcher(Node):
         self._rejected_in_a_row = self._rejected_in_a_row + 1 if failed else 0
         report.value("skipping_publish_num", self._rejected_in_a_row)
         if self._rejected_in_a_row >= self._p.skipping_publish_num:
-            report.note(f"{self._rejected_in_a_row} scans in a row gave no pose")
+            report.note(f"{self._rejected_in_a_row} consecutive scans without a pose")
         report.value("skipped_scans", self._skipped)
         report.value("cpu_time_s", round(tree_cpu_s(), 2))
         report.publish(message.header.stamp)
 
     def _match(self, message: Any, report: Diagnostics) -> bool:
-        """Go through Autoware's steps; the result is published even if it is not reliable."""
+        """Run Autoware's steps; the result is published even if unreliable."""
         stages = StageTimes()
         stamp, stamp_s = message.header.stamp, seconds(message.header.stamp)
         report.value("topic_time_stamp", stamp_s)
@@ -254,13 +254,13 @@ class NdtScanMatcher(Node):
     def _deskewed(
         self, scan: Scan, stamp_s: float, guess: Interpolated, report: Diagnostics
     ) -> Points:
-        """Return the points (N, 3) as seen at the scan's stamp, where their times are known."""
+        """Return the points (N, 3) as seen at the scan's stamp, if their times are known."""
         if scan.times_s is None:
             return scan.points
         motion = self._poses.guesses.motion_until(stamp_s, guess.T)
         report.value("is_deskewed", motion is not None)
         if motion is None:
-            report.note("not deskewed: the guesses before the scan do not tell the motion")
+            report.note("not deskewed: the guesses before the scan do not determine the motion")
             return scan.points
         T, duration_s = motion
         return deskewed(scan.points, scan.times_s / duration_s, T)
@@ -283,7 +283,7 @@ class NdtScanMatcher(Node):
         )
 
     def _match_to(self, voxel_map: VoxelMap) -> None:
-        """Swap a map in, beside which the old one lies until then."""
+        """Swap in a map; the old one is kept until then."""
         self._memory.make_room_for_map(voxel_map)
         try:
             self._matcher.set_map(voxel_map)
@@ -292,19 +292,19 @@ class NdtScanMatcher(Node):
             self._memory.give_back()
 
     def _take_new_map(self) -> None:
-        """Swap in the map that was built meanwhile, if there is one."""
+        """Swap in the map that was built in the background, if any."""
         taken = self._map.take()
         if taken is not None:
             voxel_map, points = taken
             built = f"{voxel_map.voxels} voxels, built in {self._map.duration_ms:.0f} ms"
             self.get_logger().info(f"matching to a map of {built}")
-            if self._p.publish_loaded_map:
+            if points is not None:
                 self._outputs.loaded_map(self.get_clock().now().to_msg(), points)
 
     def _aligned_to(self, scan: Points, T_map_guess: Matrix) -> Alignment:
-        """Align from a guess, of which only the pose is wanted."""
+        """Align from one of many guesses; only the pose is needed."""
         self._memory.make_room_for_scan(len(scan))
-        return self._matcher.align(scan, T_map_guess, only_pose=True)
+        return self._matcher.align_once(scan, T_map_guess, only_pose=True, is_wide=True)
 
     def _on_timer(self) -> None:
         if self._is_activated:
@@ -341,7 +341,7 @@ class NdtScanMatcher(Node):
 
 
 def main() -> None:
-    """Run the node until it is interrupted."""
+    """Run the node until interrupted."""
     run_node(NdtScanMatcher)
 
 

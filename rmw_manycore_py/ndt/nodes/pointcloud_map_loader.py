@@ -1,7 +1,8 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""`pointcloud_map_loader`: a map from files, for all or by cells for those that ask.
+"""`pointcloud_map_loader`: publishes a map from files, and serves its cells on request.
 
-It publishes all of it, or what is near the vehicle, and serves cells as Autoware's map loader.
+It publishes the whole map or the area around the vehicle, and offers the services of Autoware's map
+loader.
 """
 
 from __future__ import annotations
@@ -33,7 +34,7 @@ DOWNSAMPLED_TOPIC = "output/debug/downsampled_pointcloud_map"
 
 @dataclass(frozen=True)
 class LoaderParameters:
-    """Autoware's where it has them; metres."""
+    """Autoware's parameters where they exist; metres."""
 
     whole: bool = parameter("enable_whole_load", True)
     partial: bool = parameter("enable_partial_load", True)
@@ -50,7 +51,7 @@ class LoaderParameters:
 
 
 class PointcloudMapLoader(Node):
-    """Publishes `pointcloud_map`, which late subscribers get too, and serves its cells."""
+    """Publishes `pointcloud_map` (transient local), and serves its cells."""
 
     def __init__(self) -> None:
         super().__init__("pointcloud_map_loader")
@@ -61,7 +62,7 @@ class PointcloudMapLoader(Node):
                 f"{', '.join(self._p.paths) or 'none'}",
                 EXIT_BAD_INPUT,
             )
-        # Autoware's launch files name a metadata file even where there is none.
+        # Autoware's launch files name a metadata file even if there is none.
         metadata = Path(self._p.metadata).expanduser() if self._p.metadata else None
         tiles = open_map(
             Path(self._p.paths[0]).expanduser(),
@@ -105,7 +106,7 @@ def _whole(tiles: TiledMap) -> Points:
 
 
 def main() -> None:
-    """Run the node until it is interrupted."""
+    """Run the node until interrupted."""
     run_node(PointcloudMapLoader)
 
 

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""`pose_initializer`: from a rough pose to a matched one, and everything activated at it."""
+"""`pose_initializer`: refines a rough pose by matching, and activates the stack at it."""
 
 from __future__ import annotations
 
@@ -30,9 +30,9 @@ from rmw_manycore_py.ndt.nodes.support.running import run_node
 
 VARIANCES = (1.0, 1.0, 0.01, 0.01, 0.01, 0.2)  # m^2, rad^2
 AT_ORIGIN = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0)  # x, y, z, quaternion
-GNSS_VARIANCES = (*VARIANCES[:5], 10.0)  # which way the vehicle looks GNSS does not tell
+GNSS_VARIANCES = (*VARIANCES[:5], 10.0)  # GNSS does not measure the heading
 RETRY_S = 1.0
-ANSWER_TIMEOUT_S = 60.0  # 200 alignments, of 300 ms each: a slow host with large scans
+ANSWER_TIMEOUT_S = 60.0  # 200 alignments of 300 ms: slow host, large scans
 UNINITIALIZED, INITIALIZING, INITIALIZED = "UNINITIALIZED", "INITIALIZING", "INITIALIZED"
 
 
@@ -43,7 +43,7 @@ def _diagonal(variances: Sequence[float]) -> tuple[float, ...]:
 
 @dataclass(frozen=True)
 class InitializerParameters:
-    """Autoware's."""
+    """Autoware's parameters."""
 
     user_defined: bool = parameter("user_defined_initial_pose.enable", False)
     pose: tuple[float, ...] = parameter("user_defined_initial_pose.pose", AT_ORIGIN, length=7)
@@ -61,11 +61,11 @@ class InitializerParameters:
 
 
 class PoseInitializer(Node):
-    """Waits for `initialpose` (as RViz sends it), or starts at the pose of its parameters or GNSS.
+    """Waits for `initialpose` (as sent by RViz), or starts at the pose of its parameters or GNSS.
 
-    Stops matcher and filter, has the pose matched by `ndt_align`, publishes it on `initialpose3d`,
-    starts both again. What fails is tried again once a second, with the newest pose. GNSS is
-    heeded until another pose comes or one was matched.
+    Deactivates matcher and filter, has the pose matched by `ndt_align`, publishes it on
+    `initialpose3d`, and reactivates both. Failures are retried once a second with the newest pose.
+    GNSS is used until another pose arrives or one was matched.
     """
 
     def __init__(self) -> None:
@@ -84,8 +84,8 @@ class PoseInitializer(Node):
             if enabled
         ]
         self._wanted: Any = None
-        self._tried: Any = None  # the wanted pose that is being matched
-        self._call: Future | None = None  # of ndt_align, while it is not answered
+        self._tried: Any = None  # the pose being matched
+        self._call: Future | None = None  # pending call of ndt_align
         self._called_s = 0.0
         self._heeds_gnss = self._p.gnss_enabled and not self._p.user_defined
         self.create_subscription(
@@ -124,13 +124,13 @@ class PoseInitializer(Node):
             self._try()
 
     def _on_gnss_pose(self, message: Any) -> None:
-        """Want the newest pose until one was matched; the next try is the timer's."""
+        """Keep the newest pose until one is matched; the timer starts the next attempt."""
         if not self._heeds_gnss or self._tried is not None:
             return
         age_s = seconds(self.get_clock().now().to_msg()) - seconds(message.header.stamp)
         if age_s > self._p.gnss_timeout_s:
             self.get_logger().warning(
-                f"gnss_pose_cov: the pose is {age_s:.1f} s old: it is passed over",
+                f"gnss_pose_cov: the pose is {age_s:.1f} s old, ignored",
                 throttle_duration_sec=RETRY_S,
             )
             return
@@ -140,7 +140,7 @@ class PoseInitializer(Node):
             self._publish_state(INITIALIZING)
 
     def _want(self, topic: str, message: Any) -> bool:
-        """Take a pose for the next try, if it is one."""
+        """Store a pose for the next attempt, if valid."""
         try:
             matrix_of(message.pose.pose)
         except PoseError as error:
@@ -150,7 +150,7 @@ class PoseInitializer(Node):
         return True
 
     def _try(self) -> None:
-        """Start over with the wanted pose, if there is one and all services are there."""
+        """Start an attempt if there is a pose and all services are available."""
         self._forget_unanswered_call()
         if self._wanted is None or self._tried is not None:
             return
@@ -171,20 +171,24 @@ class PoseInitializer(Node):
         self._call.add_done_callback(self._on_aligned)
 
     def _forget_unanswered_call(self) -> None:
-        """Let the pose be tried again: a matcher that was killed or restarted does not answer."""
+        """Allow a new attempt: a killed or restarted matcher does not answer."""
         is_late = time.monotonic() - self._called_s > ANSWER_TIMEOUT_S
         if self._call is None or (self._align.service_is_ready() and not is_late):
             return
         self._align.remove_pending_request(self._call)
         self._call = self._tried = None
-        self.get_logger().warning("ndt_align does not answer: is the matcher running? next try")
+        self.get_logger().warning(
+            "ndt_align does not answer, trying again: is the matcher running?"
+        )
 
     def _on_aligned(self, future: Future) -> None:
         self._call = None
         response = future.result()
         if response is None or not response.success:
             self._tried = None
-            self.get_logger().warning("the pose could not be matched: see /diagnostics; next try")
+            self.get_logger().warning(
+                "the pose could not be matched, trying again: see /diagnostics"
+            )
             return
         if not response.reliable:
             self.get_logger().warning("the matched pose has a low score")
@@ -210,7 +214,7 @@ class PoseInitializer(Node):
 
 
 def main() -> None:
-    """Run the node until it is interrupted."""
+    """Run the node until interrupted."""
     run_node(PoseInitializer)
 
 

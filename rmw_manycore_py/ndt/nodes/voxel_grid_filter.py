@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""`voxel_grid_filter`: thins scans to one point per voxel, as Autoware's downsample filter."""
+"""`voxel_grid_filter`: downsamples scans to one point per voxel, like Autoware's filter."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ REPEAT_S = 1.0
 
 @dataclass(frozen=True)
 class FilterParameters:
-    """Autoware's; metres."""
+    """Autoware's parameters; metres."""
 
     x_m: float = parameter("voxel_size_x", 0.3, least=0.01, most=100.0)
     y_m: float = parameter("voxel_size_y", 0.3, least=0.01, most=100.0)
@@ -31,9 +31,9 @@ class FilterParameters:
 
 
 class VoxelGridFilter(Node):
-    """From `input` to `output`, with stamp and frame as they were.
+    """Filters `input` to `output`, keeping stamp and frame.
 
-    Where points have times, `output` has the field `time`: seconds after the stamp, float32.
+    If points have times, `output` has the field `time`: seconds after the stamp, float32.
     """
 
     def __init__(self) -> None:
@@ -53,10 +53,10 @@ class VoxelGridFilter(Node):
         self._output.publish(output)
 
     def _thinned(self, message: Any) -> Any:
-        """Return a cloud with the mean of each voxel's points, and of their times.
+        """Return a cloud with the centroids of the voxels, and the mean time of their points.
 
-        Deskewing moves points in proportion to their times, so it moves the mean as it would have
-        moved them.
+        Deskewing moves points in proportion to their times, so it moves the centroid like the mean
+        of the moved points.
         """
         header, field = message.header, time_field(message)
         if field is None:
@@ -69,7 +69,7 @@ class VoxelGridFilter(Node):
 
 
 def main() -> None:
-    """Run the node until it is interrupted."""
+    """Run the node until interrupted."""
     run_node(VoxelGridFilter)
 
 

@@ -1,7 +1,7 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""A recording as a rosbag2 (sqlite3 or mcap), or a ROS 1 bag, read with `rosbags`.
+"""Recordings in rosbag2 (sqlite3 or mcap) or ROS 1 bags, read with `rosbags`.
 
-Scans are PointCloud2 of any layout; poses are those of a topic or of `/tf` (bag_poses.py), or of a
+Scans are PointCloud2 of any layout; poses come from a topic or `/tf` (bag_poses.py), or from a
 file.
 """
 
@@ -29,24 +29,24 @@ SUFFIXES = (".bag", ".mcap", ".db3")
 
 
 def is_bag(path: Path) -> bool:
-    """Tell whether a path looks like a bag."""
+    """Return whether a path looks like a bag."""
     return path.suffix in SUFFIXES or (path / "metadata.yaml").is_file()
 
 
 @dataclass(frozen=True)
 class BagScans:
-    """Scans in a bag that is open as long as they are there, read when they are asked for."""
+    """Scans in an open bag, read on demand."""
 
     reader: Any
-    connections: tuple[Any, ...]  # of one topic: one for each publisher that it had
-    times_ns: tuple[int, ...]  # when they were recorded
-    closing: ExitStack  # closes the bag once, however often it is asked to
+    connections: tuple[Any, ...]  # of one topic, one per publisher
+    times_ns: tuple[int, ...]  # receive times
+    closing: ExitStack  # closes the bag, once
 
     def __post_init__(self) -> None:
         weakref.finalize(self, self.closing.close)
 
     def __getitem__(self, index: int) -> Points:
-        """Read a scan; a broken one is a ManycoreError."""
+        """Read a scan; raise ManycoreError if it is broken."""
         from rmw_manycore_py.ndt.messages.point_cloud import CloudError, decode
 
         message = self.message(index)
@@ -56,7 +56,7 @@ class BagScans:
             raise ManycoreError(f"scan {index} of the bag: {error}", EXIT_BAD_INPUT) from error
 
     def message(self, index: int) -> Any:
-        """Read the message of a scan; a broken one is a ManycoreError."""
+        """Read the message of a scan; raise ManycoreError if it is broken."""
         at_ns = self.times_ns[index]
         with _bad_bag(f"scan {index} of the bag"):
             found = self.reader.messages(self.connections, start=at_ns, stop=at_ns + 1)
@@ -66,20 +66,20 @@ class BagScans:
 
 @dataclass(frozen=True)
 class BagTimes:
-    """The times of the points in a bag whose clouds have a field for them."""
+    """Times of the points in a bag whose clouds have such a field."""
 
     scans: BagScans
     field: str
 
     def __getitem__(self, index: int) -> Matrix:
-        """Read the times of a scan's points, in seconds after its stamp."""
+        """Return the times (n) of a scan's points, in seconds after its stamp."""
         from rmw_manycore_py.ndt.messages.point_times import decode_timed
 
         return decode_timed(self.scans.message(index), self.field)[1]
 
 
 def open_bag(path: Path, poses_path: Path | None, topic: str, pose_topic: str) -> Recording:
-    """Return the recording in a bag; of topics that are not named there must be one."""
+    """Open the recording in a bag; topics that are not given must be unambiguous."""
     closing = ExitStack()
     try:
         return _recording_of(path, closing, poses_path, topic, pose_topic)
@@ -118,12 +118,12 @@ def _recording_of(
 
 @contextmanager
 def _bad_bag(what: str) -> Iterator[None]:
-    """Turn whatever reading a broken bag ends in into a ManycoreError."""
+    """Convert any error of reading a broken bag to ManycoreError."""
     try:
         yield
     except ManycoreError:
         raise
-    except Exception as error:  # rosbags and its decoders do not promise a class of errors
+    except Exception as error:  # rosbags does not document its errors
         raise ManycoreError(f"{what}: {error!r}", EXIT_BAD_INPUT) from error
 
 

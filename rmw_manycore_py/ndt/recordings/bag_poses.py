@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The reference poses of a bag: those of a topic, else what `/tf` tells; taken to the LiDAR."""
+"""Reference poses of a bag, from a topic or `/tf`, transformed to the LiDAR frame."""
 
 from __future__ import annotations
 
@@ -14,17 +14,17 @@ from rmw_manycore_py.ndt.recordings.connections import connections_of
 from rmw_manycore_py.ndt.recordings.pose_file import PoseLine
 from rmw_manycore_py.ndt.recordings.transforms import Transforms, is_transforms
 
-POSE_PATHS = {  # where in a message the pose is
+POSE_PATHS = {  # path to the pose in a message
     "nav_msgs/msg/Odometry": ("pose", "pose"),
     "geometry_msgs/msg/PoseStamped": ("pose",),
     "geometry_msgs/msg/PoseWithCovarianceStamped": ("pose", "pose"),
     "geometry_msgs/msg/TransformStamped": ("transform",),
 }
-BASE = "base_link"  # whose pose it is where the message does not say it (REP 105)
+BASE = "base_link"  # default child frame (REP 105)
 
 
 def poses_of(path: Path, reader: Any, topic: str, lidar: str) -> tuple[PoseLine, str]:
-    """Return the poses of the LiDAR, and what has to be said of them, "" if nothing."""
+    """Return the poses of the LiDAR, and a remark about them ("" if there is none)."""
     transforms = Transforms(reader)
     is_transforms_named = any(
         one.topic == topic for one in reader.connections if is_transforms(one)
@@ -48,7 +48,7 @@ def poses_of(path: Path, reader: Any, topic: str, lidar: str) -> tuple[PoseLine,
 
 
 def _of_topic(path: Path, reader: Any, topic: str) -> tuple[PoseLine, str]:
-    """Return the poses of a topic, and the frame whose poses they are."""
+    """Return the poses of a topic, and their child frame."""
     from rmw_manycore_py.ndt.messages.conversions import PoseError, seconds
 
     kinds = set(POSE_PATHS)

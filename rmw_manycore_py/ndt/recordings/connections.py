@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Finding a topic in a bag."""
+"""Looks up topics in a bag."""
 
 from __future__ import annotations
 
@@ -12,9 +12,10 @@ from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
 def connections_of(
     path: Path, reader: Any, kinds: set[str], topic: str, option: str
 ) -> tuple[Any, ...]:
-    """Return the connections of a topic, or of the only one of some types.
+    """Return the connections of a topic, one per publisher.
 
-    One for each publisher that it had. Where the choice is not clear, an error names `option`.
+    Without `topic`, uses the only topic of these types; if there are several, the error names
+    `option`.
     """
     fitting = [one for one in reader.connections if one.msgtype in kinds]
     chosen = [one for one in fitting if not topic or one.topic == topic]

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Which pose belongs to which scan."""
+"""Assigns poses to scans."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from rmw_manycore_py.ndt.recordings.recording import PointTimes, Recording, Scan
 
 @dataclass(frozen=True)
 class SomeTimes:
-    """The times of the points of some scans of all."""
+    """Point times of a subset of scans."""
 
     times: PointTimes
     indices: npt.NDArray[np.int64]
@@ -29,7 +29,7 @@ class SomeTimes:
 
 @dataclass(frozen=True)
 class SomeScans:
-    """Some scans of all, by their indices."""
+    """A subset of scans, by index."""
 
     scans: Scans
     indices: npt.NDArray[np.int64]
@@ -48,11 +48,12 @@ def recorded(
     note: str = "",
     point_times: PointTimes | None = None,
 ) -> Recording:
-    """Return a recording of `count` scans, with the poses at their stamps or one pose for each.
+    """Return a recording of `count` scans, with poses interpolated at their stamps or one per scan.
 
-    Scans before the first pose, after the last or in a gap between them are left out; the
-    recording's note says how many, besides `note`. Neither stamps on both sides nor equal numbers:
-    an error.
+    Scans outside the poses or in a gap between them are dropped; the recording's note says how
+    many.
+
+    :raises ManycoreError: if there are neither stamps on both sides nor equally many.
     """
     if len(stamps_s) not in (0, count):
         raise ManycoreError(f"{path}: {count} scans, but {len(stamps_s)} times", EXIT_BAD_INPUT)
@@ -81,6 +82,6 @@ def recorded(
 
 
 def _note(path: Path, *remarks: str) -> str:
-    """Return the path with what is to be said of it."""
+    """Return the path with remarks."""
     said = "; ".join(remark for remark in remarks if remark)
     return f"{path}: {said}" if said else str(path)

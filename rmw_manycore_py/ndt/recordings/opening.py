@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Opening a recording of any kind."""
+"""Opens recordings of any kind."""
 
 from __future__ import annotations
 
@@ -14,9 +14,11 @@ from rmw_manycore_py.ndt.recordings.scan_folder import open_folder
 def open_recording(
     path: Path, poses_path: Path | None = None, topic: str = "", pose_topic: str = ""
 ) -> Recording:
-    """Return the recording at a path: npz, a bag, or a folder of scans.
+    """Open the recording at a path: npz, a bag, or a directory of scans.
 
-    Scans of the latter two are read when they are asked for. What is none is a ManycoreError.
+    Scans of the latter two are read on demand.
+
+    :raises ManycoreError: if the path is no recording.
     """
     if is_bag(path):
         return open_bag(path, poses_path, topic, pose_topic)
@@ -25,6 +27,6 @@ def open_recording(
     if path.suffix != ".npz":
         kinds = ", ".join((".npz", *SUFFIXES))
         raise ManycoreError(
-            f"{path}: no recording: expected {kinds} or a folder of scans", EXIT_BAD_INPUT
+            f"{path}: no recording: expected {kinds} or a directory of scans", EXIT_BAD_INPUT
         )
     return load_recording(path)

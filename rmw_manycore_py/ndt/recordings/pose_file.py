@@ -1,14 +1,14 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Poses in text files, one per line, in the formats that datasets have them.
+"""Pose files: text with one pose per line, in the formats of common datasets.
 
 | numbers in a line | |
 |---|---|
-| 12, 16 | rows of T_map_sensor (KITTI), without or with the last one |
-| 13, 17 | the same behind a time |
+| 12, 16 | rows of T_map_sensor (KITTI), without or with the last row |
+| 13, 17 | the same after a time |
 | 8 | time, x, y, z, qx, qy, qz, qw (TUM) |
 | 7 | the same without a time |
 
-KITTI's own are those of its camera; `Tr` of a `calib.txt` beside the file takes them to the LiDAR.
+KITTI's own poses are the camera's; `Tr` in a `calib.txt` beside the file gives the LiDAR's.
 """
 
 from __future__ import annotations
@@ -25,9 +25,9 @@ from rmw_manycore_py.ndt.geometry.arrays import Matrix
 from rmw_manycore_py.ndt.recordings.stamps import in_seconds
 
 FORMATS = "lines of 12 numbers (KITTI) or of time x y z qx qy qz qw (TUM)"
-MATRIX_COLUMNS = {12: 0, 16: 0, 13: 1, 17: 1}  # and how many stand before the matrix
+MATRIX_COLUMNS = {12: 0, 16: 0, 13: 1, 17: 1}  # number of columns before the matrix
 QUATERNION_COLUMNS = {7: 0, 8: 1}
-LONGEST_GAP_S = 1.0  # between poses: what lies in it is not known
+LONGEST_GAP_S = 1.0  # maximum gap to interpolate over
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,7 @@ class PoseLine:
     stamps: Matrix
 
     def at(self, stamps_s: Matrix) -> tuple[npt.NDArray[np.int64], Matrix]:
-        """Return which stamps lie between poses, as indices, and the poses (n, 4, 4) there."""
+        """Return the indices of stamps that lie between poses, and the poses (n, 4, 4) there."""
         after = np.searchsorted(self.stamps, stamps_s)
         known, found = [], []
         for index, (stamp_s, new) in enumerate(zip(stamps_s, after, strict=True)):
@@ -58,7 +58,7 @@ class PoseLine:
 
 
 def read_poses(path: Path) -> PoseLine:
-    """Read a file; one of another format is an error that says what was expected."""
+    """Read a pose file; raise ManycoreError with the expected formats if it is invalid."""
     try:
         table = _table(path)
         columns = table.shape[1]
@@ -77,7 +77,7 @@ def read_poses(path: Path) -> PoseLine:
 
 
 def _table(path: Path) -> Matrix:
-    """Return the numbers; comments and a line of headings are passed over."""
+    """Return the numbers; skip comments and a header line."""
     lines = [line.replace(",", " ").split() for line in path.read_text().splitlines()]
     rows = [line for line in lines if line and not line[0].startswith("#")]
     if rows and not _is_number(rows[0][0]):
@@ -99,7 +99,7 @@ def _is_number(word: str) -> bool:
 
 
 def _of_quaternions(numbers: Matrix) -> Matrix:
-    """Return T (S, 4, 4) of x, y, z, qx, qy, qz, qw."""
+    """Return T (S, 4, 4) for rows of x, y, z, qx, qy, qz, qw."""
     matrices = np.tile(np.eye(4), (len(numbers), 1, 1))
     for T, row in zip(matrices, numbers, strict=True):
         if not np.linalg.norm(row[3:]) > 0.0:
@@ -109,7 +109,7 @@ def _of_quaternions(numbers: Matrix) -> Matrix:
 
 
 def _of_lidar(T_map_camera: Matrix, calibration: Path) -> Matrix:
-    """Return T_map_lidar (S, 4, 4), with the map's axes those of the first scan."""
+    """Return T_map_lidar (S, 4, 4), with the map frame aligned to the first scan."""
     lines = calibration.read_text().splitlines() if calibration.is_file() else []
     numbers = next((line.split()[1:] for line in lines if line.startswith(("Tr:", "Tr "))), None)
     if numbers is None:

@@ -1,15 +1,15 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""A recorded drive: LiDAR scans with their poses, as npz.
+"""A recorded drive: LiDAR scans with poses, as npz.
 
 | array | shape | meaning |
 |---|---|---|
 | `points` | int16 (N, 3 or more), or floating point | times `scale_m`: metres in the sensor frame |
-| `scale_m` | scalar, 1 where it is missing | |
+| `scale_m` | scalar; default 1 | |
 | `offsets` | integer (S + 1) | scan i is `points[offsets[i]:offsets[i + 1]]` |
 | `poses` | (S, 4, 4) or (S, 3, 4) | T_map_sensor of each scan |
-| `stamps` | (S), empty or missing | seconds, or whatever `recordings.stamps` takes for them |
-| `times` | (N) floating point; may be missing | seconds from its scan's stamp to each point |
-| `note` | text; may be missing | where it came from |
+| `stamps` | (S), or empty or missing | seconds, or another unit recognised by `recordings.stamps` |
+| `times` | (N) floating point; optional | seconds from its scan's stamp to each point |
+| `note` | text; optional | origin of the data |
 """
 
 from __future__ import annotations
@@ -29,24 +29,24 @@ from rmw_manycore_py.ndt.geometry.poses import rigid, transform
 from rmw_manycore_py.ndt.geometry.precision import needs_doubles, why_coarse
 from rmw_manycore_py.ndt.recordings.stamps import in_seconds
 
-RECORDING_ARRAYS = frozenset(("points", "offsets", "poses"))  # that no recording lacks
+RECORDING_ARRAYS = frozenset(("points", "offsets", "poses"))  # required arrays
 DEFAULT_SCALE_M = 0.002
-DEFAULT_PERIOD_S = 0.1  # of recordings without stamps: the 10 Hz of most LiDARs
+DEFAULT_PERIOD_S = 0.1  # for recordings without stamps: 10 Hz as most LiDARs
 INT16_MAX = 32767
 SINGLES = (np.int8, np.uint8, np.int16, np.uint16, np.float16, np.float32)  # fit into float32
 
 
 class Scans(Protocol):
-    """The points (n, 3) of each scan [m, sensor frame], maybe read when they are asked for."""
+    """Points (n, 3) of each scan [m, sensor frame], possibly read on demand."""
 
     def __getitem__(self, index: int) -> Points:
-        """Return the points of a scan, finite or not."""
+        """Return the points of a scan, including non-finite ones."""
         ...
 
 
 @dataclass(frozen=True)
 class StoredScans:
-    """Scans one behind the other in an array, as numbers of `scale_m`."""
+    """Concatenated scans in one array, in units of `scale_m`."""
 
     points: npt.NDArray[Any]
     scale_m: float
@@ -61,16 +61,16 @@ class StoredScans:
 
 
 class PointTimes(Protocol):
-    """The times (n) of the points of each scan, in seconds after its stamp."""
+    """Times (n) of the points of each scan, in seconds after its stamp."""
 
     def __getitem__(self, index: int) -> Matrix:
-        """Return the times of a scan's points, of those that are not finite too."""
+        """Return the times of a scan's points, including non-finite points."""
         ...
 
 
 @dataclass(frozen=True)
 class StoredTimes:
-    """Times of all points, as StoredScans has the points."""
+    """Times of all points, laid out like StoredScans."""
 
     times_s: Matrix
     offsets: npt.NDArray[np.int64]
@@ -100,31 +100,31 @@ class Recording:
         return points if finite.all() else points[finite]
 
     def point_times_s(self, index: int) -> Matrix | None:
-        """Return the times (n) of what scan() returns, after its stamp; None if unknown."""
+        """Return the times (n) of the points of scan(), after its stamp; None if unknown."""
         if self.point_times is None:
             return None
         return self.point_times[index][np.isfinite(self.scans[index]).all(axis=1)]
 
     def stamp_s(self, index: int) -> float:
-        """Return the stamp of a scan; without stamps the time after the first."""
+        """Return the stamp of a scan; without stamps, the time after the first scan."""
         return float(self.stamps[index] if len(self.stamps) else self.times_s()[index])
 
     def times_s(self) -> Matrix:
-        """Return the time of each scan after the first; even where there are no stamps."""
+        """Return the times (S) of the scans after the first, also without stamps."""
         if len(self.stamps) == 0:
             return np.arange(len(self), dtype=np.float64) * DEFAULT_PERIOD_S
         times: Matrix = self.stamps - self.stamps[0]
         return times
 
     def accumulated(self, indices: Sequence[int]) -> Points:
-        """Return all points of some scans, in the map frame."""
+        """Return the points of several scans, in the map frame."""
         scans = [self._in_map(i) for i in indices]
         return np.concatenate(scans) if scans else np.zeros((0, 3), np.float32)
 
     def _in_map(self, index: int) -> Points:
-        """Return a scan in the map frame; a map far from its origin needs doubles.
+        """Return a scan in the map frame; float64 if the map is far from its origin.
 
-        What single precision has spoiled before stays in it, so that it can be told.
+        Coarse float32 input is not widened, so that it can be detected.
         """
         points = self.scan(index)
         moved = transform(self.poses[index], points.astype(np.float64))
@@ -132,12 +132,12 @@ class Recording:
         return moved if is_double else moved.astype(points.dtype, copy=False)
 
     def first(self, count: int | None) -> Recording:
-        """Return the first scans only, None for all."""
+        """Return only the first `count` scans; None for all."""
         return replace(self, poses=self.poses[:count], stamps=self.stamps[:count])
 
 
 def save_recording(path: Path, drive: Recording, scale_m: float = DEFAULT_SCALE_M) -> None:
-    """Write a recording as npz, its points rounded to `scale_m`."""
+    """Write a recording as npz, with points rounded to `scale_m`."""
     stored = stored_scans([drive.scan(index) for index in range(len(drive))], scale_m)
     times = [drive.point_times_s(index) for index in range(len(drive))]
     known = [one for one in times if one is not None]
@@ -155,7 +155,7 @@ def save_recording(path: Path, drive: Recording, scale_m: float = DEFAULT_SCALE_
 
 
 def stored_scans(scans: Sequence[Points], scale_m: float) -> StoredScans:
-    """Return scans in metres as whole numbers of `scale_m`."""
+    """Return scans in metres as integers in units of `scale_m`."""
     offsets = np.cumsum([0, *(len(scan) for scan in scans)], dtype=np.int64)
     steps = np.rint(np.concatenate(scans) / scale_m)
     if steps.size and np.abs(steps).max() > INT16_MAX:
@@ -164,10 +164,10 @@ def stored_scans(scans: Sequence[Points], scale_m: float) -> StoredScans:
 
 
 def load_recording(path: Path) -> Recording:
-    """Read a recording; a file that is none is an error that says what is wrong with it."""
+    """Read a recording; raise ManycoreError with the problem if it is invalid."""
     try:
         with path.open("rb") as raw, np.load(raw, allow_pickle=False) as file:
-            # What is no array comes as bytes.
+            # Entries that are no arrays are loaded as bytes.
             arrays = {name: np.asarray(file[name]) for name in file.files}
     except UNREADABLE as error:
         raise _bad(path, f"cannot be read as npz: {what_is_wrong(error)}") from error
@@ -190,7 +190,7 @@ def load_recording(path: Path) -> Recording:
 
 
 def _problem(arrays: dict[str, npt.NDArray[Any]]) -> str | None:
-    """Return the first thing that is wrong with the shapes of the arrays."""
+    """Return the first problem with the shapes of the arrays; None if there is none."""
     points, poses, offsets = arrays["points"], arrays["poses"], arrays["offsets"]
     stamps, scale = arrays.get("stamps", np.zeros(0)), arrays.get("scale_m")
     count = len(poses) if poses.ndim else 0

@@ -1,9 +1,9 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""A recording as a folder with one file per scan, and a file of poses (pose_file.py).
+"""A recording as a directory with one file per scan, and a pose file (pose_file.py).
 
-Scans are `.bin` (float32 x, y, z, intensity, as KITTI has them; `.pcd.bin` with a ring too, as
-nuScenes), `.npy` (N, 3 or more), `.pcd` or `.ply`; in the order of the numbers in their names.
-Times come from `times.txt` or `timestamps.txt`, names that are times since 1970, or the poses.
+Scans are `.bin` (float32 x, y, z, intensity as in KITTI; `.pcd.bin` with ring as in nuScenes),
+`.npy` (N, 3 or more), `.pcd` or `.ply`, in the order of the numbers in their names. Times come from
+`times.txt` or `timestamps.txt`, from names that are times since 1970, or from the poses.
 """
 
 from __future__ import annotations
@@ -26,17 +26,17 @@ from rmw_manycore_py.ndt.recordings.stamps import of_names, read_stamps
 SUFFIXES = (".bin", ".npy", ".pcd", ".ply")
 STAMP_FILES = ("times.txt", "timestamps.txt")
 POSE_FILE = re.compile(r"(poses?|gt|ground_?truth|traj|odom).*\.(txt|tum|kitti|csv)", re.IGNORECASE)
-DEPTH = 3  # folders, from the given one to that of the scans
+DEPTH = 3  # maximum directory depth of the scans
 
 
 @dataclass(frozen=True)
 class ScanFiles:
-    """Scans in files, read when they are asked for."""
+    """Scan files, read on demand."""
 
     paths: tuple[Path, ...]
 
     def __getitem__(self, index: int) -> Points:
-        """Read a scan; a broken file is a ManycoreError."""
+        """Read a scan; raise ManycoreError if the file is broken."""
         return read_scan(self.paths[index])
 
 
@@ -57,7 +57,7 @@ def read_scan(path: Path) -> Points:
 
 
 def open_folder(folder: Path, poses_path: Path | None) -> Recording:
-    """Return the recording in a folder or below it."""
+    """Open the recording in a directory or below it."""
     scans = _scans_of(folder)
     places = [scans[0].parent, *scans[0].parent.parents][: DEPTH + 1]
     poses = read_poses(poses_path or _poses_beside(folder, places))
@@ -69,7 +69,7 @@ def open_folder(folder: Path, poses_path: Path | None) -> Recording:
 
 
 def _scans_of(folder: Path) -> list[Path]:
-    """Return the files of the one folder that has some, sorted as people count."""
+    """Return the files of the only directory with scans, in numeric order."""
     found: dict[Path, list[Path]] = {}
     for path in folder.rglob("*"):
         if path.suffix in SUFFIXES and len(path.relative_to(folder).parts) <= DEPTH:
@@ -83,7 +83,7 @@ def _scans_of(folder: Path) -> list[Path]:
     if len(found) > 1:
         names = ", ".join(sorted(str(path) for path in found))
         raise ManycoreError(
-            f"{folder}: several folders have scans, name one: {names}", EXIT_BAD_INPUT
+            f"{folder}: several directories have scans, name one: {names}", EXIT_BAD_INPUT
         )
     return sorted(next(iter(found.values())), key=_as_counted)
 
@@ -95,7 +95,7 @@ def _as_counted(path: Path) -> list[tuple[bool, int, str]]:
 
 
 def _poses_beside(folder: Path, places: list[Path]) -> Path:
-    """Return the only file near the scans that is named like poses."""
+    """Return the only file near the scans with a name like poses."""
     for place in places:
         found = sorted(path for path in place.iterdir() if POSE_FILE.fullmatch(path.name))
         if len(found) == 1:

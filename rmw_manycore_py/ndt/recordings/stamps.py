@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Times of scans, in whatever unit a recording has them."""
+"""Times of scans, in the unit used by a recording."""
 
 from __future__ import annotations
 
@@ -11,18 +11,20 @@ import numpy.typing as npt
 
 from rmw_manycore_py.ndt.geometry.arrays import Matrix
 
-# In seconds, milliseconds, microseconds and nanoseconds: the time since 1970 is at least, and the
-# time between two scans at most ...
+# (minimum time since 1970, seconds per unit) for nanoseconds, microseconds, milliseconds and
+# seconds.
 EPOCHS = ((1e17, 1e-9), (1e14, 1e-6), (1e11, 1e-3), (1e8, 1.0))
 PERIODS = ((1e7, 1e-9), (1e4, 1e-6), (10.0, 1e-3), (0.0, 1.0))
-FEWEST_DIGITS = 10  # of a file's name that is a time since 1970, not a number in a row
+FEWEST_DIGITS = 10  # minimum digits of a file name that is a time since 1970
 
 
 def in_seconds(stamps: npt.NDArray[Any]) -> Matrix:
-    """Return increasing times (S) in seconds, the unit guessed from their size or their distance.
+    """Return increasing times (S) in seconds; the unit is inferred from magnitude or spacing.
 
-    A time since 1970 tells its unit; of others the median distance does: up to 10 s are taken for
-    seconds, up to 10,000 for milliseconds and so on. A ValueError says that they do not increase.
+    Times since 1970 reveal their unit; otherwise the median step does: up to 10 means seconds, up
+    to 10,000 milliseconds and so on.
+
+    :raises ValueError: if they are not finite or do not increase.
     """
     if len(stamps) == 0:
         return np.zeros(0)
@@ -31,12 +33,12 @@ def in_seconds(stamps: npt.NDArray[Any]) -> Matrix:
     if stamps.dtype.kind not in "iuf" or not np.isfinite(stamps).all():
         raise ValueError("a stamp is not a finite number")
     if stamps.dtype.kind in "iu":
-        stamps = stamps.astype(np.int64)  # differences of unsigned numbers are never negative
+        stamps = stamps.astype(np.int64)  # differences of unsigned integers cannot be negative
     steps = np.diff(stamps)
     if (steps <= 0).any():
         first = int(np.flatnonzero(steps <= 0)[0])
         raise ValueError(f"stamps do not increase: {stamps[first]}, then {stamps[first + 1]}")
-    # The first one is taken away before nanoseconds since 1970 lose their last digits.
+    # Subtract the first before converting, so that nanoseconds since 1970 keep their last digits.
     unit_s = _unit_s(float(stamps[0]), float(np.median(steps)) if len(steps) else 0.0)
     times: Matrix = float(stamps[0]) * unit_s + (stamps - stamps[0]).astype(np.float64) * unit_s
     return times
@@ -50,7 +52,7 @@ def _unit_s(first: float, period: float) -> float:
 
 
 def of_names(paths: list[Path]) -> Matrix:
-    """Return the times that files are named by, empty where names are no times."""
+    """Return the times given by file names; empty if the names are no times."""
     names = [path.name.removesuffix(".bin").removesuffix(path.suffix) for path in paths]
     try:
         numbers = np.array([float(name.replace("_", ".", 1)) for name in names])
@@ -61,7 +63,7 @@ def of_names(paths: list[Path]) -> Matrix:
 
 
 def read_stamps(path: Path) -> Matrix:
-    """Read one time per line: numbers, or dates as KITTI's raw recordings have them."""
+    """Read one time per line: numbers, or dates as in KITTI's raw recordings."""
     lines = [line.strip() for line in path.read_text().splitlines() if line.strip()]
     try:
         if lines and "-" in lines[0] and ":" in lines[0]:

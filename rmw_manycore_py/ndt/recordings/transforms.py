@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The transforms of a bag (`/tf`, `/tf_static`): where a sensor is mounted, and how it moved."""
+"""Transforms of a bag (`/tf`, `/tf_static`): mounting and motion of a sensor."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from rmw_manycore_py.ndt.geometry.arrays import Matrix
 from rmw_manycore_py.ndt.recordings.pose_file import PoseLine
 
 TYPES = {"tf2_msgs/msg/TFMessage", "tf/msg/tfMessage"}
-TOPICS = ("tf", "tf_static")  # maybe in a namespace
+TOPICS = ("tf", "tf_static")  # possibly in a namespace
 LONGEST_CHAIN = 100
 
 
@@ -28,16 +28,16 @@ class Joint:
 
     @property
     def is_fixed(self) -> bool:
-        """Tell whether it never moved, as of sensors whose place is published again and again."""
+        """Return whether it never moves, as of sensors whose mounting is published repeatedly."""
         return all(np.array_equal(T, self.transforms[0]) for T in self.transforms)
 
     def line(self) -> PoseLine:
-        """Return it as poses."""
+        """Return the transforms as poses."""
         return PoseLine(np.array(self.transforms), np.array(self.stamps))
 
 
 class Transforms:
-    """Each frame has one parent, the one it had first."""
+    """Tree of frames; a frame keeps its first parent."""
 
     def __init__(self, reader: Any) -> None:
         from rmw_manycore_py.ndt.messages.conversions import seconds
@@ -49,7 +49,7 @@ class Transforms:
                 self._add(transform, seconds(transform.header.stamp) or 1e-9 * at_ns)
 
     def _add(self, message: Any, stamp_s: float) -> None:
-        """Take a transform; one that is none is passed over."""
+        """Add a transform; skip invalid ones."""
         from rmw_manycore_py.ndt.messages.conversions import PoseError, matrix_of_transform
 
         try:
@@ -65,7 +65,7 @@ class Transforms:
             joint.transforms.append(T_parent_child)
 
     def mounting(self, base: str, sensor: str) -> Matrix | None:
-        """Return T_base_sensor of what never moved, None where that does not connect them."""
+        """Return T_base_sensor over fixed joints; None if they do not connect the frames."""
         up_sensor, up_base = self._fixed_above(sensor), self._fixed_above(base)
         for frame, T_frame_sensor in up_sensor.items():
             if frame in up_base:
@@ -74,10 +74,10 @@ class Transforms:
         return None
 
     def motion(self, sensor: str) -> PoseLine | None:
-        """Return the poses of a frame in the topmost one, None where nothing above it moved.
+        """Return the poses of a frame in its root frame; None if nothing above it moves.
 
-        They have the times of the joint that was published most often; the others are
-        interpolated, and times at which one of them is not known are left out.
+        They have the stamps of the joint published most often; other joints are interpolated, and
+        stamps at which one is unknown are dropped.
         """
         joints = [self._joints[frame] for frame in self._above(sensor)[:-1]]
         moving = [joint.line() for joint in joints if not joint.is_fixed]
@@ -87,12 +87,12 @@ class Transforms:
         for line in moving:
             stamps = stamps[line.at(stamps)[0]]
         T = np.tile(np.eye(4), (len(stamps), 1, 1))
-        for joint in joints:  # from the sensor upwards
+        for joint in joints:  # from the sensor to the root
             T = (joint.transforms[0] if joint.is_fixed else joint.line().at(stamps)[1]) @ T
         return PoseLine(T, stamps)
 
     def _above(self, frame: str) -> list[str]:
-        """Return the frame and its ancestors, the topmost one last."""
+        """Return the frame and its ancestors, root last."""
         chain = [frame.lstrip("/")]
         while (joint := self._joints.get(chain[-1])) and len(chain) < LONGEST_CHAIN:
             if joint.parent in chain:
@@ -101,7 +101,7 @@ class Transforms:
         return chain
 
     def _fixed_above(self, frame: str) -> dict[str, Matrix]:
-        """Return T_ancestor_frame of the frame itself and of what it is fixed to."""
+        """Return T_ancestor_frame of the frame itself and the frames it is fixed to."""
         chain = self._above(frame)
         above = {chain[0]: np.eye(4)}
         for child, parent in pairwise(chain):
@@ -113,5 +113,5 @@ class Transforms:
 
 
 def is_transforms(connection: Any) -> bool:
-    """Tell whether a connection of a bag has transforms."""
+    """Return whether a connection of a bag carries transforms."""
     return connection.msgtype in TYPES and connection.topic.rpartition("/")[2] in TOPICS

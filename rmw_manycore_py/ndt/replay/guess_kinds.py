@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The kinds of guesses a replay can make, what each takes from the reference, and its source."""
+"""Kinds of guesses of a replay: their source, and what they take from the reference."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from rmw_manycore_py.ndt.replay import motion, prediction
 from rmw_manycore_py.ndt.replay.guess_source import Guesses, GuessSource, StackInputs
 from rmw_manycore_py.progress import tracked
 
-FIRST_OFF_M, FIRST_OFF_RAD = 0.3, 0.05  # how rough a first pose is, pointed at in RViz
+FIRST_OFF_M, FIRST_OFF_RAD = 0.3, 0.05  # error of an initial pose set in RViz
 MADE_OF = {
     "odometry": "closed loop: last result and {motion}; a rough first pose",
     "velocity": "closed loop: EKF of the results alone; a rough first pose",
@@ -30,7 +30,7 @@ MOTION = {
 
 @dataclass(frozen=True)
 class Motions:
-    """The motions between scans, without error, and why some of them are the reference's."""
+    """Motions between scans without error, and which of them are the reference's, and why."""
 
     between: Sequence[Matrix] = ()
     untold: Sequence[str] = ()
@@ -38,7 +38,7 @@ class Motions:
 
 @dataclass(frozen=True)
 class GuessKind:
-    """What `--guess` and the options beside it say."""
+    """Settings of `--guess` and related options."""
 
     kind: str
     motion: str
@@ -50,7 +50,7 @@ class GuessKind:
     def motions(self, drive: Recording) -> Motions:
         """Return the motions that this kind of guess needs.
 
-        Where two scans do not tell their motion it is the reference's.
+        Motions that the scans do not determine are taken from the reference.
         """
         if self.kind in ("perturbed", "velocity"):
             return Motions()
@@ -66,7 +66,7 @@ class GuessKind:
         return Motions(between, untold)
 
     def made_of(self, motions: Motions) -> str:
-        """Say what the guesses are made of."""
+        """Describe the source of the guesses."""
         moved_by = f"{MOTION[self.motion]} with {self.drift:.0%} error"
         made_of = MADE_OF[self.kind].format(
             motion=moved_by, offset=self.offset_m, turn=self.turn_deg

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""How a replay lets the matcher know where a scan may be: with guesses, or with what makes them."""
+"""How a replay informs the matcher of a scan's pose: by guesses, or by inputs of a filter."""
 
 from __future__ import annotations
 
@@ -17,31 +17,31 @@ from rmw_manycore_py.ndt.messages.conversions import pose_with_covariance, stamp
 from rmw_manycore_py.ndt.replay.prediction import MEASURED, Prediction
 
 MAP_FRAME = "map"
-# Between first poses. The initializer matches many guesses for each, which a busy host takes ten
-# seconds for, and one that comes meanwhile has it begin anew.
+# Period of initial poses. The initializer matches many guesses for each, which takes ten seconds on
+# a busy host; a new one restarts it.
 FIRST_POSE_PERIOD_S = 20.0
 ROUGH = np.diag([0.25, 0.25, 0.01, 0.0001, 0.0001, 0.1])  # m^2, rad^2
 SPEED_VARIANCE, TURN_VARIANCE = 0.04, 0.01  # (m/s)^2, (rad/s)^2
 
 
 class GuessSource(Protocol):
-    """What is sent besides scans."""
+    """Sends everything except scans."""
 
     def advertise(self, node: Node) -> None:
         """Create the publishers."""
 
     def send_first(self, stamp_ns: int) -> None:
-        """Send what belongs to the first scan, while all wait for it to be answered."""
+        """Send the inputs of the first scan, while waiting for its answer."""
 
     def send(self, index: int, time_s: float, stamp_ns: int) -> Matrix | None:
-        """Send what belongs to a scan; return the guess if there is one."""
+        """Send the inputs of a scan; return the guess if there is one."""
 
     def result(self, index: int, time_s: float, T_map_sensor: Matrix) -> None:
-        """Take the pose that a scan was found to have."""
+        """Take the pose found for a scan."""
 
 
 class Guesses:
-    """Guesses of a prediction, as the EKF of a laptop sends them."""
+    """Sends guesses of a prediction, like the EKF of a laptop."""
 
     def __init__(self, first_pose: Matrix, prediction: Prediction) -> None:
         self._first_pose = first_pose
@@ -54,7 +54,7 @@ class Guesses:
         )
 
     def send_first(self, stamp_ns: int) -> None:
-        """Send the first pose."""
+        """Send the initial pose."""
         self._publish(stamp_ns, self._first_pose)
 
     def send(self, index: int, time_s: float, stamp_ns: int) -> Matrix:
@@ -64,18 +64,18 @@ class Guesses:
         return guess
 
     def result(self, index: int, time_s: float, T_map_sensor: Matrix) -> None:
-        """Tell the prediction."""
+        """Pass the result to the prediction."""
         self._prediction.result(index, time_s, T_map_sensor)
 
     def _publish(self, stamp_ns: int, guess: Matrix) -> None:
-        """Send a guess for the time of the scan: two, as a matcher interpolates."""
+        """Publish a guess for the time of the scan, twice, since a matcher interpolates."""
         for time_ns in (stamp_ns - 1_000_000, stamp_ns):
             message = pose_with_covariance(guess, MEASURED, stamp_of(time_ns), MAP_FRAME)
             self._publisher.publish(message)
 
 
 class StackInputs:
-    """A first pose and the speed, for a stack on the platform that makes its guesses itself."""
+    """An initial pose and the speed, for a stack on the platform that makes its own guesses."""
 
     def __init__(self, first_pose: Matrix, motions: Sequence[Matrix], periods_s: Matrix) -> None:
         self._first_pose = first_pose
@@ -91,7 +91,7 @@ class StackInputs:
         )
 
     def send_first(self, stamp_ns: int) -> None:
-        """Send a rough first pose now and then, and that the vehicle stands."""
+        """Send a rough initial pose periodically, and zero speed."""
         self._publish_twist(stamp_ns, 0.0, 0.0)
         if time.monotonic() >= self._next_first_s and self._initial.get_subscription_count():
             self._next_first_s = time.monotonic() + FIRST_POSE_PERIOD_S
@@ -109,7 +109,7 @@ class StackInputs:
         self._publish_twist(stamp_ns, float(motion[0, 3]) / period_s, turn_rad / period_s)
 
     def result(self, index: int, time_s: float, T_map_sensor: Matrix) -> None:
-        """Be indifferent: the stack knows."""
+        """Ignore the result: the stack has it."""
 
     def _publish_twist(self, stamp_ns: int, speed_m_s: float, turn_rad_s: float) -> None:
         message = TwistWithCovarianceStamped()

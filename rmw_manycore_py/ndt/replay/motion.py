@@ -1,8 +1,7 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The motion between consecutive scans, which a vehicle's odometry would tell.
+"""Motion between consecutive scans, as odometry would measure it.
 
-A motion is T_before_after (4, 4): the sensor's pose at a scan, seen from where it was at the scan
-before.
+A motion is T_before_after (4, 4): the sensor's pose at a scan, relative to the previous scan.
 """
 
 from __future__ import annotations
@@ -21,11 +20,11 @@ from rmw_manycore_py.ndt.matching.options import MatcherOptions
 from rmw_manycore_py.ndt.matching.voxel_map import VoxelMap
 from rmw_manycore_py.ndt.recordings.recording import Recording
 
-VOXEL_M = 0.25  # scans are thinned to it, which leaves some ten thousand points
-# From a guess beside the truth an alignment finds back over ten degrees and two metres.
+VOXEL_M = 0.25  # scans are downsampled to about ten thousand points
+# An alignment converges from about ten degrees and two metres.
 TURNS_RAD = np.radians(np.arange(-60.0, 61.0, 15.0))
-OPTIONS = MatcherOptions()  # what the matcher is given by default, levels and all
-# Of right motions 2.68 and more, of wrong ones 2.54 and less (docs/design/ndt_node.md).
+OPTIONS = MatcherOptions()  # the matcher's defaults, with all levels
+# Right motions have 2.68 and more, wrong ones 2.54 and less (docs/design/ndt_replay.md).
 LEAST_LIKELIHOOD = 2.6
 
 
@@ -36,9 +35,9 @@ def of_reference(drive: Recording) -> Iterator[Matrix]:
 
 
 def of_scans(drive: Recording, doubt: Callable[[str], None]) -> Iterator[Matrix | None]:
-    """Yield the motions by which each scan fits the one before it best; no pose is looked at.
+    """Yield the motions that best align each scan with the previous one; uses no poses.
 
-    :param doubt: is told why, where the scans do not tell their motion (None).
+    :param doubt: called with the reason if the scans do not determine their motion (None).
     """
     matcher = SerialMatcher(OPTIONS)
     motion: Matrix = np.eye(4)
@@ -57,7 +56,7 @@ def of_scans(drive: Recording, doubt: Callable[[str], None]) -> Iterator[Matrix 
 
 
 def drifted(motion: Matrix, drift: float, generator: np.random.Generator) -> Matrix:
-    """Return a motion with an error of a share of its length and angle, in a random direction."""
+    """Return a motion with a random error proportional to its length and angle."""
     length_m = float(np.linalg.norm(motion[:3, 3]))
     angle_rad = float(np.linalg.norm(poses.rotation_vector(motion[:3, :3])))
     return poses.perturbed(motion, drift * length_m, drift * angle_rad, generator)
@@ -70,12 +69,12 @@ def _best_fit(matcher: Matcher, before: Points, after: Points, last: Matrix) -> 
     except ManycoreError:
         return None  # too few points
     guesses = [last, *(poses.from_xyz_rpy(last[:3, 3], (0.0, 0.0, turn)) for turn in TURNS_RAD)]
-    fits = [matcher.align(after, guess, only_pose=True) for guess in guesses]
+    fits = [matcher.align_once(after, guess, only_pose=True) for guess in guesses]
     return max(fits, key=lambda fit: fit.transform_probability)
 
 
 def _problem(fit: Alignment | None) -> str:
-    """Say why a fit may be wrong, "" where it is trusted."""
+    """Return why a fit may be wrong; "" if it is trusted."""
     if fit is None:
         return "the former has too few points"
     if not fit.converged:

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""A replay in three dimensions: the map, the path, and a scan where it was found."""
+"""3D picture of a replay: the map, the path, and one matched scan."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ from rmw_manycore_py.ndt.recordings.recording import Recording
 from rmw_manycore_py.ndt.replay.tally import Played, Tally
 
 MAP_POINTS, SCAN_POINTS = 40_000, 10_000
-AROUND_M = 40.0  # of the map beside the path
+AROUND_M = 40.0  # width of the map shown beside the path
 ELEVATION_DEG, AZIMUTH_DEG = 35.0, -120.0
 
 
 def draw(tally: Tally, drive: Recording, map_points: Points | None, path: Path) -> None:
-    """Write the picture, with the scan in the middle of the drive that was answered."""
+    """Write the picture, with the answered scan in the middle of the drive."""
     figure = load_figure()(figsize=(12, 9), layout="constrained")
     axes: Any = figure.add_subplot(projection="3d")
     places = np.array([row.reference[:3, 3] for row in tally.rows])

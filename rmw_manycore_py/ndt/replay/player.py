@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Playing a recording to a scan matcher: guess and scan at their time, poses as they come back."""
+"""Plays a recording to a scan matcher: sends guesses and scans on time, receives poses."""
 
 from __future__ import annotations
 
@@ -29,14 +29,14 @@ from rmw_manycore_py.ndt.replay.tally import Played, Tally
 BASE_FRAME = "base_link"
 WARM_UP_PERIOD_S = 0.25
 LEAD_S = 0.05  # before the first scan
-# Topics may overtake each other on their way; a filter's prediction is there before the scan, which
-# a LiDAR takes a tenth of a second for.
+# Topics may overtake each other; a filter's prediction precedes the scan, which a LiDAR takes 0.1 s
+# to record.
 GUESS_LEAD_S = 0.005
-FOLLOW_UP_S = 1.0  # so long at least answers are waited for after the last scan
+FOLLOW_UP_S = 1.0  # minimum wait for answers after the last scan
 
 
 class Player(Node):
-    """Publishes map and scans as a laptop would, and measures what comes back."""
+    """Publishes map and scans like a laptop, and measures the answers."""
 
     def __init__(
         self,
@@ -46,18 +46,19 @@ class Player(Node):
         voxel_m: float,
         pid: int | None = None,
     ) -> None:
-        """Connect; the CPU time is that of a process, or what the matcher's diagnostics say."""
+        """Connect; CPU time is measured of a process, or taken from the matcher's diagnostics."""
         super().__init__("ndt_replay")
         self._drive = drive
         self._source = source
         self._tally = tally
         self._voxel_m = voxel_m
         self._pid = pid
-        self._waiting: dict[int, Played] = {}  # by stamp, ns; of them there is no pose yet
-        self._played: dict[int, Played] = {}  # by stamp, ns
+        self._waiting: dict[int, Played] = {}  # by stamp [ns]; not answered yet
+        self._played: dict[int, Played] = {}  # by stamp [ns]
         self._warm_stamps: set[int] = set()
         self._is_warm = False
-        self._times_s = drive.times_s()  # when each scan is played, after the first
+        self._times_s = drive.times_s()  # play time of each scan after the first
+        self._pace = 1.0  # duration when played, relative to the recording
         kept = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
         self._map = self.create_publisher(PointCloud2, "pointcloud_map", kept)
         self._source.advertise(self)
@@ -69,11 +70,11 @@ class Player(Node):
         self.create_subscription(DiagnosticArray, "/diagnostics", self._on_diagnostics, 100)
 
     def publish_map(self, points: Points) -> None:
-        """Publish the map, for nodes that come later too."""
+        """Publish the map, transient local."""
         self._map.publish(encode(points, Time(), MAP_FRAME))
 
     def warm_up(self, timeout_s: float) -> None:
-        """Send the first scan until it is answered: then all are connected, and there is a map."""
+        """Repeat the first scan until it is answered: then all are connected and there is a map."""
         scan = self._scan(0)
         deadline = time.monotonic() + timeout_s
         while not self._is_warm:
@@ -86,12 +87,15 @@ class Player(Node):
             self._spin_until(time.monotonic() + WARM_UP_PERIOD_S, lambda: self._is_warm)
 
     def play(self, rate_hz: float | None, waits: bool, report: Callable[[Played], None]) -> None:
-        """Play all scans, by their stamps or at a rate, and call `report` after each.
+        """Play all scans, by their stamps or at a rate; call `report` after each.
 
-        If it `waits`, it plays none before the last one has its answer. Stamps keep the
-        recording's distances all the same: a matcher asks whether a vehicle can move so fast.
+        With `waits`, play each scan after the previous answer. Stamps keep the recording's
+        intervals in any case: a matcher checks whether the speed is plausible. At another rate
+        the points' times are scaled as the stamps are, else deskewing would see another speed.
         """
         if rate_hz is not None:
+            periods_s = np.diff(self._times_s)
+            self._pace = 1.0 / (rate_hz * float(np.median(periods_s))) if len(periods_s) else 1.0
             self._times_s = np.arange(len(self._drive)) / rate_hz
         start, start_ns = time.monotonic() + LEAD_S, time.time_ns() + round(1e9 * LEAD_S)
         for index, time_s in enumerate(self._times_s):
@@ -114,12 +118,12 @@ class Player(Node):
         self._note_cpu_time()
 
     def _wait_for(self, stamps_ns: Collection[int]) -> None:
-        """Handle what arrives until these scans are answered, or late."""
+        """Handle messages until these scans are answered or late."""
         end = time.monotonic() + max(FOLLOW_UP_S, self._tally.deadline_ms / 1e3)
         self._spin_until(end, lambda: self._waiting.keys().isdisjoint(stamps_ns))
 
     def _wait_for_reports(self) -> None:
-        """Handle diagnostics that come after their pose; where none come, wait for none."""
+        """Handle diagnostics that follow their pose; return at once if there are none."""
         rows = self._tally.rows
         if any(row.report for row in rows):
             end = time.monotonic() + FOLLOW_UP_S
@@ -131,7 +135,7 @@ class Player(Node):
 
     def _scan(self, index: int) -> Any:
         points, times_s = self._drive.scan(index), self._drive.point_times_s(index)
-        columns = points if times_s is None else np.column_stack([points, times_s])
+        columns = points if times_s is None else np.column_stack([points, self._pace * times_s])
         if self._voxel_m > 0.0:
             columns = voxel_centroids(columns, (self._voxel_m,) * 3)
         more = {} if times_s is None else {"time": columns[:, 3]}
@@ -168,14 +172,14 @@ class Player(Node):
                 self._tally.cpu_s.append((time.monotonic(), float(values["cpu_time_s"])))
 
     def _spin_until(self, deadline: float, done: Callable[[], bool] = lambda: False) -> None:
-        """Handle what arrives until a time or a condition."""
+        """Handle messages until a deadline or a condition."""
         while not done() and (left_s := deadline - time.monotonic()) > 0.0:
             rclpy.spin_once(self, timeout_sec=left_s)
 
     def _why_cold(self, timeout_s: float) -> str:
         if self._scans.get_subscription_count() == 0:
             return (
-                "nobody subscribes points_raw: start a scan matcher first, for example "
+                "points_raw has no subscription: start a scan matcher first, for example "
                 "`manycore run mapfiles/ndt_offload.yaml`, in the same ROS_DOMAIN_ID"
             )
         return (

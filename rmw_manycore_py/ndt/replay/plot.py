@@ -1,7 +1,7 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""A picture of a replay: map and path, and along the path errors, scores and latencies.
+"""Plot of a replay: map and path, and errors, scores and latencies along the path.
 
-Scans that got no pose are red: crosses on the map, stripes along the path.
+Scans without a pose are red: crosses on the map, stripes along the path.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ GAP = "tab:red"
 
 
 def plot(tally: Tally, map_points: Points | None, path: Path) -> None:
-    """Write the picture; the suffix of the path chooses its format."""
+    """Write the plot; the suffix of the path selects its format."""
     figure = load_figure()(figsize=(15, 9), layout="constrained")
     grid = figure.add_gridspec(3, 2, width_ratios=(1, 1.2))
     _draw_map(figure, figure.add_subplot(grid[:, 0]), tally, map_points)
@@ -40,7 +40,7 @@ def plot(tally: Tally, map_points: Points | None, path: Path) -> None:
 
 
 def distances_m(tally: Tally) -> Matrix:
-    """Return for each scan the way (S,) that the reference has come since the first one."""
+    """Return the distance (S,) travelled by the reference since the first scan."""
     places = np.array([row.reference[:3, 3] for row in tally.rows]).reshape(-1, 3)
     steps = np.linalg.norm(np.diff(places, axis=0), axis=1)
     return np.concatenate([np.zeros(min(len(places), 1)), np.cumsum(steps)])
@@ -98,7 +98,7 @@ def _draw_latencies(axes: Any, tally: Tally, along_m: Matrix) -> None:
 
 
 def _draw_gaps(axes: Any, tally: Tally, along_m: Matrix) -> None:
-    """Mark the scans without a pose from the scan before to the one after."""
+    """Mark scans without a pose, from the previous to the next scan."""
     last = len(along_m) - 1
     for index, row in enumerate(tally.rows):
         if row.result is None:

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Where a scan is guessed to be: what the rest of a laptop's stack supplies."""
+"""Predicts the pose of a scan, like the rest of a laptop's stack."""
 
 from __future__ import annotations
 
@@ -17,17 +17,17 @@ MEASURED = np.diag([0.0225, 0.0225, 0.0225, 0.000625, 0.000625, 0.000625])  # m^
 
 
 class Prediction(Protocol):
-    """Guesses the pose of each scan in turn, and is told the results."""
+    """Predicts the pose of each scan in turn, and receives the results."""
 
     def guess(self, index: int, stamp_s: float) -> Matrix:
         """Return the guess for a scan at a time."""
 
     def result(self, index: int, stamp_s: float, T_map_sensor: Matrix) -> None:
-        """Take the pose that a scan was found to have."""
+        """Take the pose found for a scan."""
 
 
 class Perturbed:
-    """The reference pose, moved and turned by fixed amounts in random directions."""
+    """The reference pose with a fixed error in random directions."""
 
     def __init__(self, drive: Recording, offset_m: float, turn_deg: float, seed: int) -> None:
         self._drive = drive
@@ -35,18 +35,18 @@ class Perturbed:
         self._generator = np.random.default_rng(seed)
 
     def guess(self, index: int, stamp_s: float) -> Matrix:  # noqa: ARG002
-        """Return a guess that no result has an influence on."""
+        """Return a guess, independent of results."""
         reference = self._drive.poses[index]
         return poses.perturbed(reference, self._offset_m, self._turn_rad, self._generator)
 
     def result(self, index: int, stamp_s: float, T_map_sensor: Matrix) -> None:
-        """Be indifferent."""
+        """Ignore the result."""
 
 
 class Odometry:
-    """Closed loop: the last result, moved on as wheels and gyroscope say, which is not exact.
+    """Closed loop: the last result plus simulated odometry with an error.
 
-    What was not answered is bridged with more motion.
+    Scans without an answer are bridged with odometry.
     """
 
     def __init__(self, first_pose: Matrix, motions: Sequence[Matrix]) -> None:
@@ -54,20 +54,20 @@ class Odometry:
         self._motions = motions
 
     def guess(self, index: int, stamp_s: float) -> Matrix:  # noqa: ARG002
-        """Return the pose of the last result and all motion since."""
+        """Return the last result plus all motion since."""
         since, T = self._last
         for motion in self._motions[since:index]:
             T = T @ motion
         return T
 
     def result(self, index: int, stamp_s: float, T_map_sensor: Matrix) -> None:  # noqa: ARG002
-        """Go on from a pose, if it is newer than what is known."""
+        """Continue from a pose, if it is newer than the last result."""
         if index >= self._last[0]:
             self._last = (index, T_map_sensor)
 
 
 class Velocity:
-    """Closed loop: the filter of `ekf_localizer`, which knows nothing but the results."""
+    """Closed loop: the filter of `ekf_localizer` with the results as its only input."""
 
     def __init__(self, first_pose: Matrix) -> None:
         self._first_pose = first_pose
@@ -80,5 +80,5 @@ class Velocity:
         return self._filter.predicted(stamp_s).pose()
 
     def result(self, index: int, stamp_s: float, T_map_sensor: Matrix) -> None:  # noqa: ARG002
-        """Give a result to the filter."""
+        """Add a result to the filter."""
         self._filter.add_pose(stamp_s, T_map_sensor, MEASURED)

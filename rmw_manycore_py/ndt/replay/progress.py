@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""How a replay is going: a bar on a terminal, else a line now and then."""
+"""Progress of a replay: a bar on a terminal, else occasional lines."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from rmw_manycore_py.progress import ProgressLines
 
 
 class ReplayProgress:
-    """Scans played, and error and latency of the last that was answered; on standard error."""
+    """Shows scans played, and error and latency of the last answer, on standard error."""
 
     def __init__(self, tally: Tally, scans: int) -> None:
         self._tally = tally
@@ -36,7 +36,7 @@ class ReplayProgress:
         self._progress.stop()
 
     def played(self, row: Played) -> None:
-        """Show the scan as played."""
+        """Count a scan as played."""
         self._played += 1
         text = self._text(row)
         self._progress.update(self._task, advance=1, description=text)

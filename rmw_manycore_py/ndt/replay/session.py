@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""One replay from beginning to end."""
+"""A complete replay."""
 
 from __future__ import annotations
 
@@ -26,9 +26,9 @@ def run(
     timeout_s: float,
     pid: int | None,
 ) -> None:
-    """Publish the map if there is one, wait for the matcher, play; all goes into the tally.
+    """Publish the map if there is one, wait for the matcher, play; fill the tally.
 
-    :param pid: the process whose CPU time is wanted, None for the matcher's own word.
+    :param pid: process whose CPU time is measured; None uses the matcher's diagnostics.
     """
     rclpy.init()
     player = Player(drive, source, tally, voxel_m, pid)
@@ -36,7 +36,7 @@ def run(
         if map_points is not None:
             player.publish_map(map_points)
         player.warm_up(timeout_s)
-        gc.freeze()  # what was loaded so far is not looked through while scans are timed
+        gc.freeze()  # keep the garbage collector from scanning loaded data during timing
         with ReplayProgress(tally, len(drive)) as progress:
             player.play(rate_hz, waits, progress.played)
     finally:

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""A replay as CSV: one line per scan, with all that is known of it."""
+"""Writes a replay as CSV, one row per scan."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from rmw_manycore_py.ndt.replay.tally import Played, Tally
 
 AXES = ("x", "y", "z", "roll", "pitch", "yaw")
 UPPER = [(i, j) for i in range(6) for j in range(i, 6)]  # a covariance is symmetric
-# What the matcher's diagnostics say of a scan, by the names that its values have there.
+# Values of the matcher's diagnostics, by their keys.
 REPORTED = (
     "transform_probability",
     "transform_probability_before",
@@ -21,6 +21,8 @@ REPORTED = (
     "local_optimal_solution_oscillation_num",
     "execution_time",
     "initial_pose_age",
+    "second_looks",
+    "cpu_time_s",
     "sensor_points_size",
     "sensor_points_matched",
     "decode_time_ms",
@@ -39,10 +41,11 @@ COLUMNS = (
 
 
 def write_csv(tally: Tally, path: Path) -> None:
-    """Write the scans; a cell without a value is empty.
+    """Write the scans; cells without a value are empty.
 
-    `state` is answered, late or lost, `reason` what the matcher's diagnostics say of a scan. Poses
-    and covariances are in the map frame (m, rad), stamps the recording's, `execution_time` in ms.
+    `state` is answered, late or lost; `reason` is the message of the matcher's diagnostics. Poses
+    and covariances are in the map frame (m, rad), stamps those of the recording, `execution_time`
+    in ms.
     """
     with path.open("w", newline="") as file:
         writer = csv.writer(file)

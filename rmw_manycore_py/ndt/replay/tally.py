@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What became of each scan that was played, and the figures of all of them."""
+"""Outcome of each played scan, and summary figures."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ DIVERGED_M, DIVERGED_DEG = 1.0, 10.0
 
 @dataclass
 class Played:
-    """A scan; errors are against the reference pose, latency from before sending to the pose.
+    """A scan; errors are relative to the reference pose, latency runs from sending to the pose.
 
-    :param stamp_s: the recording's.
-    :param guess: None where the stack on the platform makes it.
+    :param stamp_s: stamp in the recording.
+    :param guess: None if the stack on the platform makes it.
     :param covariance: (6, 6) in the map frame.
-    :param reason: what the matcher's diagnostics say of the scan.
-    :param report: the values of its diagnostics.
+    :param reason: message of the matcher's diagnostics for the scan.
+    :param report: values of its diagnostics.
     """
 
     index: int
@@ -49,7 +49,7 @@ class Played:
 
 @dataclass(frozen=True)
 class Summary:
-    """The figures of a replay; errors and latencies of scans that were answered."""
+    """Summary of a replay; errors and latencies are those of answered scans."""
 
     scans: int
     answered: int
@@ -63,7 +63,7 @@ class Summary:
     error_m_max: float
     error_deg_median: float
     error_deg_max: float
-    within_share: float  # of all scans: within 0.2 m and 1 degree
+    within_share: float  # share of all scans within 0.2 m and 1 degree
     latency_ms_median: float
     latency_ms_p99: float
     latency_ms_max: float
@@ -71,7 +71,7 @@ class Summary:
 
     @property
     def is_good(self) -> bool:
-        """Tell whether every scan had an answer, in time and near the truth."""
+        """Return whether every scan was answered in time and near the reference."""
         return self.lost == 0 and self.late == 0 and self.diverged == 0
 
 
@@ -81,32 +81,32 @@ class Tally:
 
     deadline_ms: float
     rows: list[Played] = field(default_factory=list)
-    cpu_s: list[tuple[float, float]] = field(default_factory=list)  # wall and CPU time of the node
+    cpu_s: list[tuple[float, float]] = field(default_factory=list)  # (wall, CPU) of the node
 
     def answered(self) -> list[Played]:
         """Return the scans that have a result."""
         return [row for row in self.rows if row.result is not None]
 
     def late(self) -> int:
-        """Count the answers after the deadline."""
+        """Return the number of answers after the deadline."""
         return sum((row.latency_ms or 0.0) > self.deadline_ms for row in self.answered())
 
     def lost(self) -> int:
-        """Count the scans without an answer."""
+        """Return the number of scans without an answer."""
         return sum(row.result is None for row in self.rows)
 
     def complaint(self) -> str:
-        """Return what the matcher says of the first lost scan, "" for nothing."""
+        """Return what the matcher reported of the first lost scan; "" if nothing."""
         return next((row.reason for row in self.rows if row.result is None), "")
 
     def state(self, row: Played) -> str:
-        """Return what became of a scan, in a word."""
+        """Return the outcome of a scan: answered, late or lost."""
         if row.result is None:
             return "lost"
         return "late" if (row.latency_ms or 0.0) > self.deadline_ms else "answered"
 
     def summary(self) -> Summary:
-        """Return the figures."""
+        """Return the summary."""
         answered = self.answered()
         errors = np.array([row.error for row in answered]).reshape(-1, 2)
         guesses = np.array([r.guess_error for r in self.rows if r.guess is not None]).reshape(-1, 2)
@@ -143,7 +143,7 @@ class Tally:
 
 
 def as_json(summary: Summary) -> dict[str, Any]:
-    """Return the figures for printing; NaN, where nothing was answered, as None."""
+    """Return the summary as JSON data; NaN (nothing answered) becomes None."""
     return {k: None if v != v else v for k, v in asdict(summary).items()}
 
 

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The poses of a replay as files that other tools read (evo, KITTI's and TUM's own)."""
+"""Writes the poses of a replay as files for other tools (evo, KITTI, TUM)."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from rmw_manycore_py.ndt.replay.tally import Tally
 
 
 def reference_path(path: Path) -> Path:
-    """Return where the reference poses are written beside those found."""
+    """Return the path of the reference poses next to those found."""
     return path.with_name(f"{path.stem}-reference{path.suffix}")
 
 
 def write_tum(tally: Tally, path: Path) -> None:
-    """Write `stamp x y z qx qy qz qw` of each answered scan, and the reference of all beside it."""
+    """Write `stamp x y z qx qy qz qw` per answered scan, and the whole reference next to it."""
     found = [(row.stamp_s, row.result) for row in tally.rows if row.result is not None]
     _write(path, (_tum_line(stamp_s, T) for stamp_s, T in found))
     known = ((row.stamp_s, row.reference) for row in tally.rows)
@@ -27,9 +27,9 @@ def write_tum(tally: Tally, path: Path) -> None:
 
 
 def write_kitti(tally: Tally, path: Path) -> None:
-    """Write the first three rows of T_map_sensor of each scan, and the reference beside it.
+    """Write the first three rows of T_map_sensor per scan, and the reference next to it.
 
-    The format has no stamps but a line for each scan: one without an answer is a line of `nan`.
+    The format has no stamps but one line per scan: unanswered scans are lines of `nan`.
     """
     none = np.full((4, 4), np.nan)
     found = (none if row.result is None else row.result for row in tally.rows)

@@ -1,2 +1,2 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""A LiDAR driven along a synthetic street."""
+"""Simulation of a LiDAR driven along a synthetic street."""

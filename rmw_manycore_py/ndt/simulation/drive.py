@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""A drive along the synthetic street, and the map that an earlier drive has made."""
+"""A drive along the synthetic street, and the map from an earlier drive."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ from rmw_manycore_py.ndt.simulation.street import Street
 from rmw_manycore_py.ndt.simulation.traffic import Traffic
 
 SENSOR_HEIGHT_M = 1.9
-WEAVE_M = 0.8  # to both sides of the middle of the road
+WEAVE_M = 0.8  # amplitude around the centre of the road
 WEAVE_PERIOD_M = 45.0
 MAPPING_STEP_M = 4.0
-SWEEP_PARTS = 36  # in each of which the vehicle stands: 2 cm of way at 8 m/s
+SWEEP_PARTS = 36  # per scan, each with a constant pose: 2 cm at 8 m/s
 
 
 def poses_along(distances_m: Iterable[float], side_m: float = 0.0) -> Matrix:
-    """Return T_map_sensor (S, 4, 4) at distances along a weaving path, `side_m` left of it."""
+    """Return T_map_sensor (S, 4, 4) at distances along a weaving path, offset `side_m` left."""
     return np.stack([_pose_at(float(distance), side_m) for distance in distances_m])
 
 
@@ -37,10 +37,10 @@ def _pose_at(x: float, side_m: float) -> Matrix:
 
 @dataclass(frozen=True)
 class Surroundings:
-    """What a drive is recorded with and in.
+    """Sensor and environment of a drive.
 
-    :param traffic: cars that drive along, None for an empty road.
-    :param speed_m_s: where the vehicle moves while a scan is taken; None: it stands meanwhile.
+    :param traffic: moving cars; None for an empty road.
+    :param speed_m_s: speed during a scan; None for a stationary sensor.
     """
 
     street: Street
@@ -49,7 +49,7 @@ class Surroundings:
     speed_m_s: float | None = None
 
     def scan(self, pose: Matrix, time_s: float, generator: np.random.Generator) -> Sweep:
-        """Return what the LiDAR sees from a pose (4, 4) on, at a time of the drive."""
+        """Return the LiDAR's scan starting at a pose (4, 4) and a time of the drive."""
         if self.speed_m_s is None:
             street = self._with_traffic(float(pose[0, 3]), time_s)
             return Sweep(self.lidar.scan(street, pose, generator), None)
@@ -71,7 +71,7 @@ class Surroundings:
 
 @dataclass(frozen=True)
 class Sweep:
-    """Points (n, 3) in the sensor frame of their moments; `times_s` (n) after the stamp, if any."""
+    """Points (n, 3), each in the sensor frame of its time; `times_s` (n) after the stamp."""
 
     points: Points
     times_s: Matrix | None
@@ -80,7 +80,7 @@ class Sweep:
 def scans_along(
     street: Street, poses: Matrix, lidar: Lidar, generator: np.random.Generator
 ) -> Iterator[Points]:
-    """Yield what the LiDAR sees from each pose."""
+    """Yield the LiDAR's scan at each pose."""
     for pose in poses:
         yield lidar.scan(street, pose, generator)
 
@@ -94,14 +94,14 @@ def sweeps_along(
 
 
 def drive_poses(length_m: float, speed_m_s: float) -> tuple[Matrix, Matrix]:
-    """Return T_map_sensor and stamps of a drive with ten scans a second."""
+    """Return T_map_sensor and stamps of a drive with ten scans per second."""
     count = max(2, int(length_m / (speed_m_s * DEFAULT_PERIOD_S)))
     stamps: Matrix = np.arange(count, dtype=np.float64) * DEFAULT_PERIOD_S
     return poses_along(stamps * speed_m_s), stamps
 
 
 def mapping_poses(length_m: float) -> Matrix:
-    """Return where the mapping vehicle scanned: the other lane, and past both ends."""
+    """Return the mapping vehicle's scan poses: on the other lane, and beyond both ends."""
     return poses_along(np.arange(-8.0, length_m + 8.0, MAPPING_STEP_M), side_m=0.6)
 
 

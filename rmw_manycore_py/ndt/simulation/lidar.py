@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""A spinning LiDAR in a synthetic street: one ray per ring and azimuth, the nearest hit counts."""
+"""Simulates a spinning LiDAR: one ray per ring and azimuth, nearest hit."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from rmw_manycore_py.ndt.simulation.street import Street
 
 @dataclass(frozen=True)
 class Lidar:
-    """What the sensor is like; the defaults are those of a common one with 32 rings.
+    """Properties of the sensor; the defaults are those of a common LiDAR with 32 rings.
 
-    :param hidden_share: of the azimuths, behind the sensor: what the vehicle itself hides.
+    :param hidden_share: fraction of azimuths hidden by the vehicle, at the rear.
     """
 
     rings: int = 32
@@ -28,12 +28,12 @@ class Lidar:
     hidden_share: float = 0.0
 
     def azimuth_rad(self) -> Matrix:
-        """Return the azimuths (n,) that are seen, in the order in which they are measured."""
+        """Return the visible azimuths (n,), in measurement order."""
         azimuth: Matrix = np.linspace(-np.pi, np.pi, self.azimuths, endpoint=False)
         return azimuth[np.abs(azimuth) <= np.pi * (1.0 - self.hidden_share)]
 
     def directions(self, azimuth: Matrix | None = None) -> Matrix:
-        """Return unit vectors (rings * n, 3) in the sensor frame, of all azimuths or some (n,)."""
+        """Return unit vectors (rings * n, 3) in the sensor frame, for all or some azimuths (n,)."""
         elevation = np.radians(np.linspace(self.lowest_deg, self.highest_deg, self.rings))
         azimuth = self.azimuth_rad() if azimuth is None else azimuth
         e, a = (grid.ravel() for grid in np.meshgrid(elevation, azimuth, indexing="ij"))
@@ -46,9 +46,9 @@ class Lidar:
         generator: np.random.Generator,
         azimuth: Matrix | None = None,
     ) -> Points:
-        """Return what the sensor sees from a pose: points (n, 3) in the sensor frame.
+        """Return the scan at a pose: points (n, 3) in the sensor frame.
 
-        :param azimuth: the azimuths (a,) to look at, None for all.
+        :param azimuth: azimuths (a,) to measure; None for all.
         """
         directions = self.directions(azimuth)
         rays = directions @ T_map_sensor[:3, :3].T
@@ -59,7 +59,7 @@ class Lidar:
 
 
 def _nearest_hits(street: Street, origin: Matrix, rays: Matrix, range_m: float) -> Matrix:
-    """Return the distance (R,) along each ray to the first surface; infinity without one."""
+    """Return the distance (R,) along each ray to the nearest surface; infinity without a hit."""
     nearest = _ground(origin, rays)
     rays_by_axis = np.ascontiguousarray(rays.T)
     near_box = _is_near(origin, street.lower[:, 0], street.upper[:, 0], range_m)
@@ -95,7 +95,7 @@ def _box(origin: Matrix, rays_by_axis: Matrix, lower: Matrix, upper: Matrix) -> 
 
 
 def _cylinder(origin: Matrix, rays: Matrix, centre: Matrix, radius: float, height: float) -> Matrix:
-    """Intersect rays with the mantle of one upright cylinder."""
+    """Intersect rays with the lateral surface of one upright cylinder."""
     offset = origin[:2] - centre
     a = rays[:, 0] ** 2 + rays[:, 1] ** 2
     b = rays[:, :2] @ offset

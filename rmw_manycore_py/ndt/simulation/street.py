@@ -10,7 +10,7 @@ import numpy as np
 from rmw_manycore_py.ndt.geometry.arrays import Matrix
 
 Corners = tuple[float, float, float, float, float, float]  # x, y, z of two corners
-KERB_M = 4.5  # from the middle of the road; houses stand behind the pavement
+KERB_M = 4.5  # from the centre of the road; houses are behind the pavement
 
 
 @dataclass(frozen=True)
@@ -25,7 +25,7 @@ class Street:
 
 
 def build_street(length_m: float, generator: np.random.Generator) -> Street:
-    """Return a random street from x = -40 m to 40 m behind its length."""
+    """Return a random street from x = -40 m to 40 m beyond its length."""
     start, end = -40.0, length_m + 40.0
     boxes: list[Corners] = []
     for side in (-1.0, 1.0):
@@ -37,7 +37,7 @@ def build_street(length_m: float, generator: np.random.Generator) -> Street:
 
 
 def _houses(start: float, end: float, side: float, generator: np.random.Generator) -> list[Corners]:
-    """Return houses of various width, height and setback, each with an entrance that juts out."""
+    """Return houses of random width, height and setback, each with a protruding entrance."""
     boxes = []
     x = start
     while x < end:
@@ -51,7 +51,7 @@ def _houses(start: float, end: float, side: float, generator: np.random.Generato
 
 
 def _cars(start: float, end: float, side: float, generator: np.random.Generator) -> list[Corners]:
-    """Return parked cars: a body and a cabin each."""
+    """Return parked cars, each with a body and a cabin."""
     boxes = []
     x = start + generator.uniform(0.0, 10.0)
     while x < end:

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Cars that drive before and behind the vehicle: they are in no map, and hide what is."""
+"""Cars driving ahead of and behind the vehicle: they are not in the map and occlude it."""
 
 from __future__ import annotations
 
@@ -11,21 +11,21 @@ from rmw_manycore_py.ndt.geometry.arrays import Matrix
 from rmw_manycore_py.ndt.simulation.street import Street
 
 LENGTH_M, WIDTH_M, HEIGHT_M, CLEARANCE_M = 4.3, 1.8, 1.5, 0.2
-NEAREST_M, SPACING_M = 9.0, 9.0  # from the vehicle to the first car; from car to car
-SWAY_M, SLOWEST_SWAY_S, FASTEST_SWAY_S = 2.0, 4.0, 12.0  # ahead and back of its place
+NEAREST_M, SPACING_M = 9.0, 9.0  # distance of the first car; distance between cars
+SWAY_M, SLOWEST_SWAY_S, FASTEST_SWAY_S = 2.0, 4.0, 12.0  # longitudinal sway around its position
 
 
 @dataclass(frozen=True)
 class Traffic:
-    """Cars that keep with the vehicle, each around a place of its own before or behind it."""
+    """Cars that move with the vehicle, each swaying around a position ahead or behind."""
 
-    ahead_m: Matrix  # (C,) of the vehicle
-    side_m: Matrix  # (C,) of the middle of the road
-    period_s: Matrix  # (C,) of their swaying
+    ahead_m: Matrix  # (C,) ahead of the vehicle
+    side_m: Matrix  # (C,) left of the centre of the road
+    period_s: Matrix  # (C,) sway period
 
     @classmethod
     def of(cls, cars: int, generator: np.random.Generator) -> Traffic:
-        """Return so many cars, before and behind by turns."""
+        """Return this many cars, alternately ahead and behind."""
         rank = np.arange(cars)
         way = np.where(rank % 2 == 0, 1.0, -1.0)
         return cls(
@@ -35,7 +35,7 @@ class Traffic:
         )
 
     def in_street(self, street: Street, vehicle_x_m: float, time_s: float) -> Street:
-        """Return the street with the cars where they are at a time."""
+        """Return the street with the cars at a time."""
         sway_m = SWAY_M * np.sin(2.0 * np.pi * time_s / self.period_s)
         x = vehicle_x_m + self.ahead_m + sway_m
         bottom, top = np.full_like(x, CLEARANCE_M), np.full_like(x, HEIGHT_M)

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Whether the result of an alignment is believed: score, drop of the score, motion."""
+"""Judges the result of an alignment: score, drop of the score, motion."""
 
 from __future__ import annotations
 
@@ -15,28 +15,28 @@ from rmw_manycore_py.ndt.matching.alignment import Alignment
 from rmw_manycore_py.ndt.trust.motion import Believed, Expectation, MotionModel
 from rmw_manycore_py.ndt.trust.score_level import ScoreLevel
 
-LEAST_SHARE_IN_MAP = 0.3  # of the points: below, the vehicle has left the map, or is elsewhere
-DROP_SHARE = 0.88  # of the median of the last few scores: less is a sudden drop
+LEAST_SHARE_IN_MAP = 0.3  # of the points: below, the vehicle is outside the map or elsewhere
+DROP_SHARE = 0.88  # of the median of recent scores: lower is a sudden drop
 DROP_SCORES = 5
-SURE_AFTER = 3  # poses in a row that each agreed with the one before
-UNSURE_M, UNSURE_RAD = 1.0, 0.2  # standard deviations of a pose that nothing before it confirms
-# Spread by which a scan is told not to know its place along a street. Of streets, also of those
-# that repeat, and of recorded scans it is 0.14 to 0.48, in a bare tunnel 0.62 and more.
+SURE_AFTER = 3  # consecutive poses that each agree with the previous one
+UNSURE_M, UNSURE_RAD = 1.0, 0.2  # standard deviations of an unconfirmed pose
+# Minimum spread of a scan that does not constrain the position along a street. It is 0.14 to 0.48
+# on streets, also repetitive ones, and recorded scans; 0.62 and more in a bare tunnel.
 WEAK_SPREAD_M = 0.55
-WEAK_M = 2.0  # standard deviation along it
+WEAK_M = 2.0  # standard deviation along the weak axis
 COVERED_DEVIATIONS = 3.0
-COVERED_M, COVERED_RAD = 0.5, np.radians(3.0)  # of a pose whose covariance says nothing special
+COVERED_M, COVERED_RAD = 0.5, np.radians(3.0)  # error covered without a weak axis
 
 
 @dataclass(frozen=True)
 class Verdict:
-    """What is held of a pose.
+    """Judgement of a pose.
 
-    :param why: "" for a pose that is believed, else what is wrong with it.
-    :param is_sure: believed, and confirmed by the poses before it.
-    :param level: the score that was demanded.
-    :param expected: where the vehicle should be, if anything told.
-    :param weak_axis: direction (2,) in the map along which the scan does not tell the place.
+    :param why: "" for a believed pose, else what is wrong.
+    :param is_sure: believed, and confirmed by the previous poses.
+    :param level: the required score.
+    :param expected: expected pose of the vehicle, if known.
+    :param weak_axis: direction (2,) in the map in which the scan does not constrain the position.
     """
 
     why: str
@@ -47,11 +47,11 @@ class Verdict:
 
     @property
     def is_believed(self) -> bool:
-        """Tell whether the pose may be used."""
+        """Return whether the pose may be used."""
         return not self.why
 
     def covariance(self, of_sure: Matrix6) -> Matrix6:
-        """Return the covariance (6, 6): that of a sure pose, as large as this one is unsure."""
+        """Return the covariance (6, 6): that of a sure pose, enlarged if this one is not sure."""
         wide: Matrix6 = of_sure.copy()
         if not self.is_sure:
             least = np.square([*(UNSURE_M,) * 3, *(UNSURE_RAD,) * 3])
@@ -61,7 +61,7 @@ class Verdict:
         return wide
 
     def covers(self, T: Pose, truth: Pose) -> bool:
-        """Tell whether an error is one that the weak axis admits; for tests of the judge."""
+        """Return whether an error is explained by the weak axis; for tests of the judge."""
         error = T[:3, 3] - truth[:3, 3]
         if self.weak_axis is not None:
             along = float(error[:2] @ self.weak_axis)
@@ -73,9 +73,9 @@ class Verdict:
 
 
 class PoseJudge:
-    """Judges one drive's poses, scan by scan; what it believes makes it know the next better.
+    """Judges the poses of one drive, scan by scan; learns from those it believes.
 
-    :param searches: a search finds the first pose where the guess's result is not good enough.
+    :param searches: a search finds the first pose if the result of the guess is not good enough.
     """
 
     def __init__(self, level: ScoreLevel | None = None, *, searches: bool = True) -> None:
@@ -86,14 +86,14 @@ class PoseJudge:
         self._confirmed = 0
 
     def forget(self) -> None:
-        """Begin anew: the vehicle may be anywhere."""
+        """Reset: the vehicle may be anywhere."""
         self.level.forget()
         self.motion.forget()
         self._recent.clear()
         self._confirmed = 0
 
     def judge(self, stamp_s: float, alignment: Alignment, guess: Pose | None) -> Verdict:
-        """Judge a pose of the scan at a time, aligned from anywhere. Changes nothing.
+        """Judge the alignment of a scan, from any start. Does not change the state.
 
         :param guess: the guess T_map_base of the scan.
         """
@@ -102,8 +102,16 @@ class PoseJudge:
         is_sure = not why and expected is not None and self._confirmed >= SURE_AFTER
         return Verdict(why, is_sure, self.level.level, expected, weak_axis(alignment))
 
+    def may_look_again(self, verdict: Verdict) -> bool:
+        """Return whether a refused result may be replaced by one from farther off.
+
+        Motion tells whether that one is right. For a first pose only a search does, which finds
+        whether it stands out.
+        """
+        return verdict.expected is not None or not self._searches
+
     def believe(self, stamp_s: float, alignment: Alignment, guess: Pose | None) -> None:
-        """Go on from a pose that was judged good."""
+        """Continue from a pose that was judged good."""
         self._confirmed += 1
         self.motion.believe(stamp_s, alignment.T_map_sensor, guess)
         self._recent.append(alignment.nearest_voxel_likelihood)
@@ -111,9 +119,9 @@ class PoseJudge:
             self.level.learn(alignment.nearest_voxel_likelihood)
 
     def begin_at(self, at: Believed) -> None:
-        """Go on from a pose that a search has found, or that an earlier process left.
+        """Continue from a pose found by a search or left by a previous process.
 
-        What the scores were before it says nothing of the place.
+        Discards earlier scores, which belong to another place.
         """
         self.forget()
         self.motion.believe(at.stamp_s, at.T, at.guess)
@@ -140,7 +148,7 @@ class PoseJudge:
 
 
 def weak_axis(alignment: Alignment) -> Matrix | None:
-    """Return the direction (2,) along which the scan does not tell x and y; None without one."""
+    """Return the direction (2,) in which the scan does not constrain x and y; None without one."""
     values, vectors = np.linalg.eigh(alignment.xy_spread_m2)
     axis: Matrix = vectors[:, 1]
     return axis if values[1] > WEAK_SPREAD_M**2 else None

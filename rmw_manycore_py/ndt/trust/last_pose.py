@@ -1,8 +1,8 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The last believed pose in a file, for the process that follows one that was killed.
+"""Stores the last believed pose in a file, for the process that replaces a killed one.
 
-Written after each believed scan: some microseconds, as the file stays mapped and nothing is synced.
-What was written survives the process, not the machine.
+Written after each believed scan, in a few microseconds: the file stays mapped and is not synced.
+The data survives the process, not the machine.
 """
 
 from __future__ import annotations
@@ -28,9 +28,9 @@ NO_GUESS = np.zeros((4, 4))
 
 
 class LastPose:
-    """The file, mapped; several processes must not share one.
+    """The mapped file; must not be shared by several processes.
 
-    :raises ManycoreError: when the file cannot be made.
+    :raises ManycoreError: if the file cannot be created.
     """
 
     def __init__(self, path: Path) -> None:
@@ -47,9 +47,9 @@ class LastPose:
             ) from error
 
     def write(self, now_s: float, believed: Believed, is_activated: bool) -> None:
-        """Keep a pose in place of the one before.
+        """Store a pose, replacing the previous one.
 
-        :param now_s: wall-clock time; stamps may be of another clock, as of a recording.
+        :param now_s: wall-clock time; stamps may be of another clock, e.g. of a recording.
         """
         guess = NO_GUESS if believed.guess is None else believed.guess
         numbers = (*believed.T.ravel(), *guess.ravel())
@@ -57,9 +57,9 @@ class LastPose:
         self._bytes[:] = body + CHECK.pack(zlib.crc32(body))
 
     def read(self, now_s: float, max_age_s: float) -> tuple[Believed, bool] | None:
-        """Return the pose that an earlier process left, and whether it was activated.
+        """Return the pose left by a previous process, and whether it was activated.
 
-        None without one, of one half written, and of one that is older or of a time to come.
+        None if there is none, or if it is incomplete, too old or in the future.
         """
         data = bytes(self._bytes)
         body = data[: BODY.size]
@@ -72,11 +72,11 @@ class LastPose:
         return None if T is None else (Believed(stamp_s, T, guess), is_activated)
 
     def forget(self) -> None:
-        """Leave no pose: the vehicle may be moved before the next start."""
+        """Remove the pose: the vehicle may be moved before the next start."""
         self._bytes[:] = bytes(SIZE)
 
     def close(self) -> None:
-        """Let go of the file."""
+        """Unmap the file."""
         self._bytes.close()
 
 

@@ -1,9 +1,9 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Whether a vehicle can have come from the poses that were believed to another one.
+"""Checks whether a vehicle can have moved from the believed poses to another one.
 
-Two things tell where it should be: the motion up to the last believed pose, which holds for half a
-second, and the motion of the guesses since then (odometry, in most stacks), which holds longer but
-only as long as the guesses do not jump.
+The expected pose has two sources: the motion up to the last believed pose, valid for half a second,
+and the motion of the guesses since then (odometry in most stacks), valid for longer unless the
+guesses jump.
 """
 
 from __future__ import annotations
@@ -16,21 +16,21 @@ import numpy as np
 from rmw_manycore_py.ndt.geometry import poses
 from rmw_manycore_py.ndt.geometry.arrays import Pose
 
-NEAR_M, NEAR_RAD = 1.0, np.radians(15.0)  # within which the score alone decides
+NEAR_M, NEAR_RAD = 1.0, np.radians(15.0)  # within this distance, only the score decides
 ACCELERATION_M_S2 = 10.0  # an emergency braking of any vehicle
 TURN_ACCELERATION_RAD_S2 = 8.0  # a LiDAR carried by hand
-STEADY_S = 0.55  # how long the motion before is continued: scans at 2 Hz
-GUESS_DRIFT = 0.1  # of the length and angle of the guesses' motion
-# Guesses may shift so far from one scan to the next; farther, they have jumped.
+STEADY_S = 0.55  # maximum extrapolation of the motion: scans at 2 Hz
+GUESS_DRIFT = 0.1  # relative error of the guesses' motion
+# Maximum shift of guesses between two scans; a larger one is a jump.
 SHIFT_M = 2.5
 SHIFT_ACCELERATION_M_S2 = 3.0
-MAX_DRAWN_M = 4.5  # beyond, a street that repeats would look the same
+MAX_DRAWN_M = 4.5  # beyond, a repetitive street would be ambiguous
 MAX_SPEED_M_S = 60.0
 
 
 @dataclass(frozen=True)
 class Believed:
-    """A pose T_map_base that was believed, and the guess for the same scan."""
+    """A believed pose T_map_base, and the guess of the same scan."""
 
     stamp_s: float
     T: Pose
@@ -39,10 +39,10 @@ class Believed:
 
 @dataclass(frozen=True)
 class Expectation:
-    """Where the vehicle should be.
+    """Expected pose of the vehicle.
 
-    :param by_motion: continued from the last believed poses; None where they tell no motion.
-    :param by_guess: moved on as the guesses moved; None where they have jumped, or without one.
+    :param by_motion: extrapolated from the last believed poses; None if they determine no motion.
+    :param by_guess: moved like the guesses; None if they have jumped or are missing.
     :param age_s: time since the last believed pose.
     """
 
@@ -55,11 +55,11 @@ class Expectation:
 
     @property
     def poses(self) -> list[Pose]:
-        """Return where to look, first where the vehicle most probably is."""
+        """Return the expected poses, most probable first."""
         return [T for T in (self.by_guess, self.by_motion, self.last) if T is not None]
 
     def why_implausible(self, T: Pose) -> str:
-        """Say how far a pose is from where the vehicle should be, "" where it is near enough."""
+        """Return how far a pose is from the expected ones; "" if it is near enough."""
         speed_m_s = (poses.distance_m(self.last, T) - NEAR_M) / max(self.age_s, 1e-3)
         if speed_m_s > MAX_SPEED_M_S:
             return f"it is {poses.distance_m(self.last, T):.1f} m from the last one"
@@ -73,7 +73,7 @@ class Expectation:
             reach_rad = NEAR_RAD + GUESS_DRIFT * self.guess_motion_rad
             found.append(_beyond(self.by_guess, T, reach_m, reach_rad))
         if self.by_motion is None:
-            # The vehicle may have stood, whatever the guesses did.
+            # The vehicle may have stood still, whatever the guesses did.
             drawn_m = 0.5 * SHIFT_ACCELERATION_M_S2 * self.age_s**2
             reach_m = NEAR_M + SHIFT_M + min(drawn_m, MAX_DRAWN_M)
             found.append(_beyond(self.last, T, reach_m, np.pi))
@@ -92,17 +92,17 @@ class MotionModel:
         return self._believed[-1] if self._believed else None
 
     def believe(self, stamp_s: float, T: Pose, guess: Pose | None) -> None:
-        """Go on from a pose; time that jumps back, as in a recording played again, begins anew."""
+        """Add a pose; if time jumps back, as in a repeated recording, start over."""
         if self.last is not None and stamp_s <= self.last.stamp_s:
             self._believed.clear()
         self._believed.append(Believed(stamp_s, T, guess))
 
     def forget(self) -> None:
-        """Begin anew."""
+        """Reset."""
         self._believed.clear()
 
     def at(self, stamp_s: float, guess: Pose | None) -> Expectation | None:
-        """Return where the vehicle should be at a time; None where nothing tells.
+        """Return the expected pose at a time; None if unknown.
 
         :param guess: the guess T_map_base for that time.
         """

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Finding back after scans were refused: first around the last good pose, then farther.
+"""Recovery after refused scans: searches around the last good pose first, then farther.
 
 ```
  tracking ── N scans refused ─► around: 5 m, 30 degrees ── unclear ─► globally: 20 m, any yaw
@@ -29,7 +29,7 @@ AROUND_M = 5.0
 
 
 class Step(Enum):
-    """Where a recovery is."""
+    """State of a recovery."""
 
     TRACKING = "tracking"
     AROUND = "searching around the last good pose"
@@ -39,7 +39,7 @@ class Step(Enum):
 
 @dataclass(frozen=True)
 class _Scan:
-    """A refused scan; `guess` is T_map_base, as far as there was one."""
+    """A refused scan; `guess` is T_map_base, if there was one."""
 
     stamp_s: float
     points: ScanPoints
@@ -49,8 +49,8 @@ class _Scan:
 class Recovery:
     """Searches while scans are refused. Not thread-safe.
 
-    :param after_scans: refused in a row, until the search begins; 0: never.
-    :param radius_m: of the global search.
+    :param after_scans: number of consecutive refused scans that starts a search; 0 disables it.
+    :param radius_m: radius of the global search.
     """
 
     def __init__(self, options: MatcherOptions, after_scans: int, radius_m: float) -> None:
@@ -66,7 +66,7 @@ class Recovery:
 
     @property
     def is_on(self) -> bool:
-        """Tell whether anything is ever searched."""
+        """Return whether the recovery is enabled."""
         return self._after_scans > 0
 
     def map_changed(self, voxel_map: VoxelMap) -> None:
@@ -74,21 +74,21 @@ class Recovery:
         self._search.map_changed(voxel_map)
 
     def hurry(self) -> None:
-        """Search with the next scan that is refused."""
+        """Start a search with the next refused scan."""
         self._refused = self._after_scans
 
     def believed(self) -> None:
-        """Note that a scan was believed: the search is over."""
+        """Note that a scan was believed, which ends the recovery."""
         self._refused, self._searches, self.note = 0, 0, ""
         self.step = Step.TRACKING
 
     def reset(self) -> None:
-        """Begin anew: what is being searched is of no use any more."""
+        """Reset; the result of a running search is discarded."""
         self.believed()
         self._searched = None
 
     def refused(self, stamp_s: float, points: ScanPoints, guess: Pose | None, at: Pose) -> None:
-        """Take a scan that was refused; search when it is time.
+        """Handle a refused scan; start a search when due.
 
         :param at: T_map_base to search around.
         """
@@ -100,7 +100,7 @@ class Recovery:
         self._region = self._next_region(at, guess)
         self.step = Step.GLOBALLY if self._region.any_yaw else Step.AROUND
         self._searches += 1
-        self._refused = 0  # of the next search, which need not follow at once
+        self._refused = 0  # counts towards the next search
         self._searched = _Scan(stamp_s, points, guess)
         self._search.begin(points, self._region)
 
@@ -122,7 +122,7 @@ class Recovery:
         return wide[self._searches % len(wide)]
 
     def take(self, judge: PoseJudge) -> bool:
-        """Let the judge go on from what was found meanwhile; tell whether it does."""
+        """Make the judge continue from a pose found meanwhile; return whether it does."""
         try:
             found = self._search.take()
         except ManycoreError as error:
@@ -131,7 +131,7 @@ class Recovery:
         if found is None:
             return False
         scan, self._searched = self._searched, None
-        if scan is None or self.step is Step.TRACKING:  # found back without it
+        if scan is None or self.step is Step.TRACKING:  # recovered without it
             return False
         assert self._region is not None
         unclear = found.why_unclear(judge.level, self._region)
@@ -149,5 +149,5 @@ class Recovery:
         return True
 
     def close(self) -> None:
-        """End the search."""
+        """Stop the search."""
         self._search.close()

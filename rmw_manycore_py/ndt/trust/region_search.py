@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The search for a pose in a process of its own, so that no scan and no guess waits for it."""
+"""Pose search in a separate process, so that scans and guesses never wait for it."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ NICENESS = 5
 
 
 class RegionSearch:
-    """One search at a time; the process starts with the first."""
+    """Runs one search at a time; the first one starts the process."""
 
     def __init__(self, options: MatcherOptions) -> None:
         self._options = options
@@ -28,23 +28,23 @@ class RegionSearch:
         self._running: Future[Found] | None = None
 
     def map_changed(self, voxel_map: VoxelMap) -> None:
-        """Search in another map from the next search on."""
+        """Use another map from the next search on."""
         self._map = voxel_map
 
     @property
     def is_idle(self) -> bool:
-        """Tell whether a search may begin: none runs, and none waits to be taken."""
+        """Return whether a search may start: none is running or waiting to be taken."""
         return self._running is None and self._map is not None
 
     def begin(self, scan: ScanPoints, region: Region) -> None:
-        """Search for a scan (N, 3) [m, base frame], if the search is idle."""
+        """Start a search for a scan (N, 3) [m, base frame], if idle."""
         if self.is_idle and self._map is not None:
             self._running = self._executor.submit(self._search, self._map, scan, region)
 
     def take(self) -> Found | None:
-        """Return what was found, once; None while a search runs, or without one.
+        """Return the result once; None while a search runs, or without a search.
 
-        :raises ManycoreError: when the search could not be done.
+        :raises ManycoreError: if the search failed.
         """
         running = self._running
         if running is None or not running.done():
@@ -53,12 +53,12 @@ class RegionSearch:
         return running.result()
 
     def close(self) -> None:
-        """End the process, whatever it is doing."""
+        """Stop the process, whatever it is doing."""
         self._helper.close()
         self._executor.shutdown(wait=True, cancel_futures=True)
 
     def _search(self, voxel_map: VoxelMap, scan: ScanPoints, region: Region) -> Found:
-        # Held until the answer is there: the helper attaches to this process's memory.
+        # Keep the map until the result arrives: the helper attaches to this process's memory.
         paths = voxel_map.shared_paths
         return self._helper.call(search_in_map, paths, self._options, scan, region)
 
@@ -75,7 +75,7 @@ def search_in_map(
 
 
 def sketcher_of(voxel_map: VoxelMap, options: MatcherOptions) -> SerialMatcher:
-    """Return a matcher to the coarsest level alone."""
+    """Return a matcher for the coarsest level of a first look only."""
     factor = options.coarse_levels[0] if options.coarse_levels else 1.0
     coarse = replace(
         options,
@@ -85,5 +85,5 @@ def sketcher_of(voxel_map: VoxelMap, options: MatcherOptions) -> SerialMatcher:
         trans_epsilon=min(0.1, options.step_size),
     )
     sketcher = SerialMatcher(coarse)
-    sketcher.set_map(VoxelMap(voxel_map.levels[:1], coarse, 0.0))
+    sketcher.set_map(VoxelMap(voxel_map.first_levels[:1], coarse, 0.0))
     return sketcher

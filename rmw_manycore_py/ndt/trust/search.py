@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Where around a place a scan fits: all that is found, best first, and whether one stands out.
+"""Searches a region for places where a scan fits, and checks whether the best one is unique.
 
 ```
  grid of places and directions ─► thinned scan, to the coarse level alone ─► the best dozens
@@ -20,20 +20,20 @@ from rmw_manycore_py.ndt.matching.alignment import Alignment
 from rmw_manycore_py.ndt.matching.matcher import Matcher
 from rmw_manycore_py.ndt.trust.score_level import ScoreLevel
 
-STEP_M = 3.0  # between places: levels of 4 m and 2 m find home from more than half its diagonal
+STEP_M = 3.0  # grid spacing; levels of 4 m and 2 m converge from half its diagonal
 TURN_RAD = np.radians(30.0)
 SKETCH_POINTS = 600
-FOLLOWED = 16  # of the grid's results, aligned with the whole scan
-SAME_M, SAME_RAD = 1.0, np.radians(10.0)  # results nearer to each other are one place
-MARGIN = 0.05  # of the best fit, that the second best place must be worse by
+FOLLOWED = 16  # grid results that are refined with the whole scan
+SAME_M, SAME_RAD = 1.0, np.radians(10.0)  # closer results count as one place
+MARGIN = 0.05  # minimum lead of the best place, relative to its fit
 
 
 @dataclass(frozen=True)
 class Region:
-    """Where to look.
+    """Region to search.
 
     :param centre: T_map_base.
-    :param any_yaw: whether the vehicle may look anywhere, or as the centre does, within 30 degrees.
+    :param any_yaw: search all headings; otherwise the centre's within 30 degrees.
     """
 
     centre: Pose
@@ -41,7 +41,7 @@ class Region:
     any_yaw: bool
 
     def grid(self) -> Iterator[Pose]:
-        """Yield poses, no place of the region farther than the levels reach from one of them."""
+        """Yield poses such that each point of the region is within the convergence basin of one."""
         steps = np.arange(-self.radius_m, self.radius_m + 0.5 * STEP_M, STEP_M)
         turns = np.arange(0.0, 2 * np.pi - 1e-6, TURN_RAD) if self.any_yaw else (0.0, -0.4, 0.4)
         for x in steps:
@@ -58,23 +58,23 @@ class Region:
 
 @dataclass(frozen=True)
 class Found:
-    """Places that differ, best first."""
+    """Distinct places, best first."""
 
     places: tuple[Alignment, ...]
 
     @property
     def margin(self) -> float:
-        """Return by which share of its fit the best place is better than the second best."""
+        """Return by which fraction of its fit the best place leads the second best."""
         if len(self.places) < 2:
             return 1.0 if self.places else 0.0
         best, second = (place.fit for place in self.places[:2])
         return (best - second) / best if best > 0.0 else 0.0
 
     def why_unclear(self, level: ScoreLevel, region: Region) -> str:
-        """Say what is wrong with the best place; "" where it stands out.
+        """Return why the best place is not accepted; "" if it is.
 
-        In a small region the right place may be missing, and a wrong one be the best: there it must
-        fit as well as a first pose. In a large one the score that the map demands is enough.
+        In a small region the right place may be missing and a wrong one be the best: the best must
+        fit as well as a first pose. In a large one, the map's required score suffices.
         """
         if not self.places:
             return "the scan fits nowhere"
@@ -87,25 +87,25 @@ class Found:
         if self.margin < MARGIN:
             other = self.places[1]
             apart_m = poses.distance_m(best.T_map_sensor, other.T_map_sensor)
-            return f"{apart_m:.1f} m apart it fits as well, within {100 * self.margin:.1f} %"
+            return f"{apart_m:.1f} m apart it fits equally well, within {100 * self.margin:.1f} %"
         return ""
 
 
 def search(sketcher: Matcher, matcher: Matcher, scan: ScanPoints, region: Region) -> Found:
     """Return where in a region a scan (N, 3) [m, base frame] fits.
 
-    :param sketcher: has a map of the coarse level alone.
-    :param matcher: has the whole map.
+    :param sketcher: matcher with the coarsest level only.
+    :param matcher: matcher with the whole map.
     """
     sketch = scan[:: max(1, len(scan) // SKETCH_POINTS)]
-    tried = [sketcher.align(sketch, T, only_pose=True) for T in region.grid()]
+    tried = [sketcher.align_once(sketch, T, only_pose=True) for T in region.grid()]
     rough = _distinct([one for one in tried if not one.is_degenerate], 0.5 * SAME_M)
-    fine = [matcher.align(scan, one.T_map_sensor, only_pose=True) for one in rough]
+    fine = [matcher.align_once(scan, one.T_map_sensor, only_pose=True) for one in rough]
     return Found(tuple(_distinct([one for one in fine if not one.is_degenerate], SAME_M)))
 
 
 def _distinct(places: Sequence[Alignment], apart_m: float) -> list[Alignment]:
-    """Return the best of each place, best first."""
+    """Return the best alignment of each place, best first."""
     kept: list[Alignment] = []
     for place in sorted(places, key=lambda one: one.fit, reverse=True):
         if not any(_is_same(place, other, apart_m) for other in kept):

@@ -1,2 +1,2 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The parts of the node `ndt_scan_matcher`."""
+"""Parts of the node `ndt_scan_matcher`."""

@@ -1,9 +1,9 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""`ndt_align_srv`: a search around a pose for the likeliest one, between scans.
+"""`ndt_align_srv`: searches for the likeliest pose around a given one, between scans.
 
-The type of the service is that of Autoware today; `ndt_align_tier4_srv` has the one of Autoware
-Universe until 2024. A service callback that waits is a coroutine, so the executor goes on taking
-guesses and scans, and scans are matched between two alignments of the search.
+The service type is that of current Autoware; `ndt_align_tier4_srv` uses that of Autoware Universe
+until 2024. A waiting service callback is a coroutine, so that the executor keeps handling guesses
+and scans, and scans are matched between two alignments of the search.
 """
 
 from __future__ import annotations
@@ -42,12 +42,12 @@ SEED = 0
 
 @dataclass(frozen=True)
 class AlignParts:
-    """What a search needs of the node; the functions are called on the matching thread.
+    """Functions of the node that a search uses, called on the matching thread.
 
-    :param take_new_map: swaps in what was built meanwhile.
-    :param newest_scan: returns the points (N, 3) in the base frame, None before the first scan.
+    :param take_new_map: swaps in a map built in the background.
+    :param newest_scan: returns the points (N, 3) in the base frame; None before the first scan.
     :param align: aligns points to the map from a guess (4, 4).
-    :param show: shows what was tried.
+    :param show: publishes the evaluated poses.
     """
 
     parameters: MatcherParameters
@@ -110,7 +110,7 @@ class AlignServices:
         return T_map_frame @ matrix_of(guess.pose.pose), covariance
 
     async def _searched(self, T_map_base: Matrix, covariance: Matrix) -> Particle:
-        """Have the matching thread search; raises what ended the search."""
+        """Run the search on the matching thread; raise its error, if any."""
         found = Future()
         self._parts.thread.post_steps(self._steps(T_map_base, covariance, found))
         best: Particle | Exception = await found
@@ -119,7 +119,7 @@ class AlignServices:
         return best
 
     def _steps(self, T_map_base: Matrix, covariance: Matrix, found: Future) -> Iterator[bool]:
-        """Search step by step; the executor resolves `found` with the best, or with an error."""
+        """Search step by step; the executor completes `found` with the best result or an error."""
         result: Particle | Exception
         try:
             result = yield from self._search(T_map_base, covariance)
@@ -130,7 +130,7 @@ class AlignServices:
             executor.create_task(found.set_result, result)
 
     def _search(self, T_map_base: Matrix, covariance: Matrix) -> Generator[bool, None, Particle]:
-        """Wait for the map of the place, then align from one guess after the other."""
+        """Wait for the map of the area, then align from one guess after the other."""
         parts = self._parts
         parts.take_new_map()
         while not parts.map.is_settled:
@@ -142,7 +142,7 @@ class AlignServices:
         scan = parts.newest_scan()
         self._report.value("is_set_sensor_points", scan is not None)
         if scan is None:
-            raise Rejected("no scan has come yet: check points_raw")
+            raise Rejected("no scan received yet: check points_raw")
         tried = []
         for particle in particles(
             lambda T: parts.align(scan, T),
@@ -162,7 +162,7 @@ class AlignServices:
 
     def _answer(self, response: Any, guess: Any, covariance: Matrix, best: Particle) -> None:
         response.success = True
-        response.reliable = best.score > self._p.least_nearest_voxel_likelihood
+        response.reliable = best.score > self._p.min_nearest_voxel_likelihood
         if not response.reliable:
             self._report.warn(
                 f"the best of {self._p.particles} results has a score of {best.score:.3f}"

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Numbers as colours, from blue over green to red, as Autoware shows scores and steps."""
+"""Colour map from blue over green to red, as Autoware uses for scores and steps."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 
 
 def colors(shares: ArrayLike) -> NDArray[np.float64]:
-    """Return red, green and blue (N, 3), 0 to 1, of shares (N); those beyond 0 and 1 are cut."""
+    """Return red, green and blue (N, 3), 0 to 1, for shares (N), clipped to 0..1."""
     quarter, part = np.divmod(4.0 * np.clip(shares, 0.0, 0.9999), 1.0)
     rising, falling = np.sin(0.5 * np.pi * part), np.cos(0.5 * np.pi * part)
     none, full = np.zeros_like(part), np.ones_like(part)
@@ -19,7 +19,7 @@ def colors(shares: ArrayLike) -> NDArray[np.float64]:
 
 
 def packed_colors(shares: ArrayLike) -> NDArray[np.float32]:
-    """Return colours (N) as PCL packs them: 0x00RRGGBB in the bits of a float."""
+    """Return colours (N) packed as in PCL: 0x00RRGGBB in the bits of a float."""
     red, green, blue = (255.0 * colors(shares)).astype(np.uint32).T
     packed: NDArray[np.uint32] = (red << 16) | (green << 8) | blue
     return packed.view(np.float32)

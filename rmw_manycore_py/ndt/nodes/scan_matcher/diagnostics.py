@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What a node reports on `/diagnostics`, in the form of Autoware's nodes."""
+"""Status of a node on `/diagnostics`, in the form of Autoware's nodes."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from rmw_manycore_py.ndt.nodes.support.log_throttle import LogThrottle
 
 
 class Diagnostics:
-    """One status: values and troubles are collected, then published together."""
+    """One status: collects values and messages, then publishes them together."""
 
     def __init__(self, node: Node, name: str) -> None:
         self._node = node
@@ -22,34 +22,34 @@ class Diagnostics:
         self.clear()
 
     def clear(self) -> None:
-        """Begin a new report."""
+        """Start a new report."""
         self._values: list[Any] = []
         self._level = DiagnosticStatus.OK
         self._messages: list[str] = []
 
     def value(self, key: str, value: object) -> None:
-        """Add a value; booleans are written as Autoware writes them."""
+        """Add a value; booleans are formatted as in Autoware."""
         text = str(value) if isinstance(value, bool) else f"{value}"
         self._values.append(KeyValue(key=key, value=text))
 
     def warn(self, message: str) -> None:
-        """Report something that a healthy system does not have."""
+        """Report a warning, also in the log."""
         self._add(DiagnosticStatus.WARN, message)
         if self._throttle.is_due(message):
             self._node.get_logger().warning(message)
 
     def error(self, message: str) -> None:
-        """Report something that somebody must repair."""
+        """Report an error, also in the log."""
         self._add(DiagnosticStatus.ERROR, message)
         if self._throttle.is_due(message):
             self._node.get_logger().error(message)
 
     def note(self, message: str) -> None:
-        """Report a warning that is not worth a line in the log."""
+        """Report a warning without logging it."""
         self._add(DiagnosticStatus.WARN, message)
 
     def publish(self, stamp: Any) -> None:
-        """Send the report."""
+        """Publish the report."""
         status = DiagnosticStatus(
             level=self._level,
             name=self._name,

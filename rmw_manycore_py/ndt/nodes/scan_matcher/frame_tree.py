@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The newest transforms of `/tf` and `/tf_static`: enough to know where a sensor is mounted."""
+"""Latest transforms of `/tf` and `/tf_static`, for the mounting of a sensor."""
 
 from __future__ import annotations
 
@@ -18,23 +18,23 @@ LONGEST_CHAIN = 100
 
 
 class FrameError(LookupError):
-    """Two frames that no chain of transforms connects."""
+    """Two frames are not connected by transforms."""
 
 
 class FrameTree:
-    """Each frame has one parent; times are not looked at."""
+    """Tree of frames; stamps are ignored."""
 
     def __init__(self) -> None:
         self._parents: dict[str, tuple[str, Matrix]] = {}
 
     def listen(self, node: Node) -> None:
-        """Take all transforms that are published."""
+        """Subscribe to all transforms."""
         kept = QoSProfile(depth=100, durability=DurabilityPolicy.TRANSIENT_LOCAL)
         node.create_subscription(TFMessage, "/tf", self.add, QoSProfile(depth=100))
         node.create_subscription(TFMessage, "/tf_static", self.add, kept)
 
     def add(self, message: Any) -> None:
-        """Take a tf2_msgs/msg/TFMessage; transforms that are none are passed over."""
+        """Add a tf2_msgs/msg/TFMessage; ignore invalid transforms."""
         for transform in message.transforms:
             try:
                 T_parent_child = matrix_of_transform(transform.transform)

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Where each scan is guessed to be, from `ekf_pose_with_covariance`."""
+"""Guess of each scan's pose, from `ekf_pose_with_covariance`."""
 
 from __future__ import annotations
 
@@ -14,20 +14,20 @@ from rmw_manycore_py.ndt.nodes.scan_matcher.pose_buffer import (
     PoseBuffer,
 )
 
-MAX_AGE_PERIODS = 1.5  # of the newest guess: one that belongs to the scan before, with some delay
-FIRST_PERIOD_S = 0.1  # of scans, until two have come
-PERIODS = 9  # whose median is the period
-MOTION_S = 0.4  # that the motion of a scan is seen over, where there are guesses so old
+MAX_AGE_PERIODS = 1.5  # maximum age of the newest guess: previous scan plus some delay
+FIRST_PERIOD_S = 0.1  # assumed scan period before the second scan
+PERIODS = 9  # number of intervals in the median of the period
+MOTION_S = 0.4  # time over which motion is estimated, if guesses reach back
 MIN_MOTION_S = 0.05  # half a period of most LiDARs
-KEPT_S = 1.0  # guesses before a scan that still tell the motion
+KEPT_S = 1.0  # age of guesses kept for motion estimates
 
 
 class Guesses:
-    """Guesses as they arrive, and the guess at a scan's time.
+    """Buffer of guesses that interpolates the guess at a scan's time.
 
-    :param timeout_s: maximum time between a scan and a guess, whatever the period.
-    :param distance_tolerance_m: maximum distance between guesses to interpolate between.
-    :param newest_holds: use the newest guess up to `timeout_s` as it is, as Autoware does.
+    :param timeout_s: maximum time between a scan and a guess, for any scan period.
+    :param distance_tolerance_m: maximum distance between interpolated guesses.
+    :param newest_holds: use the newest guess unchanged up to `timeout_s`, as Autoware does.
     """
 
     def __init__(self, timeout_s: float, distance_tolerance_m: float, newest_holds: bool) -> None:
@@ -38,29 +38,29 @@ class Guesses:
         self._last_scan_s: float | None = None
 
     def push(self, stamp_s: float, T: Matrix) -> None:
-        """Add a guess. Any thread."""
+        """Add a guess. Thread-safe."""
         self._buffer.push(stamp_s, T)
 
     def clear(self) -> None:
-        """Forget all guesses. Any thread."""
+        """Remove all guesses. Thread-safe."""
         self._buffer.clear()
 
     def is_there(self, stamp_s: float) -> bool:
-        """Tell whether a scan need not wait for its guess. Any thread."""
+        """Return whether the guess for a scan is available. Thread-safe."""
         return self._newest_holds or self._buffer.reaches(stamp_s)
 
     def note_scan(self, stamp_s: float) -> None:
-        """Note the stamp of each scan as it arrives: their period bounds the age of guesses."""
+        """Record the stamp of each arriving scan: their period bounds the age of guesses."""
         if self._last_scan_s is not None and stamp_s > self._last_scan_s:
             self._periods_s.append(stamp_s - self._last_scan_s)
             self._period_s = median(self._periods_s)
         self._last_scan_s = stamp_s
 
     def motion_until(self, stamp_s: float, T: Matrix) -> tuple[Matrix, float] | None:
-        """Return the motion (4, 4) up to a pose at a time, and how long it took; None if unknown.
+        """Return the motion (4, 4) up to a pose at a time, and its duration; None if unknown.
 
-        Where guesses follow results, a result that corrects its guess makes the next guess jump,
-        and that jump would count as motion: over several periods it counts little.
+        If guesses follow results, a correction makes the next guess jump, which would count as
+        motion; averaging over several periods reduces its effect.
         """
         before = self._buffer.newest_before(stamp_s - MOTION_S)
         before = before or self._buffer.oldest()

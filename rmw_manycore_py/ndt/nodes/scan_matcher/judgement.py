@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Whether the result of an alignment may be relied on, and how well it is known."""
+"""Whether the result of an alignment is reliable, and its covariance."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from rmw_manycore_py.ndt.nodes.scan_matcher.steps import has_ended
 def is_reliable(
     alignment: Alignment, parameters: MatcherParameters, diagnostics: Diagnostics
 ) -> bool:
-    """Tell whether the alignment ended, with a score above the threshold."""
+    """Return whether the alignment has converged with a score above the threshold."""
     diagnostics.value("iteration_num", alignment.iterations)
     if not alignment.converged:
         diagnostics.warn(f"no convergence after {alignment.iterations} iterations: {alignment.why}")
@@ -27,9 +27,9 @@ def is_reliable(
     likelihood = alignment.nearest_voxel_likelihood
     diagnostics.value("nearest_voxel_transformation_likelihood", likelihood)
     if parameters.converged_param_type == TRANSFORM_PROBABILITY:
-        score, least = alignment.transform_probability, parameters.least_transform_probability
+        score, least = alignment.transform_probability, parameters.min_transform_probability
     else:
-        score, least = likelihood, parameters.least_nearest_voxel_likelihood
+        score, least = likelihood, parameters.min_nearest_voxel_likelihood
     if not score > least:
         diagnostics.warn(f"the score {score:.3f} is not above the threshold {least:g}")
     return has_ended(alignment) and score > least
@@ -38,8 +38,8 @@ def is_reliable(
 def output_covariance(alignment: Alignment, parameters: MatcherParameters) -> Matrix:
     """Return the covariance (6, 6) in the map frame.
 
-    Fixed: the parameter, which is in the vehicle's frame, turned. Else x and y are the
-    alignment's, at least the fixed ones along the vehicle's axes.
+    Fixed: the parameter, rotated from the vehicle's frame. Otherwise x and y are the alignment's,
+    but at least the fixed ones along the vehicle's axes.
     """
     R = alignment.T_map_sensor[:3, :3]
     fixed: Matrix = np.asarray(parameters.covariance, np.float64).reshape(6, 6)

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The cells of a map that a map loader has sent, by their ids."""
+"""Map cells received from a map loader, by id."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from rmw_manycore_py.ndt.messages.point_cloud import CloudError, decode
 
 
 class MapCells:
-    """Follows the answers of `GetDifferentialPointCloudMap`. One answer at a time."""
+    """Applies the responses of `GetDifferentialPointCloudMap`, one at a time."""
 
     def __init__(self, map_frame: str) -> None:
         self._map_frame = map_frame
@@ -21,17 +21,17 @@ class MapCells:
 
     @property
     def ids(self) -> list[str]:
-        """Return the ids of the cells that are there."""
+        """Return the ids of the held cells."""
         return list(self._points)
 
     def clear(self) -> None:
-        """Forget all cells, so that the next answer brings all that are needed."""
+        """Drop all cells, so that the next response contains all required ones."""
         self._points = {}
 
     def apply(self, response: Any) -> Points:
-        """Add and remove cells as an answer says; return the points (N, 3) of all.
+        """Add and remove cells according to a response; return the points (N, 3) of all cells.
 
-        :raises ManycoreError: when it cannot be used; no cell is left then.
+        :raises ManycoreError: if the response is unusable; all cells are dropped then.
         """
         try:
             self._points = self._changed(response)

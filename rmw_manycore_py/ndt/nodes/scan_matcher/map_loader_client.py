@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Asks a map loader for the map around the vehicle: `pcd_loader_service`, as Autoware's node."""
+"""Requests the map around the vehicle from `pcd_loader_service`, as Autoware's node does."""
 
 from __future__ import annotations
 
@@ -23,13 +23,13 @@ Read = Callable[[], Points]
 
 
 class MapLoaderClient:
-    """Knows which cells are there, and asks for the others; one call at a time.
+    """Tracks the held cells and requests missing ones; one call at a time.
 
-    All methods belong to the executor's thread. Cells are taken out of an answer where `submit`
-    has that done; until `is_idle` holds again nothing is asked.
+    All methods belong to the executor's thread. Cells are extracted from a response where `submit`
+    runs its argument; no request is sent until `is_idle` returns True again.
 
-    :param submit: has a map built of the points that its argument returns.
-    :param is_idle: tells whether nothing that was submitted is still to be done.
+    :param submit: builds a map of the points returned by its argument.
+    :param is_idle: returns whether all submitted work is done.
     """
 
     def __init__(
@@ -46,16 +46,16 @@ class MapLoaderClient:
         self._cells = MapCells(parameters.map_frame)
         self._client = node.create_client(GetDifferentialPointCloudMap, "pcd_loader_service")
         self._call: Future | None = None
-        self._handled = Future()  # done when the call has its answer, or is forgotten
+        self._handled = Future()  # done when the call is answered or given up
         self._asked_s = 0.0
-        self._last: dict[str, object] = {}  # what the diagnostics say of the last call
-        self.centre: tuple[float, float] | None = None  # of what was loaded last
+        self._last: dict[str, object] = {}  # diagnostics of the last call
+        self.centre: tuple[float, float] | None = None  # centre of the area loaded last
         self.has_answered = False
 
     def ask(self, x: float, y: float) -> Future | None:
-        """Ask for the cells around a place; return what is done once the answer was taken.
+        """Request the cells around a position; return a Future done when the response is handled.
 
-        None where that has to wait, or no map loader is there.
+        None if a call is pending or there is no map loader.
         """
         if self._call is not None or not self._is_idle() or not self._client.service_is_ready():
             return None
@@ -71,7 +71,7 @@ class MapLoaderClient:
         return self._handled
 
     def forget_unanswered(self) -> None:
-        """Let the next call be made where the last one is not answered any more."""
+        """Give up a call that is no longer answered, so that the next one can be made."""
         if self._call is None:
             return
         is_late = time.monotonic() - self._asked_s > ANSWER_TIMEOUT_S
@@ -85,18 +85,18 @@ class MapLoaderClient:
         self._node.get_logger().warning("pcd_loader_service does not answer: is it running?")
 
     def forget_cells(self) -> None:
-        """Ask for all cells next time: those that are there cannot be used."""
+        """Request all cells next time: the held ones are unusable."""
         self._cells.clear()
         self.centre = None
 
     def report(self, diagnostics: Diagnostics) -> None:
-        """Add what became of the last call."""
+        """Add the outcome of the last call."""
         for key, value in self._last.items():
             diagnostics.value(key, value)
 
     def _on_answer(self, centre: tuple[float, float], call: Future) -> None:
         response = call.result()
-        if self._call is not call or response is None:  # forgotten meanwhile
+        if self._call is not call or response is None:  # given up meanwhile
             return
         self._call = None
         self.has_answered = True

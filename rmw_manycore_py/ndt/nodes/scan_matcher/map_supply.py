@@ -1,7 +1,8 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Where `ndt_scan_matcher` has its map from.
+"""Sources of the map of `ndt_scan_matcher`.
 
-Files around the vehicle (`map_path`); else a map loader, once one has answered; else a topic.
+In order of precedence: files around the vehicle (`map_path`), a map loader once it has answered, a
+topic.
 """
 
 from __future__ import annotations
@@ -28,7 +29,7 @@ from rmw_manycore_py.ndt.nodes.scan_matcher.parameters import MatcherParameters,
 
 
 class MapSupply:
-    """Has maps built beside the matching, and says what is wrong with them."""
+    """Has maps built in the background and reports problems with them."""
 
     def __init__(
         self,
@@ -39,14 +40,14 @@ class MapSupply:
         admit: Callable[[VoxelMap], None],
         built: Callable[[], None],
     ) -> None:
-        """Prepare for maps.
+        """Create the subscriptions and the builder.
 
-        :param admit: takes a map over, or raises a ManycoreError that says why not.
+        :param admit: accepts a map, or raises ManycoreError with the reason.
         :param built: called in any thread when there may be a map to take.
         """
         self._p = parameters
         self._admit = admit
-        self._builder = MapBuilder(options, built)
+        self._builder = MapBuilder(options, built, with_points=parameters.publish_loaded_map)
         self._area: MapArea | None = None
         self._loader: MapLoaderClient | None = None
         if own.map_path:
@@ -63,12 +64,12 @@ class MapSupply:
         self.is_set = False
 
     def on_message(self, message: Any) -> None:
-        """Take a map from the topic; the newest one holds, until a map loader has answered."""
+        """Use the newest map from the topic, until a map loader has answered."""
         if self._loader is not None and not self._loader.has_answered:
             self._builder.submit(partial(self._points_of, message))
 
     def _points_of(self, message: Any) -> Points:
-        """Return the points of a map; one of another frame would be of another place."""
+        """Return the points of a map; raise an error if it is in another frame."""
         frame = message.header.frame_id
         if frame not in ("", self._p.map_frame):
             raise ManycoreError(
@@ -77,16 +78,18 @@ class MapSupply:
         return decode(message)
 
     def vehicle_is_at(self, x: float, y: float) -> None:
-        """Load other tiles when the vehicle has moved far enough."""
+        """Load other tiles if the vehicle has moved far enough."""
         self._vehicle = (x, y)
         area = self._area
         if area is None or not self._builder.is_idle:
             return
         if area.distance_m(x, y) > self._p.update_distance_m:
-            self._builder.submit(partial(area.update, x, y))
+            # Other tiles than the first are read by the process that builds of them.
+            update = area.update_files if self.is_set else area.update
+            self._builder.submit(partial(update, x, y))
 
     def look_after_loader(self) -> None:
-        """Ask the map loader where the vehicle has moved far enough. The executor's thread."""
+        """Query the map loader if the vehicle has moved far enough. Executor's thread."""
         if self._loader is None:
             return
         self._loader.forget_unanswered()
@@ -95,9 +98,9 @@ class MapSupply:
             self._loader.ask(*place)
 
     async def update_around(self, x: float, y: float) -> None:
-        """Have the map around a place brought, and wait for what a map loader answers.
+        """Request the map around a position and wait for the map loader's response.
 
-        The executor's thread. What is to be built then is built when `is_settled` holds.
+        Executor's thread. The map has been built when `is_settled` returns True.
         """
         self.vehicle_is_at(x, y)
         call = self._loader.ask(x, y) if self._loader is not None else None
@@ -106,15 +109,15 @@ class MapSupply:
 
     @property
     def is_settled(self) -> bool:
-        """Tell whether no map is being built or waits to be taken."""
+        """Return whether no map is being built or waits to be taken."""
         return self._builder.is_idle
 
-    def take(self) -> tuple[VoxelMap, Points] | None:
-        """Return a map that was built since the last call, and its points."""
+    def take(self) -> tuple[VoxelMap, Points | None] | None:
+        """Return a map built since the last call, and its points if they are to be published."""
         built = self._builder.take()
         if built is None:
             return None
-        if built.voxel_map is None or built.points is None:
+        if built.voxel_map is None:
             self._refuse(built.problem)
             return None
         try:
@@ -129,7 +132,7 @@ class MapSupply:
         return built.voxel_map, built.points
 
     def _refuse(self, problem: str) -> None:
-        """Keep the map there is; without a problem the same tiles were needed again."""
+        """Keep the current map; without a problem the required tiles had not changed."""
         if not problem:
             return
         self._problem = problem
@@ -139,29 +142,29 @@ class MapSupply:
             self._loader.forget_cells()
 
     def is_leaving(self, x: float, y: float) -> bool:
-        """Tell whether the LiDAR sees beyond what is loaded."""
+        """Return whether the LiDAR's range extends beyond the loaded area."""
         if not self._is_partial:
             return False
         return self._centre_distance_m(x, y) + self._p.lidar_radius_m > self._p.map_radius_m
 
     @property
     def _is_partial(self) -> bool:
-        """Tell whether the map is only what is around the vehicle."""
+        """Return whether the map only covers the area around the vehicle."""
         return self._area is not None or (self._loader is not None and self._loader.has_answered)
 
     def _centre_distance_m(self, x: float, y: float) -> float:
-        """Return how far a place is from where the map was loaded; infinity before that."""
+        """Return the distance to the centre of the loaded map; infinity before the first."""
         if self._area is not None:
             return self._area.distance_m(x, y)
         centre = self._loader.centre if self._loader is not None else None
         return float("inf") if centre is None else float(np.hypot(x - centre[0], y - centre[1]))
 
     def what_is_missing(self) -> str:
-        """Say why there is no map."""
+        """Return why there is no map."""
         if self._problem:
             return self._problem
         if self._area is not None:
-            return "it is being loaded, or ekf_pose_with_covariance says nothing of the place"
+            return "it is being loaded, or waits for a pose on ekf_pose_with_covariance"
         return (
             "run a map loader that serves pcd_loader_service, publish pointcloud_map, or set the "
             "parameter map_path"
@@ -184,10 +187,10 @@ class MapSupply:
                 diagnostics.error("Dynamic map loading is not keeping up.")
 
     def report_loader(self, diagnostics: Diagnostics) -> None:
-        """Add what became of the last call of the map loader."""
+        """Add the outcome of the last call of the map loader."""
         if self._loader is not None:
             self._loader.report(diagnostics)
 
     def close(self) -> None:
-        """End the building of maps."""
+        """Stop building maps."""
         self._builder.close()

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Poses as arrows for RViz: `ndt_marker` and `monte_carlo_initial_pose_marker`."""
+"""Arrow markers for RViz: `ndt_marker` and `monte_carlo_initial_pose_marker`."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ STEPS_TO_RED = 15.0  # as in Autoware
 
 
 class PoseMarkers:
-    """Publishes only while somebody subscribes."""
+    """Publishes only while there are subscriptions."""
 
     def __init__(self, node: Node, map_frame: str) -> None:
         self._map_frame = map_frame
@@ -29,7 +29,7 @@ class PoseMarkers:
         self._particles = node.create_publisher(MarkerArray, "monte_carlo_initial_pose_marker", 10)
 
     def alignment(self, stamp: Any, path: Poses) -> None:
-        """Show the guess of a scan and the pose after each step, the redder the later."""
+        """Publish the guess of a scan and the pose after each step, from blue to red."""
         shares = colors(np.arange(1, len(path) + 1) / STEPS_TO_RED)
         arrows = [
             (T, ColorRGBA(r=red, g=green, b=blue, a=1.0))
@@ -38,7 +38,7 @@ class PoseMarkers:
         self._publish(self._alignment, stamp, arrows)
 
     def particles(self, stamp: Any, tried: Sequence[Particle]) -> None:
-        """Show all results of a search, the redder the worse."""
+        """Publish all results of a search, the worse the redder."""
         best = max((particle.score for particle in tried), default=0.0)
         arrows = []
         for particle in tried:
@@ -50,7 +50,7 @@ class PoseMarkers:
     def _publish(self, publisher: Any, stamp: Any, arrows: Sequence[tuple[Matrix, Any]]) -> None:
         if publisher.get_subscription_count() == 0:
             return
-        # What an alignment of more steps has left is removed.
+        # Delete the markers of earlier alignments, which may have had more steps.
         markers = [Marker(action=Marker.DELETEALL)]
         for index, (T, color) in enumerate(arrows):
             marker = Marker(ns="pose", id=index, type=Marker.ARROW, pose=pose_of(T), color=color)

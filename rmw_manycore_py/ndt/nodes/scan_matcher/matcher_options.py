@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""From the parameters of a node to the options of a matcher."""
+"""Converts the parameters of a node to options of a matcher."""
 
 from __future__ import annotations
 
@@ -23,11 +23,12 @@ POSE_COVARIANCES: dict[int, PoseCovariance] = {
 
 
 def matcher_options(parameters: MatcherParameters, own: OwnParameters) -> MatcherOptions:
-    """Return the options of matcher and voxel map; a behaviour fills in what is not chosen."""
+    """Return the options of matcher and voxel map; the behaviour supplies unset values."""
     as_autoware = own.behaviour == "autoware"
     return MatcherOptions(
         voxel_size_m=parameters.resolution_m,
         coarse_levels=() if as_autoware else own.coarse_levels,
+        wide_levels=() if as_autoware else own.wide_levels,
         search=own.search,
         voxel_covariance=own.voxel_covariance or ("autoware" if as_autoware else "pcl"),
         step_rule=own.step_rule or ("clamped" if as_autoware else "trust_region"),
@@ -47,7 +48,7 @@ def _offsets(parameters: MatcherParameters) -> Offsets:
     if len(x_m) != len(y_m) or not x_m:
         raise ManycoreError(
             "parameters covariance.covariance_estimation.initial_pose_offset_model_x and _y: "
-            f"expected as many numbers in either, found {len(x_m)} and {len(y_m)}",
+            f"expected equally many numbers in both, found {len(x_m)} and {len(y_m)}",
             EXIT_BAD_INPUT,
         )
     return tuple(zip(x_m, y_m, strict=True))

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The matcher of a node: on its own thread, or on the workers that its mapfile gives it."""
+"""Matcher of a node: on its own thread, or on the workers assigned by its mapfile."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ from rmw_manycore_py.topology import WORKER_CPUS
 
 
 def make_matcher(options: MatcherOptions, named_cpus: tuple[int, ...]) -> Matcher:
-    """Return a matcher with a worker on each of the host CPUs, or the mapfile's if none is named.
+    """Return a matcher with a worker per host CPU; default: those assigned by the mapfile.
 
     Several workers on one CPU would wait for each other, so cores that share a host CPU share a
-    worker; where that leaves one, the node's own thread does as well.
+    worker; if only one remains, the node's own thread is used.
     """
     cpus = sorted(set(named_cpus or _mapfile_cpus()))
     return WorkerMatcher(options, cpus) if len(cpus) > 1 else SerialMatcher(options)

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The thread that owns the matcher, so that the executor takes guesses while a scan is matched."""
+"""Thread that owns the matcher, so that the executor handles guesses during matching."""
 
 from __future__ import annotations
 
@@ -13,21 +13,21 @@ from typing import Any
 from rmw_manycore_py.ndt.nodes.scan_matcher.scan_inbox import ScanInbox, WaitingScan
 
 Job = Callable[[], None]
-# Work that is done bit by bit: yields False where it has to wait for `wake`.
+# Incremental work: yields False if it has to wait for `wake`.
 Steps = Iterator[bool]
 
 
 class MatchingThread:
-    """Matches scans and runs jobs, one at a time; sleeps while there is nothing to do.
+    """Matches scans and runs jobs, one at a time; sleeps when idle.
 
-    Long work is done in steps: one after each scan, and on while neither scan nor job waits.
+    Long work is done in steps: one after each scan, and continuously while no scan or job waits.
 
-    :param inbox: where scans wait.
-    :param match: called with each scan that is taken.
-    :param skip: called with each scan that a newer one has overtaken.
-    :param is_over: tells whether the node's context was shut down: nothing can be published then,
-        and what raises for that reason ends the thread quietly.
-    :param failed: called when one of them raised; close() raises it again.
+    :param inbox: holds waiting scans.
+    :param match: called with each scan taken.
+    :param skip: called with each scan overtaken by a newer one.
+    :param is_over: returns whether the node's context is shut down: nothing can be published then,
+        and errors caused by that end the thread silently.
+    :param failed: called when one of these raised; close() raises the error again.
     """
 
     def __init__(
@@ -46,40 +46,40 @@ class MatchingThread:
         self._changed = threading.Condition()
         self._jobs: deque[Job] = deque()
         self._steps: deque[Steps] = deque()
-        self._may_step = True  # there is more to do than when the last step had to wait
-        self._steps_turn = False  # else scans that come without end would keep steps from it
+        self._may_step = True  # woken since the last step had to wait
+        self._steps_turn = False  # prevents a stream of scans from starving steps
         self._closing = False
         self._failure: BaseException | None = None
         self._thread = threading.Thread(target=self._run, name="matching")
         self._thread.start()
 
     def put_scan(self, message: Any, stamp_s: float) -> None:
-        """Have a scan matched, unless a newer one is ready before its turn. Any thread."""
+        """Queue a scan; it is skipped if a newer one is ready first. Thread-safe."""
         with self._changed:
             self._inbox.put(message, stamp_s, time.monotonic())
             self._changed.notify()
 
     def wake(self) -> None:
-        """Look again: a guess that a scan waits for may be there, or a map. Any thread."""
+        """Wake the thread: a guess or map that is waited for may be available. Thread-safe."""
         with self._changed:
             self._may_step = True
             self._changed.notify()
 
     def post(self, job: Job) -> None:
-        """Run a job before the next scan. Any thread."""
+        """Run a job before the next scan. Thread-safe."""
         with self._changed:
             self._jobs.append(job)
             self._changed.notify()
 
     def post_steps(self, steps: Steps) -> None:
-        """Run steps one by one, between scans and jobs; they must not raise. Any thread."""
+        """Run steps one by one, between scans and jobs; they must not raise. Thread-safe."""
         with self._changed:
             self._steps.append(steps)
             self._may_step = True
             self._changed.notify()
 
     def close(self) -> None:
-        """End the thread after what it is doing; raises what ended it before."""
+        """Stop the thread after its current work; raise the error that ended it earlier, if any."""
         with self._changed:
             self._closing = True
             self._changed.notify()
@@ -102,7 +102,7 @@ class MatchingThread:
                 self._failed()
 
     def _next(self) -> tuple[list[WaitingScan], Job | None]:
-        """Sleep until there is work; return scans skipped since, and the work, None at the end."""
+        """Block until there is work; return skipped scans and the work, or None at the end."""
         with self._changed:
             while not self._closing:
                 if self._jobs:
@@ -122,7 +122,7 @@ class MatchingThread:
             return [], None
 
     def _step(self) -> None:
-        """Do a step of the oldest steps; where that has to wait, sleep until the next wake()."""
+        """Run one step of the oldest work; if it has to wait, block until the next wake()."""
         with self._changed:
             steps = self._steps[0]
             self._may_step = self._steps_turn = False

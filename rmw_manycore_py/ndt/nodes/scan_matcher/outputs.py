@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What `ndt_scan_matcher` publishes for a scan."""
+"""Outputs of `ndt_scan_matcher` for a scan."""
 
 from __future__ import annotations
 
@@ -40,11 +40,11 @@ FLOATS = (
 )
 POSE_ARRAYS = ("multi_ndt_pose", "multi_initial_pose")
 CLOUDS = ("points_aligned", "points_aligned_no_ground")
-WORST_SCORE, BEST_SCORE = 1.0, 3.5  # of a point: blue and red, as in Autoware
+WORST_SCORE, BEST_SCORE = 1.0, 3.5  # point scores shown blue and red, as in Autoware
 
 
 class MatcherOutputs:
-    """The publishers, by the names that Autoware gives their topics."""
+    """Publishers, with Autoware's topic names."""
 
     def __init__(self, node: Node, map_frame: str, ndt_base_frame: str) -> None:
         self._map_frame = map_frame
@@ -67,14 +67,14 @@ class MatcherOutputs:
         self._map = node.create_publisher(PointCloud2, "debug/loaded_pointcloud_map", kept)
 
     def accepted_pose(self, stamp: Any, T_map_base: Matrix, covariance: Matrix) -> None:
-        """Publish the pose that others may rely on."""
+        """Publish a reliable pose."""
         self._pose.publish(pose_stamped(T_map_base, stamp, self._map_frame))
         self._with_covariance.publish(
             pose_with_covariance(T_map_base, covariance, stamp, self._map_frame)
         )
 
     def result(self, stamp: Any, alignment: Alignment, guess: Interpolated) -> None:
-        """Publish what is to be seen of an alignment, accepted or not."""
+        """Publish the details of an alignment, accepted or not."""
         T = alignment.T_map_sensor
         transform = transform_stamped(T, stamp, self._map_frame, self._ndt_base_frame)
         self._tf.publish(TFMessage(transforms=[transform]))
@@ -95,7 +95,7 @@ class MatcherOutputs:
         self._several("multi_ndt_pose", stamp, alignment.results_around)
 
     def loaded_map(self, stamp: Any, points: Points) -> None:
-        """Publish the map that is matched to, for those that come later too."""
+        """Publish the loaded map, transient local."""
         self._map.publish(encode(points, stamp, self._map_frame))
 
     def number(self, name: str, stamp: Any, value: float) -> None:
@@ -103,7 +103,7 @@ class MatcherOutputs:
         self._floats[name].publish(Float32Stamped(stamp=stamp, data=float(value)))
 
     def cloud(self, name: str, stamp: Any, points_base: Points, T_map_base: Matrix) -> None:
-        """Publish one of CLOUDS in the map frame, if anybody listens."""
+        """Publish one of CLOUDS in the map frame, if there are subscriptions."""
         if self._clouds[name].get_subscription_count() > 0:
             points = poses.transform(T_map_base, points_base.astype(np.float64))
             self._clouds[name].publish(encode(points, stamp, self._map_frame))
@@ -115,7 +115,7 @@ class MatcherOutputs:
         T_map_base: Matrix,
         scores_of: Callable[[Points, Matrix], NDArray[np.float32]],
     ) -> None:
-        """Publish points that see a voxel, coloured by their scores, if anybody listens."""
+        """Publish points with voxels nearby, coloured by score, if there are subscriptions."""
         if self._scored.get_subscription_count() == 0:
             return
         scores = scores_of(points_base, T_map_base)
@@ -126,7 +126,7 @@ class MatcherOutputs:
         self._scored.publish(encode(points, stamp, self._map_frame, {"rgb": rgb}))
 
     def _several(self, name: str, stamp: Any, several: Sequence[Matrix]) -> None:
-        """Publish one of POSE_ARRAYS, if there are poses and anybody listens."""
+        """Publish one of POSE_ARRAYS, if there are poses and subscriptions."""
         if several and self._pose_arrays[name].get_subscription_count() > 0:
             message = PoseArray(poses=[pose_of(T) for T in several])
             message.header.stamp, message.header.frame_id = stamp, self._map_frame

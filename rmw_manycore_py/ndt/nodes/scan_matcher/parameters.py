@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The parameters of `ndt_scan_matcher`: Autoware's names and defaults, and a few of ours."""
+"""Parameters of `ndt_scan_matcher`: Autoware's names and defaults, and additional ones."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ DIAGONAL = tuple(VARIANCES[i] if i == j else 0.0 for i in range(6) for j in rang
 
 @dataclass(frozen=True)
 class MatcherParameters:
-    """Autoware's, in its order."""
+    """Autoware's parameters, in its order."""
 
     base_frame: str = parameter("frame.base_frame", "base_link")
     ndt_base_frame: str = parameter("frame.ndt_base_frame", "ndt_base_link")
@@ -54,10 +54,10 @@ class MatcherParameters:
         NEAREST_VOXEL_LIKELIHOOD,
         choices=(TRANSFORM_PROBABILITY, NEAREST_VOXEL_LIKELIHOOD),
     )
-    least_transform_probability: float = parameter(
+    min_transform_probability: float = parameter(
         "score_estimation.converged_param_transform_probability", 3.0, least=0.0
     )
-    least_nearest_voxel_likelihood: float = parameter(
+    min_nearest_voxel_likelihood: float = parameter(
         "score_estimation.converged_param_nearest_voxel_transformation_likelihood", 2.3, least=0.0
     )
     no_ground: bool = parameter("score_estimation.no_ground_points.enable", False)
@@ -92,15 +92,16 @@ class MatcherParameters:
     publish_loaded_map: bool = parameter("dynamic_map_loading.publish_loaded_map", False)
 
 
-Unchosen = Literal[""]  # what the behaviour has
+Unchosen = Literal[""]  # use the behaviour's value
 
 
 @dataclass(frozen=True)
 class OwnParameters:
-    """What Autoware's node has no parameter for."""
+    """Parameters that Autoware's node does not have."""
 
     search: Search = parameter("ndt.search", "radius", choices=("radius", "direct7", "direct1"))
     coarse_levels: tuple[float, ...] = parameter("ndt.coarse_levels", (2.0,))
+    wide_levels: tuple[float, ...] = parameter("ndt.wide_levels", (4.0,))
     voxel_covariance: VoxelCovariance | Unchosen = parameter(
         "ndt.covariance", "", choices=("", "autoware", "pcl", "pclomp")
     )

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Poses of the last seconds, to be asked for the pose at a time."""
+"""Buffer of recent poses with interpolation in time."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from rmw_manycore_py.ndt.geometry import poses
 from rmw_manycore_py.ndt.geometry.arrays import Matrix
 
-HOLD_S = 0.02  # a pose so old holds where the motion is not known: 0.3 m at 15 m/s
+HOLD_S = 0.02  # a pose up to this age is used without known motion: 0.3 m at 15 m/s
 
 
 @dataclass(frozen=True)
@@ -23,9 +23,9 @@ class StampedPose:
 
 @dataclass(frozen=True)
 class Interpolated:
-    """The pose at a time, and those before and after it that it comes from.
+    """The pose at a time, and the poses before and after it that it was computed from.
 
-    :param age_s: how much older than the time asked for the newest of them is; 0 between two.
+    :param age_s: age of the newest of them at that time; 0 if interpolated.
     """
 
     T: Matrix
@@ -35,14 +35,14 @@ class Interpolated:
 
 
 class NoPoseError(LookupError):
-    """The poses that arrived do not give the pose at a time; the message says why."""
+    """The buffer does not determine the pose at a time; the message says why."""
 
 
 class PoseBuffer:
     """Keeps the newest poses. Thread-safe.
 
-    :param timeout_s: maximum distance in time between a pose and the time asked for.
-    :param distance_tolerance_m: maximum distance between two poses to interpolate between.
+    :param timeout_s: maximum time between a pose and the requested time.
+    :param distance_tolerance_m: maximum distance between interpolated poses.
     """
 
     def __init__(self, timeout_s: float, distance_tolerance_m: float) -> None:
@@ -52,42 +52,42 @@ class PoseBuffer:
         self._lock = threading.Lock()
 
     def push(self, stamp_s: float, T: Matrix) -> None:
-        """Add a pose; when time jumps back, as in a recording played again, forget all others."""
+        """Add a pose; if time jumps back, as in a repeated recording, drop all others."""
         with self._lock:
             if self._poses and stamp_s < self._poses[-1].stamp_s:
                 self._poses.clear()
             self._poses.append(StampedPose(stamp_s, T))
 
     def clear(self) -> None:
-        """Forget all poses."""
+        """Drop all poses."""
         with self._lock:
             self._poses.clear()
 
     def forget_before(self, stamp_s: float, kept_s: float = 0.0) -> None:
-        """Forget poses that no later time can need, but for those of the last `kept_s`."""
+        """Drop poses that later times cannot need, except those of the last `kept_s`."""
         with self._lock:
             while len(self._poses) > 2 and self._poses[1].stamp_s <= stamp_s - kept_s:
                 self._poses.popleft()
 
     def reaches(self, stamp_s: float) -> bool:
-        """Tell whether there is a pose of this time or of a later one."""
+        """Return whether there is a pose at or after a time."""
         with self._lock:
             return bool(self._poses) and self._poses[-1].stamp_s >= stamp_s
 
     def newest_before(self, stamp_s: float) -> StampedPose | None:
-        """Return the newest pose that is not after a time, None without any."""
+        """Return the newest pose that is not after a time; None if there is none."""
         with self._lock:
             return next((p for p in reversed(self._poses) if p.stamp_s <= stamp_s), None)
 
     def oldest(self) -> StampedPose | None:
-        """Return the oldest pose there is."""
+        """Return the oldest pose."""
         with self._lock:
             return self._poses[0] if self._poses else None
 
     def newest_at(self, stamp_s: float) -> Interpolated | None:
-        """Return the pose at a time as Autoware's node does: after the newest one, it holds.
+        """Return the pose at a time as Autoware's node does: the newest one holds after its time.
 
-        None where two poses near the time are missing.
+        None without two poses near the time.
         """
         with self._lock:
             if len(self._poses) < 2 or stamp_s < self._poses[0].stamp_s:
@@ -96,10 +96,10 @@ class PoseBuffer:
         return None if isinstance(found, str) else found
 
     def at(self, stamp_s: float, reach_s: float) -> Interpolated:
-        """Return the pose at a time: interpolated, or moved on from the newest one.
+        """Return the pose at a time: interpolated, or extrapolated from the newest one.
 
-        :param reach_s: maximum age of the newest pose; older ones say too little about the time.
-        :raises NoPoseError: when the poses do not give it.
+        :param reach_s: maximum extrapolation time.
+        :raises NoPoseError: if the poses do not determine it.
         """
         with self._lock:
             if not self._poses:
@@ -115,7 +115,7 @@ class PoseBuffer:
         return found
 
     def _between(self, stamp_s: float) -> Interpolated | str:
-        """Return the pose between the two around a time, or why there is none."""
+        """Return the pose interpolated between its neighbours, or why that is impossible."""
         old = next(p for p in reversed(self._poses) if p.stamp_s <= stamp_s)
         new = next((p for p in self._poses if p.stamp_s > stamp_s), old)
         if old.stamp_s == stamp_s:
@@ -132,7 +132,7 @@ class PoseBuffer:
         return Interpolated(poses.interpolate(old.T, new.T, share), old, new)
 
     def _moved_on(self, stamp_s: float, reach_s: float) -> Interpolated:
-        """Continue the motion up to the newest pose, seen over at least as long a time."""
+        """Extrapolate the newest motion, estimated over at least as long a time."""
         newest = self._poses[-1]
         age_s = stamp_s - newest.stamp_s
         if age_s > reach_s:
@@ -142,7 +142,7 @@ class PoseBuffer:
         if before is None or newest.stamp_s - before.stamp_s > self._timeout_s:
             if age_s > HOLD_S:
                 raise NoPoseError(
-                    f"the newest pose is {age_s:.3f} s older, and no pose before it tells the "
+                    f"the newest pose is {age_s:.3f} s older, and no pose before it determines the "
                     "motion"
                 )
             return Interpolated(newest.T, newest, newest, age_s)

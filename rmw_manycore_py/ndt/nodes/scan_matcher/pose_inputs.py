@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The poses a scan matcher listens to: guesses and, where wanted, regularization poses."""
+"""Subscriptions of a scan matcher to poses: guesses and, optionally, regularization poses."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ from rmw_manycore_py.ndt.nodes.scan_matcher.guesses import Guesses
 from rmw_manycore_py.ndt.nodes.scan_matcher.parameters import MatcherParameters, OwnParameters
 from rmw_manycore_py.ndt.nodes.scan_matcher.pose_buffer import PoseBuffer
 
-UNLIMITED = 1000.0  # as Autoware has it for regularization poses, in s and m
+UNLIMITED = 1000.0  # Autoware's limit for regularization poses, in s and m
 
 
 class PoseInputs:
-    """Subscribes to both, checks them and reports what is wrong with them.
+    """Subscribes to both, validates them and reports problems.
 
-    :param is_activated: guesses are passed over while it returns False.
-    :param guess_arrived: called with each guess T_map_base (4, 4) after it is in `guesses`.
+    :param is_activated: guesses are ignored while it returns False.
+    :param guess_arrived: called with each guess T_map_base (4, 4) after it is added to `guesses`.
     """
 
     def __init__(
@@ -56,7 +56,7 @@ class PoseInputs:
     def regularization_at(
         self, stamp_s: float, guess: Matrix, report: Diagnostics
     ) -> Matrix | None:
-        """Return the regularization pose at a scan's time; None where there is none to use."""
+        """Return the regularization pose at a scan's time; None if there is none to use."""
         pose = self._regularization.newest_at(stamp_s) if self._p.regularization else None
         if pose is None:
             return None
@@ -99,5 +99,5 @@ def _usable(message: Any, report: Diagnostics) -> Matrix | None:
     try:
         return matrix_of(message.pose.pose)
     except PoseError as error:
-        report.error(f"{error}: it is passed over")
+        report.error(f"pose ignored: {error}")
         return None

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Real-time scheduling of a matcher: its threads and its workers before all ordinary programs."""
+"""Real-time scheduling of a matcher's threads and workers."""
 
 from __future__ import annotations
 
@@ -14,13 +14,12 @@ PARAMETER = "realtime_priority"
 
 
 def schedule_in_real_time(priority: int, pids: Iterable[int]) -> None:
-    """Give the calling thread and the main threads of processes SCHED_FIFO.
+    """Set SCHED_FIFO for the calling thread and the main threads of processes.
 
-    Threads and processes that they start later inherit it, so a worker that replaces one that was
-    killed has it too.
+    Threads and processes they start later inherit it, so replaced workers have it, too.
 
-    :param priority: 1 to 99; 0 leaves everything as it is.
-    :raises ManycoreError: where limits forbid it; nothing has changed for the calling thread then.
+    :param priority: 1 to 99; 0 is a no-op.
+    :raises ManycoreError: if limits forbid it; the calling thread is then unchanged.
     """
     if priority == 0:
         return

@@ -1,8 +1,8 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Why a scan or a request gives no pose."""
+"""Reason why a scan or a request yields no pose."""
 
 from __future__ import annotations
 
 
 class Rejected(Exception):  # noqa: N818
-    """A scan that gives no pose, and why."""
+    """A scan or request yields no pose; the message says why."""

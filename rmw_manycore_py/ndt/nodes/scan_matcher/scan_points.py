@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""From a PointCloud2 to the points that are matched: in the base frame, checked, not too many."""
+"""Converts a PointCloud2 to points to match: in the base frame, validated, limited in number."""
 
 from __future__ import annotations
 
@@ -10,7 +10,6 @@ import numpy as np
 
 from rmw_manycore_py.ndt.geometry import poses
 from rmw_manycore_py.ndt.geometry.arrays import Matrix, Points
-from rmw_manycore_py.ndt.geometry.thinning import spread_indices
 from rmw_manycore_py.ndt.messages.conversions import seconds
 from rmw_manycore_py.ndt.messages.point_cloud import CloudError, decode
 from rmw_manycore_py.ndt.messages.point_times import FIELDS, decode_timed, time_field
@@ -22,9 +21,9 @@ from rmw_manycore_py.ndt.nodes.scan_matcher.rejected import Rejected
 
 @dataclass(frozen=True)
 class Scan:
-    """The points (N, 3) of a scan in the base frame.
+    """Points (N, 3) of a scan in the base frame.
 
-    :param times_s: (N) after the scan's stamp, None where they are not wanted or not there.
+    :param times_s: (N) after the scan's stamp; None if not needed or missing.
     """
 
     points: Points
@@ -32,7 +31,7 @@ class Scan:
 
 
 class ScanPoints:
-    """Reads scans."""
+    """Converts scans."""
 
     def __init__(
         self, parameters: MatcherParameters, own: OwnParameters, frames: FrameTree
@@ -45,10 +44,10 @@ class ScanPoints:
             self._max_points = min(own.max_matched, own.scan_limit)
 
     def of(self, message: Any, now_s: float, report: Diagnostics) -> Scan:
-        """Return a scan in the base frame, with times where it is to be deskewed.
+        """Return a scan in the base frame, with times if it is to be deskewed.
 
-        :param now_s: the node's clock.
-        :raises Rejected: when the scan cannot be used.
+        :param now_s: time of the node's clock.
+        :raises Rejected: if the scan is unusable.
         """
         report.value("sensor_points_size", message.width * message.height)
         try:
@@ -58,10 +57,8 @@ class ScanPoints:
         if len(points) == 0:
             raise Rejected("Sensor points is empty: it has no point that is finite")
         self._report_delay(now_s - seconds(message.header.stamp), report)
-        chosen = spread_indices(len(points), self._max_points)
-        self._report_limit(len(points), report)
-        times_s = None if times_s is None else times_s[chosen]
-        points = self._in_base(points[chosen], message.header.frame_id, report)
+        self._report_limit(message.width * message.height, report)
+        points = self._in_base(points, message.header.frame_id, report)
         report.value("sensor_points_matched", len(points))
         farthest_m = float(np.sqrt(np.square(points, dtype=np.float64).sum(axis=1).max()))
         report.value("sensor_points_max_distance", round(farthest_m, 3))
@@ -74,25 +71,25 @@ class ScanPoints:
 
     def _decoded(self, message: Any, report: Diagnostics) -> tuple[Points, Matrix | None]:
         if not self._own.deskew:
-            return decode(message), None
+            return decode(message, self._max_points), None
         field = time_field(message)
         if field is None:
             report.warn(f"not deskewed: the cloud has none of the fields {', '.join(FIELDS)}")
-            return decode(message), None
-        return decode_timed(message, field)
+            return decode(message, self._max_points), None
+        return decode_timed(message, field, self._max_points)
 
     def _report_delay(self, delay_s: float, report: Diagnostics) -> None:
         report.value("sensor_points_delay_time_sec", round(delay_s, 4))
         if delay_s > self._p.timeout_s:
             report.warn(f"sensor points are {delay_s:.2f} s old (tolerance {self._p.timeout_s} s)")
         elif delay_s < -self._p.timeout_s:
-            report.warn(f"sensor points are of a time {-delay_s:.2f} s ahead: check the clocks")
+            report.warn(f"sensor points are {-delay_s:.2f} s in the future: check the clocks")
 
     def _report_limit(self, count: int, report: Diagnostics) -> None:
         if count > self._own.scan_limit:
             report.warn(
                 f"{count} points are more than sensor_points.limit ({self._own.scan_limit}): "
-                f"{self._max_points} are used; put a filter in front"
+                f"{self._max_points} are used; add a voxel_grid_filter before the matcher"
             )
 
     def _in_base(self, points: Points, frame: str, report: Diagnostics) -> Points:

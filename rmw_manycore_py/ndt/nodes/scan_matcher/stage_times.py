@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""How long the stages of a scan take, one after the other."""
+"""Durations of the consecutive stages of a scan."""
 
 from __future__ import annotations
 
@@ -9,24 +9,24 @@ from rmw_manycore_py.ndt.nodes.scan_matcher.diagnostics import Diagnostics
 
 
 class StageTimes:
-    """Begins with the scan; wall times, which have in them what else took the CPU."""
+    """Starts with the scan; wall-clock times include other programs on the CPU."""
 
     def __init__(self) -> None:
         self._start_s = self._last_s = time.perf_counter()
         self._stages_ms: dict[str, float] = {}
 
     def end(self, stage: str) -> None:
-        """Note the end of a stage, and the beginning of the next."""
+        """Record the end of a stage and the start of the next."""
         now_s = time.perf_counter()
         self._stages_ms[stage] = 1e3 * (now_s - self._last_s)
         self._last_s = now_s
 
     @property
     def total_ms(self) -> float:
-        """Return the time since the beginning."""
+        """Return the time since the start."""
         return 1e3 * (time.perf_counter() - self._start_s)
 
     def report(self, diagnostics: Diagnostics) -> None:
-        """Add a value for each stage."""
+        """Add a value per stage."""
         for stage, time_ms in self._stages_ms.items():
             diagnostics.value(f"{stage}_time_ms", round(time_ms, 3))

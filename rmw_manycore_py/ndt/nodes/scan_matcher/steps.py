@@ -1,8 +1,7 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What the steps of an alignment tell: how much the score gained, and whether they went in circles.
+"""Analysis of the steps of an alignment: gain of the score, and oscillation.
 
-As in Autoware; where a coarser map was aligned to before, the score before is the one that the
-finest map's steps began with.
+As in Autoware; with coarser maps, the initial score is that of the finest map's first step.
 """
 
 from __future__ import annotations
@@ -15,12 +14,12 @@ from rmw_manycore_py.ndt.geometry.arrays import Poses
 from rmw_manycore_py.ndt.matching.alignment import Alignment
 from rmw_manycore_py.ndt.nodes.scan_matcher.diagnostics import Diagnostics
 
-OPPOSITE = -0.9  # cosine between two steps
+OPPOSITE = -0.9  # cosine between two opposite steps
 MANY_OSCILLATIONS = 10
 
 
 def report_steps(alignment: Alignment, report: Diagnostics) -> None:
-    """Add oscillation and the scores before."""
+    """Add oscillation and initial scores."""
     oscillations = count_oscillations(alignment.path)
     report.value("local_optimal_solution_oscillation_num", oscillations)
     if oscillates(alignment.path):
@@ -41,17 +40,17 @@ def report_steps(alignment: Alignment, report: Diagnostics) -> None:
 
 
 def has_ended(alignment: Alignment) -> bool:
-    """Tell whether an alignment ended by itself, or oscillates around a maximum."""
+    """Return whether an alignment converged, or oscillates around a maximum."""
     return alignment.converged or (not alignment.is_degenerate and oscillates(alignment.path))
 
 
 def oscillates(path: Poses) -> bool:
-    """Tell whether an alignment turned back in a row more often than a healthy one does."""
+    """Return whether an alignment reversed more often in a row than a healthy one does."""
     return count_oscillations(path) > MANY_OSCILLATIONS
 
 
 def count_oscillations(path: Poses) -> int:
-    """Return how many steps in a row led back where the step before came from, at most."""
+    """Return the maximum number of consecutive steps that reversed the previous one."""
     most = count = 0
     steps = np.diff(path[:, :3, 3], axis=0)
     for before, step in pairwise(steps):

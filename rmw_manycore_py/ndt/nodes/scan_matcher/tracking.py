@@ -1,8 +1,9 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Aligning a scan and judging the result: as Autoware does, or by all that is known of the drive.
+"""Aligns a scan and judges the result: as Autoware does, or robustly with the drive's history.
 
-The latter aligns again from where the vehicle should be if the result of the guess is not believed,
-and has a search look farther when scans are refused in a row (docs/design/ndt_trust.md).
+Robust tracking aligns again from the expected pose if the result of the guess is not believed, then
+takes a second look from the guess (matching/second_look.py), and starts a search after consecutive
+refused scans (docs/design/ndt_trust.md).
 """
 
 from __future__ import annotations
@@ -27,8 +28,9 @@ from rmw_manycore_py.ndt.trust.last_pose import LastPose
 from rmw_manycore_py.ndt.trust.motion import Believed
 from rmw_manycore_py.ndt.trust.recovery import Recovery, Step
 
-OTHER_M, OTHER_RAD = 0.3, np.radians(2.0)  # a start so far from the guess is worth another try
-MAX_LEFT_S = 60.0  # age of a pose that an earlier process left
+OTHER_M, OTHER_RAD = 0.3, np.radians(2.0)  # minimum distance of a second start from the guess
+VAIN_LOOKS = 5  # second looks in a row without result, after which none is taken
+MAX_LEFT_S = 60.0  # maximum age of a pose left by a previous process
 
 
 @dataclass(frozen=True)
@@ -43,7 +45,7 @@ class ScanAt:
 
 @dataclass(frozen=True)
 class Tracked:
-    """The alignment of a scan; `covariance` (6, 6) is the output's."""
+    """Alignment of a scan; `covariance` (6, 6) is the published one."""
 
     alignment: Alignment
     is_reliable: bool
@@ -51,9 +53,9 @@ class Tracked:
 
 
 class Tracking(Protocol):
-    """What the node has of either.
+    """Common interface of both kinds of tracking.
 
-    `was_activated`: an earlier process that was killed was, so this one goes on.
+    `was_activated`: a killed predecessor was activated, so this process resumes.
     """
 
     was_activated: bool
@@ -67,20 +69,20 @@ class Tracking(Protocol):
         ...
 
     def map_changed(self, voxel_map: VoxelMap) -> None:
-        """Go on in another map."""
+        """Continue in another map."""
         ...
 
     def activated(self, is_activated: bool) -> None:
-        """Begin anew: the vehicle may be anywhere."""
+        """Restart: the vehicle may be anywhere."""
         ...
 
     def close(self) -> None:
-        """Give back what it holds."""
+        """Release resources."""
         ...
 
 
 class AutowareTracking:
-    """Autoware's: one alignment from the guess, a threshold, and nothing remembered."""
+    """Autoware's behaviour: one alignment from the guess, a threshold, no history."""
 
     was_activated = False
 
@@ -90,25 +92,25 @@ class AutowareTracking:
 
     def track(self, scan: ScanAt, report: Diagnostics) -> Tracked:
         """Align and judge a scan."""
-        alignment = self._matcher.align(scan.points, scan.guess, scan.regularization)
+        alignment = self._matcher.align_once(scan.points, scan.guess, scan.regularization)
         reliable = judgement.is_reliable(alignment, self._p, report)
         return Tracked(alignment, reliable, judgement.output_covariance(alignment, self._p))
 
     def missed(self, report: Diagnostics) -> None:
-        """Nothing is reported."""
+        """Do nothing."""
 
     def map_changed(self, voxel_map: VoxelMap) -> None:
-        """Nothing is known of maps."""
+        """Do nothing."""
 
     def activated(self, is_activated: bool) -> None:
-        """Nothing is remembered."""
+        """Do nothing."""
 
     def close(self) -> None:
-        """Nothing is held."""
+        """Do nothing."""
 
 
 class RobustTracking:
-    """Believes what score, its course and the motion agree on, and finds back by itself."""
+    """Accepts poses on which score, score history and motion agree; recovers by itself."""
 
     def __init__(self, matcher: Matcher, parameters: MatcherParameters, own: OwnParameters) -> None:
         self._matcher = matcher
@@ -117,6 +119,7 @@ class RobustTracking:
         self._recovery = Recovery(matcher.options, own.recovery_after_scans, own.recovery_radius_m)
         path = Path(own.last_pose_path).expanduser()
         self._last_pose = LastPose(path) if own.last_pose_path else None
+        self._second_looks = self._vain_looks = 0
         self.was_activated = False
         left = self._last_pose.read(time.time(), MAX_LEFT_S) if self._last_pose else None
         if left is not None:
@@ -126,13 +129,15 @@ class RobustTracking:
         self._is_activated = own.activated or self.was_activated
 
     def track(self, scan: ScanAt, report: Diagnostics) -> Tracked:
-        """Align and judge a scan; try again from where the vehicle should be."""
+        """Align and judge a scan; retry from the expected pose."""
         if self._recovery.take(self._judge):
             report.warn(f"recovery: {self._recovery.note}")
-        alignment = self._matcher.align(scan.points, scan.guess, scan.regularization)
-        verdict = self._judge.judge(scan.stamp_s, alignment, scan.guess)
+        alignment = self._matcher.align_once(scan.points, scan.guess, scan.regularization)
+        verdict = self._judged(scan, alignment)
         if not verdict.is_believed:
             again = self._from_expectation(scan, verdict)
+            if again is None and self._judge.may_look_again(verdict):
+                again = self._looked_again(scan, alignment)
             if again is not None:
                 alignment, verdict = again
         self._report(alignment, verdict, report)
@@ -146,24 +151,25 @@ class RobustTracking:
         return Tracked(alignment, verdict.is_believed, covariance)
 
     def missed(self, report: Diagnostics) -> None:
-        """Report where the recovery is, also for a scan that could not be aligned."""
+        """Report the state of the recovery."""
         self._report_recovery(report)
 
     def map_changed(self, voxel_map: VoxelMap) -> None:
-        """Demand what the new map's own scores allow."""
+        """Adapt the required score to the new map."""
         self._judge.level.map_changed(voxel_map.own_likelihood)
         self._recovery.map_changed(voxel_map)
 
     def activated(self, is_activated: bool) -> None:
-        """Begin anew: a first pose was found, or one is looked for."""
+        """Restart: an initial pose was found, or is being searched."""
         self._is_activated = is_activated
         self._judge.forget()
+        self._vain_looks = 0
         self._recovery.reset()
         if self._last_pose is not None:
             self._last_pose.forget()
 
     def close(self) -> None:
-        """End the search; a node that ends as it should leaves no pose."""
+        """Stop the search; after a regular shutdown no pose is left."""
         self._recovery.close()
         if self._last_pose is not None:
             self._last_pose.forget()
@@ -175,15 +181,36 @@ class RobustTracking:
             if any(_is_near(start, other) for other in tried):
                 continue
             tried.append(start)
-            alignment = self._matcher.align(scan.points, start, scan.regularization)
-            verdict = self._judge.judge(scan.stamp_s, alignment, scan.guess)
+            alignment = self._matcher.align_once(scan.points, start, scan.regularization)
+            verdict = self._judged(scan, alignment)
             if verdict.is_believed:
                 return alignment, verdict
         return None
 
+    def _looked_again(self, scan: ScanAt, first: Alignment) -> tuple[Alignment, Verdict] | None:
+        """Take a second look from the guess, unless a search looks farther, or looks are vain."""
+        is_searching = self._recovery.step in (Step.AROUND, Step.GLOBALLY)
+        if is_searching or self._vain_looks >= VAIN_LOOKS:
+            return None
+        alignment = self._matcher.second_look(
+            first,
+            scan.points,
+            scan.guess,
+            scan.regularization,
+            convinces=lambda found: self._judged(scan, found).is_believed,
+        )
+        self._second_looks += alignment.looks > first.looks
+        verdict = self._judged(scan, alignment)
+        self._vain_looks += not verdict.is_believed
+        return (alignment, verdict) if verdict.is_believed else None
+
+    def _judged(self, scan: ScanAt, alignment: Alignment) -> Verdict:
+        return self._judge.judge(scan.stamp_s, alignment, scan.guess)
+
     def _believe(self, scan: ScanAt, alignment: Alignment) -> None:
         self._judge.believe(scan.stamp_s, alignment, scan.guess)
         self._recovery.believed()
+        self._vain_looks = 0
         if self._last_pose is not None:
             at = Believed(scan.stamp_s, alignment.T_map_sensor, scan.guess)
             self._last_pose.write(time.time(), at, self._is_activated)
@@ -196,6 +223,7 @@ class RobustTracking:
         report.value("score_level", round(verdict.level, 4))
         report.value("share_of_points_in_map", round(alignment.share_in_map, 4))
         report.value("is_sure", verdict.is_sure)
+        report.value("second_looks", self._second_looks)
         if not verdict.is_believed:
             report.warn(verdict.why)
 

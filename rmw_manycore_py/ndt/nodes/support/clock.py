@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The time of a node's clock."""
+"""Time of a node's clock."""
 
 from __future__ import annotations
 
@@ -10,5 +10,5 @@ if TYPE_CHECKING:
 
 
 def clock_s(node: Node) -> float:
-    """Return the time of a node's clock, simulated or not, in seconds, as those of its stamps."""
+    """Return the time of a node's clock (ROS or simulated) in seconds."""
     return float(node.get_clock().now().nanoseconds) / 1e9

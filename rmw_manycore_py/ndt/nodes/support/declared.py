@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Parameters of a node as a frozen dataclass: name, default and range of each in one place."""
+"""Node parameters as a frozen dataclass: name, default and range in one place."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ T = TypeVar("T")
 
 @dataclass(frozen=True)
 class Range:
-    """What a number must be; `choices` wins over the limits."""
+    """Allowed values of a number; `choices` overrides the limits."""
 
     above: float | None = None
     least: float | None = None
@@ -33,7 +33,7 @@ class Range:
         return " and ".join(words) or "finite"
 
     def holds(self, value: Any) -> bool:
-        """Tell whether a value is in the range; NaN never is."""
+        """Return whether a value is in the range; NaN never is."""
         if self.choices:
             return value in self.choices
         return not (
@@ -45,10 +45,10 @@ class Range:
 
 
 def parameter(name: str, default: Any, **limits: Any) -> Any:
-    """Return the field of a parameter; the limits are those of Range, or `length` of a list.
+    """Return the dataclass field of a parameter; limits are those of Range, or a list's `length`.
 
-    Numbers are finite, texts empty only where the default is; `whole` makes a list one of CPUs and
-    the like, `texts` one of texts, for which a text alone may stand.
+    Numbers must be finite; texts non-empty unless the default is empty. `whole` declares a list of
+    non-negative integers, `texts` a list of strings, for which a single string is accepted.
     """
     length, whole = limits.pop("length", None), limits.pop("whole", False)
     texts = limits.pop("texts", False)
@@ -60,8 +60,9 @@ def parameter(name: str, default: Any, **limits: Any) -> Any:
 def declare(node: Node, kind: type[T]) -> T:
     """Declare all parameters of a dataclass and return their values.
 
-    Whole numbers are taken for decimal ones, lists become tuples. All that are wrong are named in
-    one ManycoreError.
+    Integers are accepted for floats; lists become tuples.
+
+    :raises ManycoreError: for all invalid values together.
     """
     values: dict[str, Any] = {}
     problems = []
@@ -84,10 +85,10 @@ def declare(node: Node, kind: type[T]) -> T:
 
 
 def _declared(node: Node, name: str, default: Any) -> Any:
-    """Return the value that was given, else the default; lists as tuples."""
+    """Return the given value or the default; lists as tuples."""
     dynamic = ParameterDescriptor(dynamic_typing=True)
     start = list(default) if isinstance(default, tuple) else default
-    # An empty list has no type that it could be declared with.
+    # An empty list has no type to declare it with.
     value = node.declare_parameter(name, None if start == [] else start, dynamic).value
     if isinstance(default, tuple):
         is_list = isinstance(value, Sequence) and not isinstance(value, str)
@@ -96,7 +97,7 @@ def _declared(node: Node, name: str, default: Any) -> Any:
 
 
 def _expected(value: Any, default: Any, allowed: Range | None) -> str | None:
-    """Return what was expected, or None for a value that is right."""
+    """Return what was expected, or None for a valid value."""
     if isinstance(default, bool):
         return None if isinstance(value, bool) else "true or false"
     if isinstance(default, str):
@@ -127,5 +128,5 @@ def _expected_texts(value: Any) -> str | None:
 
 
 def _is_number(value: Any, whole: bool = False) -> bool:
-    """Tell whether a value is a number, finite or not; true and false are none."""
+    """Return whether a value is a number, finite or not; booleans are not."""
     return isinstance(value, int if whole else (int, float)) and not isinstance(value, bool)

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""How often a trouble that lasts is logged."""
+"""Rate limit for repeated log messages."""
 
 from __future__ import annotations
 
@@ -8,18 +8,18 @@ import time
 from collections.abc import Callable
 
 REPEAT_S = 1.0
-NUMBER = re.compile(r"[-+]?\d+(\.\d+)?")  # troubles that differ in numbers alone are the same
+NUMBER = re.compile(r"[-+]?\d+(\.\d+)?")  # messages that only differ in numbers count as equal
 
 
 class LogThrottle:
-    """Throttles each trouble by itself; others do not hide it, as rclpy's throttling would."""
+    """Throttles each message separately; rclpy throttles per call site."""
 
     def __init__(self, repeat_s: float = REPEAT_S) -> None:
         self._repeat_s = repeat_s
-        self._logged_s: dict[str, float] = {}  # when each trouble was logged last
+        self._logged_s: dict[str, float] = {}  # last log time by message
 
     def is_due(self, message: str) -> bool:
-        """Tell whether a trouble may be logged again, and count it as logged then."""
+        """Return whether a message may be logged again; if so, count it as logged."""
         now_s = time.monotonic()
         self._logged_s = {k: t for k, t in self._logged_s.items() if now_s - t < self._repeat_s}
         trouble = NUMBER.sub("", message)
@@ -29,9 +29,9 @@ class LogThrottle:
 
 
 class ThrottledLog:
-    """Logs each trouble at most once a second.
+    """Logs each message at most once a second.
 
-    :param log: of a node's logger, and of one severity: rclpy refuses another one from here.
+    :param log: log function of one severity: rclpy rejects different severities at one call site.
     """
 
     def __init__(self, log: Callable[[str], object]) -> None:
@@ -39,6 +39,6 @@ class ThrottledLog:
         self._throttle = LogThrottle()
 
     def __call__(self, text: str) -> None:
-        """Log it, unless the same trouble was logged just now."""
+        """Log the message, unless it was logged less than a second ago."""
         if self._throttle.is_due(text):
             self._log(text)

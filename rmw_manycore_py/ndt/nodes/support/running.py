@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Running a node until it is interrupted; wrong parameters and files end it with a message."""
+"""Runs a node until interrupted; invalid parameters and files end it with an error message."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from rmw_manycore_py.errors import ManycoreError
 
 
 def run_node(make: Callable[[], Node]) -> None:
-    """Make a node and spin it; its `destroy_node` releases what it has."""
+    """Create a node and spin it; its `destroy_node` releases its resources."""
     rclpy.init()
     try:
         node = make()
@@ -24,6 +24,11 @@ def run_node(make: Callable[[], Node]) -> None:
         rclpy.try_shutdown()
         sys.exit(error.exit_status)
     with suppress(KeyboardInterrupt, ExternalShutdownException):
-        rclpy.spin(node)
+        try:
+            rclpy.spin(node)
+        except RuntimeError:
+            if rclpy.ok():
+                raise
+            # Interrupted while rclpy converted a message, which it reports as an error of its own.
     node.destroy_node()
     rclpy.try_shutdown()

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Naming the node whose publisher has gone, from the liveliness of a subscription."""
+"""Logs which node's publisher is gone, from the liveliness events of a subscription."""
 
 from __future__ import annotations
 
@@ -10,15 +10,15 @@ from rclpy.node import Node
 
 
 def watched(node: Node, topic: str) -> SubscriptionEventCallbacks:
-    """Return the event callbacks of a subscription: they log which publishers died or left.
+    """Return subscription event callbacks that log which publishers died or left.
 
-    On rmw_manycore within milliseconds of a death, on DDS when the participant's lease has run out.
+    rmw_manycore reports a death within milliseconds, DDS after the participant's lease.
     """
     return SubscriptionEventCallbacks(liveliness=_Watch(node, topic).changed)
 
 
 class _Watch:
-    """Remembers the publishers of a topic: those that have gone cannot be asked."""
+    """Remembers the publishers of a topic, since those that are gone cannot be queried."""
 
     def __init__(self, node: Node, topic: str) -> None:
         self._node = node
@@ -30,7 +30,7 @@ class _Watch:
         infos = self._node.get_publishers_info_by_topic(self._topic)
         present = {info.node_name for info in infos}
         gone = ", ".join(sorted(self._known - present))
-        if not gone and event.not_alive_count_change > 0:  # the event does not tell which one
+        if not gone and event.not_alive_count_change > 0:  # the event does not say which one
             gone = " or ".join(sorted(self._known)) or "a publisher"
         if gone:
             self._node.get_logger().warning(f"{self._topic}: {gone} is gone")
