@@ -1,9 +1,9 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What a platform consists of: what changes only when a node or endpoint comes or goes."""
+"""Graph of a platform: what changes only when a node or endpoint joins or leaves."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -12,10 +12,10 @@ from numpy.typing import NDArray
 
 from rmw_manycore_py import _transport
 from rmw_manycore_py.qos import Policies, policies_of
-from rmw_manycore_py.ros.names import full_node_name
+from rmw_manycore_py.ros.names import full_node_name, node_names_by_process
 from rmw_manycore_py.words import EndpointKind, EndpointRole
 
-# Every rclpy node has endpoints of these: drawn, they would hide what a platform is for.
+# Topics of every rclpy node; drawing them would clutter the picture.
 EVERY_NODES_TOPICS = frozenset(("/rosout", "/parameter_events"))
 
 
@@ -33,7 +33,7 @@ class Member:
 
     @property
     def shown_names(self) -> tuple[str, ...]:
-        """Its nodes; where it has none, what the tools call it."""
+        """Names of its nodes; without nodes, the label used by the tools."""
         return self.nodes or (f"({self.label})",)
 
 
@@ -41,7 +41,7 @@ class Member:
 class Endpoint:
     """A publisher or subscription."""
 
-    id: int  # as rows of activity have it
+    id: int  # key of the activity rows
     kind: EndpointKind
     role: EndpointRole
     topic: str
@@ -53,33 +53,38 @@ class Endpoint:
 
 @dataclass(frozen=True)
 class Graph:
-    """Members and endpoints of a platform between two changes."""
+    """Members and endpoints of a platform between two graph changes."""
 
     platform: str
     cluster_count: int
     cores_per_cluster: int
-    smem_bytes: int  # of each cluster
+    smem_bytes: int  # per cluster
     members: tuple[Member, ...]
     endpoints: tuple[Endpoint, ...]
 
     @cached_property
     def ids(self) -> NDArray[np.uint64]:
-        """Ids of the endpoints, in their order."""
+        """Endpoint ids, in order."""
         return np.array([endpoint.id for endpoint in self.endpoints], dtype=np.uint64)
 
     @cached_property
+    def endpoints_by_id(self) -> dict[int, Endpoint]:
+        """Endpoints by id."""
+        return {endpoint.id: endpoint for endpoint in self.endpoints}
+
+    @cached_property
     def is_publisher(self) -> NDArray[np.bool_]:
-        """Whether each endpoint publishes."""
+        """Whether each endpoint is a publisher."""
         return np.array([e.kind == "publisher" for e in self.endpoints], dtype=bool)
 
     @cached_property
     def topics(self) -> tuple[str, ...]:
-        """Names of the topics, sorted; services are none."""
+        """Topic names, sorted; excludes services."""
         return tuple(sorted({e.topic for e in self.endpoints if e.role == "topic"}))
 
     @cached_property
     def topic_index(self) -> NDArray[np.intp]:
-        """Index into `topics` of each endpoint; one past the last for services."""
+        """Index into `topics` of each endpoint; one past the end for services."""
         place = {name: index for index, name in enumerate(self.topics)}
         none = len(self.topics)
         return np.array(
@@ -88,7 +93,7 @@ class Graph:
 
     @cached_property
     def endpoints_of_topics(self) -> dict[str, tuple[Endpoint, ...]]:
-        """Endpoints of each topic."""
+        """Endpoints by topic."""
         found: dict[str, list[Endpoint]] = {name: [] for name in self.topics}
         for endpoint in self.endpoints:
             if endpoint.role == "topic":
@@ -97,7 +102,7 @@ class Graph:
 
     @cached_property
     def drawn_topics(self) -> tuple[str, ...]:
-        """Topics that are published and subscribed to, but those of every node."""
+        """Topics with publishers and subscriptions, except those of every node."""
         return tuple(
             name
             for name, endpoints in self.endpoints_of_topics.items()
@@ -105,20 +110,22 @@ class Graph:
         )
 
 
-def read_graph(platform: _transport.Platform) -> Graph:
-    """Read members and endpoints of a platform."""
+def read_graph(platform: _transport.Platform, earlier: Graph | None = None) -> Graph:
+    """Read members and endpoints of a platform.
+
+    :param earlier: graph of this platform read before; its endpoints that still exist are kept.
+    """
+    known = {} if earlier is None else earlier.endpoints_by_id
     info = platform.info()
     processes = platform.processes()
-    nodes: dict[int, list[str]] = {}
-    for node in platform.nodes():
-        nodes.setdefault(node.process, []).append(full_node_name(node.namespace, node.name))
+    nodes = node_names_by_process(platform.nodes())
     return Graph(
         info.name,
         info.clusters,
         info.cores_per_cluster,
         info.smem_bytes,
-        tuple(_member(process, nodes.get(process.slot, ())) for process in processes),
-        tuple(map(_endpoint, platform.endpoints())),
+        tuple(_member(process, nodes[process.slot]) for process in processes),
+        tuple(_endpoint(endpoint, known) for endpoint in platform.endpoints()),
     )
 
 
@@ -134,9 +141,10 @@ def _member(process: _transport.ProcessInfo, nodes: Sequence[str]) -> Member:
     )
 
 
-def _endpoint(endpoint: _transport.EndpointInfo) -> Endpoint:
-    return Endpoint(
-        int.from_bytes(endpoint.gid[8:16], "little"),
+def _endpoint(endpoint: _transport.EndpointInfo, known: Mapping[int, Endpoint]) -> Endpoint:
+    own_id = int.from_bytes(endpoint.gid[8:16], "little")
+    return known.get(own_id) or Endpoint(
+        own_id,
         endpoint.kind,
         endpoint.role,
         endpoint.topic,

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Latency of topics while a platform is traced: from publish to the callback's begin."""
+"""Latency of topics while a platform is traced: from publish to the start of the callback."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from rmw_manycore_py.trace.pairs import first_of, split_by
 from rmw_manycore_py.trace.recorded import looked_at
 
 WINDOW_S = 5.0
-# Copying more than this for each look would cost more than it tells.
+# Maximum number of events copied per look.
 _MAX_EVENTS = 1 << 20
 
 
@@ -40,7 +40,7 @@ class TopicLatency:
 
 
 def live_latencies(platform: str, state: _transport.TraceState) -> dict[str, TopicLatency]:
-    """Return the latency of each topic in the last seconds; what is recorded stays to be saved."""
+    """Return the latency of each topic in the last seconds; recorded events are kept."""
     if not state.started_ns or state.pending > _MAX_EVENTS:
         return {}
     with translate_native_errors():
@@ -49,7 +49,7 @@ def live_latencies(platform: str, state: _transport.TraceState) -> dict[str, Top
 
 
 def topic_latencies(trace: Trace, since_ns: int = 0) -> dict[str, TopicLatency]:
-    """Return the latency of each topic, of the messages that arrived since then."""
+    """Return the latency of each topic, for messages that arrived since a time."""
     threads = list(trace.threads())
     writes = joined([_published(thread) for _, thread in threads])
     ends = merged(threads, (Kind.RELEASE,))
@@ -62,7 +62,7 @@ def topic_latencies(trace: Trace, since_ns: int = 0) -> dict[str, TopicLatency]:
 
 
 def _published(thread: Thread) -> Events:
-    """Return the writes of a thread, each at the time its publish began."""
+    """Return the writes of a thread, with the start times of their publish calls."""
     chosen = thread.events[np.isin(thread.events["kind"], (Kind.PUBLISH_BEGIN, Kind.WRITE))]
     rows = np.flatnonzero(chosen["kind"] == Kind.WRITE)
     begins = np.maximum(rows - 1, 0)

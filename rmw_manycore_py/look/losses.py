@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Messages lost and deadlines missed, as events."""
+"""Lost messages and missed deadlines, as events."""
 
 from __future__ import annotations
 
@@ -8,20 +8,20 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from rmw_manycore_py.look.events import Event
 from rmw_manycore_py.look.graph import Endpoint
-from rmw_manycore_py.look.happenings import Happening
 from rmw_manycore_py.look.loads import Loads
-from rmw_manycore_py.look.sample import DEADLINES, EXPIRED, LOST, REFUSED
+from rmw_manycore_py.look.sample import DEADLINES, DROPPED, EXPIRED, LOST, REFUSED
 
-SUM_S = 10.0  # what goes on is told so often: two lines a second would hide all else
-_WORDS = {LOST: "lost", EXPIRED: "expired", REFUSED: "refused"}
+SUM_S = 10.0  # reporting period of continuing losses
+_WORDS = {LOST: "lost", EXPIRED: "expired", REFUSED: "refused", DROPPED: "dropped"}
 _COLUMNS = (*_WORDS, DEADLINES)
 _Key = tuple[int, int]  # id of an endpoint, column
 
 
 @dataclass
 class _Loss:
-    """Of one kind at one endpoint, since it was told last."""
+    """Losses of one kind at one endpoint, since the last report."""
 
     endpoint: Endpoint
     count: int = 0
@@ -29,13 +29,13 @@ class _Loss:
 
 
 class Losses:
-    """Tells the first of a kind at an endpoint at once; then sums, as long as it goes on."""
+    """Reports the first loss of a kind at an endpoint at once, then sums while it continues."""
 
     def __init__(self) -> None:
         self._known: dict[_Key, _Loss] = {}
 
-    def told_of(self, loads: Loads) -> Iterator[Happening]:
-        """Yield what is to be told after these two samples."""
+    def told_of(self, loads: Loads) -> Iterator[Event]:
+        """Yield the events due after these two samples."""
         for row, index in np.argwhere(loads.changes[:, _COLUMNS] > 0):
             endpoint, column = loads.graph.endpoints[row], _COLUMNS[index]
             loss = self._known.setdefault((endpoint.id, column), _Loss(endpoint))
@@ -50,19 +50,19 @@ class Losses:
             else:
                 del self._known[endpoint_id, column]
 
-    def rest(self, now_s: float) -> Iterator[Happening]:
-        """Yield what was not told yet, at the end of the platform."""
+    def rest(self, now_s: float) -> Iterator[Event]:
+        """Yield unreported losses, at the end of the platform."""
         for (_, column), loss in self._known.items():
             if loss.count:
                 yield _told(loss, column, now_s)
 
 
-def _told(loss: _Loss, column: int, now_s: float) -> Happening:
+def _told(loss: _Loss, column: int, now_s: float) -> Event:
     endpoint, count = loss.endpoint, loss.count
     span = "" if loss.told_s is None else f" in {now_s - loss.told_s:.0f} s"
     if column == DEADLINES:
         times = "" if count == 1 else f" {count} times"
         text = f"{endpoint.topic}: {endpoint.node} missed its deadline{times}{span}"
-        return Happening("deadline", text, endpoint.node, endpoint.topic)
+        return Event("deadline", text, endpoint.node, endpoint.topic)
     text = f"{endpoint.topic}: {count} {_WORDS[column]} by {endpoint.node}{span}"
-    return Happening("lost", text, endpoint.node, endpoint.topic)
+    return Event("lost", text, endpoint.node, endpoint.topic)

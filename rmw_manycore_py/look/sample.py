@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Everything of a platform that only grows, at one moment."""
+"""All counters of a platform at one time."""
 
 from __future__ import annotations
 
@@ -15,23 +15,25 @@ from rmw_manycore_py.look.graph import Graph
 
 Counts = NDArray[np.int64]
 
-# Columns of activity, after the endpoint.
-MESSAGES, BYTES, LOST, EXPIRED, REFUSED, OVERWRITTEN, QUEUED, CAPACITY, DEADLINES = range(9)
-_WORDS = 10
+# Columns of an activity row, after the endpoint.
+MESSAGES, BYTES, LOST, EXPIRED, REFUSED, OVERWRITTEN, DROPPED, QUEUED, CAPACITY, DEADLINES = range(
+    10
+)
+_WORDS = 11
 
 
 @dataclass(frozen=True)
 class Sample:
-    """Counters of a platform; loads are the differences of two samples."""
+    """Counters of a platform; loads are differences of two samples."""
 
-    time_s: float  # monotonic
+    time_s: float  # CLOCK_MONOTONIC
     graph: Graph
     clusters: tuple[_transport.ClusterInfo, ...]
-    counts: Counts  # row by row as graph.endpoints; columns as above
+    counts: Counts  # rows as in graph.endpoints, columns as above
     cpu_ns: dict[int, int]  # by pid: members, receive threads, workers
 
     def totals(self, column: int, *, publishers: bool) -> Counts:
-        """Return a column's sum over the publishers or the subscriptions of each topic."""
+        """Return a column's sum per topic, over publishers or subscriptions."""
         chosen = self.graph.is_publisher == publishers
         sums = np.zeros(len(self.graph.topics) + 1, dtype=np.int64)
         np.add.at(sums, self.graph.topic_index[chosen], self.counts[chosen, column])
@@ -41,7 +43,7 @@ class Sample:
 def take_sample(
     platform: _transport.Platform, graph: Graph, workers: dict[int, tuple[int, ...]]
 ) -> Sample:
-    """Look at the counters of a platform whose graph is known."""
+    """Read the counters of a platform with a known graph."""
     clusters = tuple(platform.clusters())
     pids = {member.pid for member in graph.members}
     pids.update(c.receive_thread_pid for c in clusters if c.alive and c.receive_thread_pid)
@@ -52,7 +54,7 @@ def take_sample(
 
 
 def aligned(ids: NDArray[np.uint64], known: NDArray[np.uint64], counts: Counts) -> Counts:
-    """Return the rows of `counts`, which belong to `known`, in the order of `ids`; zeros else."""
+    """Return the rows of `counts` (ordered as `known`) in the order of `ids`; zeros if missing."""
     result = np.zeros((len(ids), counts.shape[1]), dtype=np.int64)
     if len(known) == len(ids) and np.array_equal(known, ids):
         return counts

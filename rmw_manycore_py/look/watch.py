@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Watching a platform, also before it starts and after it has ended."""
+"""Watches a platform, also before its start and after its end."""
 
 from __future__ import annotations
 
@@ -10,44 +10,44 @@ from dataclasses import dataclass, field
 
 from rmw_manycore_py import _transport
 from rmw_manycore_py.errors import ManycoreError
-from rmw_manycore_py.look import happenings
+from rmw_manycore_py.look import events
+from rmw_manycore_py.look.events import Event
 from rmw_manycore_py.look.graph import Graph, Member, read_graph
-from rmw_manycore_py.look.happenings import Happening
 from rmw_manycore_py.look.latency import TopicLatency, live_latencies
 from rmw_manycore_py.look.loads import Loads
 from rmw_manycore_py.look.losses import Losses
 from rmw_manycore_py.look.sample import Sample, take_sample
 from rmw_manycore_py.look.workers import Workers
 
-# Rates are taken over so much time, so that a topic of 1 Hz does not flicker at two looks a second.
+# Window for rates, so that a topic of 1 Hz does not flicker at two looks a second.
 WINDOW_S = 2.0
 _TRACE_PERIOD_S = 1.0
 
 
 @dataclass(frozen=True)
 class Look:
-    """Everything that is shown of a platform at one moment."""
+    """Snapshot of what is shown of a platform."""
 
-    loads: Loads  # over the window
-    dead: tuple[Member, ...]  # killed or crashed, and not there again
-    workers: dict[int, tuple[int, ...]]  # pids, by the pid of their coordinator
-    happened: tuple[Happening, ...]  # since the look before
-    latencies: dict[str, TopicLatency]  # by topic; empty unless the platform is traced
+    loads: Loads  # over WINDOW_S
+    dead: tuple[Member, ...]  # killed or crashed, not restarted
+    workers: dict[int, tuple[int, ...]]  # worker pids by coordinator pid
+    happened: tuple[Event, ...]  # since the previous look
+    latencies: dict[str, TopicLatency]  # by topic; empty unless traced
     trace: _transport.TraceState | None
 
     @property
     def graph(self) -> Graph:
-        """The graph of this moment."""
+        """The current graph."""
         return self.loads.graph
 
 
 @dataclass
 class _Seen:
-    """What is remembered of a platform while it is there."""
+    """State kept while a platform exists."""
 
     platform: _transport.Platform
     generation: int = -1
-    members: tuple[tuple[int, int], ...] = ()  # slots and pids that the graph was read with
+    members: tuple[tuple[int, int], ...] = ()  # (slot, pid) when the graph was read
     graph: Graph | None = None
     workers: Workers = field(default_factory=Workers)
     losses: Losses = field(default_factory=Losses)
@@ -58,7 +58,7 @@ class _Seen:
 
 
 class Watch:
-    """Looks at one platform by its name; wakes and holds up no process of it."""
+    """Looks at a platform by name; never wakes or blocks its processes."""
 
     def __init__(self, name: str, window_s: float = WINDOW_S) -> None:
         self._name = name
@@ -67,10 +67,10 @@ class Watch:
         self._latencies: dict[str, TopicLatency] = {}
         self._trace: _transport.TraceState | None = None
         self._trace_due_s = 0.0
-        self.last_words: tuple[Happening, ...] = ()  # of the platform that has ended
+        self.last_words: tuple[Event, ...] = ()  # events at the end of the platform
 
     def look(self) -> Look | None:
-        """Look now; None while there is no such platform."""
+        """Return a look; None while there is no such platform."""
         if self._seen is not None and not self._seen.platform.is_current():
             self._end(self._seen)
         if self._seen is None and not self._open():
@@ -89,16 +89,16 @@ class Watch:
             if self._name not in _transport.platforms():
                 return False
             platform = _transport.Platform(self._name)
-        except _transport.PlatformError:  # not yet whole, or gone again; the next look sees
+        except _transport.PlatformError:  # being created or removed; retry at the next look
             return False
         self._seen = _Seen(platform, deaths_until_ns=time.monotonic_ns())
         return True
 
     def _end(self, seen: _Seen) -> None:
         dead = self._newly_dead(seen)
-        ended = Happening("platform", f"platform {self._name} has ended")
+        ended = Event("platform", f"platform {self._name} has ended")
         losses = seen.losses.rest(time.monotonic())
-        self.last_words = (*losses, *happenings.deaths(dead), ended)
+        self.last_words = (*losses, *events.deaths(dead), ended)
         self._trace, self._latencies = None, {}
         self.close()
 
@@ -111,27 +111,28 @@ class Watch:
         while len(seen.samples) > 2 and sample.time_s - seen.samples[1].time_s >= self._window_s:
             seen.samples.popleft()
         self._look_at_trace()
+        happened = self._happened(seen, Loads(previous, sample))  # updates the dead
         return Look(
             Loads(seen.samples[0], sample),
             tuple(seen.dead.values()),
             workers,
-            self._happened(seen, Loads(previous, sample)),
+            happened,
             self._latencies,
             self._trace,
         )
 
     def _graph(self, seen: _Seen) -> Graph:
-        """Read the graph anew where it has changed: members without a node change no generation."""
+        """Read the graph again if it has changed; processes without nodes change no generation."""
         generation = seen.platform.graph_generation()
         members = tuple((process.slot, process.pid) for process in seen.platform.processes())
         if seen.graph is None or generation != seen.generation or members != seen.members:
-            seen.graph = read_graph(seen.platform)
+            seen.graph = read_graph(seen.platform, seen.graph)
             seen.generation, seen.members = generation, members
             seen.known.update({(m.slot, m.pid): m for m in seen.graph.members})
         return seen.graph
 
     def _newly_dead(self, seen: _Seen) -> list[Member]:
-        """Return the processes that died since the look before, which knew them."""
+        """Return the processes that died since the previous look."""
         newly = []
         for death in seen.platform.deaths():
             member = seen.known.get((death.process, death.pid))
@@ -140,15 +141,15 @@ class Watch:
             seen.deaths_until_ns = max(seen.deaths_until_ns, death.found_ns)
         return newly
 
-    def _happened(self, seen: _Seen, since: Loads) -> tuple[Happening, ...]:
+    def _happened(self, seen: _Seen, since: Loads) -> tuple[Event, ...]:
         newly = self._newly_dead(seen)
         seen.dead.update({(member.slot, member.pid): member for member in newly})
         seen.dead = _not_back(seen.dead, since.graph.members)
         living = {(member.slot, member.pid) for member in since.graph.members}
         seen.known = {key: m for key, m in seen.known.items() if key in living}
         return (
-            *happenings.deaths(newly),
-            *happenings.receive_thread_deaths(since),
+            *events.deaths(newly),
+            *events.receive_thread_deaths(since),
             *seen.losses.told_of(since),
         )
 
@@ -160,16 +161,18 @@ class Watch:
             self._trace = _transport.trace_state(self._name)
             self._latencies = live_latencies(self._name, self._trace)
         except (_transport.PlatformError, ManycoreError):
-            pass  # it is just being saved, or ends: the next look sees
+            pass  # being saved or ending; retry at the next look
 
 
 def _not_back(
     dead: dict[tuple[int, int], Member], living: Iterable[Member]
 ) -> dict[tuple[int, int], Member]:
-    """Return the dead without those whose nodes all run again.
+    """Return the dead processes, except those whose nodes all run again.
 
-    One that died after the graph was read is among the living, too: it is not back.
+    A process that died after the graph was read is still listed as living; it does not count.
     """
+    if not dead:
+        return dead
     others = (member for member in living if (member.slot, member.pid) not in dead)
     names = {name for member in others for name in member.shown_names}
     return {key: member for key, member in dead.items() if not names.issuperset(member.shown_names)}

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Worker processes: no members of the platform, but children of one."""
+"""Worker processes, which are children of a member but no members themselves."""
 
 from __future__ import annotations
 
@@ -7,14 +7,14 @@ import time
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
-_PROGRAM = "manycore_ndt_wo"  # as the kernel cuts the name of manycore_ndt_worker
+_PROGRAM = "manycore_ndt_wo"  # manycore_ndt_worker, truncated by the kernel
 _PERIOD_S = 1.0
-# The children of a process with a dozen threads take 0.1 ms to read: of a crowd, so many a period.
+# Reading the children of a process with a dozen threads takes 0.1 ms: limits this work per period.
 _MAX_IN_TURN = 16
 
 
 class Workers:
-    """The workers of some processes: a worker that is replaced changes nothing in the graph."""
+    """Worker pids of processes; a replaced worker does not change the graph."""
 
     def __init__(self) -> None:
         self._pids: tuple[int, ...] = ()
@@ -23,10 +23,10 @@ class Workers:
         self._due_s = 0.0
 
     def of(self, pids: Sequence[int]) -> dict[int, tuple[int, ...]]:
-        """Return the pids of the workers of each process that has some.
+        """Return the pids of the workers of each process that has any.
 
-        All processes are looked at when they are others than before; from then on about each
-        second those that had workers, and the others in turn.
+        If the set of processes has changed, checks all of them; then about once a second those that
+        had workers, and the others in turn.
         """
         now_s = time.monotonic()
         if tuple(pids) != self._pids:
@@ -57,6 +57,6 @@ def _workers(pid: int) -> list[int]:
             for child in map(int, (task / "children").read_text().split()):
                 if Path(f"/proc/{child}/comm").read_text().strip() == _PROGRAM:
                     workers.append(child)
-    except OSError:  # one of them has ended meanwhile
+    except OSError:  # a thread has ended meanwhile
         pass
     return sorted(workers)

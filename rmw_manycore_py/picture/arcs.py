@@ -1,32 +1,38 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Topics, as curves from the nodes that publish to those that subscribe."""
+"""Topics as curves from publishing to subscribing nodes."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 from rmw_manycore_py.look.graph import Graph
 from rmw_manycore_py.picture.geometry import Curve, Point, Rect, connect, mean
 from rmw_manycore_py.picture.layout import Layout
 
-# More pairs than this meet in a point: n * m curves would hide each other.
+# With more pairs, curves meet in a point instead of n * m curves.
 MAX_PAIRS = 6
 _HUB_SIDE = 6.0
 
 
 @dataclass(frozen=True)
 class Arc:
-    """A topic as it is drawn."""
+    """A topic as drawn."""
 
     id: str
     topic: str
     curves: tuple[Curve, ...]
     label_at: Point
 
+    @cached_property
+    def label_id(self) -> str:
+        """Element id of its label."""
+        return f"{self.id}-label"
+
 
 def arcs_of(graph: Graph, layout: Layout) -> tuple[Arc, ...]:
-    """Return an arc for each topic that connects nodes that are drawn."""
+    """Return an arc for each topic that connects drawn nodes."""
     places = _places(layout)
     found = []
     for topic in graph.drawn_topics:
@@ -42,7 +48,7 @@ def arcs_of(graph: Graph, layout: Layout) -> tuple[Arc, ...]:
 
 
 def _places(layout: Layout) -> Mapping[tuple[int, str], Rect]:
-    """Return where each living node is; one that has no room is where its cell is."""
+    """Return the position of each living node; a hidden one is at its cell."""
     places: dict[tuple[int, str], Rect] = {}
     for cell in layout.cells:
         for member in cell.members:

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The whole picture of a look: where everything lies, what it looks like now, and its SVG."""
+"""Complete picture of a look: layout, current state, and SVG."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from rmw_manycore_py.picture.marks import Marks, marks_of
 
 @dataclass(frozen=True)
 class Chip:
-    """The places of everything; good for as long as nothing comes or goes."""
+    """Layout; valid until something joins or leaves."""
 
     title: str
     layout: Layout
@@ -22,14 +22,14 @@ class Chip:
 
     @classmethod
     def of(cls, look: Look) -> Chip:
-        """Lay the platform out that was looked at."""
+        """Lay out the platform of a look."""
         graph = look.graph
         present = [cluster.id for cluster in look.loads.after.clusters]
         layout = lay_out(graph, present, look.dead, look.workers)
         return cls(f"platform {graph.platform}", layout, arcs_of(graph, layout))
 
     def fits(self, look: Look, earlier: Look) -> bool:
-        """Tell whether it, which was made of the earlier look, is also right for the later one."""
+        """Return whether this layout, made for the earlier look, also fits the later one."""
         return (
             look.graph is earlier.graph
             and look.dead == earlier.dead
@@ -38,9 +38,9 @@ class Chip:
         )
 
     def marks(self, look: Look) -> Marks:
-        """Return what it looks like now."""
+        """Return the current state of all elements."""
         return marks_of(look, self.layout, self.arcs)
 
     def svg(self, marks: Marks, *, standalone: bool = True) -> str:
-        """Return it as SVG."""
+        """Return the picture as SVG."""
         return draw(self.title, self.layout, self.arcs, marks, standalone=standalone)

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The picture as SVG."""
+"""SVG of the picture."""
 
 from __future__ import annotations
 
@@ -23,20 +23,20 @@ from rmw_manycore_py.picture.layout import (
 from rmw_manycore_py.picture.marks import Mark, Marks
 from rmw_manycore_py.picture.texts import fitted
 
-# Labels of more topics would cover each other; they are in the table beside the picture.
+# More labels would overlap; the table beside the picture lists all topics.
 MAX_LABELS = 40
 _NO_MARK: Mark = {}
 
 
 def stylesheet() -> str:
-    """Return the style of the picture, for light and dark surroundings."""
+    """Return the style sheet, for light and dark backgrounds."""
     return files(__package__).joinpath("chip.css").read_text()
 
 
 def draw(
     title: str, layout: Layout, arcs: tuple[Arc, ...], marks: Marks, *, standalone: bool = True
 ) -> str:
-    """Return the picture; one that stands alone brings its style along."""
+    """Return the SVG; with `standalone`, including its style sheet."""
     width, height = layout.size
     return "\n".join(
         (
@@ -84,7 +84,7 @@ def _cell(cell: Cell, marks: Marks) -> Iterator[str]:
     yield _rect(_class(marks, cell.id, "cell"), cell.rect, 4, cell.id)
     yield f'<text class="small" x="{x + 6}" y="{y + 13}">{name}</text>'
     if cell.members:
-        yield _right_text(f"{cell.id}-cpu", x + cell.rect.width - 6, y + 13, marks)
+        yield _right_text(cell.cpu_id, x + cell.rect.width - 6, y + 13, marks)
     if cell.hidden:
         below = y + CELL_HEAD + len(cell.nodes) * NODE_HEIGHT + 12
         yield f'<text class="small" x="{x + 6}" y="{below}">+{cell.hidden} more</text>'
@@ -126,8 +126,8 @@ def _label(arc: Arc, marks: Marks) -> Iterator[str]:
     x, y = arc.label_at
     yield (
         f'<text class="topic-name" x="{x:.1f}" y="{y:.1f}">{_text(arc.topic)}</text>'
-        f'<text id="{_text(arc.id)}-label" class="topic-load" x="{x:.1f}" y="{y + 12:.1f}">'
-        f"{_content(marks, f'{arc.id}-label')}</text>"
+        f'<text id="{_text(arc.label_id)}" class="topic-load" x="{x:.1f}" y="{y + 12:.1f}">'
+        f"{_content(marks, arc.label_id)}</text>"
     )
 
 
@@ -158,5 +158,5 @@ def _number(value: float) -> str:
 
 
 def _text(text: str) -> str:
-    """Escape a name that other processes chose: neither markup nor control characters."""
+    """Escape a name chosen by another process: neither markup nor control characters."""
     return escape(shorten(text))

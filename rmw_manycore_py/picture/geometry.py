@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Rectangles and curves, in the units of the picture's viewBox."""
+"""Rectangles and curves, in viewBox units."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 Point = tuple[float, float]
-_BEND = 0.16  # of a curve's length: how far it leaves the straight line
+_BEND = 0.16  # offset from the straight line, relative to a curve's length
 
 
 @dataclass(frozen=True)
 class Rect:
-    """A rectangle by its upper left corner."""
+    """A rectangle, given by its upper left corner."""
 
     x: float
     y: float
@@ -22,11 +22,11 @@ class Rect:
 
     @property
     def centre(self) -> Point:
-        """The point in its middle."""
+        """Centre."""
         return self.x + self.width / 2, self.y + self.height / 2
 
     def edge_towards(self, target: Point) -> Point:
-        """Return where the line from the centre to a point outside crosses the edge."""
+        """Return where the line from the centre to an outside point crosses the edge."""
         (x, y), (target_x, target_y) = self.centre, target
         dx, dy = target_x - x, target_y - y
         reach = max(abs(dx) / (self.width / 2), abs(dy) / (self.height / 2))
@@ -43,7 +43,7 @@ class Curve:
 
     @property
     def middle(self) -> Point:
-        """The point half way."""
+        """Point at half the parameter."""
         (x0, y0), (x1, y1), (x2, y2) = self.start, self.control, self.end
         return (x0 + 2 * x1 + x2) / 4, (y0 + 2 * y1 + y2) / 4
 
@@ -55,13 +55,13 @@ class Curve:
 
 
 def connect(start: Rect, end: Rect) -> Curve:
-    """Return a curve between two rectangles; the one back bends to the other side."""
+    """Return a curve between two rectangles; the reverse curve bends to the other side."""
     control = _bent(start.centre, end.centre)
     return Curve(start.edge_towards(control), control, end.edge_towards(control))
 
 
 def mean(points: Iterable[Point]) -> Point:
-    """Return the centre of some points."""
+    """Return the centroid."""
     found = list(points)
     return sum(x for x, _ in found) / len(found), sum(y for _, y in found) / len(found)
 

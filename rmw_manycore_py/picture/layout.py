@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Where clusters, cores and nodes lie, as in Fig. 11 of ROS-lite2."""
+"""Layout of clusters, cores and nodes, as in Fig. 11 of ROS-lite2."""
 
 from __future__ import annotations
 
@@ -14,22 +14,22 @@ from rmw_manycore_py.picture.geometry import Rect
 GAP = 6.0
 PAD = 12.0
 CLUSTER_GAP = 72.0
-HEAD = 66.0  # of a cluster: its title, SMEM bar and receive thread
+HEAD = 66.0  # height of a cluster's title, SMEM bar and receive thread
 CELL_HEAD = 18.0
 NODE_HEIGHT = 20.0
 WORKER_SIDE = 8.0
 UNUSED_WIDTH, UNUSED_HEIGHT = 190.0, 34.0
-# Beyond so many cores only those are drawn that something runs on.
+# With more cores, only those in use are drawn.
 MAX_EMPTY_CORES = 16
 MAX_NODES_OF_CELL = 8
 _WIDE, _NARROW = 132.0, 92.0
 _MANY_CELLS = 32
-_BRIDGE = "_manycore_bridge"  # how names of its nodes begin
+_BRIDGE = "_manycore_bridge"  # prefix of its node names
 
 
 @dataclass(frozen=True)
 class NodeBox:
-    """A node, or a process without one."""
+    """A node, or a process without nodes."""
 
     id: str
     name: str
@@ -39,12 +39,12 @@ class NodeBox:
 
     @property
     def shown_name(self) -> str:
-        """Its name; that of the bridge's processes as people say it."""
+        """Displayed name; readable for bridge processes."""
         return self.name.replace(f"/{_BRIDGE}_", "bridge ")
 
     @property
     def kind(self) -> str:
-        """How it is drawn: node, bridge, tool or process."""
+        """Style: node, bridge, tool or process."""
         if not self.member.nodes:
             return "process"
         own_name = self.name.rpartition("/")[2]
@@ -55,7 +55,7 @@ class NodeBox:
 
 @dataclass(frozen=True)
 class Cell:
-    """A core, or a process that is on none."""
+    """A core, or a process without a core."""
 
     id: str
     cluster: int
@@ -63,13 +63,23 @@ class Cell:
     members: tuple[Member, ...]
     workers: tuple[int, ...]  # pids
     nodes: tuple[NodeBox, ...]
-    hidden: int  # nodes for which there was no room
+    hidden: int  # number of nodes that do not fit
     rect: Rect
+
+    @cached_property
+    def has_dead(self) -> bool:
+        """Whether one of its nodes has died."""
+        return any(node.is_dead for node in self.nodes)
+
+    @cached_property
+    def cpu_id(self) -> str:
+        """Element id of its CPU usage."""
+        return f"{self.id}-cpu"
 
 
 @dataclass(frozen=True)
 class ClusterBox:
-    """A cluster with all that is in it."""
+    """A cluster with its contents."""
 
     id: int
     is_used: bool
@@ -78,18 +88,18 @@ class ClusterBox:
 
     @property
     def smem(self) -> Rect:
-        """Where the bar of its memory lies."""
+        """Rectangle of the memory bar."""
         return Rect(self.rect.x + PAD, self.rect.y + 26, self.rect.width - 2 * PAD, 10)
 
     @property
     def receive_thread(self) -> Rect:
-        """Where its receive thread lies."""
+        """Rectangle of the receive thread."""
         return Rect(self.rect.x + PAD, self.rect.y + 41, self.rect.width - 2 * PAD, 18)
 
 
 @dataclass(frozen=True)
 class Layout:
-    """The whole picture, but for the topics."""
+    """The picture without topics."""
 
     clusters: tuple[ClusterBox, ...]
 
@@ -109,13 +119,13 @@ class Layout:
 
     @cached_property
     def nodes(self) -> tuple[NodeBox, ...]:
-        """All nodes that are drawn."""
+        """All drawn nodes."""
         return tuple(node for cell in self.cells for node in cell.nodes)
 
 
 @dataclass(frozen=True)
 class _Plan:
-    """A cell before it has its place."""
+    """A cell before placement."""
 
     core: int | None
     living: tuple[Member, ...]
@@ -124,7 +134,7 @@ class _Plan:
 
     @property
     def names(self) -> list[tuple[str, Member, bool]]:
-        """Its nodes, each with its process and whether that is dead."""
+        """Its nodes: name, process, and whether the process is dead."""
         sides = ((self.living, False), (self.dead, True))
         return [
             (name, member, is_dead)
@@ -135,7 +145,7 @@ class _Plan:
 
     @property
     def height(self) -> float:
-        """How high it has to be."""
+        """Required height."""
         count = len(self.names)
         rows = min(count, MAX_NODES_OF_CELL) + (count > MAX_NODES_OF_CELL)
         bottom = WORKER_SIDE + GAP if self.workers else 0.0
@@ -148,10 +158,10 @@ def lay_out(
     dead: Sequence[Member] = (),
     workers: Mapping[int, tuple[int, ...]] | None = None,
 ) -> Layout:
-    """Return the places of everything.
+    """Return the layout.
 
-    :param present: clusters that exist, also without a node.
-    :param workers: pids of workers by the pid of their coordinator.
+    :param present: existing clusters, also without nodes.
+    :param workers: worker pids by the pid of their coordinator.
     """
     used = {member.cluster for member in (*graph.members, *dead)} | set(present)
     plans = {cluster: _plans(graph, cluster, dead, workers or {}) for cluster in sorted(used)}

@@ -1,10 +1,11 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What of the picture changes from look to look: classes, texts and widths of its elements."""
+"""State of the picture that changes between looks: classes, texts and widths of elements."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from functools import lru_cache
 
 from rmw_manycore_py.look.latency import TopicLatency
 from rmw_manycore_py.look.loads import Loads, TopicLoad
@@ -13,37 +14,45 @@ from rmw_manycore_py.picture.arcs import Arc
 from rmw_manycore_py.picture.layout import Cell, ClusterBox, Layout
 from rmw_manycore_py.picture.texts import bytes_text, percent_text, rate_text, time_text
 
-# Attributes of an element by its id; "text" is its content, "rate" for moving messages.
+# Attributes of an element by id; "text" is its content, "rate" the speed of moving messages.
 Mark = dict[str, str | float]
 Marks = dict[str, Mark]
 CPU_LEVELS = 9
 RATE_LEVELS = 5
-_FULL = 0.9  # share of a queue or of SMEM that is shown as nearly full
+_FULL = 0.9  # fill level of a queue or SMEM shown as nearly full
 
 
 def marks_of(look: Look, layout: Layout, arcs: tuple[Arc, ...]) -> Marks:
-    """Return all marks of this moment."""
+    """Return all marks of a look."""
     marks: Marks = {}
     rates_hz = look.loads.receive_thread_rates_hz()
     for box in layout.clusters:
         marks.update(_of_cluster(look.loads, box, rates_hz.get(box.id, 0.0)))
     for cell in layout.cells:
-        marks.update(_of_cell(look.loads, cell))
-    topics = look.loads.topics
+        marks[cell.id], marks[cell.cpu_id] = _of_core(look.loads, cell)
+        for pid in cell.workers:
+            share = look.loads.cpu_share(pid)
+            marks[f"w{pid}"] = {"class": f"worker cpu{level(share, CPU_LEVELS)}"}
+    topics = look.loads.rounded_topics
     for arc in arcs:
         load = topics.get(arc.topic)
         if load is not None:
-            marks.update(_of_topic(arc, load, look.latencies.get(arc.topic)))
+            latency = look.latencies.get(arc.topic)
+            marks[arc.id], marks[arc.label_id] = _topic_marks(load, latency)
     return marks
 
 
 def changed(before: Marks, after: Marks) -> Marks:
-    """Return the marks that are not as they were."""
-    return {own_id: mark for own_id, mark in after.items() if before.get(own_id) != mark}
+    """Return the marks that differ."""
+    return {
+        own_id: mark
+        for own_id, mark in after.items()
+        if (earlier := before.get(own_id)) is not mark and earlier != mark
+    }
 
 
 def level(share: float, levels: int) -> int:
-    """Return how much of 1.0 a share is, in whole levels; 0 only for nothing at all."""
+    """Return the level of a share of 1.0; 0 only if the share is zero."""
     return min(math.ceil(share * levels), levels) if share > 0.0005 else 0
 
 
@@ -64,30 +73,39 @@ def _of_cluster(loads: Loads, box: ClusterBox, rate_hz: float) -> Iterator[tuple
     yield f"k{box.id}-rt-text", {"text": text if cluster.alive else "receive thread: not running"}
 
 
-def _of_cell(loads: Loads, cell: Cell) -> Iterator[tuple[str, Mark]]:
-    is_dead = any(node.is_dead for node in cell.nodes)
-    cpu = sum(loads.cpu_share(member.pid) for member in cell.members)
-    state = "cell" if cell.members else "cell free"
-    yield cell.id, {"class": f"{state} cpu{level(cpu, CPU_LEVELS)}{' dead' if is_dead else ''}"}
-    yield f"{cell.id}-cpu", {"text": percent_text(cpu) if cell.members else ""}
-    for pid in cell.workers:
-        yield f"w{pid}", {"class": f"worker cpu{level(loads.cpu_share(pid), CPU_LEVELS)}"}
+def _of_core(loads: Loads, cell: Cell) -> tuple[Mark, Mark]:
+    if not cell.members and not cell.has_dead:
+        return _FREE
+    cpu = sum([loads.cpu_share(member.pid) for member in cell.members])
+    percent = percent_text(cpu) if cell.members else ""
+    return _core_marks(bool(cell.members), level(cpu, CPU_LEVELS), cell.has_dead, percent)
 
 
-def _of_topic(
-    arc: Arc, load: TopicLoad, latency: TopicLatency | None
-) -> Iterator[tuple[str, Mark]]:
+# A mark depends on little, and most elements look as they did before: each mark is made once.
+@lru_cache(maxsize=1024)
+def _core_marks(is_used: bool, cpu_level: int, is_dead: bool, percent: str) -> tuple[Mark, Mark]:
+    """Return the marks of a core and of its CPU usage."""
+    state = "cell" if is_used else "cell free"
+    return {"class": f"{state} cpu{cpu_level}{' dead' if is_dead else ''}"}, {"text": percent}
+
+
+_FREE = _core_marks(False, 0, False, "")
+
+
+@lru_cache(maxsize=8192)
+def _topic_marks(load: TopicLoad, latency: TopicLatency | None) -> tuple[Mark, Mark]:
+    """Return the marks of an arc and of its label."""
     words = ["topic", f"rate{_rate_level(load.rate_hz)}"]
     if load.losses_per_s > 0:
         words.append("losing")
     if load.fill >= _FULL:
         words.append("full")
-    yield arc.id, {"class": " ".join(words), "rate": float(f"{load.rate_hz:.2g}")}
-    yield f"{arc.id}-label", {"text": topic_text(load, latency)}
+    curve: Mark = {"class": " ".join(words), "rate": float(f"{load.rate_hz:.2g}")}
+    return curve, {"text": topic_text(load, latency)}
 
 
 def topic_text(load: TopicLoad, latency: TopicLatency | None) -> str:
-    """Return what stands beside a topic's arc."""
+    """Return the label of a topic's arc."""
     parts = [rate_text(load.rate_hz)]
     if load.rate_hz:
         parts.append(bytes_text(load.message_bytes))
@@ -101,5 +119,5 @@ def topic_text(load: TopicLoad, latency: TopicLatency | None) -> str:
 
 
 def _rate_level(rate_hz: float) -> int:
-    """Return 0 for nothing, 1 up to 1 Hz, and one more for each factor of 10."""
+    """Return 0 for no messages, 1 up to 1 Hz, plus one per factor of 10."""
     return 0 if rate_hz <= 0 else max(1, min(1 + math.ceil(math.log10(rate_hz)), RATE_LEVELS))

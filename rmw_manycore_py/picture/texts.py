@@ -1,16 +1,16 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Numbers as people write them, short enough for a picture."""
+"""Short number formats."""
 
 from __future__ import annotations
 
 
 def rate_text(rate_hz: float) -> str:
-    """Write a rate: 9.9 Hz."""
+    """Format a rate: 9.9 Hz."""
     return f"{_short(rate_hz)} Hz" if rate_hz < 1000 else f"{_short(rate_hz / 1000)} kHz"
 
 
 def bytes_text(size_bytes: float) -> str:
-    """Write a size: 1.4 MiB."""
+    """Format a size: 1.4 MiB."""
     for unit, shift in (("GiB", 30), ("MiB", 20), ("KiB", 10)):
         if size_bytes >= 1 << shift:
             return f"{_short(size_bytes / (1 << shift))} {unit}"
@@ -18,7 +18,7 @@ def bytes_text(size_bytes: float) -> str:
 
 
 def time_text(time_us: float) -> str:
-    """Write a duration: 85 us."""
+    """Format a duration: 85 us."""
     for unit, size in (("s", 1e6), ("ms", 1e3)):
         if time_us >= size:
             return f"{_short(time_us / size)} {unit}"
@@ -26,12 +26,12 @@ def time_text(time_us: float) -> str:
 
 
 def percent_text(share: float) -> str:
-    """Write a share of one CPU: 12 %."""
+    """Format a share of one CPU: 12 %."""
     return f"{100 * share:.0f} %"
 
 
 def fitted(text: str, width: float, character: float = 6.2) -> str:
-    """Return a name cut to a width; of a long one its last part says most."""
+    """Truncate a name to a width, keeping its last part."""
     room = max(int(width / character), 2)
     if len(text) <= room:
         return text

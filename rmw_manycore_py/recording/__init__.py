@@ -1,2 +1,2 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Recorded messages in MCAP files, as rosbag2's storage plugin `mcap` writes them."""
+"""Recordings in MCAP files, in the format of rosbag2's storage plugin `mcap`."""

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The definition of a type and of all types in it, in one text, as MCAP's schemas have it."""
+"""Type definitions including nested types, as used in MCAP schemas."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _ENCODINGS = {".msg": "ros2msg", ".idl": "ros2idl"}
 
 @dataclass(frozen=True)
 class Schema:
-    """The definition of a type as a recording has it; without one, both are empty."""
+    """Definition of a type in a recording; both fields are empty without a definition."""
 
     encoding: str = ""
     text: str = ""
@@ -28,9 +28,9 @@ NO_SCHEMA = Schema()
 
 @cache
 def schema_of(type_name: str) -> Schema:
-    """Return the schema of a type, without a definition where it is not installed.
+    """Return the schema of a type; without a definition if it is not installed.
 
-    A tree of types is written in `.msg` or, if one of them has no such file, in `.idl`.
+    Uses `.msg`, or `.idl` if one of the nested types has no `.msg` file.
     """
     for suffix, encoding in _ENCODINGS.items():
         texts = _texts(type_name, suffix)
@@ -40,7 +40,7 @@ def schema_of(type_name: str) -> Schema:
 
 
 def _texts(root: str, suffix: str) -> dict[str, str] | None:
-    """Return the definitions of a type and of all in it, None where a file is missing."""
+    """Return the definitions of a type and its nested types; None if a file is missing."""
     texts: dict[str, str] = {}
     waiting = [root]
     while waiting:
@@ -67,7 +67,7 @@ def _file(type_name: str, suffix: str) -> Path | None:
 
 
 def _joined(texts: dict[str, str], suffix: str) -> str:
-    """Join them: the root first, each other one, and in IDL the root too, below its name."""
+    """Concatenate the definitions: the root first, nested types (in IDL all) under their names."""
     parts = []
     for name, text in texts.items():
         if suffix == ".idl":

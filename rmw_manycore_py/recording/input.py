@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""One MCAP file as it is read."""
+"""Reads one MCAP file."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from rmw_manycore_py.recording.scan import Scanned, scan
 
 
 class Recorded(NamedTuple):
-    """A message of a recording; times in ns since 1970."""
+    """A recorded message; times in ns since 1970."""
 
     topic: str
     recorded_ns: int
@@ -31,12 +31,12 @@ class Recorded(NamedTuple):
 
 
 class Input:
-    """Reads a file by its index, or by the one that a scan makes."""
+    """Reads a file by its index, or by one created by scanning."""
 
     def __init__(self, path: Path) -> None:
         """Open a file.
 
-        :raises ManycoreError: when it cannot be read, or is no MCAP.
+        :raises ManycoreError: if it cannot be read, or is no MCAP file.
         """
         self.path = path
         try:
@@ -64,12 +64,10 @@ class Input:
             )
 
     def _own_index(self) -> Scanned | None:
-        """Return the file's own index, None where it has none or was not finished."""
+        """Return the file's index; None if it is missing or the file is unfinished."""
         try:
             summary = SeekingReader(self._rewound()).get_summary()
-        except (
-            Exception
-        ):  # of a file that is cut off, whatever stands at its end is read as an index
+        except Exception:  # the end of a truncated file may be misread as an index
             return None
         if summary is None or summary.statistics is None:
             return None
@@ -83,12 +81,12 @@ class Input:
 
     @property
     def fault(self) -> str:
-        """Return why the file ends before it should, "" where it does not."""
+        """Return why the file ends early; "" if it does not."""
         return self._index.fault
 
     @property
     def span(self) -> Span:
-        """Return how many messages there are, and from when to when."""
+        """Return the number of messages, and the first and last time."""
         found = self._statistics
         return Span(found.message_count, found.message_start_time, found.message_end_time)
 
@@ -98,9 +96,9 @@ class Input:
         return self._index.summary.statistics
 
     def rows(self) -> list[TopicRow]:
-        """Return the topics, in the order of their channels; a topic may have several.
+        """Return the topics in channel order; a topic may have several channels.
 
-        :raises ManycoreError: where the file contradicts itself.
+        :raises ManycoreError: if the file is inconsistent.
         """
         with self._damage_told():
             return [self._row(channel) for channel in self._index.summary.channels.values()]
@@ -118,24 +116,24 @@ class Input:
         )
 
     def distro(self) -> str:
-        """Return the ROS distribution that rosbag2 noted in the file, "" if none."""
+        """Return the ROS distribution stored by rosbag2; "" if there is none."""
         try:
             for found in SeekingReader(self._rewound()).iter_metadata():
                 if isinstance(found, Metadata) and found.name == "rosbag2":
                     noted = yaml.safe_load(found.metadata.get("serialized_metadata", "")) or {}
                     return str(noted.get("ros_distro") or found.metadata.get("ROS_DISTRO", ""))
-        except Exception:  # a remark of no consequence
+        except Exception:  # informational only
             return ""
         return ""
 
     def messages(
         self, topics: Collection[str], start_ns: int = 0, end_ns: int | None = None
     ) -> Iterator[Recorded]:
-        """Yield messages of topics in the order of their times.
+        """Yield the messages of topics in time order.
 
-        Those of a file without chunks come in the order of the file.
+        Messages of files without chunks are in file order.
 
-        :raises ManycoreError: at a place where the file is damaged.
+        :raises ManycoreError: where the file is damaged.
         """
         with self._damage_told():
             if self._index.summary.chunk_indexes:
@@ -173,7 +171,7 @@ class Input:
             yield
         except ManycoreError:
             raise
-        except Exception as error:  # the library and its decoders promise no class of errors
+        except Exception as error:  # the library and its decoders do not document their errors
             raise ManycoreError(
                 f"{self.path}: is damaged: {type(error).__name__}: {what_is_wrong(error)}",
                 EXIT_BAD_INPUT,
@@ -181,7 +179,7 @@ class Input:
 
 
 class _IndexedReader(SeekingReader):
-    """Reads by an index that is given, whatever the file has."""
+    """Reader with an explicit index, ignoring the file's."""
 
     def __init__(self, file: IO[bytes], summary: Summary) -> None:
         super().__init__(file, validate_crcs=True)

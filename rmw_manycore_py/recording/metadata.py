@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What rosbag2 keeps of a recording beside its messages: metadata.yaml, and a copy in the file."""
+"""rosbag2 metadata: metadata.yaml, and its copy in the MCAP file."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _DISTRO = "jazzy"  # of the wheels
 
 @dataclass
 class TopicRow:
-    """A topic of a recording, and how many messages it has."""
+    """A topic of a recording, and its number of messages."""
 
     name: str
     type: str
@@ -36,13 +36,13 @@ class TopicRow:
     messages: int = 0
 
     def add_offers(self, offers: Iterable[Qos]) -> None:
-        """Note what publishers offer; each offer is there once."""
+        """Add offered QoS profiles, without duplicates."""
         self.offers += [offer for offer in _distinct(offers) if offer not in self.offers]
 
 
 @dataclass(frozen=True)
 class Span:
-    """How many messages there are, and when the first and the last were recorded (ns)."""
+    """Number of messages, and times of the first and last (ns)."""
 
     messages: int
     start_ns: int
@@ -55,7 +55,7 @@ class Span:
 
 
 def information(file_name: str, rows: Sequence[TopicRow], span: Span) -> dict[str, Any]:
-    """Return what rosbag2 writes of a recording in one file."""
+    """Return rosbag2's metadata of a recording in one file."""
     start = {"nanoseconds_since_epoch": span.start_ns}
     duration = {"nanoseconds": span.duration_ns}
     return {
@@ -93,7 +93,7 @@ def _topic(row: TopicRow) -> dict[str, Any]:
 
 
 def write_metadata(folder: Path, found: dict[str, Any]) -> None:
-    """Write metadata.yaml, whole or not at all."""
+    """Write metadata.yaml atomically."""
     path = folder / FILE_NAME
     temporary = path.with_suffix(".yaml.part")
     temporary.write_text(dump({_ROOT: found}))
@@ -101,9 +101,9 @@ def write_metadata(folder: Path, found: dict[str, Any]) -> None:
 
 
 def read_metadata(folder: Path) -> dict[str, Any] | None:
-    """Return what metadata.yaml says; None where it is missing, as beside unfinished recordings.
+    """Return the contents of metadata.yaml; None if missing, as for unfinished recordings.
 
-    :raises ManycoreError: when it is no metadata.yaml of rosbag2.
+    :raises ManycoreError: if it is not a metadata.yaml of rosbag2.
     """
     path = folder / FILE_NAME
     try:

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What publishers offered, as recordings write it: rosbag2's YAML of QoS profiles."""
+"""QoS offered by publishers, in rosbag2's YAML."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from rmw_manycore_py.words import Durability, History, Liveliness, Reliability
 
 _NS_PER_S = 1_000_000_000
 _INFINITE = {"sec": 9223372036, "nsec": 854775807}  # RMW_DURATION_INFINITE
-# Middlewares of old recordings wrote "no limit" in other ways, each of at least so many seconds.
+# Minimum seconds of "no limit", which older middlewares wrote in different ways.
 _LEAST_INFINITE_S = 0x7FFFFFFF
-# Until version 8 of the format policies were the numbers of rmw/types.h.
+# Versions up to 8 of the format use the values of rmw/types.h.
 _NUMBERS = {
     "history": {0: "system_default", 1: "keep_last", 2: "keep_all", 3: "unknown"},
     "reliability": {0: "system_default", 1: "reliable", 2: "best_effort", 3: "unknown"},
@@ -26,7 +26,7 @@ _NUMBERS = {
 
 
 def profiles_of(offers: Iterable[Qos]) -> list[dict[str, Any]]:
-    """Return offers as rosbag2 has them since version 9 of its format."""
+    """Return QoS profiles in rosbag2's format since version 9."""
     return [
         {
             "history": qos.history,
@@ -44,15 +44,15 @@ def profiles_of(offers: Iterable[Qos]) -> list[dict[str, Any]]:
 
 
 def profiles_text(offers: Iterable[Qos]) -> str:
-    """Return offers as a channel's metadata has them."""
+    """Return QoS profiles for a channel's metadata."""
     profiles = profiles_of(offers)
     return dump(profiles) if profiles else ""
 
 
 def offers_in(text: str) -> list[Qos]:
-    """Return the offers that a channel's metadata has, in words or numbers.
+    """Parse the QoS profiles of a channel's metadata, as words or numbers.
 
-    :raises ValueError: when they are none.
+    :raises ValueError: if they are invalid.
     """
     try:
         profiles = yaml.safe_load(text) or []
@@ -66,7 +66,7 @@ def _offer(profile: Mapping[str, Any]) -> Qos:
     reliability = _word("reliability", profile)
     durability = _word("durability", profile)
     liveliness = _word("liveliness", profile)
-    # What is unknown, as DDS does not tell a publisher's history, counts as the default.
+    # Unknown policies use defaults; DDS does not announce a publisher's history.
     return Qos(
         history=cast(History, history if history == "keep_all" else "keep_last"),
         depth=max(int(profile["depth"]), 1),

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""A recording that is being written: MCAP in chunks, each whole on the disk before the next."""
+"""Writes a recording: MCAP chunks, each complete on disk before the next."""
 
 from __future__ import annotations
 
@@ -15,18 +15,18 @@ from rmw_manycore_py.recording.metadata import Span, TopicRow, information
 from rmw_manycore_py.recording.offers import profiles_text
 from rmw_manycore_py.recording.plain_yaml import dump
 
-# The largest part of a recording that reading one message takes into memory.
+# Maximum memory for reading one message.
 CHUNK_BYTES = 1 << 20
 _SEQUENCE_MASK = 0xFFFFFFFF
 
 
 class Output:
-    """Writes messages; `flush` ends a chunk, and what a kill leaves are whole chunks."""
+    """Writes messages; `flush` ends a chunk. After a kill, complete chunks remain."""
 
     def __init__(self, path: Path, compression: str = "none") -> None:
-        """Create the file; it must not be there.
+        """Create the file; it must not exist.
 
-        :raises ManycoreError: when it cannot be created.
+        :raises ManycoreError: if it cannot be created.
         """
         self.path = path
         self._file = _ChunkFile(path)
@@ -38,7 +38,7 @@ class Output:
         self._channels: dict[str, int] = {}
         self._schemas: dict[tuple[str, Schema], int] = {}
         self._start_ns, self._end_ns = 0, 0
-        self.messages = self.whole_messages = 0  # in all, and in chunks that are on the disk
+        self.messages = self.whole_messages = 0  # total, and in chunks on disk
         try:
             self._writer.start("ros2")
             self._writer.flush()
@@ -53,7 +53,7 @@ class Output:
         channel = self._channels.get(row.name)
         if channel is None:
             channel = self._add(row)
-        if self._file.tell() != self._file.whole:  # the last message filled a chunk
+        if self._file.tell() != self._file.whole:  # the previous message completed a chunk
             self._file.flush()
             self.whole_messages = self.messages
         self._writer.add_message(channel, recorded_ns, data, published_ns, number & _SEQUENCE_MASK)
@@ -80,17 +80,17 @@ class Output:
         return self._schemas[key]
 
     def flush(self) -> None:
-        """Write what was not written yet."""
+        """Write all pending messages."""
         self._writer.flush()
         self.whole_messages = self.messages
 
     @property
     def size_bytes(self) -> int:
-        """Return how large the file is by now."""
+        """Return the current file size."""
         return self._file.tell()
 
     def finish(self, rows: list[TopicRow]) -> dict[str, Any]:
-        """Write topics without messages, and the index; return what metadata.yaml says."""
+        """Write topics without messages, and the index; return the contents of metadata.yaml."""
         for row in rows:
             if row.name not in self._channels:
                 self._add(row)
@@ -103,7 +103,7 @@ class Output:
         return found
 
     def give_up(self) -> None:
-        """Cut off what was begun last, after a failed write; whole chunks stay."""
+        """Truncate to complete chunks after a failed write."""
         self._file.cut()
         self._file.close()
 
@@ -113,7 +113,7 @@ def _unwritable(path: Path, error: OSError) -> ManycoreError:
 
 
 class _ChunkFile:
-    """A file for `Writer`: all of a write, or an error after which `cut` undoes the chunk."""
+    """File for `Writer`: complete writes, or an error after which `cut` removes the chunk."""
 
     def __init__(self, path: Path) -> None:
         try:
@@ -123,7 +123,7 @@ class _ChunkFile:
         self._size = self.whole = 0
 
     def write(self, data: bytes) -> int:
-        """Write all of the data."""
+        """Write all data."""
         left = memoryview(data)
         while left:
             written = os.write(self._descriptor, left)
@@ -132,15 +132,15 @@ class _ChunkFile:
         return self._size
 
     def tell(self) -> int:
-        """Return where the next write goes."""
+        """Return the offset of the next write."""
         return self._size
 
     def flush(self) -> None:
-        """Note that what is there is whole."""
+        """Mark everything written as complete."""
         self.whole = self._size
 
     def cut(self) -> None:
-        """Forget what was written since the last flush."""
+        """Discard everything written since the last flush."""
         os.ftruncate(self._descriptor, self.whole)
         self._size = self.whole
 

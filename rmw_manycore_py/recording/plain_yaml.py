@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""YAML as rosbag2 writes it."""
+"""YAML in rosbag2's style."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ import yaml
 
 
 class _Plain(yaml.SafeDumper):
-    """Writes what is there twice twice, without aliases."""
+    """Repeats equal data instead of using aliases."""
 
     def ignore_aliases(self, _data: Any) -> bool:
         return True
 
 
 def dump(data: Any) -> str:
-    """Return data as text, in its own order."""
+    """Return data as YAML, in its own order."""
     return str(yaml.dump(data, Dumper=_Plain, sort_keys=False))

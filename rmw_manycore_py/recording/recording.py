@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""A recording as it is read: a file, or a folder of rosbag2 with one or several."""
+"""Reads a recording: a file, or a rosbag2 directory with one or several."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ from rmw_manycore_py.recording.target import SUFFIX
 
 
 class Recording:
-    """Is open until it is closed."""
+    """An open recording."""
 
     def __init__(self, path: Path) -> None:
         """Open a recording.
 
-        :raises ManycoreError: when there is none, or not one in MCAP.
+        :raises ManycoreError: if there is none, or it is not in MCAP.
         """
         self.path = path
         metadata = read_metadata(path) if path.is_dir() else None
@@ -43,24 +43,24 @@ class Recording:
 
     @property
     def files(self) -> list[Path]:
-        """Return its files, in the order of time."""
+        """Return its files, in time order."""
         return [one.path for one in self._inputs]
 
     @property
     def size_bytes(self) -> int:
-        """Return the size of its files."""
+        """Return the total size of its files."""
         return sum(one.size_bytes for one in self._inputs)
 
     @property
     def faults(self) -> list[str]:
-        """Return what is wrong with files that can be read up to some place only."""
+        """Return the faults of files that are only partly readable."""
         return [
-            f"{one.path}: {one.fault}; what is whole is read" for one in self._inputs if one.fault
+            f"{one.path}: {one.fault}; reading the intact part" for one in self._inputs if one.fault
         ]
 
     @property
     def span(self) -> Span:
-        """Return how many messages there are, and from when to when."""
+        """Return the number of messages, and the first and last time."""
         spans = [one.span for one in self._inputs if one.span.messages]
         if not spans:
             return Span(0, 0, 0)
@@ -71,7 +71,7 @@ class Recording:
     def messages(
         self, topics: Collection[str], start_ns: int = 0, end_ns: int | None = None
     ) -> Iterator[Recorded]:
-        """Yield messages of topics, from a time on, before another."""
+        """Yield the messages of topics in a time range, in time order."""
         for one in self._inputs:
             yield from one.messages(topics, start_ns, end_ns)
 
@@ -88,7 +88,7 @@ def _files(path: Path, metadata: dict[str, Any] | None) -> list[Path]:
     if metadata is None:
         files = sorted(path.glob(f"*{SUFFIX}"))
     else:
-        # Old recordings name files from where the folder was.
+        # Old recordings name files relative to the parent directory.
         names = [PurePosixPath(str(name)).name for name in metadata["relative_file_paths"]]
         files = [path / name for name in names]
     for file in files:
@@ -98,7 +98,7 @@ def _files(path: Path, metadata: dict[str, Any] | None) -> list[Path]:
         for file in others:
             _refuse_other_storage(file)
         raise ManycoreError(
-            f"{path}: expected a recording, a folder with {FILE_NAME} or {SUFFIX} files, found "
+            f"{path}: expected a recording, a directory with {FILE_NAME} or {SUFFIX} files, found "
             "neither",
             EXIT_BAD_INPUT,
         )
@@ -121,7 +121,7 @@ def _refuse_other_storage(file: Path) -> None:
 
 
 def _merged(rows: Iterator[TopicRow]) -> list[TopicRow]:
-    """Return one row for each topic, for each of its types where a recording has several."""
+    """Return one row per topic and type."""
     found: dict[tuple[str, str], TopicRow] = {}
     for row in rows:
         known = found.setdefault((row.name, row.type), row)

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What is in a file without an index: one that was not finished, or was written without."""
+"""Scans a file without an index, e.g. an unfinished one."""
 
 from __future__ import annotations
 
@@ -20,15 +20,15 @@ _UNFINISHED = "it was not finished"
 
 @dataclass(frozen=True)
 class Scanned:
-    """What was found up to the end, or up to where a file is cut off or damaged."""
+    """Contents up to the end, or to where the file is truncated or damaged."""
 
     summary: Summary
-    end: int  # offset of the first byte that is not part of it
-    fault: str  # "" where the file is whole up to there
+    end: int  # offset after the last intact record
+    fault: str  # "" if the file is intact
 
 
 def scan(file: IO[bytes], size_bytes: int) -> Scanned:
-    """Read a file from its begin, and index the chunks that are whole."""
+    """Read a file from its start, and index the complete chunks."""
     scanner = _Scanner()
     end = fault = None
     file.seek(-len(MCAP0_MAGIC), os.SEEK_END)
@@ -42,12 +42,12 @@ def scan(file: IO[bytes], size_bytes: int) -> Scanned:
                 break
             scanner.add(record, end or 0, file.tell())
             end = file.tell()
-    except RecordLengthLimitExceeded:  # a record that would be longer than the file
+    except RecordLengthLimitExceeded:  # a record longer than the file
         fault = _UNFINISHED
-    except Exception as error:  # the library and its decoders promise no class of errors
+    except Exception as error:  # the library and its decoders do not document their errors
         fault = _UNFINISHED
         if file.tell() < size_bytes:
-            fault = f"it is damaged behind byte {end or 0} ({what_is_wrong(error)})"
+            fault = f"it is damaged after byte {end or 0} ({what_is_wrong(error)})"
     return Scanned(scanner.summary, end or 0, fault or "")
 
 
@@ -60,7 +60,7 @@ class _Scanner:
         self._count()
 
     def add(self, record: Any, start: int, end: int) -> None:
-        """Note a record that lies between two offsets."""
+        """Add a record located between two offsets."""
         if isinstance(record, Chunk):
             inner = breakup_chunk(record, validate_crc=True)
             for one in inner:

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Which topics are recorded or played."""
+"""Selects the topics to record or play."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from rmw_manycore_py.ros.patterns import is_pattern, matches
 
 @dataclass(frozen=True)
 class Selection:
-    """Topics by names and patterns, by a regular expression, by types, or all; less some.
+    """Topics by names and patterns, regular expression, types, or all; minus exclusions.
 
-    Hidden topics, with a part that begins with `_`, are only those that are named, unless `hidden`.
+    Hidden topics (a part starts with `_`) are only selected by exact name, unless `hidden`.
     """
 
     names: tuple[str, ...] = ()  # full names, and patterns with * and **
@@ -27,11 +27,11 @@ class Selection:
 
     @property
     def plain_names(self) -> tuple[str, ...]:
-        """Return the topics that are named one by one."""
+        """Return the names that are no patterns."""
         return tuple(name for name in self.names if not is_pattern(name))
 
     def takes(self, topic: str, type_name: str) -> bool:
-        """Tell whether a topic is one of them."""
+        """Return whether a topic is selected."""
         if _fits(self.excluded, topic) or _found(self.exclude_regex, topic):
             return False
         if _fits(self.names, topic):

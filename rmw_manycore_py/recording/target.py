@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Where a recording is written: a file, or a folder as rosbag2 makes it."""
+"""Destination of a recording: a file, or a rosbag2 directory."""
 
 from __future__ import annotations
 
@@ -16,29 +16,29 @@ SUFFIX = ".mcap"
 
 @dataclass(frozen=True)
 class Target:
-    """A file that ends in .mcap, else a folder with such a file and metadata.yaml."""
+    """A file ending in .mcap, else a directory with such a file and metadata.yaml."""
 
     path: Path
 
     @property
     def is_folder(self) -> bool:
-        """Tell whether it is a folder."""
+        """Return whether it is a directory."""
         return self.path.suffix != SUFFIX
 
     @property
     def file(self) -> Path:
-        """Return the file that holds the messages."""
+        """Return the path of the MCAP file."""
         return self.path / f"{self.path.name}_0{SUFFIX}" if self.is_folder else self.path
 
     def prepare(self, *, force: bool) -> None:
-        """Make the folder; with `force`, remove the recording that is there.
+        """Create the directory; with `force`, remove an existing recording.
 
-        :raises ManycoreError: when something is there, or it cannot be written.
+        :raises ManycoreError: if the path exists, or cannot be written.
         """
         if self.path.is_symlink() or self.path.exists():
             if not force:
                 raise ManycoreError(
-                    f"{self.path}: is there already: -o another name, or --force to replace it",
+                    f"{self.path}: already exists: choose another name, or --force to replace it",
                     EXIT_BAD_INPUT,
                 )
             self._remove()
@@ -47,7 +47,7 @@ class Target:
                 self.path.mkdir()
         except OSError as error:
             raise ManycoreError(
-                f"{self.path}: cannot be made: {error.strerror}", EXIT_BAD_INPUT
+                f"{self.path}: cannot be created: {error.strerror}", EXIT_BAD_INPUT
             ) from error
 
     def _remove(self) -> None:
@@ -58,8 +58,8 @@ class Target:
         strange = [f for f in files if f.suffix != SUFFIX and f.name != FILE_NAME]
         if strange or self.path.is_dir() != self.is_folder:
             raise ManycoreError(
-                f"{self.path}: is no recording alone, so --force does not replace it"
-                + (f": there is {strange[0].name}" if strange else ""),
+                f"{self.path}: contains more than a recording, so --force does not replace it"
+                + (f": found {strange[0].name}" if strange else ""),
                 EXIT_BAD_INPUT,
             )
         try:
@@ -71,9 +71,9 @@ class Target:
             raise ManycoreError(f"{self.path}: cannot be removed: {error.strerror}") from error
 
     def describe(self, found: dict[str, Any]) -> None:
-        """Write what rosbag2 keeps beside a finished recording.
+        """Write rosbag2's metadata of a finished recording.
 
-        :raises ManycoreError: when it cannot be written; the recording is whole without.
+        :raises ManycoreError: if it cannot be written; the recording is complete without it.
         """
         try:
             if self.is_folder:
@@ -86,5 +86,5 @@ class Target:
 
 
 def default_target() -> Path:
-    """Return the name that `ros2 bag record` gives."""
+    """Return the default name used by `ros2 bag record`."""
     return Path(time.strftime("rosbag2_%Y_%m_%d-%H_%M_%S"))

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Hashes of types (REP 2016) as a DDS domain tells them."""
+"""Type hashes (REP 2016) announced in a DDS domain."""
 
 from __future__ import annotations
 
@@ -9,6 +9,6 @@ _VERSION_1 = "RIHS01_"
 
 
 def type_hash_of(endpoint: Any) -> str:
-    """Return the hash of an endpoint's type; "" where its middleware tells none."""
+    """Return the type hash of an endpoint; "" if its middleware does not announce one."""
     text = str(endpoint.topic_type_hash)
     return text if text.startswith(_VERSION_1) else ""

@@ -1,8 +1,8 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Chains: messages that a node published while it worked on one that it had taken.
+"""Chains: messages that a node publishes while it handles a message it has taken.
 
-Times are those of CARET: a message is on its way from the call of publish to the begin of the
-callback (communication), and a node has it from there to its own call of publish (node).
+Times follow CARET: communication latency is from the call of publish to the start of the callback,
+node latency from there to the node's own call of publish.
 """
 
 from __future__ import annotations
@@ -25,35 +25,35 @@ from rmw_manycore_py.trace.events import (
 )
 from rmw_manycore_py.trace.matching import Matching, Matchings
 
-Chain = tuple[str, ...]  # topics, from the first to the last
+Chain = tuple[str, ...]  # topics from first to last
 MAX_LENGTH = 32  # topics of a chain
 
 
 @dataclass(frozen=True)
 class Arrival:
-    """A message that has come to a node: its callback begins."""
+    """Arrival of a message at a node: the start of its callback."""
 
     record: RecordId
     node: str
-    callback_ns: int  # where the node is the bridge, it has the message from then on
-    bridged_ns: int | None = None  # DDS has it
+    callback_ns: int  # for a bridge, when it has the message
+    bridged_ns: int | None = None  # handed to DDS
 
 
 @dataclass(frozen=True)
 class Passage:
-    """A message that went through a chain, to the begin of the last callback."""
+    """A message's passage through a chain, up to the start of the last callback."""
 
     published_ns: tuple[int, ...]  # at each topic of the chain
     callback_ns: tuple[int, ...]
-    nodes: tuple[str, ...]  # that took it
+    nodes: tuple[str, ...]  # nodes that took it
     first: RecordId
-    matching_ns: tuple[Matching | None, ...]  # of each hop through a node
-    age_ns: int | None  # when the first topic's bridge published it, since it was outside
-    bridged_ns: int | None  # when the last node, a bridge, was done with it
+    matching_ns: tuple[Matching | None, ...]  # per hop through a node
+    age_ns: int | None  # age when the bridge published it inside
+    bridged_ns: int | None  # when the last node, a bridge, had forwarded it
 
 
 class Messages:
-    """All messages of a trace: when they were published, why, and who took them."""
+    """All messages of a trace: publish times, causes, and takes."""
 
     def __init__(self, trace: Trace) -> None:
         self._trace = trace
@@ -61,8 +61,8 @@ class Messages:
         self.published_ns: dict[RecordId, int] = {}
         self.causes: dict[RecordId, Arrival] = {}
         self.arrivals: dict[str, list[Arrival]] = defaultdict(list)  # by topic
-        self._ages_ns: dict[RecordId, int] = {}  # of what the bridge brought
-        self._threads: dict[RecordId, ThreadId] = {}  # that published
+        self._ages_ns: dict[RecordId, int] = {}  # of messages from the bridge
+        self._threads: dict[RecordId, ThreadId] = {}  # publishing thread
         threads = {key: events.tolist() for key, events in trace.threads_by_id().items()}
         self._of_thread = {key: self._arrivals_in(rows) for key, rows in threads.items()}
         for key, rows in threads.items():
@@ -75,7 +75,7 @@ class Messages:
         return named is not None and named.role == "topic"
 
     def _arrivals_in(self, rows: list[Row]) -> list[tuple[int, Arrival]]:
-        """Return what a thread took, with the times at which each take was over."""
+        """Return the takes of a thread, with their end times."""
         found = []
         claimed_ns = 0
         bridged_ns: int | None = None
@@ -126,12 +126,12 @@ class Messages:
         return arrivals[at - 1][1] if at else None
 
     def topic_of(self, record: RecordId) -> str:
-        """Return the topic that a message was published on."""
+        """Return the topic of a message."""
         return self._trace.topic_of(record[0])
 
     @cached_property
     def chains(self) -> list[Chain]:
-        """The longest chains, by their topics, from what no other message caused."""
+        """Longest chains, by topics, from messages without a cause."""
         following: dict[str, set[str]] = defaultdict(set)
         for record, cause in self.causes.items():
             following[self.topic_of(cause.record)].add(self.topic_of(record))
@@ -152,7 +152,7 @@ class Messages:
         return sorted(found)
 
     def passages(self, chain: Chain) -> list[Passage]:
-        """Return what went through a chain, in the order of its arrivals."""
+        """Return the passages through a chain, in order of arrival."""
         found = []
         for arrival in self.arrivals.get(chain[-1], ()):
             passage = self._passage(chain, arrival)
@@ -171,7 +171,7 @@ class Messages:
         published = [self.published_ns.get(arrival.record) for arrival in arrivals]
         known = tuple(time_ns for time_ns in published if time_ns is not None)
         if len(known) != len(arrivals):
-            return None  # published before the trace began, or lost by it
+            return None  # published before the trace began, or event lost
         return Passage(
             known,
             tuple(arrival.callback_ns for arrival in arrivals),
@@ -183,6 +183,6 @@ class Messages:
         )
 
     def _matching(self, before: Arrival, after: Arrival) -> Matching | None:
-        """Return what a node did of scan matching between a take and its publish."""
+        """Return a node's scan matching between a take and its publish."""
         thread = self._threads[after.record]
         return self._matchings.between(thread, before.callback_ns, self.published_ns[after.record])

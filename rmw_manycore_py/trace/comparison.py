@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What got slower from one trace to another."""
+"""Compares the latency of two traces."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import Any, Literal
 from rmw_manycore_py.trace.latency import ChainLatency, Part
 
 Verdict = Literal["slower", "faster", "same", "too few"]
-MIN_SAMPLES = 6  # below, the interval of a median is all there is
+MIN_SAMPLES = 6  # with fewer, the confidence interval is unbounded
 
 
 @dataclass(frozen=True)
@@ -24,12 +24,12 @@ class Change:
     verdict: Verdict
 
     def row(self) -> dict[str, Any]:
-        """Return it for programs."""
+        """Return the JSON row."""
         return dict(vars(self))
 
 
 def compare(before: Sequence[ChainLatency], after: Sequence[ChainLatency]) -> list[Change]:
-    """Return each part that is in both; it changed where the medians' intervals lie apart."""
+    """Return the parts present in both; changed if the medians' intervals do not overlap."""
     known = {(one.chain, one.nodes): one for one in before}
     changes = []
     for one in after:

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Numbers that change with time: queue lengths, losses, CPU time and SMEM."""
+"""Time series: queue lengths, losses, CPU usage and SMEM."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from rmw_manycore_py.trace.pairs import groups_of, split_by
 
 @dataclass(frozen=True)
 class Counter:
-    """A number that changes with time."""
+    """A value over time."""
 
     name: str
     times_ns: NDArray[np.int64]
@@ -25,7 +25,7 @@ class Counter:
 
 
 def counters_of(trace: Trace) -> list[Counter]:
-    """Return queue length and losses of each subscription, CPU of each core, SMEM of clusters."""
+    """Return queue length and losses per subscription, CPU per core, SMEM per cluster."""
     return [*_queues(trace), *_losses(trace), *_cpu_shares(trace), *_smem(trace)]
 
 
@@ -34,15 +34,15 @@ def _queues(trace: Trace) -> Iterator[Counter]:
     changes = _queue_changes(events)
     for name, own in _by_endpoint(trace, events):
         lengths = np.cumsum(changes[own])
-        # What was in a queue before the trace began is taken, too: that is no length below 0.
+        # Takes of messages queued before the trace began must not make the length negative.
         lengths -= np.minimum(np.minimum.accumulate(lengths), 0)
         yield Counter(f"queue {name}", events["time_ns"][own], lengths.astype(np.float64))
 
 
 def _queue_changes(events: Events) -> NDArray[np.int64]:
-    """Return by how much each event changes the length of its queue.
+    """Return the change of the queue length by each event.
 
-    Hints of a record may come twice, and takes without one: both count once at most.
+    A record may have several hints, and takes may have none: each counts at most once.
     """
     subscriptions = endpoint_ids(events)
     records = groups_of((endpoint_in(events["value"]), events["number"])).astype(np.uint64)
@@ -66,7 +66,7 @@ def _losses(trace: Trace) -> Iterator[Counter]:
 
 
 def _cpu_shares(trace: Trace) -> Iterator[Counter]:
-    """Yield the CPU time of each process, in percent of a CPU, between two looks at it."""
+    """Yield the CPU usage of each process in percent between consecutive samples."""
     for process in trace.processes:
         events = merged([(process, thread) for thread in process.threads], (Kind.CPU,))
         spans_ns = np.diff(events["time_ns"])
@@ -76,12 +76,12 @@ def _cpu_shares(trace: Trace) -> Iterator[Counter]:
         name = f"CPU % {place_name(process)}"
         if process.core is None and not process.is_receive_thread:
             name += f" ({process.label} {process.pid})"
-        # A share is that of the time until the next look.
+        # Each value holds until the next sample.
         yield Counter(name, events["time_ns"], np.append(shares, 0.0))
 
 
 def _smem(trace: Trace) -> Iterator[Counter]:
-    """Yield the bytes of each cluster's SMEM that are used, as its processes saw them."""
+    """Yield the used SMEM of each cluster in bytes, as sampled by its processes."""
     events = merged(list(trace.threads()), (Kind.SMEM,))
     for own in split_by(events["number"]):
         changes = own[np.append(True, np.diff(events["value"][own]) != 0)]
@@ -90,7 +90,7 @@ def _smem(trace: Trace) -> Iterator[Counter]:
 
 
 def _by_endpoint(trace: Trace, events: Events) -> Iterator[tuple[str, NDArray[np.intp]]]:
-    """Yield the name of each endpoint, and which of the events are its own."""
+    """Yield the name of each endpoint, and the indices of its events."""
     endpoints = endpoint_ids(events)
     for own in split_by(endpoints):
         endpoint = int(endpoints[own[0]])

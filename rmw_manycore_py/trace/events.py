@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""A trace as plain data: processes, their threads, and the events of each."""
+"""A trace as plain data: processes, threads and events."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 Events = NDArray[Any]  # of EVENT
 Ids = NDArray[np.uint64]  # of endpoints
 
-# As TraceEvent of rmw_manycore/transport/layout/trace_layout.hpp.
+# Layout of TraceEvent in rmw_manycore/transport/layout/trace_layout.hpp.
 EVENT = np.dtype(
     [
         ("time_ns", "<i8"),
@@ -26,12 +26,12 @@ EVENT = np.dtype(
     ]
 )
 NO_ENDPOINT = 0xFFFFFFFF
-NO_ID = 0xFFFF_FFFF_FFFF_FFFF  # in the place of an EndpointId
-_ID_MASK = 0xFFFF_FFFF_FFFF  # 16 bits of the incarnation, as events have them
+NO_ID = 0xFFFF_FFFF_FFFF_FFFF  # instead of an EndpointId
+_ID_MASK = 0xFFFF_FFFF_FFFF  # events hold 16 bits of the incarnation
 
 
 class Kind(IntEnum):
-    """What happened; as TraceKind of trace_layout.hpp, which says what the fields mean."""
+    """Kind of event; same as TraceKind in trace_layout.hpp, which documents the fields."""
 
     PUBLISH_BEGIN = 1
     SERIALIZE_BEGIN = 2
@@ -61,16 +61,19 @@ class Kind(IntEnum):
     ALIGN = 26
     RESUME = 27
     PASS = 28
+    HAND = 29
+    ARRIVE = 30
+    DROP = 31
 
 
 EndpointId = int
 ThreadId = tuple[int, int, int]  # cluster, pid, tid
 Row = tuple[int, int, int, int, int, int]  # time, number, value, endpoint, incarnation, kind
-RecordId = tuple[EndpointId, int]  # publisher and number: one of its kind on a platform
+RecordId = tuple[EndpointId, int]  # publisher and number; unique on a platform
 
 
 def endpoint_id(slot: int, incarnation: int) -> EndpointId:
-    """Return slot and incarnation of an endpoint in one number."""
+    """Combine slot and incarnation of an endpoint into one number."""
     return (incarnation & 0xFFFF) << 32 | slot
 
 
@@ -79,7 +82,7 @@ def endpoint_in(value: int) -> EndpointId: ...
 @overload
 def endpoint_in(value: Ids) -> Ids: ...
 def endpoint_in(value: int | Ids) -> EndpointId | Ids:
-    """Return the endpoint that an event's value names, or those of a column."""
+    """Return the endpoint in an event's value, or those of a column."""
     if isinstance(value, int):
         return value & _ID_MASK
     ids: Ids = value & np.uint64(_ID_MASK)
@@ -96,7 +99,7 @@ def endpoint_ids(events: Events) -> Ids:
 
 @dataclass(frozen=True)
 class Endpoint:
-    """What an endpoint was called."""
+    """Description of an endpoint."""
 
     is_publisher: bool
     role: str  # topic, request or reply
@@ -108,17 +111,17 @@ class Endpoint:
 
 @dataclass(frozen=True)
 class Thread:
-    """What one thread recorded."""
+    """Events of one thread."""
 
     tid: int
     name: str
     events: Events
-    lost: int  # further events, for which there was no room
+    lost: int  # number of events lost since the ring was full
 
 
 @dataclass(frozen=True)
 class Process:
-    """A process, and what its threads recorded."""
+    """A process and the events of its threads."""
 
     pid: int
     cluster: int
@@ -128,17 +131,17 @@ class Process:
     is_receive_thread: bool
     is_alive: bool  # when the trace was saved
     threads: tuple[Thread, ...]
-    unplaced: int  # lost events of threads that had no room at all
+    unplaced: int  # events of threads without a ring
 
 
 @dataclass(frozen=True)
 class Trace:
-    """A saved trace. Times are those of CLOCK_MONOTONIC, in nanoseconds."""
+    """A saved trace. Times are ns of CLOCK_MONOTONIC."""
 
     platform: str
     processes: tuple[Process, ...]
     endpoints: Mapping[EndpointId, Endpoint]
-    unplaced: int  # lost events of processes that had no room at all
+    unplaced: int  # events of processes without a trace file
 
     def threads(self) -> Iterator[tuple[Process, Thread]]:
         """Yield every thread with its process."""
@@ -148,12 +151,12 @@ class Trace:
 
     @property
     def event_count(self) -> int:
-        """Number of events that are there."""
+        """Number of recorded events."""
         return sum(len(thread.events) for _, thread in self.threads())
 
     @property
     def lost(self) -> int:
-        """Number of events that are not, as there was no room for them."""
+        """Number of lost events."""
         return (
             self.unplaced
             + sum(process.unplaced for process in self.processes)
@@ -161,9 +164,9 @@ class Trace:
         )
 
     def threads_by_id(self) -> dict[ThreadId, Events]:
-        """Return the events of each thread in their order.
+        """Return the events of each thread in order.
 
-        A thread has a ring for its nodes, and another one for what it notes beside them.
+        A thread has one ring for its nodes, and another for events beside them.
         """
         found: dict[ThreadId, Events] = {}
         for process, thread in self.threads():
@@ -177,11 +180,11 @@ class Trace:
         return found
 
     def topic_of(self, endpoint: EndpointId) -> str:
-        """Return the topic of an endpoint, or its number where it has no name."""
+        """Return the topic of an endpoint, or its number if unknown."""
         named = self.endpoints.get(endpoint)
         return named.topic if named else f"endpoint {endpoint & 0xFFFFFFFF}"
 
     def node_of(self, endpoint: EndpointId) -> str:
-        """Return the node of an endpoint, or its number where it has no name."""
+        """Return the node of an endpoint, or its number if unknown."""
         named = self.endpoints.get(endpoint)
         return named.node if named else f"endpoint {endpoint & 0xFFFFFFFF}"

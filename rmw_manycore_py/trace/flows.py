@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The way of each message: from its publish, through the receive thread, to each take."""
+"""Path of each message: from its publish, through the receive thread, to each take."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from rmw_manycore_py.trace.pairs import Indices, first_of
 
 NO_THREAD = -1
 
-# One take of one message. Threads are indices among the trace's threads.
+# One take of one message. Threads are indices into the trace's threads.
 FLOW = np.dtype(
     [
         ("publisher", "<u8"),  # with `number`: the record
@@ -33,7 +33,7 @@ FLOW = np.dtype(
         ("subscription", "<u8"),
         ("write_thread", "<i4"),
         ("write_ns", "<i8"),
-        ("receive_thread", "<i4"),  # NO_THREAD where no receive thread told the subscription
+        ("receive_thread", "<i4"),  # NO_THREAD if no receive thread notified the subscription
         ("receive_ns", "<i8"),
         ("claim_thread", "<i4"),
         ("claim_ns", "<i8"),
@@ -43,14 +43,14 @@ FLOW = np.dtype(
 
 @dataclass(frozen=True)
 class Flows:
-    """All flows of a trace, and the number of takes whose publish is not in it."""
+    """All flows of a trace, and the number of takes without a publish in the trace."""
 
     flows: NDArray[Any]  # of FLOW
     without_publish: int
 
 
 class _Column(NamedTuple):
-    """All events of a kind, with the records they are about."""
+    """All events of a kind, with their records."""
 
     events: Events
     threads: NDArray[np.int32]
@@ -59,7 +59,7 @@ class _Column(NamedTuple):
 
 
 def flows_of(trace: Trace) -> Flows:
-    """Return exactly one flow for each take whose publish is in the trace."""
+    """Return exactly one flow per take whose publish is in the trace."""
     writes = _column(trace, Kind.WRITE, endpoint_ids)
     receives = _column(trace, Kind.RECEIVE, endpoint_ids)
     claims = _column(trace, Kind.CLAIM, lambda events: endpoint_in(events["value"]))
@@ -73,14 +73,14 @@ def flows_of(trace: Trace) -> Flows:
     flows["claim_ns"] = claims.events["time_ns"][found]
     flows["write_thread"] = writes.threads[write]
     flows["write_ns"] = writes.events["time_ns"][write]
-    # The first one: a receive thread may look twice, when its readers change meanwhile.
+    # The first one: a receive thread handles a message twice if its readers change meanwhile.
     receive = first_of((*receives.record, receives.clusters), (*claims.record, claims.clusters))
     _add_receives(flows, receives, receive[found])
     return Flows(flows, int((~found).sum()))
 
 
 def _add_receives(flows: NDArray[Any], receives: _Column, receive: Indices) -> None:
-    """Leave out those of readers that looked for themselves before they were told."""
+    """Drop receives after which a reader had already found the message itself."""
     flows["receive_thread"] = NO_THREAD
     told = np.flatnonzero(receive >= 0)
     told = told[receives.events["time_ns"][receive[told]] <= flows["claim_ns"][told]]
@@ -102,11 +102,11 @@ def _column(trace: Trace, kind: Kind, publishers: Callable[[Events], Ids]) -> _C
 
 
 def joined(parts: Sequence[Events]) -> Events:
-    """Return the events of several threads, one after the other."""
+    """Return the concatenated events of several threads."""
     return np.concatenate([*parts, np.empty(0, EVENT)])
 
 
 def merged(threads: list[tuple[Process, Thread]], kinds: tuple[Kind, ...]) -> Events:
-    """Return the events of these kinds of all threads, in the order of their times."""
+    """Return the events of these kinds of all threads, in time order."""
     events = joined([t.events[np.isin(t.events["kind"], kinds)] for _, t in threads])
     return events[np.argsort(events["time_ns"], kind="stable")]

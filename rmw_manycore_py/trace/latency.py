@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""How long messages take through a chain, in microseconds, and where."""
+"""Latency of chains and of their parts, in microseconds."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class Part:
     samples_us: tuple[float, ...]
 
     def quantile(self, share: float) -> float:
-        """Return the value below which that share of the samples lies."""
+        """Return a quantile of the samples."""
         return float(np.quantile(self.samples_us, share)) if self.samples_us else math.nan
 
     def median_interval(self) -> tuple[float, float]:
@@ -40,7 +40,7 @@ class Part:
         return ordered[low], ordered[high]
 
     def row(self) -> dict[str, Any]:
-        """Return it for programs."""
+        """Return the JSON row."""
         return {
             "part": self.name,
             "count": len(self.samples_us),
@@ -52,11 +52,11 @@ class Part:
 
 @dataclass(frozen=True)
 class ChainLatency:
-    """What a chain takes: each hop, their sum, and two views of the whole."""
+    """Latency of a chain: each hop, their sum, and two end-to-end measures."""
 
     chain: Chain
     nodes: tuple[str, ...]
-    parts: tuple[Part, ...]  # communication and node in turns, with what they hold; then the whole
+    parts: tuple[Part, ...]  # alternating communication and node with sub-parts; then the whole
 
     @property
     def name(self) -> str:
@@ -65,7 +65,7 @@ class ChainLatency:
         return " > ".join(f"{topic} ({node})" for topic, node in steps)
 
     def row(self) -> dict[str, Any]:
-        """Return it for programs."""
+        """Return the JSON row."""
         return {
             "chain": list(self.chain),
             "nodes": list(self.nodes),
@@ -74,7 +74,7 @@ class ChainLatency:
 
 
 def latencies(messages: Messages, chains: Sequence[Chain]) -> list[ChainLatency]:
-    """Return the latency of each chain, one for each way it takes through nodes."""
+    """Return the latency of each chain, one per path through nodes."""
     found = []
     for chain in chains:
         by_nodes: dict[tuple[str, ...], list[Passage]] = defaultdict(list)
@@ -104,7 +104,7 @@ def _latency(chain: Chain, nodes: tuple[str, ...], passages: list[Passage]) -> C
 
 
 def _matching(node: str, matchings: Sequence[Matching | None]) -> list[Part]:
-    """Return what of a node's time was scan matching."""
+    """Return the shares of a node's time spent in scan matching."""
     known = [one for one in matchings if one is not None]
     if not known:
         return []
@@ -125,7 +125,7 @@ def _part(name: str, samples_ns: list[int]) -> Part:
 
 
 def _firsts(passages: list[Passage]) -> list[Passage]:
-    """Return the first arrival of each input, without those that a newer one has overtaken."""
+    """Return the first arrival per input, without inputs overtaken by newer ones."""
     found: list[Passage] = []
     for passage in passages:
         if not found or passage.published_ns[0] > found[-1].published_ns[0]:
@@ -134,17 +134,17 @@ def _firsts(passages: list[Passage]) -> list[Passage]:
 
 
 def _reactions_ns(passages: list[Passage]) -> list[int]:
-    """Return the longest times from a change outside to the first callback that shows it.
+    """Return the maximum times from an external change to the first callback that reflects it.
 
-    The change comes just after an input was published: it has to wait for the next one that
-    arrives.
+    In the worst case, the change happens just after an input was published and waits for the next
+    input that arrives.
     """
     firsts = _firsts(passages)
     return _to_next(firsts)
 
 
 def _ages_ns(passages: list[Passage]) -> list[int]:
-    """Return how old each input is that the last node works with, when a newer one arrives."""
+    """Return the age of each input used by the last node, when a newer one arrives."""
     return _to_next(passages)
 
 

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Scan matching in a trace: when a thread aligned, and when workers worked for it."""
+"""Scan matching in a trace: alignments of threads, and the work of their workers."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ from rmw_manycore_py.trace.events import Events, Kind, ThreadId, Trace
 
 
 class Matching(NamedTuple):
-    """What a span of a thread's time holds of scan matching."""
+    """Scan matching within a span of a thread's time."""
 
     alignment_ns: int
-    workers_ns: int  # of it, the time in which some worker worked
+    workers_ns: int  # part of it in which at least one worker was busy
 
 
 class Matchings:
@@ -33,7 +33,7 @@ class Matchings:
         self._passes = {key: _Spans(np.concatenate(parts)) for key, parts in passes.items()}
 
     def between(self, thread: ThreadId, begin_ns: int, end_ns: int) -> Matching | None:
-        """Return what a thread did in that time, None where that was no scan matching."""
+        """Return a thread's scan matching in a time span; None if there was none."""
         alignments = self._alignments.get(thread)
         aligned_ns = alignments.within(begin_ns, end_ns) if alignments else 0
         if not aligned_ns:
@@ -42,7 +42,7 @@ class Matchings:
 
 
 class _Spans:
-    """Spans of time, those that overlap made one."""
+    """Time spans, with overlapping ones merged."""
 
     def __init__(self, events: Events) -> None:
         order = np.argsort(events["number"], kind="stable")
@@ -53,7 +53,7 @@ class _Spans:
         self._ends: NDArray[np.int64] = ends[np.append(is_first[1:], True)[: len(begins)]]
 
     def within(self, begin_ns: int, end_ns: int) -> int:
-        """Return how much of that time the spans take."""
+        """Return the total time of the spans within an interval."""
         first = int(np.searchsorted(self._ends, begin_ns))
         last = int(np.searchsorted(self._begins, end_ns))
         begins = np.maximum(self._begins[first:last], begin_ns)

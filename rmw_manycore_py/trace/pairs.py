@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Which events belong together, found for whole columns at once."""
+"""Vectorized matching of events."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-Indices = NDArray[np.intp]  # of events, ascending
-Keys = tuple[NDArray[np.uint64], ...]  # columns, for example publishers and record numbers
+Indices = NDArray[np.intp]  # event indices, ascending
+Keys = tuple[NDArray[np.uint64], ...]  # columns, e.g. publishers and record numbers
 
 
 def in_turns(begins: Indices, ends: Indices) -> tuple[Indices, Indices, Indices]:
-    """Return each end with the last begin since the end before it.
+    """Pair each end with the last begin since the previous end.
 
-    :return: begins, their ends, and the last begin of all where no end follows it.
+    :return: begins, their ends, and the last begin if no end follows it.
     """
     at = np.concatenate([begins, ends])
     is_begin = np.repeat([True, False], (len(begins), len(ends)))
@@ -24,7 +24,7 @@ def in_turns(begins: Indices, ends: Indices) -> tuple[Indices, Indices, Indices]
 
 
 def by_key(keys: Keys, at: Indices, is_begin: NDArray[Any]) -> tuple[Indices, Indices, Indices]:
-    """Return as `in_turns`, but of events of the same key; the begins without an end, too."""
+    """Return the same as `in_turns` per key, with all begins without an end."""
     groups = groups_of(keys)
     order = np.lexsort((at, groups))
     return _turns(at[order], is_begin[order], groups[order])
@@ -42,12 +42,12 @@ def _turns(
 
 
 def next_of(at: Indices, end: int) -> Indices:
-    """Return for each index the one after it, and `end` for the last."""
+    """Return the next index for each index, and `end` for the last."""
     return np.append(at[1:], end) if len(at) else at
 
 
 def groups_of(keys: Keys) -> NDArray[np.intp]:
-    """Return a number for each row of the keys, the same for the same row."""
+    """Return a group number per row; equal rows have equal numbers."""
     groups = np.zeros(len(keys[0]), np.intp)
     if len(groups):
         order = np.lexsort(keys)
@@ -64,7 +64,7 @@ def split_by(groups: NDArray[Any]) -> list[Indices]:
 
 
 def first_of(table: Keys, wanted: Keys) -> Indices:
-    """Return for each wanted row where it first stands in the table; -1 = nowhere."""
+    """Return the first position of each wanted row in the table; -1 if missing."""
     size = len(table[0])
     groups = groups_of(tuple(map(np.concatenate, zip(table, wanted, strict=True))))
     found = np.full(len(groups), -1)

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What a platform has recorded and nobody has saved yet."""
+"""Recorded events of a platform that have not been saved."""
 
 from __future__ import annotations
 
@@ -26,9 +26,9 @@ _ROLES = ("topic", "request", "reply")
 
 @contextmanager
 def recorded(platform: str) -> Iterator[Trace]:
-    """Yield what was recorded; when the block ends without an error, it counts as saved.
+    """Yield the recorded events; unless the block raises, they count as saved.
 
-    Its room is then given back, and the files of processes that are gone are removed.
+    Their rings are then freed, and the files of ended processes removed.
     """
     with translate_native_errors():
         saver = _transport.TraceSaver(platform)
@@ -38,7 +38,7 @@ def recorded(platform: str) -> Iterator[Trace]:
 
 
 def looked_at(platform: str) -> Trace:
-    """Return what was recorded; all of it stays to be saved."""
+    """Return the recorded events without consuming them."""
     with translate_native_errors():
         saver = _transport.TraceSaver(platform)
     with saver:
@@ -77,7 +77,7 @@ def _process_of(process: _transport.ProcessTrace) -> Process:
 
 
 def _threads_of(thread: _transport.ThreadTrace) -> Iterator[Thread]:
-    """Yield a thread, and one for each worker that it noted the passes of."""
+    """Yield a thread, and one per worker whose passes it recorded."""
     events = np.frombuffer(thread.events, EVENT)
     is_pass = events["kind"] == Kind.PASS
     yield Thread(thread.tid, thread.name, events[~is_pass], thread.lost)

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What a thread did when: its events as spans of time, column by column."""
+"""Events of threads as time spans, column by column."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ Slices = NDArray[Any]  # of SLICE
 
 
 class What(IntEnum):
-    """What a span of time is of."""
+    """What a span represents."""
 
     WAIT = 0
     SERIALIZE = 1
@@ -45,9 +45,12 @@ class What(IntEnum):
     BRIDGE_IN = 14
     ALIGN = 15
     PASS = 16
+    HAND = 17
+    ARRIVE = 18
+    DROP = 19
 
 
-# Category for viewers, and the begin of the name; the topic follows.
+# Category shown by viewers, and prefix of the name; the topic follows.
 _WORDS = {
     What.WAIT: ("wait", "wait"),
     What.SERIALIZE: ("serialize", "serialize"),
@@ -66,8 +69,11 @@ _WORDS = {
     What.BRIDGE_IN: ("bridge", "bridge in"),
     What.ALIGN: ("ndt", "NDT alignment"),
     What.PASS: ("ndt", "NDT pass"),
+    What.HAND: ("transfer", "hand over"),
+    What.ARRIVE: ("transfer", "arrive"),
+    What.DROP: ("transfer", "drop"),
 }
-# What viewers show of a slice: a word, and the field of SLICE.
+# Arguments shown by viewers: label, and field of SLICE.
 ARGUMENTS = {
     What.PUBLISH: (("bytes", "value"), ("number", "number")),
     What.REFUSED: (("bytes", "value"),),
@@ -77,6 +83,9 @@ ARGUMENTS = {
     What.BRIDGE_OUT: (("number", "number"),),
     What.BRIDGE_IN: (("age_ns", "value"), ("number", "number")),
     What.PASS: (("pass", "number"),),
+    What.HAND: (("number", "number"), ("cluster", "value")),
+    What.ARRIVE: (("number", "number"), ("cluster", "value")),
+    What.DROP: (("number", "number"), ("cluster", "value")),
 }
 _INSTANTS = {
     Kind.LOST: What.LOST,
@@ -85,36 +94,41 @@ _INSTANTS = {
     Kind.MATCH: What.MATCH,
     Kind.JOIN: What.JOIN,
     Kind.LEAVE: What.LEAVE,
+    Kind.HAND: What.HAND,
+    Kind.ARRIVE: What.ARRIVE,
+    Kind.DROP: What.DROP,
 }
+
+_TRANSFERS = (What.HAND, What.ARRIVE, What.DROP)
 
 SLICE = np.dtype(
     [
         ("begin_ns", "<i8"),
-        ("end_ns", "<i8"),  # where it is unknown, when the thread was last seen
+        ("end_ns", "<i8"),  # if unknown, the last event of the thread
         ("what", "<u1"),
         ("is_instant", "?"),
         ("is_end_known", "?"),
-        ("endpoint", "<u8"),  # that acts, or NO_ID
+        ("endpoint", "<u8"),  # acting endpoint, or NO_ID
         ("publisher", "<u8"),  # with `number`: the record of a publish, receive, take or callback
         ("number", "<u8"),
-        ("value", "<u8"),  # bytes of a publish, how many were lost
+        ("value", "<u8"),  # size of a publish in bytes, or number of lost messages
     ]
 )
 
 
 def category_of(what: int) -> str:
-    """Return the category that viewers show."""
+    """Return the category shown by viewers."""
     return _WORDS[What(what)][0]
 
 
 def name_of(trace: Trace, what: int, endpoint: EndpointId) -> str:
-    """Return the name that viewers show."""
+    """Return the name shown by viewers."""
     word = _WORDS[What(what)][1]
     return word if endpoint == NO_ID else f"{word} {trace.topic_of(endpoint)}"
 
 
 def slices_of(thread: Thread) -> Slices:
-    """Return the spans of a thread, in the order of their begins; those around others first."""
+    """Return the spans of a thread by start time; enclosing spans first."""
     events = thread.events
     if not len(events):
         return np.empty(0, SLICE)
@@ -136,7 +150,7 @@ def slices_of(thread: Thread) -> Slices:
 
 
 class _Spans:
-    """The spans of a thread's events, one sort after the other."""
+    """Spans of a thread's events, by kind."""
 
     def __init__(self, events: Events) -> None:
         self._events = events
@@ -169,7 +183,7 @@ class _Spans:
         return self._spans(What.SERIALIZE, begins, ends)
 
     def publishes(self) -> Sequence[Slices]:
-        """Each from its begin; where the trace was switched on in between, from its write."""
+        """From the start of each publish; if tracing started in between, from its write."""
         ends = self._at(Kind.PUBLISH_END, Kind.REFUSED)
         begins, ended, open_begin = in_turns(self._at(Kind.PUBLISH_BEGIN), ends)
         writes, late_ends, open_write = in_turns(self._at(Kind.WRITE), ends)
@@ -202,7 +216,7 @@ class _Spans:
         self._name_record(slices, at, endpoint_in(self._events["value"][at]))
 
     def takes(self) -> Sequence[Slices]:
-        """Each claim with the release of the same record: a thread may hold several."""
+        """From each claim to the release of the same record; a thread may hold several."""
         at = self._at(Kind.CLAIM, Kind.RELEASE)
         records = endpoint_in(self._events["value"][at]), self._events["number"][at]
         is_begin = self._kinds[at] == Kind.CLAIM
@@ -218,7 +232,8 @@ class _Spans:
     def callbacks(self) -> Sequence[Slices]:
         """From the end of each take to the thread's next take or wait.
 
-        A thread of a pool never waits: it shows no end, but when it was last seen before that.
+        A thread of a pool never waits: its last callback ends with its last event before the next
+        take.
         """
         releases = self._at(Kind.RELEASE)
         begins, ends, open_begin = in_turns(releases, self._at(Kind.WAIT_BEGIN, Kind.CLAIM))
@@ -230,14 +245,14 @@ class _Spans:
         return done, unfinished
 
     def receives(self) -> Slices:
-        """Each to the last event before the next one."""
+        """From each receive to the last event before the next one."""
         at = self._at(Kind.RECEIVE)
         found = self._spans(What.RECEIVE, at, next_of(at, len(self._events)) - 1)
         self._name_record(found, at, self._ids[at])
         return found
 
     def bridged(self) -> Sequence[Slices]:
-        """Outwards: from the claim until DDS has the message. Inwards: until it is published."""
+        """Outward: from claim to hand-over to DDS. Inward: until published on the platform."""
         at = self._at(Kind.BRIDGE_OUT, Kind.RELEASE)
         claims, ends, _ = in_turns(self._at(Kind.CLAIM), at)
         is_out = self._kinds[ends] == Kind.BRIDGE_OUT
@@ -250,7 +265,7 @@ class _Spans:
         return outwards, inwards
 
     def matching(self) -> Sequence[Slices]:
-        """Alignments, and passes of workers: such an event is noted when all is over."""
+        """Alignments and passes of workers; their events are recorded at the end."""
         found = []
         for kind, what in ((Kind.ALIGN, What.ALIGN), (Kind.PASS, What.PASS)):
             at = self._at(kind)
@@ -268,6 +283,8 @@ class _Spans:
         found = self._spans(what, at, at)
         found["is_instant"] = True
         found["endpoint"] = self._ids[at]
-        if what == What.LOST:
+        if what == What.LOST or what in _TRANSFERS:
             found["value"] = self._events["value"][at]
+        if what in _TRANSFERS:
+            self._name_record(found, at, self._ids[at])
         return found

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What the page shows of the node or topic that was clicked."""
+"""Details of the selected node or topic."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ Row = dict[str, Any]
 
 
 def node_details(look: Look, name: str) -> Row | None:
-    """Return process, place and endpoints of a node; None where there is no such node."""
+    """Return process, placement and endpoints of a node; None if there is no such node."""
     sides = ((look.graph.members, False), (look.dead, True))
     for members, is_dead in sides:
         for member in members:
@@ -36,7 +36,7 @@ def node_details(look: Look, name: str) -> Row | None:
 
 
 def topic_details(look: Look, name: str) -> Row | None:
-    """Return load and endpoints of a topic; None where there is no such topic."""
+    """Return load and endpoints of a topic; None if there is no such topic."""
     load = look.loads.topics.get(name)
     if load is None:
         return None
@@ -98,7 +98,7 @@ def _endpoint(look: Look, row: int, endpoint: Endpoint) -> Row:
 
 
 def qos_text(endpoint: Endpoint) -> str:
-    """Write the policies of an endpoint, those that are not the default ones in full."""
+    """Format the QoS of an endpoint; policies that are not the default in full."""
     qos = endpoint.qos
     kept = "keep all" if qos["history"] == "keep_all" else f"keep last {qos['depth']}"
     words = [qos["reliability"].replace("_", " "), qos["durability"].replace("_", " "), kept]

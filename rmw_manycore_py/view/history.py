@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What happened to each topic and node in the last minutes, for charts."""
+"""Recent history of each topic and node, for charts."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ Names = tuple[str, ...]
 
 
 class Series:
-    """Some quantities of many things of one kind, look by look."""
+    """Quantities of all topics or nodes, one row per look."""
 
     def __init__(self, quantities: Names) -> None:
         self._quantities = quantities
@@ -29,11 +29,11 @@ class Series:
 
     @property
     def names(self) -> Names:
-        """The things of the latest look."""
+        """Names in the latest look."""
         return self._names
 
     def append(self, row: int, names: Names, values: NDArray[np.float32]) -> None:
-        """Note the values of a look, of shape (quantities, names)."""
+        """Append the values of a look, with shape (quantities, names)."""
         if names is not self._names and names != self._names:
             place = {name: index for index, name in enumerate(self._names)}
             moved = self._empty(len(names))
@@ -44,7 +44,7 @@ class Series:
         self._values[row] = values
 
     def of(self, name: str, rows: NDArray[np.intp]) -> dict[str, list[float | None]]:
-        """Return the quantities of a thing; None where it was not there."""
+        """Return the quantities of one name; None for looks without it."""
         if name not in self._names:
             return {}
         values = self._values[rows, :, self._names.index(name)]
@@ -55,7 +55,7 @@ class Series:
 
 
 class History:
-    """Charts of the whole platform, and of each topic and process."""
+    """Series of the platform, and of each topic and process."""
 
     def __init__(self) -> None:
         self._times: deque[float] = deque(maxlen=LENGTH)
@@ -65,7 +65,7 @@ class History:
         self.chip = Series(("value",))
 
     def append(self, look: Look, time_s: float) -> None:
-        """Note a look."""
+        """Append a look."""
         row = self._count % LENGTH
         self._count += 1
         self._times.append(time_s)
@@ -92,7 +92,7 @@ class History:
         return np.arange(self._count - length, self._count, dtype=np.intp) % LENGTH
 
     def whole(self, newest: int | None = None) -> dict[str, Any]:
-        """Return the series of the platform, or the newest looks of them."""
+        """Return the series of the platform, or only the newest looks."""
         names = self.chip.names
         rows = self._rows(newest)
         return self._dated(rows, {name: self.chip.of(name, rows)["value"] for name in names})

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What one page has, and what it still has to be told."""
+"""State of one open page, and pending updates."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ Row = dict[str, Any]
 
 
 class PageState:
-    """Turns looks into the messages of one page; a slow page gets fewer, and misses nothing."""
+    """Converts looks to messages for one page; a slow page gets fewer, but complete ones."""
 
     def __init__(self, viewer: Viewer) -> None:
         self._viewer = viewer
@@ -28,7 +28,7 @@ class PageState:
         self._has_selected = False
 
     def select(self, message: Any) -> None:
-        """Note what was clicked: {"select": {"node": NAME}}, or "topic", or null."""
+        """Set the selection: {"select": {"node": NAME}}, or "topic", or null."""
         chosen = message.get("select") if isinstance(message, dict) else None
         self._selected, self._has_selected = None, False
         if isinstance(chosen, dict):
@@ -37,7 +37,7 @@ class PageState:
                     self._selected = (kind, chosen[kind])
 
     def news(self) -> Row:
-        """Return what has changed since the last call."""
+        """Return the changes since the last call."""
         viewer = self._viewer
         self._happened, happened = viewer.happened_since(self._happened)
         news: Row = {

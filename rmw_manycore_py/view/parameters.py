@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Parameters of a node: the one thing that has to be asked of the node itself."""
+"""Parameters of a node, the only data that has to be queried from the node itself."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _TIMEOUT_S = 20.0
 async def parameters_of(platform: str, node: str) -> str:
     """Return the parameters of a node as YAML.
 
-    A process of its own joins the platform for it: the viewer itself stays outside.
+    Runs a separate process that joins the platform; the viewer itself does not join.
     """
     command = own_program("rmw_manycore_py.cli", "param", "dump", "--platform", platform, node)
     process = await asyncio.create_subprocess_exec(

@@ -1,14 +1,12 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The server of the page: 127.0.0.1 only."""
+"""Web server of the page, on 127.0.0.1 only."""
 
 from __future__ import annotations
 
 import asyncio
 import contextlib
-import errno
-import socket
 import tempfile
-from collections.abc import AsyncIterator, Awaitable, Callable
+from collections.abc import AsyncIterator, Awaitable
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +14,8 @@ from aiohttp import WSMsgType, web
 
 from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.picture.drawing import stylesheet
-from rmw_manycore_py.view.access import ADDRESS, Access
+from rmw_manycore_py.view.access import Access
+from rmw_manycore_py.view.listener import Listener
 from rmw_manycore_py.view.page_state import PageState
 from rmw_manycore_py.view.parameters import parameters_of
 from rmw_manycore_py.view.tracing import Tracing
@@ -27,45 +26,22 @@ _MAX_REQUEST_BYTES = 4096
 _SHUTDOWN_S = 1.0
 
 
-def listen(port: int) -> socket.socket:
-    """Return a socket that listens; port 0 = any that is free."""
-    try:
-        return socket.create_server((ADDRESS, port))
-    except OSError as error:
-        if error.errno not in (errno.EADDRINUSE, errno.EACCES):
-            raise ManycoreError(f"cannot listen on {ADDRESS}:{port}: {error.strerror}") from error
-        what = "in use, maybe by another manycore view"
-        if error.errno == errno.EACCES:
-            what = "not for this user"
-        raise ManycoreError(
-            f"port {port} is {what}; choose another: --port N, 0 for any"
-        ) from error
-
-
-def serve(platform: str, port: int, period_s: float, announce: Callable[[str], None]) -> None:
-    """Serve the page until a signal ends this process.
-
-    :param announce: called with the link, once a browser can open it.
-    """
-    with listen(port) as listening, tempfile.TemporaryDirectory(prefix="manycore-view-") as kept:
-        own_port = listening.getsockname()[1]
-        access = Access(own_port)
-        app = application(platform, period_s, access, Path(kept))
-
-        async def say(_app: web.Application) -> None:
-            announce(access.link(own_port))
-
-        app.on_startup.append(say)
-        web.run_app(app, sock=listening, print=None, access_log=None, shutdown_timeout=_SHUTDOWN_S)
+def serve(platform: str, listener: Listener, period_s: float) -> None:
+    """Serve the page until a signal."""
+    with tempfile.TemporaryDirectory(prefix="manycore-view-") as kept:
+        app = application(platform, period_s, Access(listener), Path(kept))
+        web.run_app(
+            app, sock=listener.socket, print=None, access_log=None, shutdown_timeout=_SHUTDOWN_S
+        )
 
 
 def application(platform: str, period_s: float, access: Access, kept: Path) -> web.Application:
-    """Return the application: page, live data, traces."""
+    """Return the web application: page, live data, traces."""
     pages = Pages(Viewer(platform, period_s), Tracing(platform, kept))
     app = web.Application(middlewares=[access.check], client_max_size=_MAX_REQUEST_BYTES)
     app.cleanup_ctx.append(pages.looking)
     app.on_shutdown.append(pages.close)
-    root = f"/{access.token}"
+    root = f"/{access.listener.token}"
     app.add_routes(
         [
             web.get(f"{root}/", pages.index),
@@ -83,7 +59,7 @@ def application(platform: str, period_s: float, access: Access, kept: Path) -> w
 
 
 class Pages:
-    """Handlers of the requests."""
+    """Request handlers."""
 
     def __init__(self, viewer: Viewer, tracing: Tracing) -> None:
         self._viewer = viewer
@@ -91,7 +67,7 @@ class Pages:
         self._sockets: set[web.WebSocketResponse] = set()
 
     async def looking(self, _app: web.Application) -> AsyncIterator[None]:
-        """Look at the platform while the server runs."""
+        """Watch the platform while the server runs."""
         task = asyncio.create_task(self._viewer.run())
         yield
         task.cancel()
@@ -99,7 +75,7 @@ class Pages:
             await task
 
     async def close(self, _app: web.Application) -> None:
-        """Tell the pages that the server ends."""
+        """Notify the pages that the server stops."""
         for live in list(self._sockets):
             await live.close(message=b"manycore view has ended")
 
@@ -108,18 +84,18 @@ class Pages:
         return web.FileResponse(_PAGE / "index.html")
 
     async def style(self, _request: web.Request) -> web.StreamResponse:
-        """Send the style of the picture."""
+        """Send the style sheet of the picture."""
         return web.Response(text=stylesheet(), content_type="text/css")
 
     async def picture(self, _request: web.Request) -> web.StreamResponse:
-        """Send the picture as it is now, as a file of its own."""
+        """Send the current picture as a standalone SVG."""
         chip = self._viewer.chip
         if chip is None:
             return _problem(404, self._viewer.state)
         return web.Response(text=chip.svg(self._viewer.marks), content_type="image/svg+xml")
 
     async def live(self, request: web.Request) -> web.StreamResponse:
-        """Send what changes, look by look, until the page is closed."""
+        """Send updates with each look until the page is closed."""
         live = web.WebSocketResponse(heartbeat=20, max_msg_size=_MAX_REQUEST_BYTES)
         await live.prepare(request)
         self._sockets.add(live)
@@ -155,13 +131,13 @@ class Pages:
                         one.cancel()
 
     async def start_trace(self, _request: web.Request) -> web.StreamResponse:
-        """Begin a trace."""
+        """Start a trace."""
         if (absence := self._absence()) is not None:
             return absence
         return await _answered(asyncio.to_thread(self._tracing.start))
 
     async def stop_trace(self, _request: web.Request) -> web.StreamResponse:
-        """End a trace and save it."""
+        """Stop a trace and save it."""
         if (absence := self._absence()) is not None:
             return absence
         return await _answered(asyncio.to_thread(self._tracing.stop))
@@ -170,19 +146,19 @@ class Pages:
         """Send a saved trace."""
         path = self._tracing.file(request.match_info["name"])
         if path is None:
-            return _problem(404, "there is no such trace")
+            return _problem(404, "no such trace")
         said = {"Content-Disposition": f'attachment; filename="{path.name}"'}
         return web.FileResponse(path, headers=said)
 
     async def parameters(self, request: web.Request) -> web.StreamResponse:
-        """Ask a node for its parameters, which joins the platform: one that ended stays ended."""
+        """Query a node's parameters, unless the platform has ended: that would restart it."""
         if (absence := self._absence()) is not None:
             return absence
         node = request.query.get("node", "")
         look = self._viewer.look
         known = look is not None and any(node in member.nodes for member in look.graph.members)
         if not known:
-            return _problem(404, f"there is no node '{node}'")
+            return _problem(404, f"no node '{node}'")
         return await _answered(parameters_of(self._viewer.platform, node))
 
     def _absence(self) -> web.StreamResponse | None:
@@ -190,7 +166,7 @@ class Pages:
 
 
 async def _answered(work: Awaitable[Any]) -> web.StreamResponse:
-    """Return the result of some work as JSON, or what is wrong."""
+    """Return the awaited result as JSON, or an error."""
     try:
         return web.json_response({"result": await work})
     except ManycoreError as error:

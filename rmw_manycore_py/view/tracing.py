@@ -1,24 +1,24 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The button that starts a trace, and what becomes of it."""
+"""Traces started from the page."""
 
 from __future__ import annotations
 
 import itertools
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from rmw_manycore_py import _transport
 from rmw_manycore_py.native_errors import translate_native_errors
-from rmw_manycore_py.trace.chains import Messages
-from rmw_manycore_py.trace.files.saving import save_recorded
-from rmw_manycore_py.trace.latency import ChainLatency, latencies
 
-# Of each thread: half a minute at thousands of messages per second.
+if TYPE_CHECKING:
+    from rmw_manycore_py.trace.latency import ChainLatency
+
+# Per thread: half a minute at thousands of messages per second.
 RING_EVENTS = 1 << 18
 
 
 class Tracing:
-    """Traces of one platform, saved into a directory until the viewer ends."""
+    """Traces of one platform, stored in a directory until the viewer ends."""
 
     def __init__(self, platform: str, directory: Path) -> None:
         self._platform = platform
@@ -26,14 +26,19 @@ class Tracing:
         self._numbers = itertools.count(1)
 
     def start(self) -> None:
-        """Begin a trace of the whole platform."""
+        """Start a trace of the whole platform."""
         with translate_native_errors():
             _transport.start_trace(
                 self._platform, clusters=[], nodes=[], events=RING_EVENTS, discard=False
             )
 
     def stop(self) -> dict[str, Any]:
-        """End the trace if it is on, save what was recorded, and evaluate its chains."""
+        """Stop the trace if it is on, save it, and analyse its chains."""
+        # Loaded when needed: the formats of trace files would delay the first picture.
+        from rmw_manycore_py.trace.chains import Messages
+        from rmw_manycore_py.trace.files.saving import save_recorded
+        from rmw_manycore_py.trace.latency import latencies
+
         with translate_native_errors():
             if _transport.trace_state(self._platform).started_ns:
                 _transport.stop_trace(self._platform)
@@ -49,12 +54,12 @@ class Tracing:
         }
 
     def file(self, name: str) -> Path | None:
-        """Return a saved trace by its name."""
+        """Return the path of a saved trace; None for an unknown name."""
         path = self._directory / name
         return path if path.parent == self._directory and path.is_file() else None
 
 
 def _chain_row(chain: ChainLatency) -> dict[str, Any]:
-    """Return a chain without the parts that have no sample: JSON has no NaN."""
+    """Return a chain without parts that have no samples: JSON has no NaN."""
     row = chain.row()
     return {**row, "parts": [part for part in row["parts"] if part["count"]]}

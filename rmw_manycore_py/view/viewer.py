@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What all pages see: the latest look, its picture, and what happened before."""
+"""State shared by all pages: latest look, its picture, and earlier events."""
 
 from __future__ import annotations
 
@@ -10,34 +10,34 @@ from typing import Any
 
 from rmw_manycore_py import _transport
 from rmw_manycore_py.errors import ManycoreError
-from rmw_manycore_py.look.happenings import Happening
+from rmw_manycore_py.look.events import Event
 from rmw_manycore_py.look.watch import Look, Watch
 from rmw_manycore_py.picture.chip import Chip
 from rmw_manycore_py.picture.marks import Marks
 from rmw_manycore_py.view.history import History
 
-_KEPT_HAPPENINGS = 500
+_KEPT_EVENTS = 500
 
 
 class Viewer:
-    """Looks at a platform over and over, and lets pages wait for the next look."""
+    """Looks at a platform periodically, and notifies pages of each look."""
 
     def __init__(self, platform: str, period_s: float) -> None:
         self.platform = platform
         self._period_s = period_s
         self._watch = Watch(platform)
         self._next = asyncio.Event()
-        self.look: Look | None = None  # the latest, also of a platform that has ended
+        self.look: Look | None = None  # latest look, also of an ended platform
         self.chip: Chip | None = None
         self.marks: Marks = {}
         self.state = f"waiting for platform {platform} to start"
         self.is_there = False
         self.history = History()
-        self.happenings: deque[tuple[int, Happening]] = deque(maxlen=_KEPT_HAPPENINGS)
+        self.events: deque[tuple[int, Event]] = deque(maxlen=_KEPT_EVENTS)
         self._happened = 0
 
     async def run(self) -> None:
-        """Look until cancelled; a platform may start and end meanwhile."""
+        """Look until cancelled; the platform may start and end meanwhile."""
         try:
             due_s = time.monotonic()
             while True:
@@ -58,7 +58,7 @@ class Viewer:
             look = await asyncio.to_thread(self._watch.look)
         except (_transport.PlatformError, ManycoreError) as error:
             self.is_there = False
-            self.state = f"platform {self.platform} cannot be looked at: {error}"
+            self.state = f"platform {self.platform} cannot be read: {error}"
             return
         if look is None:
             self._note_end()
@@ -67,7 +67,7 @@ class Viewer:
 
     def _show(self, look: Look) -> None:
         if not self.is_there:
-            self._note((Happening("platform", f"platform {self.platform} is there"),))
+            self._note((Event("platform", f"platform {self.platform} has started"),))
         self.is_there, self.state = True, f"platform {self.platform}"
         if self.chip is None or self.look is None or not self.chip.fits(look, self.look):
             self.chip = Chip.of(look)
@@ -82,12 +82,12 @@ class Viewer:
             self._note(self._watch.last_words)
         self.is_there = False
 
-    def _note(self, happened: tuple[Happening, ...]) -> None:
-        for happening in happened:
+    def _note(self, happened: tuple[Event, ...]) -> None:
+        for event in happened:
             self._happened += 1
-            self.happenings.append((self._happened, happening))
+            self.events.append((self._happened, event))
 
     def happened_since(self, number: int) -> tuple[int, list[dict[str, Any]]]:
-        """Return the number of the last happening, and all after `number`."""
-        rows = [happening.row() for own, happening in self.happenings if own > number]
+        """Return the number of the last event, and all events after `number`."""
+        rows = [event.row() for own, event in self.events if own > number]
         return self._happened, rows

@@ -1,2 +1,2 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Playing recordings, on a platform or in a DDS domain."""
+"""Plays recordings on a platform or in a DDS domain."""

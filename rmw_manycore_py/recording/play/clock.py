@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The topic /clock of a player: where in the recording it is, for nodes with use_sim_time."""
+"""Publishes /clock for a player: the position in the recording, for use_sim_time."""
 
 from __future__ import annotations
 
@@ -10,23 +10,25 @@ from rmw_manycore_bridge import types
 from rmw_manycore_py._transport import Qos
 from rmw_manycore_py.recording.play.position import Position
 from rmw_manycore_py.recording.play.program import CLOCK_TOPIC
-from rmw_manycore_py.recording.play.stage import Stage, Voice
+from rmw_manycore_py.recording.play.stage import RawPublisher, Stage
 
 _TYPE = "rosgraph_msgs/msg/Clock"
 _NS_PER_S = 1_000_000_000
 
 
 class Clock:
-    """Publishes in a thread of its own, also while the player is paused."""
+    """Publishes in its own thread, also while paused."""
 
     def __init__(self, stage: Stage, position: Position, rate_hz: float) -> None:
         self._position, self._period_s = position, 1 / rate_hz
-        self._voice: Voice = stage.publisher(CLOCK_TOPIC, _TYPE, types.hash_of(_TYPE), Qos(depth=1))
+        self._publisher: RawPublisher = stage.publisher(
+            CLOCK_TOPIC, _TYPE, types.hash_of(_TYPE), Qos(depth=1)
+        )
         self._over = threading.Event()
         self._thread = threading.Thread(target=self._run, name="clock")
 
     def start(self) -> None:
-        """Publish from now on."""
+        """Start publishing."""
         self._thread.start()
 
     def _run(self) -> None:
@@ -36,15 +38,15 @@ class Clock:
 
     def tell(self) -> None:
         """Publish the time."""
-        self._voice.publish(clock_message(self._position.at_ns()))
+        self._publisher.publish(clock_message(self._position.at_ns()))
 
     def stop(self) -> None:
-        """End the thread."""
+        """Stop the thread."""
         self._over.set()
         self._thread.join()
 
 
 def clock_message(time_ns: int) -> bytes:
-    """Return a rosgraph_msgs/msg/Clock in CDR."""
+    """Return a serialized rosgraph_msgs/msg/Clock."""
     seconds, rest = divmod(time_ns, _NS_PER_S)
     return struct.pack("<BBHiI", 0, 1, 0, seconds, rest)

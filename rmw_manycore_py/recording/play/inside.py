@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The platform as a stage: a member process without ROS."""
+"""Plays on the platform, as a member process without ROS."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ import os
 from rmw_manycore_py import _transport
 from rmw_manycore_py._transport import Qos
 from rmw_manycore_py.native_errors import translate_native_errors
-from rmw_manycore_py.recording.place import own_cluster
-from rmw_manycore_py.recording.play.stage import Voice
+from rmw_manycore_py.own_place import own_cluster
+from rmw_manycore_py.recording.play.stage import RawPublisher
 
 
 class Inside:
-    """Types need not be installed: messages are published as they were recorded."""
+    """Publishes recorded messages as they are; types need not be installed."""
 
     def __init__(self, platform: str) -> None:
         with translate_native_errors():
@@ -21,24 +21,24 @@ class Inside:
             self._process = _transport.Process(platform, own_cluster(), None, label)
 
     def types_of(self, topic: str) -> dict[str, str]:
-        """Return the types that others have of a topic, each with its hash, "" if unknown."""
+        """Return the types used by others on a topic, with their hashes ("" if unknown)."""
         with translate_native_errors():
             endpoints = self._process.endpoints_of(topic)
         return {e.type: e.type_hash for e in endpoints if e.role == "topic"}
 
-    def publisher(self, topic: str, type_name: str, type_hash: str, qos: Qos) -> Voice:
-        """Return a publisher."""
+    def publisher(self, topic: str, type_name: str, type_hash: str, qos: Qos) -> RawPublisher:
+        """Create a publisher."""
         with translate_native_errors(topic):
-            return _InsideVoice(
+            return _Publisher(
                 topic, self._process.publisher(topic, type_name, qos, type_hash=type_hash)
             )
 
     def close(self) -> None:
-        """Leave; what was published is with its subscriptions."""
+        """Leave the platform; subscriptions already have all published messages."""
         self._process.close()
 
 
-class _InsideVoice:
+class _Publisher:
     def __init__(self, topic: str, publisher: _transport.Publisher) -> None:
         self._topic, self._publisher = topic, publisher
 

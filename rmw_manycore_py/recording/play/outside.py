@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""A DDS domain as a stage: rclpy on Fast DDS, and its serialized messages."""
+"""Plays in a DDS domain: rclpy on Fast DDS, with serialized messages."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ from rmw_manycore_bridge import types
 from rmw_manycore_bridge.outside import Outside as Domain
 from rmw_manycore_bridge.policies import to_rclpy
 from rmw_manycore_py._transport import Qos
-from rmw_manycore_py.recording.play.stage import Voice
+from rmw_manycore_py.recording.play.stage import RawPublisher
 from rmw_manycore_py.recording.type_hash import type_hash_of
 from rmw_manycore_py.ros.domain import ros_domain
 
-# How long reliable subscribers are waited for at the end; those that stand still get no more.
-_PATIENCE = Duration(seconds=1)
+# Maximum wait for reliable subscribers at the end.
+_TIMEOUT = Duration(seconds=1)
 
 
 class Outside:
-    """Needs the types of what it plays."""
+    """Publishes in the domain; requires the types to be installed."""
 
     def __init__(self) -> None:
         name = f"_manycore_play_{os.getpid()}"
@@ -30,18 +30,20 @@ class Outside:
         self._publishers: list[Any] = []
 
     def types_of(self, topic: str) -> dict[str, str]:
-        """Return the types that others have of a topic, as far as they are known by now."""
+        """Return the types used by others on a topic, as far as discovered."""
         others = [*self._domain.publishers(topic), *self._domain.subscriptions(topic)]
         return {other.topic_type: type_hash_of(other) for other in others}
 
-    def publisher(self, topic: str, type_name: str, type_hash: str, qos: Qos) -> Voice:
-        """Return a publisher.
+    def publisher(self, topic: str, type_name: str, type_hash: str, qos: Qos) -> RawPublisher:
+        """Create a publisher.
 
-        :raises ImportError: when its type is not installed, or is another one by its hash.
+        :raises ImportError: if its type is not installed, or has another hash.
         """
         installed = types.hash_of(type_name)
         if installed and type_hash not in ("", installed):
-            raise ImportError(f"{type_name} is another one here: {installed}, not {type_hash}")
+            raise ImportError(
+                f"{type_name} has another definition here: {installed}, not {type_hash}"
+            )
         publisher = self._domain.node.create_publisher(
             types.load(type_name),
             topic,
@@ -49,11 +51,11 @@ class Outside:
             event_callbacks=PublisherEventCallbacks(use_default_callbacks=False),
         )
         self._publishers.append(publisher)
-        voice: Voice = publisher  # rclpy's publishers take serialized messages, too
-        return voice
+        raw: RawPublisher = publisher  # rclpy publishers accept serialized messages
+        return raw
 
     def close(self) -> None:
-        """Leave, once reliable subscribers have what was published."""
+        """Leave after reliable subscribers have acknowledged everything."""
         for publisher in self._publishers:
-            publisher.wait_for_all_acked(_PATIENCE)
+            publisher.wait_for_all_acked(_TIMEOUT)
         self._domain.close()

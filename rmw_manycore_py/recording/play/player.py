@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""A player: publishes what was recorded, each message when it is its turn."""
+"""Publishes recorded messages with their original timing."""
 
 from __future__ import annotations
 
@@ -15,23 +15,23 @@ from rmw_manycore_py.recording.play.clock import Clock
 from rmw_manycore_py.recording.play.position import Position
 from rmw_manycore_py.recording.play.program import Program, offer_of
 from rmw_manycore_py.recording.play.read_ahead import ReadAhead
-from rmw_manycore_py.recording.play.stage import Stage, Voice
+from rmw_manycore_py.recording.play.stage import RawPublisher, Stage
 from rmw_manycore_py.recording.recording import Recording
 
-# Python lets a thread run so long before another one that is due; by default it is 5 ms.
+# Python's thread switch interval; the default of 5 ms would delay messages.
 _SWITCH_S = 0.0005
 _NS_PER_S = 1_000_000_000
 
 
 @dataclass
 class Tally:
-    """What was played, and how late each message was (ns); of a long one only the newest."""
+    """Number of played messages, and their lateness (ns), bounded to the newest ones."""
 
     messages: int = 0
     late_ns: list[int] = field(default_factory=list)
 
     def add(self, late_ns: int) -> None:
-        """Count a message."""
+        """Add a message."""
         if len(self.late_ns) < _KEPT:
             self.late_ns.append(late_ns)
         else:
@@ -43,7 +43,7 @@ _KEPT = 1_000_000
 
 
 class Player:
-    """Plays in a thread of its own."""
+    """Plays in its own thread."""
 
     def __init__(
         self,
@@ -56,15 +56,17 @@ class Player:
         delay_s: float = 0.0,
         clock_hz: float | None = None,
     ) -> None:
-        """Make the publishers.
+        """Create the publishers.
 
-        :raises ManycoreError: when a topic cannot be played.
+        :raises ManycoreError: if a topic cannot be played.
         """
         self._recording, self._position = recording, position
         self._loops, self._delay_s = loops, delay_s
         self.start_ns, self.end_ns = program.span_ns(recording)
         rows = program.topics_of(recording, has_clock=clock_hz is not None)
-        self._voices = {row.name: _voice(stage, row, program.new_name(row.name)) for row in rows}
+        self._publishers = {
+            row.name: _publisher(stage, row, program.new_name(row.name)) for row in rows
+        }
         self._go_to_start()
         self._clock = None if clock_hz is None else Clock(stage, position, clock_hz)
         self.tally = Tally()
@@ -73,12 +75,12 @@ class Player:
         self._ended: Callable[[], None] = lambda: None
 
     def start(self, ended: Callable[[], None]) -> None:
-        """Play from now on; `ended` is called at the end."""
+        """Start playing; `ended` is called at the end."""
         self._ended = ended
         self._thread.start()
 
     def stop(self) -> None:
-        """End, if it has not ended yet."""
+        """Stop, unless already ended."""
         self._position.stop()
         if self._thread.ident is not None:
             self._thread.join()
@@ -107,36 +109,38 @@ class Player:
         self._position.jump(self.start_ns - round(lead_ns))
 
     def _play_once(self) -> bool:
-        """Play from the begin to the end; tell whether it came so far."""
+        """Play from start to end; return whether it was completed."""
         self._go_to_start()
-        ahead = ReadAhead(self._recording.messages(self._voices, self.start_ns, self.end_ns + 1))
+        ahead = ReadAhead(
+            self._recording.messages(self._publishers, self.start_ns, self.end_ns + 1)
+        )
         try:
             for message in ahead:
                 late_ns = self._position.wait_until(message.recorded_ns)
                 if late_ns is None:
                     return False
-                self._voices[message.topic].publish(message.data)
+                self._publishers[message.topic].publish(message.data)
                 self.tally.add(late_ns)
         finally:
             ahead.close()
         return not self._position.is_over
 
 
-def _voice(stage: Stage, row: TopicRow, name: str) -> Voice:
+def _publisher(stage: Stage, row: TopicRow, name: str) -> RawPublisher:
     """Return the publisher of a topic.
 
-    :raises ManycoreError: when others have another type there, or the type is missing.
+    :raises ManycoreError: if others use another type there, or the type is missing.
     """
     for type_name, type_hash in stage.types_of(name).items():
         if type_name != row.type:
             raise ManycoreError(
-                f"{name} is {type_name} here, and {row.type} in the recording: play it under "
-                f"another name (--remap {row.name}:=/NAME), or not (--exclude-topics {row.name})"
+                f"{name} has type {type_name} here, but {row.type} in the recording: play it under "
+                f"another name (--remap {row.name}:=/NAME) or skip it (--exclude-topics {row.name})"
             )
         if row.type_hash and type_hash not in ("", row.type_hash):
             raise ManycoreError(
                 f"{name}: {type_name} has another definition here than in the recording "
-                f"({type_hash}, not {row.type_hash}): do not play it (--exclude-topics {row.name})"
+                f"({type_hash}, not {row.type_hash}): skip it (--exclude-topics {row.name})"
             )
     try:
         return stage.publisher(name, row.type, row.type_hash, offer_of(row.offers))

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Where in a recording a player is: a time that runs at a rate, and stands while it is paused."""
+"""Position of a player: a clock with a rate that can be paused."""
 
 from __future__ import annotations
 
@@ -8,41 +8,41 @@ import time
 from collections.abc import Callable
 
 _NS_PER_S = 1_000_000_000
-# A key makes it so much faster or slower, as of `ros2 bag play`.
+# Change of the rate per key press, as in `ros2 bag play`.
 _RATE_STEP = 1.1
 _MIN_RATE, _MAX_RATE = 0.01, 1000.0
 
 
 class Position:
-    """A time of the recording. All threads."""
+    """Time in the recording. Thread-safe."""
 
     def __init__(
         self, rate: float, *, paused: bool, now_ns: Callable[[], int] = time.monotonic_ns
     ) -> None:
         self._now_ns = now_ns
         self._rate, self._is_paused = rate, paused
-        self._at_ns, self._since_ns = 0, now_ns()  # the position, and when it was there
-        self._steps = 0  # messages to play although it is paused
+        self._at_ns, self._since_ns = 0, now_ns()  # position, and when it was set
+        self._steps = 0  # messages to play while paused
         self._is_over = False
         self._changed = threading.Condition()
 
     @property
     def rate(self) -> float:
-        """Return how much faster than recorded it runs."""
+        """Return the playback rate."""
         return self._rate
 
     @property
     def is_paused(self) -> bool:
-        """Tell whether it stands."""
+        """Return whether it is paused."""
         return self._is_paused
 
     @property
     def is_over(self) -> bool:
-        """Tell whether it was stopped."""
+        """Return whether it was stopped."""
         return self._is_over
 
     def at_ns(self) -> int:
-        """Return where it is."""
+        """Return the current position in ns."""
         with self._changed:
             return self._at(self._now_ns())
 
@@ -52,7 +52,7 @@ class Position:
         return self._at_ns + int((now_ns - self._since_ns) * self._rate)
 
     def jump(self, at_ns: int) -> None:
-        """Go to a place."""
+        """Set the position."""
         with self._changed:
             self._anchor(at_ns)
 
@@ -61,24 +61,24 @@ class Position:
         self._changed.notify_all()
 
     def toggle_pause(self) -> None:
-        """Stand still, or go on."""
+        """Pause or resume."""
         with self._changed:
             self._anchor(self._at(self._now_ns()))
             self._is_paused = not self._is_paused
             self._steps = 0
 
     def step(self) -> None:
-        """Let the next message be played, while it is paused."""
+        """Play the next message while paused."""
         with self._changed:
             self._steps += self._is_paused
             self._changed.notify_all()
 
     def faster(self) -> None:
-        """Run faster from here on."""
+        """Increase the rate."""
         self._change_rate(_RATE_STEP)
 
     def slower(self) -> None:
-        """Run slower from here on."""
+        """Decrease the rate."""
         self._change_rate(1 / _RATE_STEP)
 
     def _change_rate(self, factor: float) -> None:
@@ -87,13 +87,13 @@ class Position:
             self._rate = min(max(self._rate * factor, _MIN_RATE), _MAX_RATE)
 
     def stop(self) -> None:
-        """End all waiting, now and later."""
+        """Stop; all current and future waits return."""
         with self._changed:
             self._is_over = True
             self._changed.notify_all()
 
     def wait_until(self, at_ns: int) -> int | None:
-        """Return, once it is there, by how many ns that is late; None when it was stopped."""
+        """Wait for a position; return the lateness in ns, or None if stopped."""
         with self._changed:
             while not self._is_over:
                 now_ns = self._now_ns()

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What is played: which topics of a recording, as which, and from when to when."""
+"""What is played: topics, their names, and the time span."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ from rmw_manycore_py.recording.selection import Selection
 
 CLOCK_TOPIC = "/clock"
 _NS_PER_S = 1_000_000_000
-# DDS does not tell how much history a publisher keeps; of latched topics more than was kept would
-# be older maps, of others it is room for a burst.
+# Minimum depth, since DDS does not announce a publisher's history. A larger depth of latched topics
+# would also deliver outdated messages; for others it only absorbs bursts.
 _LEAST_DEPTH = 10
 
 
 @dataclass(frozen=True)
 class Program:
-    """Topics of a recording and the part of it that is played."""
+    """Selection of topics and of a part of a recording."""
 
     selection: Selection
     remappings: dict[str, str] = field(default_factory=dict)
@@ -29,9 +29,9 @@ class Program:
     duration_s: float | None = None
 
     def topics_of(self, recording: Recording, *, has_clock: bool) -> list[TopicRow]:
-        """Return the topics that are played; a recorded /clock is not, where there is another.
+        """Return the topics to play; a recorded /clock is excluded if the player publishes one.
 
-        :raises ManycoreError: when one cannot be, or none is left.
+        :raises ManycoreError: if one cannot be played, or none is left.
         """
         chosen = [row for row in recording.topics if self.selection.takes(row.name, row.type)]
         missing = set(self.selection.plain_names) - {row.name for row in chosen}
@@ -50,13 +50,13 @@ class Program:
         return chosen
 
     def new_name(self, topic: str) -> str:
-        """Return the name that a topic is played under."""
+        """Return the name under which a topic is played."""
         return self.remappings.get(topic, topic)
 
     def span_ns(self, recording: Recording) -> tuple[int, int]:
-        """Return the time of the first message, and the time that none is later than.
+        """Return the times of the first and of the last possible message.
 
-        :raises ManycoreError: when it begins behind the end.
+        :raises ManycoreError: if the start is after the end.
         """
         span = recording.span
         start_ns = span.start_ns + round(self.start_offset_s * _NS_PER_S)
@@ -88,10 +88,10 @@ def _check(row: TopicRow, chosen: Iterable[TopicRow]) -> None:
 
 
 def offer_of(offers: Sequence[Qos]) -> Qos:
-    """Return what a player offers: all that any of the recorded publishers did.
+    """Return the QoS of a player: at least what any of the recorded publishers offered.
 
-    So each subscription that heard one of them hears the player. Depths add up, as a late
-    subscriber of a latched topic gets what each publisher had kept.
+    Each subscription that matched one of them matches the player. Depths add up, since a late
+    joiner of a latched topic gets the history of each publisher.
     """
     if not offers:
         return Qos()

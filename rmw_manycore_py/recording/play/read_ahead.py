@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""A thread that reads, so that a slow disk does not make messages late."""
+"""Read-ahead thread, so that a slow disk does not delay messages."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ from collections.abc import Iterable, Iterator
 
 from rmw_manycore_py.recording.input import Recorded
 
-# So much of the recording is in memory, and at least a message.
+# Maximum memory for messages read ahead; at least one message.
 MAX_BYTES = 64 << 20
 
 
 class ReadAhead:
-    """Yields what another iterator does; an error where that had one."""
+    """Yields the items of another iterator, and raises its errors."""
 
     def __init__(self, messages: Iterable[Recorded]) -> None:
         self._messages = messages
@@ -59,7 +59,7 @@ class ReadAhead:
             raise self._error
 
     def close(self) -> None:
-        """End the thread."""
+        """Stop the thread."""
         with self._changed:
             self._is_over = True
             self._ready.clear()

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What a player needs of the platform, or of a DDS domain."""
+"""Interface of a player to the platform or a DDS domain."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Protocol
 from rmw_manycore_py._transport import Qos
 
 
-class Voice(Protocol):
+class RawPublisher(Protocol):
     """A publisher."""
 
     def publish(self, data: bytes) -> None:
@@ -16,16 +16,16 @@ class Voice(Protocol):
 
 
 class Stage(Protocol):
-    """Where topics are played to."""
+    """Destination of played topics."""
 
     def types_of(self, topic: str) -> dict[str, str]:
-        """Return the types that others have of a topic, each with its hash, "" if unknown."""
+        """Return the types used by others on a topic, with their hashes ("" if unknown)."""
 
-    def publisher(self, topic: str, type_name: str, type_hash: str, qos: Qos) -> Voice:
-        """Return a publisher.
+    def publisher(self, topic: str, type_name: str, type_hash: str, qos: Qos) -> RawPublisher:
+        """Create a publisher.
 
-        :raises ImportError: when its type is needed, and is not installed.
+        :raises ImportError: if its type is required and not installed.
         """
 
     def close(self) -> None:
-        """Leave, once reliable subscribers have what was published."""
+        """Leave after reliable subscribers have received everything."""

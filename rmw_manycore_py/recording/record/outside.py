@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The side of a DDS domain: rclpy on Fast DDS, and its serialized messages."""
+"""Records in a DDS domain: rclpy on Fast DDS, with serialized messages."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from rmw_manycore_bridge.outside import Outside as Domain
 from rmw_manycore_bridge.policies import from_rclpy, to_rclpy
 from rmw_manycore_bridge.rcl import RawReader
 from rmw_manycore_py._transport import Qos
-from rmw_manycore_py.recording.record.side import BATCH, Ears, Heard, Offer
+from rmw_manycore_py.recording.record.side import BATCH, Heard, Offer, RawSubscription
 from rmw_manycore_py.recording.type_hash import type_hash_of
 from rmw_manycore_py.ros.domain import ros_domain
 
 
 class Outside:
-    """Sleeps on a wait set, woken by messages and by changes of the domain's graph."""
+    """Blocks on a wait set, woken by messages and graph changes."""
 
     def __init__(self) -> None:
         self._domain = Domain(
@@ -32,25 +32,25 @@ class Outside:
         self.stale = True
 
     def offers(self) -> dict[str, list[Offer]]:
-        """Return the publishers there are, by topic."""
+        """Return the publishers by topic."""
         return {
             topic: [_offer(publisher) for publisher in self._domain.publishers(topic)]
             for topic in self._domain.published(lambda _: True)
         }
 
-    def subscribe(self, topic: str, offer: Offer, request: Qos, heard: Heard) -> Ears:
+    def subscribe(self, topic: str, offer: Offer, request: Qos, heard: Heard) -> RawSubscription:
         """Subscribe to a topic.
 
-        :raises ImportError: when its type is not installed.
+        :raises ImportError: if its type is not installed.
         """
-        return _OutsideEars(self._domain, topic, types.load(offer.type), request, heard)
+        return _Subscription(self._domain, topic, types.load(offer.type), request, heard)
 
     def turn(self) -> None:
-        """Hand on what has arrived; sleep until there is something, or publishers come or go."""
+        """Deliver arrived messages; block until there are more, or publishers change."""
         self._domain.turn(None)
 
     def wake(self) -> None:
-        """End the present or the next sleep."""
+        """Interrupt the current or next wait."""
         self._domain.wake()
 
     def close(self) -> None:
@@ -63,8 +63,8 @@ def _offer(publisher: Any) -> Offer:
     return Offer(publisher.topic_type, type_hash_of(publisher), qos)
 
 
-class _OutsideEars:
-    """A subscription in the domain."""
+class _Subscription:
+    """Subscription in the domain."""
 
     kind = "subscription"
 
@@ -81,16 +81,16 @@ class _OutsideEars:
             event_callbacks=SubscriptionEventCallbacks(use_default_callbacks=False),
         )
         self._reader = RawReader(self.entity)
-        self._last: dict[bytes, int] = {}  # numbers, by publisher
+        self._last: dict[bytes, int] = {}  # last sequence number by publisher
         self._lost = 0
         domain.readers.append(self)
 
     def pump_outside(self) -> None:
-        """Hand on what has arrived; for more than that the wait set does not sleep."""
+        """Deliver a batch; the wait set returns at once while there are more."""
         self.take(BATCH)
 
     def take(self, limit: int) -> bool:
-        """Hand on so many messages at most; tell whether there may be more."""
+        """Deliver up to `limit` messages; return whether there may be more."""
         reader = self._reader
         for _ in range(limit):
             if self.entity is None or not reader.take():
@@ -109,11 +109,11 @@ class _OutsideEars:
         self._last[publisher] = max(number, last or 0)
 
     def lost(self) -> int:
-        """Return how many messages are missing between those that came."""
+        """Return the number of gaps in sequence numbers."""
         return self._lost
 
     def close(self) -> None:
-        """End the subscription."""
+        """Destroy the subscription."""
         if self.entity is not None:
             self._domain.readers.remove(self)
             self._reader.close()
@@ -122,4 +122,4 @@ class _OutsideEars:
 
 
 def _never_called(*_: Any) -> None:
-    """Stand in where rclpy wants a callback: messages are taken from the subscription itself."""
+    """Serve as the callback rclpy requires; messages are taken from the subscription."""

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""A recorder: subscribes to chosen topics as publishers come, and has what it takes written."""
+"""Subscribes to selected topics as publishers appear, and queues messages for writing."""
 
 from __future__ import annotations
 
@@ -21,40 +21,40 @@ Tell = Callable[[str], None]
 
 
 class Recorder:
-    """Takes messages in a thread of its own."""
+    """Takes messages in its own thread."""
 
     def __init__(
         self, side: Side, selection: Selection, writing: WritingThread, depth: int, tell: Tell
     ) -> None:
-        """Begin.
+        """Create the recorder.
 
-        :param depth: the least number of messages of a topic that may wait to be taken.
-        :param tell: called with what a user has to know, once for each topic.
+        :param depth: minimum queue depth per topic.
+        :param tell: called with notices for the user, once per topic.
         """
         self._side, self._selection, self._depth = side, selection, depth
         self._writing, self._tell = writing, tell
         self._topics: dict[str, RecordedTopic] = {}
         self._refused: set[str] = set()
         self._stopping = False
-        self.losses: dict[str, int] = {}  # of topics of which messages were lost
+        self.losses: dict[str, int] = {}  # number of lost messages by topic
         self.failure: BaseException | None = None
         self._ended: Callable[[], None] = lambda: None
         self._thread = threading.Thread(target=self._run, name="taking")
 
     def start(self, ended: Callable[[], None]) -> None:
-        """Record from now on; `ended` is called when that fails."""
+        """Start recording; `ended` is called on failure."""
         self._ended = ended
         self._thread.start()
 
     def stop(self) -> None:
-        """Take what has arrived by now, and nothing more."""
+        """Take messages that have arrived, then stop."""
         self._stopping = True
         self._side.wake()
         self._thread.join()
 
     @property
     def rows(self) -> list[TopicRow]:
-        """Return the topics that are recorded."""
+        """Return the recorded topics."""
         return [topic.row for topic in list(self._topics.values())]
 
     def _count_losses(self) -> None:
@@ -83,7 +83,7 @@ class Recorder:
             self._ended()
 
     def _follow(self) -> None:
-        """Subscribe to what is new, and as publishers offer it by now."""
+        """Subscribe to new topics, and adapt QoS to current publishers."""
         for name, offers in self._side.offers().items():
             if not self._selection.takes(name, offers[0].type):
                 continue
@@ -94,7 +94,7 @@ class Recorder:
                 self._record(name, offers)
 
     def _types_of(self, name: str, offers: Sequence[Offer]) -> list[str]:
-        """Return the types of a topic by now; with hashes, where one has several definitions."""
+        """Return the current types of a topic; with hashes if one has several definitions."""
         found = {(offer.type, offer.type_hash) for offer in offers}
         if name in self._topics:
             row = self._topics[name].row
@@ -127,12 +127,12 @@ class Recorder:
     def _new_topic(self, name: str, offer: Offer) -> RecordedTopic:
         schema = schema_of(offer.type)
         if offer.type_hash and types.hash_of(offer.type) not in ("", offer.type_hash):
-            schema = NO_SCHEMA  # the installed definition is that of another type
+            schema = NO_SCHEMA  # the installed definition differs
         row = TopicRow(name, offer.type, offer.type_hash, schema)
         return RecordedTopic(row, self._side, self._writing, self._tell)
 
     def _refuse(self, name: str, reason: str) -> None:
-        """Say once why a topic, or a publisher of it, is left out."""
+        """Report once why a topic or a publisher is skipped."""
         if name not in self._refused:
             self._refused.add(name)
             self._tell(f"not recorded: {name} {reason}")

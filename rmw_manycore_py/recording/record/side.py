@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What a recorder needs of the platform, or of a DDS domain."""
+"""Interface of a recorder to the platform or a DDS domain."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Protocol
 
 from rmw_manycore_py._transport import Qos
 
-# So many messages of one topic are taken before another has its turn.
+# Messages taken of one topic before the next topic's turn.
 BATCH = 64
 
 
@@ -22,43 +22,43 @@ class Offer:
     qos: Qos
 
 
-# Called with the data of a message, when it was published (ns since 1970), its publisher, and its
-# number, which counts up by one for each publisher.
+# Called with the data of a message, its source timestamp (ns since 1970), its publisher, and its
+# sequence number, which increases by one per message of a publisher.
 Heard = Callable[[bytes, int, bytes, int], None]
 
 
-class Ears(Protocol):
+class RawSubscription(Protocol):
     """A subscription."""
 
     def take(self, limit: int) -> bool:
-        """Hand on so many messages at most; tell whether there may be more."""
+        """Deliver up to `limit` messages; return whether there may be more."""
 
     def lost(self) -> int:
-        """Return how many messages are known to be lost."""
+        """Return the number of messages known to be lost."""
 
     def close(self) -> None:
-        """End it."""
+        """Destroy the subscription."""
 
 
 class Side(Protocol):
-    """Where topics are. Only `wake` is for other threads."""
+    """Source of topics. Only `wake` may be called by other threads."""
 
-    stale: bool  # publishers may have come or gone; cleared by the next look
+    stale: bool  # publishers may have changed; cleared by the next check
 
     def offers(self) -> dict[str, list[Offer]]:
-        """Return the publishers there are, by topic."""
+        """Return the publishers by topic."""
 
-    def subscribe(self, topic: str, offer: Offer, request: Qos, heard: Heard) -> Ears:
+    def subscribe(self, topic: str, offer: Offer, request: Qos, heard: Heard) -> RawSubscription:
         """Subscribe to a topic.
 
-        :raises ImportError: when its type is needed, and is not installed.
+        :raises ImportError: if its type is required and not installed.
         """
 
     def turn(self) -> None:
-        """Hand on what has arrived; sleep until there is something, or publishers come or go."""
+        """Deliver arrived messages; block until there are more, or publishers change."""
 
     def wake(self) -> None:
-        """End the present or the next sleep."""
+        """Interrupt the current or next wait."""
 
     def close(self) -> None:
-        """Leave."""
+        """Leave the platform or domain."""

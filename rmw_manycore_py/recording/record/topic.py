@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""A topic that is being recorded."""
+"""A recorded topic."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ from collections.abc import Callable, Sequence
 from rmw_manycore_py._transport import Qos
 from rmw_manycore_py.qos import all_reliable, all_transient_local
 from rmw_manycore_py.recording.metadata import TopicRow
-from rmw_manycore_py.recording.record.side import Ears, Offer, Side
+from rmw_manycore_py.recording.record.side import Offer, RawSubscription, Side
 from rmw_manycore_py.recording.record.writing import Taken, WritingThread
 
 
 class RecordedTopic:
-    """Has one subscription, which asks for no more than every publisher offers."""
+    """Has one subscription, with QoS compatible with every publisher."""
 
     def __init__(
         self, row: TopicRow, side: Side, writing: WritingThread, tell: Callable[[str], None]
@@ -22,23 +22,24 @@ class RecordedTopic:
         self.row = row
         self._side, self._writing, self._tell = side, writing, tell
         self._request: Qos | None = None
-        self._ears: Ears | None = None
-        self._lost_before = 0  # by earlier subscriptions
-        self._last: dict[bytes, int] = {}  # numbers, by publisher
+        self._subscription: RawSubscription | None = None
+        self._lost_before = 0  # losses of earlier subscriptions
+        self._last: dict[bytes, int] = {}  # last sequence number by publisher
 
     def follow(self, offers: Sequence[Offer], depth: int) -> None:
-        """Subscribe, or anew where a publisher offers less than is asked for.
+        """Subscribe, or resubscribe if a publisher offers less than requested.
 
-        :raises ImportError: when the type is needed, and is not installed.
+        :raises ImportError: if the type is required and not installed.
         """
         self.row.add_offers(offer.qos for offer in offers)
         request = request_for([offer.qos for offer in offers], depth)
         if self._request is not None and _suffices(self._request, request):
             return
-        ears = self._side.subscribe(self.row.name, offers[0], request, self._heard)
-        # What came meanwhile is in both; the numbers tell.
+        subscription = self._side.subscribe(self.row.name, offers[0], request, self._heard)
+        # Messages that arrive meanwhile are in both subscriptions; sequence numbers identify
+        # duplicates.
         self._leave()
-        self._ears, self._request = ears, request
+        self._subscription, self._request = subscription, request
         for policy in mixed_policies([offer.qos for offer in offers]):
             self._tell(f"{self.row.name}: {policy}")
 
@@ -49,31 +50,31 @@ class RecordedTopic:
         self._writing.write(Taken(self.row, time.time_ns(), published_ns, number, data))
 
     def take_rest(self) -> None:
-        """Take what has arrived by now: no more than the subscription keeps."""
-        if self._ears is not None and self._request is not None:
-            self._ears.take(self._request.depth)
+        """Take the messages that have arrived, at most the queue depth."""
+        if self._subscription is not None and self._request is not None:
+            self._subscription.take(self._request.depth)
 
     def lost(self) -> int:
-        """Return how many messages are known to be lost."""
-        ears = self._ears
-        return self._lost_before + (0 if ears is None else ears.lost())
+        """Return the number of messages known to be lost."""
+        subscription = self._subscription
+        return self._lost_before + (0 if subscription is None else subscription.lost())
 
     def close(self) -> None:
-        """End the subscription."""
+        """Destroy the subscription."""
         self._leave()
 
     def _leave(self) -> None:
-        if self._ears is not None:
+        if self._subscription is not None:
             self.take_rest()
-            self._ears.close()
-            self._lost_before += self._ears.lost()
-            self._ears = None
+            self._subscription.close()
+            self._lost_before += self._subscription.lost()
+            self._subscription = None
 
 
 def request_for(offers: Sequence[Qos], depth: int) -> Qos:
-    """Return what a recorder asks for: no more than every publisher offers.
+    """Return the QoS of the recorder: no stronger than every publisher offers.
 
-    A late subscriber of a latched topic gets what each publisher has kept, so depths add up.
+    Depths add up, since a late joiner of a latched topic gets the history of each publisher.
     """
     return Qos(
         reliability="reliable" if all_reliable(offers) else "best_effort",
@@ -83,7 +84,7 @@ def request_for(offers: Sequence[Qos], depth: int) -> Qos:
 
 
 def _suffices(present: Qos, wanted: Qos) -> bool:
-    """Tell whether a subscription hears all publishers that the wanted one would hear."""
+    """Return whether a subscription matches all publishers that the wanted one would."""
     policies = (
         (present.reliability == "reliable", wanted.reliability == "reliable"),
         (present.durability == "transient_local", wanted.durability == "transient_local"),
@@ -92,10 +93,10 @@ def _suffices(present: Qos, wanted: Qos) -> bool:
 
 
 def mixed_policies(offers: Sequence[Qos]) -> list[str]:
-    """Return what to say of policies that only some publishers offer."""
+    """Return notices about policies that only some publishers offer."""
     said = []
     if len({offer.reliability for offer in offers}) > 1:
-        said.append("some publishers offer best effort: asking all for best effort")
+        said.append("some publishers offer best effort: requesting best effort from all")
     if len({offer.durability for offer in offers}) > 1:
-        said.append("some publishers keep nothing: what the others kept is not recorded")
+        said.append("some publishers are volatile: the history of the others is not recorded")
     return said

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The thread that writes, so that a slow disk does not keep messages from being taken."""
+"""Writer thread, so that a slow disk does not delay taking messages."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.recording.metadata import TopicRow
 from rmw_manycore_py.recording.output import Output
 
-# A kill loses what was taken in this time at most.
+# Maximum time span lost by a kill.
 FLUSH_PERIOD_S = 0.5
 
 
 @dataclass(frozen=True)
 class Taken:
-    """A message that was taken from a topic."""
+    """A message taken from a topic."""
 
     row: TopicRow
     recorded_ns: int
@@ -30,12 +30,12 @@ class Taken:
 
 
 class WritingThread:
-    """Writes messages in the order in which they are given to it."""
+    """Writes messages in the order they are queued."""
 
     _end = object()
 
     def __init__(self, output: Output, max_cache_bytes: int, failed: Callable[[], None]) -> None:
-        """Start; `failed` is called when nothing can be written any more."""
+        """Start; `failed` is called when writing fails."""
         self._output, self._failed = output, failed
         self._max_cache_bytes = max_cache_bytes
         self._waiting: deque[Taken] = deque()
@@ -47,9 +47,9 @@ class WritingThread:
         self._thread.start()
 
     def write(self, taken: Taken) -> None:
-        """Have a message written; waits while the cache is full.
+        """Queue a message; block while the cache is full.
 
-        After a failure nothing is written any more.
+        No-op after a failure.
         """
         with self._changed:
             while self._waiting_bytes > self._max_cache_bytes and self.failure is None:
@@ -60,9 +60,9 @@ class WritingThread:
                 self._changed.notify_all()
 
     def finish(self, rows: list[TopicRow]) -> dict[str, Any]:
-        """Write what waits, and the index; return what metadata.yaml says.
+        """Write pending messages and the index; return the contents of metadata.yaml.
 
-        :raises ManycoreError: when writing has failed; the file has whole chunks up to then.
+        :raises ManycoreError: if writing has failed; the file has complete chunks up to then.
         """
         with self._changed:
             self._ending = True
@@ -81,7 +81,7 @@ class WritingThread:
         ) from self.failure
 
     def _run(self) -> None:
-        flush_s: float | None = None  # when the chunk that is being filled has to be on the disk
+        flush_s: float | None = None  # when the current chunk has to be on disk
         try:
             while (taken := self._next(flush_s)) is not self._end:
                 if isinstance(taken, Taken):
@@ -98,7 +98,7 @@ class WritingThread:
             self._failed()
 
     def _next(self, until_s: float | None) -> Taken | object | None:
-        """Return the next message, the end after the last one, None where `until_s` comes first."""
+        """Return the next message, the end marker, or None at `until_s`."""
         with self._changed:
             while not self._waiting:
                 if self._ending:

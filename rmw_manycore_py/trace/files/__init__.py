@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Saved traces: `.json` for Chrome and Perfetto, `.csv`, Perfetto's protobuf."""
+"""Trace files: `.json` for Chrome and Perfetto, `.csv`, and Perfetto's protobuf."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ SUFFIXES = (".json", ".csv", *PERFETTO)
 
 
 def save(trace: Trace, path: Path) -> None:
-    """Write a trace as the suffix says. A file that was there stays until all is written.
+    """Write a trace in the format of the suffix. Replaces an existing file only when complete.
 
-    :raises ManycoreError: where the file cannot be written.
+    :raises ManycoreError: if the file cannot be written.
     """
     try:
         descriptor, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
@@ -43,9 +43,9 @@ def save(trace: Trace, path: Path) -> None:
 
 
 def load(path: Path) -> Trace:
-    """Read a trace that was saved.
+    """Read a saved trace.
 
-    :raises ManycoreError: where there is none; FileError: where it is not one.
+    :raises ManycoreError: if it cannot be read; FileError if it is no trace.
     """
     try:
         content = path.read_bytes()

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Chrome's trace event format: for chrome://tracing and ui.perfetto.dev, without a dependency."""
+"""Chrome's trace event format, for chrome://tracing and ui.perfetto.dev; no dependencies."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ from rmw_manycore_py.trace.pairs import groups_of, split_by
 from rmw_manycore_py.trace.slices import ARGUMENTS, Slices, category_of, name_of, slices_of
 
 _KEY = "manycore"
-_US = "%d.%03d"  # a time in microseconds, as two numbers
-_SORT = ("what", "endpoint", "is_end_known")  # slices of one sort differ in numbers only
+_US = "%d.%03d"  # a time in microseconds from two integers
+_SORT = ("what", "endpoint", "is_end_known")  # slices of one sort only differ in numbers
 
 
 def write(trace: Trace, file: BinaryIO) -> None:
-    """Write slices, flows and counters, and the events themselves for `read`."""
+    """Write slices, flows and counters, plus the events for `read`."""
     file.write(f'{{"{_KEY}": {json.dumps(to_text(trace))},\n'.encode())
     file.write(b'"displayTimeUnit": "ns",\n"traceEvents": [\n')
     separator = ""
@@ -37,7 +37,7 @@ def write(trace: Trace, file: BinaryIO) -> None:
 
 
 def read(content: bytes, path: Path) -> Trace:
-    """Return the trace that `write` put into a file."""
+    """Return the trace written by `write`."""
     try:
         data = json.loads(content)
     except ValueError as error:
@@ -49,8 +49,8 @@ def read(content: bytes, path: Path) -> Trace:
 
 
 def _pieces(trace: Trace) -> Iterator[list[str]]:
-    """Yield lines; viewers take them in any order."""
-    places: list[str] = []  # of threads, as the viewer is told them
+    """Yield lines, in any order."""
+    places: list[str] = []  # JSON of pid and tid per thread
     for pid, process in enumerate(trace.processes, 1):
         yield list(_process_lines(trace, pid, process))
         for thread in process.threads:
@@ -79,13 +79,13 @@ def _metadata(kind: str, pid: int, tid: int, arguments: dict[str, Any]) -> str:
 
 
 def filled(template: str, *columns: NDArray[Any]) -> list[str]:
-    """Return the template with the values of each row."""
+    """Return the template filled with the values of each row."""
     rows = zip(*(column.tolist() for column in columns), strict=True)
     return list(map(template.__mod__, rows))
 
 
 def in_us(times_ns: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any]]:
-    """Return the two numbers of `_US`."""
+    """Return the two integers of `_US`."""
     return times_ns // 1000, times_ns % 1000
 
 
@@ -94,7 +94,7 @@ def _quoted(name: str) -> str:
 
 
 def _slices(trace: Trace, slices: Slices, place: str) -> Iterator[list[str]]:
-    """Yield the lines of all slices that differ in numbers only."""
+    """Yield the lines of slices that only differ in numbers."""
     sorts = groups_of(tuple(slices[key] for key in _SORT))
     for own in split_by(sorts):
         yield _slice_lines(trace, slices[own], place)
@@ -123,7 +123,7 @@ def _slice_lines(trace: Trace, slices: Slices, place: str) -> list[str]:
 def _flows(flows: NDArray[Any], places: Sequence[str]) -> Iterator[list[str]]:
     numbers = np.arange(1, len(flows) + 1)
     for phase, step in (("s", "write"), ("t", "receive"), ("f", "claim")):
-        # To the slice around this moment, not to the next one.
+        # Bind to the enclosing slice, not to the next one.
         bound = ',"bp":"e"' if phase == "f" else ""
         for thread, place in enumerate(places):
             own = flows[f"{step}_thread"] == thread

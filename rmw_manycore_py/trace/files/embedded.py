@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""A trace as one text, which files for viewers carry along: `latency` and `compare` read it."""
+"""A trace as text embedded in viewer files, from which `latency` and `compare` read it."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from rmw_manycore_py.errors import FileError, Problem, what_is_wrong
 from rmw_manycore_py.trace.events import EVENT, Endpoint, Process, Thread, Trace
 
 VERSION = 1
-_QUICKLY = 1  # zlib's level: a tenth of the time of the usual one
+_QUICKLY = 1  # zlib level; takes a tenth of the default's time
 
 
 class _Strict(BaseModel):
@@ -62,7 +62,7 @@ class _Header(_Strict):
 
 
 def header_of(trace: Trace) -> dict[str, Any]:
-    """Return everything but the events."""
+    """Return everything except the events."""
     processes = [
         {**_fields(p), "threads": [{**_fields(t), "events": len(t.events)} for t in p.threads]}
         for p in trace.processes
@@ -82,7 +82,7 @@ def _fields(row: object) -> dict[str, Any]:
 
 
 def to_text(trace: Trace) -> str:
-    """Return header and events: a line of JSON, a line of base64."""
+    """Return header and events: one line of JSON, one line of base64."""
     parts = [thread.events for _, thread in trace.threads()]
     events = np.concatenate(parts).tobytes() if parts else b""
     packed = base64.b64encode(zlib.compress(events, _QUICKLY)).decode()
@@ -90,7 +90,7 @@ def to_text(trace: Trace) -> str:
 
 
 def from_text(text: str, path: Path) -> Trace:
-    """Return the trace in a text of `to_text`."""
+    """Parse the output of `to_text`."""
     first, _, second = text.partition("\n")
     header = parsed_header(first, path)
     try:
@@ -101,7 +101,7 @@ def from_text(text: str, path: Path) -> Trace:
 
 
 def parsed_header(text: str, path: Path) -> _Header:
-    """Return the header, checked."""
+    """Return the validated header."""
     try:
         header = _Header.model_validate_json(text)
     except ValidationError as error:
@@ -114,7 +114,7 @@ def parsed_header(text: str, path: Path) -> _Header:
 
 
 def with_events(header: _Header, data: bytes, path: Path) -> Trace:
-    """Return the trace of a header and all events, thread after thread."""
+    """Return the trace of a header and the concatenated events of all threads."""
     count = sum(thread.events for process in header.processes for thread in process.threads)
     if len(data) != count * EVENT.itemsize:
         found = f"{len(data) // EVENT.itemsize} (the file is truncated?)"
@@ -135,5 +135,5 @@ def with_events(header: _Header, data: bytes, path: Path) -> Trace:
 
 
 def wrong(path: Path, key: str, expected: str, found: str) -> FileError:
-    """Return the error for a file that is no trace, or not a whole one."""
+    """Return the error for a file that is no trace, or an incomplete one."""
     return FileError(Problem(path, 0, key, expected, found))

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Perfetto's protobuf, for ui.perfetto.dev and its SQL. Writing needs the extra `trace`."""
+"""Perfetto's protobuf, for ui.perfetto.dev and its SQL. Writing requires the extra `trace`."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from rmw_manycore_py.trace.pairs import first_of, groups_of
 from rmw_manycore_py.trace.slices import ARGUMENTS, SLICE, Slices, What, name_of, slices_of
 
 _PACKET = 1  # of message Trace
-# Of message TracePacket: a field that Perfetto does not know, and passes over.
+# Field of TracePacket that Perfetto does not know and skips.
 _OWN_FIELD = 98765
 _LENGTH_DELIMITED = 2
 _SEQUENCE = 1
@@ -31,7 +31,7 @@ _CLEARED = 1  # SequenceFlags
 
 
 def write(trace: Trace, file: BinaryIO) -> None:
-    """Write the events themselves for `read`, then tracks, slices, flows and counters."""
+    """Write the events for `read`, then tracks, slices, flows and counters."""
     protos = _protos()
     own = field(_OWN_FIELD, to_text(trace).encode())
     file.write(field(_PACKET, own))
@@ -41,7 +41,7 @@ def write(trace: Trace, file: BinaryIO) -> None:
 
 
 def read(content: bytes, path: Path) -> Trace:
-    """Return the trace that `write` put into a file; needs no extra."""
+    """Return the trace written by `write`; does not require the extra."""
     try:
         number, packet, _ = _next_field(content, 0)
         own, text, _ = _next_field(packet, 0)
@@ -85,12 +85,12 @@ def _next_field(data: bytes, at: int) -> tuple[int, bytes, int]:
 
 
 def _end() -> bytes:
-    """Return the last packet, which a truncated file lacks."""
+    """Return the last packet; it is missing in a truncated file."""
     return field(_PACKET, field(_OWN_FIELD, b"end"))
 
 
 class _Writer:
-    """Makes the packets of one trace: tracks and names by Perfetto's package, the rest by numpy."""
+    """Builds the packets of a trace: tracks and names with package perfetto, the rest in numpy."""
 
     def __init__(self, protos: Any, trace: Trace) -> None:
         self._protos = protos
@@ -100,12 +100,12 @@ class _Writer:
         self._flows = flows_of(trace).flows
         all_slices = np.concatenate([*self._slices, np.empty(0, SLICE)])
         names = groups_of((all_slices["what"], all_slices["endpoint"]))
-        self._names = all_slices[np.unique(names, return_index=True)[1]]  # a slice of each name
+        self._names = all_slices[np.unique(names, return_index=True)[1]]  # one slice per name
         ends = np.cumsum([len(one) for one in self._slices])
         self._name_ids = np.split(names + 1, ends)
 
     def all(self) -> Iterator[bytes]:
-        """Yield packets, some or many at a time."""
+        """Yield packets in groups."""
         yield self._first()
         parents: dict[tuple[int, str], int] = {}
         index = 0
@@ -125,7 +125,7 @@ class _Writer:
         yield from self._counters()
 
     def _first(self) -> bytes:
-        """Return the packet with the names of slices, and what holds for all others."""
+        """Return the packet with the names of slices and the defaults of the sequence."""
         packet = self._protos.TracePacket(
             trusted_packet_sequence_id=_SEQUENCE, sequence_flags=_CLEARED
         )
@@ -148,12 +148,12 @@ class _Writer:
         return self._last_track, field(_PACKET, packet.SerializeToString())
 
     def _thread(self, index: int, track: int) -> bytes:
-        """Open and close slices in the order in which they lie in each other."""
+        """Begin and end slices in nesting order."""
         slices = self._slices[index]
         order, times_ns = _opened_and_closed(slices)
         is_end = order < 0
         types = np.where(is_end, packets.SLICE_END, packets.SLICE_BEGIN)
-        rows = np.flatnonzero(~is_end)  # of the slices, in their order
+        rows = np.flatnonzero(~is_end)  # rows of the slices, in order
         types[rows[slices["is_instant"]]] = packets.INSTANT
         parts = [packets.name(rows, self._name_ids[index]), *_arguments(slices, rows)]
         return packets.track_events(
@@ -195,10 +195,10 @@ def _arguments(slices: Slices, rows: Rows) -> Iterator[Part]:
 
 
 def _opened_and_closed(slices: Slices) -> tuple[NDArray[np.intp], NDArray[np.int64]]:
-    """Return which slice begins (its index) or that one ends (-1), and when, in order.
+    """Return begins (slice index) and ends (-1) with their times, in order.
 
-    An end is that of the slice which began last, so it need not tell whose it is. Ends come before
-    begins at the same time, but for those of slices that take no time.
+    An end always closes the slice opened last. At equal times, ends precede begins, except for
+    slices of zero duration.
     """
     begins, ends = slices["begin_ns"], slices["end_ns"]
     lasting = np.flatnonzero(~slices["is_instant"])
@@ -213,7 +213,7 @@ def _opened_and_closed(slices: Slices) -> tuple[NDArray[np.intp], NDArray[np.int
 def _tracks_above(
     process: Process,
 ) -> tuple[tuple[tuple[int, str], str, tuple[int, str] | None], ...]:
-    """Return the tracks above a process: key, name and key of the one above."""
+    """Return the ancestor tracks of a process: key, name and parent key."""
     cluster = (process.cluster, "")
     core = core_name(process)
     return (cluster, f"cluster {process.cluster}", None), ((process.cluster, core), core, cluster)

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""From the rings of a platform into a file."""
+"""Saves the rings of a platform to a file."""
 
 from __future__ import annotations
 
@@ -12,17 +12,17 @@ from rmw_manycore_py.trace.recorded import recorded
 
 
 def save_recorded(platform: str, path: Path) -> Trace:
-    """Save what a platform has recorded, give its room back, and return it.
+    """Save the events recorded on a platform, free their rings, and return the trace.
 
-    A trace whose events were all lost is saved, too: it says how many they were.
+    If all events were lost, the trace is saved with their number.
 
-    :raises ManycoreError: where nothing was recorded, or the file cannot be written; what was
-        recorded is then kept.
+    :raises ManycoreError: if nothing was recorded, or the file cannot be written; the recorded
+        events are then kept.
     """
     with recorded(platform) as trace:
         if not trace.event_count and not trace.lost:
             raise ManycoreError(
-                f"platform {platform} has recorded nothing since its last trace was saved"
+                f"platform {platform} has recorded nothing since the last trace was saved"
             )
         save(trace, path)
     return trace

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The events themselves, one a line, with names: for spreadsheets and programs."""
+"""Events as CSV with names, one per line, for spreadsheets and scripts."""
 
 from __future__ import annotations
 
@@ -31,12 +31,12 @@ _COLUMNS = (
 )
 _PIECE = 100_000  # events written at a time
 _NAMES = {kind.value: kind.name.lower() for kind in Kind}
-_OF_NO_ENDPOINT = (Kind.RESUME, Kind.PASS)  # have something else in its place
+_OF_NO_ENDPOINT = (Kind.RESUME, Kind.PASS)  # use the field differently
 _NUMBERS = {name: number for number, name in _NAMES.items()}
 
 
 def write(trace: Trace, file: BinaryIO) -> None:
-    """Write a comment with the header, the columns' names, and the events, thread after thread."""
+    """Write the header as a comment, the column names, and the events by thread."""
     file.write(f"{_MARK}{json.dumps(header_of(trace))}\n{','.join(_COLUMNS)}\n".encode())
     for process, thread in trace.threads():
         for begin in range(0, len(thread.events), _PIECE):
@@ -44,7 +44,7 @@ def write(trace: Trace, file: BinaryIO) -> None:
 
 
 def _lines(trace: Trace, process: Process, thread: Thread, begin: int) -> str:
-    """Return a piece of a thread's lines: what few events have in common is made once."""
+    """Return some lines of a thread; formats common parts once."""
     events = thread.events[begin : begin + _PIECE]
     core = "" if process.core is None else str(process.core)
     place = f"{process.cluster},{core},{process.pid},{thread.tid}"
@@ -69,7 +69,7 @@ def _names_of(trace: Trace, kind: int, slot: int, incarnation: int) -> str:
 
 
 def read(content: bytes, path: Path) -> Trace:
-    """Return the trace that `write` put into a file."""
+    """Return the trace written by `write`."""
     try:
         lines = content.decode().splitlines()
     except UnicodeDecodeError as error:

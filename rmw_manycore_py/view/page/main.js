@@ -5,7 +5,7 @@ import { Charts } from "./charts.js";
 import { Details } from "./details.js";
 import { Finder } from "./finder.js";
 import { Flow } from "./flow.js";
-import { forgetHappened, showHappened } from "./happenings.js";
+import { forgetHappened, showHappened } from "./events.js";
 import { Picture } from "./picture.js";
 import { setUpTheme } from "./theme.js";
 import { Trace } from "./trace.js";

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The library that reads and writes MCAP, which an extra installs."""
+"""Optional library for MCAP."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from rmw_manycore_py.errors import ManycoreError
 
 
 def require_library() -> None:
-    """Say how to get the library, where it is not installed."""
+    """Raise ManycoreError with install instructions if the library is missing."""
     try:
         import mcap.writer  # noqa: F401
     except ImportError as error:

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What happened between two looks that a person should know."""
+"""Notable events between two looks."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ Kind = Literal["died", "deadline", "lost", "platform"]
 
 
 @dataclass(frozen=True)
-class Happening:
-    """One line of the list of events."""
+class Event:
+    """One line of the event list."""
 
     kind: Kind
     text: str
@@ -25,23 +25,23 @@ class Happening:
     time_s: float = field(default_factory=time.time)  # since 1970
 
     def row(self) -> dict[str, Any]:
-        """Return it for programs."""
+        """Return the JSON row."""
         return asdict(self)
 
 
-def deaths(dead: Iterable[Member]) -> Iterator[Happening]:
-    """Yield one for each node of each process that died."""
+def deaths(dead: Iterable[Member]) -> Iterator[Event]:
+    """Yield an event per node of each process that died."""
     for member in dead:
         where = f"cluster {member.cluster}"
         where += "" if member.core is None else f" core {member.core}"
         for name in member.shown_names:
-            yield Happening("died", f"{name} died (pid {member.pid}, {where})", node=name)
+            yield Event("died", f"{name} died (pid {member.pid}, {where})", node=name)
 
 
-def receive_thread_deaths(loads: Loads) -> Iterator[Happening]:
-    """Yield one for each receive thread that has another pid than before."""
+def receive_thread_deaths(loads: Loads) -> Iterator[Event]:
+    """Yield an event per receive thread whose pid has changed."""
     now = {cluster.id: cluster.receive_thread_pid for cluster in loads.after.clusters}
     for cluster in loads.before.clusters:
         pid = cluster.receive_thread_pid
         if pid and now.get(cluster.id, pid) != pid:
-            yield Happening("died", f"the receive thread of cluster {cluster.id} died (pid {pid})")
+            yield Event("died", f"the receive thread of cluster {cluster.id} died (pid {pid})")
