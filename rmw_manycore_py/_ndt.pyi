@@ -1,6 +1,8 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 """The native scan matcher."""
 
+from collections.abc import Callable
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -166,3 +168,36 @@ class WorkerGroup:
 
 def simd() -> str:
     """Return the kind of vector instructions that the kernel uses: avx512, avx2 or portable."""
+
+def search_pairs(
+    map: VoxelMap, points: NDArray[np.float32], pose: NDArray[np.float64]
+) -> tuple[NDArray[np.uint8], NDArray[np.float32]]:
+    """Return how many voxels each point (N, 3) sees (N,), and the pairs (P, 12), point by point.
+
+    A pair is the point rotated into the map frame, the vector from the voxel's mean to it, and the
+    voxel's inverse covariance: xx, xy, xz, yy, yz, zz.
+    """
+
+def sums_of_pairs(
+    counts: NDArray[np.uint8],
+    pairs: NDArray[np.float32],
+    outlier_ratio: float,
+    voxel_size_m: float,
+) -> NDArray[np.float64]:
+    """Return the sums (37,) that derivatives are computed from; those of parts can be added."""
+
+def derivatives_at(
+    sums: NDArray[np.float64],
+    pose: NDArray[np.float64],
+    outlier_ratio: float,
+    voxel_size_m: float,
+) -> Derivatives:
+    """Return the derivatives at the pose whose pairs were summed."""
+
+def maximise_sums(
+    options: MatchOptions,
+    voxel_size_m: float,
+    guess: NDArray[np.float64],
+    sums_at: Callable[[NDArray[np.float64]], NDArray[np.float64]],
+) -> NewtonResult:
+    """Find the pose of the highest score; `sums_at` returns the sums (37,) at a pose (4, 4)."""

@@ -4,7 +4,7 @@
 from collections.abc import Mapping, Sequence
 from types import TracebackType
 
-from typing_extensions import Self
+from typing_extensions import Buffer, Self
 
 from rmw_manycore_py.words import (
     Durability,
@@ -13,6 +13,8 @@ from rmw_manycore_py.words import (
     History,
     Liveliness,
     Reliability,
+    Transfer,
+    WaitMode,
 )
 
 class PlatformError(RuntimeError):
@@ -186,6 +188,10 @@ class CounterValues:
     def overwritten(self) -> int:
         """Publisher: recycled while a reader still wanted them."""
 
+    @property
+    def dropped(self) -> int:
+        """Publisher: records that did not reach a cluster they were transferred to."""
+
 class EndpointInfo:
     """A publisher or subscription of a topic, or of a service's requests or replies."""
 
@@ -227,12 +233,22 @@ class EndpointInfo:
 
     @property
     def counters(self) -> CounterValues: ...
+    @property
+    def transfer(self) -> Transfer: ...
 
 class TopicConfiguration:
     """A row of the topic table: the topic DSM of a topic with a fixed size."""
 
     def __init__(
-        self, name: str, *, id: int, dsm_size_bytes: int, receiver_clusters: int
+        self,
+        name: str,
+        *,
+        id: int,
+        dsm_size_bytes: int,
+        receiver_clusters: int,
+        transfer: Transfer = "dsm",
+        priority: int = 0,
+        synchronous: bool = False,
     ) -> None: ...
     @property
     def name(self) -> str: ...
@@ -245,6 +261,16 @@ class TopicConfiguration:
     @property
     def receiver_clusters(self) -> int:
         """Bit mask: bit c - 1 = cluster c."""
+
+    @property
+    def transfer(self) -> Transfer: ...
+    @property
+    def priority(self) -> int:
+        """Of messages: 0 to 7."""
+
+    @property
+    def synchronous(self) -> bool:
+        """Messages: publishing waits until the receiving clusters have the message."""
 
 def platforms() -> list[str]:
     """Return the names of this user's platforms, dead or alive."""
@@ -318,10 +344,10 @@ class Platform:
         """Return a number that changes when a node or endpoint comes or goes."""
 
     def activity(self) -> bytes:
-        """Return what changes with every message, endpoint by endpoint: rows of 10 uint64.
+        """Return what changes with every message, endpoint by endpoint: rows of 11 uint64.
 
-        Endpoint (bytes 8 to 15 of its gid), the six of CounterValues, entries in its queue, entries
-        that the queue can hold, deadlines missed; the last three of subscriptions only.
+        Endpoint (bytes 8 to 15 of its gid), the seven of CounterValues, entries in its queue,
+        entries that the queue can hold, deadlines missed; the last three of subscriptions only.
         """
 
     def deaths(self) -> list[Death]:
@@ -365,15 +391,23 @@ class Publisher:
     def publish_from(self, address: int, size: int, source_timestamp_ns: int | None = None) -> int:
         """Publish `size` bytes of this process's memory."""
 
+    def publish_parts(self, head: bytes, body: Buffer) -> int:
+        """Publish a message of two parts, the second contiguous; return its sequence number."""
+
     def matched(self) -> int:
         """Return the number of subscriptions it is matched with."""
+
+    def close(self) -> None:
+        """Close the publisher; whatever is done with it later is a ValueError."""
 
 class Claim:
     """A record in its place in the topic DSM. The publisher cannot reuse it before `release`.
 
-    A subscription has one claim at a time.
+    A subscription has one claim at a time. What views its memory through the buffer protocol, as
+    `memoryview(claim)`, keeps it claimed.
     """
 
+    def __buffer__(self, flags: int, /) -> memoryview: ...
     @property
     def address(self) -> int: ...
     @property
@@ -398,7 +432,8 @@ class Claim:
     def sequence(self) -> int:
         """Rises by one with each message of the publisher."""
 
-    def release(self) -> None: ...
+    def release(self) -> None:
+        """End the claim; BufferError while something views its memory."""
 
 class Subscription:
     """Takes serialized messages."""
@@ -408,7 +443,7 @@ class Subscription:
         """Names a client where it is the subscription of its replies, 16 bytes."""
 
     def claim(self) -> Claim | None:
-        """Return the next record without a copy."""
+        """Return the next record without a copy; BufferError before the last one is released."""
 
     def note_bridged(self) -> None:
         """Note, for traces, that the claimed message was published outside."""
@@ -420,6 +455,9 @@ class Subscription:
     def lost(self) -> int:
         """Return the number of messages that were gone before they were taken."""
 
+    def close(self) -> None:
+        """Close the subscription; later calls raise ValueError. A claim stays valid."""
+
 class Process:
     """A member of a platform without ROS, with one node named after its label.
 
@@ -427,7 +465,12 @@ class Process:
     """
 
     def __init__(
-        self, platform: str, cluster: int = 1, core: int | None = None, label: str = "tool"
+        self,
+        platform: str,
+        cluster: int = 1,
+        core: int | None = None,
+        label: str = "tool",
+        wait: WaitMode = "block",
     ) -> None: ...
     def publisher(
         self, topic: str, type: str, qos: Qos, role: EndpointRole = "topic", type_hash: str = ""
@@ -452,7 +495,13 @@ class Process:
         """Return a number that changes when something comes in."""
 
     def wait(self, seen: int, timeout_s: float | None = None) -> bool:
-        """Sleep until the epoch is another than `seen`; False when the time is over."""
+        """Sleep until the epoch is another than `seen`; False when the time is over.
+
+        Raises what a signal handler raises, as KeyboardInterrupt.
+        """
+
+    def require_membership(self) -> None:
+        """Raise PlatformError in a child of fork(), and once the platform was taken away."""
 
     def notify(self) -> None:
         """Wake the thread that waits."""

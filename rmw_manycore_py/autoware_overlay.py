@@ -1,7 +1,7 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""An install prefix in which packages of Autoware have nodes of rmw_manycore as executables.
+"""Install prefix whose Autoware packages run nodes of rmw_manycore.
 
-Nothing of their names is installed otherwise: only shells that source the prefix have them.
+Packages of these names exist only in shells that source the prefix.
 """
 
 from __future__ import annotations
@@ -17,9 +17,9 @@ from rmw_manycore_py.ros import ament
 
 @dataclass(frozen=True)
 class Replaced:
-    """A package of Autoware, and the node in the place of one of its executables.
+    """A package of Autoware, and the node that replaces one of its executables.
 
-    :param parameters: of the node, where its names are not Autoware's by default.
+    :param parameters: parameters of the node whose default names differ from Autoware's.
     """
 
     package: str
@@ -39,7 +39,7 @@ MAP_LOADER = Replaced(
     "rmw_manycore_py.ndt.nodes.pointcloud_map_loader",
     ("map_topic:=output/pointcloud_map",),
 )
-OF_STOCK = ("launch", "config", "schema")  # folders of Autoware's packages that stay in use
+OF_STOCK = ("launch", "config", "schema")  # directories linked from Autoware's packages
 
 PACKAGE_XML = """\
 <?xml version="1.0"?>
@@ -54,12 +54,12 @@ PACKAGE_XML = """\
 
 
 def write_overlay(directory: Path, packages: tuple[Replaced, ...]) -> dict[str, Path | None]:
-    """Write the prefix; return the share directory of the Autoware that each package links to.
+    """Write the prefix; return the stock share directory that each package links to.
 
-    None where no Autoware is sourced: then a package has no launch file. What an earlier call
-    wrote of the packages is replaced.
+    None if no Autoware is sourced: that package then has no launch file. Replaces the packages
+    written by an earlier call.
 
-    :raises OSError: when it cannot be written.
+    :raises OSError: if it cannot be written.
     """
     prefix = directory.resolve()
     found = {one.package: _write_package(prefix, one) for one in packages}
@@ -86,7 +86,7 @@ def _write_package(prefix: Path, one: Replaced) -> Path | None:
 
 
 def _link_stock(stock: Path, library: Path, share: Path, one: Replaced) -> None:
-    """Keep the files of Autoware's package in use, and its other executables."""
+    """Link the files of Autoware's package and its other executables."""
     for name in OF_STOCK:
         if (stock / name).is_dir():
             (share / name).symlink_to(stock / name)
@@ -97,7 +97,7 @@ def _link_stock(stock: Path, library: Path, share: Path, one: Replaced) -> None:
 
 
 def _script(one: Replaced) -> str:
-    """Return a script that runs the node; parameters of the command line come after its own."""
+    """Return a script that runs the node; command-line parameters come after its own."""
     words = shlex.join(own_program(one.module))
     if one.parameters:
         given = (f"-p {shlex.quote(parameter)}" for parameter in one.parameters)
@@ -106,7 +106,7 @@ def _script(one: Replaced) -> str:
 
 
 def _stock_share(prefix: Path, package: str) -> Path | None:
-    """Return the share directory of Autoware's own package, whether or not the overlay is first."""
+    """Return the share directory of Autoware's own package, even if the overlay comes first."""
     for found in ament.prefixes():
         share = found / "share" / package
         if found.resolve() != prefix and (share / "package.xml").is_file():

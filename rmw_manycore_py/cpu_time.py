@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""CPU time of this process and the processes it has started."""
+"""CPU time of a process and its descendants."""
 
 from __future__ import annotations
 
@@ -7,11 +7,11 @@ import os
 from pathlib import Path
 
 TICKS_PER_S = os.sysconf("SC_CLK_TCK")
-USER, SYSTEM = 11, 12  # fields of /proc/PID/stat behind the program's name
+USER, SYSTEM = 11, 12  # fields of /proc/PID/stat after the program name
 
 
 def tree_cpu_s(pid: int | None = None) -> float:
-    """Return user and system time of a process and of its living descendants, in seconds."""
+    """Return user + system time of a process and its living descendants, in seconds."""
     own = os.getpid() if pid is None else pid
     try:
         tasks = list(Path(f"/proc/{own}/task").iterdir())
@@ -22,7 +22,7 @@ def tree_cpu_s(pid: int | None = None) -> float:
 
 
 def process_cpu_s(pid: int) -> float:
-    """Return user and system time of a process in seconds, 0 once it has ended."""
+    """Return user + system time of a process in seconds; 0 after its end."""
     try:
         stat = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
     except OSError:

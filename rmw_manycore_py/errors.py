@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The errors a user can cause, each with the exit status the command line ends with."""
+"""Errors reported to the user, each with the exit status of the command line."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ EXIT_INTERRUPTED = 130  # as the shell reports a program that SIGINT ended
 
 
 class ManycoreError(Exception):
-    """Root of all errors that are reported to the user without a traceback."""
+    """Base of all errors that are reported to the user without a traceback."""
 
     def __init__(self, message: str, exit_status: int = EXIT_FAILURE) -> None:
         super().__init__(message)
@@ -23,7 +23,7 @@ _MAX_KEY, _MAX_EXPECTED, _MAX_FOUND = 100, 500, 200
 
 
 def shorten(text: str, limit: int | None = None) -> str:
-    """Return a text as a part of one line: control characters escaped, cut where it is long."""
+    """Return a text for use within one line: control characters escaped, truncated."""
     kept = text if limit is None else text[: limit + 1]
     line = "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in kept)
     return line if limit is None or len(line) <= limit else f"{line[: limit - 3]}..."
@@ -31,7 +31,7 @@ def shorten(text: str, limit: int | None = None) -> str:
 
 @dataclass(frozen=True)
 class Problem:
-    """One thing wrong in a file, in one line; `line` counts from 1, 0 means the file as a whole."""
+    """One problem in a file, on one line; `line` counts from 1, 0 means the whole file."""
 
     file: Path
     line: int
@@ -52,7 +52,7 @@ class Problem:
 
 
 class FileError(ManycoreError):
-    """Everything wrong with files of the user's, in the order of the lines."""
+    """All problems in files of the user, in line order."""
 
     def __init__(self, *problems: Problem) -> None:
         self.problems = tuple(sorted(problems, key=lambda p: (str(p.file), p.line)))
@@ -60,13 +60,13 @@ class FileError(ManycoreError):
 
 
 class MapfileError(FileError):
-    """Everything wrong with a mapfile or a file it refers to."""
+    """All problems in a mapfile or a file it refers to."""
 
 
 class DefinitionError(FileError):
-    """Everything wrong with definitions of messages, services and actions."""
+    """All problems in definitions of messages, services and actions."""
 
 
 def what_is_wrong(error: Exception) -> str:
-    """Return what an error says, which is nothing for some of them."""
+    """Return the message of an error, or its class name if the message is empty."""
     return str(error) or type(error).__name__

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Pictures, where matplotlib is installed."""
+"""Optional plotting with matplotlib."""
 
 from __future__ import annotations
 
@@ -12,9 +12,11 @@ if TYPE_CHECKING:
 
 
 def load_figure() -> type[Figure]:
-    """Return matplotlib's class of figures; without it an error says how to get it.
+    """Return matplotlib's Figure class, which needs no display.
 
-    Figures of this class need no display. Call this before a long run whose picture is wanted.
+    Call it before a long run that ends with a plot.
+
+    :raises ManycoreError: if matplotlib is not installed; says how to install it.
     """
     try:
         from matplotlib import figure

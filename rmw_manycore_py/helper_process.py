@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""A Python process that calls functions for this one, beside all that goes on here.
+"""A Python process that executes functions for this one, concurrently.
 
 ```
  this process                              helper: niced, no ROS
@@ -7,8 +7,8 @@
    a thread sleeps          ◄── pickle ──  its result, or its error
 ```
 
-Arrays go through the pipes as they are, outside of the pickle. The helper ends with `close()`, and
-with this process however it ends.
+Arrays are sent out of band, without pickling. The helper ends with `close()`, and with this process
+however it ends.
 """
 
 from __future__ import annotations
@@ -33,10 +33,11 @@ SIZE = struct.Struct("<Q")
 
 
 class HelperProcess:
-    """Starts with the first call. Calls from several threads take turns.
+    """Started by the first call. Calls from several threads are serialized.
 
-    :param name: for messages, as "map builder".
-    :param niceness: beside a node on the same CPU, 5 leaves it a third of the time, 10 a tenth.
+    :param name: used in messages, e.g. "map builder".
+    :param niceness: next to a node on the same CPU, 5 leaves the helper a third of the time, 10 a
+        tenth.
     """
 
     def __init__(self, name: str, niceness: int) -> None:
@@ -52,11 +53,11 @@ class HelperProcess:
         return None if self._process is None else self._process.pid
 
     def call(self, function: Callable[..., T], *arguments: Any) -> T:
-        """Return what a function of a module returns, called there; raises what it raises.
+        """Call a module-level function in the helper; return its result or raise its exception.
 
-        A helper that died is replaced by the next call.
+        A dead helper is restarted by the next call.
 
-        :raises ManycoreError: when the helper died during the call, or was closed.
+        :raises ManycoreError: if the helper dies during the call, or is closed.
         """
         with self._turn:
             process = self._running()
@@ -74,12 +75,12 @@ class HelperProcess:
         return value
 
     def close(self) -> None:
-        """End the process, whatever it is doing."""
+        """Kill the helper, whatever it is doing."""
         self._is_closed = True
         process = self._process
         if process is not None:
             process.kill()
-        with self._turn:  # whoever waited for an answer has been told
+        with self._turn:  # pending calls have failed by now
             self._end()
 
     def _running(self) -> subprocess.Popen[bytes]:
@@ -108,7 +109,7 @@ def _before_exec() -> Callable[[], None]:
 
     def before_exec() -> None:
         dies()
-        signal.signal(signal.SIGINT, signal.SIG_IGN)  # the terminal's: this process ends the helper
+        signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C: this process ends it
 
     return before_exec
 
@@ -134,7 +135,7 @@ def _receive(pipe: IO[bytes]) -> Any:
 
 
 def _exactly(pipe: IO[bytes], size: int) -> bytearray:
-    """Return so many bytes, which arrays may keep and write to."""
+    """Return exactly `size` bytes in a writable buffer that arrays may keep."""
     data = bytearray(size)
     view, filled = memoryview(data), 0
     while filled < size:
@@ -149,7 +150,7 @@ def main() -> None:
     """Answer calls until the pipe is closed."""
     with os.fdopen(os.dup(sys.stdin.fileno()), "rb") as calls:
         answers = os.fdopen(os.dup(sys.stdout.fileno()), "wb")
-        os.dup2(sys.stderr.fileno(), sys.stdout.fileno())  # what a function prints is no answer
+        os.dup2(sys.stderr.fileno(), sys.stdout.fileno())  # keep printed output out of the protocol
         leave_real_time()
         os.nice(int(sys.argv[1]))
         while True:
@@ -163,12 +164,12 @@ def main() -> None:
 def _answer(function: Callable[..., Any], arguments: tuple[Any, ...]) -> tuple[Any, Any]:
     try:
         return None, function(*arguments)
-    except Exception as error:  # the caller's to handle
+    except Exception as error:  # re-raised in the caller
         return error, None
 
 
 def leave_real_time() -> None:
-    """Schedule the calling thread as ordinary programs are, also where its starter is not."""
+    """Reset the calling thread to SCHED_OTHER, which it may not have inherited."""
     os.sched_setscheduler(0, os.SCHED_OTHER, os.sched_param(0))
 
 

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Errors of the native modules, as the one error that callers know."""
+"""Translates errors of the native modules to ManycoreError."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from rmw_manycore_py.errors import EXIT_FAILURE, ManycoreError, what_is_wrong
 
 @contextmanager
 def translate_native_errors(subject: str = "", exit_status: int = EXIT_FAILURE) -> Iterator[None]:
-    """Raise a ManycoreError for an error of `_transport` or `_ndt`, or where memory ran out.
+    """Translate errors of `_transport` and `_ndt`, and memory exhaustion, to ManycoreError.
 
-    :param subject: what failed, for the beginning of the message.
+    :param subject: what failed; starts the message.
     """
     try:
         yield

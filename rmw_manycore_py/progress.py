@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""How far long work is, on standard error: a bar on a terminal, else a line now and then."""
+"""Progress of long work on standard error: a bar on a terminal, else occasional lines."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ T = TypeVar("T")
 
 
 class ProgressLines:
-    """Lines for logs and pipes; nothing is said of what takes less than LINE_PERIOD_S."""
+    """Lines for logs and pipes; silent for work shorter than LINE_PERIOD_S."""
 
     def __init__(self, what: str, total: int, console: Console) -> None:
         self._what = what
@@ -25,7 +25,7 @@ class ProgressLines:
         self._said_s = time.monotonic()
 
     def done(self, count: int, remark: str = "") -> None:
-        """Say that so many are done, unless something was said shortly before."""
+        """Report progress, unless it was reported shortly before."""
         if time.monotonic() - self._said_s < LINE_PERIOD_S:
             return
         self._said_s = time.monotonic()
@@ -36,7 +36,7 @@ class ProgressLines:
 
 
 def tracked(items: Iterable[T], what: str, total: int) -> Iterator[T]:
-    """Yield items, and show how many of `total` have been taken."""
+    """Yield items and show how many of `total` have been taken."""
     console = Console(stderr=True)
     if console.is_terminal:
         yield from track(items, what, total, console=console, transient=True)

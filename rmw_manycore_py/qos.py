@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""QoS policies by name, as mapfiles, bridge files and JSON write them."""
+"""QoS policies by name, as in mapfiles, bridge files and JSON."""
 
 from __future__ import annotations
 
@@ -26,12 +26,12 @@ class Policies(TypedDict, total=False):
 
 
 def all_reliable(offers: Iterable[Qos]) -> bool:
-    """Tell whether all of these publishers are reliable; true of none."""
+    """Return whether all publishers are reliable; True for none."""
     return all(offer.reliability == "reliable" for offer in offers)
 
 
 def all_transient_local(offers: Iterable[Qos]) -> bool:
-    """Tell whether all of these publishers keep messages for late subscribers; true of none."""
+    """Return whether all publishers are transient local; True for none."""
     return all(offer.durability == "transient_local" for offer in offers)
 
 

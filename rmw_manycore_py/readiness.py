@@ -1,27 +1,27 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""How a process tells the one that started it that it has come up."""
+"""How a child process reports to its parent that it has come up."""
 
 from __future__ import annotations
 
 import os
 
-# Names the eventfd that the process inherits.
+# Variable with the number of the inherited eventfd.
 _VARIABLE = "_RMW_MANYCORE_READY_FD"
 
 
 class Readiness:
-    """The parent's side: holds what its child has reported even when the child is dead."""
+    """Parent side: keeps what the child has reported, even after the child's death."""
 
     def __init__(self) -> None:
         self.fd = os.eventfd(0, os.EFD_NONBLOCK | os.EFD_CLOEXEC)
 
     @property
     def variables(self) -> dict[str, str]:
-        """The environment in which the child finds the descriptor."""
+        """Environment variables that pass the descriptor to the child."""
         return {_VARIABLE: str(self.fd)}
 
     def close(self) -> bool:
-        """Tell whether the child has come up, once and at the end."""
+        """Close the descriptor; return whether the child has come up."""
         try:
             return os.eventfd_read(self.fd) > 0
         except BlockingIOError:
@@ -31,7 +31,7 @@ class Readiness:
 
 
 def report_ready() -> None:
-    """Tell the parent, if it asked, that this process has come up."""
+    """Report to the parent, if it has asked, that this process has come up."""
     fd = os.environ.pop(_VARIABLE, None)
     if fd is not None:
         os.eventfd_write(int(fd), 1)

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What crosses the border of a platform: topics and services, and what actions are made of."""
+"""Routes across the border of a platform: topics, services, and the parts of actions."""
 
 from __future__ import annotations
 
@@ -10,24 +10,24 @@ from typing import Any, Literal
 from rmw_manycore_py.qos import Policies
 from rmw_manycore_py.ros.patterns import is_pattern, matches
 
-# The directions of the paper: topic_in and service_in are inward, topic_to and service_to outward.
+# Paper terms: topic_in and service_in are inward, topic_to and service_to outward.
 Direction = Literal["inward", "outward"]
 DIRECTIONS: tuple[Direction, Direction] = ("inward", "outward")
 
-# How long a request may stay unanswered where its route does not say.
+# Default request timeout.
 REQUEST_TIMEOUT_S = 60.0
 
 
 @dataclass(frozen=True)
 class Route:
-    """One topic or service. A service is inward when its server is on the platform.
+    """One topic or service. A service is inward if its server is on the platform.
 
-    `qos` overrides policies of a topic; `timeout_s` is how long a request may stay unanswered,
-    None = as long as its server is there. A `mirrored` topic crosses in both directions, so that
-    its own messages have to be told from others. An `eager` one listens as soon as somebody
-    publishes: what an action says first must not wait for a listener.
-    `node` is the full name outside of the node whose service it is, where tools ask for it.
-    The names of a pattern's topics differ by the `prefix` that they have outside.
+    `qos` overrides policies of a topic. `timeout_s` is the request timeout; None waits as long as
+    the server exists. A `mirrored` topic is bridged in both directions, so the bridge has to
+    recognise its own messages. An `eager` topic is subscribed as soon as a publisher exists: the
+    first messages of an action must not wait for a subscriber. `node` is the full external name of
+    the node that offers a service, for tools that look up the node first. The external names of a
+    pattern's topics differ by `prefix`.
     """
 
     kind: Literal["topic", "service"]
@@ -48,17 +48,17 @@ class Route:
 
     @property
     def is_pattern(self) -> bool:
-        """Whether it stands for all topics whose names fit."""
+        """Whether the route matches all topics of a pattern."""
         return is_pattern(self.inside)
 
 
 def action_routes(action: Route) -> Iterator[Route]:
-    """Yield the parts of an action, given as if it were a service: goals go its direction."""
+    """Yield the parts of an action, given like a service: goals go in its direction."""
     back: Direction = "outward" if action.direction == "inward" else "inward"
     parts = (
         ("service", "send_goal", f"{action.type}_SendGoal", action.timeout_s),
         ("service", "cancel_goal", "action_msgs/srv/CancelGoal", action.timeout_s),
-        ("service", "get_result", f"{action.type}_GetResult", None),  # as long as the goal takes
+        ("service", "get_result", f"{action.type}_GetResult", None),  # takes as long as the goal
         ("topic", "feedback", f"{action.type}_FeedbackMessage", None),
         ("topic", "status", "action_msgs/msg/GoalStatusArray", None),
     )
@@ -98,13 +98,13 @@ def parameter_routes(node: Route) -> Iterator[Route]:
 
 
 def arranged(routes: Iterable[Route], lanes: int) -> tuple[Route, ...]:
-    """Return each route once, spread over the lanes, and marked where it crosses both ways."""
+    """Return each route once, distributed over the lanes; mark those bridged in both directions."""
     unique = list({_key(route): route for route in routes}.values())
     ways = {(r.inside, r.direction) for r in unique} | {
         ((r.outside, r.domain), r.direction) for r in unique
     }
     numbers = dict.fromkeys(DIRECTIONS, 0)
-    of_nodes: dict[str, int] = {}  # one node outside: one lane
+    of_nodes: dict[str, int] = {}  # services of one external node share a lane
     result = []
     for route in unique:
         back = "outward" if route.direction == "inward" else "inward"

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The scheduling policy and priority that a process is given before its first instruction."""
+"""Scheduling policy and priority of a process, set before its first instruction."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from dataclasses import dataclass
 
 POLICIES = {"other": os.SCHED_OTHER, "fifo": os.SCHED_FIFO, "rr": os.SCHED_RR}
 REAL_TIME = ("fifo", "rr")
-# Of sched(7); 0 is for the other policies.
+# sched(7); other policies have priority 0.
 MIN_PRIORITY, MAX_PRIORITY = 1, 99
 
 
 @dataclass(frozen=True)
 class Scheduling:
-    """A policy of sched(7), and a priority from 1 to 99 for those of real time, else 0."""
+    """A policy of sched(7), and its priority: 1 to 99 for fifo and rr, else 0."""
 
     policy: str
     priority: int = 0
@@ -28,9 +28,9 @@ class Scheduling:
 
 @contextmanager
 def scheduled_as(scheduling: Scheduling | None) -> Iterator[None]:
-    """Schedule the calling thread so while it starts a process, which inherits that from it.
+    """Set the calling thread's scheduling while it starts a process, which inherits it.
 
-    :raises OSError: when this user may not.
+    :raises OSError: if this user may not set it.
     """
     if scheduling is None:
         yield
@@ -44,7 +44,7 @@ def scheduled_as(scheduling: Scheduling | None) -> Iterator[None]:
 
 
 def refusal(scheduling: Scheduling) -> str | None:
-    """Return why this process may not start others so, and what to do; None where it may."""
+    """Return why this process may not use this scheduling, and what to do; None if it may."""
     try:
         with scheduled_as(scheduling):
             return None
@@ -53,7 +53,7 @@ def refusal(scheduling: Scheduling) -> str | None:
 
 
 def real_time_limit() -> int:
-    """Return the highest priority of real time that this process may set by its limits."""
+    """Return the maximum real-time priority this process may set by its limits."""
     soft, _ = resource.getrlimit(resource.RLIMIT_RTPRIO)
     return MAX_PRIORITY if soft == resource.RLIM_INFINITY else min(soft, MAX_PRIORITY)
 

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Signals as something to select on, instead of something that interrupts."""
+"""Signals as a file descriptor for selectors, instead of interrupts."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class SignalInbox:
         return self._reader.fileno()
 
     def take(self) -> list[signal.Signals]:
-        """Return what has arrived since the last call."""
+        """Return the signals received since the last call."""
         try:
             return [signal.Signals(number) for number in self._reader.recv(4096)]
         except BlockingIOError:
@@ -31,9 +31,9 @@ class SignalInbox:
 
 @contextmanager
 def signal_inbox(signals: Iterable[signal.Signals] = STOP_SIGNALS) -> Iterator[SignalInbox]:
-    """Collect these signals instead of ending on them; for the main thread.
+    """Collect these signals instead of acting on them; main thread only.
 
-    SIGHUP stays ignored where it was, as by nohup: who asked for that wants to log out.
+    SIGHUP stays ignored if it was, as under nohup.
     """
     reader, writer = socket.socketpair()
     with reader, writer:
@@ -54,4 +54,4 @@ def signal_inbox(signals: Iterable[signal.Signals] = STOP_SIGNALS) -> Iterator[S
 
 
 def _ignore(_number: int, _frame: object) -> None:
-    """Do nothing: the interpreter has already written the number to the inbox."""
+    """Do nothing: the interpreter has already written the signal number to the inbox."""

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Shapes of platforms: clusters, cores, reserved cores, and the host CPU of each core."""
+"""Shapes of platforms: clusters, cores, reserved cores, and host CPUs of cores."""
 
 from __future__ import annotations
 
@@ -14,17 +14,17 @@ from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
 
 MIB = 1024 * 1024
 RECEIVE_THREAD_CORE = 0
-# What a process is pinned to: a CPU, several, or None where it may use all.
+# Affinity of a process: one CPU, several, or None for all.
 HostCpu = int | tuple[int, ...] | None
-# An I/O cluster has no core for the OS tasks of its own: Linux runs on it anyway.
+# An I/O cluster has no reserved core for OS tasks: Linux runs on it anyway.
 IO_CLUSTER_CORES = 4
-# In the environment of a node with workers: their host CPUs, separated by commas. It is here, as a
-# node that is started again after a kill has no time to import mapfile.
+# Environment variable of a node with workers: their host CPUs, comma-separated. Defined here, since
+# a node restarted after a kill should not spend time on importing `mapfile`.
 WORKER_CPUS = "MANYCORE_WORKER_CPUS"
 
 
 class Core(NamedTuple):
-    """A virtual core; clusters count from 1, cores from 0."""
+    """A core; clusters are numbered from 1, cores from 0."""
 
     cluster: int
     core: int
@@ -43,14 +43,14 @@ class Cluster:
 
     @property
     def reserved(self) -> frozenset[int]:
-        """The cores of the receive thread and of the OS tasks; no node runs there."""
+        """Cores of the receive thread and of OS tasks, without nodes."""
         if self.cores <= IO_CLUSTER_CORES:
             return frozenset({RECEIVE_THREAD_CORE})
         return frozenset({RECEIVE_THREAD_CORE, self.cores - 1})
 
     @property
     def free(self) -> tuple[int, ...]:
-        """The cores nodes may run on."""
+        """Cores available to nodes."""
         return tuple(core for core in range(self.cores) if core not in self.reserved)
 
 
@@ -63,20 +63,20 @@ class Topology:
 
     @property
     def cores_per_cluster(self) -> int:
-        """The cores of the largest cluster."""
+        """Number of cores of the largest cluster."""
         return max(cluster.cores for cluster in self.clusters)
 
     @property
     def smem_size(self) -> int:
-        """Local memory of each cluster, in bytes."""
+        """Local memory per cluster, in bytes."""
         return self.clusters[0].smem_size
 
     def cluster(self, number: int) -> Cluster | None:
-        """Return the cluster of that number, if there is one."""
+        """Return the cluster of that number; None if there is none."""
         return self.clusters[number - 1] if 1 <= number <= len(self.clusters) else None
 
     def default_host_cpu(self, core: Core, cpus: Sequence[int]) -> int:
-        """Return where a core runs that no mapfile places."""
+        """Return the host CPU of a core without a mapfile."""
         index = (core.cluster - 1) * self.cores_per_cluster + core.core
         return cpus[index % len(cpus)]
 
@@ -91,7 +91,7 @@ def profile(
     cores_per_cluster: int | None = None,
     smem_size: int | None = None,
 ) -> Topology:
-    """Return a profile's shape, with those parts replaced that are given."""
+    """Return a profile's shape, with the given parts replaced."""
     shapes = {
         "host": (5, 16, 0, None),
         "coolidge": (5, 16, 0, 4 * MIB),
@@ -107,36 +107,36 @@ def profile(
 
 
 def platforms_directory() -> Path:
-    """Return where this user's platforms lie, as UserDirectory does in rmw_manycore/platform."""
+    """Return the directory of this user's platforms; must match UserDirectory in C++."""
     return Path(os.environ.get("MANYCORE_DIRECTORY") or f"/dev/shm/manycore-{os.geteuid()}")
 
 
 def shared_memory_place() -> Path:
-    """Return a directory on the file system that platforms lie in.
+    """Return an existing directory on the file system of the platforms.
 
-    :raises ManycoreError: when MANYCORE_DIRECTORY is not there.
+    :raises ManycoreError: if $MANYCORE_DIRECTORY is not a directory.
     """
     chosen = os.environ.get("MANYCORE_DIRECTORY")
     if chosen and not Path(chosen).is_dir():
-        message = f"MANYCORE_DIRECTORY='{chosen}' is no directory: mkdir -m 700 {chosen}"
+        message = f"MANYCORE_DIRECTORY='{chosen}' is not a directory: mkdir -m 700 {chosen}"
         raise ManycoreError(message, EXIT_BAD_INPUT)
     return Path(chosen or "/dev/shm")
 
 
 def host_smem_size(clusters: int) -> int:
-    """Return the local memory of each cluster of this machine, in whole MiB."""
+    """Return the default local memory per cluster on this machine, a multiple of 1 MiB."""
     status = os.statvfs(shared_memory_place())
     return share_of_memory(status.f_blocks * status.f_frsize, clusters)
 
 
 def share_of_memory(shared: int, clusters: int) -> int:
-    """Return an equal share of half; where that is little, clusters may take what others leave."""
+    """Return an equal share of half the memory; if it is small, clusters may overcommit."""
     common = min(shared // 4 * 3, 1024 * MIB) if shared else 1024 * MIB  # 0: no limit
     return max(shared // 2 // clusters, common, MIB) // MIB * MIB
 
 
 def room_for_topic_dsms(smem_size: int) -> int:
-    """Return what topic DSMs may have of a cluster's memory: a part is for control blocks."""
+    """Return the bytes of a cluster's memory available to topic DSMs, without control blocks."""
     return smem_size - min(smem_size // 8, 8 * MIB)
 
 
@@ -146,9 +146,9 @@ def usable_cpus() -> tuple[int, ...]:
 
 
 def isolated_cpus(system: Path = Path("/sys/devices/system/cpu")) -> tuple[int, ...]:
-    """Return the CPUs that the kernel schedules nothing on by itself, and this process may name.
+    """Return the isolated CPUs that this process may use.
 
-    They are not in its affinity mask; its cpuset may leave them out, too.
+    They are not in its affinity mask, and only in part in its cpuset.
     """
     try:
         isolated = cpus_of_list((system / "isolated").read_text())
@@ -159,7 +159,7 @@ def isolated_cpus(system: Path = Path("/sys/devices/system/cpu")) -> tuple[int, 
 
 
 def cpus_of_list(text: str) -> tuple[int, ...]:
-    """Return the CPUs of a list as the kernel writes it: 0-2,5."""
+    """Parse a CPU list of the kernel: 0-2,5."""
     ends = [part.split("-") for part in text.strip().split(",") if part]
     return tuple(cpu for end in ends for cpu in range(int(end[0]), int(end[-1]) + 1))
 
@@ -174,12 +174,12 @@ def _may_run_on(cpu: int, before: Collection[int]) -> bool:
 
 
 def as_host_cpu(cpus: tuple[int, ...]) -> HostCpu:
-    """Return what a process is pinned to, given the CPUs; none stand for all."""
+    """Return the affinity of a process for these CPUs; none mean all."""
     return cpus[0] if len(cpus) == 1 else cpus or None
 
 
 def host_cpu_text(host_cpu: HostCpu) -> str:
-    """Return how tables show it."""
+    """Format an affinity for tables."""
     cpus = host_cpu if isinstance(host_cpu, tuple) else (host_cpu,)
     return "any" if host_cpu is None else ",".join(map(str, cpus))
 
@@ -187,9 +187,9 @@ def host_cpu_text(host_cpu: HostCpu) -> str:
 def assign_host_cpus(
     used: Iterable[Core], fixed: Mapping[Core, int], cpus: Sequence[int]
 ) -> dict[Core, int]:
-    """Spread the used cores over the CPUs in order, so that none is shared while one is free.
+    """Distribute the used cores over the CPUs in order; none is shared while one is free.
 
-    List the busiest cores first: nodes, then receive threads. A core in `fixed` keeps its CPU.
+    List the busiest cores first: nodes, then receive threads. Cores in `fixed` keep their CPU.
     """
     load = Counter(fixed.values())
     assigned = dict(fixed)

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Words that stand for the enumerations of the native modules, in files, parameters and JSON."""
+"""Names of the enumerations of the native modules, in files, parameters and JSON."""
 
 from __future__ import annotations
 
@@ -11,12 +11,18 @@ Durability = Literal["volatile", "transient_local"]
 History = Literal["keep_last", "keep_all"]
 Liveliness = Literal["automatic", "manual_by_topic"]
 
-# Endpoints. A server is a subscription of requests with a publisher of replies, a client the
-# reverse.
+# How a process waits for messages.
+WaitMode = Literal["block", "adaptive", "spin"]
+
+# Endpoints. A server subscribes to requests and publishes replies, a client vice versa.
 EndpointKind = Literal["publisher", "subscription"]
 EndpointRole = Literal["topic", "request", "reply"]
+LOSSES = ("lost", "expired", "refused", "dropped")  # counters of messages that did not arrive
 
-# The scan matcher; MatcherOptions says what they mean.
+# Transfer of a topic's messages to other clusters; see docs/design/transfers.md.
+Transfer = Literal["dsm", "message", "session", "async"]
+
+# Scan matcher; see MatcherOptions.
 Search = Literal["radius", "direct7", "direct1"]
 VoxelCovariance = Literal["pcl", "autoware", "pclomp"]
 StepRule = Literal["trust_region", "clamped", "more_thuente"]

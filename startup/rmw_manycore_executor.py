@@ -1,12 +1,12 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Gives rclpy's MultiThreadedExecutor at least two threads in a node that has a core.
+"""Gives rclpy's MultiThreadedExecutor at least two threads in nodes pinned to a core.
 
-By default rclpy takes as many threads as the process has CPUs. A node on a core has one CPU, and
-with one thread a callback that waits for another callback, as one that calls a service does, waits
-for ever. `rmw_manycore.pth` calls `install()` in every python process that a core is given to;
-rclpy itself is imported only by programs that import it. See docs/design/run.md.
+By default rclpy uses as many threads as the process has CPUs. A node on a core has one CPU; with
+one thread, a callback that waits for another callback, e.g. one that calls a service, deadlocks.
+`rmw_manycore.pth` calls `install()` in every Python process that is assigned a core; rclpy itself
+is imported only by programs that import it. See docs/design/run.md.
 
-Imports nothing that python has not imported by then: this runs before everything else.
+Imports only what Python has already imported: this runs before everything else.
 """
 
 from __future__ import annotations
@@ -14,34 +14,40 @@ from __future__ import annotations
 import os
 import sys
 
-TYPE_CHECKING = False  # as typing has it, without importing typing
+TYPE_CHECKING = False  # type checkers treat it as typing.TYPE_CHECKING
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Mapping, Sequence
     from importlib.machinery import ModuleSpec
     from types import ModuleType
     from typing import Any
 
-MODULE = "rclpy.executors"
-MIN_THREADS = 2  # as rclcpp has it: one for the callback that waits, one for what it waits for
+MIN_THREADS = 2  # as in rclcpp: one for the waiting callback, one for the other
 
 
 def install() -> None:
-    """Have the default changed when, and if, this process imports rclpy's executors."""
-    if not any(isinstance(finder, _Finder) for finder in sys.meta_path):
-        sys.meta_path.insert(0, _Finder())  # site.py of a virtual environment comes here twice
+    """Patch modules of rclpy when this process imports them."""
+    if any(isinstance(finder, _Finder) for finder in sys.meta_path):
+        return  # site.py of a virtual environment calls this twice
+    changes: dict[str, list[Callable[[ModuleType], None]]] = {"rclpy.executors": [change_default]}
+    if design := os.environ.get("MANYCORE_RECEIVE"):
+        import rmw_manycore_receive
+
+        for name, change in rmw_manycore_receive.changes(design).items():
+            changes.setdefault(name, []).append(change)
+    sys.meta_path.insert(0, _Finder(changes))
 
 
 def default_threads() -> int:
-    """Return how many threads an executor has that is not told: one per CPU, and at least two."""
+    """Return the default number of executor threads: one per CPU, at least two."""
     return max(MIN_THREADS, len(os.sched_getaffinity(0)))
 
 
 def change_default(executors: ModuleType) -> None:
-    """Give MultiThreadedExecutor the default of `default_threads`; a given number stays."""
+    """Set the default of MultiThreadedExecutor to `default_threads`; explicit numbers are kept."""
     from functools import wraps
 
     executor = getattr(executors, "MultiThreadedExecutor", None)
-    if executor is None:  # a later rclpy may have moved it
+    if executor is None:  # moved in a later rclpy
         return
     original: Callable[..., None] = executor.__init__
 
@@ -55,28 +61,31 @@ def change_default(executors: ModuleType) -> None:
 
 
 class _Finder:
-    """Finds rclpy's executors where the others do, and has them changed once they are loaded."""
+    """Import hook that patches modules of rclpy after they are loaded."""
 
-    @staticmethod
+    def __init__(self, changes: Mapping[str, Sequence[Callable[[ModuleType], None]]]) -> None:
+        self._changes = changes
+
     def find_spec(
-        name: str, path: Sequence[str] | None = None, target: ModuleType | None = None
+        self, name: str, path: Sequence[str] | None = None, target: ModuleType | None = None
     ) -> ModuleSpec | None:
-        if name != MODULE:
+        if name not in self._changes:
             return None
         for finder in sys.meta_path:
             spec = None if isinstance(finder, _Finder) else finder.find_spec(name, path, target)
             if spec is not None and spec.loader is not None:
-                _change_when_loaded(spec.loader)
+                _change_when_loaded(spec.loader, self._changes[name])
                 return spec
         return None
 
 
-def _change_when_loaded(loader: Any) -> None:
-    """Let the loader of this one module change it afterwards; it stays the loader that it is."""
+def _change_when_loaded(loader: Any, changes: Sequence[Callable[[ModuleType], None]]) -> None:
+    """Patch the loader of this module so that the changes are made after loading."""
     load = loader.exec_module
 
     def exec_module(module: ModuleType) -> None:
         load(module)
-        change_default(module)
+        for change in changes:
+            change(module)
 
     loader.exec_module = exec_module

@@ -1,13 +1,13 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Gives python processes the middleware that RMW_IMPLEMENTATION names, when they start.
+"""Loads the middleware named by RMW_IMPLEMENTATION when a Python process starts.
 
 In the ROS 2 wheels librcl.so is linked to librmw_fastrtps_cpp.so by name. The dynamic loader reads
-its search path once, at program start, so the only way in is a process whose LD_LIBRARY_PATH names
-our stand-ins first. `rmw_manycore.pth` calls `select()` in every python process that has
-RMW_IMPLEMENTATION=rmw_manycore or the stand-ins; a launcher calls `substituted_environment()`
-instead and saves the second start. See docs/design/substitution.md.
+its search path once, at program start, so the process has to be started with our stand-ins first in
+LD_LIBRARY_PATH. `rmw_manycore.pth` calls `select()` in every Python process with
+RMW_IMPLEMENTATION=rmw_manycore or with the stand-ins; launchers call `substituted_environment()`
+instead and save the re-execution. See docs/design/substitution.md.
 
-Imports nothing that python has not imported by then: this runs before everything else.
+Imports only what Python has already imported: this runs before everything else.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ import _signal  # type: ignore[import-not-found]  # what signal is made of, with
 import os
 import sys
 
-TYPE_CHECKING = False  # as typing has it, without importing typing
+TYPE_CHECKING = False  # type checkers treat it as typing.TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
@@ -24,24 +24,24 @@ IMPLEMENTATION = "rmw_manycore"
 LIBRARY_PATH = "LD_LIBRARY_PATH"
 STAND_INS = "/lib/rmw_manycore/standin"
 REPLACED_LIBRARY = "librmw_fastrtps_cpp.so"
-# The wheels' own start-up hook does the same trick without keeping an order; this tells it not to.
+# Disables the wheels' own start-up hook, which re-executes without keeping the search order.
 WHEELS_BOOTSTRAPPED = "_ROS_WHEELS_BOOTSTRAP_COMPLETE"
-# Holds the id of the process that replaced itself, so that it cannot do so a second time, and the
-# names of the variables that are for this process only.
+# Process id of the process that re-executed itself, to prevent a second time, and the names of the
+# variables that only this process may see.
 REPLACED = "_RMW_MANYCORE_REPLACED"
-# What REPLACED says to the children of such a process: they inherit all but those variables.
+# Value of REPLACED for children of such a process, which inherit everything but those variables.
 PARENT = "parent"
-# By default glibc gives the memory of each large message back and gets it again, page by page, for
+# By default glibc returns the memory of each large message to the kernel and faults it in again for
 # the next; rclpy takes each message into fresh memory.
 MALLOC_TUNING = {"MALLOC_TRIM_THRESHOLD_": str(1 << 30), "MALLOC_MMAP_THRESHOLD_": str(1 << 30)}
 
 
-# In a virtual environment site.py processes each .pth file twice.
+# site.py processes each .pth file twice in a virtual environment.
 _ran = False
 
 
 def select() -> None:
-    """Restart this process if its libraries are not those of RMW_IMPLEMENTATION."""
+    """Re-execute this process if its libraries do not match RMW_IMPLEMENTATION."""
     global _ran
     if _ran:
         return
@@ -49,7 +49,7 @@ def select() -> None:
     replacer, *own_variables = os.environ.pop(REPLACED, "none").split()
     replaced = replacer == str(os.getpid())
     for name in own_variables if replaced else ():
-        os.environ.pop(name, None)  # read by the loader and by glibc before python started
+        os.environ.pop(name, None)  # already read by the loader and by glibc
     if os.environ.get("RMW_IMPLEMENTATION") == IMPLEMENTATION:
         _substitute(replaced, is_child=replacer == PARENT)
     elif needs_stand_ins(sys.prefix) and _finds_stand_in() and _is_python_program():
@@ -76,16 +76,16 @@ def _substitute(replaced: bool, is_child: bool) -> None:
 
 
 def restart(environment: Mapping[str, str]) -> None:
-    """Start this python anew, with the same arguments."""
+    """Re-execute this interpreter with the same arguments."""
     end_on_interrupt()
     os.execve(sys.executable, [sys.executable, *sys.orig_argv[1:]], environment)
 
 
 def end_on_interrupt() -> None:
-    """Let SIGINT end this process, where it would raise KeyboardInterrupt.
+    """Make SIGINT terminate this process instead of raising KeyboardInterrupt.
 
-    Python notes a signal and acts on it later: never, if `os.execve()` comes first or if some
-    import takes the exception for a failure of its own.
+    Python handles signals with a delay: never, if `os.execve()` comes first or if an import
+    mistakes the exception for its own failure.
     """
     if _signal.getsignal(_signal.SIGINT) is _signal.default_int_handler:
         _signal.signal(_signal.SIGINT, _signal.SIG_DFL)
@@ -98,17 +98,17 @@ def raise_on_interrupt() -> None:
 
 
 def substituted_environment(environment: Mapping[str, str], prefix: str) -> dict[str, str]:
-    """Return `environment` as a program of the python `prefix` needs it to get rmw_manycore.
+    """Return `environment` for programs of the Python `prefix` to load rmw_manycore.
 
-    An ordinary ROS 2 install selects the middleware by itself: there nothing changes.
+    Unchanged in a ROS 2 installation that selects the middleware itself.
     """
     return _with_libraries(environment, prefix, stand_in_directory(prefix))
 
 
 def plain_environment(environment: Mapping[str, str], prefix: str) -> dict[str, str]:
-    """Return `environment` as a program of the python `prefix` needs it to get Fast DDS.
+    """Return `environment` for programs of the Python `prefix` to load Fast DDS.
 
-    It may come from a shell that has the stand-ins, or from a python of another prefix.
+    `environment` may contain the stand-ins, or belong to another prefix.
     """
     return _with_libraries(environment, prefix)
 
@@ -127,14 +127,14 @@ def _with_libraries(
 
 
 def needs_stand_ins(prefix: str) -> bool:
-    """Tell whether `prefix` holds the ROS 2 wheels, with the middleware fixed at link time."""
+    """Return whether `prefix` holds the ROS 2 wheels, with the middleware fixed at link time."""
     return os.path.exists(f"{prefix}/lib/{REPLACED_LIBRARY}") and os.path.isdir(
         stand_in_directory(prefix)
     )
 
 
 def stand_in_directory(prefix: str) -> str:
-    """Return where the libraries lie that bear the names of Fast DDS's."""
+    """Return the directory of the stand-ins, libraries with the names of Fast DDS's."""
     return prefix + STAND_INS
 
 
@@ -154,12 +154,12 @@ def _wheel_library_directories(prefix: str) -> list[str]:
 
 
 def _finds_stand_in() -> bool:
-    """Tell whether the loader finds a stand-in, of whatever prefix, before the library itself."""
+    """Return whether the loader finds a stand-in, of any prefix, before the real library."""
     path = library_path(os.environ)
     found = (entry for entry in path if os.path.exists(f"{entry}/{REPLACED_LIBRARY}"))
     return next(found, "").rstrip("/").endswith(STAND_INS)
 
 
 def _is_python_program() -> bool:
-    """Tell python from a program that embeds it and cannot be restarted as python."""
+    """Return whether this is the Python program, not one that embeds Python."""
     return bool(sys.executable) and os.path.samefile("/proc/self/exe", sys.executable)

@@ -1,10 +1,10 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Lets Python find the interface packages that `manycore interface build` has made.
+"""Makes the packages of `manycore interface build` importable.
 
-`rmw_manycore.pth` calls `find()` in every python process where some have been made. A package that
-is found anywhere else wins, wherever and whenever it was installed. See docs/design/interfaces.md.
+`rmw_manycore.pth` calls `find()` in every Python process if such packages exist. A package found
+anywhere else takes precedence. See docs/design/interfaces.md.
 
-Imports nothing that python has not imported by then: this runs before everything else.
+Imports only what Python has already imported: this runs before everything else.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from __future__ import annotations
 import os
 import sys
 
-TYPE_CHECKING = False  # as typing has it, without importing typing
+TYPE_CHECKING = False  # type checkers treat it as typing.TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
     from importlib.machinery import ModuleSpec
@@ -25,43 +25,43 @@ MANIFEST = "manifest.json"
 
 
 def directory() -> str:
-    """Return where the packages of all Python versions are kept."""
+    """Return the directory of packages of all Python versions."""
     named = os.environ.get(DIRECTORY_VARIABLE)
     if named:
         return os.path.abspath(named)
     data = os.environ.get("XDG_DATA_HOME", "")
-    if not os.path.isabs(data):  # which the specification of XDG has ignored
+    if not os.path.isabs(data):  # ignored, as the XDG specification requires
         data = os.path.expanduser("~/.local/share")
     return f"{data}/rmw_manycore/interfaces"
 
 
 def own_directory() -> str:
-    """Return where the packages for this Python, its ABI and this ROS distribution are kept."""
+    """Return the directory of packages for this Python, its ABI and this ROS distribution."""
     python = f"{sys.implementation.cache_tag}{sys.abiflags}"
     return f"{directory()}/{ROS_DISTRIBUTION}-{python}-{os.uname().machine}"
 
 
 def own_prefix() -> str:
-    """Return the install prefix of those packages: python/, share/ and lib/ are in it."""
+    """Return the install prefix of those packages, with python/, share/ and lib/."""
     return f"{own_directory()}/current"
 
 
 def find() -> None:
-    """Let this process import the packages, and programs of ament find them."""
+    """Make the packages visible to this process, and to ament in its children."""
     if any(isinstance(finder, _Finder) for finder in sys.meta_path):
-        return  # in a virtual environment site.py processes each .pth file twice
+        return  # site.py processes each .pth file twice in a virtual environment
     sys.meta_path.insert(0, _Finder())
     prefixes = os.environ.get(AMENT_PREFIX_PATH)
-    # Without the variable the tools of ament find nothing anyway; CMake takes it for a sourced ROS.
+    # Do not create the variable: ament tools need it anyway, and CMake would assume a sourced ROS.
     if prefixes and own_prefix() not in prefixes.split(os.pathsep):
         os.environ[AMENT_PREFIX_PATH] = f"{prefixes}{os.pathsep}{own_prefix()}"
 
 
 class _Finder:
-    """Finds packages of the prefix that no other finder has.
+    """Finds packages of the prefix that no other finder finds.
 
-    It is asked first, because otherwise a folder of definitions in the working directory, to
-    Python a namespace package, would hide the package that was built from it.
+    It comes first in sys.meta_path: otherwise a directory of definitions in the working directory,
+    a namespace package to Python, would hide the package built from it.
     """
 
     @staticmethod
@@ -81,9 +81,9 @@ class _Finder:
 
 
 def check(package: str) -> None:
-    """Raise ImportError if a type that a built package contains has changed since.
+    """Raise ImportError if a type used by a built package has changed since.
 
-    The package would read and write memory of another layout than that type has now.
+    The package would access memory with an outdated layout.
     """
     import json
 
@@ -99,7 +99,7 @@ def check(package: str) -> None:
 
 
 def hash_of(name: str) -> str | None:
-    """Return the hash of an installed or built type (REP 2016): of std_msgs/msg/Header."""
+    """Return the hash (REP 2016) of an installed or built type such as std_msgs/msg/Header."""
     import json
 
     package, kind, type_name = name.split("/")

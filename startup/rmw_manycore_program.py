@@ -1,13 +1,12 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The programs of rmw_manycore itself: where they import from, and how others start them.
+"""Import rules of the programs of rmw_manycore, and how other programs start them.
 
-A file in the working directory that is named like a module must not take the module's place:
-`manycore run` is started wherever the user's files are. So none of our own programs imports from
-the working directory or from the directory of its script, and for all of them PYTHONPATH comes
-after the standard library and the installed packages. While they load, SIGINT ends them without
-a traceback. Nodes keep the rules of Python. See docs/design/substitution.md.
+A file in the working directory must not shadow a module: `manycore run` is started next to the
+user's files. So these programs never import from the working directory or their script's directory,
+and PYTHONPATH comes after the standard library and installed packages. While they load, SIGINT ends
+them without a traceback. Nodes keep the rules of Python. See docs/design/substitution_children.md.
 
-Imports nothing but the start-up hook, os and sys until the path of imports is in order.
+Imports only the start-up hook, os and sys until sys.path is set.
 """
 
 import os
@@ -19,12 +18,12 @@ COMMAND = "manycore"
 
 
 def own_program(module: str, *arguments: str) -> tuple[str, ...]:
-    """Return the command line that runs a module of ours, in place of `python -m MODULE`."""
+    """Return the command line that runs a module of ours, instead of `python -m MODULE`."""
     return (sys.executable, os.path.abspath(__file__), module, *arguments)
 
 
 def manycore() -> None:
-    """Be the command `manycore`; what catches KeyboardInterrupt calls `raise_on_interrupt()`."""
+    """Run `manycore`; code that handles KeyboardInterrupt calls `raise_on_interrupt()` first."""
     isolate_imports()
     import importlib
 
@@ -32,9 +31,9 @@ def manycore() -> None:
 
 
 def isolate_imports() -> None:
-    """Put the path of imports in order; for the first lines of a script.
+    """Set sys.path; called in the first lines of a script.
 
-    The script calls `raise_on_interrupt()` when it has imported what it needs.
+    The script calls `raise_on_interrupt()` after its imports.
     """
     end_on_interrupt()
     script = sys.argv[0]
@@ -45,7 +44,7 @@ def isolate_imports() -> None:
 
 
 def isolate_own_program() -> None:
-    """Put the path in order before other start-up hooks import anything; no-op for nodes."""
+    """Set sys.path before other start-up hooks import anything; no-op for nodes."""
     if _is_own(os.path.realpath(sys.argv[0])):
         end_on_interrupt()
         _put_pythonpath_last()
@@ -62,7 +61,7 @@ def _is_own(script: str) -> bool:
 
 
 def _put_pythonpath_last() -> None:
-    """Move the entries of PYTHONPATH to the end; drop an empty one, the working directory."""
+    """Move the entries of PYTHONPATH to the end; drop an empty one (the working directory)."""
     entries = os.environ.get("PYTHONPATH", "").split(os.pathsep)
     if entries == [""]:
         return

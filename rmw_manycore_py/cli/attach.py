@@ -32,20 +32,20 @@ _STDIN, _STDOUT = 0, 1
     "attach", epilog=examples("manycore attach teleop", "manycore attach --restart my_node")
 )
 @click.argument("node")
-@click.option("--restart", "restarts", is_flag=True, help="Start NODE again, with a terminal.")
+@click.option("--restart", "restarts", is_flag=True, help="Restart NODE with a terminal first.")
 @click.option(
     "--detach-keys",
     "keys",
     default=DEFAULT_KEYS,
     show_default=True,
-    help="Keys that leave NODE running: letters, or ctrl-LETTER, with commas between.",
+    help="Keys that detach from NODE: comma-separated letters or ctrl-LETTER.",
 )
 @platform_option
 def command(node: str, restarts: bool, keys: str, platform: str) -> None:
-    """Use the terminal of NODE, which has `terminal: true` in its mapfile.
+    """Attach to the terminal of NODE, which needs `terminal: true` in its mapfile.
 
-    All keys go to NODE: Ctrl-C interrupts it, as if it had been started here. The detach keys leave
-    it running. Ends with NODE; a node that is respawned stays attached.
+    All keys go to NODE, Ctrl-C included. The detach keys leave NODE running. The command ends when
+    NODE ends; it stays attached while NODE is respawned.
     """
     try:
         detach_keys = DetachKeys(parse_keys(keys))
@@ -66,7 +66,7 @@ def command(node: str, restarts: bool, keys: str, platform: str) -> None:
 
 
 class _Session:
-    """Carries keys one way and output the other."""
+    """Forwards keys to the node and its output to the terminal."""
 
     def __init__(self, client: Client, inbox: SignalInbox, keys: DetachKeys) -> None:
         self._client = client
@@ -76,13 +76,13 @@ class _Session:
         self._is_good = True
 
     def run(self) -> tuple[str, bool]:
-        """Carry until something ends it; return what, and whether that is fine."""
+        """Forward until the session ends; return the reason, and whether it is a success."""
         for message in (self._client.answer, *self._client.early()):
             self._show(message)
         with selectors.DefaultSelector() as selector:
             selector.register(self._client.socket, selectors.EVENT_READ, self._take_messages)
             selector.register(self._inbox, selectors.EVENT_READ, self._take_signals)
-            # A regular file or /dev/null is always readable, and epoll refuses it.
+            # epoll refuses regular files and /dev/null, which are always readable.
             if os.isatty(_STDIN) or not _is_plain(_STDIN):
                 selector.register(_STDIN, selectors.EVENT_READ, lambda: self._type(selector))
             while self._reason is None:
@@ -117,7 +117,7 @@ class _Session:
 
     def _type(self, selector: selectors.BaseSelector) -> None:
         data = os.read(_STDIN, 4096)
-        if not data:  # a pipe that has said all; the output goes on
+        if not data:  # end of a piped stdin; keep forwarding output
             selector.unregister(_STDIN)
             return
         typed, is_detached = self._keys.take(data)
@@ -139,12 +139,12 @@ def _restart(run: RunDirectory, name: str) -> None:
 
 @contextmanager
 def _raw_terminal() -> Iterator[None]:
-    """Let all keys through, Ctrl-C too; in the end the terminal is as it was."""
+    """Put the terminal into raw mode, Ctrl-C included; restore its settings at the end."""
     if not os.isatty(_STDIN):
         yield
         return
     before = termios.tcgetattr(_STDIN)
-    tty.setraw(_STDIN, termios.TCSADRAIN)  # what was typed ahead is for the node
+    tty.setraw(_STDIN, termios.TCSADRAIN)  # keep typed-ahead input for the node
     try:
         yield
     finally:

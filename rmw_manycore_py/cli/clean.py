@@ -9,6 +9,7 @@ from rmw_manycore_py import _transport
 from rmw_manycore_py.cli.common.options import examples, json_option
 from rmw_manycore_py.cli.common.printing import print_json
 from rmw_manycore_py.cli.common.view import platform_names
+from rmw_manycore_py.emcos.memory import remove_names_of_the_dead
 from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.ros.domain import checked_platform
 from rmw_manycore_py.runs.directory import remove_ended, runs_of
@@ -16,12 +17,12 @@ from rmw_manycore_py.runs.directory import remove_ended, runs_of
 
 @click.command("clean", epilog=examples("manycore clean", "manycore clean --logs domain-0"))
 @click.argument("platforms", nargs=-1)
-@click.option("--logs", is_flag=True, help="Remove the logs of runs that have ended, too.")
+@click.option("--logs", is_flag=True, help="Also remove the logs of runs that have ended.")
 @json_option
 def command(platforms: tuple[str, ...], logs: bool, as_json: bool) -> None:
-    """Remove what dead PLATFORMS left in shared memory; by default of all that are dead.
+    """Remove what dead PLATFORMS left in shared memory; by default, all dead platforms.
 
-    Living platforms are left alone. The next start of a platform does the same by itself.
+    Leaves live platforms alone. The next start of a platform does the same.
     """
     removed: list[str] = []
     known = platform_names()
@@ -35,6 +36,8 @@ def command(platforms: tuple[str, ...], logs: bool, as_json: bool) -> None:
         except _transport.PlatformError as error:
             if platforms:
                 raise ManycoreError(str(error)) from error
+    if not platforms:
+        removed += remove_names_of_the_dead()
     if logs:
         removed += [str(path) for name in platforms or (None,) for path in remove_ended(name)]
     if as_json:

@@ -11,14 +11,14 @@ from click.shell_completion import get_completion_class
 
 from rmw_manycore_py.cli.common.options import examples
 
-# The shells of click that run where rmw_manycore does, and how each reads the script at its start.
+# Shells that click supports, and how each loads the completion script at start-up.
 SHELLS = {
     "bash": ('eval "$(manycore completion bash)"', "~/.bashrc"),
     "zsh": ('eval "$(manycore completion zsh)"', "~/.zshrc, after compinit"),
     "fish": ("manycore completion fish | source", "~/.config/fish/config.fish"),
 }
 PROGRAM = "manycore"
-VARIABLE = "_MANYCORE_COMPLETE"  # click's name for it
+VARIABLE = "_MANYCORE_COMPLETE"  # name defined by click
 
 
 @click.command(
@@ -31,10 +31,10 @@ VARIABLE = "_MANYCORE_COMPLETE"  # click's name for it
 @click.argument("shell", type=click.Choice(tuple(SHELLS)), required=False)
 @click.pass_context
 def command(context: click.Context, shell: str | None) -> None:
-    """Print the script with which SHELL completes manycore; without SHELL, how to switch it on.
+    """Print the completion script for SHELL; without SHELL, print how to enable it.
 
-    Completed are verbs, options, and names: nodes, topics, services and actions of the running
-    platform, types, packages, mapfiles, platforms.
+    Completes verbs, options, nodes, topics, services and actions of the running platform, types,
+    packages, mapfiles and platforms.
     """
     if shell is None:
         click.echo(_instructions(Path(os.environ.get("SHELL", "")).name))
@@ -46,10 +46,10 @@ def command(context: click.Context, shell: str | None) -> None:
 
 
 def _instructions(own_shell: str) -> str:
-    """Return the lines for the user's shell, for all where that is none of them."""
+    """Return the instructions for the user's shell, or for all if it is not supported."""
     wanted = {own_shell: SHELLS[own_shell]} if own_shell in SHELLS else SHELLS
     return "\n".join(
-        f"{shell}: for this shell alone\n    {line}\n"
-        f"{shell}: for all to come, the same line in {file}"
+        f"{shell}, for this shell only:\n    {line}\n"
+        f"{shell}, permanently: add the same line to {file}"
         for shell, (line, file) in wanted.items()
     )

@@ -45,17 +45,17 @@ _EXAMPLES = examples(
     "directory",
     required=True,
     type=click.Path(file_okay=False, path_type=Path),
-    help="Directory to write to; it may be one that create wrote before.",
+    help="Directory to write to; may hold the output of an earlier `create`.",
 )
 @click.option(
     "--report",
     "with_figure",
     is_flag=True,
-    help="Show how many lines mapfiles save: a table, and Fig. 12 of ROS-lite2 in DIRECTORY.",
+    help="Report the lines saved by mapfiles: a table, and Fig. 12 of ROS-lite2 in DIRECTORY.",
 )
 @json_option
 def command(mapfile: Path, directory: Path, with_figure: bool, as_json: bool) -> None:
-    """Write the topic table, launch scripts, parameter files and memory use of MAPFILE."""
+    """Generate topic table, launch scripts, parameter files and memory report of MAPFILE."""
     if with_figure:
         load_figure()
     report = create(mapfile, directory)
@@ -90,7 +90,7 @@ def command(mapfile: Path, directory: Path, with_figure: bool, as_json: bool) ->
 
 
 def _draw_figure(mapfile: Path, directory: Path) -> list[Dot]:
-    """Draw the installed mapfiles and this one; those that are not valid here are left out."""
+    """Plot the installed mapfiles and this one; skip mapfiles that are invalid here."""
     dots = [dot_of(mapfile)]
     for installed in installed_mapfiles().values():
         if not installed.samefile(mapfile):

@@ -31,11 +31,11 @@ DEFAULT_DURATION_S = 10.0
 )
 @mapfile_argument("[NAME]", DEFAULT)
 @duration_option(DEFAULT_DURATION_S)
-@click.option("--list", "as_list", is_flag=True, help="List the installed mapfiles instead.")
+@click.option("--list", "as_list", is_flag=True, help="List the installed mapfiles and exit.")
 def command(mapfile: Path, duration_s: float, as_list: bool) -> None:
-    """Run an installed mapfile for some seconds, and say what there is to see.
+    """Run an installed mapfile for some seconds, then suggest what to try next.
 
-    NAME is talker_listener unless another one is given.
+    NAME defaults to talker_listener.
     """
     if as_list:
         _list()
@@ -65,14 +65,14 @@ def _explain(mapfile: Path, placement: Placement) -> None:
     name = names.get(mapfile, str(mapfile))
     topic = next((topic.name for topic in placement.topics), "TOPIC")
     commands = {
-        f"manycore map show {name}": "what is placed where, and the memory it takes",
+        f"manycore map show {name}": "the placement, and the memory of each cluster",
         f"manycore run {name}": "the same until Ctrl-C; meanwhile, in another shell:",
-        f"manycore topic echo {topic}": "what the nodes say",
-        "manycore top": "what they cost",
+        f"manycore topic echo {topic}": "the messages",
+        "manycore top": "CPU, memory and queues",
         "manycore demo --list": "other mapfiles",
     }
-    click.echo("\nGo on with:")
+    click.echo("\nNext steps:")
     width = max(map(len, commands))
     for words, purpose in commands.items():
         click.echo(f"  {words:<{width}}  {purpose}")
-    click.echo(f"A mapfile to start yours from: {mapfile}")
+    click.echo(f"A mapfile to start from: {mapfile}")

@@ -18,9 +18,9 @@ VARIABLES = ("RMW_IMPLEMENTATION", LIBRARY_PATH, WHEELS_BOOTSTRAPPED)
 @click.command("env", epilog=examples('eval "$(manycore env)"', "python talker.py"))
 @json_option
 def command(as_json: bool) -> None:
-    """Print what a shell exports so that its ROS 2 programs use rmw_manycore.
+    """Print the environment that makes the ROS 2 programs of a shell use rmw_manycore.
 
-    Python programs need RMW_IMPLEMENTATION alone; the rest is for programs in other languages.
+    Python programs only need RMW_IMPLEMENTATION; the other variables are for other languages.
     """
     wanted = program_environment({})
     names = [name for name in VARIABLES if name in wanted]

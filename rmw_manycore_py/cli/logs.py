@@ -31,15 +31,15 @@ from rmw_manycore_py.runs.log_reader import LogLine, NodeLog, in_order
     ),
 )
 @click.argument("nodes", nargs=-1)
-@click.option("-f", "--follow", is_flag=True, help="Go on with what is printed, until Ctrl-C.")
+@click.option("-f", "--follow", is_flag=True, help="Follow the output until Ctrl-C.")
 @click.option(
     "-n",
     "--tail",
     type=click.IntRange(min=0),
     metavar="N",
-    help="Show the last N lines of each node only.",
+    help="Show only the last N lines of each node.",
 )
-@click.option("-t", "--timestamps", is_flag=True, help="Show when each line was printed.")
+@click.option("-t", "--timestamps", is_flag=True, help="Show the time of each line.")
 @click.option("--no-prefix", is_flag=True, help="Leave out the names of the nodes.")
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object per line.")
 @platform_option
@@ -52,10 +52,10 @@ def command(
     as_json: bool,
     platform: str,
 ) -> None:
-    """Show what NODES have printed, or all nodes and the run itself; also after their end.
+    """Show the output of NODES, by default of all nodes and the run itself; also after their end.
 
-    Of each node the last 8 MiB are kept, less where a run has many nodes, until the next run of
-    the platform. A follower ends with the run.
+    The last 8 MiB of each node are kept until the next run of the platform, less in runs with many
+    nodes. With --follow, the command ends with the run.
     """
     runs = runs_of(platform)
     if not runs:
@@ -64,7 +64,7 @@ def command(
     logs = [NodeLog(run, name) for run, names in chosen for name in names]
     printer = _Printer([log.node for log in logs], timestamps, no_prefix, as_json)
     with ExitStack() as stack:
-        # Ask to be woken before looking: nothing falls in between.
+        # Subscribe before reading, so that no line falls in between.
         living = [run for run, _ in chosen if run.is_alive] if follow else []
         clients = [stack.enter_context(Client(run, "follow")) for run in living]
         printer.show(in_order(logs, tail))
@@ -74,7 +74,7 @@ def command(
 
 
 class _Printer:
-    """Prints lines of logs."""
+    """Prints log lines."""
 
     def __init__(
         self, names: Sequence[str], timestamps: bool, no_prefix: bool, as_json: bool
@@ -85,7 +85,6 @@ class _Printer:
         self._as_json = as_json
 
     def show(self, lines: Iterable[LogLine]) -> None:
-        """Print lines."""
         for line in lines:
             text = f"{line.time} {line.text}" if self._timestamps else line.text
             if self._as_json:
@@ -97,7 +96,7 @@ class _Printer:
 
 
 def _follow(clients: list[Client], logs: Sequence[NodeLog], printer: _Printer) -> None:
-    """Print what comes until the last supervisor is gone."""
+    """Print new lines until the last supervisor has ended."""
     while clients:
         readable, _, _ = select.select([client.socket for client in clients], [], [])
         for client in tuple(clients):

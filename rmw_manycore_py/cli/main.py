@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The command line as a whole."""
+"""The command line `manycore`."""
 
 from __future__ import annotations
 
@@ -58,9 +58,9 @@ VERBS = {
 )
 @click.version_option(__version__, prog_name="manycore")
 def cli() -> None:
-    """Run ROS 2 nodes on the cores of a clustered many-core platform, and look at them."""
+    """Run and inspect ROS 2 nodes on the cores of a clustered many-core platform."""
 
 
 def main() -> None:
-    """Be the command `manycore`."""
+    """Entry point of the command `manycore`."""
     cli(prog_name="manycore")

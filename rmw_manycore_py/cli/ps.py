@@ -17,9 +17,9 @@ from rmw_manycore_py.runs.directory import RunDirectory, all_runs, runs_of
 @any_platform_option
 @json_option
 def command(platform: str | None, as_json: bool) -> None:
-    """Show the nodes of the runs of this user: those that run, and those that have ended.
+    """Show the nodes of this user's runs, both running and ended ones.
 
-    `manycore status` shows the platforms, nodes that were started by hand included.
+    `manycore status` also shows nodes started by hand, by platform.
     """
     runs = runs_of(platform) if platform else all_runs()
     rows = [_row(run) for run in runs if run.is_alive]
@@ -27,7 +27,7 @@ def command(platform: str | None, as_json: bool) -> None:
         print_json(rows)
         return
     if not rows:
-        click.echo("nothing is run by `manycore run` or `manycore up`")
+        click.echo("no run of `manycore run` or `manycore up`")
     for number, row in enumerate(rows):
         if number:
             click.echo()

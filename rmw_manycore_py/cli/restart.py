@@ -16,7 +16,7 @@ from rmw_manycore_py.launch.events import Ended, Finished, Restarting, Started, 
 from rmw_manycore_py.runs.client import Client
 from rmw_manycore_py.runs.directory import RunDirectory
 
-# A program that cannot import what it needs ends in some 0.2 s.
+# A program with a failing import exits after about 0.2 s.
 LOOK_S = 1.0
 
 
@@ -24,10 +24,10 @@ LOOK_S = 1.0
 @click.argument("nodes", nargs=-1)
 @platform_option
 def command(nodes: tuple[str, ...], platform: str) -> None:
-    """Stop NODES, all unless some are named, and start them again; also those that have ended.
+    """Restart NODES, by default all, including those that have ended.
 
-    A node starts as its run has it: a changed mapfile counts after `manycore stop` and `up`. Looks
-    on for a second: the exit status is 1 if a node ends again by then.
+    Nodes restart with the settings of their run: to apply a changed mapfile, use `manycore stop`
+    and `up`. Watches the nodes for one second; the exit status is 1 if one ends again in that time.
     """
     runs = living_runs(platform)
     every = [(run, [n for n in run.nodes if not n.startswith("(")]) for run in runs]
@@ -36,7 +36,7 @@ def command(nodes: tuple[str, ...], platform: str) -> None:
 
 
 class _Restart:
-    """Some nodes of a run on their way."""
+    """Restart in progress of some nodes of a run."""
 
     def __init__(self, run: RunDirectory, names: list[str]) -> None:
         self._run = run
@@ -56,7 +56,7 @@ class _Restart:
         return EXIT_FAILURE if self._failed or self._waits_for else 0
 
     def _look_on(self, client: Client) -> None:
-        """See whether a node ends again at once."""
+        """Watch for nodes that end again at once."""
         deadline = time.monotonic() + LOOK_S
         while not self._failed and (left_s := deadline - time.monotonic()) > 0:
             messages = client.take(left_s)
@@ -79,5 +79,5 @@ class _Restart:
             for line in event.last_lines:
                 click.echo(f"    {line}", err=True)
         elif isinstance(event, Ended):
-            self._waits_for.discard(event.node)  # it could not be started
+            self._waits_for.discard(event.node)  # the start failed
             self._failed = True

@@ -35,7 +35,7 @@ from rmw_manycore_py.trace.files import SUFFIXES
 @click.option(
     "--trace",
     type=OutputFile(*SUFFIXES),
-    help="Trace the whole run into this file: .json, .csv or .pftrace.",
+    help="Trace the whole run to FILE: .json, .csv or .pftrace.",
 )
 def command(
     mapfile: Path,
@@ -47,10 +47,10 @@ def command(
 ) -> None:
     """Start the nodes of MAPFILE, each on its core, and stop them together.
 
-    MAPFILE is a file, or the name of an installed one (manycore demo --list).
-    Ends when all nodes have ended, when the duration is over, or on Ctrl-C; a second Ctrl-C does
-    not wait for nodes that take their time. The exit status is 0 unless a node failed.
-    In the background: manycore up -d.
+    MAPFILE is a path, or the name of an installed mapfile (manycore demo --list).
+    The run ends when all nodes have ended, after --duration, or on Ctrl-C; a second Ctrl-C does not
+    wait for slow nodes. The exit status is non-zero if a node failed.
+    To run in the background, use manycore up -d.
     """
     run, _ = prepared_run(mapfile, joins, nodes)
     report = _print_json if as_json else RunPrinter(run.program_names).report

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from dataclasses import dataclass
 
 import click
@@ -13,54 +14,62 @@ from rmw_manycore_py.cli.common.options import any_platform_option, examples, js
 from rmw_manycore_py.cli.common.printing import new_table, print_json, print_table, size_text
 from rmw_manycore_py.cli.common.rows import Row, cluster_row, platform_row, process_row
 from rmw_manycore_py.errors import ManycoreError
+from rmw_manycore_py.ros.names import node_names_by_process
+from rmw_manycore_py.transfers import transfer_text
 
 
 @dataclass(frozen=True)
 class PlatformState:
-    """Everything that is shown of a platform."""
+    """Data shown of one platform."""
 
     info: _transport.PlatformInfo
     clusters: list[_transport.ClusterInfo]
     processes: list[_transport.ProcessInfo]
-    nodes: dict[int, list[str]]  # their full names, by the slot of their process
+    nodes: defaultdict[int, list[str]]  # full names by process slot
     losses: list[Row]
+    transfers: list[_transport.TopicConfiguration]
 
     @classmethod
     def of(cls, name: str) -> PlatformState:
-        """Look at a platform."""
+        """Read the state of a platform."""
         with view.open_platform(name) as opened:
-            nodes, endpoints = opened.nodes(), opened.endpoints()
-            processes = opened.processes()
             return cls(
                 opened.info(),
                 opened.clusters(),
-                processes,
-                {
-                    process.slot: [view.full_name(n) for n in nodes if n.process == process.slot]
-                    for process in processes
-                },
-                view.losses(endpoints),
+                opened.processes(),
+                node_names_by_process(opened.nodes()),
+                view.losses(opened.endpoints()),
+                [topic for topic in opened.topic_table() if topic.transfer != "dsm"],
             )
 
     def row(self) -> Row:
-        """Return it for programs."""
+        """Return the JSON row."""
         return {
             **platform_row(self.info),
             "clusters": [cluster_row(cluster) for cluster in self.clusters],
             "processes": [{**process_row(p), "nodes": self.nodes[p.slot]} for p in self.processes],
             "losses": self.losses,
+            "transfers": [
+                {
+                    "topic": topic.name,
+                    "transfer": topic.transfer,
+                    "priority": topic.priority,
+                    "synchronous": topic.synchronous,
+                }
+                for topic in self.transfers
+            ],
         }
 
 
 @dataclass(frozen=True)
 class Unreadable:
-    """A platform that cannot be looked at."""
+    """A platform that cannot be read."""
 
     name: str
     error: str
 
     def row(self) -> Row:
-        """Return it for programs."""
+        """Return the JSON row."""
         return {"name": self.name, "error": self.error}
 
 
@@ -68,7 +77,7 @@ class Unreadable:
 @any_platform_option
 @json_option
 def command(platform: str | None, as_json: bool) -> None:
-    """Show the platforms of this user: clusters, processes, and messages that were lost."""
+    """Show this user's platforms: clusters, processes and lost messages."""
     if platform:
         states: list[PlatformState | Unreadable] = [PlatformState.of(platform)]
     else:
@@ -85,7 +94,7 @@ def command(platform: str | None, as_json: bool) -> None:
 
 
 def _look_at(name: str) -> PlatformState | Unreadable:
-    """Return the state of a platform, or what is wrong with it: one bad one hides no other."""
+    """Return the state of a platform, or its error so that the others are still shown."""
     try:
         return PlatformState.of(name)
     except (ManycoreError, _transport.PlatformError) as error:
@@ -100,6 +109,9 @@ def _show(state: PlatformState | Unreadable) -> None:
     click.echo(f"platform {state.info.name}: {alive}")
     _show_clusters(state.clusters)
     _show_processes(state)
+    for topic in state.transfers:
+        text = transfer_text(topic.transfer, topic.priority, topic.synchronous)
+        click.echo(f"{topic.name}: transfer {text}")
     for loss in state.losses:
         click.echo(f"{loss['node']} {loss['topic']}: {loss['counter']} {loss['count']}")
 

@@ -25,14 +25,14 @@ from rmw_manycore_py.runs.directory import RunDirectory, runs_of
     epilog=examples("manycore stop", "manycore stop talker", "manycore stop --platform domain-3"),
 )
 @click.argument("nodes", nargs=-1)
-@click.option("--now", is_flag=True, help="Do not wait for nodes that take their time.")
+@click.option("--now", is_flag=True, help="Do not wait for slow nodes.")
 @platform_option
 def command(nodes: tuple[str, ...], now: bool, platform: str) -> None:
-    """Stop the runs of a platform, or only NODES: those stay known, and `restart` starts them.
+    """Stop the runs of a platform, or only NODES; `manycore restart` starts those again.
 
-    Nodes get SIGINT, after 5 s SIGTERM, after 3 s more SIGKILL; --now sends the next at once, as
-    a second Ctrl-C does. The exit status is that of the run. A platform that nothing runs on is
-    stopped already: that is no error.
+    Nodes get SIGINT, SIGTERM after 5 s, and SIGKILL after another 3 s; --now sends the next signal
+    at once, like a second Ctrl-C. The exit status is that of the run. Stopping a platform without
+    running processes is not an error.
     """
     if nodes:
         for run, names in nodes_by_run(living_runs(platform), nodes):
@@ -42,7 +42,7 @@ def command(nodes: tuple[str, ...], now: bool, platform: str) -> None:
     if not runs:
         _explain(platform)
         return
-    # Those that have joined go before the one that has started the platform.
+    # Runs that joined stop before the run that started the platform.
     sys.exit(max(_stop(run, now) for run in reversed(runs)))
 
 
@@ -66,7 +66,7 @@ def _stop(run: RunDirectory, now: bool) -> int:
     except ManycoreError:
         if run.is_alive:
             raise
-        return 0  # it was just ending by itself
+        return 0  # the run was ending by itself
     raise ManycoreError(f"the supervisor of platform '{run.platform}' died before its run was over")
 
 
@@ -84,14 +84,14 @@ def _stop_nodes(run: RunDirectory, names: Sequence[str]) -> None:
 
 
 def _explain(platform: str) -> None:
-    """Say what there is of a platform that no supervisor runs."""
+    """Report the state of a platform without a supervisor."""
     if users := remaining_users(platform):
         raise ManycoreError(
-            f"{no_run(platform)}: on it are {', '.join(users)}, which were started otherwise; "
-            "end them where they were started",
+            f"{no_run(platform)}: it is used by {', '.join(users)}, started by other means; "
+            "stop them where they were started",
             EXIT_FAILURE,
         )
     with translate_native_errors():
         removed = _transport.clean(platform) if platform in _transport.platforms() else []
-    what = "what was left of it is removed" if removed else "nothing runs on it"
+    what = "its leftovers were removed" if removed else "nothing runs on it"
     click.echo(f"platform {platform} is stopped: {what}")

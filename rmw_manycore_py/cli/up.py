@@ -29,10 +29,10 @@ from rmw_manycore_py.ros.domain import default_platform
 @click.option("-d", "--detach", "detached", is_flag=True, help="Run in the background.")
 @starting_options
 def command(mapfile: Path, detached: bool, joins: bool, nodes: tuple[str, ...]) -> None:
-    """Start the nodes of MAPFILE, with -d in the background.
+    """Start the nodes of MAPFILE; with -d, in the background.
 
-    Without -d it is `manycore run`. With -d it returns as soon as the nodes have been started;
-    Ctrl-C until then stops them again. ps, logs, restart, attach and stop do the rest.
+    Without -d, same as `manycore run`. With -d, returns once all nodes are started; Ctrl-C before
+    that stops them again. Continue with ps, logs, restart, attach and stop.
     """
     run, placement = prepared_run(mapfile, joins, nodes, detached)
     printer = RunPrinter(run.program_names)

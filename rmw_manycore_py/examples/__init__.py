@@ -1,2 +1,2 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Ordinary rclpy nodes: they know nothing of rmw_manycore and run on any ROS 2 middleware."""
+"""Ordinary rclpy nodes that run on any ROS 2 middleware, without code for rmw_manycore."""

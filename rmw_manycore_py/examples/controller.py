@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""A controller whose parameter `gain` can be changed while it runs, within 0 to 10."""
+"""A controller whose parameter `gain` can be changed at run time, within 0 to 10."""
 
 from contextlib import suppress
 
@@ -29,7 +29,7 @@ class Controller(Node):
 
 
 def main() -> None:
-    """Run the node until it is interrupted."""
+    """Run the node until interrupted."""
     rclpy.init()
     with suppress(KeyboardInterrupt, ExternalShutdownException):
         rclpy.spin(Controller())

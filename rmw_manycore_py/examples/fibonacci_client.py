@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Sends goals to the action `fibonacci`, one after the other, and cancels every third one."""
+"""Sends goals to the action `fibonacci` in sequence, and cancels every third one."""
 
 from contextlib import suppress
 
@@ -13,7 +13,7 @@ from test_msgs.action import Fibonacci
 
 
 class FibonacciClient(Node):
-    """Asks for `order` steps and prints feedback and result."""
+    """Requests `order` steps and logs feedback and result."""
 
     def __init__(self) -> None:
         super().__init__("fibonacci_client")
@@ -52,7 +52,7 @@ class FibonacciClient(Node):
 
 
 def main() -> None:
-    """Run the node until it is interrupted."""
+    """Run the node until interrupted."""
     rclpy.init()
     with suppress(KeyboardInterrupt, ExternalShutdownException):
         rclpy.spin(FibonacciClient())

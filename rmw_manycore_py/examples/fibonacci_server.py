@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The action `fibonacci`: computes the sequence, one step each `1 / rate_hz` seconds."""
+"""Action server `fibonacci`: computes the sequence, one step per `1 / rate_hz` seconds."""
 
 from contextlib import suppress
 
@@ -13,7 +13,7 @@ from test_msgs.action import Fibonacci
 
 
 class FibonacciServer(Node):
-    """Sends each step as feedback and can be cancelled between steps."""
+    """Publishes each step as feedback; goals can be cancelled between steps."""
 
     def __init__(self) -> None:
         super().__init__("fibonacci_server")
@@ -54,7 +54,7 @@ class FibonacciServer(Node):
 
 
 def main() -> None:
-    """Run the node until it is interrupted."""
+    """Run the node until interrupted."""
     rclpy.init()
     with suppress(KeyboardInterrupt, ExternalShutdownException):
         rclpy.spin(FibonacciServer())

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Inverts the pictures of `image_raw` and publishes them on `image_inverted`."""
+"""Inverts the images of `image_raw` and publishes them on `image_inverted`."""
 
 from contextlib import suppress
 
@@ -11,7 +11,7 @@ from sensor_msgs.msg import Image
 
 
 class ImageFilter(Node):
-    """Makes a negative of every picture."""
+    """Publishes the negative of every image."""
 
     def __init__(self) -> None:
         super().__init__("image_filter")
@@ -26,7 +26,7 @@ class ImageFilter(Node):
 
 
 def main() -> None:
-    """Run the node until it is interrupted."""
+    """Run the node until interrupted."""
     rclpy.init()
     with suppress(KeyboardInterrupt, ExternalShutdownException):
         rclpy.spin(ImageFilter())

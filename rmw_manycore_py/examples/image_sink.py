@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Checks every byte of the pictures on `image_inverted` and counts the ones that are missing."""
+"""Checks every byte of the images on `image_inverted` and counts missing frames."""
 
 from contextlib import suppress
 
@@ -13,7 +13,7 @@ from rmw_manycore_py.examples.picture import pixels_of_frame
 
 
 class ImageSink(Node):
-    """Reports each frame as good or damaged, and how many were lost since the first one."""
+    """Logs each frame as good or damaged, and the number of frames lost since the first."""
 
     def __init__(self) -> None:
         super().__init__("image_sink")
@@ -32,7 +32,7 @@ class ImageSink(Node):
 
 
 def main() -> None:
-    """Run the node until it is interrupted."""
+    """Run the node until interrupted."""
     rclpy.init()
     with suppress(KeyboardInterrupt, ExternalShutdownException):
         rclpy.spin(ImageSink())

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Publishes 1 MiB pictures on `image_raw`, `rate_hz` times a second."""
+"""Publishes 1 MiB images on `image_raw`, `rate_hz` times a second."""
 
 from contextlib import suppress
 
@@ -12,7 +12,7 @@ from rmw_manycore_py.examples.picture import make_image, pixels_of_frame
 
 
 class ImageSource(Node):
-    """A camera that films its own frame counter."""
+    """A camera whose images encode the frame number."""
 
     def __init__(self) -> None:
         super().__init__("image_source")
@@ -30,7 +30,7 @@ class ImageSource(Node):
 
 
 def main() -> None:
-    """Run the node until it is interrupted."""
+    """Run the node until interrupted."""
     rclpy.init()
     with suppress(KeyboardInterrupt, ExternalShutdownException):
         rclpy.spin(ImageSource())

@@ -10,7 +10,7 @@ from std_srvs.srv import SetBool
 
 
 class Lamp(Node):
-    """Is on or off, as it was last told."""
+    """Service server that stores whether the lamp is on."""
 
     def __init__(self) -> None:
         super().__init__("lamp")
@@ -26,7 +26,7 @@ class Lamp(Node):
 
 
 def main() -> None:
-    """Run the node until it is interrupted."""
+    """Run the node until interrupted."""
     rclpy.init()
     with suppress(KeyboardInterrupt, ExternalShutdownException):
         rclpy.spin(Lamp())

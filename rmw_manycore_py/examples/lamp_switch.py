@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Switches the lamp on and off through the service `switch_lamp`, `rate_hz` times a second."""
+"""Toggles the lamp through the service `switch_lamp`, `rate_hz` times a second."""
 
 from contextlib import suppress
 
@@ -11,7 +11,7 @@ from std_srvs.srv import SetBool
 
 
 class LampSwitch(Node):
-    """Asks for the other state each time, once the last answer has come."""
+    """Requests the opposite state after each response."""
 
     def __init__(self) -> None:
         super().__init__("lamp_switch")
@@ -38,7 +38,7 @@ class LampSwitch(Node):
 
 
 def main() -> None:
-    """Run the node until it is interrupted."""
+    """Run the node until interrupted."""
     rclpy.init()
     with suppress(KeyboardInterrupt, ExternalShutdownException):
         rclpy.spin(LampSwitch())

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Prints what it hears on `chatter`."""
+"""Logs the messages on `chatter`."""
 
 from contextlib import suppress
 
@@ -10,7 +10,7 @@ from std_msgs.msg import String
 
 
 class Listener(Node):
-    """Repeats every message in the log."""
+    """Logs every message."""
 
     def __init__(self) -> None:
         super().__init__("listener")
@@ -21,7 +21,7 @@ class Listener(Node):
 
 
 def main() -> None:
-    """Run the node until it is interrupted."""
+    """Run the node until interrupted."""
     rclpy.init()
     with suppress(KeyboardInterrupt, ExternalShutdownException):
         rclpy.spin(Listener())

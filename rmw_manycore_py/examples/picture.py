@@ -1,8 +1,8 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The picture that the image pipeline sends: 1 MiB of which every byte can be checked.
+"""Test image of the image pipeline: 1 MiB, with every byte verifiable.
 
-Pixel (row, column) of frame n is (n + row) mod 256, so a picture made of parts of two frames, or
-with a shifted part, differs from every whole one.
+Pixel (row, column) of frame n is (n + row) mod 256, so an image composed of two frames, or with a
+shifted part, differs from every valid one.
 """
 
 import numpy as np
@@ -19,7 +19,7 @@ def pixels_of_frame(number: int) -> NDArray[np.uint8]:
 
 
 def make_image(number: int, pixels: NDArray[np.uint8]) -> Image:
-    """Return a mono8 image whose `frame_id` carries the frame's number."""
+    """Return a mono8 image with the frame number in `frame_id`."""
     image = Image(height=SIDE_PIXELS, width=SIDE_PIXELS, step=SIDE_PIXELS, encoding="mono8")
     image.header.frame_id = str(number)
     image.data.frombytes(pixels.tobytes())

@@ -10,7 +10,7 @@ from std_msgs.msg import String
 
 
 class Talker(Node):
-    """Counts aloud."""
+    """Publishes a counter."""
 
     def __init__(self) -> None:
         super().__init__("talker")
@@ -27,7 +27,7 @@ class Talker(Node):
 
 
 def main() -> None:
-    """Run the node until it is interrupted."""
+    """Run the node until interrupted."""
     rclpy.init()
     with suppress(KeyboardInterrupt, ExternalShutdownException):
         rclpy.spin(Talker())

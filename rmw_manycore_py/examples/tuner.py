@@ -10,11 +10,11 @@ from rclpy.parameter import Parameter
 from rclpy.parameter_client import AsyncParameterClient
 from rclpy.task import Future
 
-GAINS = (2.5, 5.0, 7.5, 99.0)  # the last one is out of range, so the controller refuses it
+GAINS = (2.5, 5.0, 7.5, 99.0)  # the controller rejects the last one, which is out of range
 
 
 class Tuner(Node):
-    """Tries one gain after the other, `rate_hz` times a second."""
+    """Sets one gain after the other, `rate_hz` times a second."""
 
     def __init__(self) -> None:
         super().__init__("tuner")
@@ -41,7 +41,7 @@ class Tuner(Node):
 
 
 def main() -> None:
-    """Run the node until it is interrupted."""
+    """Run the node until interrupted."""
     rclpy.init()
     with suppress(KeyboardInterrupt, ExternalShutdownException):
         rclpy.spin(Tuner())

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The mapfile of a running `ros2 launch`: finds the place of each node that is started."""
+"""Mapfile of a running `ros2 launch`: placement of each node that is started."""
 
 from __future__ import annotations
 
@@ -26,9 +26,9 @@ MAPFILE_VARIABLE = "MANYCORE_MAPFILE"
 
 
 class ForeignLaunch:
-    """Holds the platform of the mapfile from the first node until `close`.
+    """Holds the mapfile's platform from the first node until `close`.
 
-    All that this process starts joins that platform: its name is put into `os.environ`.
+    Puts the platform name into `os.environ`, so that all children of this process join it.
     """
 
     def __init__(self, name: str) -> None:
@@ -41,7 +41,7 @@ class ForeignLaunch:
             raise ManycoreError(f"{text} {found or 'none'}; set it, or unset {MAPFILE_VARIABLE}")
         self._mapfile = load_mapfile(path, starts_nodes=False)
         self.placement = resolve_places(self._mapfile)
-        self._holder = ExitStack()  # nothing refers to the platform after `close`
+        self._holder = ExitStack()  # no reference to the platform remains after `close`
         self._holder.enter_context(configured_platform(self.placement))
         self._before = dict(os.environ)
         os.environ["MANYCORE_PLATFORM"] = self.placement.name
@@ -49,20 +49,20 @@ class ForeignLaunch:
         self._started: dict[str, str] = {}
 
     def close(self) -> None:
-        """Remove the platform, unless processes are still on it."""
+        """Remove the platform, unless processes still use it."""
         self._holder.close()
 
     def describe(self) -> Iterator[tuple[bool, str]]:
-        """Yield lines about the platform, and whether each is a warning."""
+        """Yield lines about the platform, each with whether it is a warning."""
         topology = self.placement.topology
         shape = f"{len(topology.clusters)} clusters x {topology.cores_per_cluster} cores"
         yield False, f"platform {self.placement.name} ({shape}), by {self._mapfile.path}"
         yield from ((True, text) for text in self.placement.notices)
 
     def place(self, name: str | None, namespace: str, executable: str) -> PlacedNode | None:
-        """Return the place of a node that is about to be started, None if the mapfile has none.
+        """Return the placement of a node to be started; None if it is not in the mapfile.
 
-        Names, and numbers of several nodes of one name, are those of `manycore run`.
+        Names, and suffixes of duplicate names, follow `manycore run`.
         """
         node = numbered(_launched(self._mapfile.path, name, namespace, executable), self._taken)
         for placed in self.placement.nodes:
@@ -80,9 +80,10 @@ class ForeignLaunch:
             raise MapfileError(self._mapfile.document.problem(path, expected, found))
 
     def environment(self, placed: PlacedNode, launched: Mapping[str, str]) -> dict[str, str]:
-        """Return the environment of a node; `launched` is the one that launch gives it.
+        """Return the environment of a node; `launched` is the one given by launch.
 
-        As under `manycore run` the launch file decides what the mapfile does not, but the place.
+        As with `manycore run`, the launch file decides everything that the mapfile leaves open,
+        except the placement.
         """
         fixed = {*PLACE_VARIABLES, *self._mapfile.sections.nodes[placed.name].env}
         asked = {
@@ -94,12 +95,12 @@ class ForeignLaunch:
 
     @property
     def not_started(self) -> list[str]:
-        """The nodes of the mapfile that were not started."""
+        """Nodes of the mapfile that were not started."""
         return [node.name for node in self.placement.nodes if node.name not in self._started]
 
     @property
     def bridge(self) -> list[NodeProgram]:
-        """The processes of the bridge that the mapfile asks for."""
+        """Bridge processes required by the mapfile."""
         return bridge_programs(self.placement)
 
 

@@ -1,8 +1,8 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The extension of launch_ros that places the nodes of an unmodified launch file.
+"""Extension of launch_ros that places the nodes of an unmodified launch file.
 
 `MANYCORE_MAPFILE` names the mapfile; without it the extension does nothing. launch_ros calls it
-for each Node action, LifecycleNode and ComposableNodeContainer among them, before it is started.
+before starting each Node action, including LifecycleNode and ComposableNodeContainer.
 See docs/design/ros2_launch.md.
 """
 
@@ -28,7 +28,7 @@ from rmw_manycore_py.extensions.foreign_launch import MAPFILE_VARIABLE, ForeignL
 from rmw_manycore_py.mapfile.placing.placement import PlacedNode
 from rmw_manycore_py.ros.names import full_node_name
 
-_RESTART_PAUSE_S = 1.0  # as under `manycore run`
+_RESTART_PAUSE_S = 1.0  # same as `manycore run`
 
 
 class ManycoreNodeAction(NodeActionExtension):  # type: ignore[misc]
@@ -36,21 +36,21 @@ class ManycoreNodeAction(NodeActionExtension):  # type: ignore[misc]
 
     def __init__(self) -> None:
         super().__init__()
-        # The platform must exist before launch itself has a node, as it does for lifecycles.
-        # launch_ros only logs what is raised here; `prepare_for_execute` says it again.
+        # Create the platform before launch creates a node of its own, e.g. for lifecycles.
+        # launch_ros only logs exceptions raised here; `prepare_for_execute` raises them again.
         if os.environ.get(MAPFILE_VARIABLE):
             _begin()
 
     def prepare_for_execute(
         self, context: LaunchContext, ros_specific_arguments: dict[str, Any], node_action: Node
     ) -> tuple[list[Any], dict[str, Any]]:
-        """Find the place of a node; the command line stays as it is."""
+        """Place the node; its command line is unchanged."""
         if os.environ.get(MAPFILE_VARIABLE):
             launch = _launch(context)
             name, namespace, executable = _names(context, ros_specific_arguments, node_action)
             try:
                 placed = launch.place(name, namespace, executable)
-            except MapfileError as error:  # raised here it would leave started nodes behind
+            except MapfileError as error:  # raising here would leave started nodes behind
                 _logger().error(f"{error}; the last one is not pinned")
                 return [], ros_specific_arguments
             if placed is None:
@@ -64,7 +64,7 @@ class ManycoreNodeAction(NodeActionExtension):  # type: ignore[misc]
 def _names(
     context: LaunchContext, ros_specific_arguments: dict[str, Any], node_action: Node
 ) -> tuple[str | None, str, str]:
-    """Return name (None: that of its code), namespace and executable of a node."""
+    """Return name (None: set by the program), namespace and executable of a node."""
     name = ros_specific_arguments.get("name", "").removeprefix("__node:=")
     namespace = ros_specific_arguments.get("ns", "").removeprefix("__ns:=")
     if namespace == Node.UNSPECIFIED_NODE_NAMESPACE:
@@ -74,13 +74,13 @@ def _names(
 
 
 def _place(launch: ForeignLaunch, action: Node, placed: PlacedNode) -> None:
-    """Start the action's process on its host CPU, with the environment of its core."""
+    """Pin the action's process to its host CPU, and set the environment of its core."""
     description = action.process_description
     prepare = description.prepare
 
     def prepare_and_place(context: LaunchContext, action: Any) -> None:
         prepare(context, action)
-        # Before any prefix of the launch file, so that debuggers see the node itself.
+        # Goes before any launch prefix, so that debuggers attach to the node itself.
         description.final_cmd[:0] = _pinned([placed.host_cpu])
         environment = launch.environment(placed, description.final_env)
         description.final_env.clear()
@@ -93,20 +93,20 @@ def _place(launch: ForeignLaunch, action: Node, placed: PlacedNode) -> None:
 
 
 def _pinned(host_cpus: Sequence[int]) -> list[str]:
-    """Return the words before a command that pin it before its first instruction."""
+    """Return the command prefix that pins a process before its first instruction."""
     if not host_cpus:
         return []
     taskset = shutil.which("taskset")
     if taskset is None:
-        raise ManycoreError("expected taskset, to pin nodes, found none; apt install util-linux")
+        raise ManycoreError("expected taskset (to pin nodes), found none; apt install util-linux")
     return [taskset, "--cpu-list", ",".join(map(str, host_cpus))]
 
 
 @cache
 def _begin() -> ForeignLaunch | ManycoreError:
-    """Configure the platform, once for this process; what is wrong is raised with the first node.
+    """Configure the platform once per process; an error is raised with the first node.
 
-    An exception out of a constructor would only be logged by launch_ros, and the nodes started.
+    launch_ros would log an exception of a constructor and start the nodes anyway.
     """
     try:
         launch = ForeignLaunch(os.environ[MAPFILE_VARIABLE])
@@ -126,7 +126,7 @@ def _launch(context: LaunchContext) -> ForeignLaunch:
 
 @cache
 def _accompany(launch: ForeignLaunch, context: LaunchContext) -> None:
-    """Say what the mapfile comes to, start its bridge, and look at the end for what is left."""
+    """Report the placement, start the bridge, and clean up on shutdown."""
     for is_warning, text in launch.describe():
         (_logger().warning if is_warning else _logger().info)(text)
 

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The processes of the bridge as the runner starts them."""
+"""Bridge processes as programs of the runner."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ from rmw_manycore_py.routes import DIRECTIONS, Direction
 from rmw_manycore_py.signals import signal_inbox
 from rmw_manycore_py.topology import Core
 
-# Where the bridge runs that no mapfile places: cores 1 and 2 are the first that are not reserved.
+# Cores of a bridge without a mapfile: the first that are not reserved.
 _STANDALONE_CORES = (Core(1, 1), Core(1, 2))
 
 
 def bridge_programs(placement: Placement) -> list[NodeProgram]:
-    """Return a program for each process of the bridge that has something to carry."""
+    """Return a program for each bridge process that has routes."""
     bridge = placement.bridge
     if bridge is None:
         return []
@@ -36,7 +36,7 @@ def bridge_programs(placement: Placement) -> list[NodeProgram]:
 
 
 def run_bridge(plan: Plan, report: Report) -> int:
-    """Run the bridge of a platform that others have started, until a signal comes."""
+    """Run the bridge of a running platform until a signal."""
     programs = [
         bridge_program(plan, direction, 0, core, host_cpus=())
         for direction, core in zip(DIRECTIONS, _STANDALONE_CORES, strict=True)
@@ -51,7 +51,7 @@ def run_bridge(plan: Plan, report: Report) -> int:
 def bridge_program(
     plan: Plan, direction: Direction, lane: int, core: Core, host_cpus: tuple[int, ...]
 ) -> NodeProgram:
-    """Return one process of the bridge."""
+    """Return the program of one bridge process."""
     words = (plan.to_json(), direction, *map(str, (lane, *core)))
     return NodeProgram(
         name=f"(bridge {direction}{f' {lane}' if lane else ''})",

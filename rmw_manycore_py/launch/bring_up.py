@@ -1,7 +1,7 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Loads components into a container, or brings a lifecycle node through transitions; then ends.
+"""Loads components into a container, or drives a lifecycle node through transitions, then exits.
 
-Runs as a process of its own beside the node, on the node's platform, with a request as JSON:
+Runs as a separate process on the node's platform, with a JSON request:
 {"container": NAME, "components": [...]} or {"node": NAME, "transitions": [...]}.
 """
 
@@ -19,15 +19,15 @@ from rclpy.node import Node
 from rclpy.parameter import Parameter
 
 _NODE = "_manycore_bring_up"  # names with a leading underscore are hidden
-_PATIENCE_S = 1.0
+_TIMEOUT_S = 1.0
 
 
 class NotDoneError(Exception):
-    """The node refused what the launch file wants of it."""
+    """The node rejected what the launch file requests."""
 
 
 def bring_up(node: Node, request: Mapping[str, Any]) -> None:
-    """Do what is requested, one thing after the other."""
+    """Execute a request step by step."""
     if "container" in request:
         for component in request["components"]:
             _load(node, request["container"], component)
@@ -67,7 +67,7 @@ def _change_state(node: Node, name: str, transition: int) -> None:
 def _call(node: Node, kind: Any, service: str, wanted: Any) -> Any:
     client = node.create_client(kind, service)
     try:
-        while not client.wait_for_service(timeout_sec=_PATIENCE_S):
+        while not client.wait_for_service(timeout_sec=_TIMEOUT_S):
             if not rclpy.ok():
                 raise ExternalShutdownException
         future = client.call_async(wanted)
@@ -84,7 +84,7 @@ def _parameters(values: Mapping[str, Any]) -> list[Any]:
 
 
 def main() -> int:
-    """Bring up what the first argument says; return the exit status."""
+    """Execute the request in the first argument; return the exit status."""
     rclpy.init()
     node = Node(_NODE, enable_rosout=False, start_parameter_services=False)
     try:

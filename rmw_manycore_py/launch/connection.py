@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""One client of a supervisor, which never waits for it."""
+"""Non-blocking connection of a supervisor to one client."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from rmw_manycore_py.launch.processes.terminal import set_size
 from rmw_manycore_py.launch.runner import Runner
 from rmw_manycore_py.runs.lines import LineBuffer, Message, encoded
 
-# A client that is so far behind is let go.
+# A client that lags further behind is disconnected.
 MAX_QUEUE_BYTES = 4 << 20
 _GOODBYE_S = 1.0
 
 
 class Connection:
-    """Reads requests, and sends what the client can take."""
+    """Receives requests and sends messages as far as the client reads them."""
 
     def __init__(
         self,
@@ -40,35 +40,35 @@ class Connection:
         self._is_watched = True
         self.wants_events = False
         self.follows_logs = False
-        self.node: str | None = None  # the one that it is attached to
+        self.node: str | None = None  # node that the client is attached to
         runner.watch(client, self._serve)
 
     @property
     def is_idle(self) -> bool:
-        """Tell whether the client has been sent everything."""
+        """Return whether everything has been sent."""
         return not self._queue
 
     def send(self, message: Message) -> None:
-        """Send a message as far as there is room, and the rest later."""
+        """Queue a message and send what fits."""
         if self._is_finished:
             return
         self._queue += encoded(message)
         self._flush()
 
     def finish(self, message: Message) -> None:
-        """Send a last message; the connection is closed behind it."""
+        """Send a last message, then close the connection."""
         self.send(message)
         self._is_finished = True
         if not self._queue:
             self.close()
 
     def attach(self, node: str) -> None:
-        """Send the output of a node from now on."""
+        """Forward the output of a node from now on."""
         self.node = node
         self._runner.taps[node].append(self._output)
 
     def type(self, data: bytes) -> None:
-        """Type on the node's terminal; what it does not read and has no room for is lost."""
+        """Type on the node's terminal; input beyond the terminal's buffer is lost."""
         terminal = self._terminal()
         if terminal is not None:
             with suppress(OSError):
@@ -82,7 +82,7 @@ class Connection:
                 set_size(terminal, rows, columns)
 
     def close(self) -> None:
-        """Forget the client."""
+        """Disconnect the client."""
         if not self._is_watched:
             return
         self._is_watched = False
@@ -93,7 +93,7 @@ class Connection:
         self._closed(self)
 
     def say_goodbye(self) -> None:
-        """Send what is left before the end of the run, and close; for a moment this waits."""
+        """Send queued messages at the end of the run, waiting briefly, and close."""
         with suppress(OSError):
             self._client.settimeout(_GOODBYE_S)
             self._client.sendall(self._queue)
@@ -126,8 +126,8 @@ class Connection:
                 self._handle(self, message)
         except ManycoreError as error:
             self.finish({"error": str(error)})
-        except (KeyError, TypeError, ValueError) as error:  # values of another type than expected
-            self.finish({"error": f"the request cannot be understood: {error}"})
+        except (KeyError, TypeError, ValueError) as error:  # values of a wrong type
+            self.finish({"error": f"invalid request: {error}"})
 
     def _flush(self) -> None:
         try:

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What other processes may ask of a run, through its socket (docs/design/control.md)."""
+"""Requests of other processes to a run, through its socket (docs/design/control.md)."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _CREDENTIALS = struct.Struct("3i")
 
 
 class Control:
-    """Serves the clients of a run from the runner's own loop: no thread, and nothing waits."""
+    """Serves the clients of a run from the runner's event loop; never blocks."""
 
     def __init__(self, listener: socket.socket, runner: Runner) -> None:
         self._listener = listener
@@ -38,7 +38,7 @@ class Control:
         runner.watch(listener, self._accept)
 
     def report(self, event: Event) -> None:
-        """Pass an event on to those who wait for what they have asked for."""
+        """Forward an event to the clients that wait for it."""
         if isinstance(event, Output):
             return
         for connection in tuple(self._connections):
@@ -51,13 +51,13 @@ class Control:
                     connection.send({"restarting": event.reason})
 
     def log_changed(self) -> None:
-        """Wake those who follow logs; one that was woken and has not looked yet is left alone."""
+        """Wake clients that follow logs, unless they are already woken."""
         for connection in tuple(self._connections):
             if connection.follows_logs and connection.is_idle:
                 connection.send({"log": True})
 
     def close(self) -> None:
-        """Let all clients go."""
+        """Disconnect all clients."""
         self._runner.unwatch(self._listener)
         for connection in tuple(self._connections):
             connection.say_goodbye()
@@ -65,7 +65,7 @@ class Control:
     def _accept(self) -> None:
         try:
             client, _ = self._listener.accept()
-        except OSError:  # it went away, or there are too many descriptors
+        except OSError:  # the client has gone, or out of file descriptors
             return
         size = _CREDENTIALS.size
         credentials = client.getsockopt(socket.SOL_SOCKET, socket.SO_PEERCRED, size)
@@ -81,7 +81,7 @@ class Control:
             return
         request = self._requests.get(str(message.get("do")))
         if request is None:
-            raise ManycoreError(f"this run knows no request {message.get('do')!r}")
+            raise ManycoreError(f"unknown request {message.get('do')!r}")
         request(connection, message)
 
     def _state(self, connection: Connection, _message: Message) -> None:
@@ -100,7 +100,7 @@ class Control:
     def _restart(self, connection: Connection, message: Message) -> None:
         names = _names(message)
         for name in names:
-            self._runner.node(name)  # an unknown one is refused before any is stopped
+            self._runner.node(name)  # check all names before stopping any
         connection.send({"waits_for": names})
         connection.wants_events = True
         for name in names:
@@ -115,14 +115,14 @@ class Control:
         name = node.program.name
         if not node.program.terminal:
             raise ManycoreError(
-                f"node '{name}' has no terminal: give it `terminal: true` in the mapfile, or "
-                f"start it again with one: manycore attach --restart {name}"
+                f"node '{name}' has no terminal: set `terminal: true` in the mapfile, or "
+                f"restart it with one: manycore attach --restart {name}"
             )
         if not node.is_alive or node.is_leaderless:
             reason = f" ({node.ending.reason})" if node.ending else ""
             raise ManycoreError(
-                f"node '{name}' does not run{reason}: `manycore restart {name}` starts it, "
-                f"`manycore logs {name}` shows what it said"
+                f"node '{name}' is not running{reason}: `manycore restart {name}` starts it, "
+                f"`manycore logs {name}` shows its output"
             )
         lines = "".join(f"{line}\r\n" for line in node.last_lines)
         connection.send({"output": base64.b64encode(lines.encode()).decode()})

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""A run in the background: its supervisor is a child that outlives the shell it came from."""
+"""Run in the background: its supervisor is a child process that outlives the shell."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ _ERROR = "error"
 
 
 def run_in_background(run: Run, report: Report) -> int:
-    """Start a run in a process of its own, report until its nodes have been started; exit status.
+    """Start a run in a child process, report until its nodes are started; return the exit status.
 
-    Ctrl-C until then stops what has been started.
+    Ctrl-C before that stops the run.
     """
     reader, writer = os.pipe()
     sys.stdout.flush()
     sys.stderr.flush()
-    pid = os.fork()  # this process has one thread, and nothing of a platform yet
+    pid = os.fork()  # safe: single-threaded, and no platform is open yet
     if pid == 0:
         os.close(reader)
         _be_supervisor(run, writer)
@@ -52,7 +52,7 @@ def _until_started(pid: int, events: IO[bytes], report: Report) -> int:
 
 
 def _pass_on(events: IO[bytes], report: Report) -> bool:
-    """Report what the supervisor says; tell whether it came up before it fell silent."""
+    """Report the supervisor's events; return whether it came up before its pipe closed."""
     for line in events:
         data = json.loads(line)
         if data.get("event") == "up":
@@ -66,7 +66,7 @@ def _pass_on(events: IO[bytes], report: Report) -> bool:
 
 
 def _be_supervisor(run: Run, writer: int) -> None:
-    """Run, in a session of its own; never return."""
+    """Run in a session of its own; never return."""
     status = EXIT_FAILURE
     try:
         os.setsid()
@@ -84,7 +84,7 @@ def _be_supervisor(run: Run, writer: int) -> None:
 
 
 def _leave_streams() -> None:
-    """Let go of the shell's terminal and pipes, which wait for the end of those that hold them."""
+    """Close the shell's terminal and pipes: their readers wait for all writers to close."""
     null = os.open(os.devnull, os.O_RDWR)
     for descriptor in (0, 1, 2):
         os.dup2(null, descriptor)
@@ -92,25 +92,25 @@ def _leave_streams() -> None:
 
 
 class _Progress:
-    """Tells the process in the foreground what happens, until all nodes have been started."""
+    """Sends progress to the foreground process until all nodes have been started."""
 
     def __init__(self, descriptor: int) -> None:
         self._descriptor = descriptor
 
     def report(self, event: Event) -> None:
-        """Tell an event, but not what nodes print."""
+        """Send an event, except node output."""
         if not isinstance(event, Output):
             self.say(event.as_data())
 
     def come_up(self) -> None:
-        """Tell that the run is up, and nothing more."""
+        """Send that the run is up, and stop sending."""
         self.say({"event": "up"})
         if self._descriptor >= 0:
             os.close(self._descriptor)
             self._descriptor = -1
 
     def say(self, data: object) -> None:
-        """Tell something; when nobody listens any more the run goes on."""
+        """Send a message; the run continues if the reader has gone."""
         with suppress(OSError):
             if self._descriptor >= 0:
                 os.write(self._descriptor, json.dumps(data).encode() + b"\n")

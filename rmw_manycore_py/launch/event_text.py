@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Events in words, for terminals and logs."""
+"""Events as text, for terminals and logs."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from rmw_manycore_py.launch.events import (
 )
 from rmw_manycore_py.topology import host_cpu_text
 
-SUPERVISOR = "manycore"  # the name behind which the run itself prints
+SUPERVISOR = "manycore"  # prefix of the run's own output
 
 
 def text_of(event: Event) -> str | None:
-    """Return what the run says of an event; None where it says nothing."""
+    """Return the text of an event; None if it is not printed."""
     if isinstance(event, Notice):
         return event.text
     if isinstance(event, Started):
@@ -30,7 +30,7 @@ def text_of(event: Event) -> str | None:
     if isinstance(event, Stopping):
         return f"stopping: {event.reason}"
     if isinstance(event, Insisting):
-        return f"{event.node} does not end: {event.signal}"
+        return f"{event.node} does not stop: sending {event.signal}"
     if isinstance(event, Restarting):
         return f"{event.node} is started again: {event.reason}"
     if isinstance(event, Ended):

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What the runner reports. `as_json` is the interface of `manycore run --json`."""
+"""Events of the runner. `as_json` is the interface of `manycore run --json`."""
 
 from __future__ import annotations
 
@@ -14,21 +14,21 @@ from rmw_manycore_py.topology import HostCpu
 
 @dataclass(frozen=True)
 class Event:
-    """Something that happened during a run."""
+    """Base of all events of a run."""
 
     def as_data(self) -> dict[str, Any]:
-        """Return the kind of event, then its fields."""
+        """Return the kind of event and its fields."""
         kind = re.sub(r"(?<!^)(?=[A-Z])", "_", type(self).__name__).lower()
         return {"event": kind, **asdict(self)}
 
     def as_json(self) -> str:
-        """Return the same as one line."""
+        """Return the event as one line of JSON."""
         return json.dumps(self.as_data())
 
 
 @dataclass(frozen=True)
 class PlacedCore:
-    """A line of the table: a process's virtual core, and the host CPU or CPUs that it runs on."""
+    """Row of the placement table: a process's core, and the host CPU or CPUs it runs on."""
 
     node: str
     cluster: int
@@ -50,14 +50,14 @@ class Platform(Event):
 
 @dataclass(frozen=True)
 class Notice(Event):
-    """Something the user should know; nothing is wrong."""
+    """Information for the user; not an error."""
 
     text: str
 
 
 @dataclass(frozen=True)
 class Started(Event):
-    """A node runs."""
+    """A node has started."""
 
     node: str
     pid: int
@@ -68,7 +68,7 @@ class Started(Event):
 
 @dataclass(frozen=True)
 class Output(Event):
-    """A node printed a line."""
+    """A node has printed a line."""
 
     node: str
     line: str
@@ -76,14 +76,14 @@ class Output(Event):
 
 @dataclass(frozen=True)
 class Stopping(Event):
-    """From here on the nodes are asked to end."""
+    """The run is stopping its nodes."""
 
     reason: str
 
 
 @dataclass(frozen=True)
 class Insisting(Event):
-    """A node did not end when it was asked to, and was sent a stronger signal."""
+    """A node did not stop in time and was sent a stronger signal."""
 
     node: str
     signal: str
@@ -91,7 +91,7 @@ class Insisting(Event):
 
 @dataclass(frozen=True)
 class Restarting(Event):
-    """A supervised process, as those of the bridge are, ended by itself and is started again."""
+    """A supervised process, e.g. of the bridge, ended by itself and is restarted."""
 
     node: str
     reason: str
@@ -100,7 +100,7 @@ class Restarting(Event):
 
 @dataclass(frozen=True)
 class Ended(Event):
-    """A node is over; `last_lines` are those of a failed one."""
+    """A node has ended; `last_lines` are set if it failed."""
 
     node: str
     state: str
@@ -112,7 +112,7 @@ class Ended(Event):
 
 @dataclass(frozen=True)
 class Finished(Event):
-    """The run is over."""
+    """The run has ended."""
 
     failed: tuple[str, ...]
     exit_status: int
@@ -122,7 +122,7 @@ KINDS = (Platform, Notice, Started, Stopping, Insisting, Restarting, Ended, Fini
 
 
 def event_of(data: Mapping[str, Any]) -> Event | None:
-    """Return the event of which `as_data` or `as_json` made this; None for a kind it lacks."""
+    """Return the event from `as_data` or parsed `as_json` output; None for an unknown kind."""
     fields = dict(data)
     name = str(fields.pop("event", "")).title().replace("_", "")
     for kind in KINDS:

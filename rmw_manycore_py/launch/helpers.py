@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The processes that load components and drive lifecycles, as a launch file wants it."""
+"""Processes that load components and drive lifecycles, as requested by a launch file."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from rmw_manycore_py.mapfile.placing.placement import LaunchRules, PlacedNode, P
 
 
 def helper_programs(placement: Placement) -> list[NodeProgram]:
-    """Return a program for each container and lifecycle node; it ends when its work is done."""
+    """Return a program per container and lifecycle node; it exits when its work is done."""
     return [program for node in placement.nodes for program in _helpers_of(node)]
 
 

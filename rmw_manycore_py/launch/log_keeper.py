@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Keeps what a run and its nodes print, for `manycore logs`."""
+"""Stores the output of a run and its nodes for `manycore logs`."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from rmw_manycore_py.runs.log_file import LogFile, share_of
 
 
 class LogKeeper:
-    """Writes a file per node; a disk that is full costs lines, never the run.
+    """Writes a log file per node; a full disk costs lines, never the run.
 
-    :param warn: told once per node when its lines cannot be kept.
+    :param warn: called once per node whose lines cannot be stored.
     :param changed: called after each line.
     """
 
@@ -32,7 +32,7 @@ class LogKeeper:
         self._changed = changed
 
     def report(self, event: Event) -> None:
-        """Keep an event, if it is one that people see."""
+        """Store the text of an event, if it has any."""
         if isinstance(event, Output):
             self._write(event.node, event.line)
         elif (text := text_of(event)) is not None:
@@ -48,5 +48,5 @@ class LogKeeper:
 
     def _write(self, name: str, line: str) -> None:
         if reason := self._files[name].write(line):
-            self._warn(Notice(f"the log of {name} is not kept: {reason}"))
+            self._warn(Notice(f"cannot write the log of {name}: {reason}"))
         self._changed()

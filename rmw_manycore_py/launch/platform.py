@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Brings a platform up before its first node, clears it away after its last; or joins one."""
+"""Creates a platform before its first node and removes it after the last; or joins one."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from rmw_manycore_py.mapfile.placing.placement import Placement
 from rmw_manycore_py.native_errors import translate_native_errors
 from rmw_manycore_py.topology import RECEIVE_THREAD_CORE, Core
 
-GROWS = 0  # the size of a topic DSM that starts small
+GROWS = 0  # size of a topic DSM that grows on demand
 
 
 def configured_platform(placement: Placement) -> _transport.Configurator:
-    """Create a platform; as a context manager remove it in the end unless others are on it.
+    """Create a platform; as a context manager, remove it at the end unless it is in use.
 
-    Where there is one of that name, the error names the processes on it.
+    :raises ManycoreError: if the platform exists; names the processes that use it.
     """
     topology = placement.topology
     with translate_native_errors(), naming_users(placement.name):
@@ -39,6 +39,9 @@ def configured_platform(placement: Placement) -> _transport.Configurator:
                     id=topic.id,
                     dsm_size_bytes=topic.topic_dsm_size or GROWS,
                     receiver_clusters=topic.receiver_mask,
+                    transfer=topic.transfer,
+                    priority=topic.priority,
+                    synchronous=topic.synchronous,
                 )
                 for topic in placement.topics
             ],
@@ -47,38 +50,38 @@ def configured_platform(placement: Placement) -> _transport.Configurator:
 
 @contextmanager
 def naming_users(name: str) -> Iterator[None]:
-    """Add the processes on a platform to an error about it."""
+    """Add the processes that use a platform to an error about it."""
     try:
         yield
     except _transport.PlatformError as error:
         users = remaining_users(name)
         if not users:
             raise
-        raise ManycoreError(f"{error}; on it: {', '.join(users)}") from error
+        raise ManycoreError(f"{error}; used by: {', '.join(users)}") from error
 
 
 def remaining_users(name: str) -> list[str]:
-    """Return who is still on a platform, by label and process id."""
+    """Return the processes that still use a platform, by label and process id."""
     if name not in _transport.platforms():
         return []
     try:
         with _transport.Platform(name) as platform:
             living = [process for process in platform.processes() if process.alive]
             users = [
-                f"the ros2 daemon ({process.pid}; `{CURE}` ends it)"
+                f"the ros2 daemon ({process.pid}; `{CURE}` stops it)"
                 if is_daemon(platform, process)
                 else f"{process.label} ({process.pid})"
                 for process in living
             ]
     except _transport.PlatformError:
-        return []  # it went away between two looks
+        return []  # the platform was removed meanwhile
     return users
 
 
 def occupied_cores(name: str) -> set[Core]:
-    """Return the cores of a running platform that have a process.
+    """Return the occupied cores of a running platform.
 
-    :raises ManycoreError: when there is no such platform to join.
+    :raises ManycoreError: if there is no such platform to join.
     """
     with _opened(name) as platform:
         return {
@@ -89,7 +92,7 @@ def occupied_cores(name: str) -> set[Core]:
 
 
 def check_joined(placement: Placement) -> None:
-    """Refuse nodes that the running platform has no core for."""
+    """Raise ManycoreError if a node is placed on a core that the running platform lacks."""
     with _opened(placement.name) as platform:
         info = platform.info()
     for node in placement.nodes:

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The daemon of ros2cli: a hidden node that stays for two hours after a `ros2 topic list`."""
+"""The ros2cli daemon: a hidden node that lives two hours after `ros2 topic list`."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from rmw_manycore_py import _transport
 from rmw_manycore_py._transport import ProcessInfo
 
 CURE = "ros2 daemon stop"
-_NODE = "_ros2cli_daemon_"  # as ros2cli/daemon/__init__.py names it
+_NODE = "_ros2cli_daemon_"  # name defined in ros2cli/daemon/__init__.py
 _MODULE = b"ros2cli.daemon"
-# It looks for signals each 0.2 s.
+# The daemon checks for signals every 0.2 s.
 _GRACE_MS = 3000
 
 
 def is_daemon(platform: _transport.Platform, process: ProcessInfo) -> bool:
-    """Tell whether a process is the daemon: by its nodes and by its command line."""
+    """Return whether a process is the daemon, by its nodes and command line."""
     names = [node.name for node in platform.nodes() if node.process == process.slot]
     if not names or not all(name.startswith(_NODE) for name in names):
         return False
@@ -30,9 +30,9 @@ def is_daemon(platform: _transport.Platform, process: ProcessInfo) -> bool:
 
 
 def end_lone_daemons(name: str) -> list[int]:
-    """End the daemons of a platform on which nothing else lives; return their process ids.
+    """Stop daemons on a platform without other processes; return their process ids.
 
-    ros2 starts another one when it wants it: nothing is lost but a warm cache.
+    ros2 restarts a daemon on demand: only its cache is lost.
     """
     pids = lone_daemons(name)
     for pid in pids:
@@ -41,7 +41,7 @@ def end_lone_daemons(name: str) -> list[int]:
 
 
 def lone_daemons(name: str) -> list[int]:
-    """Return the process ids of the daemons of a platform on which nothing else lives."""
+    """Return the process ids of daemons on a platform without other processes."""
     if name not in _transport.platforms():
         return []
     try:
@@ -50,7 +50,7 @@ def lone_daemons(name: str) -> list[int]:
             if not living or not all(is_daemon(platform, process) for process in living):
                 return []
     except _transport.PlatformError:
-        return []  # it went away between two looks
+        return []  # the platform was removed meanwhile
     return [process.pid for process in living]
 
 

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""A whole run: platform up, nodes up, nodes down, platform down."""
+"""A complete run: platform up, nodes up, nodes down, platform down."""
 
 from __future__ import annotations
 
@@ -27,12 +27,12 @@ from rmw_manycore_py.scheduling import refusal
 from rmw_manycore_py.signals import SignalInbox, signal_inbox
 from rmw_manycore_py.topology import RECEIVE_THREAD_CORE
 
-RECEIVE_THREAD = "(receive thread)"  # no node can have a name with blanks
+RECEIVE_THREAD = "(receive thread)"  # node names have no spaces
 
 
 @dataclass(frozen=True)
 class Mode:
-    """How a run runs: on a platform of its own or one that is there, seen or in the background."""
+    """Whether a run creates or joins its platform, and whether it is in the background."""
 
     mapfile: Path
     joins: bool = False
@@ -40,7 +40,7 @@ class Mode:
 
 
 class Run:
-    """The nodes of a placement and its bridge, on a platform of their own or on a running one."""
+    """Nodes and bridge of a placement, on a new or a running platform."""
 
     def __init__(self, placement: Placement, mode: Mode) -> None:
         self._placement = placement
@@ -51,7 +51,7 @@ class Run:
 
     @property
     def program_names(self) -> list[str]:
-        """The names under which the processes of the run print."""
+        """Names under which the processes of the run print."""
         nodes = [node.name for node in self._placement.nodes]
         return [p.name for p in self._bridge] + nodes + [p.name for p in self._helpers]
 
@@ -64,7 +64,7 @@ class Run:
     ) -> int:
         """Start all processes, wait until they have ended, and return the exit status.
 
-        :param all_started: called once, when each node whose time has come was started.
+        :param all_started: called once when every node that is due has been started.
         :param trace: file for a trace of the whole run.
         """
         with signal_inbox() as inbox, ExitStack() as stack:
@@ -89,7 +89,7 @@ class Run:
                 report(_describe(placement, self._bridge))
                 exit_status = self._run_nodes(runner, report, inbox, duration_s, all_started)
             if users := self._remaining_users():
-                report(Notice(f"platform {placement.name} stays, for {', '.join(users)}"))
+                report(Notice(f"platform {placement.name} stays, used by {', '.join(users)}"))
             report(Finished(runner.failed, exit_status))
         return exit_status
 
@@ -103,13 +103,13 @@ class Run:
     ) -> int:
         try:
             return runner.run(inbox, duration_s, all_started)
-        except Exception as error:  # in the background only the log is there to say so
+        except Exception as error:  # in the background, only the log can tell
             report(Notice(f"the supervisor failed: {type(error).__name__}: {error}"))
             raise
 
     @contextmanager
     def _directory(self, report: Report) -> Iterator[OwnRun | None]:
-        """Yield the run's directory, where it can be had; without it there are no logs."""
+        """Yield the run's directory; None if it cannot be created, and then there are no logs."""
         mode = self._mode
         info: dict[str, Any] = {
             "mapfile": str(mode.mapfile.resolve()),
@@ -137,8 +137,8 @@ class Run:
         for pid in end_lone_daemons(self._placement.name):
             report(
                 Notice(
-                    f"the ros2 daemon ({pid}) of an earlier run was ended, for it kept platform "
-                    f"{self._placement.name} as it was; `{CURE}` does that, too"
+                    f"the ros2 daemon ({pid}) of an earlier run was stopped: it kept platform "
+                    f"{self._placement.name} from being recreated; `{CURE}` also stops it"
                 )
             )
         return configured_platform(self._placement)
@@ -153,7 +153,7 @@ class Run:
 
 
 class _Reports:
-    """Everything that wants to know of events: the caller, the logs, and clients."""
+    """Distributes events to the caller, the logs and clients."""
 
     def __init__(self, report: Report, own: OwnRun | None) -> None:
         self._report = report
@@ -162,7 +162,7 @@ class _Reports:
         self._control: Control | None = None
 
     def report(self, event: Event) -> None:
-        """Pass an event on; the caller comes last, for it may refuse it."""
+        """Forward an event; the caller comes last, since it may raise."""
         if self._logs:
             self._logs.report(event)
         if self._control:
@@ -171,7 +171,7 @@ class _Reports:
 
     @contextmanager
     def kept(self, runner: Runner, names: list[str]) -> Iterator[None]:
-        """Keep logs and serve clients while the runner runs."""
+        """Store logs and serve clients while the runner runs."""
         if self._own is None:
             yield
             return
@@ -187,7 +187,7 @@ class _Reports:
 
 
 def _check_scheduling(placement: Placement) -> None:
-    """Refuse policies that this user may not set, before anything is started."""
+    """Check before the start that this user may set the requested policies."""
     refused = [
         f"'{node.name}': {reason}"
         for node in placement.nodes

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The loop of `manycore run`: one thread that waits for output, ends, signals and deadlines."""
+"""Event loop of `manycore run`: one thread for output, exits, signals and deadlines."""
 
 from __future__ import annotations
 
@@ -30,21 +30,21 @@ from rmw_manycore_py.signals import SignalInbox
 Report = Callable[[Event], None]
 Handler = Callable[[], None]
 
-# A supervised process that cannot live is started at this rate.
+# Restart period of a supervised process that keeps ending.
 RESTART_PAUSE_S = 1.0
-# After so many processes in a row that ended before they had come up, the next one would, too.
+# After this many consecutive processes that ended before coming up, stop restarting.
 MAX_VAIN_STARTS = 3
 
 
 class Readable(Protocol):
-    """What a selector takes."""
+    """Object with a file descriptor, for a selector."""
 
     def fileno(self) -> int:
         """Return the descriptor."""
 
 
 class Runner:
-    """Starts nodes in order, one per turn of the loop, and stays until the last one is over."""
+    """Starts nodes in order, one per loop iteration, and runs until the last one is over."""
 
     def __init__(self, programs: Sequence[NodeProgram], report: Report) -> None:
         self._nodes = [NodeProcess(program) for program in programs]
@@ -54,17 +54,17 @@ class Runner:
         self._silent = False
         self._is_timed = False
         self._all_started: Handler | None = None
-        self._end_s = float("inf")  # when the run's duration is over, on the monotonic clock
-        # By the names of nodes: what gets their output as it comes.
+        self._end_s = float("inf")  # CLOCK_MONOTONIC, end of the run's duration
+        # Output callbacks by node name.
         self.taps: defaultdict[str, list[Callable[[bytes], None]]] = defaultdict(list)
 
     @property
     def nodes(self) -> Sequence[NodeProcess]:
-        """The latest process of each program."""
+        """Latest process of each program."""
         return self._nodes
 
     def node(self, name: str) -> NodeProcess:
-        """Return the latest process of a program."""
+        """Return the latest process of a program; raise ManycoreError for an unknown name."""
         for node in self._nodes:
             if node.program.name == name:
                 return node
@@ -72,7 +72,7 @@ class Runner:
 
     @property
     def failed(self) -> tuple[str, ...]:
-        """The names of the nodes that failed."""
+        """Names of the nodes that failed."""
         return tuple(n.program.name for n in self._nodes if n.state is NodeState.FAILED)
 
     def run(
@@ -81,11 +81,11 @@ class Runner:
         duration_s: float | None = None,
         all_started: Handler | None = None,
     ) -> int:
-        """Run until all nodes are over, or for a time from the start of the last; exit status.
+        """Run until all nodes are over or `duration_s` after the last start; return the status.
 
-        A signal that came before the first node ends the run without one.
+        A signal before the first node ends the run without starting any.
 
-        :param all_started: called once, when each node whose time has come was started.
+        :param all_started: called once when every node that is due has been started.
         """
         self._all_started = all_started
         with ExitStack() as stack:
@@ -96,14 +96,14 @@ class Runner:
             while not self._is_over():
                 self._start_next(duration_s)
                 self._end_without_nodes()
-                for key, _ in self._selector.select(self._patience_s()):
+                for key, _ in self._selector.select(self._timeout_s()):
                     handler: Handler = key.data
                     handler()
                 self._keep_deadlines()
         return EXIT_FAILURE if self.failed else 0
 
     def close(self) -> None:
-        """Stop watching."""
+        """Close the selector."""
         self._selector.close()
 
     def _destroy_all(self) -> None:
@@ -150,11 +150,11 @@ class Runner:
         self._selector.register(node.pidfd, selectors.EVENT_READ, lambda: self._leader_ended(node))
 
     def watch(self, readable: Readable, handler: Handler) -> None:
-        """Call a handler whenever there is something to read."""
+        """Call a handler whenever `readable` has data."""
         self._selector.register(readable, selectors.EVENT_READ, handler)
 
     def watch_also_writable(self, readable: Readable, writable: bool) -> None:
-        """Call the handler also, or no more, when there is room to write."""
+        """Also call the handler when there is room to write, or stop doing so."""
         events = selectors.EVENT_READ | (selectors.EVENT_WRITE if writable else 0)
         self._selector.modify(readable, events, self._selector.get_key(readable).data)
 
@@ -206,21 +206,21 @@ class Runner:
         self._nodes[self._nodes.index(node)] = successor
 
     def _end_without_nodes(self) -> None:
-        """Stop what is supervised when those are over for whom it is there."""
+        """Stop supervised processes once the nodes they serve are over."""
         served = [node for node in self._nodes if not node.program.supervised]
         are_over = all(node.is_over and not node.is_held for node in served)
         if served and len(served) < len(self._nodes) and are_over:
             self._stop("all nodes have ended")
 
     def stop_all(self, reason: str) -> None:
-        """Stop the run; asked again it does not wait for nodes that take their time."""
+        """Stop the run; a second call sends the next signal at once."""
         if self._stopping:
             self._insist(float("inf"))
         else:
             self._stop(reason)
 
     def stop_node(self, name: str) -> None:
-        """Stop a node, but not the run; it is not respawned."""
+        """Stop a node without ending the run; it is not respawned."""
         node = self.node(name)
         node.is_held, node.is_wanted_again = True, False
         if node.state is NodeState.WAITING:
@@ -230,12 +230,12 @@ class Runner:
             node.stop()
 
     def restart_node(self, name: str, terminal: bool = False) -> None:
-        """Start a node again, which is stopped first if it runs.
+        """Restart a node, stopping it first if it runs.
 
         :param terminal: give it a terminal if it has none.
         """
         if self._stopping:
-            raise ManycoreError("the run is being stopped: its nodes are not started again")
+            raise ManycoreError("the run is stopping: cannot restart its nodes")
         node = self.node(name)
         if terminal:
             node.program = replace(node.program, terminal=True)
@@ -263,7 +263,7 @@ class Runner:
                 node.stop()
 
     def _insist(self, now_s: float) -> None:
-        """Take the next step with each node whose time is up."""
+        """Send the next signal to each node whose grace period is over."""
         for node in self._nodes:
             if node.is_alive and not node.is_leaderless and node.deadline_s <= now_s:
                 number = node.stop()
@@ -280,8 +280,8 @@ class Runner:
                 self._collect(node)
         self._insist(now_s)
 
-    def _patience_s(self) -> float | None:
-        """Return how long nothing is due; None = nothing ever is."""
+    def _timeout_s(self) -> float | None:
+        """Return the seconds until the next deadline; None if there is none."""
         if self._next_node() or self._is_over():
             return 0
         starts = [node.start_at_s for node in self._nodes if node.state is NodeState.WAITING]
@@ -308,7 +308,7 @@ class Runner:
         )
 
     def _report(self, event: Event) -> None:
-        """Report an event; when nobody reads what we print, the run is over."""
+        """Report an event; stop the run if the output is closed."""
         if self._silent:
             return
         try:

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""When nodes start that a launch file lets wait for a time, or for another node."""
+"""Start times of nodes that a launch file delays or makes wait for another node."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from rmw_manycore_py.launch.processes.state import NodeState
 
 
 def schedule(nodes: Iterable[NodeProcess]) -> None:
-    """Set when each node starts; one that waits for another does not yet."""
+    """Set the start time of each node; nodes that wait for another have none yet."""
     for node in nodes:
         rules = node.program.rules
         if rules.after is not None:
@@ -21,7 +21,7 @@ def schedule(nodes: Iterable[NodeProcess]) -> None:
 
 
 def started(nodes: list[NodeProcess], node: NodeProcess) -> None:
-    """Release what waits for the start of a node, and what is repeated each time it starts."""
+    """Release nodes that wait for this start, and those repeated with it."""
     _release(nodes, node, after_exit=False)
     for index, one in enumerate(nodes):
         if _repeats_with(one, node):
@@ -31,7 +31,7 @@ def started(nodes: list[NodeProcess], node: NodeProcess) -> None:
 
 
 def ended(nodes: Iterable[NodeProcess], node: NodeProcess) -> None:
-    """Release what waits for the end of a node; stop what only makes sense while it runs."""
+    """Release nodes that wait for this end; stop those that depend on the node."""
     _release(nodes, node, after_exit=True)
     for one in nodes:
         if _repeats_with(one, node) and one.state is NodeState.RUNNING and not one.is_leaderless:
@@ -51,7 +51,7 @@ def _release(nodes: Iterable[NodeProcess], node: NodeProcess, *, after_exit: boo
 
 
 def respawned(node: NodeProcess) -> NodeProcess | None:
-    """Return the process that takes the place of an ended one, where there is to be one."""
+    """Return the process that replaces an ended one, if it is to be respawned."""
     rules = node.program.rules
     if node.is_held:
         return None

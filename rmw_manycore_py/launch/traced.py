@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""A run that is traced from its first process on."""
+"""Trace of a whole run."""
 
 from __future__ import annotations
 
@@ -12,16 +12,16 @@ from rmw_manycore_py.native_errors import translate_native_errors
 from rmw_manycore_py.trace.files import save
 from rmw_manycore_py.trace.recorded import recorded
 
-_USUAL = 0  # events for each thread
+_USUAL = 0  # default events per thread
 
 
 @contextmanager
 def traced(platform: str, path: Path, notice: Callable[[str], None]) -> Iterator[None]:
-    """Trace a platform while the block runs, then save the trace before the platform goes."""
+    """Trace a platform during the block, then save the trace before the platform is removed."""
     with translate_native_errors():
         _transport.start_trace(platform, clusters=(), nodes=(), events=_USUAL, discard=False)
     yield
     with recorded(platform) as trace:
         save(trace, path)
-    lost = f", {trace.lost} lost as rings were full" if trace.lost else ""
+    lost = f", {trace.lost} lost because rings were full" if trace.lost else ""
     notice(f"trace {path}: {trace.event_count} events{lost}")

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Runs one node of the reference system; its parameters say which.
+"""Runs one node of the reference system, selected by its parameters.
 
 python -m rmw_manycore_py.reference_system --ros-args -r __node:=PointsTransformerFront \
     -p kind:=transform -p inputs:="[FrontLidarDriver]"
@@ -18,7 +18,7 @@ from rmw_manycore_py.reference_system.settings import read_settings
 
 
 def main() -> int:
-    """Run the node until it is interrupted."""
+    """Run the node until interrupted."""
     rclpy.init()
     with suppress(KeyboardInterrupt, ExternalShutdownException):
         node = Node("reference_node")

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The work of a callback."""
+"""Simulated work of a callback."""
 
 import time
 
@@ -7,10 +7,10 @@ NS_PER_MS = 1e6
 
 
 def crunch(cpu_ms: float) -> int:
-    """Count primes until this thread has used `cpu_ms` of CPU time; return how many.
+    """Count primes until this thread has used `cpu_ms` of CPU time; return their number.
 
-    Upstream counts the primes below a limit that has to be calibrated on each machine; CPU time is
-    the same amount of work on all, and in C++ and Python.
+    Upstream counts the primes below a limit that has to be calibrated per machine; CPU time is the
+    same amount of work everywhere, also in C++.
     """
     if cpu_ms <= 0:
         return 0

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The six kinds of nodes, with the callback rules of ros-realtime/reference-system."""
+"""The six kinds of nodes, with the callback semantics of ros-realtime/reference-system."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ from rmw_manycore_py.reference_system.settings import KEEP_ALL, Settings
 
 MS_PER_S = 1e3
 NS_PER_MS = 1e6
-# The depth of command nodes where others have 1.
+# Queue depth of command nodes; other nodes use 1.
 COMMAND_DEPTH = 10
 
 
 class Kind:
-    """What all kinds have: inputs and outputs."""
+    """Base of all kinds: inputs and outputs."""
 
     def __init__(self, node: Node, settings: Settings) -> None:
         self._node = node
@@ -31,7 +31,7 @@ class Kind:
         self.inputs: list[Input] = []
 
     def say_losses(self) -> None:
-        """Print what was lost since it was said last."""
+        """Print the losses since the last report."""
         for each in self.inputs:
             each.say_losses()
 
@@ -42,7 +42,7 @@ class Kind:
         *,
         apart: bool = False,
     ) -> None:
-        """Subscribe to all inputs; `apart`: with a callback group for each."""
+        """Subscribe to all inputs; with `apart`, in a callback group each."""
         for topic in self._settings.inputs:
             group = MutuallyExclusiveCallbackGroup() if apart else None
             settings = self._settings if depth is None else replace(self._settings, depth=depth)
@@ -55,7 +55,7 @@ class Kind:
         self._node.create_timer(self._settings.period_ms / MS_PER_S, callback)
 
     def _publish_cached(self, output: Output, timestamp_ns: int) -> None:
-        """Work, and publish what the inputs have cached; then they have nothing."""
+        """Do the work, publish the cached inputs, and clear the cache."""
         result = crunch(self._settings.crunch_ms)
         cached = [each for each in self.inputs if each.cached is not None]
         missed = sum(each.missed(each.cached) for each in cached)
@@ -65,7 +65,7 @@ class Kind:
 
 
 class Sensor(Kind):
-    """Publishes its own record in every period."""
+    """Publishes a message with its own record in every period."""
 
     def __init__(self, node: Node, settings: Settings) -> None:
         super().__init__(node, settings)
@@ -74,7 +74,7 @@ class Sensor(Kind):
 
 
 class Transform(Kind):
-    """Publishes one message for each that arrives."""
+    """Publishes one message per input message."""
 
     def __init__(self, node: Node, settings: Settings) -> None:
         super().__init__(node, settings)
@@ -88,7 +88,7 @@ class Transform(Kind):
 
 
 class Fusion(Kind):
-    """Publishes once both inputs have arrived; of each the newest counts."""
+    """Publishes once both inputs have arrived; uses the newest message of each."""
 
     def __init__(self, node: Node, settings: Settings) -> None:
         super().__init__(node, settings)
@@ -103,7 +103,7 @@ class Fusion(Kind):
 
 
 class Cyclic(Kind):
-    """Publishes in every period what has arrived in it; of each input the newest counts."""
+    """Publishes the inputs received in each period; uses the newest message of each."""
 
     def __init__(self, node: Node, settings: Settings) -> None:
         super().__init__(node, settings)
@@ -116,7 +116,7 @@ class Cyclic(Kind):
 
 
 class Intersection(Kind):
-    """As many transforms in one node: the first input has the first output, and so on."""
+    """Several transforms in one node: the first input maps to the first output, and so on."""
 
     def __init__(self, node: Node, settings: Settings) -> None:
         super().__init__(node, settings)
@@ -131,7 +131,7 @@ class Intersection(Kind):
 
 
 class Command(Kind):
-    """Prints the path and the statistics of what arrives, at most once in `report_period_ms`."""
+    """Prints path and statistics of its input, at most once per `report_period_ms`."""
 
     def __init__(self, node: Node, settings: Settings) -> None:
         super().__init__(node, settings)

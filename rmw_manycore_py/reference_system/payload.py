@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What is in `data`: [0] the result of the callback's work, [1] a checksum, then the payload."""
+"""Layout of `data`: [0] the result of the callback's work, [1] a checksum, then the payload."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ RESULT, CHECKSUM, WORDS = 0, 1, 2
 
 
 def write_payload(message: Any, sequence: int) -> None:
-    """Fill the payload with consecutive numbers from `sequence` on, and note their sum."""
+    """Fill the payload with consecutive numbers from `sequence`, and store their sum."""
     words = message.data[WORDS:]
     words[:] = np.arange(sequence, sequence + len(words))
     message.data[CHECKSUM] = words.sum()
 
 
 def check_payload(message: Any, topic: str) -> None:
-    """Raise a RuntimeError unless the payload adds up."""
+    """Raise RuntimeError unless the checksum matches."""
     total = message.data[WORDS:].sum()
     if total != message.data[CHECKSUM]:
         expected = message.data[CHECKSUM]

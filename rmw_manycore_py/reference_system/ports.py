@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Inputs and outputs of a node: what is noted of each message that passes them."""
+"""Inputs and outputs of a node, with counters of lost and missed messages."""
 
 from __future__ import annotations
 
@@ -21,19 +21,19 @@ from rmw_manycore_py.reference_system.sample import (
 from rmw_manycore_py.reference_system.settings import KEEP_ALL, Settings
 
 NS_PER_S = 1e9
-# Losses are said at most so often, so that saying them costs a flooded node little.
+# Minimum time between loss reports, to limit their cost in an overloaded node.
 LOSSES_SAID_EVERY_NS = 0.1 * NS_PER_S
 
 
 def qos(depth: int) -> QoSProfile:
-    """Return reliable QoS that keeps so many messages, 0 for all."""
+    """Return a reliable QoS with this depth; 0 keeps all."""
     if depth == KEEP_ALL:
         return QoSProfile(history=HistoryPolicy.KEEP_ALL)
     return QoSProfile(depth=depth)
 
 
 class Input:
-    """A subscription; `missed` follows the messages that the node works on, `lost` all of them."""
+    """A subscription; `missed` counts messages the node skipped, `lost` those not received."""
 
     def __init__(
         self,
@@ -64,11 +64,11 @@ class Input:
         self._callback(self, message)
 
     def missed(self, message: Any) -> int:
-        """Return how many messages the node has not worked on since the one before."""
+        """Return the number of messages skipped since the last processed one."""
         return self._processed.before(sequence_of(message))
 
     def say_losses(self) -> None:
-        """Print how many messages of the topic never arrived, unless all did."""
+        """Print how many messages of the topic were lost, if any."""
         if self._lost:
             self._said_ns = now_ns()
             print(f"lost {self._lost} of {self._topic} at {self._said_ns}", flush=True)
@@ -76,7 +76,7 @@ class Input:
 
 
 class Output:
-    """A publisher with the one message that it publishes again and again."""
+    """A publisher that reuses one message."""
 
     def __init__(self, node: Node, settings: Settings, topic: str) -> None:
         self._name = node.get_name()
@@ -88,7 +88,7 @@ class Output:
     def publish(
         self, timestamp_ns: int, sources: Sequence[Any] = (), missed: int = 0, result: int = 0
     ) -> None:
-        """Publish the records of all sources, and one of this node behind them."""
+        """Publish the records of all sources, followed by this node's."""
         message = self._message
         message.size = 0
         for source in sources:

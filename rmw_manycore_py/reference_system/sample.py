@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The records in a message: which nodes it has passed, when, and what they missed."""
+"""Records in a message: which nodes it has passed, when, and what they missed."""
 
 from __future__ import annotations
 
@@ -12,23 +12,23 @@ NAME_BYTES = 48
 
 
 def now_ns() -> int:
-    """Return the system clock, which all processes share."""
+    """Return the system clock, shared by all processes."""
     return time.time_ns()
 
 
 def name_of(record: Any) -> str:
-    """Return the node that wrote a record."""
+    """Return the name of the node that wrote a record."""
     return bytes(record.node_name).partition(b"\0")[0].decode()
 
 
 def records_of(message: Any) -> list[Any]:
-    """Return the records in use, in the order in which they were written."""
+    """Return the used records, in the order written."""
     used: list[Any] = message.stats[: message.size]
     return used
 
 
 def add_record(message: Any, name: str, timestamp_ns: int, sequence: int, dropped: int) -> None:
-    """Write a node's own record behind the others; a full message keeps those it has."""
+    """Append a node's record; a full message is unchanged."""
     if message.size == len(message.stats):
         return
     record = type(message.stats[0])(
@@ -41,7 +41,7 @@ def add_record(message: Any, name: str, timestamp_ns: int, sequence: int, droppe
 
 
 def merge_records(message: Any, source: Any) -> None:
-    """Take over the records of nodes that the message has none of."""
+    """Append the records of nodes that the message does not contain."""
     known = {bytes(record.node_name) for record in records_of(message)}
     for record in records_of(source):
         if bytes(record.node_name) not in known and message.size < len(message.stats):
@@ -50,19 +50,19 @@ def merge_records(message: Any, source: Any) -> None:
 
 
 class Gaps:
-    """Counts the numbers that are missing in a sequence, from the first that comes."""
+    """Counts gaps in a sequence, from its first number."""
 
     def __init__(self) -> None:
         self._last: int | None = None
 
     def before(self, sequence: int) -> int:
-        """Return how many are missing between the number before and this one."""
+        """Return the size of the gap before a number."""
         missing = 0 if self._last is None else max(sequence - self._last - 1, 0)
         self._last = sequence
         return missing
 
 
 def sequence_of(message: Any) -> int:
-    """Return the number that the sender gave to this message: its record is the last one."""
+    """Return the sender's sequence number: that of the last record."""
     number: int = message.stats[message.size - 1].sequence_number if message.size else 0
     return number

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What a command node prints of each message: its path, and the statistics of all so far."""
+"""Output of a command node per message: its path, and statistics of all so far."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ HOT_PATH = (
     *("RayGroundFilter", "EuclideanClusterDetector", HOT_PATH_SINK),
 )
 PLANNER = "BehaviorPlanner"
-# The first messages are not counted: nodes are still starting.
+# The first messages are excluded, since nodes are still starting.
 UNCOUNTED = 9
 NS_PER_MS = 1e6
 RULE = "-" * 58
@@ -26,7 +26,7 @@ HEADING = "  order timepoint           sequence nr.                  node name  
 
 
 class SamplePath:
-    """Statistics of the messages that arrive at one command node."""
+    """Statistics of the messages received by one command node."""
 
     def __init__(self, node_name: str) -> None:
         self._node_name = node_name
@@ -35,11 +35,11 @@ class SamplePath:
         self._hot_path_latency = Statistic("ms")
         self._hot_path_drops = Statistic()
         self._period = Statistic("ms")
-        self._planner: tuple[int, int] | None = None  # its last timestamp and sequence number
+        self._planner: tuple[int, int] | None = None  # last timestamp and sequence number
         self._dropped: dict[str, Statistic] = defaultdict(Statistic)
 
     def add(self, message: Any, timestamp_ns: int, missed: int) -> list[str]:
-        """Take a message into account; return the lines to print of it."""
+        """Add a message; return the lines to print."""
         records = {name_of(record): record for record in records_of(message)}
         self._messages += 1
         lines = [RULE, f"sample path: ({self._node_name})", *self._table(records)]

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What a node of the reference system is, by its parameters."""
+"""Parameters of a node of the reference system."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ KEEP_ALL = 0
 
 @dataclass(frozen=True)
 class Settings:
-    """The parameters of a node; a `depth` of 0 keeps all messages."""
+    """Parameters of a node; `depth` 0 keeps all messages."""
 
     kind: str
     inputs: tuple[str, ...]
@@ -41,7 +41,7 @@ class Settings:
 
 
 def read_settings(node: Node, kinds: Collection[str]) -> Settings:
-    """Declare the parameters and return their values; a wrong one is a ManycoreError."""
+    """Declare the parameters and return their values; raise ManycoreError for an invalid one."""
 
     def value(name: str, default: Any) -> Any:
         return node.declare_parameter(name, default).value

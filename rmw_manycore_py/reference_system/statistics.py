@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 @dataclass
 class Statistic:
-    """Smallest, largest, average and deviation of what was added so far (Welford)."""
+    """Minimum, maximum, mean and deviation of the values so far (Welford)."""
 
     suffix: str = ""
     count: int = 0
@@ -20,7 +20,7 @@ class Statistic:
     _squares: float = 0.0
 
     def add(self, value: float) -> None:
-        """Take one more value into account."""
+        """Add a value."""
         self.count += 1
         self.current = value
         self.low = min(self.low, value)
@@ -31,7 +31,7 @@ class Statistic:
 
     @property
     def deviation(self) -> float:
-        """Return the standard deviation of the sample; of a single value there is none."""
+        """Return the sample standard deviation; NaN for a single value."""
         return math.sqrt(self._squares / (self.count - 1)) if self.count > 1 else math.nan
 
     def __str__(self) -> str:

@@ -1,2 +1,2 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What ROS 2 prescribes: names, domains, and where packages are installed."""
+"""ROS 2 conventions: names, domains, and installed packages."""

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Where installed ROS packages are: the ament index of an ordinary ROS 2, or of PyPI wheels."""
+"""Finds installed ROS packages: ament index of a ROS 2 installation, or of PyPI wheels."""
 
 from __future__ import annotations
 
@@ -14,25 +14,25 @@ from rmw_manycore_interfaces import AMENT_PREFIX_PATH, own_prefix
 
 
 def prefixes() -> list[Path]:
-    """Return the install prefixes in order; the last is that of what the user has built."""
+    """Return the install prefixes in order; the user's built packages come last."""
     return [*_installed_prefixes(), Path(own_prefix())]
 
 
 def _installed_prefixes() -> list[Path]:
-    """Return the prefixes of the environment, then that of this python."""
+    """Return the prefixes of the environment, then that of this Python."""
     environment = os.environ.get(AMENT_PREFIX_PATH, "").split(os.pathsep)
     named = dict.fromkeys([*filter(None, environment), sys.prefix])
     return [Path(prefix) for prefix in named if prefix != own_prefix()]
 
 
 def is_installed(package: str) -> bool:
-    """Tell whether a package with types is installed elsewhere than among those built here."""
+    """Return whether a package with types is installed, not counting locally built ones."""
     entry = Path("share/ament_index/resource_index/rosidl_interfaces", package)
     return any((prefix / entry).is_file() for prefix in _installed_prefixes())
 
 
 def find_resource(kind: str, name: str) -> tuple[Path, Path] | None:
-    """Return the prefix and the file of an entry of the resource index."""
+    """Return the prefix and the file of a resource index entry; None if missing."""
     for prefix in prefixes():
         entry = prefix / "share/ament_index/resource_index" / kind / name
         if os.path.isfile(entry):
@@ -41,31 +41,31 @@ def find_resource(kind: str, name: str) -> tuple[Path, Path] | None:
 
 
 def package_prefix(package: str) -> Path | None:
-    """Return the prefix a package is installed in."""
+    """Return the install prefix of a package; None if it is not installed."""
     found = find_resource("packages", package)
     return found[0] if found else None
 
 
 def package_share(package: str) -> Path | None:
-    """Return the share directory of a package."""
+    """Return the share directory of a package; None if it is not installed."""
     prefix = package_prefix(package)
     return prefix / "share" / package if prefix else None
 
 
 def packages_with_interfaces() -> list[str]:
-    """Return the packages that have message, service or action types."""
+    """Return the packages that define message, service or action types."""
     return resource_names("rosidl_interfaces")
 
 
 def resource_names(kind: str) -> list[str]:
-    """Return the names of the entries of a kind in the resource index."""
+    """Return the names of a kind of resource index entries."""
     directories = (p / "share/ament_index/resource_index" / kind for p in prefixes())
     found = {entry.name for d in directories if d.is_dir() for entry in d.iterdir()}
     return sorted(found)
 
 
 def interfaces(package: str) -> frozenset[str]:
-    """Return the message and service types of a package: std_msgs/msg/String."""
+    """Return the types of a package, e.g. std_msgs/msg/String."""
     found = find_resource("rosidl_interfaces", package)
     return _interfaces(package, found[1]) if found else frozenset()
 
@@ -80,7 +80,7 @@ def _lines(entry: Path) -> Iterator[str]:
 
 
 def canonical_type(name: str) -> str:
-    """Return a type in the form package/msg/Name; the spellings of ROS 1 and of papers are read."""
+    """Return a type as package/msg/Name; accepts the spellings of ROS 1 and of the papers."""
     parts = [part for part in re.split(r"/|::", name.strip()) if part]
     if len(parts) == 2:
         parts.insert(1, "msg")

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Patterns of topic names: `*` within a part of a name, `**` for any number of parts."""
+"""Patterns of topic names: `*` within one part, `**` for any number of parts."""
 
 from __future__ import annotations
 
@@ -8,20 +8,20 @@ from fnmatch import fnmatchcase
 
 _ANY_PARTS = "**"
 _HIDDEN = "_"
-# Every node has these; outside they would mix with those of other programs.
+# Topics of every node, which would be mixed up outside.
 _OF_EVERY_NODE = ("/rosout", "/parameter_events")
 
 
 def is_pattern(name: str) -> bool:
-    """Tell whether a name stands for several topics."""
+    """Return whether a name is a pattern."""
     return "*" in name
 
 
 def matches(pattern: str, topic: str) -> bool:
-    """Tell whether a full name fits a pattern.
+    """Return whether a full name matches a pattern.
 
-    A part that begins with `_` is hidden: only a part of the pattern that begins so fits it. What
-    every node publishes fits no pattern.
+    A part that starts with `_` is hidden: it is only matched by a part that starts so as well. The
+    topics of every node are never matched.
 
     >>> matches("/camera/*", "/camera/image"), matches("/camera/*", "/camera/left/image")
     (True, False)
@@ -36,7 +36,7 @@ def matches(pattern: str, topic: str) -> bool:
 
 
 def _next(parts: Sequence[str], place: int, part: str) -> tuple[int, ...]:
-    """Return where a pattern goes on after one more part of a name."""
+    """Return the positions in a pattern after one more part of a name."""
     if place == len(parts):
         return ()
     if part.startswith(_HIDDEN) and not parts[place].startswith(_HIDDEN):
@@ -47,7 +47,7 @@ def _next(parts: Sequence[str], place: int, part: str) -> tuple[int, ...]:
 
 
 def _with_skips(parts: Sequence[str], places: set[int]) -> set[int]:
-    """Add the places after each `**`, which may stand for nothing."""
+    """Add the positions after each `**`, which may match nothing."""
     reached = set(places)
     for place in sorted(places):
         while place < len(parts) and parts[place] == _ANY_PARTS:

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Asks the supervisor of a run for something."""
+"""Client of a run's supervisor."""
 
 from __future__ import annotations
 
@@ -7,7 +7,6 @@ import select
 import socket
 import time
 from collections.abc import Iterator
-from types import TracebackType
 from typing import Any
 
 from typing_extensions import Self
@@ -16,15 +15,15 @@ from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.runs.directory import RunDirectory
 from rmw_manycore_py.runs.lines import LineBuffer, Message, encoded
 
-# A supervisor answers at once, unless it was stopped or its machine has no time for it.
+# A supervisor answers at once, unless it is stopped or the machine is overloaded.
 ANSWER_TIMEOUT_S = 10.0
-# One that lives and does not listen yet, or no more, comes up or goes.
+# A live supervisor that does not listen is starting or ending.
 _LISTEN_TIMEOUT_S = 5.0
 _LISTEN_PAUSE_S = 0.02
 
 
 class Client:
-    """A connection to a supervisor that begins with one request."""
+    """Connection to a supervisor, opened with one request."""
 
     def __init__(self, run: RunDirectory, do: str, **arguments: Any) -> None:
         self._run = run
@@ -49,12 +48,7 @@ class Client:
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        traceback: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self.close()
 
     def close(self) -> None:
@@ -62,29 +56,29 @@ class Client:
         self.socket.close()
 
     def say(self, message: Message) -> None:
-        """Send a message; one that nobody reads any more is lost."""
+        """Send a message; it is lost if the supervisor has gone."""
         try:
             self.socket.sendall(encoded(message))
         except TimeoutError as error:
             raise self._silent() from error
         except (BrokenPipeError, ConnectionResetError):
-            pass  # what it said before is still to be read
+            pass  # its earlier messages can still be read
 
     def messages(self) -> Iterator[Message]:
-        """Yield what comes until the supervisor closes the connection, or is gone."""
+        """Yield messages until the supervisor closes the connection or ends."""
         while (message := self._next()) is not None:
             yield message
 
     def early(self) -> list[Message]:
-        """Return what came together with the answer: the socket does not become readable for it."""
+        """Return messages received with the answer; the socket is not readable for those."""
         early, self._messages = self._messages, []
         return early
 
-    def take(self, patience_s: float | None = None) -> list[Message] | None:
-        """Return what comes next, within a time if one is given; None at the end."""
+    def take(self, timeout_s: float | None = None) -> list[Message] | None:
+        """Return the next messages, waiting up to `timeout_s` if given; None at the end."""
         if early := self.early():
             return early
-        readable, _, _ = select.select([self.socket], [], [], patience_s)
+        readable, _, _ = select.select([self.socket], [], [], timeout_s)
         data = self._receive() if readable else b""
         return self._lines.take(data) if data else None
 

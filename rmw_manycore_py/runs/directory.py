@@ -1,9 +1,9 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Where runs keep their logs and control sockets, and which of them live.
+"""Directories of runs with their logs and control sockets, and which runs are alive.
 
     $MANYCORE_STATE/runs/PLATFORM/NUMBER/{lock, control, run.json, log/}
 
-The lock is the proof of life: the kernel releases it when the supervisor dies, however it dies.
+The lock proves that a run is alive: the kernel releases it when the supervisor dies.
 """
 
 from __future__ import annotations
@@ -31,17 +31,17 @@ _OTHERS = 0o077
 
 
 def state_directory() -> Path:
-    """Return the directory of all runs: $MANYCORE_STATE, or as XDG has it."""
+    """Return the directory of all runs: $MANYCORE_STATE, or the XDG default."""
     if named := os.environ.get(STATE_VARIABLE):
         return Path(os.path.abspath(named))
     state = os.environ.get("XDG_STATE_HOME", "")
-    if not os.path.isabs(state):  # which the specification of XDG has ignored
+    if not os.path.isabs(state):  # ignored, as the XDG specification requires
         state = os.path.expanduser("~/.local/state")
     return Path(state, "rmw_manycore")
 
 
 def runs_directory() -> Path:
-    """Return the directory of the runs whose platforms lie in $MANYCORE_DIRECTORY."""
+    """Return the directory of runs whose platforms are in $MANYCORE_DIRECTORY."""
     chosen = os.environ.get("MANYCORE_DIRECTORY")
     if not chosen:
         return state_directory() / "runs"
@@ -51,45 +51,45 @@ def runs_directory() -> Path:
 
 @dataclass(frozen=True)
 class RunDirectory:
-    """A run, as it lies in the file system: alive or ended."""
+    """Directory of a run, alive or ended."""
 
     path: Path
 
     @property
     def platform(self) -> str:
-        """The name of the run's platform."""
+        """Name of the run's platform."""
         return self.path.parent.name
 
     @property
     def number(self) -> int:
-        """Which run on its platform it is; 1 has started the platform, others joined it."""
+        """Number of the run on its platform; run 1 created the platform, others joined it."""
         return int(self.path.name)
 
     @property
     def logs(self) -> Path:
-        """The directory of the logs, a file per node."""
+        """Directory of the logs, one file per node."""
         return self.path / LOGS
 
     @property
     def is_alive(self) -> bool:
-        """Tell whether the supervisor lives."""
+        """Return whether the supervisor is alive."""
         try:
             with (self.path / _LOCK).open("rb") as lock:
                 fcntl.flock(lock, fcntl.LOCK_SH | fcntl.LOCK_NB)
         except BlockingIOError:
             return True
-        except OSError:  # removed, or not yet there
+        except OSError:  # removed or not created yet
             return False
         return False
 
     def wait(self) -> None:
-        """Wait until the supervisor is gone."""
+        """Wait until the supervisor has ended."""
         with suppress(OSError), (self.path / _LOCK).open("rb") as lock:
             fcntl.flock(lock, fcntl.LOCK_SH)
 
     @property
     def info(self) -> Mapping[str, Any]:
-        """What the supervisor wrote at its start: pid, mapfile, nodes, detached, started."""
+        """Facts written by the supervisor at its start: pid, mapfile, nodes, detached, started."""
         try:
             return dict(json.loads((self.path / _INFO).read_text()))
         except (OSError, ValueError):
@@ -97,11 +97,11 @@ class RunDirectory:
 
     @property
     def nodes(self) -> list[str]:
-        """The names under which the run's processes print, in their order."""
+        """Names under which the run's processes print, in order."""
         return list(self.info.get("nodes", ()))
 
     def connect(self, timeout_s: float) -> socket.socket:
-        """Return a connection to the supervisor; an OSError says that there is none."""
+        """Return a connection to the supervisor; raise OSError if there is none."""
         connection = socket.socket(socket.AF_UNIX)
         connection.settimeout(timeout_s)
         try:
@@ -114,7 +114,7 @@ class RunDirectory:
 
 
 def runs_of(platform: str) -> list[RunDirectory]:
-    """Return the runs on a platform in their order, those that have ended included."""
+    """Return the runs of a platform in order, including ended ones."""
     return _runs_in(runs_directory() / platform)
 
 
@@ -126,7 +126,7 @@ def all_runs() -> list[RunDirectory]:
 
 
 def remove_ended(platform: str | None = None) -> list[Path]:
-    """Remove what ended runs have left, of one platform or of all; return the directories."""
+    """Remove the directories of ended runs, of one or all platforms; return their paths."""
     removed = []
     for run in all_runs() if platform is None else runs_of(platform):
         with _locked(run.path.parent / _LOCK):
@@ -141,10 +141,10 @@ def remove_ended(platform: str | None = None) -> list[Path]:
 
 @contextmanager
 def new_run(platform: str, info: Mapping[str, Any], joins: bool) -> Iterator[OwnRun]:
-    """Make the directory of a run and hold its lock; one that does not join replaces ended runs.
+    """Create the directory of a run and hold its lock; unless it joins, remove ended runs.
 
-    :raises OSError: when the directory cannot be made.
-    :raises ManycoreError: when it would not be private, or another run holds the platform.
+    :raises OSError: if the directory cannot be created.
+    :raises ManycoreError: if it would not be private, or another run holds the platform.
     """
     directory = runs_directory() / platform
     directory.mkdir(_PRIVATE, parents=True, exist_ok=True)
@@ -173,7 +173,7 @@ def new_run(platform: str, info: Mapping[str, Any], joins: bool) -> Iterator[Own
 
 @dataclass(frozen=True)
 class OwnRun:
-    """The run of this process."""
+    """Run of this process."""
 
     directory: RunDirectory
     listener: socket.socket
@@ -221,7 +221,7 @@ def _listener(path: Path) -> Iterator[socket.socket]:
 
 @contextmanager
 def _short_path(directory: Path) -> Iterator[str]:
-    """Name a directory in few letters: addresses of sockets have 107."""
+    """Yield a short path of a directory: socket addresses are limited to 107 bytes."""
     descriptor = os.open(directory, os.O_PATH | os.O_DIRECTORY)
     try:
         yield f"/proc/self/fd/{descriptor}"
@@ -235,7 +235,7 @@ def _open_lock(path: Path) -> int:
 
 @contextmanager
 def _locked(path: Path) -> Iterator[None]:
-    """Hold a lock for a moment; nothing waits under it."""
+    """Hold a lock briefly; nothing may block under it."""
     descriptor = _open_lock(path)
     try:
         fcntl.flock(descriptor, fcntl.LOCK_EX)

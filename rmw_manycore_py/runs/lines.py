@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What a supervisor and its clients say to each other: JSON objects, one a line."""
+"""Protocol between a supervisor and its clients: one JSON object per line."""
 
 from __future__ import annotations
 
@@ -8,30 +8,30 @@ from typing import Any
 
 from rmw_manycore_py.errors import ManycoreError
 
-# Names of up to 1024 nodes; a terminal's input comes in far smaller pieces.
+# Room for the names of 1024 nodes; terminal input comes in far smaller pieces.
 MAX_LINE_BYTES = 1 << 20
 Message = dict[str, Any]
 
 
 class LineBuffer:
-    """Cuts what a socket brings into messages."""
+    """Splits received bytes into messages."""
 
     def __init__(self) -> None:
         self._rest = b""
 
     def take(self, data: bytes) -> list[Message]:
-        """Return the messages that are complete by now.
+        """Return the complete messages received so far.
 
-        :raises ManycoreError: when the other side says something else than JSON objects.
+        :raises ManycoreError: if the input is not JSON objects.
         """
         *lines, self._rest = (self._rest + data).split(b"\n")
         if len(self._rest) > MAX_LINE_BYTES:
-            raise ManycoreError("a message of a run is too long")
+            raise ManycoreError("control message too long")
         return [_message(line) for line in lines]
 
 
 def encoded(message: Message) -> bytes:
-    """Return a message as it goes through the socket."""
+    """Encode a message for the socket."""
     return json.dumps(message).encode() + b"\n"
 
 
@@ -39,7 +39,7 @@ def _message(line: bytes) -> Message:
     try:
         message = json.loads(line)
     except ValueError as error:
-        raise ManycoreError("a message of a run is no JSON") from error
+        raise ManycoreError("control message is not JSON") from error
     if not isinstance(message, dict):
-        raise ManycoreError("a message of a run is no JSON object")
+        raise ManycoreError("control message is not a JSON object")
     return message

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The log of one node: bounded, each line behind the time it was read at."""
+"""Bounded log of one node, with a timestamp per line."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from contextlib import suppress
 from functools import lru_cache
 from pathlib import Path
 
-# A run of few nodes keeps this much of each; many nodes share MAX_RUN_BYTES.
+# Limit per node in a run of few nodes; many nodes share MAX_RUN_BYTES.
 MAX_NODE_BYTES = 8 << 20
 MIN_NODE_BYTES = 64 << 10
 MAX_RUN_BYTES = 256 << 20
@@ -19,19 +19,19 @@ TIME_CHARACTERS = len("2026-01-01T00:00:00.000000Z")
 
 
 def share_of(nodes: int) -> int:
-    """Return the bytes that each of so many nodes may keep."""
+    """Return the limit in bytes for each of so many nodes."""
     return max(min(MAX_NODE_BYTES, MAX_RUN_BYTES // max(nodes, 1)), MIN_NODE_BYTES)
 
 
 def log_path(directory: Path, node: str, suffix: str = SUFFIX) -> Path:
-    """Return the file of a node; no name of ROS 2 has a dot, so no two are alike."""
+    """Return the log path of a node; unique, since ROS 2 names have no dots."""
     return directory / f"{node.strip('/').replace('/', '.')}{suffix}"
 
 
 class LogFile:
-    """Appends lines; when it is full, the older half of them goes.
+    """Appends lines; when full, drops the older half.
 
-    What cannot be written is counted, and said in the log once there is room again.
+    Counts lines that cannot be written, and logs their number once there is room again.
     """
 
     def __init__(self, directory: Path, node: str, max_bytes: int) -> None:
@@ -40,12 +40,12 @@ class LogFile:
         self._half_bytes = max_bytes // 2
         self._descriptor = -1
         self._size_bytes = 0
-        self._is_torn = False  # the last line lacks its end
+        self._is_torn = False  # the last line is incomplete
         self._unwritten = 0
         self._reason = ""
 
     def write(self, text: str) -> str | None:
-        """Append a line; return the reason when this is the first one that could not be written."""
+        """Append a line; return the reason if it is the first one that cannot be written."""
         try:
             self._append(self._told() + _stamped(text))
         except OSError as error:
@@ -56,18 +56,18 @@ class LogFile:
         return None
 
     def close(self) -> None:
-        """Close the file, behind the number of lines that are missing at its end."""
+        """Close the file, after recording the number of lines lost at its end."""
         with suppress(OSError):
             if told := self._told():
                 self._append(told)
         self._close()
 
     def _told(self) -> bytes:
-        """Return what has to be said before the next line."""
+        """Return what has to precede the next line."""
         end = b"\n" if self._is_torn else b""
         if not self._unwritten:
             return end
-        return end + _stamped(f"({self._unwritten} lines were not kept: {self._reason})")
+        return end + _stamped(f"({self._unwritten} lines were not written: {self._reason})")
 
     def _close(self) -> None:
         if self._descriptor >= 0:

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Reads the logs of runs: what is there, and what comes."""
+"""Reads the logs of runs, including new lines."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from rmw_manycore_py.runs.log_file import OLDER_SUFFIX, TIME_CHARACTERS, log_pat
 
 @dataclass(frozen=True, order=True)
 class LogLine:
-    """A line of a node; times sort as text."""
+    """A line of a node; timestamps sort as text."""
 
     time: str
     node: str
@@ -25,7 +25,7 @@ class LogLine:
 
 
 class NodeLog:
-    """The log of a node, read from its beginning to where it has come."""
+    """Incremental reader of a node's log."""
 
     def __init__(self, run: RunDirectory, node: str) -> None:
         self.node = node
@@ -36,7 +36,7 @@ class NodeLog:
         self._last_time = ""
 
     def read(self) -> list[LogLine]:
-        """Return the lines since the last call; at first also those of the older file."""
+        """Return the lines since the last call; at first, including the older file."""
         lines: list[LogLine] = []
         if self._descriptor < 0:
             if not self._open(self._older):
@@ -79,15 +79,15 @@ class NodeLog:
 
     def _line(self, text: str) -> LogLine:
         time, rest = text[:TIME_CHARACTERS], text[TIME_CHARACTERS + 1 :]
-        if not time.endswith("Z"):  # the rest of a line that a full disk has torn
+        if not time.endswith("Z"):  # remainder of a line truncated by a full disk
             return LogLine(self._last_time, self.node, text)
         self._last_time = time
         return LogLine(time, self.node, rest)
 
 
 def in_order(logs: Iterable[NodeLog], tail: int | None = None) -> Iterator[LogLine]:
-    """Yield what is new in several logs in the order of time; of each the last lines at most."""
+    """Yield new lines of several logs in time order, at most the last `tail` of each."""
     news = (log.read() for log in logs)
-    # The clock may have been set back; within a node the order of its lines is the one that counts.
+    # The clock may have been set back, so lines of one node keep their order.
     parts = (deque(lines, maxlen=tail) for lines in news)
     yield from merge(*parts, key=lambda line: line.time)

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""`manycore action info`, printed as `ros2 action info` prints."""
+"""`manycore action info`, with the output format of `ros2 action info`."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""`manycore action list`, printed as `ros2 action list` prints."""
+"""`manycore action list`, with the output format of `ros2 action list`."""
 
 from __future__ import annotations
 
@@ -22,6 +22,6 @@ from rmw_manycore_py.cli.common.options import (
 @json_option
 @platform_option
 def command(platform: str, as_json: bool, show_types: bool, count: bool) -> None:
-    """List the actions of a platform, served or only asked for."""
+    """List the actions of a platform, including those that only have clients."""
     rows = view.actions(view.endpoints_on(platform))
     show_names(rows, as_json=as_json, types=show_types, count=count)

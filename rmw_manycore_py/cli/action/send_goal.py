@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""`manycore action send_goal`, printed as `ros2 action send_goal` prints."""
+"""`manycore action send_goal`, with the output format of `ros2 action send_goal`."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from rmw_manycore_py.cli.common.tool_node import result_of, spin_once, tool_node
 from rmw_manycore_py.cli.common.values_argument import DEFAULTS, values_argument
 from rmw_manycore_py.errors import ManycoreError
 
-# By their number in action_msgs/msg/GoalStatus.
+# Index = value in action_msgs/msg/GoalStatus.
 STATUSES = ("UNKNOWN", "ACCEPTED", "EXECUTING", "CANCELING", "SUCCEEDED", "CANCELED", "ABORTED")
 
 
@@ -30,12 +30,12 @@ STATUSES = ("UNKNOWN", "ACCEPTED", "EXECUTING", "CANCELING", "SUCCEEDED", "CANCE
 @click.argument("action", shell_complete=complete_actions)
 @click.argument("type_name", metavar="TYPE", shell_complete=complete_types_of_action)
 @values_argument("goal")
-@click.option("-f", "--feedback", "shows_feedback", is_flag=True, help="Print feedback too.")
+@click.option("-f", "--feedback", "shows_feedback", is_flag=True, help="Print feedback as well.")
 @platform_option
 def command(
     action: str, type_name: str, goal: str | None, shows_feedback: bool, platform: str
 ) -> None:
-    """Send ACTION a GOAL in YAML and print its result; Ctrl-C cancels it."""
+    """Send GOAL (YAML) to ACTION and print the result; Ctrl-C cancels the goal."""
     action_type = load_type(type_name, "action")
     request = message_of(action_type.Goal, parse_values(goal or DEFAULTS))
     with tool_node(platform) as node:

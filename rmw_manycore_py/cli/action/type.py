@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""`manycore action type`, printed as `ros2 action type` prints."""
+"""`manycore action type`, with the output format of `ros2 action type`."""
 
 from __future__ import annotations
 

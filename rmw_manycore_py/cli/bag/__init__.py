@@ -18,7 +18,7 @@ VERBS = {
 
 
 class _Aliases(LazyGroup):
-    """Shows the examples of verbs of `manycore topic` under its own name."""
+    """Shows the examples of `manycore topic` verbs as `manycore bag` ones."""
 
     @override
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
@@ -30,4 +30,4 @@ class _Aliases(LazyGroup):
 
 @click.group("bag", cls=_Aliases, commands_at=VERBS)
 def command() -> None:
-    """Look at recordings; `record` and `play` are those of `manycore topic`."""
+    """Inspect recordings; `record` and `play` are aliases of the `manycore topic` verbs."""

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""`manycore bag info`, printed as `ros2 bag info` prints."""
+"""`manycore bag info`, with the output format of `ros2 bag info`."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import click
 
 from rmw_manycore_py.cli.common.options import examples, json_option
 from rmw_manycore_py.cli.common.printing import print_json, print_notices
-from rmw_manycore_py.recording.library import require_library
+from rmw_manycore_py.recording.mcap_support import require_library
 
 if TYPE_CHECKING:
     from rmw_manycore_py.recording.recording import Recording
@@ -26,12 +26,12 @@ _SERVICE_EVENT = "/_service_event"
     epilog=examples("manycore bag info drive.mcap", "manycore bag info rosbag2_2026_05_04"),
 )
 @click.argument("path", metavar="RECORDING", type=click.Path(exists=True, path_type=Path))
-@click.option("-t", "--topic-name", "names_only", is_flag=True, help="Show the topics' names only.")
+@click.option("-t", "--topic-name", "names_only", is_flag=True, help="Print only the topic names.")
 @json_option
 def command(path: Path, names_only: bool, as_json: bool) -> None:
-    """Show what is in RECORDING, a file in MCAP or a folder of rosbag2.
+    """Show the contents of RECORDING, an MCAP file or a rosbag2 directory.
 
-    What is whole of an unfinished or damaged file is shown, with a notice.
+    Of an unfinished or damaged file, shows what can be read, with a notice.
     """
     require_library()
     from rmw_manycore_py.recording.recording import Recording
@@ -124,7 +124,7 @@ def _moment(ns: int) -> str:
 
 
 def _size(size_bytes: int) -> str:
-    """Return a size as rosbag2 rounds it."""
+    """Format a size the way rosbag2 does."""
     size, unit = float(size_bytes), 0
     units = ("B", "KiB", "MiB", "GiB", "TiB")
     while size >= 1024 and unit < len(units) - 1:

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""`manycore bench`: the figures of rmw_manycore, measured here and now."""
+"""`manycore bench`: benchmarks of rmw_manycore on this machine."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ import click
 from rmw_manycore_py.cli.common.group import LazyGroup
 
 _NAMES = (
-    *("all", "bridge", "idle", "memory", "ndt", "pairs", "rclpy", "record", "reference", "rmw"),
-    *("scale", "startup", "trace", "view", "whill"),
+    *("all", "bridge", "idle", "matrix", "memory", "ndt", "noc", "pairs", "rclpy", "record"),
+    *("reference", "rmw", "ros-lite", "scale", "startup", "trace", "view", "whill"),
 )
-VERBS = {verb: f"rmw_manycore_py.cli.bench.{verb}:command" for verb in _NAMES}
+VERBS = {verb: f"rmw_manycore_py.cli.bench.{verb.replace('-', '_')}:command" for verb in _NAMES}
 
 
 @click.group("bench", cls=LazyGroup, commands_at=VERBS)
 def command() -> None:
-    """Measure rmw_manycore beside Fast DDS and beside the machine itself."""
+    """Benchmark rmw_manycore against Fast DDS and the limits of the machine."""

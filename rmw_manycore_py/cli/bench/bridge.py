@@ -15,5 +15,5 @@ from rmw_manycore_py.cli.bench.options import bench_options
 @click.command("bridge")
 @bench_options
 def command(**options: Any) -> None:
-    """Round trips of a node outside with one inside, images to another host, an idle bridge."""
+    """Measure round trips through the bridge, images to another host, and an idle bridge."""
     answer([bridge.QUESTION], **options)

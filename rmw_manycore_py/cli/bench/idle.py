@@ -18,5 +18,5 @@ DEFAULT_NODES = 100
 @click.option("--nodes", default=DEFAULT_NODES, show_default=True, type=click.IntRange(1))
 @bench_options
 def command(nodes: int, **options: Any) -> None:
-    """CPU and wake-ups of nodes with nothing to do."""
+    """Measure CPU time and wake-ups of idle nodes."""
     answer([idle.question(nodes)], **options)

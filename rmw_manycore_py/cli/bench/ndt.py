@@ -8,7 +8,7 @@ from typing import Any
 
 import click
 
-from rmw_manycore_py.bench.ndt import alignments, basin, node, passes, split, trust
+from rmw_manycore_py.bench.ndt import accuracy, alignments, basin, node, passes, split, trust
 from rmw_manycore_py.cli.bench.answer import answer
 from rmw_manycore_py.cli.bench.options import bench_options
 
@@ -17,15 +17,15 @@ from rmw_manycore_py.cli.bench.options import bench_options
 @click.option(
     "--pclomp",
     type=click.Path(exists=True, file_okay=False, path_type=Path),
-    help="A checkout of ndt_omp, to let it take part; PCL does where libpcl-dev is installed.",
+    help="Checkout of ndt_omp to include; PCL is included if libpcl-dev is installed.",
 )
 @bench_options
 def command(pclomp: Path | None, **options: Any) -> None:
-    """Scan matching beside PCL, pclomp, small_gicp and Open3D, over workers, and from far off.
+    """Measure scan matching against PCL, pclomp, small_gicp and Open3D, and over workers.
 
-    Also how many wrong poses are believed, and how many right ones refused; and the whole node
-    beside load, with large scans, new maps, and after a kill.
+    Also measures the convergence basin, the rates of wrong poses believed and right poses refused,
+    and the whole node: beside CPU load, with large scans, with new maps, and after a kill.
     """
-    own = [alignments.QUESTION, split.QUESTION, basin.QUESTION, trust.QUESTION]
-    own.append(node.QUESTION)
-    answer([passes.question(pclomp), *own], **options)
+    own = [split.QUESTION, basin.QUESTION, trust.QUESTION]
+    own += [accuracy.QUESTION, node.QUESTION]
+    answer([passes.question(pclomp), alignments.question(pclomp), *own], **options)

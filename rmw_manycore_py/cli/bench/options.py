@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The options of every verb of `manycore bench`."""
+"""Options shared by the verbs of `manycore bench`."""
 
 from __future__ import annotations
 
@@ -12,21 +12,34 @@ DEFAULT_ROUNDS = 5
 
 Body = Callable[..., None]
 
+model_option = click.option(
+    "--model",
+    "model_name",
+    type=click.Choice(["bostan"]),
+    help="Ask a simulated Kalray MPPA-256 Bostan instead of this machine.",
+)
+
 
 def bench_options(body: Body) -> Body:
-    """Add how to measure, and the form of the report."""
+    """Add the options on how to measure and how to report."""
     options = [
-        click.option("--quick", is_flag=True, help="One short round: does everything run?"),
+        click.option(
+            "--quick", is_flag=True, help="Run one short round, to check that everything works."
+        ),
         click.option("--rounds", default=DEFAULT_ROUNDS, show_default=True, type=click.IntRange(1)),
-        click.option("--only", multiple=True, help="Only those with this in QUESTION: CONTENDER."),
+        click.option(
+            "--only",
+            multiple=True,
+            help="Run only contenders with this text in QUESTION: CONTENDER.",
+        ),
         click.option("--json", "as_json", is_flag=True, help="Print JSON instead of tables."),
         click.option(
             "-o",
             "--output",
             type=click.Path(file_okay=False, path_type=Path),
-            help="Write report.json, results.csv and samples.csv to this directory.",
+            help="Directory to write report.json, results.csv and samples.csv to.",
         ),
-        click.option("--plot", "with_plot", is_flag=True, help="Write plot.svg there as well."),
+        click.option("--plot", "with_plot", is_flag=True, help="Also write plot.svg to --output."),
     ]
     for option in reversed(options):
         body = option(body)

@@ -9,28 +9,38 @@ from pathlib import Path
 import click
 from rich.console import Console
 
-from rmw_manycore_py.bench.pairs import MIN_PAIRS, SIZE, compare
+from rmw_manycore_py.bench.pairs import MIN_PAIRS, compare
+from rmw_manycore_py.bench.question import PAYLOADS
 from rmw_manycore_py.bench.session import usable_cpus
 from rmw_manycore_py.cli.common.options import examples, json_option
 from rmw_manycore_py.cli.common.printing import print_json
 
 
-@click.command("pairs", epilog=examples("manycore bench pairs build/without_trace/lib"))
+@click.command(
+    "pairs",
+    epilog=examples(
+        "manycore bench pairs build/without_trace/lib",
+        "manycore bench pairs --size '1 MiB' --between build/before/lib",
+    ),
+)
 @click.argument("other", type=click.Path(file_okay=False, path_type=Path))
 @click.option("--pairs", default=30, show_default=True, type=click.IntRange(MIN_PAIRS))
+@click.option("--size", default="64 B", show_default=True, type=click.Choice(list(PAYLOADS)))
+@click.option("--between", is_flag=True, help="Between two clusters instead of inside of one.")
 @json_option
-def command(other: Path, pairs: int, as_json: bool) -> None:
-    """Compare round trips of 64 B with those of another build, in alternated pairs of runs.
+def command(other: Path, pairs: int, size: str, between: bool, as_json: bool) -> None:
+    """Compare round trips with those of another build, in alternating pairs of runs.
 
-    OTHER is the directory of the other build's librmw_manycore.so.
+    OTHER is the directory with the librmw_manycore.so of the other build.
     """
     with Console(stderr=True).status("bench") as status:
-        found = compare(other, pairs, usable_cpus(), status.update)
+        found = compare(other, pairs, usable_cpus(), status.update, size=size, between=between)
     if as_json:
         print_json(found.row())
         return
+    place = "between clusters" if between else "inside a cluster"
     low_us, high_us = found.interval_us()
-    click.echo(f"round trip {SIZE}, {pairs} pairs, medians of runs:")
+    click.echo(f"round trip {size} {place}, {pairs} pairs, medians of runs:")
     click.echo(f"  this build   {statistics.median(found.this_us):8.3f} us")
     click.echo(f"  other build  {statistics.median(found.other_us):8.3f} us")
     click.echo(

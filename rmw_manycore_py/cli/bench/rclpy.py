@@ -15,5 +15,5 @@ from rmw_manycore_py.cli.bench.options import bench_options
 @click.command("rclpy")
 @bench_options
 def command(**options: Any) -> None:
-    """Round trips between two rclpy nodes."""
+    """Measure round trips between two rclpy nodes."""
     answer([rclpy_round_trip.QUESTION], **options)

@@ -15,5 +15,5 @@ from rmw_manycore_py.cli.bench.options import bench_options
 @click.command("record")
 @bench_options
 def command(**options: Any) -> None:
-    """Measure what a recorder loses at 100 MB/s, and how late a player is."""
+    """Measure the losses of a recorder at 100 MB/s, and the timing error of a player."""
     answer([record.QUESTION], **options)

@@ -28,7 +28,7 @@ _EXAMPLES = examples(
     type=click.Choice(["rcl", "rclpy"]),
     default="rcl",
     show_default=True,
-    help="Native nodes, which show the middleware, or unmodified rclpy nodes.",
+    help="Native nodes, which isolate the middleware, or unmodified rclpy nodes.",
 )
 @click.option(
     "--message",
@@ -42,7 +42,7 @@ _EXAMPLES = examples(
     default=0.0,
     show_default=True,
     type=click.FloatRange(0, 1000),
-    help="CPU time that each callback works for.",
+    help="CPU time that each callback burns.",
 )
 @click.option(
     "--duration",
@@ -50,7 +50,7 @@ _EXAMPLES = examples(
     default=20.0,
     show_default=True,
     type=click.FloatRange(1),
-    help="Seconds that each contender is measured for in a round.",
+    help="Seconds per contender and round.",
 )
 @bench_options
 def command(
@@ -63,9 +63,9 @@ def command(
 ) -> None:
     """Run the 24 nodes of the Autoware reference system, one process each.
 
-    Latency of the hot path, drops, jitter, CPU, memory, start-up and throughput; also beside a
-    load of one CPU, and on mappings that are good and bad. With --output, what the last node
-    printed is written as the reference system's own report scripts read it.
+    Measures latency of the hot path, drops, jitter, CPU, memory, start-up and throughput, also
+    beside one busy CPU and with good and bad mappings. With --output, also writes the output of the
+    last node in the format that the report scripts of the reference system read.
     """
     wanted = Wanted(nodes, message, crunch_ms, duration_s)
     answer([reference_question(wanted, output)], output=output, **options)

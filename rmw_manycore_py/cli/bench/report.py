@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Reports for people and for programs: tables, CSV, JSON, a plot."""
+"""Bench reports: tables, CSV, JSON and a plot."""
 
 from __future__ import annotations
 
@@ -13,21 +13,24 @@ from typing import Any
 import click
 from rich.table import Table
 
+from rmw_manycore_py.bench.relations import Relation
 from rmw_manycore_py.bench.summary import SPREAD, Result, Verdict, nearest_rank
 from rmw_manycore_py.cli.common.printing import new_table, print_table
 
 
 @dataclass(frozen=True)
 class Report:
-    """Everything one call of a bench has found."""
+    """Results of one run of a bench."""
 
     machine: dict[str, str]
     placements: dict[str, str]
     results: Sequence[Result]
     verdicts: Sequence[Verdict]
+    failures: Sequence[str]  # contenders that could not be measured, and why
+    relations: Sequence[Relation] = ()
 
     def as_json(self) -> str:
-        """Return the report without the single samples."""
+        """Return the report as JSON, without individual samples."""
         return json.dumps(
             {
                 "machine": self.machine,
@@ -37,6 +40,8 @@ class Report:
                     {**asdict(verdict.goal), "found": verdict.found, "reached": verdict.reached}
                     for verdict in self.verdicts
                 ],
+                "failures": list(self.failures),
+                "relations": [asdict(relation) for relation in self.relations],
             },
             indent=2,
         )
@@ -50,6 +55,9 @@ class Report:
         if self.verdicts:
             click.echo()
             print_table(_goals_table(self.verdicts))
+        if self.relations:
+            click.echo()
+            print_table(_relations_table(self.relations))
 
     def write(self, directory: Path) -> list[Path]:
         """Write report.json, results.csv and samples.csv; return their paths."""
@@ -71,7 +79,7 @@ class Report:
 
 
 def write_csv(path: Path, rows: Sequence[dict[str, Any]]) -> None:
-    """Write rows that all have the keys of the first."""
+    """Write rows as CSV; all of them have the keys of the first."""
     with path.open("w", newline="") as file:
         writer = csv.DictWriter(file, fieldnames=list(rows[0]) if rows else [])
         writer.writeheader()
@@ -108,7 +116,7 @@ def _results_table(results: Sequence[Result]) -> Table:
 
 
 def _order_of(results: Sequence[Result]) -> Callable[[Result], int]:
-    """Order by question, the questions as they come first."""
+    """Return a sort key that orders results by question, in order of first appearance."""
     questions = list(dict.fromkeys(result.question for result in results))
     return lambda result: questions.index(result.question)
 
@@ -126,8 +134,16 @@ def _goals_table(verdicts: Sequence[Verdict]) -> Table:
     return table
 
 
+def _relations_table(relations: Sequence[Relation]) -> Table:
+    table = new_table("relation", "in the paper", "found", "", "basis")
+    for relation in relations:
+        held = f"[{'green' if relation.holds else 'red'}]{relation.in_words}[/]"
+        table.add_row(relation.name, relation.statement, relation.found, held, relation.basis)
+    return table
+
+
 def in_words(verdict: Verdict) -> str:
-    """Return a goal as a person would say it."""
+    """Return a goal in words."""
     goal = verdict.goal
     statistic = "" if goal.statistic == "median" else f" ({goal.statistic})"
     if goal.kind == "better" and goal.peer is None:
@@ -139,7 +155,7 @@ def in_words(verdict: Verdict) -> str:
 
 
 def number(value: float) -> str:
-    """Return a number with about three digits that matter, and thousands marked."""
+    """Format a number with about three significant digits and thousands separators."""
     if value == 0 or value >= 100:
         return f"{value:,.0f}"
     return f"{value:.1f}" if value >= 10 else f"{value:.2f}"

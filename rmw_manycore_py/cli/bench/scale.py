@@ -15,5 +15,5 @@ from rmw_manycore_py.cli.bench.options import bench_options
 @click.command("scale")
 @bench_options
 def command(**options: Any) -> None:
-    """Curves over the threads of a process, and over the endpoints of a topic."""
+    """Measure scaling over the threads of a process and the endpoints of a topic."""
     answer([scale.QUESTION], **options)

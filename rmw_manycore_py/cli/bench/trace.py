@@ -15,5 +15,5 @@ from rmw_manycore_py.cli.bench.options import bench_options
 @click.command("trace")
 @bench_options
 def command(**options: Any) -> None:
-    """Measure what tracing costs, off and on, and how long a trace takes to save."""
+    """Measure the overhead of tracing, disabled and enabled, and the time to save a trace."""
     answer([trace.QUESTION], **options)

@@ -15,5 +15,5 @@ from rmw_manycore_py.cli.bench.options import bench_options
 @click.command("view")
 @bench_options
 def command(**options: Any) -> None:
-    """Measure what the chip in the browser costs, with 500 nodes and 1,000 topics in use."""
+    """Measure the cost of `manycore view` with 500 nodes and 1,000 active topics."""
     answer([view.QUESTION], **options)

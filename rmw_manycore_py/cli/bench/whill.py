@@ -28,18 +28,18 @@ from rmw_manycore_py.cli.common.options import examples
     type=click.Path(file_okay=False, path_type=Path),
     default=Path("build/whill"),
     show_default=True,
-    help="A directory of 'manycore whill course'.",
+    help="Directory written by 'manycore whill course'.",
 )
 @click.option(
     "--netns",
     "namespace",
     metavar="NAME",
-    help="Drive with the nodes in this network namespace; count the packets that come into it.",
+    help="Run the nodes in this network namespace and count its incoming packets.",
 )
 @bench_options
 def command(course: Path, namespace: str | None, **options: Any) -> None:
     """Drive the wheelchair: off-loaded, on plain Fast DDS, and with a fault in each process.
 
-    A round is 15 drives over the whole course, of two minutes each with the default one.
+    A round consists of 15 drives over the whole course; each takes two minutes on the default one.
     """
     answer([whill.drive_question(course, namespace), whill.fault_question(course)], **options)

@@ -16,7 +16,7 @@ VERBS = {
 
 
 class _BridgeGroup(LazyGroup):
-    """A word that is no verb is a file to run."""
+    """Treats a first argument that is no verb as a file to run."""
 
     @override
     def resolve_command(
@@ -35,4 +35,4 @@ class _BridgeGroup(LazyGroup):
     epilog=examples("manycore bridge domain_bridge.yaml", "manycore bridge status"),
 )
 def command() -> None:
-    """Join topics and services of a platform to DDS domains outside."""
+    """Bridge topics and services of a platform to external DDS domains."""

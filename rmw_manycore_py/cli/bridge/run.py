@@ -23,13 +23,13 @@ from rmw_manycore_py.ros.domain import MAX_DOMAIN, ros_domain
     type=click.IntRange(0, MAX_DOMAIN),
     default=ros_domain,
     show_default="$ROS_DOMAIN_ID, or 0",
-    help="The domain of CONFIG that stands for the platform.",
+    help="Domain ID in CONFIG that stands for the platform.",
 )
 @platform_option
 def command(config: Path, inside: int, platform: str) -> None:
-    """Run the bridge that CONFIG describes, in the YAML schema of domain_bridge.
+    """Run the bridge described by CONFIG, in the YAML schema of domain_bridge.
 
-    One side of each entry is the platform's domain; the other one is a real DDS domain.
+    One side of each entry has to be the platform's domain; the other side is a real DDS domain.
     """
     plan = Plan(platform, load_bridge_file(config, inside, _warn))
     sys.exit(run_bridge(plan, RunPrinter().report))

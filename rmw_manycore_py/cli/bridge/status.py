@@ -21,7 +21,7 @@ _ARROWS = {"inward": "<-", "outward": "->"}
 @platform_option
 @json_option
 def command(platform: str, as_json: bool) -> None:
-    """Show what crosses, how much has crossed, and what was kept back and why."""
+    """Show bridged topics and services: traffic, and what was held back and why."""
     with open_platform(platform):
         rows = status(platform)
     if as_json:
@@ -50,12 +50,12 @@ def _show(rows: list[dict[str, Any]]) -> None:
 
 
 def _datagrams_text(rows: list[dict[str, Any]]) -> str:
-    """Say what full receive buffers cost: each process counts once, and each host."""
+    """Describe the cost of full receive buffers; count each process and each host once."""
     own = {row["pid"]: row["socket_drops"] for row in rows if row["socket_drops"] is not None}
     errors = max((row["receive_buffer_errors"] or 0 for row in rows), default=0)
     return (
         f"UDP datagrams dropped at full receive buffers: {sum(own.values())} of the bridge, "
-        f"{errors} of all programs here"
+        f"{errors} of all programs on this host"
     )
 
 

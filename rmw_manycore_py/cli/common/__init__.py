@@ -1,2 +1,2 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What several groups of verbs share."""
+"""Helpers shared by several groups of verbs."""

@@ -1,8 +1,8 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What a shell offers for a word that is being typed: names of the platform, types, mapfiles.
+"""Shell completion of names on the platform, types and mapfiles.
 
-click calls these with the words before it parsed as far as they can be. None of them joins the
-platform, and none fails: a shell could only print the error into the line.
+click calls these completers with the preceding words parsed as far as possible. They never join the
+platform and never fail: a shell would print the error into the command line.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ _Rows = Callable[[Iterable[EndpointInfo]], Iterable[Row]]
 
 
 def completer(names: _Names) -> Completer:
-    """Return what offers the names that begin like the word; none where they cannot be found."""
+    """Return a completer that offers names with the typed prefix, or nothing on any error."""
 
     def complete(
         context: click.Context, _parameter: click.Parameter, incomplete: str
@@ -41,7 +41,7 @@ def completer(names: _Names) -> Completer:
 
 
 def platform_of(context: click.Context) -> str:
-    """Return the platform that the words before name, or the default."""
+    """Return the platform given by the preceding words, or the default."""
     return context.params.get("platform") or default_platform()
 
 
@@ -73,7 +73,7 @@ def _nodes(context: click.Context) -> list[str]:
 
 
 def _used_types(rows: _Rows, argument: str, kind: str) -> _Names:
-    """Return what finds the types of the thing that an argument names, else all of a kind."""
+    """Return a function that lists the types of the named topic or service, else all of a kind."""
 
     def names(context: click.Context) -> Iterable[str]:
         try:

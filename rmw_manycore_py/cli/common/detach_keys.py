@@ -1,17 +1,17 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Keys that detach from a node's terminal, in the notation of docker."""
+"""Key sequences that detach from a node's terminal, in docker's notation."""
 
 from __future__ import annotations
 
 _CTRL = "ctrl-"
-# Behind ctrl- stand a letter and what has a control character besides.
+# Control characters besides the letters, as written after "ctrl-".
 _OTHERS = {"@": 0, "[": 27, "\\": 28, "]": 29, "^": 30, "_": 31}
 
 
 def parse_keys(text: str) -> bytes:
     """Return the bytes that a terminal sends for keys such as ctrl-p,ctrl-q.
 
-    :raises ValueError: for what is no key.
+    :raises ValueError: for an unknown key.
     """
     return bytes(_key(part.strip()) for part in text.split(","))
 
@@ -29,14 +29,14 @@ def _key(name: str) -> int:
 
 
 class DetachKeys:
-    """Finds the keys in what is typed; while they may follow, the first of them are held back."""
+    """Detects the detach sequence in the input; holds a partial match back until it is decided."""
 
     def __init__(self, keys: bytes) -> None:
         self._keys = keys
         self._held = 0
 
     def take(self, data: bytes) -> tuple[bytes, bool]:
-        """Return what goes on to the node, and whether the keys were typed."""
+        """Return the bytes to forward to the node, and whether the sequence is complete."""
         passed = bytearray()
         for key in data:
             if key == self._keys[self._held]:

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""How long nodes run."""
+"""The option `--duration`."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import click
 
 
 def duration_option(default_s: float | None = None) -> Callable[[Any], Any]:
-    """Return the option `--duration`."""
+    """Return the option `--duration`, in seconds."""
     return click.option(
         "--duration",
         "duration_s",

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""A group of commands that are imported when they are called, and errors without tracebacks."""
+"""Command groups that import commands lazily and report errors without tracebacks."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ from rmw_manycore_py.errors import EXIT_INTERRUPTED, ManycoreError
 
 
 class LazyGroup(click.Group):
-    """Knows where each of its commands is: "package.module:attribute".
+    """Maps each command to where it is defined: "package.module:attribute".
 
-    A command whose module is not installed does not exist. Those of `until_ctrl_c` end well by it,
-    also while they are still coming up; the others have not done what they were asked for.
+    Commands whose module is not installed are hidden. For commands in `until_ctrl_c`, Ctrl-C is the
+    normal way to end, also during start-up; for the others it is a failure.
     """
 
     def __init__(
@@ -53,7 +53,7 @@ class LazyGroup(click.Group):
         self, ctx: click.Context, args: list[str]
     ) -> tuple[str | None, click.Command | None, list[str]]:
         name = args[0]
-        ctx.invoked_subcommand = name  # known while its module is imported, too
+        ctx.invoked_subcommand = name  # needed while its module is imported
         command = self.get_command(ctx, name)
         if command is None and not name.startswith("-") and not ctx.resilient_parsing:
             ctx.fail(f"No such command '{name}'{did_you_mean(name, self.list_commands(ctx))}")
@@ -61,7 +61,7 @@ class LazyGroup(click.Group):
 
     @override
     def shell_complete(self, ctx: click.Context, incomplete: str) -> list[CompletionItem[str]]:
-        """Complete verbs without importing them: click would, for their help texts."""
+        """Complete verbs without importing their modules, which click does for the help texts."""
         verbs = [
             CompletionItem(name) for name in self.list_commands(ctx) if name.startswith(incomplete)
         ]
@@ -75,7 +75,7 @@ class LazyGroup(click.Group):
         except ManycoreError as error:
             click.echo(f"manycore: {error}", err=True)
             ctx.exit(error.exit_status)
-        except KeyboardInterrupt:  # click would make a failure of it
+        except KeyboardInterrupt:  # click would turn it into a failure
             ctx.exit(0 if ctx.invoked_subcommand in self._until_ctrl_c else EXIT_INTERRUPTED)
 
 
@@ -83,4 +83,4 @@ def _is_installed(place: str) -> bool:
     try:
         return importlib.util.find_spec(place.partition(":")[0]) is not None
     except ModuleNotFoundError:
-        return False  # not even the package around it
+        return False  # the parent package is missing, too

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Types of messages, services and actions by their names."""
+"""Look up message, service and action types by name."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ KINDS = {"msg": "message", "srv": "service", "action": "action"}
 
 
 def load_type(name: str, kind: str = "msg") -> Any:
-    """Return the class of a type: package/`kind`/Name, or package/Name for short."""
+    """Return the class of a type, named package/`kind`/Name or package/Name for short."""
     parts = name.split("/")
     if len(parts) == 2:
         parts.insert(1, kind)
@@ -41,7 +41,7 @@ def type_name(cls: Any) -> str:
 
 
 def types_of_kind(kind: str) -> Iterator[str]:
-    """Yield the types of one kind (msg, srv, action) that are installed or were built here."""
+    """Yield the types of one kind (msg, srv, action), installed or built locally."""
     for package in ament.packages_with_interfaces():
         for name in ament.interfaces(package):
             if name.split("/")[1] == kind:

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""A terminal whose keys a verb listens to."""
+"""Single-key input from the terminal."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ from contextlib import contextmanager
 
 @contextmanager
 def single_keys(*, wanted: bool = True) -> Iterator[int | None]:
-    """Yield the descriptor that keys come from, one by one and unseen; Ctrl-C stays what it is.
+    """Yield a descriptor of unbuffered, unechoed key input; Ctrl-C still raises SIGINT.
 
-    It is None without a terminal, and for a job in the background: the kernel stops one that
-    changes its terminal's settings.
+    Yields None without a terminal and for background jobs: the kernel stops a background job that
+    changes the terminal's settings.
     """
     descriptor = sys.stdin.fileno() if sys.stdin is not None else -1
     if not wanted or not _is_ours(descriptor):
@@ -27,7 +27,7 @@ def single_keys(*, wanted: bool = True) -> Iterator[int | None]:
     try:
         yield descriptor
     finally:
-        if _is_ours(descriptor):  # else it went to the background, and the shell has set its own
+        if _is_ours(descriptor):  # in the background, the shell has set its own mode
             termios.tcsetattr(descriptor, termios.TCSADRAIN, before)
 
 

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Looking at a platform that has to be there."""
+"""One look at a running platform."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from rmw_manycore_py.native_errors import translate_native_errors
 
 
 def look_at(platform: str, watch: Watch) -> Look:
-    """Return what the watch sees now; an error where the platform has ended."""
+    """Return the current look; raise ManycoreError if the platform has ended."""
     with translate_native_errors():
         look = watch.look()
     if look is None:

@@ -15,14 +15,16 @@ from rmw_manycore_py.mapfile.installed import SUFFIXES, find_mapfile, installed_
 
 
 def mapfile_argument(metavar: str = "MAPFILE", default: str | None = None) -> Callable[[Any], Any]:
-    """Return the argument `mapfile`; it may be left out where there is a default."""
+    """Return the argument `mapfile`; optional if there is a default."""
+    # click 8.3 takes `default=None` for a value that was given.
+    optional: dict[str, Any] = {} if default is None else {"default": default}
     return click.argument(
         "mapfile",
         metavar=metavar,
-        default=default,
         required=default is None,
         callback=_find,
         shell_complete=_complete,
+        **optional,
     )
 
 
@@ -39,7 +41,7 @@ def _find(_context: click.Context, _argument: click.Parameter, name: str) -> Pat
 def _complete(
     _context: click.Context, _parameter: click.Parameter, incomplete: str
 ) -> list[CompletionItem[str]]:
-    """Offer installed mapfiles and those of the working directory; for a path, the shell's own."""
+    """Offer installed mapfiles and those in the working directory; paths are left to the shell."""
     here = (file.name for suffix in SUFFIXES for file in Path().glob(f"*{suffix}"))
     names = sorted({*installed_mapfiles(), *here})
     found = [CompletionItem(name) for name in names if name.startswith(incomplete)]

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Messages as plain data, and as the YAML and CSV that `ros2 topic echo` prints."""
+"""Messages as plain data, and as YAML and CSV in the format of `ros2 topic echo`."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import Any
 
 import yaml
 
-# What `ros2 topic echo` shows of a long string or array unless it is told otherwise.
+# Default truncation length of `ros2 topic echo`.
 SHOWN_LENGTH = 128
 ELLIPSIS = "..."
 _SEQUENCE = re.compile(r"sequence<([\w/]+)(?:<\d+>)?(?:, (\d+))?>")
@@ -19,7 +19,7 @@ _ARRAY = re.compile(r"([\w/]+)(?:<\d+>)?\[(\d+)\]")
 
 @dataclass(frozen=True)
 class Shown:
-    """What is shown of a message; a length of None is the full one."""
+    """Limits on what is shown of a message; None shows all."""
 
     length: int | None = None
     arrays: bool = True
@@ -31,7 +31,7 @@ BRIEFLY = Shown(SHOWN_LENGTH)
 
 
 def to_plain(value: Any, shown: Shown = ALL) -> Any:
-    """Return a message, or a value in one, as dicts, lists and scalars."""
+    """Convert a message, or a value in one, to dicts, lists and scalars."""
     if is_message(value):
         fields = value.get_fields_and_field_types()
         return {
@@ -48,12 +48,12 @@ def to_plain(value: Any, shown: Shown = ALL) -> Any:
 
 
 def is_message(value: Any) -> bool:
-    """Tell a message from a value of one of its fields."""
+    """Return whether a value is a message."""
     return hasattr(value, "get_fields_and_field_types")
 
 
 class _LinePerField(yaml.SafeDumper):
-    """Writes arrays alone in the flow style, as `ros2 topic echo --flow-style` does."""
+    """Writes only arrays in flow style, as `ros2 topic echo --flow-style` does."""
 
 
 _LinePerField.add_representer(
@@ -65,12 +65,12 @@ _LinePerField.add_representer(
 
 
 def to_yaml(message: Any, shown: Shown = BRIEFLY, *, flow_style: bool = False) -> str:
-    """Return a message as a YAML document without its separator."""
+    """Format a message as a YAML document, without the separator."""
     return plain_to_yaml(to_plain(message, shown), flow_style=flow_style)
 
 
 def plain_to_yaml(plain: Any, *, flow_style: bool = False) -> str:
-    """Return what `to_plain` made of a message as such a document."""
+    """Format the result of `to_plain` as a YAML document."""
     text = yaml.dump(
         plain,
         Dumper=_LinePerField,
@@ -81,11 +81,11 @@ def plain_to_yaml(plain: Any, *, flow_style: bool = False) -> str:
     )
     if isinstance(plain, (dict, list)):
         return str(text)
-    return str(text).removesuffix("...\n")  # the end of a document that is one scalar
+    return str(text).removesuffix("...\n")  # document end marker after a single scalar
 
 
 def to_csv(message: Any, shown: Shown = BRIEFLY) -> str:
-    """Return the values of a message, in the order of its fields, with commas between them."""
+    """Return the values of a message, comma-separated, in the order of its fields."""
     return ",".join(map(str, _values(to_plain(message, shown))))
 
 
@@ -108,7 +108,7 @@ def _field(value: Any, type_name: str, shown: Shown) -> Any:
 
 
 def _full(type_name: str) -> str:
-    """Return std_msgs/msg/Header for std_msgs/Header."""
+    """Expand std_msgs/Header to std_msgs/msg/Header."""
     return "/msg/".join(type_name.split("/"))
 
 
@@ -121,7 +121,7 @@ def _string(text: str, shown: Shown) -> str:
 
 
 def _list(values: Sequence[Any], shown: Shown) -> list[Any]:
-    """Arrays of numbers are numpy's or array.array's; only what is shown is converted."""
+    """Convert only the shown part of a numpy or array.array field."""
     part: Any = values[: shown.length] if shown.length is not None else values
     items = part.tolist() if hasattr(part, "tolist") else list(part)
     plain = [to_plain(item, shown) for item in items]

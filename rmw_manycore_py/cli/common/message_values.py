@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Messages filled from YAML, as a person writes them on the command line."""
+"""Fill messages from YAML given on the command line."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ from rmw_manycore_py.cli.common.suggestions import did_you_mean
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError, MapfileError
 from rmw_manycore_py.mapfile.format.document import parse_yaml, read_text
 
-# Words in the place of a message that stand for the present time.
+# Values that stand for the current time in place of a message.
 STAMPS = {("std_msgs", "Header"): "auto", ("builtin_interfaces", "Time"): "now"}
 
 _DOCUMENT_END = re.compile(r"^---[ \t]*$", re.MULTILINE)
 
 
 def parse_values(text: str) -> dict[str, Any]:
-    """Return the fields in a YAML text; none is written {} or left out."""
+    """Parse the fields in a YAML text; empty text has none."""
     try:
         values = parse_yaml(text, Path("values")).data or {}
     except MapfileError as error:
@@ -38,7 +38,7 @@ def parse_values(text: str) -> dict[str, Any]:
 
 
 def read_values(file: Path) -> list[dict[str, Any]]:
-    """Return the fields in each document of a YAML file, which stand between lines of ---."""
+    """Parse each YAML document in a file; documents are separated by --- lines."""
     documents = _DOCUMENT_END.split(read_text(file))
     found = [parse_values(text) for text in documents if text.strip()]
     if not found:
@@ -47,9 +47,9 @@ def read_values(file: Path) -> list[dict[str, Any]]:
 
 
 def message_of(message_type: Any, values: Mapping[str, Any], stamp: Any = None) -> Any:
-    """Return a message with these values, and its defaults elsewhere.
+    """Return a message with these values, defaults elsewhere.
 
-    The words `auto` for a header and `now` for a time become `stamp`, a builtin_interfaces Time.
+    `auto` for a header and `now` for a time are replaced by `stamp`, a builtin_interfaces Time.
     """
     return _Filler(stamp).message(message_type, values, "")
 
@@ -82,7 +82,7 @@ class _Filler:
         return message
 
     def _converted(self, kind: Any, value: Any, path: str) -> Any:
-        """Return a value as the setter of a field of this kind takes it."""
+        """Convert a value to what the setter of a field of this kind accepts."""
         if isinstance(kind, AbstractNestedType):
             if isinstance(value, str) or not isinstance(value, Sequence):
                 raise ValueError

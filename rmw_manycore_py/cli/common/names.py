@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Printing named things that have types: topics, services, actions."""
+"""Print names with types: topics, services, actions."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from rmw_manycore_py.errors import ManycoreError
 def show_names(
     rows: Sequence[Row], *, as_json: bool, types: bool = False, count: bool = False
 ) -> None:
-    """Print the names, one a line; with their types, or only how many there are."""
+    """Print one name per line, optionally with types; or only their number."""
     if as_json:
         print_json(rows)
     elif count:
@@ -27,7 +27,7 @@ def show_names(
 
 
 def row_of(rows: Sequence[Row], name: str, kind: str) -> Row:
-    """Return the row of that name."""
+    """Return the row of that name; raise ManycoreError if there is none."""
     for row in rows:
         if row["name"] == name:
             return row
@@ -35,7 +35,7 @@ def row_of(rows: Sequence[Row], name: str, kind: str) -> Row:
 
 
 def unknown(name: str, kind: str, rows: Sequence[Row]) -> ManycoreError:
-    """Return the error that there is none of that name among the rows."""
+    """Return the error for a name that is not among the rows."""
     meant = did_you_mean(name, (row["name"] for row in rows))
     return ManycoreError(
         f"Unknown {kind} '{name}'" + (meant or f" (manycore {kind} list shows all)")
@@ -43,6 +43,6 @@ def unknown(name: str, kind: str, rows: Sequence[Row]) -> ManycoreError:
 
 
 def show_types(rows: Sequence[Row], name: str, kind: str) -> None:
-    """Print the types of the thing of that name, one a line."""
+    """Print the types of the named entity, one per line."""
     for type_name in row_of(rows, name, kind)["types"]:
         click.echo(type_name)

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Nodes as a person names them."""
+"""Resolve node names given on the command line."""
 
 from __future__ import annotations
 
@@ -13,17 +13,18 @@ _LOOK_S = 0.1
 
 
 def absolute_name(name: str) -> str:
-    """Return a node's full name; the slash in front may be left out."""
+    """Return the fully qualified name of a node; the leading slash is optional in `name`."""
     return name if name.startswith("/") else f"/{name}"
 
 
 def existing_node(
     platform: str, name: str, timeout_s: float = 0.0, missing: str = "Unable to find node"
 ) -> str:
-    """Return the full name of a node that is there, or comes within a timeout.
+    """Return the full name of a node, waiting for it up to the timeout.
 
-    :param timeout_s: a negative one has no end.
-    :param missing: how the error begins, which ros2cli words differently for each verb.
+    :param timeout_s: negative waits forever.
+    :param missing: start of the error message; ros2cli words it differently for each verb.
+    :raises ManycoreError: if the node does not appear in time.
     """
     wanted = absolute_name(name)
     end_s = time.monotonic() + timeout_s if timeout_s >= 0 else float("inf")
@@ -39,7 +40,7 @@ def existing_node(
 
 
 def _names_on(platform: str, *, may_lack: bool) -> list[str]:
-    """Return the nodes of a platform, none where it may be missing and is."""
+    """Return the nodes of a platform; with `may_lack`, none if the platform does not exist."""
     if may_lack and platform not in view.platform_names():
         return []
     with view.open_platform(platform) as opened:
@@ -47,7 +48,7 @@ def _names_on(platform: str, *, may_lack: bool) -> list[str]:
 
 
 def nodes_with_service(platform: str, service: str, type_name: str) -> list[str]:
-    """Return the nodes that serve `service` of that type below their own name."""
+    """Return the nodes that offer `service` of that type below their own name."""
     with view.open_platform(platform) as opened:
         endpoints, nodes = opened.endpoints(), opened.nodes()
     served = {

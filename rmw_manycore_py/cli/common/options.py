@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Options and arguments that several commands have."""
+"""Options and arguments shared by several commands."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def _checked(_context: click.Context, _option: click.Parameter, name: str | None
 def _complete_platforms(
     context: click.Context, option: click.Parameter, incomplete: str
 ) -> list[CompletionItem[str]]:
-    """Offer platforms; imports what finds them late, as the doctor has to do without it."""
+    """Offer platforms; imports the finder late, since `manycore doctor` must run without it."""
     from rmw_manycore_py.cli.common.completion import complete_platforms
 
     return complete_platforms(context, option, incomplete)
@@ -43,7 +43,7 @@ any_platform_option = click.option(
     shell_complete=_complete_platforms,
     help="Only the platform of this name.",
 )
-types_option = click.option("-t", "--show-types", is_flag=True, help="Show the types too.")
+types_option = click.option("-t", "--show-types", is_flag=True, help="Also show the types.")
 count_option = click.option(
     "-c",
     "--count",
@@ -53,7 +53,7 @@ count_option = click.option(
     "--count-actions",
     "count",
     is_flag=True,
-    help="Show their number only.",
+    help="Print only their number.",
 )
 
 
@@ -73,25 +73,25 @@ hidden_option = click.option(
     "hidden",
     is_flag=True,
     callback=_hidden,
-    help="Show names with a part that starts with _ too.",
+    help="Also show hidden names (a part starts with _).",
 )
 
 
 def hidden_group_option(name: str) -> Callable[[Command], Command]:
-    """Return the option of a group that sets `hidden_option` of all its verbs."""
+    """Return a group option that sets `hidden_option` for all verbs of the group."""
     return click.option(
         name,
         is_flag=True,
         expose_value=False,
         callback=_all_hidden,
-        help="Show names with a part that starts with _ too, in every verb.",
+        help="Also show hidden names (a part starts with _), in every verb.",
     )
 
 
 def discovery_options(command: Command) -> Command:
-    """Add the options of ros2cli about discovery, for verbs that only look.
+    """Add the discovery options of ros2cli to a read-only verb.
 
-    The registry tells at once who is there, so none of them changes anything.
+    They have no effect: the registry lists the whole graph at once.
     """
     return _without_discovery(
         click.option(
@@ -99,32 +99,32 @@ def discovery_options(command: Command) -> Command:
             "--use-sim-time",
             is_flag=True,
             expose_value=False,
-            help="Accepted as of ros2: this verb needs no time.",
+            help="Accepted for compatibility with ros2: discovery takes no time.",
         )(command)
     )
 
 
 def named_node_options(command: Command) -> Command:
-    """Add the options of ros2cli for verbs that take the name of a node."""
+    """Add the options of ros2cli for verbs that take a node name."""
     return discovery_options(
         click.option(
             "--include-hidden-nodes",
             is_flag=True,
             expose_value=False,
-            help="Accepted as of ros2: a node that is named may be hidden.",
+            help="Accepted for compatibility with ros2: hidden nodes are found by name.",
         )(command)
     )
 
 
 def talking_options(command: Command) -> Command:
-    """Add those options for verbs whose node waits or measures; gives the argument `sim_time`."""
+    """Add those options to a verb that spins a node; passes the argument `sim_time`."""
     return _without_discovery(
         click.option(
             "-s",
             "--use-sim-time",
             "sim_time",
             is_flag=True,
-            help="Take the time from the topic /clock.",
+            help="Use simulated time from the topic /clock.",
         )(command)
     )
 
@@ -135,14 +135,14 @@ def _without_discovery(command: Command) -> Command:
             "--no-daemon",
             is_flag=True,
             expose_value=False,
-            help="Accepted as of ros2: there is no daemon.",
+            help="Accepted for compatibility with ros2: there is no daemon.",
         ),
         click.option(
             "--spin-time",
             type=float,
             metavar="S",
             expose_value=False,
-            help="Accepted as of ros2: nothing has to be discovered.",
+            help="Accepted for compatibility with ros2: there is no discovery.",
         ),
     ):
         command = option(command)
@@ -150,5 +150,5 @@ def _without_discovery(command: Command) -> Command:
 
 
 def examples(*lines: str) -> str:
-    """Return the end of a help text, with a mark that keeps click from joining the lines."""
+    """Return an examples epilog, marked so that click does not rewrap its lines."""
     return "\b\nExamples:\n" + "\n".join(f"  {line}" for line in lines)

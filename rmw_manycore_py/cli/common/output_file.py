@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Files that commands write: what can be known to be wrong is said before the work."""
+"""Output files of commands, validated before the work starts."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ from rmw_manycore_py.errors import ManycoreError
 
 
 class OutputFile(click.Path):
-    """A file in a directory that is there, with one of these suffixes if some are given."""
+    """A file in an existing directory, with one of the given suffixes if there are any."""
 
     def __init__(self, *suffixes: str) -> None:
         super().__init__(dir_okay=False, writable=True, path_type=Path)
         self._suffixes = suffixes
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
-        """Return the path, or raise a usage error."""
+        """Return the path, or fail with a usage error."""
         path = super().convert(value, param, ctx)
         assert isinstance(path, Path)
         if self._suffixes and path.suffix not in self._suffixes:
@@ -33,7 +33,7 @@ class OutputFile(click.Path):
 
 @contextmanager
 def writing(path: Path) -> Iterator[None]:
-    """Raise a ManycoreError where the system does not let a file or directory be written."""
+    """Convert an OSError while writing `path` into a ManycoreError."""
     try:
         yield
     except OSError as error:

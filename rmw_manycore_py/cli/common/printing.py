@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""How commands print: JSON, notices, tables, sizes and counts."""
+"""Print JSON, notices, tables, sizes and counts."""
 
 from __future__ import annotations
 
@@ -13,18 +13,18 @@ from rich.table import Table
 
 
 def print_json(data: Any) -> None:
-    """Print data for programs."""
+    """Print data as JSON."""
     click.echo(json.dumps(data, indent=2, default=str))
 
 
 def print_notices(notices: Iterable[str]) -> None:
-    """Print what the user should know, beside the output proper."""
+    """Print notices to standard error, apart from the output proper."""
     for notice in notices:
         click.secho(f"notice: {notice}", fg="yellow", err=True)
 
 
 def new_table(*columns: str) -> Table:
-    """Return a plain table; columns whose name starts with # hold numbers."""
+    """Return a plain table; columns whose name starts with # are numeric."""
     table = Table(box=None, pad_edge=False)
     for column in columns:
         is_number = column.startswith("#")
@@ -33,7 +33,7 @@ def new_table(*columns: str) -> Table:
 
 
 def print_table(table: Table) -> None:
-    """Print a table; into a pipe as wide as it is, for grep and cut."""
+    """Print a table; into a pipe, at its natural width for grep and cut."""
     console = Console()
     if not console.is_terminal:
         console = Console(width=1000)
@@ -45,7 +45,7 @@ def print_table(table: Table) -> None:
 
 
 def size_text(size_bytes: int) -> str:
-    """Write a number of bytes as people do: 4 MiB."""
+    """Format a number of bytes with a binary unit: 4 MiB."""
     for unit, shift in (("GiB", 30), ("MiB", 20), ("KiB", 10)):
         if size_bytes >= 1 << shift:
             return f"{size_bytes / (1 << shift):.4g} {unit}"
@@ -53,5 +53,5 @@ def size_text(size_bytes: int) -> str:
 
 
 def counted(number: int, noun: str) -> str:
-    """Write a number of things: 1 node, 2 nodes."""
+    """Format a count with its noun: 1 node, 2 nodes."""
     return f"{number} {noun}" if number == 1 else f"{number} {noun}s"

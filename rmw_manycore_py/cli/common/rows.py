@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The parts of a platform as --json prints them."""
+"""Parts of a platform as JSON rows."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ Row = dict[str, Any]
 
 
 def platform_row(info: _transport.PlatformInfo) -> Row:
-    """Return the shape of a platform."""
+    """Return the row of a platform."""
     return {
         "name": info.name,
         "clusters": info.clusters,
@@ -23,7 +23,7 @@ def platform_row(info: _transport.PlatformInfo) -> Row:
 
 
 def cluster_row(cluster: _transport.ClusterInfo) -> Row:
-    """Return the state of a cluster."""
+    """Return the row of a cluster."""
     return {
         "id": cluster.id,
         "smem_size": cluster.smem_bytes,
@@ -37,7 +37,7 @@ def cluster_row(cluster: _transport.ClusterInfo) -> Row:
 
 
 def process_row(process: _transport.ProcessInfo) -> Row:
-    """Return a process and its place."""
+    """Return the row of a process, with its cluster and core."""
     return {
         "slot": process.slot,
         "pid": process.pid,
@@ -50,7 +50,7 @@ def process_row(process: _transport.ProcessInfo) -> Row:
 
 
 def counters_row(counters: _transport.CounterValues) -> dict[str, int]:
-    """Return what an endpoint has counted."""
+    """Return the counters of an endpoint."""
     return {
         "messages": counters.messages,
         "bytes": counters.bytes,
@@ -58,11 +58,12 @@ def counters_row(counters: _transport.CounterValues) -> dict[str, int]:
         "expired": counters.expired,
         "refused": counters.refused,
         "overwritten": counters.overwritten,
+        "dropped": counters.dropped,
     }
 
 
 def endpoint_row(endpoint: _transport.EndpointInfo) -> Row:
-    """Return a publisher or subscription."""
+    """Return the row of a publisher or subscription."""
     return {
         "kind": endpoint.kind,
         "role": endpoint.role,
@@ -77,4 +78,5 @@ def endpoint_row(endpoint: _transport.EndpointInfo) -> Row:
         "qos": policies_of(endpoint.qos),
         "matched": endpoint.matched,
         "counters": counters_row(endpoint.counters),
+        "transfer": endpoint.transfer,
     }

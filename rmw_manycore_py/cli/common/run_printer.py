@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What `manycore run` prints for people: each node's lines behind its coloured name."""
+"""Human-readable output of `manycore run`: node output behind coloured names."""
 
 from __future__ import annotations
 
@@ -38,13 +38,13 @@ _WARNINGS = (Notice, Insisting, Restarting)
 
 
 class RunPrinter:
-    """Prints events as they come.
+    """Prints events as they arrive.
 
-    :param nodes: who has a colour and room for its name from the start; others may follow.
+    :param nodes: nodes that get a colour and define the column width; others may follow.
     """
 
     def __init__(self, nodes: Sequence[str] = ()) -> None:
-        # What serves the nodes prints little: its longer names may stick out.
+        # Helper processes print little, so their longer names may exceed the column.
         named = [name for name in nodes if not name.startswith("(")]
         self._width = max(len(name) for name in (*named, SUPERVISOR))
         self._colours = cycle(COLOURS)
@@ -73,7 +73,7 @@ class RunPrinter:
         return click.style(f"{name:<{self._width}} | ", fg=next(self._colours))
 
     def say(self, text: str, fg: str | None = None) -> None:
-        """Print a line of the run itself."""
+        """Print a line of the run itself, without a node name."""
         click.secho(f"{SUPERVISOR:<{self._width}} | {text}", fg=fg, bold=fg is None)
 
     def _ended(self, event: Ended) -> None:
@@ -83,7 +83,7 @@ class RunPrinter:
         self.say(text_of(event) or "", fg="red" if failed else None)
 
     def _finished(self) -> None:
-        """Say again who failed and why: the reason may have scrolled away."""
+        """Repeat which nodes failed and why: the reason may have scrolled away."""
         for failure in self._failures:
             click.secho(f"\n{failure.node} failed: {failure.reason}", fg="red", err=True)
             for line in failure.last_lines:

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Runs of a platform, and their nodes as a person names them."""
+"""Look up runs and their nodes by the names given on the command line."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from rmw_manycore_py.runs.directory import RunDirectory, all_runs, runs_of
 
 
 def living_runs(platform: str) -> list[RunDirectory]:
-    """Return the runs of a platform whose supervisors live; an error says that there is none."""
+    """Return the runs of a platform with live supervisors; raise ManycoreError if none."""
     runs = [run for run in runs_of(platform) if run.is_alive]
     if not runs:
         raise ManycoreError(no_run(platform))
@@ -19,7 +19,7 @@ def living_runs(platform: str) -> list[RunDirectory]:
 
 
 def no_run(platform: str) -> str:
-    """Return that a platform has no run, and which ones have."""
+    """Return the message that a platform has no run, naming platforms that have one."""
     others = sorted({run.platform for run in all_runs() if run.is_alive} - {platform})
     hint = f"; there is {', '.join(others)} (--platform)" if others else ""
     return f"platform '{platform}' is run by no `manycore run` or `manycore up`{hint}"
@@ -28,10 +28,10 @@ def no_run(platform: str) -> str:
 def nodes_by_run(
     runs: Sequence[RunDirectory], names: Iterable[str]
 ) -> list[tuple[RunDirectory, list[str]]]:
-    """Return which nodes of each run are meant; a name may have a slash in front."""
+    """Return the named nodes of each run; a leading slash in a name is optional."""
     chosen: dict[int, list[str]] = {}
     for name in dict.fromkeys(names):
-        # Of several runs that have had a node of this name, the latest has it now.
+        # If several runs had a node of this name, the latest run owns it.
         owners = [i for i, run in enumerate(runs) if _known_as(run, name)]
         if not owners:
             raise ManycoreError(_unknown(runs, name), EXIT_BAD_INPUT)

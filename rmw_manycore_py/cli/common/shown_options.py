@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The options of verbs that print messages: how, and how much of long ones."""
+"""Options of verbs that print messages: style and truncation."""
 
 from __future__ import annotations
 
@@ -13,23 +13,25 @@ from rmw_manycore_py.cli.common.message_text import SHOWN_LENGTH, Shown
 
 
 def shown_options(function: Callable[..., None]) -> Callable[..., None]:
-    """Give a command the arguments `shown` and `style`: None, "csv", "flow" or "json"."""
+    """Add the arguments `shown` and `style` (None, "csv", "flow" or "json") to a command."""
 
-    @click.option("--csv", "style", flag_value="csv", help="Print values with commas between them.")
-    @click.option("--flow-style", "style", flag_value="flow", help="Print each array in one line.")
+    @click.option("--csv", "style", flag_value="csv", help="Print comma-separated values.")
+    @click.option("--flow-style", "style", flag_value="flow", help="Print each array on one line.")
     @click.option(
-        "--json", "style", flag_value="json", help="Print each as a line of JSON, in full."
+        "--json", "style", flag_value="json", help="Print one untruncated JSON object per line."
     )
-    @click.option("-f", "--full-length", is_flag=True, help="Shorten nothing.")
+    @click.option("-f", "--full-length", is_flag=True, help="Do not truncate strings and arrays.")
     @click.option(
         "-l",
         "--truncate-length",
         type=click.IntRange(0),
         default=SHOWN_LENGTH,
         show_default=True,
-        help="What is shown of strings and arrays.",
+        help="Length at which strings and arrays are truncated.",
     )
-    @click.option("--no-arr", "no_arrays", is_flag=True, help="Name arrays without their elements.")
+    @click.option(
+        "--no-arr", "no_arrays", is_flag=True, help="Print only the type and length of arrays."
+    )
     @click.option("--no-str", "no_strings", is_flag=True, help="Print only the lengths of strings.")
     @functools.wraps(function)
     def with_shown(

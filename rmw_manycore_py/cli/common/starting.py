@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What `manycore run` and `manycore up` have in common: which nodes of a mapfile, and where."""
+"""Options and set-up shared by `manycore run` and `manycore up`."""
 
 from __future__ import annotations
 
@@ -25,10 +25,10 @@ def starting_options(command: Callable[..., Any]) -> Callable[..., Any]:
         "nodes",
         metavar="NODE",
         multiple=True,
-        help="Start this node of MAPFILE only; may be repeated.",
+        help="Start only this node of MAPFILE; may be repeated.",
     )
     join = click.option(
-        "--join", "joins", is_flag=True, help="Add the nodes to the platform, which runs already."
+        "--join", "joins", is_flag=True, help="Add the nodes to a platform that is already running."
     )
     return join(node(command))
 
@@ -36,7 +36,7 @@ def starting_options(command: Callable[..., Any]) -> Callable[..., Any]:
 def prepared_run(
     mapfile: Path, joins: bool, nodes: tuple[str, ...], detached: bool = False
 ) -> tuple[Run, Placement]:
-    """Return the run of a mapfile, or of some nodes of it; nothing is started yet."""
+    """Return the run of a mapfile or of some of its nodes, without starting it."""
     loaded = _only(load_mapfile(mapfile), nodes)
     occupied = occupied_cores(platform_name(loaded)) if joins else ()
     placement = resolve(loaded, occupied)
@@ -44,7 +44,7 @@ def prepared_run(
 
 
 def _only(mapfile: Mapfile, names: tuple[str, ...]) -> Mapfile:
-    """Return a mapfile with some of its nodes alone."""
+    """Return a mapfile reduced to some of its nodes."""
     if not names:
         return mapfile
     nodes = mapfile.sections.nodes

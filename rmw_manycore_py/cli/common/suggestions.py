@@ -1,19 +1,19 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What a user probably meant by a name that does not exist."""
+"""Suggestions for mistyped names."""
 
 from __future__ import annotations
 
 import difflib
 from collections.abc import Iterable
 
-# Of difflib's ratio, from 0 for names that have nothing in common to 1 for equal ones.
+# Minimum ratio of difflib: 0 = nothing in common, 1 = equal.
 _ALIKE = 0.6
 
 
 def closest(name: str, known: Iterable[str]) -> str | None:
-    """Return the known name that is most like this one, unless none is.
+    """Return the known name closest to this one, or None if none is similar.
 
-    The last parts have to be alike, too: all types of a package begin alike.
+    The last parts have to be similar as well, since all types of a package share their prefix.
     """
     by_folded = {candidate.casefold(): candidate for candidate in known}
     folded = name.casefold()
@@ -25,6 +25,6 @@ def closest(name: str, known: Iterable[str]) -> str | None:
 
 
 def did_you_mean(name: str, known: Iterable[str]) -> str:
-    """Return the end of an error about an unknown name: "; did you mean 'x'?", or nothing."""
+    """Return "; did you mean 'x'?" for an unknown name, or an empty string."""
     meant = closest(name, known)
     return f"; did you mean '{meant}'?" if meant else ""

@@ -1,7 +1,7 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""An rclpy node on a platform, for the verbs that talk to other nodes.
+"""An rclpy node on a platform, for verbs that talk to other nodes.
 
-rclpy is imported late: the other commands do without it, and it must find rmw_manycore loaded.
+Imports rclpy late: other commands do not need it, and rmw_manycore has to be loaded before it.
 """
 
 from __future__ import annotations
@@ -15,18 +15,18 @@ from typing import Any
 from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.launch.processes.environment import enter_middleware
 
-# How long a node may take to answer that is there.
+# Timeout for the answer of a node that exists.
 ANSWER_TIMEOUT_S = 5.0
-# How often a spinning tool looks whether it was interrupted.
+# Period at which a spinning tool checks for an interrupt.
 _LOOK_PERIOD_S = 0.1
 
 
 @contextmanager
 def tool_node(platform: str, name: str | None = None, *, sim_time: bool = False) -> Iterator[Any]:
-    """Yield a node that runs until the block ends or is interrupted; both end it quietly.
+    """Yield a node until the block ends or an interrupt ends it; shut down quietly either way.
 
-    With `sim_time` its clock follows the topic /clock. An interrupt reaches the block as
-    KeyboardInterrupt, while the node still works.
+    With `sim_time` the node's clock follows /clock. An interrupt raises KeyboardInterrupt in the
+    block while the node is still usable.
     """
     enter_middleware()
     os.environ["MANYCORE_PLATFORM"] = platform
@@ -51,7 +51,7 @@ def tool_node(platform: str, name: str | None = None, *, sim_time: bool = False)
 
 @contextmanager
 def _errors_of_rcl() -> Iterator[None]:
-    """Report what rcl refuses, a name or a QoS policy, without the places in its sources."""
+    """Translate rcl errors about a name or QoS policy; drop their C source locations."""
     from rclpy._rclpy_pybind11 import RCLError
     from rclpy.exceptions import NameValidationException
 
@@ -62,7 +62,7 @@ def _errors_of_rcl() -> Iterator[None]:
 
 
 def spin_once(node: Any, timeout_s: float = _LOOK_PERIOD_S) -> None:
-    """Handle what has come in, or wait a moment for it; an interrupt is raised afterwards."""
+    """Handle one pending callback, waiting up to the timeout; then raise a pending interrupt."""
     import rclpy
 
     with _interrupts_held():
@@ -71,7 +71,7 @@ def spin_once(node: Any, timeout_s: float = _LOOK_PERIOD_S) -> None:
 
 @contextmanager
 def _interrupts_held() -> Iterator[None]:
-    """Let no interrupt in between the taking of a message and its handling, which would lose it."""
+    """Defer interrupts between taking and handling a message, so that none is lost."""
     noted: list[int] = []
     handler = signal.signal(signal.SIGINT, lambda number, _frame: noted.append(number))
     try:
@@ -83,7 +83,7 @@ def _interrupts_held() -> Iterator[None]:
 
 
 def result_of(node: Any, future: Any, whose: str) -> Any:
-    """Spin until a future is done and return its result, however long that takes."""
+    """Spin until a future is done and return its result; no timeout."""
     while not future.done():
         spin_once(node)
     if future.exception() is not None:
@@ -92,7 +92,7 @@ def result_of(node: Any, future: Any, whose: str) -> Any:
 
 
 def answer_of(node: Any, client: Any, request: Any) -> Any:
-    """Call a service that should be there, and return its response."""
+    """Call a service that is expected to exist, and return its response."""
     if not client.wait_for_service(ANSWER_TIMEOUT_S):
         raise ManycoreError(f"no service '{client.service_name}' within {ANSWER_TIMEOUT_S:g} s")
     return result_of(node, client.call_async(request), client.service_name)

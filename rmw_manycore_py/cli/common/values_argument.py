@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Values of a message on the command line, or on the standard input."""
+"""Message values from the command line or standard input."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ DEFAULTS = "{}"
 
 
 def values_argument(name: str = "values") -> Callable[[Callable[..., None]], Callable[..., None]]:
-    """Return what gives a command an argument in YAML, and the option --stdin in its place.
+    """Return a decorator that adds a YAML argument and its alternative, the option --stdin.
 
-    The command gets None where there is neither.
+    The command gets None if neither is given.
     """
 
     def decorate(function: Callable[..., None]) -> Callable[..., None]:
@@ -28,7 +28,7 @@ def values_argument(name: str = "values") -> Callable[[Callable[..., None]], Cal
         def with_values(stdin: bool, **others: Any) -> None:
             if stdin:
                 exclude(("--stdin", True), (name.upper(), others[name] is not None))
-                enter_middleware()  # restarts this program, which can read its input only once
+                enter_middleware()  # re-executes this program, so do it before reading stdin
                 others[name] = sys.stdin.read()
             function(**others)
 
@@ -38,10 +38,10 @@ def values_argument(name: str = "values") -> Callable[[Callable[..., None]], Cal
 
 
 def exclude(*parameters: tuple[str, bool]) -> None:
-    """Refuse a command line that has more than one of these parameters.
+    """Fail with a usage error if more than one of these parameters is given.
 
-    :param parameters: the name of each, and whether it is given.
+    :param parameters: pairs of name and whether it is given.
     """
     given = [name for name, is_given in parameters if is_given]
     if len(given) > 1:
-        raise click.UsageError(f"{given[0]} and {given[1]} exclude each other.")
+        raise click.UsageError(f"{given[0]} and {given[1]} are mutually exclusive.")

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What the tools see of a platform, as plain data; they do not join it."""
+"""Read-only view of a platform as plain data, without joining it."""
 
 from __future__ import annotations
 
@@ -11,16 +11,17 @@ from rmw_manycore_py.cli.common.rows import Row, counters_row
 from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.native_errors import translate_native_errors
 from rmw_manycore_py.ros.names import full_node_name, is_hidden
+from rmw_manycore_py.words import LOSSES
 
 
 def platform_names() -> list[str]:
     """Return the names of this user's platforms, dead ones included."""
-    with translate_native_errors():  # no permission
+    with translate_native_errors():  # e.g. permission denied
         return _transport.platforms()
 
 
 def require_platform(name: str) -> None:
-    """Where there is no such platform, say which ones there are."""
+    """Raise ManycoreError, naming the existing platforms, if there is no such platform."""
     names = platform_names()
     if name not in names:
         others = f"; there is {', '.join(names)} (--platform)" if names else "; none is running"
@@ -28,7 +29,7 @@ def require_platform(name: str) -> None:
 
 
 def open_platform(name: str) -> _transport.Platform:
-    """Return the view of a platform; where there is none, say which ones there are."""
+    """Return the view of a platform; raise ManycoreError, naming the others, if it is missing."""
     require_platform(name)
     with translate_native_errors():
         return _transport.Platform(name)
@@ -41,7 +42,7 @@ def endpoints_on(platform: str) -> list[EndpointInfo]:
 
 
 def losses(endpoints: Iterable[EndpointInfo]) -> list[Row]:
-    """Return each counter of messages that did not arrive and that is not zero."""
+    """Return the non-zero counters of lost messages of each endpoint."""
     return [
         {"node": _owner(e), "topic": e.topic, "counter": counter, "count": count}
         for e in endpoints
@@ -51,12 +52,12 @@ def losses(endpoints: Iterable[EndpointInfo]) -> list[Row]:
 
 
 def full_name(node: NodeInfo) -> str:
-    """Return a node's namespace and name in one."""
+    """Return a node's fully qualified name."""
     return full_node_name(node.namespace, node.name)
 
 
 def topics(endpoints: Iterable[EndpointInfo], *, hidden: bool = False) -> list[Row]:
-    """Return each topic by name, with its types and the numbers of its endpoints."""
+    """Return a row per topic: name, types, and endpoint counts."""
     rows: dict[str, Row] = {}
     for endpoint in endpoints:
         if endpoint.role != "topic" or (is_hidden(endpoint.topic) and not hidden):
@@ -72,7 +73,7 @@ def topics(endpoints: Iterable[EndpointInfo], *, hidden: bool = False) -> list[R
 
 
 def services(endpoints: Iterable[EndpointInfo], *, hidden: bool = False) -> list[Row]:
-    """Return each service by name, with its types and the numbers of its servers and clients."""
+    """Return a row per service: name, types, and server and client counts."""
     rows: dict[str, Row] = {}
     for endpoint in endpoints:
         if endpoint.role != "request" or (is_hidden(endpoint.topic) and not hidden):
@@ -86,7 +87,7 @@ def services(endpoints: Iterable[EndpointInfo], *, hidden: bool = False) -> list
 
 
 def actions(endpoints: Iterable[EndpointInfo]) -> list[Row]:
-    """Return each action by name, with its types and the nodes that serve and use it."""
+    """Return a row per action: name, types, and the nodes that serve and use it."""
     rows: dict[str, Row] = {}
     for endpoint in endpoints:
         if endpoint.role != "request" or not endpoint.topic.endswith(_SEND_GOAL):
@@ -115,7 +116,7 @@ def node_names(nodes: Iterable[NodeInfo], *, hidden: bool = False) -> list[str]:
 def placed_nodes(
     nodes: Iterable[NodeInfo], processes: Iterable[ProcessInfo], names: set[str]
 ) -> list[Row]:
-    """Return the nodes of these names with the place of their process."""
+    """Return the named nodes with the cluster, core and host CPU of their process."""
     in_slots = {process.slot: process for process in processes}
     rows = []
     for node in nodes:
@@ -132,7 +133,7 @@ def placed_nodes(
 
 
 def node_interfaces(endpoints: Iterable[EndpointInfo], node: str, *, hidden: bool = False) -> Row:
-    """Return what a node offers and uses: each a mapping from names to types."""
+    """Return the interfaces of a node, as mappings from names to types."""
     found: Row = {kind: {} for kind in INTERFACES}
     for endpoint in endpoints:
         kind = _INTERFACE_KINDS.get((endpoint.role, endpoint.kind))
@@ -151,7 +152,6 @@ def _owner(endpoint: EndpointInfo) -> str:
     return full_node_name(endpoint.node_namespace, endpoint.node_name)
 
 
-LOSSES = ("lost", "expired", "refused")
 INTERFACES = (
     "subscribers",
     "publishers",
@@ -161,7 +161,7 @@ INTERFACES = (
     "action_clients",
 )
 _SEND_GOAL = "/_action/send_goal"
-# A service is a pair of topics; its request side is the one that both ends always have.
+# A service is a pair of topics; both ends always have the request topic.
 _INTERFACE_KINDS = {
     ("topic", "subscription"): "subscribers",
     ("topic", "publisher"): "publishers",

@@ -15,4 +15,4 @@ VERBS = {
 
 @click.group("component", cls=LazyGroup, commands_at=VERBS, until_ctrl_c=("standalone",))
 def command() -> None:
-    """List containers and the components in them, and load and unload components."""
+    """List, load and unload components of component containers."""

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The component containers of a platform, used through the services of composition_interfaces."""
+"""Component containers, controlled through the services of composition_interfaces."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ SERVICES = {"load_node": "LoadNode", "unload_node": "UnloadNode", "list_nodes": 
 
 @dataclass(frozen=True)
 class Wanted:
-    """A component to load; rules are written "from:=to", values "name:=value" with YAML."""
+    """A component to load; remap rules are "from:=to", parameters "name:=value" with YAML."""
 
     package: str
     plugin: str
@@ -31,7 +31,7 @@ class Wanted:
 
 
 def containers_on(platform: str) -> list[str]:
-    """Return the full names of the nodes that serve all three services of a container."""
+    """Return the full names of the nodes that offer all three container services."""
     serving = [
         set(
             nodes_with_service(platform, f"_container/{name}", f"composition_interfaces/srv/{kind}")
@@ -42,7 +42,7 @@ def containers_on(platform: str) -> list[str]:
 
 
 def existing_container(platform: str, name: str) -> str:
-    """Return the full name of a container that is there."""
+    """Return the full name of a container; raise ManycoreError if it does not exist."""
     full_name, known = absolute_name(name), containers_on(platform)
     if full_name not in known:
         meant = did_you_mean(full_name, known) or " (manycore component list shows all)"
@@ -54,7 +54,7 @@ complete_containers = completer(lambda context: containers_on(platform_of(contex
 
 
 class Container:
-    """A component container, as another node sees it."""
+    """Client of a component container."""
 
     def __init__(self, node: Any, name: str) -> None:
         self._node, self.name = node, name
@@ -67,7 +67,7 @@ class Container:
     def load(self, wanted: Wanted) -> tuple[int, str]:
         """Load a component; return its id and full node name.
 
-        :raises ManycoreError: when the container does not.
+        :raises ManycoreError: if the container refuses.
         """
         answer = self._call(
             "load_node",
@@ -87,7 +87,7 @@ class Container:
     def unload(self, unique_id: int) -> None:
         """Unload the component of that id.
 
-        :raises ManycoreError: when the container does not.
+        :raises ManycoreError: if the container refuses.
         """
         answer = self._call("unload_node", unique_id=unique_id)
         if not answer.success:

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""`manycore component list`, printed as `ros2 component list` prints."""
+"""`manycore component list`, with the output format of `ros2 component list`."""
 
 from __future__ import annotations
 
@@ -25,12 +25,12 @@ from rmw_manycore_py.cli.component.containers import (
     "list", epilog=examples("manycore component list", "manycore component list /container")
 )
 @click.argument("container", required=False, shell_complete=complete_containers)
-@click.option("--containers-only", is_flag=True, help="List the containers without components.")
+@click.option("--containers-only", is_flag=True, help="List only the containers.")
 @discovery_options
 @json_option
 @platform_option
 def command(container: str | None, containers_only: bool, as_json: bool, platform: str) -> None:
-    """List the containers and the components in them, or only those in CONTAINER."""
+    """List containers and their components, or only the components of CONTAINER."""
     names = [existing_container(platform, container)] if container else containers_on(platform)
     found: dict[str, list[tuple[int, str]]] = {name: [] for name in names}
     if names and not containers_only:

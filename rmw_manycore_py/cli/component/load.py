@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""`manycore component load`, printed as `ros2 component load` prints."""
+"""`manycore component load`, with the output format of `ros2 component load`."""
 
 from __future__ import annotations
 

@@ -30,7 +30,10 @@ START_TIMEOUT_S, END_TIMEOUT_S = 30.0, 5.0
 )
 @wanted_options
 @click.option(
-    "-c", "--container-node-name", "name", help="Name of the container; by default a new one."
+    "-c",
+    "--container-node-name",
+    "name",
+    help="Name of the container node; default: a unique name.",
 )
 @discovery_options
 @platform_option
@@ -39,15 +42,15 @@ def command(wanted: Wanted, name: str | None, platform: str) -> None:
     program = find_executable(PACKAGE, EXECUTABLE)
     if program is None:
         raise ManycoreError(
-            f"Package '{PACKAGE}' not found: containers are its program '{EXECUTABLE}', "
-            "which comes with an installed ROS 2 and not with the wheels of PyPI"
+            f"Package '{PACKAGE}' not found: it provides the container '{EXECUTABLE}' "
+            "and comes with a ROS 2 installation, not with the wheels on PyPI"
         )
-    enter_middleware()  # restarts this program, which has to start only one container
+    enter_middleware()  # re-executes this program, so do it before starting the container
     name = name or f"standalone_container_{uuid.uuid4().hex[:12]}"
     container = subprocess.Popen(
         [*program.argv, "--ros-args", "-r", f"__node:={name}"],
         env=program_environment({"MANYCORE_PLATFORM": platform}),
-        start_new_session=True,  # Ctrl-C reaches it through `_end`, and only once
+        start_new_session=True,  # only `_end` forwards Ctrl-C, once
         preexec_fn=dies_with_this_process(),
     )
     try:
@@ -63,7 +66,7 @@ def command(wanted: Wanted, name: str | None, platform: str) -> None:
 
 
 def _end_of(container: subprocess.Popen[bytes]) -> int:
-    """Wait for the end of the container, which an interrupt brings; return its exit status."""
+    """Wait for the container to exit, e.g. after an interrupt; return its exit status."""
     try:
         return container.wait()
     except KeyboardInterrupt:

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""`manycore component types`, printed as `ros2 component types` prints."""
+"""`manycore component types`, with the output format of `ros2 component types`."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from rmw_manycore_py.ros.ament import package_prefix
 @click.argument("package", required=False, shell_complete=complete_component_packages)
 @json_option
 def command(package: str | None, as_json: bool) -> None:
-    """List the component types that installed packages register, or only those of PACKAGE."""
+    """List the component types registered by all packages, or only by PACKAGE."""
     if package and package_prefix(package) is None:
         meant = did_you_mean(package, packages_with_components())
         raise ManycoreError(f"Unable to find package '{package}'{meant}")

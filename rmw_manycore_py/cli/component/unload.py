@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""`manycore component unload`, printed as `ros2 component unload` prints."""
+"""`manycore component unload`, with the output format of `ros2 component unload`."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from rmw_manycore_py.cli.component.containers import (
 @discovery_options
 @platform_option
 def command(container: str, ids: tuple[int, ...], quiet: bool, platform: str) -> None:
-    """Unload the components of these IDs from CONTAINER."""
+    """Unload components from CONTAINER by their IDs."""
     name = existing_container(platform, container)
     with tool_node(platform) as tool:
         for unique_id in ids:

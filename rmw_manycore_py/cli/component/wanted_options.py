@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The arguments and options that say which component to load, and as what."""
+"""Arguments and options that describe the component to load."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from rmw_manycore_py.cli.common.completion import completer
 from rmw_manycore_py.cli.component.containers import Wanted
 from rmw_manycore_py.cli.component.registered import component_types, packages_with_components
 
-# As rcl_interfaces/msg/Log numbers them; ros2cli takes only numbers.
+# Values of rcl_interfaces/msg/Log; ros2cli accepts only the numbers.
 LOG_LEVELS = {"unset": 0, "debug": 10, "info": 20, "warn": 30, "error": 40, "fatal": 50}
 
 complete_component_packages = completer(lambda _context: packages_with_components())
@@ -21,14 +21,14 @@ _complete_plugins = completer(lambda context: component_types(context.params.get
 
 
 def wanted_options(function: Callable[..., None]) -> Callable[..., None]:
-    """Give a command the argument `wanted`, a Wanted."""
+    """Add the argument `wanted`, a Wanted, to a command."""
 
     @click.argument("package", shell_complete=complete_component_packages)
     @click.argument("plugin", shell_complete=_complete_plugins)
     @click.option("-n", "--node-name", default="", help="Name of the component's node.")
     @click.option("--node-namespace", default="", help="Namespace of the component's node.")
     @click.option(
-        "--log-level", default="unset", callback=_log_level, help="Log level: a name or a number."
+        "--log-level", default="unset", callback=_log_level, help="Log level, a name or a number."
     )
     @click.option(
         "-r",

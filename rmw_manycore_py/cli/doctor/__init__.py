@@ -31,16 +31,24 @@ COLOURS = {Verdict.OK: "green", Verdict.WARNING: "yellow", Verdict.FAILURE: "red
     metavar="[FILE]",
     is_flag=False,
     flag_value=PRINTED,
-    help="Print what a bug report needs instead, or write it to FILE (JSON for .json).",
+    help="Print a bug report instead, or write it to FILE (as JSON if it ends in .json).",
 )
-@click.option("-rf", "--report-failed", "failed_only", is_flag=True, help="Print only what failed.")
 @click.option(
-    "-ep", "--exclude-packages", "lean", is_flag=True, help="Leave packages out of the report."
+    "-rf", "--report-failed", "failed_only", is_flag=True, help="Print only failed checks."
+)
+@click.option(
+    "-ep",
+    "--exclude-packages",
+    "lean",
+    is_flag=True,
+    help="Leave package versions out of the report.",
 )
 @click.option(
     "-iw", "--include-warnings", "strict", is_flag=True, help="Count warnings as failures."
 )
-@click.option("--mapfile", metavar="MAPFILE", help="Report this one, not those that are running.")
+@click.option(
+    "--mapfile", metavar="MAPFILE", help="Report this mapfile, not those of running platforms."
+)
 def command(
     as_json: bool,
     target: str | None,
@@ -49,10 +57,10 @@ def command(
     strict: bool,
     mapfile: str | None,
 ) -> None:
-    """Check this machine and this installation; say what to do about what is wrong.
+    """Check this machine and installation, and say how to fix what is wrong.
 
-    The exit status is 0 when nothing fails; warnings do not count. A report has no messages in it,
-    no secrets, and neither the user's name nor the host's; it is made whatever is broken.
+    The exit status is 0 unless a check fails; warnings do not count. A report contains no messages,
+    no secrets, and neither user nor host name; sections that fail to collect say why.
     """
     if target is not None:
         write_report(target, mapfile, lambda: _rows(_findings()), packages=not lean)

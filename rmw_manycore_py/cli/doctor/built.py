@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""A check of the doctor: the interface packages that were built here, and which programs use."""
+"""Doctor check: interface packages built locally, and which of them programs use."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ SUBJECT = "built interfaces"
 
 
 def check_built() -> Iterator[Finding]:
-    """Yield the packages of `manycore interface build`; then each that programs cannot use."""
+    """Yield the packages of `manycore interface build`, then each that programs cannot use."""
     store = Store()
     try:
         packages = store.packages()
@@ -36,8 +36,8 @@ def check_built() -> Iterator[Finding]:
 
 def _why_unused(manifest: Manifest) -> str | None:
     if ament.is_installed(manifest.package):
-        return f"programs use the one installed in {ament.package_prefix(manifest.package)}"
+        return f"programs use the package installed in {ament.package_prefix(manifest.package)}"
     for name, expected in manifest.dependencies.items():
         if hash_of(name) != expected:
-            return f"{name} is another one than it was built for"
+            return f"{name} has changed since the package was built"
     return None

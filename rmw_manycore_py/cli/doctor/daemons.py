@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""A check of the doctor: daemons of ros2cli that alone keep a platform."""
+"""Doctor check: ros2cli daemons that keep an otherwise unused platform alive."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from rmw_manycore_py.cli.doctor.finding import Finding, advised
 
 
 def check_daemons() -> Iterator[Finding]:
-    """Yield what keeps platforms that nothing else is on; nothing where that cannot be seen."""
+    """Yield the daemons that alone keep platforms alive; none if that cannot be determined."""
     try:
         from rmw_manycore_py import _transport
         from rmw_manycore_py.launch.ros2_daemon import CURE, lone_daemons

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What a check of `manycore doctor` found."""
+"""Result of a `manycore doctor` check."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from enum import Enum
 
 
 class Verdict(Enum):
-    """How a check came out."""
+    """Outcome of a check."""
 
     OK = "ok"
     WARNING = "warning"  # works, but not as well as it could
@@ -17,7 +17,7 @@ class Verdict(Enum):
 
 @dataclass(frozen=True)
 class Finding:
-    """One line of the doctor: what was looked at, what was found, what to do about it."""
+    """One line of the doctor: subject, finding, and advice."""
 
     subject: str
     verdict: Verdict
@@ -26,12 +26,12 @@ class Finding:
 
 
 def judged(subject: str, is_good: bool, found: str, advice: str) -> Finding:
-    """Return a finding that is good or a failure; advice is for the failure."""
+    """Return OK or a failure; only the failure carries the advice."""
     verdict = Verdict.OK if is_good else Verdict.FAILURE
     return Finding(subject, verdict, found, "" if is_good else advice)
 
 
 def advised(subject: str, is_good: bool, found: str, advice: str) -> Finding:
-    """Return a finding that is good or a warning; advice is for the warning."""
+    """Return OK or a warning; only the warning carries the advice."""
     verdict = Verdict.OK if is_good else Verdict.WARNING
     return Finding(subject, verdict, found, "" if is_good else advice)

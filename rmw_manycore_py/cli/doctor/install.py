@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Checks of the doctor: python, ROS 2, our library, its hook, and whether they work together."""
+"""Doctor checks: Python, ROS 2, the library, its hook, and whether they work together."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ FILES = {
 
 
 def check_install() -> Iterator[Finding]:
-    """Yield what is installed; the last check starts rclpy."""
+    """Yield findings about the installation; the last check starts rclpy."""
     yield _python()
     yield _ros()
     yield from _files()
@@ -78,14 +78,16 @@ def _files() -> Iterator[Finding]:
 def _hook() -> Finding:
     subject = "start-up hook"
     if not rmw_manycore_hook.needs_stand_ins(sys.prefix):
-        return Finding(subject, Verdict.OK, "not needed: this ROS 2 selects its middleware itself")
+        return Finding(
+            subject, Verdict.OK, "not needed: this ROS 2 loads its middleware by RMW_IMPLEMENTATION"
+        )
     file = Path(sysconfig.get_path("purelib"), "rmw_manycore.pth")
     is_there = file.is_file()
     return judged(subject, is_there, str(file) if is_there else f"no {file}", REINSTALL)
 
 
 def _substitution() -> Finding:
-    """Start rclpy as a user would, with the variable alone."""
+    """Start rclpy with nothing but RMW_IMPLEMENTATION set, as a user does."""
     variables = {**os.environ, "RMW_IMPLEMENTATION": "rmw_manycore"}
     environment = rmw_manycore_hook.plain_environment(variables, sys.prefix)
     try:
@@ -104,7 +106,7 @@ def _substitution() -> Finding:
 
 
 def judge_probe(status: int, words: list[str], errors: str) -> Finding:
-    """Judge what the probe printed: the middleware, and which libraries were loaded."""
+    """Judge the output of the probe: the middleware, and which libraries were loaded."""
     subject = "substitution"
     if status != 0 or len(words) != 3:
         lines = errors.strip().splitlines() or [f"exit status {status}"]

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""A check of the doctor: what systemd-logind does to this user's shared memory at logout."""
+"""Doctor check: whether systemd-logind removes this user's shared memory at logout."""
 
 from __future__ import annotations
 
@@ -11,24 +11,24 @@ from pathlib import Path
 from rmw_manycore_py.cli.doctor.finding import Finding, Verdict, advised
 
 SUBJECT = "logout"
-# logind.conf(5): a file of a later directory, or of a later name, wins.
+# logind.conf(5): files in later directories, and later names, take precedence.
 CONFIGURATIONS = (
     "usr/lib/systemd/logind.conf",
     "usr/lib/systemd/logind.conf.d",
     "etc/systemd/logind.conf",
     "etc/systemd/logind.conf.d",
 )
-FIRST_UID_OF_PEOPLE = 1000  # logind removes nothing of system users
+FIRST_UID_OF_PEOPLE = 1000  # logind keeps the files of system users
 ADVICE = "loginctl enable-linger, or RemoveIPC=no in /etc/systemd/logind.conf"
 
 
 def check_logout(root: Path = Path("/"), uid: int | None = None) -> Finding:
-    """Tell what happens to platforms when their user logs out of the last session."""
+    """Return whether platforms survive the end of their user's last session."""
     uid = os.getuid() if uid is None else uid
     if not (root / "run/systemd/system").exists():
         return Finding(SUBJECT, Verdict.OK, "systemd does not run here")
     if uid < FIRST_UID_OF_PEOPLE:
-        return Finding(SUBJECT, Verdict.OK, "shared memory of system users stays")
+        return Finding(SUBJECT, Verdict.OK, "shared memory of system users is kept")
     if not _removes_ipc(root):
         return Finding(SUBJECT, Verdict.OK, "RemoveIPC is off")
     lingers = (root / "var/lib/systemd/linger" / _name_of(uid)).exists()

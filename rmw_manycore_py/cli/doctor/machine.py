@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Checks of the doctor: shared memory, CPUs, kernel, platforms that are left over."""
+"""Doctor checks: shared memory, CPUs, kernel, leftover platforms."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from rmw_manycore_py.cli.doctor.scheduling import check_isolation, check_real_ti
 from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.topology import platforms_directory, shared_memory_place
 
-# Two clusters of Coolidge with the registry; the smallest that the examples run in.
+# Two Coolidge clusters and the registry: the minimum for the examples.
 USEFUL_SHARED_MEMORY_BYTES = 64 << 20
 USEFUL_CPUS = 2
 _FUTEX_WAKE = 1  # <linux/futex.h>
@@ -27,7 +27,7 @@ _SYS_FUTEX = {"x86_64": 202, "aarch64": 98}
 
 
 def check_machine() -> Iterator[Finding]:
-    """Yield what the transport needs of the system."""
+    """Yield findings about what the transport needs from the system."""
     try:
         yield _shared_memory_size()
     except ManycoreError as error:
@@ -57,13 +57,13 @@ def _shared_memory_size() -> Finding:
 
 
 def _posix_shared_memory() -> Finding:
-    """Make a segment as any program would, and remove it."""
+    """Create a segment as any program would, and remove it."""
     subject, name = "POSIX shared memory", f"/manycore-doctor-{os.getpid()}"
     try:
         segment = posix_ipc.SharedMemory(name, posix_ipc.O_CREX, mode=0o600, size=4096)
     except (OSError, posix_ipc.Error) as error:
         advice = "give this user the right to write to /dev/shm (mode 1777)"
-        return Finding(subject, Verdict.FAILURE, f"no segment can be made: {error}", advice)
+        return Finding(subject, Verdict.FAILURE, f"cannot create a segment: {error}", advice)
     segment.close_fd()
     segment.unlink()
     return Finding(subject, Verdict.OK, "works")
@@ -74,7 +74,7 @@ def _user_directory() -> Finding:
     try:
         status = path.lstat()
     except FileNotFoundError:
-        return Finding("platform directory", Verdict.OK, f"{path}: made at the first start")
+        return Finding("platform directory", Verdict.OK, f"{path}: created at the first start")
     mode = stat.S_IMODE(status.st_mode)
     is_private = stat.S_ISDIR(status.st_mode) and status.st_uid == os.getuid() and mode == 0o700
     found = f"{path}, owner {status.st_uid}, mode {mode:o}"
@@ -85,7 +85,7 @@ def _user_directory() -> Finding:
 def _cpus() -> Finding:
     cpus = sorted(os.sched_getaffinity(0))
     found = f"{len(cpus)} usable: {', '.join(map(str, cpus))}"
-    advice = "nodes share a CPU: correct, but with no timing worth looking at"
+    advice = "nodes share a CPU: results are correct, but timing is meaningless"
     return advised("host CPUs", len(cpus) >= USEFUL_CPUS, found, advice)
 
 
@@ -104,7 +104,7 @@ def _pidfd() -> Finding:
 
 
 def _futex() -> Finding:
-    """Wake nobody on a word of our own: an error means that the call is not to be had."""
+    """Call FUTEX_WAKE on a private word without waiters; an error means futex is blocked."""
     number = _SYS_FUTEX.get(platform.machine())
     if number is None:
         found = f"not checked on {platform.machine()}"
@@ -130,12 +130,12 @@ def _stale_platforms() -> Finding:
     dead = [name for name in names if not is_alive(name)]
     alive = len(names) - len(dead)
     found = f"{alive} alive" + (f", dead or unreadable: {', '.join(dead)}" if dead else "")
-    advice = "manycore clean; one that stays is used by nodes of another version: stop them first"
+    advice = "run manycore clean; if one remains, stop its nodes of another version first"
     return advised(subject, not dead, found, advice)
 
 
 def is_alive(name: str) -> bool:
-    """Tell whether somebody is on a platform; one that cannot be read counts as dead."""
+    """Return whether any process uses a platform; one that cannot be read counts as dead."""
     from rmw_manycore_py import _transport
 
     try:

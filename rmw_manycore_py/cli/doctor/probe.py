@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""A process that starts rclpy for the doctor: prints the middleware, and what else was loaded."""
+"""Process that starts rclpy for the doctor and prints the middleware and loaded libraries."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ LIBRARIES = ("librmw_manycore.so", "libfastrtps.so")
 
 
 def main() -> None:
-    """Print the identifier, and for each library whether it was loaded."""
+    """Print the RMW identifier, and for each library whether it is loaded."""
     lines = Path("/proc/self/maps").read_text().splitlines()
     maps = [line for line in lines if "/standin/" not in line]
     print(rclpy.get_rmw_implementation_identifier())

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Checks of the doctor: isolated CPUs, and whether nodes may have priorities of real time."""
+"""Doctor checks: isolated CPUs, and permission for real-time priorities."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _RUNTIME = Path("/proc/sys/kernel/sched_rt_runtime_us")
 
 
 def check_isolation(system: Path = Path("/sys/devices/system/cpu")) -> Finding:
-    """Tell which CPUs only nodes with a `host_cpu` get."""
+    """Report the isolated CPUs; only nodes with a `host_cpu` run on them."""
     try:
         listed = (system / "isolated").read_text().strip()
     except OSError:
@@ -23,12 +23,12 @@ def check_isolation(system: Path = Path("/sys/devices/system/cpu")) -> Finding:
     usable = isolated_cpus(system)
     named = ", ".join(map(str, usable)) or "none of them"
     found = f"{listed}; nodes may name {named} as host_cpu"
-    advice = "" if usable else "the cpuset of this process leaves them out"
+    advice = "" if usable else "they are outside the cpuset of this process"
     return Finding("isolated CPUs", Verdict.OK, found, advice)
 
 
 def check_real_time() -> Finding:
-    """Tell which priorities a mapfile's `scheduling` may have."""
+    """Report which priorities the key `scheduling` of a mapfile may use."""
     subject = "real-time scheduling"
     highest = Scheduling("fifo", MAX_PRIORITY)
     reason = refusal(highest)
@@ -47,5 +47,5 @@ def _throttled() -> str:
     except (OSError, ValueError):
         return ""
     if runtime_us < 0:
-        return "; not throttled: a node that never waits freezes its CPU"
+        return "; not throttled: a node that never blocks starves its CPU"
     return ""

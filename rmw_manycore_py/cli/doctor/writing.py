@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""`manycore doctor --report`: where the report goes."""
+"""`manycore doctor --report`: write the report."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ PRINTED = "-"
 def write_report(
     target: str, mapfile: str | None, findings: Section, *, packages: bool = True
 ) -> None:
-    """Make a report, and write it to a file or print it."""
+    """Make a report and write it to a file or standard output."""
     sections = report(findings, mapfile, packages=packages)
     text = as_json(sections) if Path(target).suffix == ".json" else as_text(sections)
     if target == PRINTED:
@@ -26,4 +26,4 @@ def write_report(
         Path(target).write_text(text, encoding="utf-8")
     except OSError as error:
         raise ManycoreError(f"{target}: cannot be written: {error.strerror}") from error
-    click.echo(f"written to {target}; read it before you pass it on")
+    click.echo(f"written to {target}; review it before sharing")

@@ -15,4 +15,4 @@ VERBS = {
 
 @click.group("interface", cls=LazyGroup, commands_at=VERBS)
 def command() -> None:
-    """List and show the types of messages, services and actions, and build packages of them."""
+    """List, show and build message, service and action types."""

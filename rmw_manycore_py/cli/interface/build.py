@@ -30,12 +30,14 @@ from rmw_manycore_py.ros import ament
     ),
 )
 @click.argument("paths", metavar="PATH...", nargs=-1, required=True, type=Path)
-@click.option("--only", metavar="TYPE", multiple=True, help="Only this type and those in it.")
-@click.option("--mapfile", metavar="MAP", help="Only types that the nodes of a mapfile use.")
+@click.option(
+    "--only", metavar="TYPE", multiple=True, help="Build only this type and the types it uses."
+)
+@click.option("--mapfile", metavar="MAP", help="Build only types that the nodes of MAP use.")
 def command(paths: tuple[Path, ...], only: tuple[str, ...], mapfile: str | None) -> None:
-    """Build the interface packages at and below each PATH, for Python programs of this user.
+    """Build the interface packages found in each PATH, for this user's Python programs.
 
-    PATH is a ROS 2 package, a bare folder pkg/{msg,srv,action}, or a folder with such in it.
+    PATH is a ROS 2 package, a directory pkg/{msg,srv,action}, or a directory that contains such.
     """
     sources = find_sources(paths)
     wanted = {*only, *(_used_by(mapfile, sources) if mapfile else ())}
@@ -46,14 +48,14 @@ def command(paths: tuple[Path, ...], only: tuple[str, ...], mapfile: str | None)
             status.update(f"{package}: {text}")
 
         def on_wait() -> None:
-            console.print("waiting for the end of another build")
+            console.print("waiting for another build to finish")
 
         outcomes = build(sources, wanted, Listener(on_wait, on_progress, _print_outcome))
     print_notices(_not_used(outcomes))
 
 
 def _used_by(name: str, sources: Mapping[str, Source]) -> set[str]:
-    """Return the types among the sources that the nodes of a mapfile use."""
+    """Return the types in the sources that the nodes of a mapfile use."""
     file = find_mapfile(name)
     if file is None:
         raise ManycoreError(f"--mapfile {name}: expected a mapfile, found no file", EXIT_BAD_INPUT)

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The packages that `manycore interface build` has made, for `manycore interface list --built`."""
+"""Packages made by `manycore interface build`, for `manycore interface list --built`."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ from rmw_manycore_py.ros import ament
 
 
 def print_built(kinds: Collection[str], as_json: bool) -> None:
-    """Print the packages with types of these kinds, and for each which one programs use."""
+    """Print the built packages with types of these kinds, and which version programs use."""
     store = Store()
     rows = list(_rows(store, kinds))
     if as_json:
         print_json(rows)
     elif not rows:
-        click.echo(f"nothing was built in {store.directory}")
+        click.echo(f"no packages built in {store.directory}")
     else:
         table = new_table("package", "#types", "built", "programs use")
         for row in rows:
@@ -47,10 +47,10 @@ def _rows(store: Store, kinds: Collection[str]) -> Iterator[dict[str, Any]]:
 
 
 def _state(manifest: Manifest) -> str:
-    """Say which package of this name programs use."""
+    """Return which package of this name programs use."""
     if ament.is_installed(manifest.package):
         return f"the one installed in {ament.package_prefix(manifest.package)}"
     for name, expected in manifest.dependencies.items():
         if hash_of(name) != expected:
-            return f"neither: {name} is another one now, so build it again"
+            return f"neither: {name} has changed, build it again"
     return "this one"

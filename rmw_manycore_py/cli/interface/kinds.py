@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Choosing among messages, services and actions, for the verbs of `manycore interface`."""
+"""Filter types by kind: messages, services, actions."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ TITLES = {"msg": "Messages", "srv": "Services", "action": "Actions"}
 
 
 def kind_options(function: Callable[..., Any]) -> Callable[..., Any]:
-    """Add the options `-m`, `-s` and `-a`, which give the argument `kinds`."""
+    """Add the options `-m`, `-s` and `-a`, which set the argument `kinds`."""
     for kind, title in reversed(TITLES.items()):
         function = click.option(
             f"-{kind[0]}",
@@ -31,5 +31,5 @@ def kind_of(name: str) -> str:
 
 
 def of_kinds(names: Iterable[str], kinds: Collection[str]) -> Iterator[str]:
-    """Yield the names of types of these kinds; no kinds are all kinds."""
+    """Yield the names of types of these kinds; no kinds mean all."""
     return (name for name in names if not kinds or kind_of(name) in kinds)

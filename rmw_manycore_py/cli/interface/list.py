@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""`manycore interface list`, printed as `ros2 interface list` prints."""
+"""`manycore interface list`, with the output format of `ros2 interface list`."""
 
 from __future__ import annotations
 
@@ -16,10 +16,12 @@ from rmw_manycore_py.ros.ament import interfaces, packages_with_interfaces
     "list", epilog=examples("manycore interface list -s", "manycore interface list --built")
 )
 @kind_options
-@click.option("--built", is_flag=True, help="Packages that were built here, and which ones win.")
+@click.option(
+    "--built", is_flag=True, help="List locally built packages, and which version programs use."
+)
 @json_option
 def command(kinds: tuple[str, ...], built: bool, as_json: bool) -> None:
-    """List the types that are installed or were built here, by default of all three kinds."""
+    """List the installed and locally built types, by default of all three kinds."""
     if built:
         print_built(kinds, as_json)
         return

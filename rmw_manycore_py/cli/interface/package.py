@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""`manycore interface package`, printed as `ros2 interface package` prints."""
+"""`manycore interface package`, with the output format of `ros2 interface package`."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def command(package: str, kinds: tuple[str, ...], as_json: bool) -> None:
     if not interfaces(package):
         meant = did_you_mean(package, packages_with_interfaces())
         raise ManycoreError(
-            f"Unknown package '{package}'" + (meant or ": it is not installed, or has no types")
+            f"Unknown package '{package}'" + (meant or ": it is not installed or defines no types")
         )
     if as_json:
         print_json(names)

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""`manycore interface packages`, printed as `ros2 interface packages` prints."""
+"""`manycore interface packages`, with the output format of `ros2 interface packages`."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from rmw_manycore_py.ros.ament import interfaces, packages_with_interfaces
 @kind_options
 @json_option
 def command(kinds: tuple[str, ...], as_json: bool) -> None:
-    """List the packages that have types."""
+    """List the packages that define types."""
     names = [name for name in packages_with_interfaces() if any(of_kinds(interfaces(name), kinds))]
     if as_json:
         print_json(names)

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""`manycore interface proto`, printed as `ros2 interface proto` prints."""
+"""`manycore interface proto`, with the output format of `ros2 interface proto`."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ from rmw_manycore_py.cli.common.message_text import ALL, to_yaml
 from rmw_manycore_py.cli.common.options import examples
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
 
-# What a user writes of a type: a message itself, the request of a service, the goal of an action.
+# The part of a type that a user writes: the message, the request, or the goal.
 _PARTS = {"msg": None, "srv": "Request", "action": "Goal"}
 
 
 @click.command("proto", epilog=examples("manycore interface proto std_srvs/srv/SetBool"))
 @click.argument("type_name", metavar="TYPE", shell_complete=complete_types)
-@click.option("--no-quotes", is_flag=True, help="Print no quotes around it.")
+@click.option("--no-quotes", is_flag=True, help="Print the prototype without quotes.")
 def command(type_name: str, no_quotes: bool) -> None:
-    """Show values of TYPE to copy and change: of a service its request, of an action its goal."""
+    """Print a prototype of TYPE to edit: of a service its request, of an action its goal."""
     text = to_yaml(_prototype(type_name), ALL)
     click.echo(text if no_quotes else f'"{text}"')
 

@@ -12,7 +12,7 @@ from rmw_manycore_py.interfaces.build import remove
 @click.command("remove", epilog=examples("manycore interface remove nav2_msgs"))
 @click.argument("packages", metavar="PACKAGE...", nargs=-1, required=True)
 def command(packages: tuple[str, ...]) -> None:
-    """Remove packages that `manycore interface build` has built."""
-    remove(packages, lambda: click.echo("waiting for the end of a build", err=True))
+    """Remove packages made by `manycore interface build`."""
+    remove(packages, lambda: click.echo("waiting for a build to finish", err=True))
     for package in packages:
         click.echo(f"{package}: removed")

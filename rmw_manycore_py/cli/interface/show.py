@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""`manycore interface show`, printed as `ros2 interface show` prints."""
+"""`manycore interface show`, with the output format of `ros2 interface show`."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ from rmw_manycore_py.cli.interface.text import definition
     ),
 )
 @click.argument("type_name", metavar="TYPE", shell_complete=complete_types)
-@click.option("--all-comments", is_flag=True, help="Show the comments of nested types too.")
-@click.option("--no-comments", is_flag=True, help="Show no comments and no empty lines.")
+@click.option("--all-comments", is_flag=True, help="Also show the comments of nested types.")
+@click.option("--no-comments", is_flag=True, help="Omit comments and empty lines.")
 def command(type_name: str, all_comments: bool, no_comments: bool) -> None:
-    """Show the definition of TYPE, with the types in it; - reads TYPE from standard input."""
+    """Show the definition of TYPE and its nested types; - reads TYPE from standard input."""
     exclude(("--all-comments", all_comments), ("--no-comments", no_comments))
     if type_name == "-":
         type_name = sys.stdin.readline().strip()

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The definitions of message, service and action types as text."""
+"""Definitions of message, service and action types as text."""
 
 from __future__ import annotations
 
@@ -11,16 +11,16 @@ from rmw_manycore_py.cli.common.suggestions import did_you_mean
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
 from rmw_manycore_py.ros.ament import interfaces, package_share, packages_with_interfaces
 
-# Up to a comment: quoted text, in which # is a character as any other, or anything else.
+# The part of a line before a comment; # inside quotes does not start one.
 _CODE = re.compile(r"""(?:"[^"]*"|'[^']*'|[^#"'])*""")
-# A field's type that is a message: its package may be left out, and it may be an array.
+# A nested message type: the package is optional, and it may be an array.
 _NESTED = re.compile(r"(?:(?P<package>\w+)/)?(?P<name>[A-Z]\w*)(?:\[[^]]*\])?\s")
 
 
 def definition(
     type_name: str, *, comments: bool = True, nested_comments: bool = False
 ) -> Iterator[str]:
-    """Yield the lines of a type's definition, those of nested types indented below their field."""
+    """Yield the definition of a type, nested types indented below their field."""
     package = type_name.split("/")[0]
     for line in _file(type_name).read_text().splitlines():
         code = _code(line)
@@ -45,7 +45,7 @@ def _file(type_name: str) -> Path:
         meant = did_you_mean(parts[0], packages_with_interfaces())
         raise ManycoreError(f"Unknown package '{parts[0]}'{meant}")
     file = share / parts[1] / f"{parts[2]}.{parts[1]}"
-    for candidate in (file, file.with_suffix(".idl")):  # the source of a few packages is IDL
+    for candidate in (file, file.with_suffix(".idl")):  # a few packages are defined in IDL
         if candidate.is_file():
             return candidate
     meant = did_you_mean(type_name, interfaces(parts[0])) or f": there is no {file}"

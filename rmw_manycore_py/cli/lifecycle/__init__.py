@@ -15,4 +15,4 @@ VERBS = {
 
 @click.group("lifecycle", cls=LazyGroup, commands_at=VERBS)
 def command() -> None:
-    """Look at the states of nodes with a lifecycle, and change them."""
+    """Query and change the states of lifecycle nodes."""

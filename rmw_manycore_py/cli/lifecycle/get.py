@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""`manycore lifecycle get`, printed as `ros2 lifecycle get` prints."""
+"""`manycore lifecycle get`, with the output format of `ros2 lifecycle get`."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ from rmw_manycore_py.ros.names import is_hidden
 @discovery_options
 @platform_option
 def command(node: str | None, platform: str, as_json: bool, hidden: bool) -> None:
-    """Print the state of NODE, or of all nodes with a lifecycle."""
+    """Print the state of NODE, or of all lifecycle nodes."""
     if node:
         names = [existing_lifecycle_node(platform, node)]
     else:

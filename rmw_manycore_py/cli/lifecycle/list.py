@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""`manycore lifecycle list`, printed as `ros2 lifecycle list` prints."""
+"""`manycore lifecycle list`, with the output format of `ros2 lifecycle list`."""
 
 from __future__ import annotations
 
@@ -23,12 +23,14 @@ from rmw_manycore_py.cli.lifecycle.services import (
 
 @click.command("list", epilog=examples("manycore lifecycle list /camera"))
 @click.argument("node", shell_complete=complete_lifecycle_nodes)
-@click.option("-a", "--all", "every", is_flag=True, help="Those from all other states too.")
+@click.option(
+    "-a", "--all", "every", is_flag=True, help="Also list the transitions of all other states."
+)
 @json_option
 @named_node_options
 @platform_option
 def command(node: str, every: bool, platform: str, as_json: bool) -> None:
-    """List the transitions that NODE can take from its present state."""
+    """List the transitions available to NODE in its current state."""
     name = existing_lifecycle_node(platform, node)
     with tool_node(platform) as tool:
         transitions = Lifecycle(tool, name).transitions(every=every)

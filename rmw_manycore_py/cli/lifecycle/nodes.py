@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""`manycore lifecycle nodes`, printed as `ros2 lifecycle nodes` prints."""
+"""`manycore lifecycle nodes`, with the output format of `ros2 lifecycle nodes`."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ from rmw_manycore_py.ros.names import is_hidden
 
 
 @click.command("nodes", epilog=examples("manycore lifecycle nodes"))
-@click.option("-a", "--all", "everything", is_flag=True, help="The same as --include-hidden.")
+@click.option("-a", "--all", "everything", is_flag=True, help="Same as --include-hidden.")
 @count_option
 @hidden_option
 @discovery_options
 @json_option
 @platform_option
 def command(platform: str, count: bool, hidden: bool, everything: bool, as_json: bool) -> None:
-    """List the nodes that have a lifecycle."""
+    """List the lifecycle nodes."""
     found = lifecycle_nodes(platform)
     names = [name for name in found if hidden or everything or not is_hidden(name)]
     if as_json:

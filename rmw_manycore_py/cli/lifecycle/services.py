@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The lifecycle of a node, seen and changed through its services."""
+"""Client of the lifecycle services of a node."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from rmw_manycore_py.errors import ManycoreError
 
 
 def lifecycle_nodes(platform: str) -> list[str]:
-    """Return the full names of the nodes that have a lifecycle."""
+    """Return the full names of the lifecycle nodes."""
     return nodes_with_service(platform, "get_state", "lifecycle_msgs/srv/GetState")
 
 
 def existing_lifecycle_node(platform: str, name: str) -> str:
-    """Return the full name of a node that is there and has a lifecycle."""
+    """Return the full name of a lifecycle node; raise ManycoreError if it does not exist."""
     full_name, known = absolute_name(name), lifecycle_nodes(platform)
     if full_name not in known:
         meant = did_you_mean(full_name, known) or " (manycore lifecycle nodes shows all)"
@@ -30,22 +30,22 @@ complete_lifecycle_nodes = completer(lambda context: lifecycle_nodes(platform_of
 
 
 class Lifecycle:
-    """The lifecycle of one node, as another node sees it."""
+    """Client of the lifecycle of one node."""
 
     def __init__(self, node: Any, name: str) -> None:
         self._node, self._name = node, name
 
     def state(self) -> Any:
-        """Return the present lifecycle_msgs State."""
+        """Return the current lifecycle_msgs State."""
         return self._call("GetState", "get_state").current_state
 
     def transitions(self, *, every: bool = False) -> list[Any]:
-        """Return the lifecycle_msgs TransitionDescriptions from here, or those from every state."""
+        """Return the TransitionDescriptions available now, or with `every` those of all states."""
         service = "get_transition_graph" if every else "get_available_transitions"
         return list(self._call("GetAvailableTransitions", service).available_transitions)
 
     def change(self, transition: Any) -> bool:
-        """Take a lifecycle_msgs Transition; return whether the node did."""
+        """Request a lifecycle_msgs Transition; return whether it succeeded."""
         return bool(self._call("ChangeState", "change_state", transition=transition).success)
 
     def _call(self, type_name: str, service: str, **fields: Any) -> Any:

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""`manycore lifecycle set`, printed as `ros2 lifecycle set` prints."""
+"""`manycore lifecycle set`, with the output format of `ros2 lifecycle set`."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
 @named_node_options
 @platform_option
 def command(node: str, transition: str, platform: str) -> None:
-    """Let NODE take a TRANSITION, given by its label or number."""
+    """Trigger TRANSITION, a label or id, on NODE."""
     name = existing_lifecycle_node(platform, node)
     with tool_node(platform) as tool:
         lifecycle = Lifecycle(tool, name)

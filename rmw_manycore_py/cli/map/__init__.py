@@ -12,4 +12,4 @@ VERBS = {verb: f"rmw_manycore_py.cli.map.{verb}:command" for verb in ("init", "c
 
 @click.group("map", cls=LazyGroup, commands_at=VERBS)
 def command() -> None:
-    """Make, check and show mapfiles."""
+    """Create, check and show mapfiles."""

@@ -18,7 +18,7 @@ from rmw_manycore_py.mapfile import load_mapfile, resolve
 @mapfile_argument()
 @json_option
 def command(mapfile: Path, as_json: bool) -> None:
-    """Check MAPFILE and everything it refers to; start nothing."""
+    """Check MAPFILE and everything it refers to, without starting anything."""
     try:
         placement = resolve(load_mapfile(mapfile))
     except MapfileError as error:

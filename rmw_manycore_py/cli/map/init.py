@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""`manycore map init`: the template of a mapfile, from an application (ROS-lite, Fig. 5 a)."""
+"""`manycore map init`: a mapfile template from an application (ROS-lite, Fig. 5 a)."""
 
 from __future__ import annotations
 
@@ -27,12 +27,12 @@ from rmw_manycore_py.topology import PROFILES
     "-o",
     "--output",
     type=click.Path(dir_okay=False, path_type=Path),
-    help="File to write; it must not exist yet.  [default: standard output]",
+    help="File to write; must not exist.  [default: standard output]",
 )
 def command(sources: tuple[str, ...], profile: str, output: Path | None) -> None:
-    """Write a mapfile for the nodes in SOURCES: only the clusters are left to choose.
+    """Write a mapfile template for the nodes in SOURCES; only the clusters are left to choose.
 
-    SOURCES are Python files, directories of them, and at most one launch file, with values for its
+    SOURCES are Python files, directories of them, and at most one launch file with values for its
     arguments as NAME:=VALUE.
     """
     arguments = dict(source.split(":=", 1) for source in sources if ":=" in source)

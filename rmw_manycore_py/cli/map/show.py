@@ -27,7 +27,7 @@ from rmw_manycore_py.topology import as_host_cpu, host_cpu_text
 @mapfile_argument()
 @json_option
 def command(mapfile: Path, as_json: bool) -> None:
-    """Show what MAPFILE places where: nodes, topic table, memory of the clusters."""
+    """Show the placement of MAPFILE: nodes, topic table, memory of the clusters."""
     placement = resolve(load_mapfile(mapfile))
     if as_json:
         print_json(as_data(placement))
@@ -68,13 +68,22 @@ def _show_rules(placement: Placement) -> None:
 
 def _show_topics(placement: Placement) -> None:
     click.echo("\ntopic table")
-    columns = ("#id", "topic", "type", "#topic DSM bytes", "publishers in", "receivers in")
+    columns = (
+        "#id",
+        "topic",
+        "type",
+        "#topic DSM bytes",
+        "transfer",
+        "publishers in",
+        "receivers in",
+    )
     table = new_table(*columns)
     for topic in placement.topics:
         size = str(topic.topic_dsm_size or "grows")
         clusters = (topic.publisher_clusters, topic.receiver_clusters)
         places = (", ".join(map(str, numbers)) or "-" for numbers in clusters)
-        table.add_row(str(topic.id), topic.name, topic.type or "?", size, *places)
+        row = (str(topic.id), topic.name, topic.type or "?", size, topic.transfer_text)
+        table.add_row(*row, *places)
     print_table(table)
 
 

@@ -15,4 +15,4 @@ VERBS = {
 
 @click.group("ndt", cls=LazyGroup, commands_at=VERBS)
 def command() -> None:
-    """Localize by scan matching: recordings, maps and off-loading."""
+    """Tools for NDT scan matching: recordings, maps and off-loading."""

@@ -31,14 +31,14 @@ from rmw_manycore_py.ndt.recordings.opening import open_recording
     "--output",
     required=True,
     type=click.Path(path_type=Path),
-    help="A .pcd, .ply or .npz file; with --tile-size a directory, which is made.",
+    help="A .pcd, .ply or .npz file; with --tile-size, a directory to create.",
 )
 @click.option(
     "--every",
     type=click.IntRange(1),
     default=1,
     show_default=True,
-    help="Take every Nth scan only, so that the others are new to the map.",
+    help="Use every Nth scan only, so that the others are new to the map.",
 )
 @click.option(
     "--leaf",
@@ -46,13 +46,13 @@ from rmw_manycore_py.ndt.recordings.opening import open_recording
     type=click.FloatRange(0.0),
     default=0.1,
     show_default=True,
-    help="Metres: one point per voxel of this size; 0 keeps all.",
+    help="Voxel size in metres, one point per voxel; 0 keeps all points.",
 )
 @click.option(
     "--tile-size",
     "tile_m",
     type=click.FloatRange(1.0),
-    help="Metres: write square tiles and Autoware's pointcloud_map_metadata.yaml.",
+    help="Tile size in metres: write square tiles and pointcloud_map_metadata.yaml.",
 )
 @click.option(
     "--format",
@@ -60,7 +60,7 @@ from rmw_manycore_py.ndt.recordings.opening import open_recording
     type=click.Choice([suffix.lstrip(".") for suffix in SUFFIXES]),
     default="pcd",
     show_default=True,
-    help="Of the tiles.",
+    help="File format of the tiles.",
 )
 def command(
     recording: Path,
@@ -73,7 +73,7 @@ def command(
     tile_m: float | None,
     suffix: str,
 ) -> None:
-    """Make a map of the scans of RECORDING and their poses."""
+    """Build a map from the scans of RECORDING and their poses."""
     if not output.parent.is_dir():
         raise click.UsageError(f"--output '{output}': there is no directory '{output.parent}'")
     drive = open_recording(recording, poses_path, topic, pose_topic)

@@ -20,12 +20,12 @@ from rmw_manycore_py.cli.common.output_file import writing
     ),
 )
 @click.argument("directory", type=click.Path(file_okay=False, path_type=Path))
-@click.option("--map-loader", is_flag=True, help="Replace Autoware's pointcloud_map_loader, too.")
+@click.option("--map-loader", is_flag=True, help="Also replace Autoware's pointcloud_map_loader.")
 def command(directory: Path, map_loader: bool) -> None:
-    """Let this scan matcher stand in the place of Autoware's, in shells that source DIRECTORY.
+    """Replace Autoware's scan matcher with this one in shells that source DIRECTORY/setup.sh.
 
     DIRECTORY becomes an install prefix with a package of Autoware's name, whose executable starts
-    the node of rmw_manycore. Launch and parameter files are those of the Autoware that is sourced.
+    the node of rmw_manycore. Launch and parameter files are taken from the sourced Autoware.
     """
     if not directory.parent.is_dir():
         raise click.UsageError(f"'{directory}': there is no directory '{directory.parent}'")

@@ -41,50 +41,59 @@ MAP_VOXEL_M = 0.2
     "--map",
     "map_path",
     type=click.Path(exists=True, path_type=Path),
-    help="Map to publish; default: map.npz beside the recording, else every second scan of it.",
+    help="Map to publish; default: map.npz beside RECORDING, else built from every second scan.",
 )
-@click.option("--no-map", is_flag=True, help="Publish no map: the matcher has one of its own.")
+@click.option("--no-map", is_flag=True, help="Publish no map; the matcher has its own.")
 @click.option(
-    "--rate", "rate_hz", type=click.FloatRange(0.1, 1000.0), help="Scans per second, not by stamps."
+    "--rate",
+    "rate_hz",
+    type=click.FloatRange(0.1, 1000.0),
+    help="Scans per second; default: by stamps.",
 )
-@click.option("--wait", "waits", is_flag=True, help="Play no scan before the last one is answered.")
+@click.option("--wait", "waits", is_flag=True, help="Wait for each answer before the next scan.")
 @click.option(
     "--guess",
     "kind",
     type=click.Choice(["odometry", "velocity", "perturbed", "stack"]),
     default="odometry",
     show_default=True,
-    help="Closed loop with odometry or constant velocity; the reference, perturbed; or no guesses.",
+    help="Guesses: closed loop with odometry or constant velocity; perturbed reference; or none.",
 )
 @click.option(
     "--motion",
     type=click.Choice(["scans", "reference"]),
     default="scans",
     show_default=True,
-    help="What the odometry, or the stack's speed, comes from: scans matched to each other before "
-    "they are played, or the reference poses.",
+    help="Source of the odometry and of the speed: the scans, matched to each other beforehand, or "
+    "the reference poses.",
 )
 @click.option(
     "--drift",
     type=click.FloatRange(0.0, 1.0),
     default=0.05,
     show_default=True,
-    help="Error of the odometry, as a share of each motion.",
+    help="Odometry error, as a fraction of each motion.",
 )
-@click.option("--offset", "offset_m", default=0.5, show_default=True, help="Perturbation, metres.")
-@click.option("--turn", "turn_deg", default=3.0, show_default=True, help="Perturbation, degrees.")
-@click.option("--seed", default=1, show_default=True, help="Of drift and perturbation.")
+@click.option(
+    "--offset", "offset_m", default=0.5, show_default=True, help="Perturbation in metres."
+)
+@click.option("--turn", "turn_deg", default=3.0, show_default=True, help="Perturbation in degrees.")
+@click.option("--seed", default=1, show_default=True, help="Seed of drift and perturbation.")
 @click.option(
     "--voxel",
     "voxel_m",
     type=click.FloatRange(0.0),
     default=0.5,
     show_default=True,
-    help="Metres: thin the scans to voxels of this size; 0 sends them as they are.",
+    help="Voxel size in metres to downsample scans to; 0 sends all points.",
 )
-@click.option("--scans", type=click.IntRange(1), help="Play only the first scans.")
+@click.option("--scans", type=click.IntRange(1), help="Play only the first N scans.")
 @click.option(
-    "--deadline", "deadline_ms", default=100.0, show_default=True, help="Later is late, ms."
+    "--deadline",
+    "deadline_ms",
+    default=100.0,
+    show_default=True,
+    help="Deadline in ms; later answers count as late.",
 )
 @click.option(
     "--timeout",
@@ -98,13 +107,13 @@ MAP_VOXEL_M = 0.2
     "--rmw",
     default="rmw_fastrtps_cpp",
     show_default=True,
-    help="rmw_manycore plays from inside the platform.",
+    help="Middleware to play with; rmw_manycore plays from inside the platform.",
 )
 @click.option("--json", "as_json_", is_flag=True, help="Print the figures as JSON.")
 @click.option(
     "--pid",
     type=click.IntRange(1),
-    help="Measure the CPU time of this process and its children, not what the matcher reports.",
+    help="Measure the CPU time of this process and its children, not the one reported.",
 )
 @output_options
 def command(
@@ -131,10 +140,10 @@ def command(
     pid: int | None,
     **files: Path | None,
 ) -> None:
-    """Play RECORDING to a scan matcher, as a laptop's stack outside of the platform would.
+    """Play RECORDING to a scan matcher, as the stack of a laptop outside the platform does.
 
-    Publishes pointcloud_map, ekf_pose_with_covariance and points_raw, takes ndt_pose, and reports
-    error, latency and what was lost. The exit status is 1 if a scan was lost, late or diverged.
+    Publishes pointcloud_map, ekf_pose_with_covariance and points_raw, subscribes to ndt_pose, and
+    reports error, latency and losses. The exit status is 1 if a scan was lost, late or diverged.
     """
     outputs = ReplayFiles(**files)
     outputs.check()
@@ -157,11 +166,11 @@ def command(
     run(drive, source, tally, points, voxel_m, rate_hz, waits, timeout_s, pid)
     summary = tally.summary()
     if complaint := tally.complaint():
-        click.echo(f"of the first lost scan the matcher says: {complaint}", err=True)
+        click.echo(f"the matcher reported of the first lost scan: {complaint}", err=True)
     print_json({"guesses": made_of, **as_json(summary)}) if as_json_ else _print(
         summary, deadline_ms
     )
-    outputs.write(tally, drive, points)  # after the figures, which no full disk shall take away
+    outputs.write(tally, drive, points)  # last, so that a full disk does not lose the figures
     sys.exit(0 if summary.is_good else 1)
 
 
@@ -173,7 +182,7 @@ def _enter(rmw: str) -> None:
 
 
 def _map_of(recording: Path, drive: Recording, map_path: Path | None) -> Points:
-    """Return the points of the map to publish."""
+    """Return the points (N, 3) of the map to publish, in the map frame, metres."""
     beside = recording.resolve().with_name("map.npz")
     if map_path is None and beside.exists() and beside != recording.resolve():
         map_path = beside
@@ -196,7 +205,7 @@ def _print(summary: Summary, deadline_ms: float) -> None:
     ]
     for name, *values in rows:
         if all(value is None or value != value for value in values):
-            continue  # nothing was answered, or no guess made here
+            continue  # no scan was answered, or guesses were not made here
         table.add_row(name, *("" if value is None else f"{value:.3f}" for value in values))
     print_table(table)
     cpu = "" if s.node_cpu_percent is None else f"; matcher's CPU: {s.node_cpu_percent:.1f} %"

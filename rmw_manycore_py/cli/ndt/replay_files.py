@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The files that `manycore ndt replay` writes, and their options."""
+"""Output files of `manycore ndt replay`, and their options."""
 
 from __future__ import annotations
 
@@ -24,14 +24,14 @@ F = TypeVar("F", bound=Callable[..., Any])
 
 
 def output_options(command: F) -> F:
-    """Add the options whose values are the fields of ReplayFiles."""
+    """Add one option per field of ReplayFiles."""
     pictures = ", ".join(PICTURES)
     options = [
-        ("csv", (), "One line per scan: pose, covariance, scores, latency, what became of it."),
-        ("tum", (), "Poses as TUM has them; the reference beside it, as FILE-reference."),
-        ("kitti", (), "The same as KITTI has them: a line per scan, nan where it got no pose."),
-        ("plot", PICTURES, f"Draw map and path, errors, scores and latencies: {pictures}."),
-        ("picture", PICTURES, f"Draw map, path and a scan in three dimensions: {pictures}."),
+        ("csv", (), "Write one row per scan: pose, covariance, scores, latency, outcome."),
+        ("tum", (), "Write poses in TUM format, and the reference to FILE-reference."),
+        ("kitti", (), "The same in KITTI format: a line per scan, nan where there is no pose."),
+        ("plot", PICTURES, f"Plot map, path, errors, scores and latencies ({pictures})."),
+        ("picture", PICTURES, f"Draw map, path and a scan in 3D ({pictures})."),
     ]
     for name, suffixes, text in reversed(options):
         option = click.option(f"--{name}", f"{name}_path", type=OutputFile(*suffixes), help=text)
@@ -41,7 +41,7 @@ def output_options(command: F) -> F:
 
 @dataclass(frozen=True)
 class ReplayFiles:
-    """Where what is written; None is not."""
+    """Paths of the output files; None skips the file."""
 
     csv_path: Path | None
     tum_path: Path | None
@@ -50,12 +50,12 @@ class ReplayFiles:
     picture_path: Path | None
 
     def check(self) -> None:
-        """Raise a ManycoreError, before the work, where pictures cannot be drawn."""
+        """Raise ManycoreError if pictures are wanted and cannot be drawn."""
         if self.plot_path is not None or self.picture_path is not None:
             load_figure()
 
     def write(self, tally: Tally, drive: Recording, points: Points | None) -> None:
-        """Write all that is wanted; `points` (N, 3) are the map's."""
+        """Write all requested files; `points` (N, 3) is the map."""
         for path, write in (
             (self.csv_path, write_csv),
             (self.tum_path, write_tum),

@@ -47,7 +47,7 @@ MAP_VOXEL_M = 0.2
     type=click.FloatRange(5.0, 5000.0),
     default=80.0,
     show_default=True,
-    help="Metres to drive.",
+    help="Length of the drive in metres.",
 )
 @click.option(
     "--speed",
@@ -55,22 +55,24 @@ MAP_VOXEL_M = 0.2
     type=click.FloatRange(0.5, 40.0),
     default=8.0,
     show_default=True,
-    help="Metres per second.",
+    help="Speed in metres per second.",
 )
-@click.option("--seed", type=click.IntRange(0), default=1, show_default=True, help="The street.")
+@click.option(
+    "--seed", type=click.IntRange(0), default=1, show_default=True, help="Seed of the street."
+)
 @click.option(
     "--beams",
     type=click.IntRange(1, 256),
     default=Lidar.rings,
     show_default=True,
-    help="Rings of the LiDAR.",
+    help="Rings per scan.",
 )
 @click.option(
     "--azimuths",
     type=click.IntRange(36, 8192),
     default=Lidar.azimuths,
     show_default=True,
-    help="Points of a ring.",
+    help="Points per ring.",
 )
 @click.option(
     "--range",
@@ -78,7 +80,7 @@ MAP_VOXEL_M = 0.2
     type=click.FloatRange(5.0, 300.0),
     default=Lidar.range_m,
     show_default=True,
-    help="Metres that the LiDAR reaches.",
+    help="Range of the LiDAR in metres.",
 )
 @click.option(
     "--noise",
@@ -86,7 +88,7 @@ MAP_VOXEL_M = 0.2
     type=click.FloatRange(0.0, 1.0),
     default=Lidar.noise_m,
     show_default=True,
-    help="Standard deviation of its distances, metres.",
+    help="Standard deviation of the measured ranges, in metres.",
 )
 @click.option(
     "--traffic",
@@ -94,7 +96,7 @@ MAP_VOXEL_M = 0.2
     type=click.IntRange(0, 20),
     default=0,
     show_default=True,
-    help="Cars that drive along, before and behind; they are not in the map.",
+    help="Cars driving ahead and behind; not in the map.",
 )
 @click.option(
     "--occlusion",
@@ -102,12 +104,12 @@ MAP_VOXEL_M = 0.2
     type=click.FloatRange(0.0, 0.9),
     default=Lidar.hidden_share,
     show_default=True,
-    help="Share of the view that the vehicle itself hides, behind.",
+    help="Fraction of the field of view hidden by the vehicle, at the rear.",
 )
 @click.option(
     "--distortion",
     is_flag=True,
-    help="Move while a scan is taken; drive.npz then has the time of each point.",
+    help="Move during each scan; drive.npz then holds the time of each point.",
 )
 def command(
     directory: Path,
@@ -119,9 +121,9 @@ def command(
     beams: int,
     **lidar: float,
 ) -> None:
-    """Make a street up and drive along it with a LiDAR; write drive.npz and map.npz to DIRECTORY.
+    """Generate a street and a LiDAR drive along it; write drive.npz and map.npz to DIRECTORY.
 
-    The map comes from a drive of its own, with other positions and other noise, without traffic.
+    The map comes from a separate drive without traffic, with different positions and noise.
     """
     with writing(directory):
         directory.mkdir(parents=True, exist_ok=True)

@@ -12,4 +12,4 @@ VERBS = {verb: f"rmw_manycore_py.cli.node.{verb}:command" for verb in ("list", "
 
 @click.group("node", cls=LazyGroup, commands_at=VERBS)
 def command() -> None:
-    """List nodes and what they offer."""
+    """List nodes and show their interfaces."""

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""`manycore node info`, printed as `ros2 node info` prints."""
+"""`manycore node info`, with the output format of `ros2 node info`."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""`manycore node list`, printed as `ros2 node list` prints."""
+"""`manycore node list`, with the output format of `ros2 node list`."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ SHARED_NAME = (
 
 
 @click.command("list", epilog=examples("manycore node list", "manycore node list --json"))
-@click.option("-a", "--all", "everything", is_flag=True, help="The same as --include-hidden.")
+@click.option("-a", "--all", "everything", is_flag=True, help="Same as --include-hidden.")
 @count_option
 @hidden_option
 @discovery_options

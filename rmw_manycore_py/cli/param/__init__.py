@@ -15,4 +15,4 @@ VERBS = {
 
 @click.group("param", cls=LazyGroup, commands_at=VERBS)
 def command() -> None:
-    """Look at the parameters of nodes, and change them."""
+    """Get, set and manage the parameters of nodes."""

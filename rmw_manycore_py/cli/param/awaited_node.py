@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The node whose parameters a verb is about; it may still be starting."""
+"""The option --timeout of verbs on parameters, whose node may still be starting."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ timeout_option = click.option(
     type=float,
     default=DEFAULT_TIMEOUT_S,
     show_default=True,
-    help="Wait S seconds for the node to come up; for ever if negative.",
+    help="Wait up to S seconds for the node; forever if negative.",
 )
 
 
 def waited_for(platform: str, node: str, timeout_s: float) -> str:
-    """Return the full name of a node that is there, or comes within a timeout."""
+    """Return the full name of a node, waiting for it up to the timeout."""
     return existing_node(platform, node, timeout_s, "Node not found:")

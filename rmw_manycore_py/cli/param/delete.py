@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""`manycore param delete`, printed as `ros2 param delete` prints."""
+"""`manycore param delete`, with the output format of `ros2 param delete`."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from rmw_manycore_py.errors import ManycoreError
 @timeout_option
 @platform_option
 def command(node: str, parameter: str, timeout_s: float, platform: str) -> None:
-    """Delete a PARAMETER of NODE; only nodes that allow undeclared parameters do that."""
+    """Delete PARAMETER of NODE; the node has to allow undeclared parameters."""
     name = waited_for(platform, node, timeout_s)
     with tool_node(platform) as tool:
         ((_, result),) = Parameters(tool, name).set([parameter_of(parameter, None)])

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""`manycore param describe`, printed as `ros2 param describe` prints."""
+"""`manycore param describe`, with the output format of `ros2 param describe`."""
 
 from __future__ import annotations
 

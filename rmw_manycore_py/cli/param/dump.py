@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""`manycore param dump`, printed as `ros2 param dump` prints."""
+"""`manycore param dump`, with the output format of `ros2 param dump`."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""`manycore param get`, printed as `ros2 param get` prints."""
+"""`manycore param get`, with the output format of `ros2 param get`."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from rmw_manycore_py.cli.param.parameters import TYPES, Parameters
 @click.command("get", epilog=examples("manycore param get /controller gain"))
 @click.argument("node", shell_complete=complete_nodes)
 @click.argument("parameter")
-@click.option("--hide-type", is_flag=True, help="Print the value alone.")
+@click.option("--hide-type", is_flag=True, help="Print only the value.")
 @json_option
 @named_node_options
 @timeout_option
@@ -29,7 +29,7 @@ from rmw_manycore_py.cli.param.parameters import TYPES, Parameters
 def command(
     node: str, parameter: str, hide_type: bool, timeout_s: float, platform: str, as_json: bool
 ) -> None:
-    """Print the value of a PARAMETER of NODE."""
+    """Print the value of PARAMETER of NODE."""
     name = waited_for(platform, node, timeout_s)
     with tool_node(platform) as tool:
         ((kind, value),) = Parameters(tool, name).values([parameter])

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""`manycore param list`, printed as `ros2 param list` prints."""
+"""`manycore param list`, with the output format of `ros2 param list`."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _PREFIXES = "--param-prefixes"
 
 
 class _ManyPrefixes(click.Command):
-    """Gives --param-prefixes all words up to the next option, as ros2cli does; click cannot."""
+    """Gives --param-prefixes all words up to the next option, as ros2cli does."""
 
     @override
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
@@ -36,7 +36,7 @@ class _ManyPrefixes(click.Command):
         for word, following in zip(args, [*args[1:], "-"], strict=False):
             inside = word == _PREFIXES or (inside and not word.startswith("-"))
             if word == _PREFIXES:
-                expanded += [word] if following.startswith("-") else []  # click says what lacks
+                expanded += [word] if following.startswith("-") else []  # click reports it
             else:
                 expanded += [_PREFIXES, word] if inside else [word]
         return super().parse_args(ctx, expanded)
@@ -53,10 +53,12 @@ class _ManyPrefixes(click.Command):
     "prefixes",
     multiple=True,
     metavar="PREFIX",
-    help="Only parameters below PREFIX, and those that follow up to the next option.",
+    help="Only parameters below these prefixes, up to the next option.",
 )
-@click.option("--filter", "expression", metavar="REGEX", help="Only names that begin like that.")
-@click.option("--param-type", "shows_types", is_flag=True, help="Show the type of each.")
+@click.option(
+    "--filter", "expression", metavar="REGEX", help="Only names that match REGEX at their start."
+)
+@click.option("--param-type", "shows_types", is_flag=True, help="Show parameter types.")
 @hidden_option
 @discovery_options
 @json_option
@@ -70,7 +72,7 @@ def command(
     as_json: bool,
     hidden: bool,
 ) -> None:
-    """List the parameters of NODE, or of all nodes that have some."""
+    """List the parameters of NODE, or of all nodes."""
     wanted = _pattern(expression or "")
     if node:
         names = [existing_node(platform, node, missing="Node not found:")]

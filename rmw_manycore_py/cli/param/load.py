@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""`manycore param load`, printed as `ros2 param load` prints."""
+"""`manycore param load`, with the output format of `ros2 param load`."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ from rmw_manycore_py.errors import ManycoreError
 @click.command("load", epilog=examples("manycore param load /controller controller.yaml"))
 @click.argument("node", shell_complete=complete_nodes)
 @click.argument("file", type=click.Path(dir_okay=False, exists=True))
-@click.option("--no-use-wildcard", is_flag=True, help="Leave out parameters below /**.")
+@click.option("--no-use-wildcard", is_flag=True, help="Skip parameters below /**.")
 @named_node_options
 @timeout_option
 @platform_option
 def command(node: str, file: str, no_use_wildcard: bool, timeout_s: float, platform: str) -> None:
-    """Set the parameters of NODE that stand in a parameter FILE."""
+    """Set the parameters of NODE from a parameter FILE."""
     name = waited_for(platform, node, timeout_s)
     refused = []
     with tool_node(platform) as tool:

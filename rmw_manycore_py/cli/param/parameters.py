@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The parameters of a node, read and changed through its parameter services."""
+"""Client of the parameter services of a node."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from rmw_manycore_py.cli.common.tool_node import ANSWER_TIMEOUT_S, result_of
 from rmw_manycore_py.errors import EXIT_BAD_INPUT, ManycoreError
 from rmw_manycore_py.mapfile.format.document import read_yaml
 
-# By their number in rcl_interfaces/msg/ParameterType: the name, and how a value is introduced.
+# Index = value in rcl_interfaces/msg/ParameterType: the name, and ros2cli's label of a value.
 TYPES = (
     ("not set", "Parameter not set."),
     ("boolean", "Boolean value is:"),
@@ -28,7 +28,7 @@ TYPES = (
 
 
 class Parameters:
-    """The parameters of one node, as another node sees them."""
+    """Client of the parameters of one node."""
 
     def __init__(self, node: Any, name: str) -> None:
         from rclpy.parameter_client import AsyncParameterClient
@@ -44,7 +44,7 @@ class Parameters:
         return sorted(answer.result.names)
 
     def values(self, names: Sequence[str]) -> list[tuple[int, Any]]:
-        """Return type and value of each; ManycoreError where one is not declared."""
+        """Return type and value of each parameter; raise ManycoreError for undeclared ones."""
         from rclpy.parameter import parameter_value_to_python
 
         answer = self._answer(self._client.get_parameters(list(names)))
@@ -53,14 +53,14 @@ class Parameters:
         return [(value.type, parameter_value_to_python(value)) for value in answer.values]
 
     def descriptors(self, names: Sequence[str]) -> list[Any]:
-        """Return an rcl_interfaces ParameterDescriptor for each."""
+        """Return the rcl_interfaces ParameterDescriptor of each parameter."""
         answer = self._answer(self._client.describe_parameters(list(names)))
         if len(answer.descriptors) != len(names):
             raise self._not_set(names)
         return list(answer.descriptors)
 
     def set(self, parameters: Sequence[Any]) -> Iterator[tuple[str, Any]]:
-        """Set rcl_interfaces Parameters; yield name and SetParametersResult of each."""
+        """Set rcl_interfaces Parameters; yield each name with its SetParametersResult."""
         answer = self._answer(self._client.set_parameters(list(parameters)))
         for parameter, result in zip(parameters, answer.results, strict=True):
             yield parameter.name, result
@@ -76,7 +76,7 @@ class Parameters:
 
 
 def parameter_of(name: str, text: str | None) -> Any:
-    """Return an rcl_interfaces Parameter with a value written in YAML; None unsets it."""
+    """Return an rcl_interfaces Parameter with a value given in YAML; None unsets it."""
     from rcl_interfaces.msg import Parameter, ParameterValue
     from rclpy.parameter import get_parameter_value
 
@@ -85,14 +85,14 @@ def parameter_of(name: str, text: str | None) -> Any:
 
 
 def parameters_of_file(path: str, node: str, *, wildcard: bool = True) -> list[Any]:
-    """Return the rcl_interfaces Parameters that a parameter file has for a node.
+    """Return the rcl_interfaces Parameters for a node in a parameter file.
 
-    With `wildcard`, those for all nodes too.
+    With `wildcard`, include those for all nodes.
     """
     from rclpy.parameter import parameter_dict_from_yaml_file
 
     try:
-        owners = read_yaml(Path(path)).data.keys()  # within bounds, which rclpy does not have
+        owners = read_yaml(Path(path)).data.keys()  # bounded in size, unlike rclpy's loader
         fitting = ("/**", node, node.removeprefix("/"))[0 if wildcard else 1 :]
         sections = [name for name in fitting if name in owners]
         if not sections:
@@ -103,7 +103,7 @@ def parameters_of_file(path: str, node: str, *, wildcard: bool = True) -> list[A
 
 
 def nested(values: Iterable[tuple[str, Any]]) -> dict[str, Any]:
-    """Return parameters as they stand in a parameter file: a.b below a."""
+    """Return parameters nested as in a parameter file: a.b becomes b below a."""
     root: dict[str, Any] = {}
     for name, value in values:
         *groups, last = name.split(".")

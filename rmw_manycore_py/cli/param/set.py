@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""`manycore param set`, printed as `ros2 param set` prints."""
+"""`manycore param set`, with the output format of `ros2 param set`."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from rmw_manycore_py.errors import ManycoreError
 @timeout_option
 @platform_option
 def command(node: str, parameter: str, value: str, timeout_s: float, platform: str) -> None:
-    """Set a PARAMETER of NODE to a VALUE in YAML."""
+    """Set PARAMETER of NODE to VALUE, given in YAML."""
     name = waited_for(platform, node, timeout_s)
     with tool_node(platform) as tool:
         ((_, result),) = Parameters(tool, name).set([parameter_of(parameter, value)])

@@ -17,4 +17,4 @@ VERBS = {
 @click.group("service", cls=LazyGroup, commands_at=VERBS)
 @hidden_group_option("--include-hidden-services")
 def command() -> None:
-    """List services, call them, and see who calls them."""
+    """List, call and introspect services."""

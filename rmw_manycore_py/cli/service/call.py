@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""`manycore service call`, printed as `ros2 service call` prints."""
+"""`manycore service call`, with the output format of `ros2 service call`."""
 
 from __future__ import annotations
 
@@ -36,9 +36,9 @@ from rmw_manycore_py.cli.common.values_argument import DEFAULTS, values_argument
     "--rate",
     "rate_hz",
     type=click.FloatRange(min=0, min_open=True),
-    help="Call again and again, that often per second.",
+    help="Repeat the call at this rate in Hz.",
 )
-@click.option("--json", "as_json", is_flag=True, help="Print each response as a line of JSON.")
+@click.option("--json", "as_json", is_flag=True, help="Print one JSON object per response.")
 @platform_option
 def command(
     service: str,
@@ -48,7 +48,7 @@ def command(
     platform: str,
     as_json: bool,
 ) -> None:
-    """Call SERVICE with VALUES in YAML; waits for a server if there is none."""
+    """Call SERVICE with VALUES in YAML; wait for a server if there is none."""
     service_type = load_type(type_name, "srv")
     request = message_of(service_type.Request, parse_values(values or DEFAULTS))
     with tool_node(platform) as node:
@@ -70,7 +70,7 @@ def command(
 
 
 def _suggest(service: str, platform: str) -> None:
-    """Name the service that was probably meant."""
+    """Suggest a similar service name."""
     rows = view.services(view.endpoints_on(platform), hidden=True)
     served = [row["name"] for row in rows if row["servers"]]
     if meant := closest(service, served):

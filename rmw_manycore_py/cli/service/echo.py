@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""`manycore service echo`, printed as `ros2 service echo` prints."""
+"""`manycore service echo`, with the output format of `ros2 service echo`."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from rmw_manycore_py.cli.common.shown_options import shown_options
 from rmw_manycore_py.cli.common.tool_node import spin_once, tool_node
 from rmw_manycore_py.ros.names import expand
 
-# By their number in service_msgs/msg/ServiceEventInfo.
+# Index = value in service_msgs/msg/ServiceEventInfo.
 EVENTS = ("REQUEST_SENT", "REQUEST_RECEIVED", "RESPONSE_SENT", "RESPONSE_RECEIVED")
 
 
@@ -39,9 +39,9 @@ EVENTS = ("REQUEST_SENT", "REQUEST_RECEIVED", "RESPONSE_SENT", "RESPONSE_RECEIVE
 def command(
     service: str, type_name: str | None, shown: Shown, style: str | None, platform: str
 ) -> None:
-    """Print requests and responses of SERVICE, where a server or client publishes them.
+    """Print requests and responses of SERVICE if service introspection is enabled.
 
-    That is service introspection: nodes switch it on with configure_introspection().
+    Servers and clients enable it with configure_introspection().
     """
     service = expand(service, "/")
     service_type = load_type(type_name or _type_of(service, platform), "srv")
@@ -73,7 +73,7 @@ def _type_of(service: str, platform: str) -> str:
 
 
 def _text(event: Any, style: str | None, shown: Shown) -> str:
-    """Return an event, its kind by name except in CSV, as ros2cli has it."""
+    """Format an event; its kind is a name except in CSV, as in ros2cli."""
     if style == "csv":
         return to_csv(event, shown)
     plain = to_plain(event) if style == "json" else to_plain(event, shown)

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""`manycore service find`, printed as `ros2 service find` prints."""
+"""`manycore service find`, with the output format of `ros2 service find`."""
 
 from __future__ import annotations
 

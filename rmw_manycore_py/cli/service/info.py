@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""`manycore service info`, printed as `ros2 service info` prints."""
+"""`manycore service info`, with the output format of `ros2 service info`."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from rmw_manycore_py.cli.common.printing import print_json
 @json_option
 @platform_option
 def command(service: str, platform: str, as_json: bool) -> None:
-    """Show how many nodes serve SERVICE and how many use it."""
+    """Show the number of servers and clients of SERVICE."""
     rows = view.services(view.endpoints_on(platform), hidden=True)
     row = row_of(rows, service, "service")
     if as_json:

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""`manycore service list`, printed as `ros2 service list` prints."""
+"""`manycore service list`, with the output format of `ros2 service list`."""
 
 from __future__ import annotations
 
@@ -26,6 +26,6 @@ from rmw_manycore_py.cli.common.options import (
 @json_option
 @platform_option
 def command(platform: str, as_json: bool, show_types: bool, count: bool, hidden: bool) -> None:
-    """List the services of a platform, served or only asked for."""
+    """List the services of a platform, including those that only have clients."""
     rows = view.services(view.endpoints_on(platform), hidden=hidden)
     show_names(rows, as_json=as_json, types=show_types, count=count)

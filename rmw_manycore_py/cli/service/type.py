@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""`manycore service type`, printed as `ros2 service type` prints."""
+"""`manycore service type`, with the output format of `ros2 service type`."""
 
 from __future__ import annotations
 

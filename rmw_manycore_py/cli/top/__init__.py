@@ -31,7 +31,7 @@ from rmw_manycore_py.cli.top.rows import (
 from rmw_manycore_py.cli.top.screen import Choices, screen
 from rmw_manycore_py.look.watch import Look, Watch
 
-_PLAIN_WIDTH = 1000  # into a pipe or a file: no line is broken
+_PLAIN_WIDTH = 1000  # no line breaks in pipes and files
 
 
 @click.command(
@@ -48,17 +48,17 @@ _PLAIN_WIDTH = 1000  # into a pipe or a file: no line is broken
     type=click.FloatRange(min=0.1),
     default=1.0,
     show_default=True,
-    help="Seconds between two looks.",
+    help="Seconds between updates.",
 )
-@click.option("--count", type=click.IntRange(1), help="End after that many looks.")
-@click.option("--json", "as_json", is_flag=True, help="Print each look as a line of JSON.")
+@click.option("--count", type=click.IntRange(1), help="Exit after N updates.")
+@click.option("--json", "as_json", is_flag=True, help="Print one JSON object per update.")
 @click.option(
     "--nodes",
     "node_order",
     type=click.Choice(list(NODE_ORDERS)),
     default="cpu",
     show_default=True,
-    help="Order of the nodes.",
+    help="Sort order of the nodes.",
 )
 @click.option(
     "--topics",
@@ -66,10 +66,10 @@ _PLAIN_WIDTH = 1000  # into a pipe or a file: no line is broken
     type=click.Choice(list(TOPIC_ORDERS)),
     default="bytes",
     show_default=True,
-    help="Order of the topics.",
+    help="Sort order of the topics.",
 )
 @click.option(
-    "--filter", "pattern", default="", help="Only nodes and topics with this in their name."
+    "--filter", "pattern", default="", help="Only nodes and topics whose name contains this."
 )
 @platform_option
 def command(
@@ -81,7 +81,7 @@ def command(
     topic_order: str,
     pattern: str,
 ) -> None:
-    """Show nodes, topics and memory of a platform, until q or Ctrl-C.
+    """Show nodes, topics and memory of a platform until q or Ctrl-C.
 
     Keys: n and t change the order of nodes and topics, r reverses it, / filters, q quits.
     """
@@ -99,7 +99,7 @@ def command(
 
 
 def _looks(look_now: Callable[[], Look], period_s: float, count: int | None) -> Iterator[Look]:
-    """Yield a look per period, the first one after one period."""
+    """Yield one look per period; the first after one period."""
     look_now()
     done = 0
     while count is None or done < count:
@@ -111,14 +111,14 @@ def _looks(look_now: Callable[[], Look], period_s: float, count: int | None) -> 
 def _interact(
     look_now: Callable[[], Look], period_s: float, count: int | None, choices: Choices
 ) -> bool:
-    """Take the terminal until the end; tell whether it was there to be taken."""
+    """Run on the terminal; return whether there is a usable one."""
     interaction = Interaction(look_now, period_s, count, choices)
     while True:
         with single_keys(wanted=sys.stdout.isatty()) as keyboard:
             is_stopped = keyboard is not None and interaction.run(keyboard)
         if not is_stopped:
             return keyboard is not None
-        os.kill(os.getpid(), signal.SIGSTOP)  # until the shell lets it go on: fg, or bg
+        os.kill(os.getpid(), signal.SIGSTOP)  # until the shell continues it with fg or bg
 
 
 def _row(look: Look) -> dict[str, object]:

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""`manycore top` on a terminal: looks, keys and signals."""
+"""Interactive `manycore top`: looks, keys and signals."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ from rmw_manycore_py.cli.top.screen import Choices, screen
 from rmw_manycore_py.look.watch import Look
 from rmw_manycore_py.signals import STOP_SIGNALS, SignalInbox, signal_inbox
 
-_FIRST_S = 0.3  # the first figures soon
+_FIRST_S = 0.3  # show the first figures early
 
 
 class Interaction:
-    """Shows look after look on all of the terminal."""
+    """Redraws the full screen with each look."""
 
     def __init__(
         self, look_now: Callable[[], Look], period_s: float, count: int | None, choices: Choices
@@ -33,7 +33,7 @@ class Interaction:
         self._due_s = time.monotonic() + min(period_s, _FIRST_S)
 
     def run(self, keyboard: int) -> bool:
-        """Show it until a key, a signal or the last look ends it; tell whether Ctrl-Z did."""
+        """Run until a key, a signal or the last look; return whether Ctrl-Z ended it."""
         with (
             signal_inbox((*STOP_SIGNALS, signal.SIGTSTP)) as inbox,
             Live(auto_refresh=False, screen=True) as live,
@@ -52,7 +52,7 @@ class Interaction:
         return False
 
     def _type(self, keys: bytes) -> bool:
-        """Do what keys stand for; tell whether to go on."""
+        """Apply keys; return whether to continue."""
         after = after_keys(self._choices, keys.decode(errors="replace")) if keys else None
         self._choices = after or self._choices
         return after is not None

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What the keys of `manycore top` change."""
+"""Key bindings of `manycore top`."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ ESCAPE, ENTER, ERASE = "\x1b", "\r\n", "\x7f\b"
 
 
 def after_keys(choices: Choices, keys: str) -> Choices | None:
-    """Return what keys have made of the choices; None for the end."""
+    """Return the choices after these keys; None to quit."""
     if keys.startswith(ESCAPE) and len(keys) > 1:
-        return choices  # an arrow, or the like
+        return choices  # arrow or function key
     for key in keys:
         after = _typed(choices, key) if choices.is_typing else _command(choices, key)
         if after is None:

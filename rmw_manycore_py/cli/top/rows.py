@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What `manycore top` shows of a look: clusters, nodes, processes and topics."""
+"""Rows of `manycore top`: clusters, nodes, processes and topics."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _ASCENDING = {"cluster", "core", "node", "topic"}
 
 
 def cluster_rows(look: Look) -> list[Row]:
-    """Return the memory and the receive thread of each cluster."""
+    """Return a row per cluster: memory and receive thread."""
     rates_hz = look.loads.receive_thread_rates_hz()
     return [
         {
@@ -38,10 +38,10 @@ def cluster_rows(look: Look) -> list[Row]:
 
 
 def node_rows(look: Look) -> list[Row]:
-    """Return each node with its place and the share of a CPU that its process takes, in percent.
+    """Return a row per node with its placement and the CPU usage of its process, in percent.
 
-    Nodes of one process share that: `shared` says how many they are. A node that died is there,
-    too, until one of its name runs again.
+    Nodes of one process share this usage; `shared` is their number. A node that died stays listed
+    until a node of its name runs again.
     """
     living = [_node_row(look, m, name, "alive") for m in look.graph.members for name in m.nodes]
     return living + [_node_row(look, m, name, "died") for m in look.dead for name in m.nodes]
@@ -58,7 +58,7 @@ def _node_row(look: Look, member: Member, name: str, state: str) -> Row:
 
 
 def process_rows(look: Look) -> list[Row]:
-    """Return each process with its share of a CPU in percent, the busiest first."""
+    """Return a row per process with its CPU usage in percent, busiest first."""
     rows = [
         {**_place(member), "label": member.label, "cpu_percent": _percent(look, member.pid)}
         for member in look.graph.members
@@ -79,10 +79,10 @@ def process_rows(look: Look) -> list[Row]:
 
 
 def topic_rows(look: Look) -> list[Row]:
-    """Return each topic with what is published per second, the largest first.
+    """Return a row per topic with its publish rates per second, largest first.
 
-    `lost` counts what its subscriptions have missed since they exist. `queued` and `capacity` are
-    of its fullest queue. `p99_us` is None unless the platform is traced.
+    `lost` counts the messages its current subscriptions have missed. `queued` and `capacity` are
+    those of its fullest queue. `p99_us` is None unless the platform is traced.
     """
     rows = []
     for name, load in look.loads.topics.items():
@@ -103,7 +103,7 @@ def topic_rows(look: Look) -> list[Row]:
 
 
 def ordered(rows: Sequence[Row], column: str, *, reverse: bool = False) -> list[Row]:
-    """Return rows by a column: names from A on, figures from the largest; those without it last."""
+    """Sort rows by a column: names ascending, figures descending; missing values last."""
     descending = (column not in _ASCENDING) != reverse
     known = [row for row in rows if row[column] is not None]
     unknown = [row for row in rows if row[column] is None]

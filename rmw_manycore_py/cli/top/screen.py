@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""How `manycore top` looks."""
+"""Screen layout of `manycore top`."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ KEYS = "n t order of nodes, topics   r reverse   / filter   q quit"
 
 @dataclass(frozen=True)
 class Choices:
-    """What the keys have chosen."""
+    """Settings changed by keys."""
 
     node_order: str = "cpu"
     topic_order: str = "bytes"
@@ -40,7 +40,7 @@ class Choices:
 
 
 def screen(look: Look, choices: Choices, height: int | None = None) -> RenderableType:
-    """Return what is shown of a look; no higher than a terminal of so many lines."""
+    """Render a look, limited to `height` lines of the terminal if given."""
     nodes = ordered(
         _matching(node_rows(look), "node", choices),
         NODE_ORDERS[choices.node_order],
@@ -70,7 +70,7 @@ def _matching(rows: Sequence[Row], column: str, choices: Choices) -> list[Row]:
 
 
 def _share(nodes: int, topics: int, room: int | None) -> tuple[int, int]:
-    """Return how many of each are shown: half of the room is for either, if the other needs it."""
+    """Return how many rows of each are shown: each gets half of the room, or what is left over."""
     if room is None or nodes + topics <= room:
         return nodes, topics
     half = room // 2
@@ -132,7 +132,7 @@ def _topics(rows: Sequence[Row]) -> Table:
 
 
 def bar(percent: float, width: int = BAR_WIDTH) -> Text:
-    """Return a bar of that length, coloured by how full it is."""
+    """Return a bar coloured by how full it is."""
     filled = min(max(round(percent / 100 * width), 1 if percent >= 1 else 0), width)
     text = Text("█" * filled, style=_colour(percent))
     return text.append("·" * (width - filled), style="dim")

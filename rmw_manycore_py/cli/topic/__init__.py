@@ -20,4 +20,4 @@ VERBS = {
 @click.group("topic", cls=LazyGroup, commands_at=VERBS)
 @hidden_group_option("--include-hidden-topics")
 def command() -> None:
-    """List topics, look at what they carry, and publish."""
+    """List, inspect, publish, record and play topics."""

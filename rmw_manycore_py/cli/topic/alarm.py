@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What other threads end a `select` with."""
+"""Wake-up of a `select` from other threads."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import os
 
 
 class Alarm:
-    """Readable once it has been rung."""
+    """File descriptor that becomes readable once rung."""
 
     def __init__(self) -> None:
         self._descriptor = os.eventfd(0)
@@ -17,9 +17,9 @@ class Alarm:
         return self._descriptor
 
     def ring(self) -> None:
-        """Make it readable. Any thread."""
+        """Make it readable. Thread-safe."""
         os.eventfd_write(self._descriptor, 1)
 
     def close(self) -> None:
-        """Close it; no thread rings it any more."""
+        """Close it; no thread may ring it afterwards."""
         os.close(self._descriptor)

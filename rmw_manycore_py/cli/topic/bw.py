@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""`manycore topic bw`, printed as `ros2 topic bw` prints."""
+"""`manycore topic bw`, with the output format of `ros2 topic bw`."""
 
 from __future__ import annotations
 
@@ -21,9 +21,9 @@ def command(
     as_json: bool,
     sim_time: bool,
 ) -> None:
-    """Print the bandwidth of TOPIC once per second; messages are not deserialized.
+    """Print the bandwidth of TOPIC once per second, without deserializing messages.
 
-    Waits for a topic that nothing uses yet; with TYPE, subscribes to it at once.
+    Waits until TOPIC exists; with TYPE, subscribes at once.
     """
     meter = BandwidthMeter(window)
 

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""`manycore topic delay`, printed as `ros2 topic delay` prints."""
+"""`manycore topic delay`, with the output format of `ros2 topic delay`."""
 
 from __future__ import annotations
 
@@ -24,18 +24,18 @@ def command(
     as_json: bool,
     sim_time: bool,
 ) -> None:
-    """Print how old the messages of TOPIC are by the stamp in their header, once per second.
+    """Print the age of messages on TOPIC, by their header stamp, once per second.
 
-    Waits for a topic that nothing uses yet; with TYPE, subscribes to it at once.
+    Waits until TOPIC exists; with TYPE, subscribes at once.
     """
     meter = DelayMeter(window)
     printed: Delay | None = None
 
     def heard(message: Any) -> None:
         if not hasattr(message, "header"):
-            raise ManycoreError(f"msg does not have header: those of '{topic}' have no stamp")
+            raise ManycoreError(f"msg does not have header: messages of '{topic}' have no stamp")
         stamp, now_s = message.header.stamp, listener.now_s()
-        if now_s:  # simulated time is zero until /clock says more
+        if now_s:  # simulated time is zero until the first /clock
             meter.arrived(now_s - stamp.sec - stamp.nanosec * 1e-9)
 
     def show() -> None:

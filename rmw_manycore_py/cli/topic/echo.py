@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""`manycore topic echo`, printed as `ros2 topic echo` prints."""
+"""`manycore topic echo`, with the output format of `ros2 topic echo`."""
 
 from __future__ import annotations
 
@@ -42,23 +42,29 @@ _RAW_HEAD = "---Got new message, message info:---\n{}\n---Message data:---\n"
 @click.argument(
     "type_name", metavar="[TYPE]", required=False, shell_complete=complete_types_of_topic
 )
-@click.option("--once", is_flag=True, help="End after the first message.")
+@click.option("--once", is_flag=True, help="Exit after the first message.")
 @click.option(
     "--timeout",
     "timeout_s",
     type=click.FloatRange(min=0, min_open=True),
     metavar="S",
-    help="End after S seconds.",
+    help="Exit after S seconds.",
 )
-@click.option("--field", default="", metavar="PATH", help="Print only this part.")
-@click.option("--filter", "expression", metavar="EXPR", help="Print only what it holds for, as m.")
+@click.option("--field", default="", metavar="PATH", help="Print only this field.")
+@click.option(
+    "--filter", "expression", metavar="EXPR", help="Print messages m for which EXPR is true."
+)
 @shown_options
 @click.option("--raw", "style", flag_value="raw", help="Print the bytes of each message.")
 @click.option(
-    "-i", "--include-message-info", "with_info", is_flag=True, help="Print times and numbers."
+    "-i",
+    "--include-message-info",
+    "with_info",
+    is_flag=True,
+    help="Print timestamps and sequence numbers.",
 )
-@click.option("--no-lost-messages", "silent", is_flag=True, help="Do not tell of lost messages.")
-@click.option("--outside", is_flag=True, help="Listen in the DDS domain $ROS_DOMAIN_ID instead.")
+@click.option("--no-lost-messages", "silent", is_flag=True, help="Do not report lost messages.")
+@click.option("--outside", is_flag=True, help="Subscribe in the DDS domain $ROS_DOMAIN_ID instead.")
 @qos_request_options
 @discovery_options
 @platform_option
@@ -77,7 +83,7 @@ def command(
     silent: bool,
     outside: bool,
 ) -> None:
-    """Print the messages of TOPIC. TYPE is needed only while nobody uses the topic."""
+    """Print the messages of TOPIC. TYPE is needed only if the topic does not exist yet."""
     fulfils = message_filter(expression)
 
     def heard(message: Any, info: dict[str, Any]) -> None:
@@ -105,9 +111,9 @@ def command(
 
 
 def _text(part: Any, info: dict[str, Any] | None, style: str | None, shown: Shown) -> str:
-    """Return a message or a part of one, behind its times (ns since 1970) and numbers.
+    """Format a message or a field, after its timestamps (ns since 1970) and sequence numbers.
 
-    A part that is no message is written as Python does, as ros2cli has it.
+    A field that is no message is formatted by Python, as in ros2cli.
     """
     if style == "json":
         plain = to_plain(part)

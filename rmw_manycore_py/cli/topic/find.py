@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""`manycore topic find`, printed as `ros2 topic find` prints."""
+"""`manycore topic find`, with the output format of `ros2 topic find`."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""`manycore topic hz`, printed as `ros2 topic hz` prints."""
+"""`manycore topic hz`, with the output format of `ros2 topic hz`."""
 
 from __future__ import annotations
 
@@ -17,8 +17,10 @@ from rmw_manycore_py.cli.topic.meters.rate import Rate, RateMeter
 
 @click.command("hz", epilog=examples("manycore topic hz /chatter"))
 @measuring_options(1, 10000, "intervals")
-@click.option("--filter", "expression", metavar="EXPR", help="Count what it holds for, as m.")
-@click.option("--wall-time", is_flag=True, help="Measure by the wall clock, also with -s.")
+@click.option(
+    "--filter", "expression", metavar="EXPR", help="Count messages m for which EXPR is true."
+)
+@click.option("--wall-time", is_flag=True, help="Measure with the wall clock, even with -s.")
 def command(
     topic: str,
     type_name: str | None,
@@ -29,11 +31,11 @@ def command(
     as_json: bool,
     sim_time: bool,
 ) -> None:
-    """Print the rate of TOPIC once per second while messages come.
+    """Print the rate of TOPIC once per second while messages arrive.
 
-    They are not deserialized, unless there is a filter.
+    Messages are deserialized only for --filter.
 
-    Waits for a topic that nothing uses yet; with TYPE, subscribes to it at once.
+    Waits until TOPIC exists; with TYPE, subscribes at once.
     """
     meter, fulfils = RateMeter(window), message_filter(expression)
     printed: Rate | None = None
@@ -47,7 +49,7 @@ def command(
 
     def heard(message: Any) -> None:
         now_s = time.time() if wall_time else listener.now_s()
-        if now_s and fulfils(message):  # simulated time is zero until /clock says more
+        if now_s and fulfils(message):  # simulated time is zero until the first /clock
             meter.arrived(now_s)
 
     listener = Listener(

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""`manycore topic info`, printed as `ros2 topic info` prints."""
+"""`manycore topic info`, with the output format of `ros2 topic info`."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ from rmw_manycore_py.cli.common.rows import counters_row, endpoint_row
 @json_option
 @platform_option
 def command(topic: str, platform: str, as_json: bool, verbose: bool) -> None:
-    """Show who publishes TOPIC and who subscribes to it."""
+    """Show the publishers and subscriptions of TOPIC."""
     on_platform = view.endpoints_on(platform)
     endpoints = view.endpoints_of_topic(on_platform, topic)
     if not endpoints:
@@ -51,11 +51,11 @@ def command(topic: str, platform: str, as_json: bool, verbose: bool) -> None:
         for endpoint in found:
             click.echo(f"\n{describe(endpoint)}")
     if verbose:
-        click.echo()  # as ros2cli ends
+        click.echo()  # trailing blank line of ros2cli
 
 
 def describe(endpoint: EndpointInfo) -> str:
-    """Return one endpoint as `ros2 topic info --verbose` does, and below it where it runs."""
+    """Format an endpoint as `ros2 topic info --verbose` does, followed by its placement."""
     counters = counters_row(endpoint.counters)
     return "\n".join(
         (
@@ -68,6 +68,7 @@ def describe(endpoint: EndpointInfo) -> str:
             "QoS profile:",
             *(f"  {line}" for line in _describe_qos(endpoint.qos)),
             f"Cluster: {endpoint.cluster}",
+            *([f"Transfer: {endpoint.transfer}"] if endpoint.transfer != "dsm" else []),
             f"Matched: {endpoint.matched}",
             f"Counters: {', '.join(f'{name} {count}' for name, count in counters.items())}",
         )

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""`manycore topic list`, printed as `ros2 topic list` prints."""
+"""`manycore topic list`, with the output format of `ros2 topic list`."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from rmw_manycore_py.cli.common.rows import Row
 
 @click.command("list", epilog=examples("manycore topic list -t", "manycore topic list --json"))
 @types_option
-@click.option("-v", "--verbose", is_flag=True, help="Show who publishes and who subscribes.")
+@click.option("-v", "--verbose", is_flag=True, help="Show publishers and subscriptions.")
 @count_option
 @hidden_option
 @discovery_options

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Listening to one topic, for `topic echo`, `hz`, `bw` and `delay`."""
+"""Subscribe to one topic, for `topic echo`, `hz`, `bw` and `delay`."""
 
 from __future__ import annotations
 
@@ -24,12 +24,12 @@ ANY_QOS = QosOptions()
 
 
 class Listener:
-    """Subscribes to a topic of a platform, as its publishers offer it.
+    """Subscribes to a topic of a platform with the QoS its publishers offer.
 
-    `heard` is called with each message, and with what rclpy knows of it if it takes two arguments;
-    `lost` with the status of each event of lost messages; `subscribed` with the topic's full name
-    when it begins. Where `waits`, a topic that nothing uses yet is waited for; else its type has to
-    be given.
+    Calls `heard` with each message, plus rclpy's message info if it takes two arguments; `lost`
+    with the status of each message-lost event; `subscribed` with the full topic name once
+    subscribed. With `waits`, waits for a topic that does not exist yet; otherwise its type is
+    required.
     """
 
     def __init__(
@@ -57,19 +57,19 @@ class Listener:
             self._message_type()
 
     def every(self, period_s: float, call: Callable[[], None]) -> None:
-        """Call something once per period."""
+        """Call a function once per period."""
         self._timers.append((period_s, call))
 
     def stop(self) -> None:
-        """End `run` after the present message."""
+        """End `run` after the current message."""
         self._over = True
 
     def now_s(self) -> float:
-        """Return the time to measure with while `run` runs: simulated, or since 1970."""
+        """Return the time used for measuring in seconds: simulated, or since 1970."""
         return float(self._clock.now().nanoseconds * 1e-9)
 
     def run(self, timeout_s: float | None = None) -> None:
-        """Listen until stopped or interrupted, or until the time is over."""
+        """Spin until stopped, interrupted or timed out."""
         with tool_node(self._platform, sim_time=self._sim_time) as node:
             self._clock = node.get_clock()
             self._wait_for_topic(node)
@@ -96,7 +96,7 @@ class Listener:
     def _subscribe(self, node: Any) -> None:
         from rclpy.event_handler import SubscriptionEventCallbacks
 
-        # No more than every publisher offers, so that all are heard.
+        # Request no stronger QoS than every publisher offers, so that all match.
         endpoints = _endpoints(self._platform, self._topic)
         print_notices(mixed_offers(endpoints, self._qos))
         reliable, kept = offered_policies(endpoints)
@@ -117,7 +117,7 @@ class Listener:
 
 
 def type_of_topic(topic: str, endpoints: Iterable[EndpointInfo], known: Iterable[str] = ()) -> str:
-    """Return the one type of a topic; `known` are the names of all topics."""
+    """Return the single type of a topic; `known` are the names of all topics."""
     types = sorted({endpoint.type for endpoint in endpoints})
     if not types:
         meant = did_you_mean(topic, known) or "; give its type to wait for it"
@@ -142,9 +142,9 @@ def _topics(platform: str) -> list[str]:
 
 
 def offered_policies(endpoints: Iterable[EndpointInfo]) -> tuple[bool | None, bool | None]:
-    """Return whether all publishers of a topic are reliable, and whether all keep messages.
+    """Return whether all publishers of a topic are reliable, and whether all are transient local.
 
-    None where there is no publisher yet.
+    Both are None without publishers.
     """
     offers = [e.qos for e in endpoints if e.kind == "publisher"]
     if not offers:
@@ -153,7 +153,7 @@ def offered_policies(endpoints: Iterable[EndpointInfo]) -> tuple[bool | None, bo
 
 
 def mixed_offers(endpoints: Iterable[EndpointInfo], asked: QosOptions) -> Iterator[str]:
-    """Yield what a user has to know of policies that only some publishers of a topic offer."""
+    """Yield notices about policies that only some publishers of a topic offer."""
     offers = [e.qos for e in endpoints if e.kind == "publisher"]
     policies = (
         (asked.reliability, {qos.reliability for qos in offers}, "reliable", "best_effort"),
@@ -161,4 +161,4 @@ def mixed_offers(endpoints: Iterable[EndpointInfo], asked: QosOptions) -> Iterat
     )
     for wanted, offered, strong, weak in policies:
         if wanted is None and len(offered) > 1:
-            yield f"some, but not all, publishers offer {strong}; asking for {weak} to hear all"
+            yield f"some, but not all, publishers offer {strong}; requesting {weak} to match all"

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What `topic hz`, `bw` and `delay` have in common: arguments, and a line per second."""
+"""Arguments and output shared by `topic hz`, `bw` and `delay`."""
 
 from __future__ import annotations
 
@@ -22,14 +22,14 @@ Command = TypeVar("Command", bound=Callable[..., Any])
 
 
 def measuring_options(least: int, default: int, of: str) -> Callable[[Command], Command]:
-    """Add TOPIC, TYPE, how much to look back on, and the form of the results."""
+    """Add TOPIC, TYPE, the window size and the output options."""
 
     def decorate(command: Command) -> Command:
         for decorator in (
             platform_option,
             talking_options,
             click.option(
-                "--json", "as_json", is_flag=True, help="Print each result as a line of JSON."
+                "--json", "as_json", is_flag=True, help="Print one JSON object per result."
             ),
             click.option(
                 "-w",
@@ -37,7 +37,7 @@ def measuring_options(least: int, default: int, of: str) -> Callable[[Command], 
                 type=click.IntRange(least),
                 default=default,
                 show_default=True,
-                help=f"Number of {of} to look back on.",
+                help=f"Window size, in {of}.",
             ),
             click.argument(
                 "type_name",
@@ -54,5 +54,5 @@ def measuring_options(least: int, default: int, of: str) -> Callable[[Command], 
 
 
 def print_result(result: DataclassInstance, as_json: bool) -> None:
-    """Print one result: its text, or its fields."""
+    """Print one result as text or JSON."""
     click.echo(json.dumps(asdict(result)) if as_json else result)

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""A part of a message by its path, such as pose.position or status[0].name; and filters."""
+"""Message fields by path, such as pose.position or status[0].name; and message filters."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _INDEX = re.compile(r"-?\d+")
 
 
 def part_of(message: Any, path: str) -> Any:
-    """Return the part of a message that a path leads to; an empty path leads to the message."""
+    """Return the field of a message at a path; an empty path returns the message."""
     value = message
     for step in filter(None, path.split(".")):
         match = _STEP.fullmatch(step)
@@ -42,13 +42,13 @@ def _element(value: Any, index: int, step: str) -> Any:
 
 
 def message_filter(expression: str | None) -> Callable[[Any], bool]:
-    """Return what tells whether a message `m` fulfils a Python expression."""
+    """Return a predicate that evaluates a Python expression on a message `m`."""
     if expression is None:
         return lambda _message: True
     try:
         code = compile(expression, "the filter", "eval")
     except (SyntaxError, ValueError) as error:
-        raise _wrong(f"the filter is no Python expression: {error}") from error
+        raise _wrong(f"the filter is not a Python expression: {error}") from error
 
     def fulfils(message: Any) -> bool:
         try:

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""A listener in a DDS domain, for `topic echo --outside`: what others hear of a platform."""
+"""Subscription in a DDS domain, for `topic echo --outside`: the external view of a platform."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.launch.processes.environment import OUTSIDE_IMPLEMENTATION, outside_environment
 from rmw_manycore_py.ros.names import expand
 
-# Who publishes is looked up as often until somebody does.
+# Period at which the listener looks for publishers.
 _LOOK_S = 0.1
 
 
 class OutsideListener:
-    """Subscribes as soon as somebody publishes the topic in $ROS_DOMAIN_ID."""
+    """Subscribes once the topic has a publisher in $ROS_DOMAIN_ID."""
 
     def __init__(
         self,
@@ -38,11 +38,11 @@ class OutsideListener:
         self._over = False
 
     def stop(self) -> None:
-        """End `run` after the present message."""
+        """End `run` after the current message."""
         self._over = True
 
     def run(self, timeout_s: float | None = None) -> None:
-        """Listen until stopped or interrupted, or until the time is over."""
+        """Spin until stopped, interrupted or timed out."""
         import rclpy
         from rclpy.executors import ExternalShutdownException
 
@@ -77,7 +77,7 @@ class OutsideListener:
 
 
 def leave_middleware() -> None:
-    """Restart this program with Fast DDS loaded, unless it has been told to use that."""
+    """Re-execute this program with Fast DDS, unless it uses that already."""
     if os.environ.get("RMW_IMPLEMENTATION") != OUTSIDE_IMPLEMENTATION:
         restart(outside_environment())
 

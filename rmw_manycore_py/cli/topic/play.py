@@ -16,7 +16,7 @@ from rmw_manycore_py.cli.topic.selection_options import (
     full_names,
     regex_option,
 )
-from rmw_manycore_py.recording.library import require_library
+from rmw_manycore_py.recording.mcap_support import require_library
 from rmw_manycore_py.recording.selection import Selection
 from rmw_manycore_py.ros.names import expand
 
@@ -51,14 +51,14 @@ def _remappings(
     type=click.FloatRange(0.01, 1000),
     default=1.0,
     show_default=True,
-    help="How much faster than recorded.",
+    help="Playback speed relative to the recording.",
 )
 @click.option(
     "--topics",
     "names",
     metavar="TOPIC",
     multiple=True,
-    help="Only this topic or pattern; may be repeated.",
+    help="Play only this topic or pattern; may be repeated.",
 )
 @regex_option
 @exclude_option
@@ -70,9 +70,9 @@ def _remappings(
     metavar="OLD:=NEW",
     multiple=True,
     callback=_remappings,
-    help="Play a topic under another name; may be repeated.",
+    help="Remap a topic; may be repeated.",
 )
-@click.option("-l", "--loop", is_flag=True, help="Begin again at the end.")
+@click.option("-l", "--loop", is_flag=True, help="Loop at the end.")
 @click.option(
     "--clock",
     "clock_hz",
@@ -80,7 +80,7 @@ def _remappings(
     type=click.FloatRange(min=0, min_open=True),
     is_flag=False,
     flag_value=_CLOCK_HZ,
-    help=f"Publish /clock, {_CLOCK_HZ:g} times per second unless said.",
+    help=f"Publish /clock, {_CLOCK_HZ:g} times per second by default.",
 )
 @click.option(
     "-d",
@@ -97,7 +97,7 @@ def _remappings(
     metavar="S",
     type=click.FloatRange(min=0),
     default=0.0,
-    help="Leave out the first S seconds of the recording.",
+    help="Skip the first S seconds of the recording.",
 )
 @click.option(
     "--duration",
@@ -105,10 +105,10 @@ def _remappings(
     "duration_s",
     metavar="S",
     type=click.FloatRange(min=0),
-    help="Play S seconds of the recording.",
+    help="Play only S seconds of the recording.",
 )
-@click.option("-p", "--start-paused", "paused", is_flag=True, help="Begin paused.")
-@click.option("--disable-keyboard-controls", "keyless", is_flag=True, help="Take no keys.")
+@click.option("-p", "--start-paused", "paused", is_flag=True, help="Start paused.")
+@click.option("--disable-keyboard-controls", "keyless", is_flag=True, help="Disable the keys.")
 @click.option("--outside", is_flag=True, help="Play in the DDS domain $ROS_DOMAIN_ID instead.")
 @click.option("--json", "as_json", is_flag=True, help="Print what was played as JSON.")
 @platform_option
@@ -131,11 +131,11 @@ def command(
     as_json: bool,
     platform: str,
 ) -> None:
-    """Publish what RECORDING has, each message when it is its turn.
+    """Publish the messages of RECORDING with their recorded timing.
 
-    RECORDING is a file in MCAP, or a folder of rosbag2 with such files. Topics are published with
-    the QoS that was recorded. Keys on a terminal: space pauses, right plays the next message while
-    paused, up and down change the rate.
+    RECORDING is an MCAP file, or a rosbag2 directory of such files. Topics are published with their
+    recorded QoS. Keys on a terminal: space pauses, right plays the next message while paused, up
+    and down change the rate.
     """
     require_library()
     if outside:

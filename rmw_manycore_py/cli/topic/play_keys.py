@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The keys of a player on a terminal, those of `ros2 bag play`."""
+"""Keys of a player on a terminal, as in `ros2 bag play`."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ _ARROWS = {"A": "up", "B": "down", "C": "right"}
 
 
 def press(position: Position, typed: str) -> None:
-    """Do what keys stand for; others are passed over."""
+    """Apply keys; ignore unknown ones."""
     for key in _keys(typed):
         if key == " ":
             position.toggle_pause()
@@ -25,7 +25,7 @@ def press(position: Position, typed: str) -> None:
 
 
 def _keys(typed: str) -> Iterator[str]:
-    """Yield keys; a terminal sends an arrow as ESC [ and a letter, or as ESC O and a letter."""
+    """Yield keys; a terminal sends an arrow as ESC [ letter or ESC O letter."""
     rest = typed
     while rest:
         if rest[:2] in ("\x1b[", "\x1bO"):

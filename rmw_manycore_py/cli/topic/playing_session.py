@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""A playback from its begin to its end or Ctrl-C, and what is said of it."""
+"""Playback session, from start to end or Ctrl-C, with its status output."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ class Settings:
 
 
 def play(platform: str | None, settings: Settings, *, as_json: bool) -> None:
-    """Play to a platform, or outside where it is None, until the end or until told to stop."""
+    """Play to a platform, or to DDS if it is None, until the end or a signal."""
     with Recording(settings.path) as recording, closing(_stage(platform)) as stage:
         print_notices(recording.faults)
         position = Position(settings.rate, paused=settings.paused)

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""`manycore topic pub`, printed as `ros2 topic pub` prints."""
+"""`manycore topic pub`, with the output format of `ros2 topic pub`."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from rmw_manycore_py.cli.common.values_argument import DEFAULTS, exclude, values
 from rmw_manycore_py.cli.topic.qos_options import QosOptions, qos_options
 from rmw_manycore_py.cli.topic.subscribers import wait_for_subscriptions
 
-# How long the node stays after its last message, for late ends of its matches to see it.
+# Lifetime of the node after its last message, so that slow subscribers can take it.
 KEEP_ALIVE_S = 0.1
 
 
@@ -42,7 +42,7 @@ KEEP_ALIVE_S = 0.1
     "--yaml-file",
     "file",
     type=click.Path(dir_okay=False, exists=True, path_type=Path),
-    help="Publish the messages of a file in turn, as `topic echo` writes them.",
+    help="Publish the messages of a YAML file in turn, as printed by `topic echo`.",
 )
 @click.option(
     "-r",
@@ -54,8 +54,10 @@ KEEP_ALIVE_S = 0.1
     show_default=True,
     help="Messages per second.",
 )
-@click.option("-1", "--once", is_flag=True, help="Publish one message and end.")
-@click.option("-t", "--times", type=click.IntRange(0), default=0, help="Publish that many and end.")
+@click.option("-1", "--once", is_flag=True, help="Publish one message and exit.")
+@click.option(
+    "-t", "--times", type=click.IntRange(0), default=0, help="Publish N messages and exit."
+)
 @click.option(
     "-p",
     "--print",
@@ -64,21 +66,21 @@ KEEP_ALIVE_S = 0.1
     type=click.IntRange(0),
     default=1,
     show_default=True,
-    help="Print every N-th message.",
+    help="Print every Nth message.",
 )
 @click.option(
     "-w",
     "--wait-matching-subscriptions",
     "wanted",
     type=click.IntRange(0),
-    help="Begin when that many subscriptions match; by default 1 with --once and --times, else 0.",
+    help="Wait for N matching subscriptions; default: 1 with --once and --times, else 0.",
 )
 @click.option(
     "--max-wait-time-secs",
-    "patience_s",
+    "timeout_s",
     metavar="S",
     type=click.FloatRange(min=0, min_open=True),
-    help="Give up when they do not match within S seconds.",
+    help="Give up waiting after S seconds.",
 )
 @click.option(
     "--keep-alive",
@@ -87,7 +89,7 @@ KEEP_ALIVE_S = 0.1
     type=click.FloatRange(min=0),
     default=KEEP_ALIVE_S,
     show_default=True,
-    help="Stay S seconds after the last message.",
+    help="Keep the publisher alive S seconds after the last message.",
 )
 @click.option("-n", "--node-name", metavar="NAME", help="Name of the publishing node.")
 @qos_options
@@ -103,7 +105,7 @@ def command(
     times: int,
     shown: int,
     wanted: int | None,
-    patience_s: float | None,
+    timeout_s: float | None,
     keep_alive_s: float,
     node_name: str | None,
     qos: QosOptions,
@@ -112,15 +114,15 @@ def command(
 ) -> None:
     """Publish messages of TYPE on TOPIC, with VALUES in YAML and defaults elsewhere.
 
-    The word `auto` stands for a header, and `now` for a time, of the moment of publishing.
+    `auto` for a header and `now` for a time stand for the time of publishing.
     """
     exclude(("--yaml-file", file is not None), ("VALUES", values is not None))
     exclude(("--once", once), ("--times", times > 0))
     times = 1 if once else times
     wanted = int(times > 0) if wanted is None else wanted
-    if patience_s is not None and not wanted:
+    if timeout_s is not None and not wanted:
         raise click.UsageError(
-            "--max-wait-time-secs needs --wait-matching-subscriptions, --once or --times."
+            "--max-wait-time-secs requires --wait-matching-subscriptions, --once or --times."
         )
     message_type = load_type(type_name)
     given = read_values(file) if file else [parse_values(values or DEFAULTS)]
@@ -128,9 +130,9 @@ def command(
         message_of(message_type, fields, Time())
     with tool_node(platform, node_name, sim_time=sim_time) as node:
         publisher = node.create_publisher(message_type, topic, qos.profile())
-        wait_for_subscriptions(node, publisher, wanted, patience_s)
+        wait_for_subscriptions(node, publisher, wanted, timeout_s)
         click.echo("publisher: beginning loop")
-        turns = given if file else repeat(given[0])  # those of a file once each
+        turns = given if file else repeat(given[0])  # messages of a file once each
         for fields, number in zip(turns, _ticks(node, 1 / rate_hz, times), strict=False):
             message = message_of(message_type, fields, node.get_clock().now().to_msg())
             if shown and number % shown == 0:
@@ -140,7 +142,7 @@ def command(
 
 
 def _ticks(node: Any, period_s: float, times: int) -> Iterator[int]:
-    """Yield 1, 2, ... once per period, as often as asked for or, if that is 0, for ever."""
+    """Yield 1, 2, ... once per period, `times` in all; forever if that is 0."""
 
     def now_s() -> float:
         return float(node.get_clock().now().nanoseconds * 1e-9)

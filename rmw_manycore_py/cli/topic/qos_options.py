@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The options --qos-* of verbs that publish, and of those that listen."""
+"""The options --qos-* of verbs that publish and of verbs that subscribe."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ import click
 
 _Command = Callable[..., None]
 
-# The words of rclpy, which is not imported for the sake of --help.
+# Names of rclpy, which --help does not import.
 PRESETS = (
     *("unknown", "default", "system_default", "sensor_data", "services_default", "parameters"),
     *("parameter_events", "action_status_default", "best_available"),
@@ -29,7 +29,7 @@ _PUBLISHING, _LISTENING = "default", "sensor_data"
 
 @dataclass(frozen=True)
 class QosOptions:
-    """What was asked for, as ROS 2 names it; None = what the preset has."""
+    """Requested QoS, in ROS 2 terms; None takes the value of the preset."""
 
     preset: str = _LISTENING
     reliability: str | None = None
@@ -40,9 +40,9 @@ class QosOptions:
     lease_s: float | None = None
 
     def profile(self, *, reliable: bool | None = None, kept: bool | None = None) -> Any:
-        """Return it as an rclpy QoSProfile.
+        """Return the rclpy QoSProfile.
 
-        :param reliable, kept: what publishers offer, for policies that were not asked for.
+        :param reliable, kept: what publishers offer, for policies that were not requested.
         """
         from rclpy import qos
         from rclpy.duration import Duration
@@ -68,7 +68,7 @@ def _offered(offer: bool | None, strong: str, weak: str) -> str | None:
 
 
 def _qos_options(preset: str, unasked: str) -> Callable[[_Command], _Command]:
-    """Return a decorator; `unasked` says what holds for policies that are not given."""
+    """Return a decorator; `unasked` describes policies that are not given."""
 
     def policy(name: str) -> Callable[[_Command], _Command]:
         return click.option(f"--qos-{name}", name, type=click.Choice(POLICIES[name]))
@@ -80,7 +80,7 @@ def _qos_options(preset: str, unasked: str) -> Callable[[_Command], _Command]:
             type=click.Choice(PRESETS),
             default=preset,
             show_default=True,
-            help=f"Preset; for policies that are not given, {unasked}.",
+            help=f"QoS preset; for policies not given, {unasked}.",
         )
         @policy("reliability")
         @policy("durability")
@@ -103,7 +103,7 @@ def _qos_options(preset: str, unasked: str) -> Callable[[_Command], _Command]:
     return decorate
 
 
-# Give a command the options --qos-*, which reach it as the argument `qos`.
+# Add the options --qos-* to a command, as the argument `qos`.
 qos_options = _qos_options(_PUBLISHING, "it decides")
 qos_request_options = _qos_options(
     _LISTENING, "it decides, but reliability and durability are what all publishers offer"

@@ -18,12 +18,12 @@ from rmw_manycore_py.cli.topic.selection_options import (
     nothing_chosen,
     regex_option,
 )
-from rmw_manycore_py.recording.library import require_library
+from rmw_manycore_py.recording.mcap_support import require_library
 from rmw_manycore_py.recording.selection import Selection
 
-_MAX_CACHE_BYTES = 100 << 20  # as rosbag2
-# So many messages of a topic wait for the recorder while others have the CPU; more where publishers
-# keep more.
+_MAX_CACHE_BYTES = 100 << 20  # default of rosbag2
+# Queue depth of the recorder's subscriptions, for when other processes have the CPU; publishers
+# with a larger history raise it.
 _DEPTH = 1000
 
 
@@ -37,7 +37,9 @@ _DEPTH = 1000
     ),
 )
 @click.argument("topics", nargs=-1, shell_complete=complete_topics)
-@click.option("-a", "--all", "everything", is_flag=True, help="All topics that are not hidden.")
+@click.option(
+    "-a", "--all", "everything", is_flag=True, help="Record all topics that are not hidden."
+)
 @regex_option
 @click.option(
     "--topic-types",
@@ -45,32 +47,32 @@ _DEPTH = 1000
     metavar="TYPE",
     multiple=True,
     shell_complete=complete_message_types,
-    help="Topics of this type; may be repeated.",
+    help="Record topics of this type; may be repeated.",
 )
 @exclude_option
 @exclude_regex_option
-@click.option("--include-hidden-topics", "hidden", is_flag=True, help="Also hidden ones.")
+@click.option("--include-hidden-topics", "hidden", is_flag=True, help="Also record hidden topics.")
 @click.option(
     "-o",
     "--output",
     type=click.Path(path_type=Path),
     show_default="rosbag2_<date>-<time>",
-    help="A file that ends in .mcap, or a folder as `ros2 bag record` makes it.",
+    help="File ending in .mcap, or a rosbag2 directory.",
 )
-@click.option("--force", is_flag=True, help="Replace the recording that is there.")
+@click.option("--force", is_flag=True, help="Overwrite an existing recording.")
 @click.option(
     "--duration",
     "duration_s",
     type=click.FloatRange(min=0, min_open=True),
     metavar="S",
-    help="End after S seconds.",
+    help="Stop after S seconds.",
 )
 @click.option(
     "--compression",
     type=click.Choice(("none", "lz4", "zstd")),
     default="none",
     show_default=True,
-    help="Of chunks.",
+    help="Compression of chunks.",
 )
 @click.option(
     "--max-cache-size",
@@ -79,7 +81,7 @@ _DEPTH = 1000
     type=click.IntRange(0),
     default=_MAX_CACHE_BYTES,
     show_default=True,
-    help="Messages that wait for the disk take so much memory at most.",
+    help="Maximum memory for messages waiting to be written.",
 )
 @click.option(
     "--depth",
@@ -87,7 +89,7 @@ _DEPTH = 1000
     type=click.IntRange(1),
     default=_DEPTH,
     show_default=True,
-    help="Messages of a topic that may wait to be taken, at least.",
+    help="Minimum queue depth per topic.",
 )
 @click.option("--outside", is_flag=True, help="Record in the DDS domain $ROS_DOMAIN_ID instead.")
 @click.option("--json", "as_json", is_flag=True, help="Print what was recorded as JSON.")
@@ -112,9 +114,9 @@ def command(
 ) -> None:
     """Record TOPICS in MCAP, for Foxglove, PlotJuggler, `ros2 bag` and `manycore topic play`.
 
-    TOPICS are names, or patterns: * stands for anything within a part of a name, ** for any
-    number of parts. Topics that appear later are recorded, too. Ends with Ctrl-C; what a kill
-    leaves can be read. Lost messages are counted.
+    TOPICS are names or patterns: * matches within one part of a name, ** any number of parts.
+    Topics that appear later are recorded as well. Stop with Ctrl-C; after a kill, the file is
+    still readable. Lost messages are counted.
     """
     if not (topics or everything or regex or types):
         raise nothing_chosen()

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""A recording from its begin to Ctrl-C, and what is said of it."""
+"""Recording session, from start to Ctrl-C, with its status output."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ class Settings:
 
 
 def record(platform: str | None, settings: Settings, *, as_json: bool) -> None:
-    """Record on a platform, or outside where it is None, until told to stop."""
+    """Record a platform, or DDS if it is None, until stopped."""
     line = StatusLine(quiet=as_json)
     began_s = time.monotonic()
     with signal_inbox() as inbox, closing(_side(platform)) as side, closing(Alarm()) as ended:
@@ -47,7 +47,7 @@ def record(platform: str | None, settings: Settings, *, as_json: bool) -> None:
         output = Output(settings.target.file, settings.compression)
         writing = WritingThread(output, settings.cache_bytes, ended.ring)
         recorder = Recorder(side, settings.selection, writing, settings.depth, line.say)
-        line.say(f"writing {settings.target.file}; Ctrl-C ends")
+        line.say(f"writing {settings.target.file}; Ctrl-C stops")
         try:
             recorder.start(ended.ring)
             with selectors.DefaultSelector() as selector:
@@ -85,7 +85,7 @@ def _wait(
     line: StatusLine,
     progress: Callable[[], str],
 ) -> None:
-    """Show how it goes until a signal comes, the time is over, or the recorder ends."""
+    """Show progress until a signal, the end of the duration, or the end of the recorder."""
     began_s = time.monotonic()
     while not selector.select(_pause_s(line, began_s, duration_s)):
         if duration_s is not None and time.monotonic() - began_s >= duration_s:

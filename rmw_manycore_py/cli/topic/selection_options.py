@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The options that say which topics are recorded or played."""
+"""Options that select the topics to record or play."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def _compiled(
     try:
         return None if text is None else re.compile(text)
     except re.error as error:
-        raise click.BadParameter(f"'{text}' is no regular expression: {error}") from error
+        raise click.BadParameter(f"'{text}' is not a regular expression: {error}") from error
 
 
 regex_option = click.option(
@@ -26,33 +26,33 @@ regex_option = click.option(
     "--regex",
     metavar="REGEX",
     callback=_compiled,
-    help="Topics whose names this is found in.",
+    help="Select topics whose name contains a match of REGEX.",
 )
 exclude_regex_option = click.option(
     "-x",
     "--exclude-regex",
     metavar="REGEX",
     callback=_compiled,
-    help="None whose names this is found in.",
+    help="Exclude topics whose name contains a match of REGEX.",
 )
 exclude_option = click.option(
     "--exclude-topics",
     "excluded",
     metavar="TOPIC",
     multiple=True,
-    help="Not this topic or pattern; may be repeated.",
+    help="Exclude this topic or pattern; may be repeated.",
 )
 
 
 def full_names(names: Iterable[str]) -> tuple[str, ...]:
-    """Return names and patterns with their leading slash."""
+    """Return names and patterns with a leading slash."""
     return tuple(expand(name, "/") for name in names)
 
 
 def nothing_chosen() -> ManycoreError:
-    """Return the error that no topics were asked for."""
+    """Return the error for a missing selection of topics."""
     return ManycoreError(
-        "which topics? Name some, or patterns such as '/camera/*', or --all, --regex or "
+        "no topics given: expected names, patterns such as '/camera/*', --all, --regex or "
         "--topic-types",
         EXIT_BAD_INPUT,
     )

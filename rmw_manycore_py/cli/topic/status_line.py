@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""How a recording or a playback is going: one line on a terminal, else a line now and then."""
+"""Progress of a recording or playback: one line on a terminal, else occasional lines."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ _CLEAR = "\r\x1b[K"
 
 
 class StatusLine:
-    """Writes to standard error, below what is said once."""
+    """Writes to standard error, below permanent lines."""
 
     def __init__(self, *, quiet: bool = False) -> None:
         self._quiet = quiet
@@ -21,13 +21,13 @@ class StatusLine:
 
     @property
     def period_s(self) -> float | None:
-        """Return how often to show, None = never."""
+        """Return the update period; None = never."""
         if self._quiet:
             return None
         return TERMINAL_PERIOD_S if self._is_terminal else LINE_PERIOD_S
 
     def show(self, text: str) -> None:
-        """Show how it is going, unless that was done shortly before."""
+        """Show progress, unless it was shown shortly before."""
         now_s = time.monotonic()
         if self.period_s is None or now_s - self._said_s < self.period_s:
             return
@@ -35,12 +35,12 @@ class StatusLine:
         self._write(f"{_CLEAR}{text}" if self._is_terminal else f"{text}\n")
 
     def say(self, text: str) -> None:
-        """Say something that stays."""
+        """Print a permanent line."""
         if not self._quiet:
             self._write(f"{_CLEAR}{text}\n" if self._is_terminal else f"{text}\n")
 
     def clear(self) -> None:
-        """Leave the line empty."""
+        """Clear the line."""
         if self._is_terminal and not self._quiet:
             self._write(_CLEAR)
 

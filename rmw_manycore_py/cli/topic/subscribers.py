@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Waiting for the subscriptions of a publisher."""
+"""Wait for matching subscriptions of a publisher."""
 
 from __future__ import annotations
 
@@ -11,22 +11,20 @@ import click
 from rmw_manycore_py.cli.common.tool_node import spin_once
 from rmw_manycore_py.errors import ManycoreError
 
-# How often a waiting publisher says so.
+# Period of the waiting message.
 TOLD_PERIOD_S = 1.0
 
 
-def wait_for_subscriptions(
-    node: Any, publisher: Any, wanted: int, patience_s: float | None
-) -> None:
+def wait_for_subscriptions(node: Any, publisher: Any, wanted: int, timeout_s: float | None) -> None:
     """Spin until that many subscriptions match.
 
-    :raises ManycoreError: when they do not within `patience_s`; None waits for ever.
+    :raises ManycoreError: if fewer match within `timeout_s`; None waits forever.
     """
     start_s = time.monotonic()
-    told = 0  # once per second
+    told = 0  # messages printed, one per second
     while (found := publisher.get_subscription_count()) < wanted:
         waited_s = time.monotonic() - start_s
-        if told and patience_s is not None and waited_s >= patience_s:
+        if told and timeout_s is not None and waited_s >= timeout_s:
             raise ManycoreError(
                 f"Timed out waiting for subscribers: Expected {wanted} subscribers "
                 f"but only got {found} subscribers"

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""`manycore topic type`, printed as `ros2 topic type` prints."""
+"""`manycore topic type`, with the output format of `ros2 topic type`."""
 
 from __future__ import annotations
 
@@ -20,5 +20,5 @@ from rmw_manycore_py.cli.common.options import (
 @discovery_options
 @platform_option
 def command(topic: str, platform: str) -> None:
-    """Print the type of TOPIC, a hidden one too."""
+    """Print the type of TOPIC, including hidden topics."""
     show_types(view.topics(view.endpoints_on(platform), hidden=True), topic, "topic")

@@ -23,4 +23,4 @@ VERBS = {
     ),
 )
 def command() -> None:
-    """Record what nodes, receive threads and messages do, and see where the time goes."""
+    """Trace nodes, receive threads and messages, and analyse latency."""

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""A picture of where the time goes in chains."""
+"""Bar chart of the latency of chains."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _HOPS = ("bridge", "communication", "node")
 
 
 def plot(chains: Sequence[ChainLatency], path: Path) -> None:
-    """Draw a bar for each chain, made of its hops' medians."""
+    """Draw a stacked bar per chain from the medians of its hops."""
     figure = load_figure()(figsize=(10, 1.5 + len(chains)), layout="constrained")
     axes = figure.subplots()
     for row, one in enumerate(chains):

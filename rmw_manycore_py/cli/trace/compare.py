@@ -22,9 +22,9 @@ _FILE = click.Path(dir_okay=False, path_type=Path)
 @click.argument("after", type=_FILE)
 @json_option
 def command(before: Path, after: Path, as_json: bool) -> None:
-    """Say what got slower from the trace BEFORE to the trace AFTER: medians in microseconds.
+    """Show what changed between the traces BEFORE and AFTER: medians in microseconds.
 
-    A part changed where the 95 % confidence intervals of its medians lie apart.
+    A part has changed if the 95 % confidence intervals of its medians do not overlap.
     """
     changes = compare(evaluated(load(before)), evaluated(load(after)))
     if not changes:

@@ -29,11 +29,15 @@ from rmw_manycore_py.trace.recorded import looked_at
     ),
 )
 @click.argument("file", required=False, type=click.Path(dir_okay=False, path_type=Path))
-@click.option("--live", is_flag=True, help="What is recorded and not saved; it stays as it is.")
 @click.option(
-    "--chain", "chains", multiple=True, help="Only this chain: its topics, between blanks."
+    "--live", is_flag=True, help="Use the events recorded so far, without consuming them."
 )
-@click.option("--plot", "picture", type=OutputFile(".png", ".svg", ".pdf"), help="Draw it, too.")
+@click.option(
+    "--chain", "chains", multiple=True, help="Only this chain: topics separated by spaces."
+)
+@click.option(
+    "--plot", "picture", type=OutputFile(".png", ".svg", ".pdf"), help="Also draw a chart."
+)
 @json_option
 @platform_option
 def command(
@@ -44,9 +48,9 @@ def command(
     as_json: bool,
     platform: str,
 ) -> None:
-    """Show how long messages take through chains of nodes, hop by hop, in microseconds.
+    """Show the latency of messages through chains of nodes, hop by hop, in microseconds.
 
-    A chain goes on where a node publishes while it works on what it has taken.
+    A chain continues where a node publishes while it handles a message it has taken.
     """
     if live == (file is not None):
         raise click.UsageError("expected either FILE or --live")
@@ -63,7 +67,7 @@ def command(
 
 
 def evaluated(trace: Trace, chains: tuple[str, ...] = ()) -> list[ChainLatency]:
-    """Return the latency of chains given by their topics; else of all that there are."""
+    """Return the latency of the chains with these topics; default: all chains."""
     messages = Messages(trace)
     wanted = [tuple(chain.split()) for chain in chains] or messages.chains
     found = latencies(messages, wanted)

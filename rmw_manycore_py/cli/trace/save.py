@@ -28,11 +28,11 @@ from rmw_manycore_py.trace.files.saving import save_recorded
 )
 @platform_option
 def command(output: Path, platform: str) -> None:
-    """Write what was recorded into a file, and give its room back."""
+    """Write the recorded events to a file and free their buffers."""
     require_platform(platform)
     trace = save_recorded(platform, output)
     if trace.lost:
         print_notices(
-            [f"{trace.lost} events were lost, as rings were full: trace start --events N"]
+            [f"{trace.lost} events were lost because rings were full: use trace start --events N"]
         )
     click.echo(f"{output}: {counted(trace.event_count, 'event')}")

@@ -16,22 +16,26 @@ from rmw_manycore_py.native_errors import translate_native_errors
     epilog=examples("manycore trace start", "manycore trace start --node /talker --cluster 2"),
 )
 @click.option(
-    "--cluster", "clusters", multiple=True, type=click.IntRange(1, 64), help="Only this cluster."
+    "--cluster",
+    "clusters",
+    multiple=True,
+    type=click.IntRange(1, 64),
+    help="Trace only this cluster.",
 )
-@click.option("--node", "nodes", multiple=True, help="Only this node, by its full name.")
+@click.option("--node", "nodes", multiple=True, help="Trace only this node (full name).")
 @click.option(
     "--events",
     type=click.IntRange(1, 1 << 24),
     default=1 << 18,
     show_default=True,
-    help="Events that each thread keeps until they are saved, of 32 bytes.",
+    help="Ring size of each thread, in events of 32 bytes.",
 )
-@click.option("--discard", is_flag=True, help="Throw an earlier trace away that was not saved.")
+@click.option("--discard", is_flag=True, help="Discard an earlier unsaved trace.")
 @platform_option
 def command(
     clusters: tuple[int, ...], nodes: tuple[str, ...], events: int, discard: bool, platform: str
 ) -> None:
-    """Record from now on what the processes of a platform do, those that join later included."""
+    """Start tracing all processes of a platform, including those that join later."""
     require_platform(platform)
     with translate_native_errors():
         _transport.start_trace(

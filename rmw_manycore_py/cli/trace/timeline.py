@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""A picture of the threads that a message goes through."""
+"""Timeline of the threads that a message passes through."""
 
 from __future__ import annotations
 
@@ -28,12 +28,12 @@ _COLORS = {
     "ndt": "#e7969c",
 }
 _HEIGHTS = {"serialize": 0.3, "take": 0.5, "publish": 0.5, "wait": 0.3}
-_MARGIN = 0.08  # of the time that is drawn, before and after
-_MIN_NAMED = 0.15  # of it that a slice takes to have its name in it
+_MARGIN = 0.08  # fraction of the drawn time, before and after
+_MIN_NAMED = 0.15  # fraction of the drawn time from which a slice is labelled
 
 
 def draw(trace: Trace, passage: Passage, path: Path) -> None:
-    """Draw what all threads with a part in it did, from the first publish to the last callback."""
+    """Draw what all participating threads did, from the first publish to the last callback."""
     margin_ns = int(_MARGIN * (passage.callback_ns[-1] - passage.published_ns[0]))
     window_ns = (passage.published_ns[0] - margin_ns, passage.callback_ns[-1] + margin_ns)
     rows = _rows(trace, window_ns)
@@ -56,7 +56,7 @@ def draw(trace: Trace, passage: Passage, path: Path) -> None:
 
 
 def _rows(trace: Trace, window_ns: tuple[int, int]) -> dict[int, tuple[Process, Slices]]:
-    """Return the threads that do more than wait in that time, by index, cluster after cluster."""
+    """Return the threads that are active in that time, by index, grouped by cluster."""
     found = {}
     for index, (process, thread) in enumerate(trace.threads()):
         slices = slices_of(thread)

@@ -5,8 +5,8 @@ from __future__ import annotations
 
 import time
 import webbrowser
-from collections.abc import Callable
 from contextlib import closing
+from importlib.util import find_spec
 from pathlib import Path
 
 import click
@@ -18,6 +18,7 @@ from rmw_manycore_py.cli.common.view import require_platform
 from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.look.watch import Look, Watch
 from rmw_manycore_py.picture.chip import Chip
+from rmw_manycore_py.view.listener import Listener, listen
 
 DEFAULT_PORT = 8642
 
@@ -33,20 +34,18 @@ DEFAULT_PORT = 8642
     type=click.IntRange(0, 65535),
     default=DEFAULT_PORT,
     show_default=True,
-    help="Port on 127.0.0.1; 0 for any that is free.",
+    help="Port on 127.0.0.1; 0 picks a free one.",
 )
-@click.option("--open", "opens", is_flag=True, help="Open the page in the browser, too.")
-@click.option(
-    "--once", is_flag=True, help="Draw the picture into a file instead, without a browser."
-)
-@click.option("-o", "--output", type=OutputFile(".svg"), help="With --once: the file.")
+@click.option("--open", "opens", is_flag=True, help="Also open the page in the browser.")
+@click.option("--once", is_flag=True, help="Write the picture to a file instead of serving it.")
+@click.option("-o", "--output", type=OutputFile(".svg"), help="With --once: file to write.")
 @click.option(
     "--period",
     "period_s",
     type=click.FloatRange(min=0.1),
     default=0.5,
     show_default=True,
-    help="Seconds between two looks; with --once also what rates are taken over.",
+    help="Seconds between updates; with --once, the time over which rates are measured.",
 )
 @platform_option
 def command(
@@ -54,23 +53,23 @@ def command(
 ) -> None:
     """Show the chip in the browser: clusters, cores, nodes, and the topics between them.
 
-    The platform may start and end meanwhile. Looking does not join it, and wakes no node.
+    The platform may start and end meanwhile. Viewing does not join it and wakes no node.
     """
     if once != (output is not None):
-        raise click.UsageError("--once and -o FILE go together")
+        raise click.UsageError("--once and -o FILE require each other")
     if output is not None:
         _draw(platform, output, period_s)
         return
 
-    def announce(link: str) -> None:
-        click.echo(f"platform {platform}: {link}")
-        click.echo(
-            "The link holds a token that gives access to the platform. Ctrl-C ends.", err=True
-        )
-        if opens:
-            webbrowser.open(link)
-
-    _server()(platform, port, period_s, announce)
+    _require_web_server()
+    listener = listen(port)
+    # Before the web server is loaded: the browser connects and draws its window meanwhile.
+    click.echo(f"platform {platform}: {listener.link}")
+    click.echo("The link holds a token that gives access to the platform. Ctrl-C stops.", err=True)
+    if opens:
+        webbrowser.open(listener.link)
+    with listener.socket:
+        _serve(platform, listener, period_s)
 
 
 def _draw(platform: str, output: Path, period_s: float) -> None:
@@ -88,12 +87,20 @@ def _svg(look: Look) -> str:
     return chip.svg(chip.marks(look))
 
 
-def _server() -> Callable[[str, int, float, Callable[[str], None]], None]:
+def _require_web_server() -> None:
+    if find_spec("aiohttp") is None:
+        raise _no_web_server("No module named 'aiohttp'")
+
+
+def _serve(platform: str, listener: Listener, period_s: float) -> None:
     try:
         from rmw_manycore_py.view.server import serve
     except ImportError as error:
-        raise ManycoreError(
-            f"the server cannot be loaded ({error}). The page needs it: "
-            "pip install 'rmw-manycore[view]'; --once does without"
-        ) from error
-    return serve
+        raise _no_web_server(error) from error
+    serve(platform, listener, period_s)
+
+
+def _no_web_server(cause: object) -> ManycoreError:
+    return ManycoreError(
+        f"cannot load the web server ({cause}): pip install 'rmw-manycore[view]', or use --once"
+    )

@@ -12,4 +12,4 @@ VERBS = {verb: f"rmw_manycore_py.cli.whill.{verb}:command" for verb in ("course"
 
 @click.group("whill", cls=LazyGroup, commands_at=VERBS)
 def command() -> None:
-    """Drive a wheelchair whose localization and control are off-loaded: ROS-lite2's case study."""
+    """Drive a wheelchair with off-loaded localization and control (ROS-lite2 case study)."""

@@ -47,7 +47,7 @@ MIN_STRAIGHT_M = 5.0
     type=click.FloatRange(20.0, 2000.0),
     default=CourseShape.length_m,
     show_default=True,
-    help="Metres to drive.",
+    help="Length of the course in metres.",
 )
 @click.option(
     "--turn-radius",
@@ -55,7 +55,7 @@ MIN_STRAIGHT_M = 5.0
     type=click.FloatRange(3.0, 50.0),
     default=CourseShape.turn_radius_m,
     show_default=True,
-    help="Radius of the two turns, metres.",
+    help="Radius of the two turns in metres.",
 )
 @click.option(
     "--speed",
@@ -63,7 +63,7 @@ MIN_STRAIGHT_M = 5.0
     type=click.FloatRange(0.3, MAX_SPEED_M_S),
     default=CourseShape.speed_m_s,
     show_default=True,
-    help="Metres per second on the straights.",
+    help="Speed on straights, metres per second.",
 )
 @click.option(
     "--turn-speed",
@@ -71,20 +71,22 @@ MIN_STRAIGHT_M = 5.0
     type=click.FloatRange(0.3, MAX_SPEED_M_S),
     default=CourseShape.turn_speed_m_s,
     show_default=True,
-    help="Metres per second in the turns.",
+    help="Speed in turns, metres per second.",
 )
-@click.option("--seed", type=click.IntRange(0), default=1, show_default=True, help="The streets.")
+@click.option(
+    "--seed", type=click.IntRange(0), default=1, show_default=True, help="Seed of the streets."
+)
 @click.option(
     "--map",
     "map_path",
     type=click.Path(exists=True, dir_okay=False, path_type=Path),
-    help="A map of yours (pcd, ply, npz) instead of streets; needs --trajectory.",
+    help="Your own map (pcd, ply, npz) instead of streets; requires --trajectory.",
 )
 @click.option(
     "--trajectory",
     "trajectory_path",
     type=click.Path(exists=True, dir_okay=False, path_type=Path),
-    help="A trajectory of yours in it: CSV with x_m,y_m,yaw_rad,speed_m_s.",
+    help="Your own trajectory in --map: CSV with x_m,y_m,yaw_rad,speed_m_s.",
 )
 def command(
     directory: Path,
@@ -93,12 +95,12 @@ def command(
     trajectory_path: Path | None,
     **shape: float,
 ) -> None:
-    """Write a course to DIRECTORY: map, trajectory, surroundings, and the mapfile that uses them.
+    """Write a course to DIRECTORY: map, trajectory, surroundings, and a mapfile that uses them.
 
-    Streets are those of `manycore ndt simulate`, with a turn to the left and one to the right.
+    The streets are those of `manycore ndt simulate`, with a left and a right turn.
     """
     if (map_path is None) != (trajectory_path is None):
-        raise click.UsageError("--map and --trajectory need each other")
+        raise click.UsageError("--map and --trajectory require each other")
     if map_path is not None and trajectory_path is not None:
         course = _own(map_path, trajectory_path)
     else:

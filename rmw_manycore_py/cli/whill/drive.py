@@ -38,32 +38,32 @@ from rmw_manycore_py.whill.laptop.outcomes import outcomes
     type=click.Path(file_okay=False, path_type=Path),
     default=Path("build/whill"),
     show_default=True,
-    help="A directory of 'manycore whill course'.",
+    help="Directory written by 'manycore whill course'.",
 )
 @click.option(
     "--duration",
     "duration_s",
     type=click.FloatRange(min=0, min_open=True),
     metavar="S",
-    help="Stop driving after this many seconds; default: at the end of the course.",
+    help="Stop after this many seconds; default: at the end of the course.",
 )
 @click.option(
-    "--patience",
-    "patience_s",
+    "--timeout",
+    "timeout_s",
     type=click.FloatRange(min=0, min_open=True),
     metavar="S",
     default=120.0,
     show_default=True,
-    help="Give up when the vehicle has not moved after this many seconds.",
+    help="Give up if the vehicle has not moved after this many seconds.",
 )
-@click.option("--run", "runs", is_flag=True, help="Run the course's mapfile too, meanwhile.")
-@click.option("--plain", is_flag=True, help="Run its nodes on plain Fast DDS, without platform.")
+@click.option("--run", "runs", is_flag=True, help="Also run the course's mapfile.")
+@click.option("--plain", is_flag=True, help="Run the nodes on plain Fast DDS, without a platform.")
 @click.option(
     "--netns",
     "namespace",
     metavar="NAME",
-    help="With --run or --plain: have the nodes in this network namespace of 'ip netns' (root), "
-    "and count the packets that come into it.",
+    help="With --run or --plain: run the nodes in this network namespace of 'ip netns' (root), "
+    "and count its incoming packets.",
 )
 @click.option(
     "--fault",
@@ -71,14 +71,16 @@ from rmw_manycore_py.whill.laptop.outcomes import outcomes
     metavar="FAULT",
     multiple=True,
     help="NODE@S: kill -9 after S seconds; stop:NODE@S: SIGSTOP for 2 s; lidar, imu or wheels@S: "
-    "the sensor stops. May be repeated.",
+    "stop the sensor. May be repeated.",
 )
-@click.option("--plot", "picture", type=OutputFile(".png", ".svg", ".pdf"), help="Draw it, too.")
+@click.option(
+    "--plot", "picture", type=OutputFile(".png", ".svg", ".pdf"), help="Also draw a plot."
+)
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 def command(
     course_path: Path,
     duration_s: float | None,
-    patience_s: float,
+    timeout_s: float,
     runs: bool,
     plain: bool,
     namespace: str | None,
@@ -86,13 +88,13 @@ def command(
     picture: Path | None,
     as_json: bool,
 ) -> None:
-    """Be the laptop of the case study: the wheelchair, its sensors and its driver, on Fast DDS.
+    """Simulate the laptop of the case study on Fast DDS: wheelchair, sensors and driver.
 
-    The wheelchair reads /whill/controller/cmd_vel alone. The exit status is 0 when it came to the
-    end of the course, or drove as long as --duration says.
+    The wheelchair obeys /whill/controller/cmd_vel only. The exit status is 0 if it reached the end
+    of the course, or drove for --duration seconds.
     """
     if runs and plain:
-        raise click.UsageError("--run and --plain exclude each other")
+        raise click.UsageError("--run and --plain are mutually exclusive")
     if namespace is not None and not (runs or plain):
         raise click.UsageError("--netns is for the nodes that --run or --plain starts")
     if os.environ.get("RMW_IMPLEMENTATION", OUTSIDE_IMPLEMENTATION) != OUTSIDE_IMPLEMENTATION:
@@ -107,7 +109,7 @@ def command(
     faults = [fault_of(text) for text in fault_texts]
     course = read_course(course_path)
     log = DriveLog(float(course.trajectory.along_m()[-1]))
-    options = DriveOptions(course_path, duration_s, patience_s, faults)
+    options = DriveOptions(course_path, duration_s, timeout_s, faults)
     failure: ManycoreError | None = None
     with ExitStack() as closing:
         stack: Stack | None = None

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Why a node ended, and whether it ended well."""
+"""Why a node ended, and whether that is a failure."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ from dataclasses import dataclass
 
 from rmw_manycore_py.launch.processes.state import INTERRUPT_GRACE_S, TERMINATE_GRACE_S, NodeState
 
-# How a traceback ends where rclpy has made something else of an interruption, with any RMW:
-# pybind11 where it strikes while an argument is made, or while the module of rclpy is initialised
-# (rpyutils then adds a line of its own); rcl and rclpy where rclpy's own handler of the signal has
-# shut the context down already, between two calls or before the node's `rclpy.shutdown()`.
+# Last lines of tracebacks in which rclpy turns an interrupt into something else, with any RMW:
+# pybind11, if it arrives while an argument is converted or while the rclpy module is initialised
+# (rpyutils then adds a line); rcl and rclpy, if rclpy's own signal handler has shut down the
+# context between two calls or before the node's `rclpy.shutdown()`.
 _PYBIND11 = re.compile(r"RuntimeError: Unable to convert call argument '\d+' to Python object\b.*")
 _RCL = re.compile(
     r"rclpy\._rclpy_pybind11\.RCLError: .*"
@@ -23,7 +23,7 @@ _NOT_INITIALIZED = re.compile(r"rclpy\.exceptions\.NotInitializedException: .*")
 _IMPORT = "ImportError: initialization failed"
 _NO_EXTENSION = re.compile(r"The C extension '.*/_rclpy_pybind11\.[^/]+' isn't present .*")
 _RCLPY_FRAME = re.compile(r'\s*File ".*/rclpy/[^"]+", line \d+.*')
-# Where it strikes while the interpreter itself comes up, before any line of the node.
+# The interrupt arrived while the interpreter was starting, before any line of the node.
 _NO_INTERPRETER = "Fatal Python error: init_"
 _INTERRUPTIONS = ("KeyboardInterrupt", "rclpy.executors.ExternalShutdownException")
 _STOP_SIGNALS = (signal.SIGINT, signal.SIGTERM)
@@ -34,7 +34,7 @@ _ENDED_ON_REQUEST = {
 
 @dataclass(frozen=True)
 class Ending:
-    """How a process ended: `exit_status` or `signal`, in words in `reason`."""
+    """How a process ended: `exit_status` or `signal`, with a textual `reason`."""
 
     failed: bool
     reason: str
@@ -45,10 +45,10 @@ class Ending:
 def judge(
     return_code: int, state: NodeState, last_lines: Sequence[str] = (), came_up: bool = True
 ) -> Ending:
-    """Judge the return code (minus a signal's number, as in subprocess) of a node in `state`.
+    """Judge the return code (negative signal number, as in subprocess) of a node in `state`.
 
-    Python that an interruption ends otherwise than by the signal has status 1; only its last lines
-    say why. A process that was to stay, and ends before it `came_up`, has failed.
+    If an interrupt ends Python other than by the signal, the status is 1 and only the last lines
+    tell why. A supervised process that ends before it `came_up` has failed.
     """
     asked = state in (NodeState.INTERRUPTED, NodeState.TERMINATED)
     if asked and return_code == 1 and _was_interrupted(last_lines):
@@ -67,7 +67,7 @@ def judge(
 
 
 def is_rclpys(traceback: Sequence[str]) -> bool:
-    """Tell whether these last lines of a node are what rclpy makes of some interruptions."""
+    """Return whether the last lines are what rclpy makes of some interrupts."""
     last_line = next(reversed(traceback), "")
     if _RCL.fullmatch(last_line) or _NOT_INITIALIZED.fullmatch(last_line):
         return True
@@ -84,7 +84,7 @@ def _was_interrupted(last_lines: Sequence[str]) -> bool:
 
 
 def not_started(error: OSError) -> Ending:
-    """Return the end of a node that never was."""
+    """Return the ending of a node that could not be started."""
     what = f": {error.filename}" if error.filename else ""
     return Ending(True, f"could not be started: {error.strerror}{what}")
 
@@ -106,4 +106,4 @@ def _signal_name(number: int) -> str:
     try:
         return signal.Signals(number).name
     except ValueError:
-        return f"signal {number}"  # the real-time signals have no names
+        return f"signal {number}"  # real-time signals have no names

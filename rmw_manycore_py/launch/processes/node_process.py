@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""A launched node: its state, its process, the processes it started itself, its output."""
+"""A launched node: its state, its process group, and its output."""
 
 from __future__ import annotations
 
@@ -19,54 +19,54 @@ from rmw_manycore_py.parent_death import dies_with_this_process
 from rmw_manycore_py.readiness import Readiness
 from rmw_manycore_py.scheduling import scheduled_as
 
-# How long children of a node may go on printing after the node itself has ended.
+# How long the children of a node may keep printing after the node has ended.
 ORPHAN_GRACE_S = 1.0
 
 
 class NodeProcess:
-    """Every process of a node is in one process group, whose number is the node's process id.
+    """All processes of a node are in one process group, whose id is the node's pid.
 
-    The node's exit status is collected last: until then the kernel keeps the number for it, so a
-    signal to the group cannot hit a stranger.
+    The node is reaped last: until then the kernel does not reuse the pid, so a signal to the group
+    cannot hit another process.
     """
 
     def __init__(self, program: NodeProgram) -> None:
         self.program = program
         self.state = NodeState.WAITING
         self.ending: Ending | None = None
-        self.deadline_s = float("inf")  # on the monotonic clock: when the next step is due
-        self.start_at_s = 0.0  # on the monotonic clock: not before, and later when it was started
-        self.respawns = 0  # how many processes of the node there were before
-        self.is_wanted_again = False  # its place is taken by a new process when it is over
-        self.is_held = False  # a person has stopped it: it is not respawned, its run goes on
-        self.was_asked_for = False  # a person has restarted it: the run outlives a failing start
-        self.pidfd = -1  # open while the node itself runs
-        self.came_up = not program.supervised  # a supervised process reports it; known at its end
-        self.vain_starts = 0  # how many processes before it ended without having come up
+        self.deadline_s = float("inf")  # CLOCK_MONOTONIC, when the next step is due
+        self.start_at_s = 0.0  # CLOCK_MONOTONIC, earliest and later actual start
+        self.respawns = 0  # number of earlier processes of the node
+        self.is_wanted_again = False  # a new process replaces it when it is over
+        self.is_held = False  # stopped by request: not respawned, the run continues
+        self.was_asked_for = False  # restarted by request: a failing start does not end the run
+        self.pidfd = -1  # open while the node runs
+        self.came_up = not program.supervised  # supervised processes report it
+        self.vain_starts = 0  # number of earlier processes that ended before coming up
         self._process: subprocess.Popen[bytes] | None = None
         self._output: OutputReader | None = None
         self._readiness: Readiness | None = None
 
     @property
     def process(self) -> subprocess.Popen[bytes]:
-        """The process of a node that was started."""
+        """Process of a started node."""
         assert self._process is not None
         return self._process
 
     @property
     def output(self) -> OutputReader:
-        """The output of a node that was started."""
+        """Output of a started node."""
         assert self._output is not None
         return self._output
 
     @property
     def last_lines(self) -> tuple[str, ...]:
-        """The last lines the node printed."""
+        """Last lines printed by the node."""
         return tuple(self._output.tail) if self._output else ()
 
     @property
     def is_alive(self) -> bool:
-        """Tell whether the node was started and is not over."""
+        """Return whether the node was started and is not over."""
         return self.state in (
             NodeState.RUNNING,
             NodeState.INTERRUPTED,
@@ -76,13 +76,13 @@ class NodeProcess:
 
     @property
     def is_over(self) -> bool:
-        """Tell whether nothing will happen to the node any more."""
+        """Return whether the node is in a final state."""
         return self.state in (NodeState.FINISHED, NodeState.FAILED)
 
     def start(self, tap: Callable[[bytes], None] | None = None) -> bool:
-        """Start the node on its CPU; where that fails the ending says why.
+        """Start the node on its CPUs; on failure, set the ending and return False.
 
-        :param tap: gets the node's output as it comes.
+        :param tap: receives the node's output as it arrives.
         """
         self.start_at_s = time.monotonic()
         if self.program.supervised:
@@ -126,29 +126,29 @@ class NodeProcess:
         return step.signal
 
     def withdraw(self) -> None:
-        """Give a waiting node up: its turn is not to come."""
+        """Cancel a node that is waiting to be started."""
         self._end(Ending(False, "not started"))
 
     def successor(self) -> NodeProcess:
-        """Return the process that a person wants in the place of this one."""
+        """Return the process that replaces this one on request."""
         successor = NodeProcess(self.program)
         successor.respawns = self.respawns
         successor.was_asked_for = True
         return successor
 
     def leader_ended(self) -> None:
-        """Note that the node itself ended; its children have a moment for their last words."""
+        """Record that the node has ended; its children get a short time to finish output."""
         os.close(self.pidfd)
         self.pidfd = -1
         self.deadline_s = time.monotonic() + ORPHAN_GRACE_S
 
     @property
     def is_leaderless(self) -> bool:
-        """Tell whether the node itself ended, while its exit status is not yet collected."""
+        """Return whether the node has ended but is not reaped yet."""
         return self.is_alive and self.pidfd < 0
 
     def collect(self) -> list[str]:
-        """End the rest of the group and judge the exit status; return the last lines."""
+        """Kill the rest of the group, reap the node and judge its status; return the last lines."""
         self._signal_group(signal.SIGKILL)
         lines = self.output.close()
         return_code = self.process.wait()
@@ -159,7 +159,7 @@ class NodeProcess:
         return lines
 
     def destroy(self) -> None:
-        """Leave nothing of the node, whatever state it is in."""
+        """Kill and reap everything of the node, in any state."""
         if self.is_alive:
             self._signal_group(signal.SIGKILL)
             self.process.wait()

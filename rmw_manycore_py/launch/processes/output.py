@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What a node prints, cut into lines."""
+"""Output of a node, split into lines."""
 
 from __future__ import annotations
 
@@ -9,15 +9,15 @@ from collections import deque
 from collections.abc import Callable
 from typing import IO
 
-READ_BYTES = 65536  # what a pipe holds
-LONGEST_LINE_BYTES = 65536  # a longer one is cut, so that memory stays bounded
-TAIL_LINES = 20  # a python traceback of a usual depth
+READ_BYTES = 65536  # capacity of a pipe
+LONGEST_LINE_BYTES = 65536  # longer lines are split, to bound memory
+TAIL_LINES = 20  # holds a typical Python traceback
 
 
 class OutputReader:
-    """Reads a pipe or terminal without waiting; keeps the last lines for the report of a failure.
+    """Reads a pipe or terminal without blocking; keeps the last lines for failure reports.
 
-    :param tap: gets all that is read as it comes, for those who are attached to the node.
+    :param tap: receives all bytes as they are read, for attached clients.
     """
 
     def __init__(self, stream: IO[bytes], tap: Callable[[bytes], None] | None = None) -> None:
@@ -25,7 +25,7 @@ class OutputReader:
         self._tap = tap
         self._partial = b""
         self.tail: deque[str] = deque(maxlen=TAIL_LINES)
-        self.at_end = False  # everyone who could have written is gone
+        self.at_end = False  # all writers have closed
         os.set_blocking(stream.fileno(), False)
 
     def fileno(self) -> int:
@@ -33,7 +33,7 @@ class OutputReader:
         return self._stream.fileno()
 
     def read_lines(self) -> list[str]:
-        """Return the lines that are complete by now."""
+        """Return the complete lines read so far."""
         *lines, self._partial = (self._partial + self._read()).split(b"\n")
         if len(self._partial) >= LONGEST_LINE_BYTES:
             lines.append(self._partial)
@@ -41,7 +41,7 @@ class OutputReader:
         return self._keep(lines)
 
     def close(self) -> list[str]:
-        """Close the stream; return the lines still in it, the last one even without its end."""
+        """Close the stream; return the remaining lines, including an incomplete last one."""
         rest = self._partial
         while data := self._read():
             rest += data
@@ -50,7 +50,7 @@ class OutputReader:
         return self._keep(rest.removesuffix(b"\n").split(b"\n") if rest else [])
 
     def _read(self) -> bytes:
-        """Return what is there; nothing, too, while the stream is empty."""
+        """Return available bytes; empty if there are none."""
         try:
             data = os.read(self._stream.fileno(), READ_BYTES)
         except BlockingIOError:
@@ -58,7 +58,7 @@ class OutputReader:
         except OSError as error:
             if error.errno != errno.EIO:
                 raise
-            data = b""  # of a terminal: its last user is gone
+            data = b""  # terminal closed by its last user
         self.at_end = not data
         if self._tap and data:
             self._tap(data)

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What the runner needs to know of a node: how it is started, and where."""
+"""What the runner needs to start a node."""
 
 from __future__ import annotations
 
@@ -15,32 +15,32 @@ from rmw_manycore_py.topology import Core, HostCpu, as_host_cpu
 
 @dataclass(frozen=True)
 class NodeProgram:
-    """One node as a process: its command line, its whole environment, its core.
+    """One node as a process: command line, complete environment, core.
 
-    A `supervised` one serves the others: it calls `report_ready` once it has come up, it is started
-    again whenever it ends, and a run is over without it.
+    A `supervised` process serves the nodes: it calls `report_ready` when it has come up, is
+    restarted whenever it ends, and does not keep a run alive.
     """
 
     name: str
     command: tuple[str, ...]
     environment: Mapping[str, str]
     core: Core
-    host_cpus: tuple[int, ...]  # none: all that the runner may use
+    host_cpus: tuple[int, ...]  # empty: all CPUs of the runner
     directory: Path | None = None
     supervised: bool = False
     rules: LaunchRules = NO_RULES
-    repeats: bool = False  # starts each time that the node of `rules.after` does
-    terminal: bool = False  # its streams are a terminal that `manycore attach` attaches to
-    scheduling: Scheduling | None = None  # None: as the runner itself
+    repeats: bool = False  # start whenever the node of `rules.after` starts
+    terminal: bool = False  # give it a terminal for `manycore attach`
+    scheduling: Scheduling | None = None  # None: inherit from the runner
 
     @property
     def host_cpu(self) -> HostCpu:
-        """The host CPUs as events report them."""
+        """Host CPUs as reported in events."""
         return as_host_cpu(self.host_cpus)
 
     @classmethod
     def of(cls, node: PlacedNode) -> NodeProgram:
-        """Return the program of a node that a mapfile places."""
+        """Return the program of a placed node."""
         return cls(
             name=node.name,
             command=tuple(node.argv),

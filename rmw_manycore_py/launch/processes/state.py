@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The states of a launched node, and the steps by which it is stopped."""
+"""States of a launched node, and the steps for stopping it."""
 
 from __future__ import annotations
 
@@ -7,21 +7,21 @@ import signal
 from enum import Enum
 from typing import NamedTuple
 
-# rclpy nodes end some 0.1 s after SIGINT; the rest of the time is for nodes that save things.
+# rclpy nodes end about 0.1 s after SIGINT; the rest is for nodes that save data.
 INTERRUPT_GRACE_S = 5.0
 TERMINATE_GRACE_S = 3.0
 
 
 class NodeState(Enum):
-    """Where a launched node is in its life."""
+    """Life-cycle state of a launched node."""
 
-    WAITING = "waiting"  # its turn to be started has not come
+    WAITING = "waiting"  # not started yet
     RUNNING = "running"
     INTERRUPTED = "interrupted"  # was sent SIGINT
     TERMINATED = "terminated"  # was sent SIGTERM
     KILLED = "killed"  # was sent SIGKILL
-    FINISHED = "finished"  # ended well: by itself, or because it was asked to
-    FAILED = "failed"  # could not be started, ended badly, or had to be killed
+    FINISHED = "finished"  # ended successfully, by itself or on request
+    FAILED = "failed"  # start failed, non-zero exit, or had to be killed
 
 
 TRANSITIONS: dict[NodeState, frozenset[NodeState]] = {
@@ -36,7 +36,7 @@ TRANSITIONS: dict[NodeState, frozenset[NodeState]] = {
 
 
 class StopStep(NamedTuple):
-    """What is done to a node that has to stop, and how long it has before the next step."""
+    """Signal that stops a node, and the time before the next step."""
 
     signal: signal.Signals
     state: NodeState
@@ -51,6 +51,6 @@ STOP_STEPS = {
 
 
 def check_transition(old: NodeState, new: NodeState) -> None:
-    """Raise ValueError for a step that the table does not have."""
+    """Raise ValueError for a transition that is not in the table."""
     if new not in TRANSITIONS[old]:
         raise ValueError(f"no transition from {old.value} to {new.value}")

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What a node has for its standard streams: a pipe, or a terminal of its own."""
+"""Standard streams of a node: a pipe, or a terminal of its own."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ import termios
 from collections.abc import Callable
 from typing import IO, Any
 
-# Of a terminal that nobody has attached to, so that programs wrap their lines somewhere.
+# Size of a terminal without an attached client, so that programs wrap lines sensibly.
 _ROWS, _COLUMNS = 24, 80
 
 
 class Pipe:
-    """Output to a pipe, nothing on standard input."""
+    """Output to a pipe, no standard input."""
 
     options: dict[str, Any]
 
@@ -30,21 +30,21 @@ class Pipe:
 
     @staticmethod
     def take() -> None:
-        """Do nothing in the new process: its streams are in place."""
+        """Do nothing in the new process: a pipe needs no set-up."""
 
     def opened(self) -> IO[bytes]:
-        """Return the runner's end, once the node has been started."""
+        """Return the runner's end, after the node has been started."""
         os.close(self._writer)
         return os.fdopen(self._reader, "rb", buffering=0)
 
     def discard(self) -> None:
-        """Close both ends: the node could not be started."""
+        """Close both ends after a failed start."""
         os.close(self._writer)
         os.close(self._reader)
 
 
 class Terminal(Pipe):
-    """A pseudo-terminal: the runner reads and writes it in the place of a person."""
+    """Pseudo-terminal whose master side is held by the runner."""
 
     def __init__(self) -> None:
         self._reader, self._writer = os.openpty()
@@ -54,17 +54,17 @@ class Terminal(Pipe):
 
     @staticmethod
     def take() -> None:
-        """Make it the terminal of the new process's session, for Ctrl-C and /dev/tty."""
+        """Make it the controlling terminal of the new session, for Ctrl-C and /dev/tty."""
         fcntl.ioctl(0, termios.TIOCSCTTY, 0)
 
 
 def set_size(terminal: int, rows: int, columns: int) -> None:
-    """Set the size; the kernel sends SIGWINCH to the programs in the foreground."""
+    """Set the size; the kernel sends SIGWINCH to the foreground process group."""
     fcntl.ioctl(terminal, termios.TIOCSWINSZ, struct.pack("HHHH", rows, columns, 0, 0))
 
 
 def before_exec(dies: Callable[[], None], streams: Pipe) -> Callable[[], None]:
-    """Return what a new process does between fork and exec."""
+    """Return the function that the new process runs between fork and exec."""
     take = streams.take
 
     def both() -> None:

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What a user attaches to a bug report, in one file: versions, machine, platforms, mapfiles."""
+"""The bug report in one file: versions, machine, platforms, mapfiles."""
 
 from __future__ import annotations
 
@@ -21,15 +21,15 @@ from rmw_manycore_py.errors import what_is_wrong
 MAPFILES = "mapfiles"
 Section = Callable[[], Any]
 
-_HEAD = "# Report of manycore doctor. It holds no messages; read it before you pass it on.\n"
+_HEAD = "# Report of manycore doctor. It contains no messages; review it before sharing.\n"
 
 
 def report(findings: Section, mapfile: str | None, *, packages: bool = True) -> dict[str, Any]:
-    """Return all sections; one that is empty says why.
+    """Return all sections; a section without data says why.
 
-    :param findings: what the doctor itself finds.
-    :param mapfile: path or name of one; without it, those of the runs in progress.
-    :param packages: whether to list versions of installed packages.
+    :param findings: the doctor's findings.
+    :param mapfile: path or name of a mapfile; default: those of running platforms.
+    :param packages: whether to list the versions of installed packages.
     """
     sections: Mapping[str, Section] = {
         "versions": lambda: versions(packages=packages),
@@ -50,21 +50,21 @@ def report(findings: Section, mapfile: str | None, *, packages: bool = True) -> 
 
 
 def as_text(sections: Mapping[str, Any]) -> str:
-    """Return the report for people."""
+    """Format the report as YAML, or as JSON without PyYAML."""
     try:
         import yaml
-    except ImportError:  # then JSON has to do
+    except ImportError:  # without PyYAML
         return _HEAD + as_json(sections)
     return _HEAD + yaml.safe_dump(dict(sections), sort_keys=False, allow_unicode=True, width=1000)
 
 
 def as_json(sections: Mapping[str, Any]) -> str:
-    """Return the report for programs."""
+    """Format the report as JSON."""
     return json.dumps(sections, indent=2) + "\n"
 
 
 def _filled(section: Section) -> Any:
     try:
         return section() or "nothing found"
-    except Exception as error:  # whatever is broken here: the other sections tell why
+    except Exception as error:  # report what is broken, keep the other sections
         return f"not available: {type(error).__name__}: {what_is_wrong(error)}"

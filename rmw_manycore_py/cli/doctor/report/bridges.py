@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What the bridges of this user's platforms have carried."""
+"""Counters of the bridges of this user's platforms."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Any
 
 
 def bridges() -> list[dict[str, Any]]:
-    """Return the routes of each platform that has a bridge, with their counters."""
+    """Return the routes and counters of each platform with a bridge."""
     from rmw_manycore_bridge.status import status
     from rmw_manycore_py.cli.common.view import platform_names
 

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The variables that decide what is loaded and how; no others are shown."""
+"""Environment variables that select what is loaded; no others are reported."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ _KEPT_PARTS = 3
 
 
 def is_shown(name: str) -> bool:
-    """Tell whether the value of a variable may be in a report."""
+    """Return whether the value of a variable may appear in a report."""
     return name.startswith(_PREFIXES)
 
 
 def environment() -> dict[str, str]:
-    """Return the variables of ROS 2 and of rmw_manycore, and the loader's."""
+    """Return the variables of ROS 2, rmw_manycore and the dynamic loader."""
     variables = {name: os.environ[name] for name in sorted(os.environ) if is_shown(name)}
     loaders = {name: _shortened(os.environ[name]) for name in _PATHS if name in os.environ}
     return {**variables, **loaders}
@@ -28,6 +28,6 @@ def _shortened(paths: str) -> str:
 
 
 def short_path(path: str) -> str:
-    """Return the last parts of a path."""
+    """Return the last components of a path."""
     parts = Path(path).parts
     return path if len(parts) <= _KEPT_PARTS else str(Path("...", *parts[-_KEPT_PARTS:]))

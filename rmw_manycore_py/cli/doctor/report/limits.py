@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The limits of a process, and the kernel's settings that matter to transports."""
+"""Resource limits of a process, and kernel settings that matter to transports."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def limits() -> dict[str, dict[str, int | str]]:
 
 
 def kernel_settings() -> dict[str, str]:
-    """Return settings as sysctl names them."""
+    """Return kernel settings under their sysctl names."""
     return {name: _setting(name) for name in _SETTINGS}
 
 

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Warnings and errors in the newest log files of ROS 2; other lines may quote messages."""
+"""Warnings and errors of the newest ROS 2 log files; other lines may quote messages."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _SEVERE = re.compile(r"\[(WARN|ERROR|FATAL)\]")
 
 
 def recent_lines() -> list[dict[str, Any]] | str:
-    """Return the last severe lines of the newest files."""
+    """Return the last warnings and errors of the newest files."""
     directory = log_directory()
     files = sorted(directory.glob("*.log"), key=lambda file: file.stat().st_mtime)[-_FILES:]
     if not files:
@@ -24,7 +24,7 @@ def recent_lines() -> list[dict[str, Any]] | str:
 
 
 def log_directory() -> Path:
-    """Return where rcl writes its logs."""
+    """Return the directory that rcl logs to."""
     if named := os.environ.get("ROS_LOG_DIR"):
         return Path(named).expanduser()
     return Path(os.environ.get("ROS_HOME") or "~/.ros").expanduser() / "log"

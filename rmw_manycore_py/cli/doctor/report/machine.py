@@ -15,7 +15,7 @@ _CGROUP = Path("/sys/fs/cgroup")
 
 
 def machine() -> dict[str, Any]:
-    """Return what the nodes run on."""
+    """Return kernel, CPU and memory facts."""
     return {
         "distribution": _value_in(Path("/etc/os-release"), "PRETTY_NAME", "="),
         "kernel": f"{platform.system()} {platform.release()} {platform.machine()}",

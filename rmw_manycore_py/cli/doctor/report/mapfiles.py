@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Mapfiles without what may be private: the last parts of paths, and no values."""
+"""Mapfiles without private data: last path components only, and no values."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _OPTIONS_WITH_VALUES = ("--duration", "--node")
 
 
 def mapfiles(given: str | None) -> list[dict[str, Any]] | str:
-    """Return the given mapfile, or else those of the runs of this user."""
+    """Return the given mapfile, else those of this user's runs."""
     paths = [_found(Path(), given)] if given else list(_running())
     rows = [{"file": path.name, "content": _shown(path)} for path in paths]
     return rows or "no run is in progress"
@@ -38,7 +38,7 @@ def _shown(path: Path) -> Any:
 
 
 def _hide_values(node: dict[str, Any]) -> None:
-    """Leave of a node's section what says how it is placed and connected."""
+    """Keep only what describes placement and connections in a node's section."""
     env = node.get("env", {})
     hidden = {name: value if is_shown(name) else _HIDDEN for name, value in env.items()}
     parameters = dict.fromkeys(node.get("parameters", {}), _HIDDEN)
@@ -55,7 +55,7 @@ def _hide_values(node: dict[str, Any]) -> None:
 
 def _running() -> Iterator[Path]:
     for process in Path("/proc").glob("[0-9]*"):
-        with suppress(OSError):  # another user's, or gone
+        with suppress(OSError):  # another user's process, or ended
             words = (process / "cmdline").read_bytes().decode(errors="replace").split("\0")
             name = mapfile_of(words)
             if name is not None:
@@ -63,7 +63,7 @@ def _running() -> Iterator[Path]:
 
 
 def mapfile_of(words: list[str]) -> str | None:
-    """Return the mapfile in the command line of a run; None for other programs."""
+    """Return the mapfile in the command line of a `manycore run`; None for other programs."""
     names = [Path(word).name for word in words]
     if "manycore" not in names[:2]:
         return None

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The registries of this user's platforms, and what their processes have loaded."""
+"""Registries of this user's platforms, and the libraries their processes have loaded."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _MIDDLEWARES = ("librmw_", "libfastrtps.", "libfastdds.")
 
 
 def platforms() -> list[dict[str, Any]]:
-    """Return everything that there is of each platform; of one that cannot be read, why."""
+    """Return the contents of each platform, or why it cannot be read."""
     from rmw_manycore_py.cli.common.view import platform_names
 
     return [_readable(name) for name in platform_names()]
@@ -22,22 +22,23 @@ def platforms() -> list[dict[str, Any]]:
 def _readable(name: str) -> dict[str, Any]:
     try:
         return _snapshot(name)
-    except Exception as error:  # a damaged platform hides no other
+    except Exception as error:  # report a damaged platform, keep the others
         return {"name": name, "not available": what_is_wrong(error)}
 
 
 def _snapshot(name: str) -> dict[str, Any]:
     from rmw_manycore_py.cli.common import rows, view
+    from rmw_manycore_py.ros.names import node_names_by_process
 
     with view.open_platform(name) as opened:
-        endpoints, nodes = opened.endpoints(), opened.nodes()
+        endpoints, nodes = opened.endpoints(), node_names_by_process(opened.nodes())
         return {
             **rows.platform_row(opened.info()),
             "clusters": [rows.cluster_row(cluster) for cluster in opened.clusters()],
             "processes": [
                 {
                     **rows.process_row(process),
-                    "nodes": [view.full_name(n) for n in nodes if n.process == process.slot],
+                    "nodes": nodes[process.slot],
                     "middleware loaded": _loaded(process.pid),
                 }
                 for process in opened.processes()
@@ -48,7 +49,7 @@ def _snapshot(name: str) -> dict[str, Any]:
 
 
 def _loaded(pid: int) -> list[str] | str:
-    """Return which middleware a process has loaded, and from where: a stand-in lies in standin/."""
+    """Return the middleware libraries a process has loaded; a stand-in lies in standin/."""
     try:
         lines = Path(f"/proc/{pid}/maps").read_text(errors="replace").splitlines()
     except OSError as error:

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Keeps out of a report who and where its user is."""
+"""Removes user, host and home directory from a report."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ HOME, USER, HOST = "~", "<user>", "<host>"
 
 
 def anonymous(data: Any, *, keys: bool) -> Any:
-    """Return plain data without the home directory, the user's name and the host's name.
+    """Return plain data without the home directory, user name and host name.
 
-    :param keys: keys are names of the user's choice, too.
+    :param keys: whether keys may be user-defined names as well.
     """
     return _replaced(data, _rules(), keys)
 
@@ -27,7 +27,7 @@ def anonymous(data: Any, *, keys: bool) -> Any:
 def _rules() -> _Rules:
     host = socket.gethostname()
     names = {str(Path.home()): HOME, _user(): USER, host: HOST, host.partition(".")[0]: HOST}
-    # Whole words only: a user who is called "ros" does not turn /rosout into something else.
+    # Match whole words only, so that a user called "ros" does not change /rosout.
     return [
         (re.compile(rf"(?<![\w.-]){re.escape(name)}(?![\w-])"), replacement)
         for name, replacement in names.items()

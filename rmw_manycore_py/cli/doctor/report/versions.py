@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Versions of what takes part."""
+"""Versions of rmw_manycore and what it runs on."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _OTHERS = ("click", "nanobind", "numpy", "pydantic", "PyYAML")
 
 
 def versions(*, packages: bool = True) -> dict[str, Any]:
-    """Return the versions of ours, of Python, and of libraries and ROS 2 wheels if wanted."""
+    """Return the versions of rmw_manycore, Python and, if wanted, libraries and ROS 2 wheels."""
     return {**_own(), **(_of_packages() if packages else {})}
 
 

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The bandwidth of a topic, computed and written as `ros2 topic bw` does."""
+"""Bandwidth of a topic, computed and formatted as `ros2 topic bw` does."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ _UNITS = ((1_000_000, "MB"), (1_000, "KB"))
 
 @dataclass(frozen=True)
 class Bandwidth:
-    """Statistics of the last messages, sizes in bytes."""
+    """Statistics over the window, sizes in bytes."""
 
     bytes_per_s: float
     messages: int
@@ -29,7 +29,7 @@ class Bandwidth:
         )
 
     def _text(self, size: float) -> str:
-        """Write a size in the unit that fits the rate, so that all can be compared."""
+        """Format a size in the unit of the rate, so that all are comparable."""
         for factor, unit in _UNITS:
             if self.bytes_per_s >= factor:
                 return f"{size / factor:.2f} {unit}"
@@ -43,11 +43,11 @@ class BandwidthMeter:
         self._messages: deque[tuple[float, int]] = deque(maxlen=window)
 
     def arrived(self, now_s: float, size: int) -> None:
-        """Note a message of `size` bytes."""
+        """Record a message of `size` bytes."""
         self._messages.append((now_s, size))
 
     def bandwidth(self, now_s: float) -> Bandwidth | None:
-        """Return the statistics; there are none before the second message."""
+        """Return the statistics, or None before the second message."""
         if len(self._messages) < 2 or now_s <= self._messages[0][0]:
             return None
         sizes = [size for _, size in self._messages]

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The delay of a topic, computed and written as `ros2 topic delay` does."""
+"""Delay of a topic, computed and formatted as `ros2 topic delay` does."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Delay:
-    """Statistics of the last messages, in seconds from the stamp in the header to the callback."""
+    """Statistics over the window, in seconds from header stamp to callback."""
 
     average: float
     shortest: float
@@ -33,11 +33,11 @@ class DelayMeter:
         self._delays_s: deque[float] = deque(maxlen=window)
 
     def arrived(self, delay_s: float) -> None:
-        """Note a message."""
+        """Record a message."""
         self._delays_s.append(delay_s)
 
     def delay(self) -> Delay | None:
-        """Return the statistics; there are none before the first message."""
+        """Return the statistics, or None before the first message."""
         delays_s = self._delays_s
         if not delays_s:
             return None

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The rate of a topic, from the times at which its messages arrived."""
+"""Rate of a topic, from the arrival times of its messages."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Rate:
-    """Statistics of the intervals between messages; durations in seconds."""
+    """Statistics of the intervals between messages, in seconds."""
 
     rate_hz: float
     min_s: float
@@ -33,13 +33,13 @@ class RateMeter:
         self._last_s: float | None = None
 
     def arrived(self, now_s: float) -> None:
-        """Note a message."""
+        """Record a message."""
         if self._last_s is not None:
             self._intervals_s.append(now_s - self._last_s)
         self._last_s = now_s
 
     def rate(self) -> Rate | None:
-        """Return the statistics; there are none before the second message."""
+        """Return the statistics, or None before the second message."""
         count = len(self._intervals_s)
         total_s = sum(self._intervals_s)
         if not count or not total_s:
