@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""A process of the bridge: python -m rmw_manycore_bridge PLAN DIRECTION LANE CLUSTER CORE."""
+"""Bridge process: python -m rmw_manycore_bridge PLAN DIRECTION LANE CLUSTER CORE."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from rmw_manycore_py.routes import DIRECTIONS
 
 
 def main(arguments: list[str]) -> int:
-    """Run one process; `manycore run` and `manycore bridge` start it."""
-    # Until the process can end in order it ends quietly, and not in the middle of loading rclpy.
+    """Run one bridge process; started by `manycore run` and `manycore bridge`."""
+    # SIGINT ends the process quietly until its own handler is set, also during `import rclpy`.
     signal.signal(signal.SIGINT, signal.SIG_DFL)
-    shorten_time_slice()  # before any thread starts, for they inherit it
+    shorten_time_slice()  # before any thread starts: threads inherit it
     from rmw_manycore_bridge.process import BridgeProcess
 
     plan, direction, lane, cluster, core = arguments

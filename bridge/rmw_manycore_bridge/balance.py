@@ -1,19 +1,19 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Decides which topic moves to another lane. Loads are shares of a CPU."""
+"""Decides which topic moves to another lane. Loads are fractions of a CPU."""
 
 from __future__ import annotations
 
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
-LEAST_DIFFERENCE = 0.005  # below it no move is worth its while
-LEAST_GAIN = 0.3  # of the difference between the lanes
-PATIENCE = 3  # looks in a row that want a move between the same lanes
+LEAST_DIFFERENCE = 0.005  # smaller differences between lanes are ignored
+LEAST_GAIN = 0.3  # minimum gain of a move, as a fraction of the difference
+PATIENCE = 3  # consecutive looks that propose the same pair of lanes
 
 
 @dataclass(frozen=True)
 class Load:
-    """A topic as the balance sees it."""
+    """Load of one topic."""
 
     lane: int
     load: float
@@ -22,16 +22,16 @@ class Load:
 
 @dataclass(frozen=True)
 class Move:
-    """A topic, by its place among the loads, that goes to another lane."""
+    """Move of a topic, given by its index among the loads, to another lane."""
 
     index: int
     heir: int
 
 
 def best_move(loads: Sequence[Load], lanes: Collection[int]) -> Move | None:
-    """Return the move that evens out the busiest and the idlest lane best, if one is worth it.
+    """Return the move that best evens out the busiest and the idlest lane, or None.
 
-    `lanes` are those that run: no other inherits.
+    Only running `lanes` are candidates.
     """
     totals = {lane: sum(e.load for e in loads if e.lane == lane) for lane in sorted(lanes)}
     if not totals:
@@ -50,14 +50,14 @@ def best_move(loads: Sequence[Load], lanes: Collection[int]) -> Move | None:
 
 
 class Balance:
-    """Moves only when a move has been worth it for a while."""
+    """Proposes a move only after it has been worthwhile for several looks."""
 
     def __init__(self) -> None:
         self._times = 0
         self._lanes: tuple[int, int] | None = None
 
     def look(self, loads: Sequence[Load], lanes: Collection[int]) -> Move | None:
-        """Return a move to make now."""
+        """Return a move to make now, or None."""
         move = best_move(loads, lanes)
         between = None if move is None else (loads[move.index].lane, move.heir)
         self._times = self._times + 1 if between == self._lanes else 1

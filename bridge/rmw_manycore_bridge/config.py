@@ -1,8 +1,8 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""A bridge file, in the YAML schema of ros2/domain_bridge, as routes of a platform.
+"""Loads a bridge file, in the YAML schema of ros2/domain_bridge, as routes of a platform.
 
-The domain that is the platform's own (`inside`) stands for the platform; the others are real ones.
-Services, actions, rate and size limits, and patterns of topics go beyond that schema.
+The platform's own domain ID (`inside`) stands for the platform; the others are DDS domains.
+Services, actions, rate and size limits, and topic patterns extend that schema.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ _KINDS = ("topics", "services", "actions")
 
 
 class Crossing(Section):
-    """What topics, services and actions have in common; a server is in `from_domain`."""
+    """Common part of topics, services and actions; a server is in `from_domain`."""
 
     from_domain: Domain | None = None
     to_domain: Domain | None = None
@@ -45,12 +45,12 @@ class Crossing(Section):
     @field_validator("remap", mode="before")
     @classmethod
     def _no_name(cls, value: Any) -> Any:
-        """In that schema an empty name is none."""
+        """Treat an empty `remap` as unset."""
         return None if value == "" else value
 
 
 class TopicCrossing(Crossing):
-    """A topic, published in `from_domain`, or a pattern for topics of whatever types."""
+    """A topic published in `from_domain`, or a pattern for topics of any type."""
 
     type: MessageType | None = None
     qos: QosSection = QosSection()
@@ -62,26 +62,26 @@ class TopicCrossing(Crossing):
     @model_validator(mode="before")
     @classmethod
     def _no_settings(cls, value: Any) -> Any:
-        """Take nothing for no settings: a pattern needs none."""
+        """Treat an empty entry as one without settings: a pattern needs none."""
         return {} if value is None else value
 
 
 class ServiceCrossing(Crossing):
-    """A service."""
+    """A service entry."""
 
     type: ServiceType
     timeout: Timeout = REQUEST_TIMEOUT_S
 
 
 class ActionCrossing(Crossing):
-    """An action."""
+    """An action entry."""
 
     type: ActionType
     timeout: Timeout = REQUEST_TIMEOUT_S
 
 
 class BridgeFile(Section):
-    """A whole file. A name may stand there several times."""
+    """A whole file. Names may occur more than once."""
 
     name: Text | None = None
     mode: Literal["normal"] = "normal"
@@ -95,9 +95,12 @@ class BridgeFile(Section):
 def load_bridge_file(
     path: Path, inside: int, note: Callable[[str], None] = lambda _: None
 ) -> tuple[Route, ...]:
-    """Read and check a bridge file of the platform whose domain is `inside`.
+    """Read and validate a bridge file for the platform whose domain is `inside`.
 
-    What joins two other domains is not this bridge's: `note` is told, unless nothing else is there.
+    Entries between two other domains are skipped and reported through `note`; if the file has no
+    other entries, that is an error.
+
+    :raises MapfileError: for an invalid file.
     """
     document = read_yaml(path, repeated=_KINDS)
     if not isinstance(document.data, dict):
@@ -123,7 +126,7 @@ def _problem(document: Document, details: dict[str, Any]) -> Problem:
 
 
 def _named(document: Document, path: tuple[Any, ...], expected: str, found: str) -> Problem:
-    """Return a problem whose key says the name of a topic instead of its place."""
+    """Return a problem whose key shows the topic's name instead of its index."""
     shown = list(path)
     if len(path) > 1 and path[0] in _KINDS and isinstance(path[1], int):
         entry = document.data[path[0]][path[1]]
@@ -133,7 +136,7 @@ def _named(document: Document, path: tuple[Any, ...], expected: str, found: str)
 
 
 class _Resolver:
-    """Gives each entry its domains, and the platform its place among them."""
+    """Resolves the domains of each entry, and on which side the platform is."""
 
     def __init__(
         self, document: Document, sections: BridgeFile, inside: int, note: Callable[[str], None]
@@ -144,7 +147,7 @@ class _Resolver:
         self._foreign: list[Problem] = []
 
     def routes(self) -> tuple[Route, ...]:
-        """Return all routes; what is wrong with the domains comes in one error."""
+        """Return all routes; raise one error for all entries with wrong domains."""
         found = [*self._topics(), *self._servers("services"), *self._servers("actions")]
         if not found:
             self._problems += self._foreign
@@ -154,7 +157,7 @@ class _Resolver:
         if self._problems:
             raise MapfileError(*self._problems)
         for problem in self._foreign:
-            self._note(f"{problem}; left out")
+            self._note(f"{problem}; skipped")
         return arranged(found, 1)
 
     def _topics(self) -> Iterator[Route]:
@@ -168,7 +171,7 @@ class _Resolver:
                 yield self._topic(name, topic, target, source)
 
     def _is_whole(self, index: int, name: str, topic: TopicCrossing) -> bool:
-        """Tell whether a topic has its type, and a pattern nothing that is for one topic alone."""
+        """Check that a topic has a type, and that a pattern has no settings of a single topic."""
         if not is_pattern(name) and topic.type is None:
             self._wrong("topics", index, "the key 'type'", "no such key", "type")
         elif is_pattern(name) and topic.type is not None:
@@ -216,7 +219,7 @@ class _Resolver:
             yield from action_routes(route) if kind == "actions" else (route,)
 
     def _domains(self, kind: str, index: int, crossing: Crossing) -> tuple[int, int] | None:
-        """Return from and to; a problem where there is none, or a loop, or no platform."""
+        """Return (from, to); report domains that are missing, equal, or not of the platform."""
         pair = [
             own if own is not None else default
             for own, default in (

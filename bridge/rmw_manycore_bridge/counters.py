@@ -1,8 +1,8 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What each route has done, in a file that `manycore bridge status` reads without asking anybody.
+"""Counters of each route, in files that `manycore bridge status` reads without IPC.
 
-One file per bridge process in the platform's directory, so that it goes with the platform. Only its
-process writes; it holds a lock on the file for as long as it lives.
+Each bridge process has one file in the platform's directory, which is removed with the platform.
+Only that process writes to it; it holds a lock on the file during its lifetime.
 """
 
 from __future__ import annotations
@@ -23,9 +23,10 @@ from rmw_manycore_py.routes import Route
 
 _MAGIC = b"MCBRIDG2"
 _HEADER_BYTES = 24  # magic, process id, bytes of the routes' JSON
-# Of 64 bits each. `latency_ns` is a sum over all messages: from source timestamp to passing on.
-# `busy_ns` is CPU time spent on a topic, `load_ppm` its share of a CPU in the last window that
-# ended; the present one began at `window_ns` (CLOCK_MONOTONIC) with `window_busy_ns`.
+# All fields have 64 bits. `latency_ns` is the sum over all messages of the time from source
+# timestamp to forwarding. `busy_ns` is CPU time spent on the topic, `load_ppm` its CPU usage in
+# the last full window; the current one began at `window_ns` (CLOCK_MONOTONIC) with
+# `window_busy_ns`.
 FIELDS = (
     "messages",
     "bytes",
@@ -49,15 +50,15 @@ FIELDS = (
 DROPS = ("lost", "too_fast", "too_large", "refused", "timed_out", "unanswered", "repeated")
 STATES = ("waiting", "ready", "forwarding", "failed")
 RouteKey = tuple[str, str, str, int]
-LastNumbers = dict[bytes, int]  # of messages, by publisher
+LastNumbers = dict[bytes, int]  # last sequence number by publisher gid
 _INDEX = {name: index for index, name in enumerate(FIELDS)}
 _LATENCY, _LATENCY_MAX, _STATE = _INDEX["latency_ns"], _INDEX["latency_max_ns"], _INDEX["state"]
 _BUSY, _LOAD = _INDEX["busy_ns"], _INDEX["load_ppm"]
 _WINDOW, _WINDOW_BUSY = _INDEX["window_ns"], _INDEX["window_busy_ns"]
 _WINDOW_NS = 1_000_000_000
-_GIDS = 4  # a message of a publisher before the last may still be on its way
+_GIDS = 4  # messages of earlier publishers may still be in flight
 _GID_BYTES = 16
-# The publishers whose messages were passed on last, each with the number of its last message.
+# Publishers forwarded last, each with the sequence number of its last message.
 _SOURCES = 16
 _SOURCE = struct.Struct(f"{_GID_BYTES}sQ")
 _REASON_BYTES = 248
@@ -67,20 +68,20 @@ _ROW_BYTES = _SOURCES_AT + _SOURCES * _SOURCE.size + _REASON_BYTES
 
 
 def status_path(platform: str, direction: str, lane: int) -> Path:
-    """Return where a bridge process counts."""
+    """Return the path of a bridge process's counter file."""
     return Path(_transport.platform_directory(platform)) / f"bridge-{direction}-{lane}"
 
 
 def pattern_status_path(platform: str, route: Route, index: int, slot: int) -> Path:
-    """Return where a bridge process counts a topic that fits a pattern, the index-th one."""
+    """Return the path of the counter file of the index-th topic matched by a pattern."""
     path = status_path(platform, route.direction, route.lane)
     return path.with_name(f"{path.name}-{index}-{slot}")
 
 
 def take_pattern_files(platform: str, direction: str, lane: int) -> dict[RouteKey, LastNumbers]:
-    """Remove the files of a process before this one for topics of patterns.
+    """Remove the pattern counter files of a previous process.
 
-    Return what it had passed on last, by route.
+    Return the last sequence numbers it forwarded, by route.
     """
     path = status_path(platform, direction, lane)
     found: dict[RouteKey, LastNumbers] = {}
@@ -91,32 +92,32 @@ def take_pattern_files(platform: str, direction: str, lane: int) -> dict[RouteKe
 
 
 class Row:
-    """The counters of one route."""
+    """Counters of one route."""
 
     def __init__(self, memory: memoryview) -> None:
         self._memory = memory
         self._words = memory[: 8 * _WORDS].cast("Q")
         self._gid_count = memory[8 * _WORDS : 8 * _WORDS + 8].cast("Q")
-        self._places: dict[bytes, int] = {}  # of publishers
-        self.last_passed: LastNumbers = {}  # by this process, or one before it
+        self._places: dict[bytes, int] = {}  # index by publisher gid
+        self.last_passed: LastNumbers = {}  # by this process or a previous one
 
     def passed(self, size: int, latency_ns: int) -> None:
-        """Count a message that was passed on."""
+        """Count a forwarded message of `size` bytes."""
         words = self._words
         words[0] += 1
         words[1] += size
-        if latency_ns > 0:  # the clocks of two hosts may disagree
+        if latency_ns > 0:  # negative if the clocks of two hosts disagree
             words[_LATENCY] += latency_ns
             if latency_ns > words[_LATENCY_MAX]:
                 words[_LATENCY_MAX] = latency_ns
 
     def add(self, field: str, count: int = 1) -> int:
-        """Count something else; return how often it has been by now."""
+        """Increment another counter; return its new value."""
         self._words[_INDEX[field]] += count
         return self._words[_INDEX[field]]
 
     def worked(self, cpu_ns: int) -> None:
-        """Count CPU time spent on the topic."""
+        """Add CPU time spent on the topic."""
         words, now_ns = self._words, time.monotonic_ns()
         words[_BUSY] += cpu_ns
         window_ns = now_ns - words[_WINDOW]
@@ -126,13 +127,13 @@ class Row:
 
     @property
     def load(self) -> float:
-        """The share of a CPU that the topic took lately; nothing when no message comes any more."""
+        """CPU usage of the topic in the last window, 0..1; 0 if messages have stopped."""
         words = self._words
         is_recent = time.monotonic_ns() - words[_WINDOW] < 3 * _WINDOW_NS
         return words[_LOAD] / 1e6 if is_recent else 0.0
 
     def set_latched(self, latched: bool) -> None:
-        """Note whether late subscribers get what was said before: such a topic does not move."""
+        """Set whether the topic is latched (transient local); latched topics do not move."""
         self._words[_INDEX["latched"]] = latched
 
     @property
@@ -141,26 +142,26 @@ class Row:
         return bool(self._words[_INDEX["latched"]])
 
     def set_state(self, state: str, reason: str = "") -> None:
-        """Note how the route is, and why it cannot work."""
+        """Set the state of the route, and why it does not work."""
         text = reason.encode()[: _REASON_BYTES - 1]
         self._memory[-_REASON_BYTES:] = text.ljust(_REASON_BYTES, b"\0")
         self._words[_STATE] = STATES.index(state)
 
     def add_gid(self, gid: bytes) -> None:
-        """Note a publisher of ours before it publishes."""
+        """Register a publisher of this bridge before it publishes."""
         start = 8 * _WORDS + 8 + self._gid_count[0] % _GIDS * _GID_BYTES
         self._memory[start : start + _GID_BYTES] = gid
         self._gid_count[0] += 1
 
     def has_gid(self, gid: bytes) -> bool:
-        """Tell whether a publisher is one of ours."""
+        """Return whether a publisher belongs to this bridge."""
         start = 8 * _WORDS + 8
         gids = bytes(self._memory[start : start + _GIDS * _GID_BYTES])
         return any(gids[i : i + _GID_BYTES] == gid for i in range(0, len(gids), _GID_BYTES))
 
     def note_last(self, publisher: bytes, number: int) -> None:
-        """Note a message before it is passed on, for the process after this one."""
-        if number <= self.last_passed.get(publisher, -1):  # latched, and passed on once more
+        """Record a message before forwarding it, for a process that replaces this one."""
+        if number <= self.last_passed.get(publisher, -1):  # latched, forwarded again
             return
         place = self._places.get(publisher)
         if place is None:
@@ -171,13 +172,13 @@ class Row:
         self.last_passed[publisher] = number
 
     def inherit(self, numbers: LastNumbers) -> None:
-        """Take what a process before this one has passed on last."""
+        """Take over the sequence numbers that a previous process forwarded last."""
         for publisher, number in numbers.items():
             self.note_last(publisher, number)
 
     @property
     def last_numbers(self) -> LastNumbers:
-        """The numbers of the messages that were passed on last, by publisher."""
+        """Sequence numbers forwarded last, by publisher."""
         entries = _SOURCE.iter_unpack(self._memory[_SOURCES_AT:-_REASON_BYTES])
         return {publisher: number for publisher, number in entries if any(publisher)}
 
@@ -190,10 +191,10 @@ class Row:
 
 
 class CounterFile:
-    """The rows of one bridge process."""
+    """Counter rows of one bridge process."""
 
     def __init__(self, file: Any, memory: mmap.mmap) -> None:
-        self._file = file  # keeps the lock
+        self._file = file  # holds the lock
         view = memoryview(memory)
         self.pid = int.from_bytes(view[8:16], "little")
         text_bytes = int.from_bytes(view[16:24], "little")
@@ -206,7 +207,7 @@ class CounterFile:
 
     @classmethod
     def create(cls, path: Path, routes: Sequence[Route]) -> CounterFile:
-        """Start counting in a new file, which takes the place of a dead process's."""
+        """Create a new file, replacing that of a dead process."""
         text = json.dumps([asdict(route) for route in routes]).encode()
         header = _MAGIC + os.getpid().to_bytes(8, "little") + len(text).to_bytes(8, "little")
         start = _rows_start(len(text))
@@ -225,7 +226,7 @@ class CounterFile:
 
     @classmethod
     def open(cls, path: Path) -> CounterFile | None:
-        """Open another process's file; None where there is none, or none that can be read."""
+        """Open another process's file; None if it is missing or unreadable."""
         try:
             with path.open("rb") as file:
                 memory = mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ)
@@ -234,13 +235,13 @@ class CounterFile:
         return cls(None, memory) if memory[:8] == _MAGIC else None
 
     def close(self) -> None:
-        """Give up the lock; the memory goes with the last row."""
+        """Release the lock; the mapping is freed with the last row."""
         if self._file is not None:
             self._file.close()
 
 
 def _last_numbers(path: Path) -> dict[RouteKey, LastNumbers]:
-    """Return what a process before has passed on last, by route."""
+    """Return what a previous process forwarded last, by route."""
     found = CounterFile.open(path)
     if found is None:
         return {}
@@ -249,7 +250,7 @@ def _last_numbers(path: Path) -> dict[RouteKey, LastNumbers]:
 
 
 def key_of(route: Mapping[str, Any]) -> RouteKey:
-    """Return what tells a route of a process from the others, given its fields."""
+    """Return the key that identifies a route within a process, from its fields."""
     return (route["kind"], route["inside"], route["outside"], route["domain"])
 
 
@@ -258,7 +259,7 @@ def _rows_start(text_bytes: int) -> int:
 
 
 def is_locked(path: Path) -> bool:
-    """Tell whether the process that counts in a file lives."""
+    """Return whether the process that owns a counter file is alive."""
     try:
         with path.open("rb") as file:
             fcntl.flock(file, fcntl.LOCK_SH | fcntl.LOCK_NB)

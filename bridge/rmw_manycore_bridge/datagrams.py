@@ -1,8 +1,8 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The datagrams that Linux dropped as a socket's receive buffer was full, from /proc.
+"""Datagrams dropped by Linux because a socket's receive buffer was full, from /proc.
 
-They are parts of messages. What of it DDS asks for again and gets is no loss; for a best-effort
-message a part is as much as the whole.
+A datagram is a fragment of a message. Reliable DDS readers request it again; a best-effort message
+is lost with its first missing fragment.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ _PREFIX, _SUFFIX = "socket:[", "]"
 
 
 def socket_drops(pid: int, proc: Path = Path("/proc")) -> int | None:
-    """Return how many datagrams a process's present UDP sockets have lost; None if it is gone."""
+    """Return the drops of a process's open UDP sockets; None if the process has ended."""
     try:
         own = _sockets(proc / str(pid) / "fd")
         rows = [
@@ -29,7 +29,7 @@ def socket_drops(pid: int, proc: Path = Path("/proc")) -> int | None:
 
 
 def receive_buffer_errors(pid: int, proc: Path = Path("/proc")) -> int | None:
-    """Return how many datagrams all sockets of a process's network namespace have lost."""
+    """Return the drops of all sockets in a process's network namespace."""
     try:
         lines = [line.split() for line in _lines(proc / str(pid) / "net" / "snmp")]
     except OSError:
@@ -39,7 +39,7 @@ def receive_buffer_errors(pid: int, proc: Path = Path("/proc")) -> int | None:
 
 
 def _sockets(directory: Path) -> set[str]:
-    """Return the inodes of the sockets that a process has open."""
+    """Return the inodes of the sockets a process has open."""
     found = set()
     for entry in os.scandir(directory):
         try:

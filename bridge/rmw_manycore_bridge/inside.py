@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The platform's side: a member process of the platform, through the binding of the transport."""
+"""Platform side of the bridge: joins the platform through the transport binding, without rmw."""
 
 from __future__ import annotations
 
@@ -12,18 +12,18 @@ from rmw_manycore_py._transport import EndpointInfo
 from rmw_manycore_py.bridge_plan import Plan
 from rmw_manycore_py.words import EndpointKind, EndpointRole
 
-NODE_PREFIX = "_manycore_bridge_"  # hidden: on the platform the bridge is not one of the nodes
+NODE_PREFIX = "_manycore_bridge_"  # hidden node name
 
 
 class InsideReader(Protocol):
-    """Something that messages of the platform arrive at."""
+    """Entity that receives messages from the platform."""
 
     def pump_inside(self) -> None:
-        """Move what has arrived."""
+        """Forward messages that have arrived."""
 
 
 class Inside(Loop):
-    """Sleeps on the process's common wake word."""
+    """Thread that blocks on the process's common wake word."""
 
     def __init__(self, plan: Plan, core: tuple[int, int], name: str, changed: Callable[[], None]):
         super().__init__("inside")
@@ -36,15 +36,15 @@ class Inside(Loop):
         self._generation = self.process.graph_generation()
 
     def publishers(self, topic: str) -> list[EndpointInfo]:
-        """Return the publishers of a topic that are not the bridge's."""
+        """Return the publishers of a topic, except the bridge's."""
         return self._endpoints(topic, "topic", "publisher")
 
     def subscriptions(self, topic: str) -> list[EndpointInfo]:
-        """Return the subscriptions of a topic that are not the bridge's."""
+        """Return the subscriptions of a topic, except the bridge's."""
         return self._endpoints(topic, "topic", "subscription")
 
     def published(self, wanted: Callable[[str], bool]) -> dict[str, frozenset[str]]:
-        """Return the types of publishers that are not the bridge's, by the topic's name."""
+        """Return the types published by others than the bridge, by topic name."""
         found: dict[str, set[str]] = {}
         for endpoint in self._view.endpoints():
             if _is_of_others(endpoint, "topic", "publisher") and wanted(endpoint.topic):
@@ -52,7 +52,7 @@ class Inside(Loop):
         return {name: frozenset(types) for name, types in found.items()}
 
     def servers(self, service: str) -> list[EndpointInfo]:
-        """Return the servers of a service that are not the bridge's."""
+        """Return the servers of a service, except the bridge's."""
         return self._endpoints(service, "request", "subscription")
 
     def _endpoints(self, name: str, role: EndpointRole, kind: EndpointKind) -> list[EndpointInfo]:
@@ -63,14 +63,14 @@ class Inside(Loop):
         ]
 
     def wake(self) -> None:
-        """End the sleep."""
+        """Interrupt the current or next wait. Thread-safe."""
         self.process.notify()
 
     def turn(self, timeout_s: float | None) -> None:
-        """Move what has arrived, then sleep until something changes."""
+        """Forward messages that have arrived, then block until something changes."""
         seen = self.process.epoch()
-        # Who sets a flag wakes us after that. So either the wake word changes after we read it, and
-        # the sleep ends; or it had changed before, and then we see the flag.
+        # Setters wake this thread after setting a flag. If the wake word changes after we read it,
+        # the wait returns; if it changed before, we see the flag.
         if self._stale or self._stopping:
             return
         for reader in list(self.readers):
@@ -82,7 +82,7 @@ class Inside(Loop):
         self.process.wait(seen, timeout_s)
 
     def close(self) -> None:
-        """Leave the platform, once the movers have ended their endpoints."""
+        """Leave the platform, after the movers have destroyed their endpoints."""
         self.readers.clear()
         self._view.close()
         self.process.close()

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""A process as one of several lanes: it follows the table, and lane 0 keeps the loads even."""
+"""A process as one of several lanes: follows the lane table; lane 0 balances the loads."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ from rmw_manycore_bridge.status import topic_loads
 from rmw_manycore_py.bridge_plan import Plan
 from rmw_manycore_py.routes import Direction
 
-PERIOD_S = 0.1  # between looks at the table
-BALANCE_S = 2.0  # between looks at the loads; each is that of the second before
-MOVE_S = 10.0  # after which a move that does not come to an end is given up
-REST_S = 60.0  # a topic whose move failed stays where it is for so long
+PERIOD_S = 0.1  # polling period of the lane table
+BALANCE_S = 2.0  # polling period of the loads
+MOVE_S = 10.0  # timeout of a move
+REST_S = 60.0  # pause before a topic whose move failed may move again
 
 
 class Lanes:
-    """Used by the main thread. With a single lane there is nothing to do, and no file."""
+    """Used by the main thread. No-op and without a file if there is a single lane."""
 
     def __init__(self, plan: Plan, direction: Direction, lane: int) -> None:
         self._plan, self._direction, self._lane = plan, direction, lane
@@ -37,11 +37,11 @@ class Lanes:
         self._give_up_s = 0.0
 
     def place(self, index: int) -> Place:
-        """Return what this process is to a topic, by the topic's place in the plan."""
+        """Return the Place of a topic in this process, by the topic's index in the plan."""
         return Place(self._table, index, self._lane)
 
     def look(self) -> bool:
-        """Make a move if one is worth it; return whether any lane's topics have changed."""
+        """Start a move if worthwhile; return whether the topics of any lane have changed."""
         table = self._table
         if table is None:
             return False

@@ -1,8 +1,8 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Which lane has which topic, in a file of the platform's directory that all lanes share.
+"""Table of topics and their lanes, in a file of the platform's directory shared by all lanes.
 
-A file for each direction. It is replaced as a whole under a lock, so readers see one state or the
-next, and a process that dies leaves either.
+There is one file per direction. It is replaced atomically under a lock: readers see the old or the
+new state, also if a writer dies.
 """
 
 from __future__ import annotations
@@ -22,10 +22,10 @@ from rmw_manycore_py.routes import Direction, Route
 
 @dataclass
 class Share:
-    """Who passes on the messages of a topic, and how far a move has come.
+    """Owner of a topic, and the progress of a move.
 
-    Numbers are those of the publishers, by gid. `first` is what the heir has all messages from,
-    None before it is ready; `last` is what the owner before this one passed on last.
+    Sequence numbers are kept by publisher gid. `first` is the first message that the heir has, None
+    until the heir is ready; `last` is the last message that the previous owner forwarded.
     """
 
     owner: int
@@ -35,12 +35,12 @@ class Share:
 
 
 def name_of(route: Mapping[str, Any]) -> str:
-    """Return what tells a topic from the others of its direction, given the fields of its route."""
+    """Return the key of a topic within its direction, from the fields of its route."""
     return f"{route['inside']} {route['outside']} {route['domain']}"
 
 
 class LaneTable:
-    """The shares of all topics of one direction, by their place in the plan. Thread-safe."""
+    """Shares of all topics of one direction, by their index in the plan. Thread-safe."""
 
     def __init__(self, path: Path) -> None:
         self._path = path
@@ -56,7 +56,7 @@ class LaneTable:
         return cls(directory / f"lanes-{direction}")
 
     def join(self, routes: Sequence[Route], lane: int) -> None:
-        """Make the file unless it is there for these routes, and give up this lane's moves."""
+        """Create the file unless it exists for these routes, and abort this lane's moves."""
         names = [name_of(asdict(route)) for route in routes]
         with self._locked():
             data = self._load()
@@ -70,7 +70,7 @@ class LaneTable:
 
     @property
     def shares(self) -> list[Share]:
-        """The present shares, to look at only; none where there is no file."""
+        """Return a read-only copy of the shares; empty without a file."""
         with self._lock:
             stamp = self._stamp()
             if stamp != self._seen:
@@ -79,19 +79,19 @@ class LaneTable:
             return self._shares
 
     def owners(self) -> dict[str, int]:
-        """Return the owner's lane by the name of the topic."""
+        """Return the owner's lane by topic name."""
         data = self._load()
         names, shares = data.get("names", []), data.get("shares", [])
         return {name: share["owner"] for name, share in zip(names, shares, strict=True)}
 
     def has_changed(self) -> bool:
-        """Tell whether the file has changed since the last call."""
+        """Return whether the file has changed since the last call."""
         before, self._told = self._told, self._stamp()
         return self._told != before
 
     @contextmanager
     def change(self, index: int) -> Iterator[Share]:
-        """Give the present share of a topic to look at and to change."""
+        """Yield the share of a topic for modification, under the lock."""
         with self._locked():
             data = self._load()
             shares = [Share(**share) for share in data["shares"]]

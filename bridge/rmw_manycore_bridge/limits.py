@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What a route lets pass, and what never reached it."""
+"""Rate and size limits of a route, and gaps in what it receives."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _NS_PER_S = 1_000_000_000
 
 
 class Limits:
-    """The rate and size limits of a route."""
+    """Rate and size limits of a route."""
 
     def __init__(self, route: Route) -> None:
         self._max_size = route.max_size
@@ -21,31 +21,31 @@ class Limits:
         self._next_ns = 0
 
     def refusal(self, size: int) -> str | None:
-        """Return the counter of the reason for which a message must not pass."""
+        """Return the counter name of the limit that a message exceeds; None if it may pass."""
         if self._max_size is not None and size > self._max_size:
             return "too_large"
         if self._period_ns:
             now_ns = time.monotonic_ns()
             if now_ns < self._next_ns:
                 return "too_fast"
-            # Keeps the rate where messages come a little early now and then.
+            # Keeps the mean rate although messages arrive slightly early at times.
             self._next_ns = max(self._next_ns + self._period_ns, now_ns)
         return None
 
 
 class Gaps:
-    """Counts the messages of each publisher that were never received, by their numbers."""
+    """Counts messages missing from each publisher's sequence numbers."""
 
     def __init__(self, row: Row) -> None:
         self._row = row
         self._last: dict[bytes, int] = {}
 
     def begin_after(self, last: Mapping[bytes, int]) -> None:
-        """Go on where another lane stopped."""
+        """Continue after the numbers at which another lane stopped."""
         self._last.update(last)
 
     def note(self, publisher: bytes, number: int) -> None:
-        """Note a message's number; numbers of a publisher count up by one."""
+        """Count the gap before a message; sequence numbers of a publisher increase by one."""
         last = self._last.get(publisher)
         if last is None or number > last:
             self._last[publisher] = number

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""A thread that moves messages of some routes and keeps their endpoints as the graphs want."""
+"""Event-loop thread that forwards messages and adapts endpoints to the graph."""
 
 from __future__ import annotations
 
@@ -10,15 +10,15 @@ from collections.abc import Callable
 
 
 class Mover(ABC):
-    """A route at work: endpoints on both sides, which only its loop's thread makes and ends."""
+    """Active route: its endpoints are created and destroyed only by its loop's thread."""
 
-    due_s = float("inf")  # on the monotonic clock: when `expire` has something to do
+    due_s = float("inf")  # CLOCK_MONOTONIC, when to call `expire`
 
     def __init__(self, fail: Callable[[str], None]) -> None:
         self._fail = fail
 
     def try_to_reconcile(self) -> None:
-        """Let a route that cannot work say so, and the others go on."""
+        """Reconcile; on an error, mark the route as failed and keep the others running."""
         try:
             self.reconcile()
         except Exception as error:
@@ -26,18 +26,18 @@ class Mover(ABC):
 
     @abstractmethod
     def reconcile(self) -> None:
-        """Make or end endpoints, now that somebody came or went on either side."""
+        """Create or destroy endpoints after a graph change on either side."""
 
-    def expire(self, now_s: float) -> None:  # noqa: B027 (most have nothing that can be overdue)
-        """Give up what is overdue."""
+    def expire(self, now_s: float) -> None:  # noqa: B027 (most movers have no deadlines)
+        """Handle expired deadlines."""
 
     @abstractmethod
     def close(self) -> None:
-        """End all endpoints."""
+        """Destroy all endpoints."""
 
 
 class Loop(ABC):
-    """One side's thread: it sleeps until a message comes, a graph changes, or something is due."""
+    """Thread of one side: blocks until a message, a graph change, or a deadline."""
 
     def __init__(self, name: str) -> None:
         self.name = name
@@ -49,7 +49,7 @@ class Loop(ABC):
         self._thread = threading.Thread(target=self._run, name=name)
 
     def on_failure(self, call: Callable[[], None]) -> None:
-        """Have something called when the thread has ended by `failure`."""
+        """Set the callback for when the thread has ended with `failure`."""
         self._failed = call
 
     def start(self) -> None:
@@ -57,28 +57,28 @@ class Loop(ABC):
         self._thread.start()
 
     def graphs_changed(self) -> None:
-        """Have the movers look at the graphs again. Any thread."""
+        """Make the movers reconcile with the graphs. Thread-safe."""
         self._stale = True
         self.wake()
 
     def stop(self) -> None:
-        """End the thread; close_movers() and close() follow once all threads have ended."""
+        """Stop the thread; call close_movers() and close() once all threads have ended."""
         self._stopping = True
         self.wake()
         self._thread.join()
 
     def close_movers(self) -> None:
-        """End all endpoints of the movers; both their sides are still there."""
+        """Destroy all endpoints of the movers, while both sides still exist."""
         for mover in self.movers:
             mover.close()
 
     @abstractmethod
     def wake(self) -> None:
-        """End the present or the next sleep. Any thread."""
+        """Interrupt the current or next wait. Thread-safe."""
 
     @abstractmethod
     def turn(self, timeout_s: float | None) -> None:
-        """Sleep until there is something to move, and move it."""
+        """Block until something is ready, and forward it."""
 
     @abstractmethod
     def close(self) -> None:
@@ -97,7 +97,7 @@ class Loop(ABC):
             self._failed()
 
     def _expire(self) -> float | None:
-        """Return how long nothing is due, None = for ever."""
+        """Return the seconds until the next deadline; None if there is none."""
         now_s = time.monotonic()
         for mover in self.movers:
             if mover.due_s <= now_s:
@@ -107,4 +107,4 @@ class Loop(ABC):
 
 
 def _ignore() -> None:
-    """Be told of a failure that nobody asked for."""
+    """Default failure callback."""

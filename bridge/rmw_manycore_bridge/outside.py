@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""A DDS domain's side: rclpy's context and node, and a wait set of the bridge's own."""
+"""DDS side of the bridge: rclpy context and node, and a wait set of its own."""
 
 from __future__ import annotations
 
@@ -15,24 +15,24 @@ from rclpy.signals import SignalHandlerOptions
 from rmw_manycore_bridge import rcl
 from rmw_manycore_bridge.loop import Loop
 
-_GRAPH, _WAKE = 0, 1  # places of the guard conditions in the wait set
+_GRAPH, _WAKE = 0, 1  # indices of the guard conditions in the wait set
 _NS_PER_S = 1e9
-# DDS announces an endpoint before ROS says whose it is (rmw_dds_common).
+# Node name of an endpoint that DDS has announced but rmw_dds_common has not attributed yet.
 _UNKNOWN_NODE = "_NODE_NAME_UNKNOWN_"
 
 
 class OutsideReader(Protocol):
-    """A subscription, service or client outside: `kind` and `entity` are for the wait set."""
+    """DDS subscription, service or client; `kind` and `entity` are for the wait set."""
 
     kind: str
     entity: Any
 
     def pump_outside(self) -> None:
-        """Move what has arrived."""
+        """Forward messages that have arrived."""
 
 
 class Outside(Loop):
-    """Waits for messages and for changes of the domain's graph."""
+    """Thread that waits for messages and graph changes in a DDS domain."""
 
     def __init__(
         self,
@@ -59,24 +59,24 @@ class Outside(Loop):
             self._wake = _rclpy.GuardCondition(self.context.handle)
 
     def publishers(self, topic: str) -> list[Any]:
-        """Return the publishers of a topic that are not this bridge's."""
+        """Return the publishers of a topic, except this bridge's."""
         return self._others(self.node.get_publishers_info_by_topic(topic))
 
     def subscriptions(self, topic: str) -> list[Any]:
-        """Return the subscriptions of a topic that are not this bridge's."""
+        """Return the subscriptions of a topic, except this bridge's."""
         return self._others(self.node.get_subscriptions_info_by_topic(topic))
 
     def published(self, wanted: Callable[[str], bool]) -> dict[str, frozenset[str]]:
-        """Return the types of publishers that are not this bridge's, by the topic's name."""
+        """Return the types published by others than this bridge, by topic name."""
         names = [name for name, _ in self.node.get_topic_names_and_types() if wanted(name)]
         found = {name: frozenset(p.topic_type for p in self.publishers(name)) for name in names}
         return {name: types for name, types in found.items() if types}
 
     def server_types(self, service: str) -> list[str]:
-        """Return the types of a service's servers that are not this bridge's.
+        """Return the types of a service's servers, except this bridge's.
 
-        rmw tells types of services by name only, and those of clients with them; so this asks for
-        the subscriptions to requests, as ROS calls topic and type in DDS.
+        rmw lists service types by name only, servers and clients mixed; so query the subscriptions
+        of the request topic, by its DDS topic and type names.
         """
         name = f"rq{service}Request"
         endpoints = self.node.get_subscriptions_info_by_topic(name, no_mangle=True)
@@ -93,13 +93,13 @@ class Outside(Loop):
         ]
 
     def _is_own_newcomer(self, endpoint: Any) -> bool:
-        """Tell whether an endpoint whose node is not known yet is a publisher of this bridge."""
+        """Return whether an endpoint with a still unknown node is a publisher of this bridge."""
         return endpoint.node_name == _UNKNOWN_NODE and self._is_own(bytes(endpoint.endpoint_gid))
 
     def enter_node(self, full_name: str | None) -> Node:
-        """Return a node of that name for one more service of it; without a name the bridge's own.
+        """Return a node of that name for one more service; without a name, the bridge's own node.
 
-        Tools look for a node before they ask for its parameters.
+        Tools look up a node before they query its parameters.
         """
         if full_name is None:
             return self.node
@@ -111,7 +111,7 @@ class Outside(Loop):
         return node
 
     def leave_node(self, full_name: str | None) -> None:
-        """End what `enter_node` gave; with its last service a node goes."""
+        """Release a node from `enter_node`; destroy it with its last service."""
         if full_name is not None:
             node, users = self._stand_ins.pop(full_name)
             if users > 1:
@@ -120,11 +120,11 @@ class Outside(Loop):
                 node.destroy_node()
 
     def wake(self) -> None:
-        """End the sleep."""
+        """Interrupt the current or next wait. Thread-safe."""
         self._wake.trigger_guard_condition()
 
     def turn(self, timeout_s: float | None) -> None:
-        """Sleep until something changes, then move what has arrived."""
+        """Block until something changes, then forward what has arrived."""
         readers = list(self.readers)
         wait_set = self._new_wait_set(readers)
         wait_set.wait(-1 if timeout_s is None else int(timeout_s * _NS_PER_S))
@@ -170,7 +170,7 @@ def full_name_of(endpoint: Any) -> str:
 
 
 def service_type_of(request_type: str) -> str:
-    """Return a service's type, given that of its requests in DDS.
+    """Return a service type from its DDS request type.
 
     >>> service_type_of("std_srvs::srv::dds_::SetBool_Request_")
     'std_srvs/srv/SetBool'
@@ -182,7 +182,7 @@ _KINDS = ("subscription", "service", "client")
 
 
 def _quiet_node(name: str, context: rclpy.Context, namespace: str = "/") -> Node:
-    """Return a node that adds as little to the domain as rclpy allows."""
+    """Return a node with as few endpoints as rclpy allows."""
     return rclpy.create_node(
         name,
         context=context,

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""A route for all topics whose names fit a pattern: each gets a route of its own."""
+"""Route for all topics whose names match a pattern; each topic gets a route of its own."""
 
 from __future__ import annotations
 
@@ -21,21 +21,21 @@ from rmw_manycore_py.bridge_plan import Plan
 from rmw_manycore_py.ros.patterns import matches
 from rmw_manycore_py.routes import Route
 
-MAX_TOPICS = 512  # of one pattern: each is a file, and endpoints on both sides
+MAX_TOPICS = 512  # per pattern; each costs a file and endpoints on both sides
 
 Types = frozenset[str]
 
 
 class Source(Protocol):
-    """The side that a pattern's topics are published on."""
+    """Side on which a pattern's topics are published."""
 
     def published(self, wanted: Callable[[str], bool]) -> Mapping[str, Types]:
-        """Return the types that others than the bridge publish, by the name of the topic."""
+        """Return the types published by others than the bridge, by topic name."""
 
 
 @dataclass
 class _Member:
-    """A topic that fits, at work unless its route cannot be."""
+    """A matching topic; it has no mover if its route cannot work."""
 
     types: Types
     slot: int
@@ -44,7 +44,7 @@ class _Member:
 
 
 class Pattern(Mover):
-    """Works in the thread that the messages of its topics come to."""
+    """Runs in the thread that receives the messages of its topics."""
 
     def __init__(
         self,
@@ -52,7 +52,7 @@ class Pattern(Mover):
         sides: Sides,
         source: Source,
         make: Callable[[Sides], Mover],
-        before: Mapping[RouteKey, LastNumbers],  # passed on by a process that was killed
+        before: Mapping[RouteKey, LastNumbers],  # forwarded by a killed process
     ) -> None:
         super().__init__(sides.fail)
         self._plan, self._sides, self._passed_before = plan, sides, before
@@ -62,7 +62,7 @@ class Pattern(Mover):
         route = sides.route
         inward = route.direction == "inward"
         self._pattern = route.outside if inward else route.inside
-        # A topic with a route of its own crosses by that, one that fits two patterns by the first.
+        # Explicit routes take precedence, and of two matching patterns the first.
         beside = [other for other in plan.topics(route.direction) if other.domain == route.domain]
         self._taken = {other.outside if inward else other.inside for other in beside}
         patterns = plan.patterns(route.direction)
@@ -71,11 +71,11 @@ class Pattern(Mover):
 
     @property
     def due_s(self) -> float:  # type: ignore[override]
-        """When the first of the topics has something to do."""
+        """Earliest deadline of the topics."""
         return min((m.due_s for m in self._movers()), default=float("inf"))
 
     def reconcile(self) -> None:
-        """Begin topics that appeared, end those whose type is another one, look at the others."""
+        """Add new topics, remove those whose type has changed, reconcile the others."""
         found = self._source.published(self._is_wanted)
         for name, types in found.items():
             member = self._members.get(name)
@@ -89,13 +89,13 @@ class Pattern(Mover):
         self._sides.row.set_state(state, f"topics: {len(found)}")
 
     def expire(self, now_s: float) -> None:
-        """Let the topics that are due do what they have to."""
+        """Expire the topics that are due."""
         for mover in self._movers():
             if mover.due_s <= now_s:
                 mover.expire(now_s)
 
     def close(self) -> None:
-        """End all topics; their counters stay."""
+        """Close all topics; keep their counters."""
         for mover in self._movers():
             mover.close()
 
@@ -108,7 +108,7 @@ class Pattern(Mover):
         return matches(self._pattern, name)
 
     def _has_room(self, found: Mapping[str, Types]) -> bool:
-        """Make room where every place is taken: a topic without publishers goes."""
+        """Return whether there is room; if full, evict a topic without publishers."""
         if len(self._members) < MAX_TOPICS:
             return True
         gone = next((name for name in self._members if name not in found), None)
@@ -117,7 +117,7 @@ class Pattern(Mover):
             return True
         if not self._is_full:
             self._is_full = True
-            self._sides.say(f"more than {MAX_TOPICS} topics fit; the others do not cross")
+            self._sides.say(f"more than {MAX_TOPICS} topics match; the others are not bridged")
         return False
 
     def _begin(self, name: str, types: Types) -> _Member:
@@ -125,13 +125,13 @@ class Pattern(Mover):
         sides = self._sides_of(self._route(name, types), slot)
         member = _Member(types, slot, sides, None)
         if len(types) > 1:
-            sides.fail(f"has several types, so none crosses: {', '.join(sorted(types))}")
+            sides.fail(f"has several types, so it is not bridged: {', '.join(sorted(types))}")
             return member
         try:
             member.mover = self._make(sides)
         except ImportError as error:
             sides.fail(str(error))
-        except Exception as error:  # whatever is wrong with one topic: the others work
+        except Exception as error:  # one failing topic must not stop the others
             sides.fail(f"{type(error).__name__}: {error}")
         return member
 
@@ -149,7 +149,7 @@ class Pattern(Mover):
             names = {"inside": name.removeprefix(route.prefix), "outside": name}
         else:
             names = {"inside": name, "outside": f"{route.prefix}{name}"}
-        # The other direction may find the same name; only messages tell whose they are.
+        # The other direction may match the same name; messages are told apart by publisher gid.
         return replace(route, **names, type=min(types), mirrored=True)  # type: ignore[arg-type]
 
     def _sides_of(self, route: Route, slot: int) -> Sides:

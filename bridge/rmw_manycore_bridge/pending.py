@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Requests that wait for their replies, and the answer that is given when none comes."""
+"""Pending requests, and the response that is sent if no reply arrives."""
 
 from __future__ import annotations
 
@@ -9,15 +9,15 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-# Fields in which responses of ROS say what went wrong.
+# Fields in which ROS responses describe an error.
 _REASON_FIELDS = ("message", "status_message", "reason", "error_string", "error_message")
 _REJECTED = 1  # action_msgs/srv/CancelGoal: ERROR_REJECTED
 
 
 def empty_answer(response_type: Any, reason: str) -> Any:
-    """Return a response as ROS makes it, all zero and false, with the reason where it has room.
+    """Return a default response (all zero and false), with the reason in a suitable field if any.
 
-    ROS 2 has no error replies: this is what keeps a caller from waiting for ever.
+    ROS 2 has no error replies; this response keeps a caller from waiting forever.
     """
     response = response_type()
     for name, kind in response_type.get_fields_and_field_types().items():
@@ -30,7 +30,7 @@ def empty_answer(response_type: Any, reason: str) -> Any:
 
 @dataclass(frozen=True)
 class Asked:
-    """A request on its way: whom to answer, when it came and until when it may wait."""
+    """Pending request: its caller, arrival time and deadline."""
 
     caller: Any
     since_ns: int
@@ -38,7 +38,7 @@ class Asked:
 
 
 class Pending:
-    """The requests of one service by the number they were passed on with. Thread-safe."""
+    """Pending requests of one service by forwarded sequence number. Thread-safe."""
 
     def __init__(self, timeout_s: float | None) -> None:
         self._timeout_s = timeout_s
@@ -46,7 +46,7 @@ class Pending:
         self._lock = threading.Lock()
 
     def ask(self, caller: Any, send: Callable[[], int]) -> None:
-        """Note a request that has been sent, by its number; replies are looked up after that."""
+        """Send a request and register it; lookups of replies wait for the registration."""
         with self._lock:
             self._asked[send()] = self._now(caller)
 
@@ -55,22 +55,22 @@ class Pending:
         return Asked(caller, time.time_ns(), due_s)
 
     def answered(self, number: int) -> Asked | None:
-        """Return who asked, once; None when nobody waits any more."""
+        """Remove and return the pending request; None if it is no longer pending."""
         with self._lock:
             return self._asked.pop(number, None)
 
     def overdue(self, now_s: float) -> list[Asked]:
-        """Return those whose time is over, once."""
+        """Remove and return the requests whose deadline has passed."""
         with self._lock:
             late = [number for number, asked in self._asked.items() if asked.due_s <= now_s]
             return [self._asked.pop(number) for number in late]
 
     def all(self) -> list[Asked]:
-        """Return all of them, once."""
+        """Remove and return all pending requests."""
         return self.overdue(float("inf"))
 
     @property
     def due_s(self) -> float:
-        """When the next one is overdue, on the monotonic clock."""
+        """Earliest deadline, CLOCK_MONOTONIC."""
         with self._lock:
             return min((asked.due_s for asked in self._asked.values()), default=float("inf"))

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What one process is to one topic: its owner, its heir, or nobody (docs/design/bridge.md)."""
+"""Role of one process for one topic: owner, heir or neither (docs/design/bridge.md)."""
 
 from __future__ import annotations
 
@@ -8,15 +8,15 @@ from typing import Literal
 
 from rmw_manycore_bridge.lanes import LaneTable, Share
 
-Role = Literal["owner", "heir", "nobody"]
+Role = Literal["owner", "heir", "none"]
 
-SETTLE_S = 1.0  # an heir's endpoints have found all others by then, those that are silent too
-STEP_S = 0.02  # between looks at a move that is under way
+SETTLE_S = 1.0  # by then the heir's endpoints have matched, including silent publishers
+STEP_S = 0.02  # polling period of a move in progress
 
 
 @dataclass(frozen=True)
 class Held:
-    """A message that the heir keeps until it owns the topic."""
+    """Message kept by the heir until it owns the topic."""
 
     publisher: bytes
     number: int
@@ -25,27 +25,27 @@ class Held:
 
 
 class Place:
-    """One topic in one process; used by the topic's own thread."""
+    """One topic in one process; used only by the topic's thread."""
 
     def __init__(self, table: LaneTable | None = None, index: int = 0, lane: int = 0) -> None:
         self._table, self._index, self._lane = table, index, lane
-        self.role: Role = "owner" if table is None else "nobody"
+        self.role: Role = "owner" if table is None else "none"
         self._passed: dict[bytes, int] = {}
-        self._passed_before: dict[bytes, int] | None = None  # when the heir showed up
-        self._skipped: dict[bytes, int] = {}  # what the owner before us passed on
+        self._passed_before: dict[bytes, int] | None = None  # numbers when the heir appeared
+        self._skipped: dict[bytes, int] = {}  # forwarded by the previous owner
         self._first: dict[bytes, int] = {}
-        self._held: list[Held] | None = None  # None before the heir holds
+        self._held: list[Held] | None = None  # None before the heir starts to hold
 
     def look(self) -> Share:
-        """Return the present share, and take the role that it gives this process."""
+        """Return the current share, and take the role it assigns to this process."""
         if self._table is None:
             return Share(self._lane)
         share = self._table.shares[self._index]
         if share.owner == self._lane:
             role: Role = "owner"
         else:
-            role = "heir" if share.heir == self._lane else "nobody"
-        if role == "nobody" or (role == "heir" and self.role != "heir"):
+            role = "heir" if share.heir == self._lane else "none"
+        if role == "none" or (role == "heir" and self.role != "heir"):
             self._first, self._held = {}, None
         if share.heir is None:
             self._passed_before = None
@@ -55,15 +55,15 @@ class Place:
     # As owner.
 
     def passed(self, publisher: bytes, number: int) -> None:
-        """Note a message that goes to the other side, or would without limits."""
+        """Record a message that is forwarded, or would be without limits."""
         self._passed[publisher] = number
 
     def repeats(self, publisher: bytes, number: int) -> bool:
-        """Tell whether the owner before us has passed a message on."""
+        """Return whether the previous owner has forwarded a message."""
         return number <= self._skipped.get(publisher, -1)
 
     def may_hand_over(self, share: Share) -> bool:
-        """Tell whether the heir has every message that comes after those passed on."""
+        """Return whether the heir has every message after those forwarded here."""
         if self._passed_before is None:
             self._passed_before = dict(self._passed)
         if share.first is None:
@@ -76,7 +76,7 @@ class Place:
         )
 
     def hand_over(self) -> bool:
-        """Make the heir the owner; False when there is none any more."""
+        """Make the heir the owner; return False if the heir is gone."""
         assert self._table is not None
         with self._table.change(self._index) as share:
             if share.heir is None:
@@ -86,7 +86,7 @@ class Place:
         return True
 
     def decline(self) -> None:
-        """End a move."""
+        """Abort a move."""
         assert self._table is not None
         with self._table.change(self._index) as share:
             share.heir = share.first = None
@@ -94,7 +94,7 @@ class Place:
     # As heir.
 
     def hold(self, message: Held) -> None:
-        """Keep a message; before all is settled only note that its publisher is heard."""
+        """Keep a message; before settling, only record that its publisher is received."""
         if self._held is None:
             self._first[message.publisher] = message.number + 1
         else:
@@ -103,15 +103,15 @@ class Place:
 
     @property
     def holds(self) -> bool:
-        """Whether messages are kept by now."""
+        """Whether messages are being kept."""
         return self._held is not None
 
     def begin_to_hold(self) -> None:
-        """Keep messages from now on."""
+        """Start keeping messages."""
         self._held = []
 
     def report(self, share: Share) -> None:
-        """Tell the owner what is here."""
+        """Report progress to the owner."""
         first = {gid.hex(): number for gid, number in self._first.items()}
         if self._table is not None and share.first != first:
             with self._table.change(self._index) as present:
@@ -119,7 +119,7 @@ class Place:
                     present.first = first
 
     def inherit(self, share: Share) -> list[Held]:
-        """Return, now that we are the owner, the messages that the one before did not pass on."""
+        """As the new owner, return the held messages that the previous owner did not forward."""
         if self._held is None:
             return []
         self._skipped = {bytes.fromhex(gid): number for gid, number in share.last.items()}
@@ -129,5 +129,5 @@ class Place:
 
     @property
     def inherited(self) -> dict[bytes, int]:
-        """The last numbers of the owner before us."""
+        """Last sequence numbers of the previous owner."""
         return self._skipped

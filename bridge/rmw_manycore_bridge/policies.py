@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The QoS of a route's endpoints: what all publishers offer, so that all of them are heard."""
+"""QoS of a route's endpoints: compatible with all publishers of the topic."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ from rclpy.qos import (
 from rmw_manycore_py._transport import Qos
 from rmw_manycore_py.qos import Policies, policies_of
 
-# A burst of this many messages waits for the bridge; more where the other side keeps more.
+# Minimum queue depth of the bridge, in messages; a larger depth of the other side raises it.
 LEAST_DEPTH = 10
 
 
 def common_offer(offers: Iterable[Qos], overrides: Policies) -> Qos:
-    """Return the strongest offer that none of the publishers falls short of.
+    """Return the strongest QoS that every publisher offers.
 
-    The depths add up: a late subscriber of a latched topic gets what each publisher has kept.
+    Depths add up: a late joiner of a latched topic gets the history of each publisher.
     """
     all_offers = list(offers)
     reliable = all(offer.reliability == "reliable" for offer in all_offers)
@@ -44,7 +44,7 @@ def common_offer(offers: Iterable[Qos], overrides: Policies) -> Qos:
 
 
 def unmet(offers: Iterable[Qos], overrides: Policies) -> str | None:
-    """Return what a route asks for that none of the publishers offers; else nothing."""
+    """Return why the route requests more than any publisher offers; None if it does not."""
     found = list(offers)
     reliabilities, durabilities = [o.reliability for o in found], [o.durability for o in found]
     return _unmet("reliability", "reliable", overrides.get("reliability"), reliabilities) or _unmet(
@@ -55,17 +55,17 @@ def unmet(offers: Iterable[Qos], overrides: Policies) -> str | None:
 def _unmet(policy: str, strong: str, asked: str | None, offered: Sequence[str]) -> str | None:
     if asked != strong or strong in offered:
         return None
-    return f"its qos asks for {policy} {strong}, the publisher offers {offered[0]}"
+    return f"its qos requests {policy} {strong}, the publisher offers {offered[0]}"
 
 
 def request_for(offer: Qos, depth: int) -> Qos:
-    """Return what a subscription asks of publishers with that offer; nothing expires in it."""
+    """Return the QoS of a subscription that matches such publishers, without lifespan."""
     kept = max(offer.depth, LEAST_DEPTH, depth)
     return replaced(offer, {"history": "keep_last", "depth": kept, "lifespan_ns": None})
 
 
 def replaced(qos: Qos, changes: Policies) -> Qos:
-    """Return the same with some policies replaced."""
+    """Return the QoS with some policies replaced."""
     policies = policies_of(qos)
     policies.update(changes)
     return Qos(**policies)
@@ -77,9 +77,9 @@ def _longest(durations_ns: Iterable[int | None]) -> int | None:
 
 
 def from_rclpy(profile: QoSProfile) -> Qos:
-    """Return what a publisher outside offers.
+    """Convert the QoS of a DDS publisher.
 
-    DDS does not tell others how much history a publisher keeps: it counts as one message.
+    DDS discovery does not carry the history depth of a publisher: assume one message.
     """
     reliable = profile.reliability == ReliabilityPolicy.RELIABLE
     kept = profile.durability == DurabilityPolicy.TRANSIENT_LOCAL
@@ -97,7 +97,7 @@ def from_rclpy(profile: QoSProfile) -> Qos:
 
 
 def to_rclpy(qos: Qos) -> QoSProfile:
-    """Return the same for an endpoint outside."""
+    """Convert to the rclpy QoS of a DDS endpoint."""
     reliable = qos.reliability == "reliable"
     kept = qos.durability == "transient_local"
     by_hand = qos.liveliness == "manual_by_topic"
@@ -114,7 +114,7 @@ def to_rclpy(qos: Qos) -> QoSProfile:
 
 
 def _ns(duration: Duration) -> int | None:
-    """Middlewares write "no limit" as zero or as their longest duration."""
+    """Return nanoseconds; None for zero and for the longest duration, which both mean no limit."""
     ns = int(duration.nanoseconds)
     return None if ns == 0 or ns >= int(Infinite.nanoseconds) else ns
 
@@ -124,5 +124,5 @@ def _duration(ns: int | None) -> Duration:
 
 
 def satisfies(present: Qos, wanted: Qos) -> bool:
-    """Tell whether endpoints with the present offer do for the wanted one; more depth does."""
+    """Return whether endpoints with the current QoS satisfy the wanted one; more depth does."""
     return present.depth >= wanted.depth and present == replaced(wanted, {"depth": present.depth})

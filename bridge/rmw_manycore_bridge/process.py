@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""One process of the bridge: both sides, and its routes between them."""
+"""Bridge process: both sides, and the routes between them."""
 
 from __future__ import annotations
 
@@ -32,13 +32,11 @@ from rmw_manycore_py.readiness import report_ready
 from rmw_manycore_py.routes import Direction
 from rmw_manycore_py.signals import signal_inbox
 
-_NO_NETWORK = (
-    "no network interface is up: nothing crosses; try 'ip link set lo up', then start again"
-)
+_NO_NETWORK = "no network interface is up: nothing is bridged; run 'ip link set lo up' and restart"
 
 
 class BridgeProcess:
-    """Runs until it is told to end, or until one of its threads fails."""
+    """Runs until it is stopped or one of its threads fails."""
 
     def __init__(self, plan: Plan, direction: Direction, lane: int, core: tuple[int, int]) -> None:
         services = [route for route in plan.of(direction, lane) if route.kind == "service"]
@@ -46,7 +44,7 @@ class BridgeProcess:
         routes = [*plan.topics(direction), *services, *patterns]
         name = f"{node_stem(plan.platform)}_{direction}{lane or ''}"
         self._plan = plan
-        self._failed = os.eventfd(0)  # readable once a thread has failed
+        self._failed = os.eventfd(0)  # readable after a thread has failed
         self._inside = Inside(
             plan, core, f"{NODE_PREFIX}{direction}{lane or ''}", self._graphs_changed
         )
@@ -71,7 +69,7 @@ class BridgeProcess:
             mover, loop = self._mover(sides, index)
         except ImportError as error:
             sides.fail(str(error))
-        except Exception as error:  # whatever is wrong with one route: the others work
+        except Exception as error:  # one failing route must not stop the others
             sides.fail(f"{type(error).__name__}: {error}")
         else:
             loop.movers.append(mover)
@@ -96,7 +94,7 @@ class BridgeProcess:
             loop.graphs_changed()
 
     def run(self) -> int:
-        """Move messages until a signal comes; return the exit status."""
+        """Forward messages until a signal; return the exit status."""
         with signal_inbox() as inbox:
             if not has_interface():
                 print(_NO_NETWORK, file=sys.stderr, flush=True)
@@ -109,7 +107,7 @@ class BridgeProcess:
                 while not select.select(endings, [], [], self._lanes.period_s)[0]:
                     if self._lanes.look():
                         self._graphs_changed()
-            finally:  # a table that cannot be read or written ends the process: it starts again
+            finally:  # an I/O error of the table ends the process; the runner restarts it
                 for loop in self._loops:
                     loop.stop()
             for loop in self._loops:
@@ -133,9 +131,9 @@ def _report(loops: Iterable[Loop]) -> int:
 
 
 def node_stem(platform: str) -> str:
-    """Return the name of a bridge's nodes up to their direction, the same at each start.
+    """Return the node name prefix of a platform's bridge, the same at each start.
 
-    Two platforms of one name on two hosts are two bridges to everybody who sees both.
+    It differs between two platforms of one name on different hosts.
     """
     text = f"{socket.gethostname()}/{os.getuid()}/{platform}"
     readable = re.sub(r"\W", "_", platform, flags=re.ASCII).strip("_")

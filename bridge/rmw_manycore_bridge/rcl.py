@@ -1,9 +1,9 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Takes and publishes serialized messages of rclpy's entities without a Python object per message.
+"""Takes and publishes serialized messages of rclpy entities without a Python object per message.
 
-rclpy owns context, nodes, publishers and subscriptions. Its own raw interface copies each message
-twice more into and out of `bytes`; rcl, which it has loaded, works on memory that we name. The
-structures are those of rcutils/types/uint8_array.h, rcutils/allocator.h and rmw/types.h.
+rclpy owns contexts, nodes, publishers and subscriptions. Its raw interface copies each message
+twice into and out of `bytes`; librcl, loaded by rclpy, works on caller-provided memory. The
+structures mirror rcutils/types/uint8_array.h, rcutils/allocator.h and rmw/types.h.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ GID_BYTES = 16
 
 
 class OutsideError(RuntimeError):
-    """rcl refused; the message is its own."""
+    """An rcl call failed; the message is rcl's error string."""
 
 
 class _Allocator(Structure):
@@ -45,7 +45,7 @@ class _Gid(Structure):
 
 
 class MessageInfo(Structure):
-    """Metadata of the message taken last; times in nanoseconds of CLOCK_REALTIME."""
+    """Metadata of a taken message; times in ns of CLOCK_REALTIME."""
 
     _fields_ = [
         ("source_timestamp", c_int64),
@@ -58,7 +58,7 @@ class MessageInfo(Structure):
 
     @property
     def publisher(self) -> bytes:
-        """The gid of the publisher."""
+        """Publisher gid."""
         return bytes(self.publisher_gid.data)
 
 
@@ -68,7 +68,7 @@ def _function(library: ctypes.CDLL, name: str, result: Any, *arguments: Any) -> 
     return function
 
 
-# By their bare names the loader finds the libraries that rclpy has loaded.
+# The bare names resolve to the libraries that rclpy has loaded.
 _librcl, _librcutils = ctypes.CDLL("librcl.so"), ctypes.CDLL("librcutils.so")
 _int = ctypes.c_int
 _default_allocator = _function(_librcutils, "rcutils_get_default_allocator", _Allocator)
@@ -106,7 +106,7 @@ def _check(code: int) -> None:
 
 
 class RawReader:
-    """Takes messages of an rclpy subscription into memory that grows to the largest one."""
+    """Takes messages of an rclpy subscription into a buffer that grows to the largest message."""
 
     def __init__(self, subscription: Any) -> None:
         self._handle = subscription.handle
@@ -115,7 +115,7 @@ class RawReader:
         self.info = MessageInfo()
 
     def take(self) -> bool:
-        """Take the next message; `address`, `size` and `info` are about it until the next call."""
+        """Take the next message; `address`, `size` and `info` describe it until the next call."""
         code = _take(self._pointer, byref(self._bytes), byref(self.info), None)
         if code == _RCL_RET_SUBSCRIPTION_TAKE_FAILED:
             _reset_error()
@@ -125,21 +125,21 @@ class RawReader:
 
     @property
     def address(self) -> int:
-        """Where the message lies."""
+        """Address of the message."""
         return self._bytes.buffer or 0
 
     @property
     def size(self) -> int:
-        """The bytes of the message."""
+        """Size of the message in bytes."""
         return int(self._bytes.length)
 
     def close(self) -> None:
-        """Give the memory back."""
+        """Free the buffer."""
         _bytes_fini(byref(self._bytes))
 
 
 class RawWriter:
-    """Publishes messages through an rclpy publisher from where they lie."""
+    """Publishes serialized messages through an rclpy publisher, in place."""
 
     def __init__(self, publisher: Any) -> None:
         self._handle = publisher.handle
@@ -148,15 +148,15 @@ class RawWriter:
         self.gid = _gid_of(self._pointer)
 
     def publish(self, address: int, size: int) -> None:
-        """Publish `size` bytes; they are not needed any more afterwards."""
+        """Publish `size` bytes; the buffer is free afterwards."""
         self._bytes.buffer, self._bytes.length, self._bytes.capacity = address, size, size
         _check(_publish(self._pointer, byref(self._bytes), None))
 
 
 def _gid_of(publisher: int) -> bytes:
-    """Return the gid that the messages of an rcl publisher carry."""
+    """Return the gid of an rcl publisher."""
     gid = _Gid()
-    # librcl is linked to the middleware, so its symbols are found through it.
+    # librcl is linked to the middleware, so its symbols resolve through librcl.
     _check(_get_gid(_rmw_publisher(publisher), byref(gid)))
     return bytes(gid.data)
 
@@ -165,7 +165,7 @@ _get_gid = _function(_librcl, "rmw_get_gid_for_publisher", _int, c_void_p, POINT
 
 
 def add_graph_of(node: Any, wait_set: Any) -> None:
-    """Have a wait set of rclpy wake when the graph of a node's domain changes."""
+    """Make an rclpy wait set wake up on graph changes of a node's domain."""
     with node.handle:
         condition = _graph_guard_condition(node.handle.pointer)
         _check(_add_guard_condition(wait_set.pointer, condition, None))

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What services have in common in both directions: requests one way, replies or an answer back."""
+"""Common part of both directions of a service: forward requests, return replies."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from rmw_manycore_py.words import EndpointRole
 
 
 class Service(Mover):
-    """Works in the thread of its domain; replies of the platform come in that of the platform."""
+    """Runs in the thread of its DDS domain; replies from the platform in the platform's thread."""
 
     def __init__(self, sides: Sides) -> None:
         super().__init__(sides.fail)
@@ -33,11 +33,11 @@ class Service(Mover):
 
     @property
     def due_s(self) -> float:  # type: ignore[override]
-        """When a request is overdue."""
+        """Earliest deadline of a request."""
         return self._pending.due_s
 
     def _wait_or_fail(self, types_found: list[str], where: str) -> None:
-        """Note that no server fits, and which one is there instead."""
+        """Wait for a server, or fail with the type of the server that does not match."""
         if types_found:
             self._sides.fail(f"is {types_found[0]} {where}, not {self._sides.route.type}")
         else:
@@ -48,14 +48,14 @@ class Service(Mover):
         return process.publisher(route.inside, route.type, self._qos, role, self._hash)
 
     def _subscription(self, role: EndpointRole) -> _transport.Subscription:
-        """Return an end that reads: nothing is displaced before it is passed on."""
+        """Return a subscription that never overwrites unread messages (KEEP_ALL)."""
         route, process = self._sides.route, self._sides.inside.process
         qos = replaced(self._qos, {"history": "keep_all"})
         return process.subscription(route.inside, route.type, qos, role, self._hash)
 
     @abstractmethod
     def _reply(self, caller: Any, response: Any) -> None:
-        """Send a response to whoever asked."""
+        """Send a response to the caller."""
 
     def _answer(self, asked: Asked, response: Any, size: int) -> None:
         self._reply(asked.caller, response)
@@ -63,9 +63,9 @@ class Service(Mover):
 
     @contextmanager
     def _one_request(self, caller: Any = None) -> Iterator[None]:
-        """Let what goes wrong with a request end that one only, and tell its caller if it is known.
+        """Confine an error to one request, and answer its caller if known.
 
-        Either side may refuse it: it does not fit, it cannot be read, who asked is gone.
+        Either side may reject a request: it is too large, malformed, or its caller has ended.
         """
         try:
             yield
@@ -76,13 +76,13 @@ class Service(Mover):
                 self._answer_empty(caller, str(error))
 
     def expire(self, now_s: float) -> None:
-        """Answer the requests whose time is over."""
+        """Answer the requests whose deadline has passed."""
         timeout_s = self._sides.route.timeout_s
         for asked in self._pending.overdue(now_s):
             self._give_up(asked.caller, "timed_out", f"no reply within {timeout_s:g} s")
 
     def _abandon(self) -> None:
-        """Answer all requests: their server is gone."""
+        """Answer all pending requests, since their server has gone."""
         for asked in self._pending.all():
             self._give_up_without_server(asked.caller)
 
@@ -97,5 +97,5 @@ class Service(Mover):
     def _answer_empty(self, caller: Any, reason: str) -> None:
         try:
             self._reply(caller, empty_answer(self._type.Response, f"bridge: {reason}"))
-        except Exception as error:  # the caller may be gone; the request is counted already
-            self._sides.say(f"a caller gets no answer: {error}")
+        except Exception as error:  # the caller may have ended; the request is counted
+            self._sides.say(f"cannot answer a caller: {error}")

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""A service whose server is on the platform, called from outside."""
+"""Service with its server on the platform, called from DDS."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from rmw_manycore_bridge.sides import Sides
 from rmw_manycore_bridge.topic_inward import never_called
 from rmw_manycore_py import _transport
 
-LINGER_S = 1.0  # the service stays while the last answers are on their way, which end with it
+LINGER_S = 1.0  # destroying the service would discard replies in flight
 
 _NEVER_S = float("inf")
 
@@ -29,18 +29,18 @@ class InwardService(Service):
         super().__init__(sides)
         self._numbers = itertools.count(1)
         self._servers: set[bytes] = set()
-        self._ends_s = _NEVER_S  # once the last server has gone
+        self._ends_s = _NEVER_S  # set when the last server has gone
         self._requests: _transport.Publisher | None = None
         self._replies: _transport.Subscription | None = None
-        self.entity: Any = None  # the service outside
-        self._node: Any = None  # that it belongs to
+        self.entity: Any = None  # the DDS service
+        self._node: Any = None  # node of the DDS service
 
     def reconcile(self) -> None:
-        """Offer the service outside while a server is there inside."""
+        """Offer the DDS service while a server exists on the platform."""
         found = self._sides.inside.servers(self._sides.route.inside)
         servers = {server.gid for server in found if server.type == self._sides.route.type}
         if self._servers and not self._servers & servers:
-            self._abandon()  # whoever replaces them knows nothing of the requests
+            self._abandon()  # a new server does not know the pending requests
         self._servers = servers
         if servers:
             self._ends_s = _NEVER_S
@@ -54,11 +54,11 @@ class InwardService(Service):
 
     @property
     def due_s(self) -> float:  # type: ignore[override]
-        """When a request is overdue, or the service outside has to go."""
+        """Earliest deadline of a request, or of removing the DDS service."""
         return min(super().due_s, self._ends_s)
 
     def expire(self, now_s: float) -> None:
-        """Answer the requests whose time is over; leave when the servers have."""
+        """Answer overdue requests; remove the DDS service after its servers."""
         super().expire(now_s)
         if now_s >= self._ends_s:
             self.close()
@@ -79,7 +79,7 @@ class InwardService(Service):
         self._sides.outside.readers.append(self)
 
     def pump_outside(self) -> None:
-        """Pass a request on."""
+        """Forward a request."""
         with self._one_request():
             request, header = self.entity.handle.service_take_request(self._type.Request)
             if request is not None:
@@ -118,7 +118,7 @@ class InwardService(Service):
             entity.handle.service_send_response(response, caller.request_id)
 
     def close(self) -> None:
-        """Leave both sides; who still waits gets an answer first."""
+        """Leave both sides, after answering pending requests."""
         self._abandon()
         if self.entity is not None:
             self._sides.inside.readers.remove(self)

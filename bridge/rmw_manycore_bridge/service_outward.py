@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""A service whose server is outside, called by nodes of the platform."""
+"""Service with its server in DDS, called from the platform."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ from rmw_manycore_bridge.service import Service
 from rmw_manycore_bridge.sides import Sides
 from rmw_manycore_py import _transport
 
-# A server is in the graph a moment before it is matched, which nobody announces. Who looks again
-# after as long as it has waited finds it in time, and hardly ever looks for one that never matches.
+# A server appears in the graph shortly before it is matched, which raises no event. Polling with
+# doubling intervals finds it early and rarely polls for a server that never matches.
 _MATCHING_S = 0.02
-_MATCHED_BY_S = 5.0  # who takes longer than DDS repeats what it may have missed, 3 s, does not fit
+_MATCHED_BY_S = 5.0  # longer than the DDS repetition of discovery data (3 s)
 
 _NEVER_S = float("inf")
-Caller = tuple[bytes, int]  # the client's gid, and its number of the request
+Caller = tuple[bytes, int]  # client gid, sequence number of the request
 
 
 class OutwardService(Service):
@@ -31,9 +31,9 @@ class OutwardService(Service):
 
     def __init__(self, sides: Sides) -> None:
         super().__init__(sides)
-        # On the monotonic clock: since when a server is seen but not matched, when to look again.
+        # CLOCK_MONOTONIC: since when a server is seen but unmatched, and when to poll again.
         self._seen_s = self._look_s = _NEVER_S
-        # Held while requests are claimed. Both threads do that, and none may be after the last.
+        # Held while requests are claimed: both threads claim, and no claim may follow the last one.
         self._claiming = threading.Lock()
         self._requests: _transport.Subscription | None = None
         self._replies: _transport.Publisher | None = None
@@ -41,7 +41,7 @@ class OutwardService(Service):
         sides.outside.readers.append(self)
 
     def reconcile(self) -> None:
-        """Offer the service inside while a server is there outside."""
+        """Offer the service on the platform while a server exists in DDS."""
         self._look_s = _NEVER_S
         if not self.entity.service_is_ready():
             self._leave_platform()
@@ -56,7 +56,7 @@ class OutwardService(Service):
             self._sides.row.set_state("forwarding")
 
     def _look_for_server(self) -> None:
-        """Wait for one that is seen already, or say why it cannot be called."""
+        """Poll for the match of a known server, or fail if it does not match."""
         route, now_s = self._sides.route, time.monotonic()
         found = self._sides.outside.server_types(route.outside)
         if route.type not in found:
@@ -73,23 +73,23 @@ class OutwardService(Service):
 
     @property
     def due_s(self) -> float:  # type: ignore[override]
-        """When a request is overdue, or a server that was seen may be matched."""
+        """Earliest deadline of a request or of the next poll for a match."""
         return min(self._pending.due_s, self._look_s)
 
     def expire(self, now_s: float) -> None:
-        """Answer the requests whose time is over; look for the server."""
+        """Answer overdue requests; poll for the server's match."""
         super().expire(now_s)
         if self._look_s <= now_s:
             self.try_to_reconcile()
 
     def pump_inside(self) -> None:
-        """Pass requests on."""
+        """Forward requests."""
         with self._claiming:
             for caller, data in self._claimed_requests():
                 with self._one_request(caller):
                     request = deserialize_message(data, self._type.Request)
                     self._pending.ask(caller, partial(self.entity.handle.send_request, request))
-                self._sides.outside.wake()  # it sleeps until something is due
+                self._sides.outside.wake()  # its deadline has changed
 
     def _claimed_requests(self) -> Iterator[tuple[Caller, bytes]]:
         requests = self._requests
@@ -120,7 +120,7 @@ class OutwardService(Service):
             replies.publish(serialize_message(response), client=client, number=number)
 
     def _leave_platform(self) -> None:
-        """Answer all who have asked, then leave: nobody asks between the two."""
+        """Answer all callers, then leave atomically: no request may arrive in between."""
         with self._claiming:
             for caller, _ in self._claimed_requests():
                 self._give_up_without_server(caller)
@@ -131,7 +131,7 @@ class OutwardService(Service):
         self._replies = None
 
     def close(self) -> None:
-        """Leave both sides; who still waits gets an answer first."""
+        """Leave both sides, after answering pending requests."""
         self._leave_platform()
         self._sides.outside.readers.remove(self)
         self._sides.outside.node.destroy_client(self.entity)

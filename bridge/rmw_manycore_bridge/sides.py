@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What every route at work needs: both sides, its counters, and who else is of this bridge."""
+"""Context of an active route: both sides, its counters, and this bridge's publishers."""
 
 from __future__ import annotations
 
@@ -15,42 +15,42 @@ from rmw_manycore_py.routes import Route
 
 
 class OwnPublishers:
-    """Knows the publishers of all processes of this bridge by gid: those stand in their files."""
+    """Looks up publishers of all processes of this bridge by gid, in their counter files."""
 
     def __init__(self, platform: str) -> None:
         self._directory = Path(_transport.platform_directory(platform))
         self._known: dict[bytes, bool] = {}
 
     def has(self, gid: bytes) -> bool:
-        """Tell whether a message with that gid came out of this bridge."""
+        """Return whether a message with that gid was published by this bridge."""
         known = self._known.get(gid)
         if known is None:
             known = self._known[gid] = self.is_noted(gid)
         return known
 
     def is_noted(self, gid: bytes) -> bool:
-        """Tell whether a process has noted a publisher by now; it may do so later."""
+        """Return whether a process has registered a publisher yet."""
         files = (CounterFile.open(path) for path in self._directory.glob("bridge-*"))
         return any(row.has_gid(gid) for file in files if file for row in file.rows)
 
 
 @dataclass(frozen=True)
 class Sides:
-    """The surroundings of one route."""
+    """Context of one route."""
 
     route: Route
     row: Row
     inside: Inside
     outside: Outside
     own: OwnPublishers
-    file: CounterFile | None = None  # of the row, where it has one of its own
+    file: CounterFile | None = None  # counter file of the row, if it has its own
 
     def fail(self, reason: str) -> None:
-        """Say once that the route cannot work, and why."""
-        line = " ".join(reason.split())  # some errors draw pictures
+        """Mark the route as failed, and print the reason once."""
+        line = " ".join(reason.split())  # some errors span several lines
         before = self._standing()
         self.row.set_state("failed", line)
-        if self._standing() != before:  # a row has room for the beginning only
+        if self._standing() != before:  # compare stored text: a row truncates it
             self.say(line)
 
     def _standing(self) -> tuple[str, str]:

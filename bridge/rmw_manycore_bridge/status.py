@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What the bridge of a platform has done, from the files of its processes."""
+"""Status of a platform's bridge, from the counter files of its processes."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _Key = tuple[str, str, str, str, int]
 
 
 def status(platform: str) -> list[dict[str, Any]]:
-    """Return a row for each route of a platform's bridge, summed over the lanes it has been in."""
+    """Return a row per route of a platform's bridge, summed over lanes."""
     owners = {way: LaneTable.of(platform, way).owners() for way in DIRECTIONS}
     merged: dict[_Key, dict[str, Any]] = {}
     for row in _rows(platform):
@@ -42,10 +42,10 @@ def status(platform: str) -> list[dict[str, Any]]:
 
 
 def topic_loads(platform: str, direction: Direction) -> dict[int, list[tuple[float, bool]]]:
-    """Return by lane, for each topic, its share of a CPU and whether it may move."""
+    """Return by lane the CPU usage of each topic and whether it may move."""
     found = {}
     for path in _files(platform, f"bridge-{direction}-*"):
-        if path.name.count("-") > _DASHES:  # a topic of a pattern does not move
+        if path.name.count("-") > _DASHES:  # topics of patterns do not move
             continue
         counters = CounterFile.open(path)
         if counters is not None and is_locked(path):
@@ -76,7 +76,7 @@ def _lane_of(path: Path) -> int:
 
 
 def _host_cpu(pid: int) -> HostCpu:
-    """Return the CPUs a process is pinned to; None where it may use all, or is gone."""
+    """Return the CPUs a process is pinned to; None if unpinned or ended."""
     try:
         cpus = os.sched_getaffinity(pid)
     except ProcessLookupError:
@@ -87,12 +87,12 @@ def _host_cpu(pid: int) -> HostCpu:
 def _files(platform: str, pattern: str) -> list[Path]:
     try:
         return sorted(Path(_transport.platform_directory(platform)).glob(pattern))
-    except FileNotFoundError:  # the last process removes the directory at this moment
+    except FileNotFoundError:  # the last process is removing the directory
         return []
 
 
 def _sum(one: dict[str, Any], other: dict[str, Any], other_is_owner: bool) -> dict[str, Any]:
-    """Return the row of the owner, with what both have counted."""
+    """Return the owner's row with the counters of both added up."""
     total = dict(other if other_is_owner else one)
     for name in FIELDS:
         if name not in _OF_OWNER:

@@ -1,10 +1,10 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""A short time slice for the bridge, so that subscribers beside it empty their sockets in time.
+"""Short scheduler time slice for the bridge, so that co-located subscribers drain their sockets.
 
-A large message leaves as a burst of datagrams, and a socket buffer of the default size holds only
-a few of them. Linux lets a running thread use up its slice before a thread that wakes replaces it;
-within a slice of milliseconds the whole burst is sent, and most of it dropped. Linux 6.12 and later
-let a thread ask for a slice of its own; earlier ones ignore the wish.
+A large message is sent as a burst of datagrams, and a default socket buffer holds only a few of
+them. Linux lets a running thread use up its slice before a woken thread preempts it; within a slice
+of milliseconds the whole burst is sent and most of it dropped. Linux 6.12 and later let a thread
+request a slice; earlier kernels ignore the request.
 """
 
 from __future__ import annotations
@@ -23,9 +23,9 @@ _libc = ctypes.CDLL(None, use_errno=True)
 
 
 def shorten_time_slice() -> bool:
-    """Shorten the slice of the calling thread and of all that it starts; False if Linux refuses.
+    """Shorten the slice of the calling thread and of threads it starts; False if Linux refuses.
 
-    A thread under another policy than SCHED_OTHER has no slice, and stays as it is.
+    Threads of policies other than SCHED_OTHER have no slice and are left unchanged.
     """
     if os.sched_getscheduler(0) != os.SCHED_OTHER:
         return False
@@ -35,7 +35,7 @@ def shorten_time_slice() -> bool:
 
 
 def time_slice_ns(thread: int = 0) -> int:
-    """Return the slice of a thread, 0 where this kernel does not tell."""
+    """Return the slice of a thread in ns; 0 if the kernel does not report it."""
     found = ctypes.create_string_buffer(_ATTRIBUTES.size)
     if _libc.syscall(_SYS_SCHED_GETATTR, thread, found, _ATTRIBUTES.size, 0) != 0:
         return 0

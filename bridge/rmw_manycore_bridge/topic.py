@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What topics have in common in both directions: limits, counters, and moves between lanes."""
+"""Common part of both directions of a topic: limits, counters, and moves between lanes."""
 
 from __future__ import annotations
 
@@ -18,15 +18,15 @@ from rmw_manycore_bridge.sides import Sides
 from rmw_manycore_py import _transport
 from rmw_manycore_py._transport import Qos
 
-BATCH = 16  # messages of one route before the others have their turn
-LINGER_S = 1.0  # who gave a topic away keeps its publisher while subscribers take what it said
-PAUSE_S = 0.2  # who cannot get rid of what it said by then keeps the topic
+BATCH = 16  # messages of one route before the next route's turn
+LINGER_S = 1.0  # the old owner keeps its publisher until subscribers have its messages
+PAUSE_S = 0.2  # abort the hand-over if draining takes longer
 
 _NEVER_S = float("inf")
 
 
 class Topic(Mover):
-    """One topic in one process; all but `place` is done by the thread its messages come to."""
+    """One topic in one process; everything but `place` belongs to the receiving thread."""
 
     def __init__(self, sides: Sides, place: Place) -> None:
         super().__init__(sides.fail)
@@ -34,21 +34,21 @@ class Topic(Mover):
         self._type: Any = types.load(sides.route.type)
         self._limits = Limits(sides.route)
         self._offer: Qos | None = None
-        self._depth = 0  # of the subscription: no more than that can be unread
+        self._depth = 0  # of the subscription, the maximum number of unread messages
         self._paused = False
         self._paused_s = 0.0
         self._settled_s = _NEVER_S
-        self._offer_held: Qos | None = None  # what the heir's endpoints were made for
+        self._offer_held: Qos | None = None  # offer that the heir's endpoints were created for
 
     def reconcile(self) -> None:
-        """Bring the endpoints in line with both graphs, and a move one step further."""
+        """Adapt the endpoints to both graphs, and advance a move by one step."""
         share, before = self._place.look(), self._place.role
         self.due_s = _NEVER_S
-        if before == "nobody":
+        if before == "none":
             self._rest()
             return
         if before == "owner" and self._place.holds:
-            self._inherit(share)  # while the endpoints are those that the messages were kept for
+            self._inherit(share)  # with the endpoints the messages were held for
         if self._paused and before == "owner" and share.heir is None:
             self._paused = False
             self.resume()
@@ -66,17 +66,17 @@ class Topic(Mover):
         held = self._place.inherit(share)
         self.begin_after(self._place.inherited)
         for message in held:
-            if self._offer is None:  # its publishers went, and the endpoints with them
+            if self._offer is None:  # all publishers have gone, and so have the endpoints
                 self._sides.row.add("lost")
             else:
                 self._pass_on_held(message)
 
     def expire(self, _: float) -> None:
-        """Take the next step of a move."""
+        """Advance a move by one step."""
         self.try_to_reconcile()
 
     def _rest(self) -> None:
-        """Leave at once, or, after a move, when everybody has taken what was said."""
+        """Leave at once or, after a move, when all subscribers have the messages."""
         if self._paused:
             self._paused = False
             self.stop_listening()
@@ -91,7 +91,7 @@ class Topic(Mover):
             self.due_s = self._settled_s
 
     def _prepare(self, share: Share) -> None:
-        """As heir: stand by with own endpoints, then keep what comes, and tell the owner."""
+        """As heir: create endpoints, then hold messages and report to the owner."""
         now_s = time.monotonic()
         self.due_s = now_s + STEP_S
         if self._offer is None:
@@ -102,7 +102,7 @@ class Topic(Mover):
         elif self._settled_s == _NEVER_S and not self._place.holds:
             self._settled_s, self._offer_held = now_s + SETTLE_S, self._offer
         elif self._offer is not self._offer_held:
-            self._place.decline()  # the endpoints are new ones
+            self._place.decline()  # the endpoints were recreated
         elif self._place.holds:
             self._place.report(share)
         elif now_s >= self._settled_s:
@@ -110,14 +110,14 @@ class Topic(Mover):
             self._place.begin_to_hold()
 
     def _give(self, share: Share) -> None:
-        """As owner: stop where the heir can go on, and say so when all have what was said."""
+        """As owner: stop where the heir can continue, and hand over once all messages are acked."""
         self.due_s = time.monotonic() + STEP_S
         if self._offer is None or self._offer.durability == "transient_local":
             self._place.decline()
         elif self._place.may_hand_over(share):
             if not self._paused:
                 if not self.is_acknowledged():
-                    return  # a subscriber that does not keep up would make the pause long
+                    return  # a slow subscriber would prolong the pause
                 self._paused, self._paused_s = True, time.monotonic()
                 self.pause()
             if self.is_acknowledged() and self._place.hand_over():
@@ -126,7 +126,7 @@ class Topic(Mover):
                 self._place.decline()
 
     def arrived(self, publisher: bytes, number: int, address: int, size: int, sent_ns: int) -> None:
-        """Take charge of a message, which may be one that another lane passes on."""
+        """Handle an arrived message, unless another lane forwards it."""
         place, row = self._place, self._sides.row
         if self._sides.route.mirrored and self._sides.own.has(publisher):
             row.add("own")
@@ -138,10 +138,10 @@ class Topic(Mover):
             self._pass_on(address, size, sent_ns)
 
     def _drops_repeated(self, publisher: bytes, number: int) -> bool:
-        """Count a message that has been passed on, maybe by a killed process; tell whether to drop.
+        """Count a message forwarded before, e.g. by a killed process; return whether to drop it.
 
-        A new subscription gets what is latched once more, and late subscribers need it from the new
-        publisher.
+        A new subscription receives latched messages again, and the new publisher needs them for
+        late joiners.
         """
         row = self._sides.row
         if number > row.last_passed.get(publisher, -1):
@@ -173,13 +173,13 @@ class Topic(Mover):
         row.passed(size, time.time_ns() - sent_ns)
 
     def finish(self) -> None:
-        """Pass on what is unread, then leave both sides: it would go with the subscription."""
+        """Forward unread messages, which the subscription would discard, then leave both sides."""
         self.take(self._depth)
         self.close()
 
     @abstractmethod
     def match(self) -> None:
-        """Make or end endpoints as the graphs want it."""
+        """Create or destroy endpoints according to the graphs."""
 
     @abstractmethod
     def send(self, address: int, size: int, sent_ns: int) -> None:
@@ -187,26 +187,26 @@ class Topic(Mover):
 
     @abstractmethod
     def take(self, limit: int) -> None:
-        """Take so many messages that have arrived."""
+        """Take up to `limit` messages."""
 
     @abstractmethod
     def pause(self) -> None:
-        """Leave messages where they are."""
+        """Stop taking messages."""
 
     @abstractmethod
     def resume(self) -> None:
-        """Go on after a pause."""
+        """Resume after a pause."""
 
     @abstractmethod
     def stop_listening(self) -> None:
-        """End the subscription."""
+        """Destroy the subscription."""
 
     @abstractmethod
     def is_acknowledged(self) -> bool:
-        """Tell whether all subscribers on the other side have what was sent."""
+        """Return whether all subscribers on the other side have acknowledged everything."""
 
     def begin_after(self, last: Mapping[bytes, int]) -> None:
-        """Take the numbers of the lane before as those passed on last."""
+        """Continue after the sequence numbers of the previous lane."""
 
     def count_gap(self, publisher: bytes, number: int) -> None:
-        """Count what is missing before a message."""
+        """Count the messages missing before this one."""

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""A topic on its way in: DDS subscription -> publisher on the platform."""
+"""Inward topic: DDS subscription -> publisher on the platform."""
 
 from __future__ import annotations
 
@@ -28,19 +28,19 @@ from rmw_manycore_py._transport import Qos
 
 
 class InwardTopic(Topic):
-    """Works in the thread of its domain."""
+    """Runs in the thread of its DDS domain."""
 
     kind = "subscription"
 
     def __init__(self, sides: Sides, place: Place) -> None:
         super().__init__(sides, place)
         self._publisher: _transport.Publisher | None = None
-        self.entity: Any = None  # the subscription outside
+        self.entity: Any = None  # the DDS subscription
         self._reader: RawReader | None = None
         self._gaps = Gaps(sides.row)
 
     def match(self) -> None:
-        """Publish inside while somebody does outside; listen outside while somebody does inside."""
+        """Publish inside while DDS publishers exist; subscribe to DDS while subscriptions exist."""
         route, outside = self._sides.route, self._sides.outside
         publishers = outside.publishers(route.outside)
         fitting = [p for p in publishers if p.topic_type == route.type]
@@ -99,7 +99,7 @@ class InwardTopic(Topic):
         self._sides.outside.readers.append(self)
 
     def stop_listening(self) -> None:
-        """End the subscription."""
+        """Destroy the subscription."""
         if self.entity is None or self._reader is None:
             return
         if self in self._sides.outside.readers:
@@ -109,13 +109,13 @@ class InwardTopic(Topic):
         self.entity = self._reader = None
 
     def pump_outside(self) -> None:
-        """Pass on what has arrived."""
+        """Forward messages that have arrived."""
         began_ns = time.thread_time_ns()
         self.take(BATCH)
         self._sides.row.worked(time.thread_time_ns() - began_ns)
 
     def take(self, limit: int) -> None:
-        """Take so many messages that have arrived."""
+        """Take up to `limit` messages."""
         reader = self._reader
         for _ in range(limit):
             if reader is None or not reader.take():
@@ -125,30 +125,30 @@ class InwardTopic(Topic):
             self.arrived(info.publisher, number, reader.address, reader.size, sent_ns)
 
     def send(self, address: int, size: int, sent_ns: int) -> None:
-        """Publish inside, with the time of the publisher outside."""
+        """Publish inside with the source timestamp of the DDS publisher."""
         assert self._publisher is not None
         self._publisher.publish_from(address, size, sent_ns)
 
     def begin_after(self, last: Mapping[bytes, int]) -> None:
-        """Count what is missing between the lane before and this one."""
+        """Count gaps from the sequence numbers of the previous lane."""
         self._gaps.begin_after(last)
 
     def count_gap(self, publisher: bytes, number: int) -> None:
-        """Count what DDS did not bring."""
+        """Count messages that DDS did not deliver."""
         self._gaps.note(publisher, number)
 
     def pause(self) -> None:
-        """Leave messages where they are."""
+        """Stop taking messages."""
         if self in self._sides.outside.readers:
             self._sides.outside.readers.remove(self)
 
     def resume(self) -> None:
-        """Go on after a pause."""
+        """Resume after a pause."""
         if self.entity is not None:
             self._sides.outside.readers.append(self)
 
     def is_acknowledged(self) -> bool:
-        """Tell that all is there: on the platform a message is with its readers at once."""
+        """Return True: on the platform, readers have a message as soon as it is published."""
         return True
 
     def close(self) -> None:
@@ -158,4 +158,4 @@ class InwardTopic(Topic):
 
 
 def never_called(*_: Any) -> None:
-    """Stand in where rclpy wants a callback: the bridge takes messages itself."""
+    """Serve as the callback rclpy requires; the bridge takes messages itself."""

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""A topic on its way out: subscription on the platform -> DDS publisher."""
+"""Outward topic: subscription on the platform -> DDS publisher."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from rmw_manycore_py._transport import Qos
 
 
 class OutwardTopic(Topic):
-    """Works in the thread of the platform's side."""
+    """Runs in the thread of the platform side."""
 
     def __init__(self, sides: Sides, place: Place) -> None:
         super().__init__(sides, place)
@@ -36,7 +36,7 @@ class OutwardTopic(Topic):
         self._lost = 0
 
     def match(self) -> None:
-        """Publish outside while somebody does inside; listen inside while somebody does outside."""
+        """Publish to DDS while publishers exist; subscribe inside while DDS subscriptions exist."""
         route, inside = self._sides.route, self._sides.inside
         publishers = inside.publishers(route.inside)
         fitting = [p for p in publishers if p.type == route.type]
@@ -67,9 +67,9 @@ class OutwardTopic(Topic):
         return kept or route.eager or bool(self._sides.outside.subscriptions(route.outside))
 
     def _leave(self) -> None:
-        """Pass on what is unread; with its publisher would go what subscribers do not have yet.
+        """Forward unread messages and wait for slow subscribers, which would lose them otherwise.
 
-        However slow they are: those that are gone or stand still DDS gives up itself.
+        DDS itself gives up on subscribers that have ended or are stopped.
         """
         self.take(self._depth)
         self.stop_listening()
@@ -100,12 +100,12 @@ class OutwardTopic(Topic):
         self._sides.inside.readers.append(self)
 
     def stop_listening(self) -> None:
-        """End the subscription."""
+        """Destroy the subscription."""
         self.pause()
         self._subscription = None
 
     def pump_inside(self) -> None:
-        """Pass on what has arrived."""
+        """Forward messages that have arrived."""
         if self._subscription is None or not self._subscription.has_data():
             return
         began_ns = time.thread_time_ns()
@@ -113,7 +113,7 @@ class OutwardTopic(Topic):
         self._sides.row.worked(time.thread_time_ns() - began_ns)
 
     def take(self, limit: int) -> None:
-        """Take so many messages that have arrived."""
+        """Take up to `limit` messages."""
         subscription = self._subscription
         for _ in range(limit):
             if subscription is None:
@@ -129,10 +129,10 @@ class OutwardTopic(Topic):
                 )
             finally:
                 claim.release()
-        self._sides.inside.wake()  # the others have their turn first
+        self._sides.inside.wake()  # continue after the other routes
 
     def send(self, address: int, size: int, _: int) -> None:
-        """Publish outside; rmw cannot publish with another time than now."""
+        """Publish to DDS; rmw sets the source timestamp to now."""
         assert self._writer is not None
         self._writer.publish(address, size)
         if self._subscription is not None:
@@ -145,17 +145,17 @@ class OutwardTopic(Topic):
             self._lost = lost
 
     def pause(self) -> None:
-        """Leave messages where they are."""
+        """Stop taking messages."""
         if self in self._sides.inside.readers:
             self._sides.inside.readers.remove(self)
 
     def resume(self) -> None:
-        """Go on after a pause."""
+        """Resume after a pause."""
         if self._subscription is not None:
             self._sides.inside.readers.append(self)
 
     def is_acknowledged(self) -> bool:
-        """Tell whether every reliable subscriber has all that was sent."""
+        """Return whether every reliable subscriber has acknowledged everything."""
         return bool(self._publisher.wait_for_all_acked(Duration(seconds=0)))
 
     def close(self) -> None:

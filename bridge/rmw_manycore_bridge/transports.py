@@ -1,11 +1,11 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Which transports of Fast DDS a process uses that takes the place of an earlier one.
+"""Fast DDS transports of a bridge process that replaces a killed one.
 
-A publisher outside keeps messages in its shared-memory segment until subscribers have read them.
-Nothing reads what was sent to a killed process, and Fast DDS (2.14 to 3.6) gives it up only while
-its count of free bytes falls short of the next message. The count is a sum over holes: where it
-suffices, and no single hole does, each message of that size is dropped without a word, for all
-subscribers of this publisher in shared memory. UDP needs no room in the segment.
+A DDS publisher keeps messages in its shared-memory segment until subscribers have read them. What
+was sent to a killed process is never read, and Fast DDS (2.14 to 3.6) reclaims it only while its
+count of free bytes is below the size of the next message. That count sums up all holes: if it
+suffices and no single hole does, each message of that size is silently dropped for all
+shared-memory subscribers of this publisher. UDP needs no room in the segment.
 """
 
 from __future__ import annotations
@@ -19,11 +19,11 @@ PROFILES = "FASTRTPS_DEFAULT_PROFILES_FILE"
 RANGE, LOCALHOST_ONLY = "ROS_AUTOMATIC_DISCOVERY_RANGE", "ROS_LOCALHOST_ONLY"
 STATIC_PEERS = "ROS_STATIC_PEERS"
 NOTICE = (
-    "an earlier process of the bridge has ended: this one listens over UDP alone, as publishers "
-    "may have no room in shared memory left"
+    "a previous bridge process has ended: receiving over UDP only, since publishers may have "
+    "no shared memory left"
 )
-# What rmw_fastrtps sets up for LOCALHOST, where it asks for shared memory whatever the variable
-# above says: no multicast, and the ports of 32 participants at each peer.
+# What rmw_fastrtps configures for LOCALHOST, where it requests shared memory regardless of the
+# variable above: no multicast, and the ports of 32 participants at each peer.
 _LOCALHOST_PROFILE = """<?xml version="1.0" encoding="UTF-8" ?>
 <profiles xmlns="http://www.eprosima.com/XMLSchemas/fastRTPS_Profiles">
   <transport_descriptors>
@@ -49,18 +49,18 @@ _PEER = "<locator><udpv4><address>{address}</address></udpv4></locator>"
 
 
 def avoid_shared_memory(environment: MutableMapping[str, str], profile: Path) -> bool:
-    """Have participants that this process makes from now on use UDP; a user's choice stays.
+    """Make participants created from now on use UDP, unless the user has chosen transports.
 
-    Return whether it changes anything.
+    Return whether anything was changed.
 
-    :param profile: file to write, where Fast DDS needs one.
+    :param profile: path to write a Fast DDS profile to, if one is needed.
     """
     if TRANSPORTS in environment or PROFILES in environment:
         return False
     if environment.pop(LOCALHOST_ONLY, "") == "1" or environment.get(RANGE) == "LOCALHOST":
         profile.write_text(_localhost_profile(environment.get(STATIC_PEERS, "")))
         environment[PROFILES] = str(profile)
-        environment[RANGE] = "SYSTEM_DEFAULT"  # the profile has the range
+        environment[RANGE] = "SYSTEM_DEFAULT"  # the profile sets the range
     else:
         environment[TRANSPORTS] = "UDPv4"
     return True

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The classes and hashes of installed types, which may be parts of actions."""
+"""Classes and type hashes of installed types, including parts of actions."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Any
 
 from rmw_manycore_py.ros.ament import package_share
 
-# Parts of an action, and where rclpy keeps them in the action's class.
+# Parts of an action, and their attributes in rclpy's action class.
 _ACTION_PARTS = {
     "SendGoal": "SendGoalService",
     "GetResult": "GetResultService",
@@ -18,7 +18,7 @@ _ACTION_PARTS = {
 
 
 def load(name: str) -> Any:
-    """Return the class of "package/msg/Name" and the like; ImportError says what is missing."""
+    """Return the class of a type such as "package/msg/Name"; raise ImportError if missing."""
     package, kind, type_name = name.split("/")
     try:
         module = importlib.import_module(f"{package}.{kind}")
@@ -36,7 +36,7 @@ def load(name: str) -> Any:
 
 
 def hash_of(name: str) -> str:
-    """Return a type's hash (REP 2016), or nothing where the installed package has none."""
+    """Return the type hash (REP 2016); empty if the installed package has none."""
     package, kind, type_name = name.split("/")
     whole = type_name.rpartition("_")[0] if kind == "action" else type_name
     share = package_share(package)
