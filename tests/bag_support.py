@@ -1,10 +1,9 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Small bags as drives leave them, of ROS 1 and ROS 2, written with rosbags."""
+"""Small bags in the formats of ROS 1 and ROS 2, written with rosbags."""
 
 from __future__ import annotations
 
 from pathlib import Path
-from types import TracebackType
 from typing import Any
 
 import numpy as np
@@ -19,7 +18,7 @@ class Bag:
     """A bag that is being written; times are seconds after T0_S.
 
     :param kind: ros1, sqlite3 or mcap.
-    :param compression: of ros1 a format (bz2, lz4); of the others a mode (file, message, storage).
+    :param compression: for ros1 a format (bz2, lz4); else a mode (file, message, storage).
     :param stamped: whether messages have stamps.
     """
 
@@ -39,16 +38,11 @@ class Bag:
         self._writer.open()
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self._writer.close()
 
     def make(self, name: str, *values: Any) -> Any:
-        """Return a message; the names of ROS 2, without `/msg/`."""
+        """Return a message; its type is named as in ROS 2, without `/msg/`."""
         return self._store.types[name.replace("/", "/msg/")](*values)
 
     def write(self, topic: str, message: Any, time_s: float) -> None:
@@ -99,7 +93,7 @@ class Bag:
         )
 
     def cloud(self, time_s: float, records: np.ndarray, frame: str = "lidar") -> Any:
-        """Return a cloud of a structured array (height, width)."""
+        """Return a PointCloud2 of a structured array (height, width)."""
         fields = []
         for name, (number, offset) in records.dtype.fields.items():
             datatype = DATATYPES[number.newbyteorder("<").str[1:]]

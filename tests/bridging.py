@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""A bridge by itself, and nodes on both of its sides."""
+"""A bridge without a run, and nodes on both of its sides."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ STRING = "std_msgs/msg/String"
 
 
 class Bridge:
-    """Starts what a test needs; every program ends with the test."""
+    """Start bridge processes and nodes; they all end with the test."""
 
     def __init__(self, start: Callable[..., Program], platform: str) -> None:
         self._start = start
@@ -53,20 +53,20 @@ class Bridge:
         return self._start(command, **OUTSIDE, **env)
 
     def run_unforked(self, plan: Plan, way: Direction) -> Program:
-        """Start one process in a python of its own: all of its threads are the bridge's."""
+        """Start one process in its own interpreter: all of its threads are the bridge's."""
         command = [sys.executable, "-m", "rmw_manycore_bridge", *_words(plan, way, 0)]
         return self._start(command, **OUTSIDE)
 
     def inside(self, function: Callable[..., None], *arguments: Any, **env: str) -> Program:
-        """Start a peer on the platform."""
+        """Start a node on the platform."""
         return self._start(peer_command(function, *arguments), **env)
 
     def outside(self, function: Callable[..., None], *arguments: Any, **env: str) -> Program:
-        """Start a peer in the DDS domain."""
+        """Start a node in the DDS domain."""
         return self._start(peer_command(function, *arguments), **{**OUTSIDE, **env})
 
     def row(self, direction: Direction, name: str) -> dict[str, Any]:
-        """Return the counters of a route; none before its process counts."""
+        """Return the counters of a route; None before its process has counted."""
         rows = status(self.platform)
         found = [r for r in rows if (r["direction"], r["inside"]) == (direction, name)]
         return found[0] if found else {}

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""A real browser without a window."""
+"""A real headless browser."""
 
 from __future__ import annotations
 
@@ -10,10 +10,11 @@ from pathlib import Path
 from typing import Any
 
 from selenium import webdriver
+from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.support.ui import WebDriverWait
-from support import PATIENCE_S
+from support import TIMEOUT_S
 
 WINDOW = (1500, 900)
 KEEP_SOCKETS = """
@@ -33,13 +34,13 @@ class Browser:
         options.add_argument("--headless=new")
         options.add_argument(f"--window-size={WINDOW[0]},{WINDOW[1]}")
         if os.geteuid() == 0:
-            options.add_argument("--no-sandbox")  # which root cannot have
-        options.add_argument("--disable-dev-shm-usage")  # tests watch what is left there
+            options.add_argument("--no-sandbox")  # root cannot use it
+        options.add_argument("--disable-dev-shm-usage")  # tests check what is left in /dev/shm
         options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
         options.add_experimental_option("prefs", {"download.default_directory": str(downloads)})
         service = webdriver.ChromeService(shutil.which("chromedriver"))
         self.downloads = downloads
-        self._scripts: list[dict[str, str]] = []  # of pages to come
+        self._scripts: list[dict[str, str]] = []  # for pages opened later
         self.driver = webdriver.Chrome(options=options, service=service)
 
     def open(self, link: str) -> None:
@@ -50,13 +51,13 @@ class Browser:
         self.open(link)
 
     def tabs(self) -> Iterator[None]:
-        """Bring each tab to the front in turn."""
+        """Bring each tab to the front, one after the other."""
         for tab in self.driver.window_handles:
             self.driver.switch_to.window(tab)
             yield
 
     def forget(self) -> None:
-        """Close all tabs but one, which is empty, for the next test."""
+        """Close all tabs and open an empty one for the next test."""
         first, *others = self.driver.window_handles
         for tab in others:
             self.driver.switch_to.window(tab)
@@ -69,18 +70,19 @@ class Browser:
         self._scripts.clear()
 
     def keep_sockets(self) -> None:
-        """Have the pages to come keep their WebSockets in `sockets`, for scripts."""
+        """Make later pages keep their WebSockets in `sockets`, for scripts."""
         found = self.driver.execute_cdp_cmd(
             "Page.addScriptToEvaluateOnNewDocument", {"source": KEEP_SOCKETS}
         )
         self._scripts.append(found)
 
     def press(self, selector: str | None, *keys: str) -> None:
-        """Press keys, by their names, at an element or where the focus is."""
-        place = self.find(selector) if selector else self.driver.switch_to.active_element
-        for key in keys:
-            place.send_keys(getattr(Keys, key.upper(), key) if len(key) > 1 else key)
-            place = self.driver.switch_to.active_element
+        """Press keys, by name, on an element or on what has the focus."""
+        if selector:
+            self.driver.execute_script("arguments[0].focus()", self.find(selector))
+        for key in keys:  # to whatever has the focus: the page may replace that element meanwhile
+            pressed = getattr(Keys, key.upper(), key) if len(key) > 1 else key
+            ActionChains(self.driver).send_keys(pressed).perform()
 
     def focused(self, attribute: str) -> str | None:
         return self.driver.switch_to.active_element.get_attribute(attribute)
@@ -89,7 +91,7 @@ class Browser:
         return str(self.driver.execute_script("return document.activeElement.textContent"))
 
     def accessible(self) -> list[tuple[str, str]]:
-        """Return role and name of all that the browser tells a screen reader of."""
+        """Return role and name of every node of the accessibility tree."""
         nodes = self.driver.execute_cdp_cmd("Accessibility.getFullAXTree", {})["nodes"]
         return [
             (node["role"]["value"], node.get("name", {}).get("value", ""))
@@ -98,14 +100,14 @@ class Browser:
         ]
 
     def find(self, selector: str) -> Any:
-        """Return the first element of a CSS selector, once it is there."""
+        """Return the first element of a CSS selector, once it exists."""
         return self.until(lambda: self.all(selector), selector)[0]
 
     def all(self, selector: str) -> list[Any]:
         return self.driver.find_elements(By.CSS_SELECTOR, selector)
 
     def click(self, selector: str) -> None:
-        """Click as a script does: nothing that lies above keeps it off."""
+        """Click by script: an overlapping element does not intercept it."""
         self.find(selector)
         self.driver.execute_script(
             "document.querySelector(arguments[0])"
@@ -114,7 +116,7 @@ class Browser:
         )
 
     def text(self, selector: str) -> str:
-        """Return the text of an element, "" while there is none."""
+        """Return the text of an element, "" while it does not exist."""
         return str(
             self.driver.execute_script(
                 "return document.querySelector(arguments[0])?.textContent ?? ''", selector
@@ -122,8 +124,8 @@ class Browser:
         )
 
     def until(self, condition: Callable[[], Any], what: str) -> Any:
-        waiting = WebDriverWait(self.driver, PATIENCE_S, poll_frequency=0.05)
-        return waiting.until(lambda _: condition(), f"not within {PATIENCE_S:g} s: {what}")
+        waiting = WebDriverWait(self.driver, TIMEOUT_S, poll_frequency=0.05)
+        return waiting.until(lambda _: condition(), f"not within {TIMEOUT_S:g} s: {what}")
 
     def wait_for_text(self, selector: str, text: str) -> None:
         self.until(lambda: text in self.text(selector), f"{text!r} in {selector}")

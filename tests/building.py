@@ -3,8 +3,8 @@
 
     python building.py FUNCTION ARGUMENTS..
 
-The nodes are programs of their own: Python looks for built packages when it starts, before a fork
-server knows where those of a test are.
+The nodes are separate programs: Python looks for built packages when it starts, before a fork
+server could know where those of a test are.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from pathlib import Path
 from ros_support import announce, peer_node, spin, spin_until, type_of
 from support import manycore_command
 
-BUILD_TIMEOUT_S = 900  # on a machine that does other things as well
+BUILD_TIMEOUT_S = 900  # also on a busy machine
 THINGS = "things_msgs"
 DEFINITIONS = {
     "things_msgs/msg/Thing.msg": (
@@ -35,7 +35,7 @@ TINY = {"tiny_msgs/msg/Tiny.msg": "int32 number\n"}
 
 
 def write_definitions(directory: Path, definitions: dict[str, str]) -> Path:
-    """Write files of definitions below a directory and return it."""
+    """Write definition files below a directory and return it."""
     for name, text in definitions.items():
         file = directory / name
         file.parent.mkdir(parents=True, exist_ok=True)
@@ -46,7 +46,7 @@ def write_definitions(directory: Path, definitions: dict[str, str]) -> Path:
 def interface(
     *words: str | Path, env: dict[str, str], status: int = 0
 ) -> subprocess.CompletedProcess[str]:
-    """Run a verb of `manycore interface` to its end."""
+    """Run a verb of `manycore interface` and return its output."""
     command = [str(word) for word in manycore_command("interface", *words)]
     done = subprocess.run(
         command, env=env, capture_output=True, text=True, timeout=BUILD_TIMEOUT_S, cwd="/"
@@ -56,12 +56,12 @@ def interface(
 
 
 def node_command(function: str, *arguments: str) -> list[str]:
-    """Return the command that runs a function of this file in a python of its own."""
+    """Return the command that runs a function of this file in a new interpreter."""
     return [sys.executable, __file__, function, *arguments]
 
 
 def answer() -> None:
-    """Print things that are published, count parts, and collect them."""
+    """Print things; serve /count and the action /collect."""
     from rclpy.action import ActionServer
 
     with peer_node("answerer") as node:
@@ -86,7 +86,7 @@ def answer() -> None:
 
 
 def ask() -> None:
-    """Publish a thing for ever, once its parts have been counted and collected."""
+    """Call /count and /collect, then publish a thing periodically."""
     from rclpy.action import ActionClient
 
     with peer_node("asker") as node:
@@ -110,7 +110,7 @@ def ask() -> None:
 
 
 def say() -> None:
-    """Publish a thing for ever."""
+    """Publish a thing periodically."""
     with peer_node("speaker") as node:
         publisher = node.create_publisher(_types()[0], "/things", 10)
         node.create_timer(0.05, lambda: publisher.publish(_thing()))

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The C libraries under rclpy, and the handles in them of rclpy's entities."""
+"""The C libraries below rclpy, and the C handles of rclpy's entities."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ class _Sequence(ctypes.Structure):
 
 
 def take_points(subscription: ctypes.c_void_p, capacity: int = 5) -> list[float]:
-    """Take what is there of geometry_msgs/msg/Point in one call; return the first coordinates."""
+    """Take all available geometry_msgs/msg/Point in one call; return their x."""
     points = [(ctypes.c_double * 3)() for _ in range(capacity)]
     data = (ctypes.c_void_p * capacity)(*(ctypes.addressof(point) for point in points))
     info_data = ctypes.create_string_buffer(capacity * INFO_BYTES)

@@ -40,13 +40,13 @@ StartProgram = Callable[..., Program]
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    # Background jobs of a shell ignore Ctrl-C, those of nohup the end of the terminal, and so
-    # would whatever the tests start.
+    # Background jobs of a shell ignore SIGINT, and those of nohup SIGHUP; the programs that the
+    # tests start would inherit that.
     signal.signal(signal.SIGINT, signal.default_int_handler)
     signal.signal(signal.SIGHUP, signal.SIG_DFL)
     # Each program that a test starts would compile again all that it imports.
     os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
-    # The wheels of rosidl bring an old parser along, which uses modules that Python gave up.
+    # The wheels of rosidl bring an old parser, which uses deprecated modules.
     config.addinivalue_line("filterwarnings", "ignore:module 'sre_:DeprecationWarning")
     if is_inside():
         config.pluginmanager.register(ForkServer(config))
@@ -72,7 +72,7 @@ def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
 
 @pytest.hookimpl(wrapper=True)
 def pytest_runtest_makereport(item: pytest.Item) -> Generator[None, Any, Any]:
-    """Show with a failure what all programs of the test printed: the culprit may be another one."""
+    """Add the output of all programs of the test to a failure; any of them may be the cause."""
     report = yield
     if report.failed:
         for program in item.stash.get(PROGRAMS, []):
@@ -83,7 +83,7 @@ def pytest_runtest_makereport(item: pytest.Item) -> Generator[None, Any, Any]:
 
 @pytest.fixture
 def platform() -> Iterator[str]:
-    """Yield the name of the test's platform; afterwards nothing of it may be left."""
+    """Yield the name of the test's platform; afterwards check that nothing of it is left."""
     if is_inside():
         yield os.environ["MANYCORE_PLATFORM"]
         return
@@ -95,7 +95,7 @@ def platform() -> Iterator[str]:
 
 @pytest.fixture
 def start(platform: str, request: pytest.FixtureRequest) -> Iterator[StartProgram]:
-    """Yield a function that starts a program on the test's platform; none outlives the test."""
+    """Yield a function that starts a program on the test's platform; all end with the test."""
     programs = request.node.stash.setdefault(PROGRAMS, [])
     servers = request.config.stash.get(PEER_SERVERS, None)
 
@@ -110,7 +110,7 @@ def start(platform: str, request: pytest.FixtureRequest) -> Iterator[StartProgra
 
     yield start_program
     if IS_MANYCORE and any(program.is_running() for program in programs):
-        wait_until(lambda: has_receive_threads(platform), "there is who clears up after the killed")
+        wait_until(lambda: has_receive_threads(platform), "receive threads can clean up")
     for program in programs:
         program.kill()
     remove_unfinished_ports()

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""ROS domains that no other test uses at the same time, in whatever process of this machine."""
+"""ROS domain ids that no other test on this machine uses at the same time."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from contextlib import suppress
 from io import TextIOWrapper
 from pathlib import Path
 
-# DDS counts its ports up from 7400 by 250 for each domain. Linux gives those from 32768 on to any
-# socket, which are the ports of domain 102.
+# DDS port numbers start at 7400 and grow by 250 per domain. Linux assigns ports from 32768 on to
+# any socket; domain 102 uses those.
 DOMAINS = range(1, 101)
 LOCKS = Path(tempfile.gettempdir()) / f"manycore-test-domains-{os.getuid()}"
-# More platforms than one test has. An earlier test's domain is free again then.
+# More platforms than one test uses: an earlier test's domain is free again by then.
 KEPT_LEASES = 6
 
 _leases: dict[str, tuple[int, TextIOWrapper]] = {}
@@ -23,8 +23,8 @@ _next_domain = itertools.count(os.getpid())
 
 
 def domain_of(platform: str) -> int:
-    """Return the domain of a platform of this process, which holds a lock for it."""
-    if platform == os.environ.get("MANYCORE_PLATFORM"):  # the process of one test, or a peer of it
+    """Return the domain id of a platform of this process, which holds a lock on it."""
+    if platform == os.environ.get("MANYCORE_PLATFORM"):  # process or peer of one test
         return int(os.environ["ROS_DOMAIN_ID"])
     if platform not in _leases:
         while len(_leases) >= KEPT_LEASES:

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What processes on Fast DDS that were killed leave to all others of this machine."""
+"""What killed processes on Fast DDS leave to the others of this machine."""
 
 from __future__ import annotations
 
@@ -8,15 +8,15 @@ import time
 from pathlib import Path
 
 SHARED_MEMORY = Path("/dev/shm")
-_FINISHED = 2  # the first word of what boost's interprocess library has made and filled in
-_MAKING_S = 0.2  # far above what a process takes that lives
+_FINISHED = 2  # first word of an initialised segment of Boost.Interprocess
+_MAKING_S = 0.2  # far above what a living process needs
 
 
 def remove_unfinished_ports() -> None:
-    """Remove ports of Fast DDS whose maker was killed meanwhile.
+    """Remove ports of Fast DDS whose creator was killed before it had initialised them.
 
-    Each process that comes to use such a port waits for ever that it be finished, and one of them
-    is used by all.
+    Each process that opens such a port waits for its initialisation forever, and all processes
+    open one of them.
     """
     before = _unfinished()
     if before:
@@ -33,6 +33,6 @@ def _unfinished() -> set[Path]:
 def _state_of(path: Path) -> int:
     try:
         with path.open("rb") as file:
-            return int.from_bytes(file.read(4), sys.byteorder)  # 0 where it has no size yet
+            return int.from_bytes(file.read(4), sys.byteorder)  # 0 before it was resized
     except FileNotFoundError:
         return _FINISHED

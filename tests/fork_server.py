@@ -1,8 +1,8 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""A pytest that has loaded and collected everything, and forks a process for each test.
+"""A pytest that has imported and collected everything and forks a process for each test.
 
-Loading python, pytest and rclpy costs about a second of CPU, a fork some milliseconds. The fork
-comes before anything of ROS is initialised, so each child is a process as any other.
+Importing pytest and rclpy costs about a second of CPU, a fork some milliseconds. It forks
+before anything of ROS is initialised, so each child behaves like a new process.
 """
 
 from __future__ import annotations
@@ -18,23 +18,24 @@ from forking import fork, preload
 from processes import has_receive_threads
 from support import IS_MANYCORE, wait_until
 
-# The number of the socket on which a server gets its requests, and tells pid and exit status.
+# Holds the file descriptor of the socket on which a server reads requests and answers with pids
+# and exit statuses.
 SOCKET_VARIABLE = "MANYCORE_TEST_SOCKET"
 LARGEST_MESSAGE_BYTES = 1 << 16
 
 
 def is_inside() -> bool:
-    """Tell whether this process is a fork server, or one that it forked for a test."""
+    """Return whether this process is a fork server or was forked by one for a test."""
     return SOCKET_VARIABLE in os.environ
 
 
 class ForkServer:
-    """Runs the requested tests in place of all; a forked process is a session of one test."""
+    """Run the requested tests only; a forked process is a session of one test."""
 
     def __init__(self, config: pytest.Config) -> None:
         self._config = config
         self._reports: Path | None = None
-        # Numpy's threads would not survive the fork, so the server loads it without.
+        # Threads of numpy would not survive the fork, so the server imports it single-threaded.
         os.environ.pop("OPENBLAS_NUM_THREADS", None)
 
     def pytest_runtestloop(self, session: pytest.Session) -> bool:
@@ -54,14 +55,14 @@ class ForkServer:
             file.write(json.dumps(data) + "\n")
 
     def pytest_sessionfinish(self) -> None:
-        """Let a test end only beside a receive thread, which clears up what it did not leave."""
+        """End a test only once receive threads run: they remove what its process leaves."""
         platform = os.environ["MANYCORE_PLATFORM"]
         if IS_MANYCORE:
             wait_until(lambda: has_receive_threads(platform), f"the receive threads of {platform}")
 
 
 def _serve(fileno: int) -> dict[str, Any] | None:
-    """Fork for each request; return it in the child, and nothing in the parent."""
+    """Fork for each request; return it in the child, and None in the parent."""
     with socket.socket(fileno=fileno) as connection:
         while message := connection.recv(LARGEST_MESSAGE_BYTES):
             if (pid := fork()) == 0:

@@ -1,8 +1,8 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Programs of ours as peers: forks of a process that has loaded what they load.
+"""Our programs as peers: forks of a process that has imported what they import.
 
-For tests that start one program after the other and ask what each does, not how it starts:
-tests/integration/test_installed.py and most others start a python for each.
+For tests that start many programs and check what each does, not how it starts:
+tests/integration/test_installed.py and most others start an interpreter for each.
 """
 
 from __future__ import annotations
@@ -41,6 +41,6 @@ def run_module(module: str, *arguments: str) -> None:
 
 
 def _become(argv: list[str], *options: str) -> None:
-    """Let the program see its own command line, also if it restarts itself."""
+    """Let the program see its own command line, also after it restarts itself."""
     sys.argv[:] = argv
     sys.orig_argv[:] = [sys.executable, *options, *argv]

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Forks of a process that has loaded rclpy and has initialised nothing of it."""
+"""Forks of a process that has imported rclpy and initialised none of it."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from pathlib import Path
 from rclpy.type_support import check_for_type_support
 from support import leftovers
 
-# What a node and most tests use, and what rclpy imports only when it makes the first node.
+# What a node and most tests use, and what rclpy imports only for the first node.
 MODULES = (
     *("numpy", "payload", "rclpy.action", "ros_support", "rosidl_generator_py"),
     *("rmw_manycore_py.cli.main", "rich.console", "rich.table", "yaml"),
@@ -34,10 +34,10 @@ SIGSET_BYTES = 128
 
 
 def preload() -> None:
-    """Load what the children would load, each by itself.
+    """Import what each child would otherwise import itself.
 
-    What is loaded is frozen: a child that looks for garbage, as pytest does after each test and
-    python at its end, would write into all of it, and get a copy of each page.
+    The objects are frozen: a garbage collection in a child, as pytest runs after each test and
+    Python at exit, would write to all of them and copy each page.
     """
     for name in MODULES:
         importlib.import_module(name)
@@ -50,7 +50,7 @@ def preload() -> None:
 
 
 def fork() -> int:
-    """Fork a child that may join a platform, as this process has not; return 0 in it."""
+    """Fork a child that may join a platform, while this process has joined none; return 0 in it."""
     assert not leftovers(os.environ["MANYCORE_PLATFORM"]), "the process to fork is on a platform"
     for stream in (sys.stdout, sys.stderr):
         stream.flush()
@@ -64,10 +64,10 @@ def fork() -> int:
 
 
 def _tell_tracing(event: str, signals: ctypes.Array[ctypes.c_char]) -> None:
-    """Tell the tracing library of ROS 2 of a fork.
+    """Notify the tracing library of ROS 2 of a fork.
 
-    The other threads of this process are its; it has to start new ones in the child. At the end it
-    cancels what it takes for them.
+    Its threads do not exist in the child, where it has to start new ones; at exit it cancels the
+    threads that it still has on record.
     """
     if (library := _tracing_library()) is not None:
         prefix = "" if hasattr(library, "ust_before_fork") else "lttng_"

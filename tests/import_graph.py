@@ -1,7 +1,7 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 """The imports of Python packages, read from their source.
 
-Every import statement counts: those for type checking and those inside functions, too.
+Every import statement counts, also those under TYPE_CHECKING and inside functions.
 """
 
 from __future__ import annotations
@@ -13,12 +13,12 @@ from pathlib import Path
 
 Graph = Mapping[str, set[str]]
 
-# Each module in this package is a room of its own; everywhere else a folder is one room.
+# Each module in this package is its own room; everywhere else a directory is one room.
 ROOT_PACKAGE = "rmw_manycore_py"
 
 
 def modules_in(roots: Iterable[Path]) -> dict[str, Path]:
-    """Return each module that can be imported with these roots on the path, by its name."""
+    """Return the path of each importable module below these roots, by its dotted name."""
     return {_name_of(file, root): file for root in roots for file in _sources(root)}
 
 
@@ -33,7 +33,7 @@ def _name_of(file: Path, root: Path) -> str:
 
 
 def imports_of(modules: Mapping[str, Path]) -> dict[str, set[str]]:
-    """Return for each module those of the others that it imports."""
+    """Return for each module the others that it imports."""
     return {
         name: {known for imported in _imported(name, file) if (known := _known(imported, modules))}
         for name, file in modules.items()
@@ -41,7 +41,7 @@ def imports_of(modules: Mapping[str, Path]) -> dict[str, set[str]]:
 
 
 def _imported(name: str, file: Path) -> Iterator[str]:
-    """Yield the dotted name of each thing that a file imports, be it a module or not."""
+    """Yield the dotted name of each thing that a file imports, module or not."""
     folder = name if file.stem == "__init__" else name.rpartition(".")[0]
     for statement in ast.walk(ast.parse(file.read_text())):
         if isinstance(statement, ast.Import):
@@ -53,7 +53,7 @@ def _imported(name: str, file: Path) -> Iterator[str]:
 
 
 def _known(imported: str, modules: Mapping[str, Path]) -> str:
-    """Return the module that an import takes something from, "" if it is none of these."""
+    """Return the module that an import takes something from, "" if it is not one of these."""
     while imported and imported not in modules:
         imported = imported.rpartition(".")[0]
     return imported
@@ -69,7 +69,7 @@ def rooms_of(modules: Mapping[str, Path]) -> dict[str, str]:
 
 
 def between_rooms(imports: Graph, rooms: Mapping[str, str]) -> dict[str, set[str]]:
-    """Return for each room the others that it imports from."""
+    """Return for each room the other rooms that it imports from."""
     graph: dict[str, set[str]] = {room: set() for room in rooms.values()}
     for name, imported in imports.items():
         graph[rooms[name]] |= {rooms[other] for other in imported} - {rooms[name]}
@@ -77,7 +77,7 @@ def between_rooms(imports: Graph, rooms: Mapping[str, str]) -> dict[str, set[str
 
 
 def cycle(graph: Graph) -> list[str]:
-    """Return the names along one cycle, the first one also at its end; [] if there is none."""
+    """Return the names along one cycle, the first one repeated at its end; [] without a cycle."""
     try:
         TopologicalSorter(graph).prepare()
     except CycleError as error:

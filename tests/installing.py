@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Wheels of this checkout, and environments in which nothing else is installed."""
+"""Wheels of this checkout, and virtual environments with nothing else installed."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from pathlib import Path
 from support import REPOSITORY
 
 INSTALL_TIMEOUT_S = 1800
-BUILD = REPOSITORY / "build/install"  # where setting up this checkout compiled it
+BUILD = REPOSITORY / "build/install"  # build directory of this checkout's set-up
 READ_ONLY = "mount --bind {0} {0} && mount -o remount,bind,ro {0} && "
 COPY = "mount --bind {copy} {build} && "
 
 
 def run(*command: str | Path, **more: object) -> str:
-    """Return what a command prints; its standard error belongs to the message of a failure."""
+    """Return the standard output of a command; its standard error is shown if it fails."""
     done = subprocess.run(
         [str(word) for word in command],
         capture_output=True,
@@ -32,19 +32,19 @@ def run(*command: str | Path, **more: object) -> str:
 
 
 def build_wheel(python: Path, directory: Path) -> Path:
-    """Return the wheel that `pip install .` would install, of sources that cannot be written to.
+    """Return the wheel that `pip install .` would install, built from read-only sources.
 
-    Everything temporary lies below `directory`: in a wheel its name would tell where it was built.
+    All temporary files are below `directory`: its name in a wheel would show a leaked path.
     """
     script = READ_ONLY.format(shlex.quote(str(REPOSITORY))) if can_mount() else ""
     return _wheel(python, directory, script)
 
 
 def pack_wheel(directory: Path) -> Path:
-    """Return the wheel of the running python, without compiling again what setting up compiled.
+    """Return the wheel of the running Python, without compiling again what the set-up compiled.
 
-    Works in a copy of what was compiled, which lies over the original for this build alone: objects
-    know the directory that they were made in.
+    Uses a copy of the build directory, mounted over the original for this build alone: object
+    files contain the path that they were compiled in.
     """
     python = Path(sys.executable)
     if not BUILD.is_dir() or not can_mount():
@@ -69,13 +69,13 @@ def _wheel(python: Path, directory: Path, mounts: str, *options: str) -> Path:
 
 
 def can_mount() -> bool:
-    """Tell whether this user may have mounts of its own."""
+    """Return whether this user may create a mount namespace."""
     probe = ["unshare", "--mount", "true"]
     return os.getuid() == 0 and subprocess.run(probe, capture_output=True).returncode == 0
 
 
 class Installation:
-    """A virtual environment with the wheel and what it depends on."""
+    """A virtual environment with the wheel and its dependencies."""
 
     def __init__(self, python: Path, wheel: Path, directory: Path) -> None:
         run(python, "-m", "venv", "--without-pip", directory)
@@ -85,6 +85,6 @@ class Installation:
         self.install(wheel)
 
     def install(self, *words: str | Path) -> None:
-        """Install with the running python's pip, and let Python compile what is imported."""
+        """Install with the running Python's pip, and byte-compile what is imported."""
         pip = (sys.executable, "-m", "pip", "--python", self.python)
         run(*pip, "install", "--no-compile", *words)

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""One process per test: a crash is the failure of one test, and each joins a fresh platform."""
+"""One process per test: a crash fails one test only, and each test joins a new platform."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ from fork_server import LARGEST_MESSAGE_BYTES, SOCKET_VARIABLE
 from peers import PEER, PeerServers
 from support import (
     IS_MANYCORE,
-    PATIENCE_S,
     TESTS,
+    TIMEOUT_S,
     environment,
     leftovers,
     unique_platform,
@@ -31,7 +31,7 @@ TEST_RAN = (pytest.ExitCode.OK, pytest.ExitCode.TESTS_FAILED)
 
 
 class Isolation:
-    """Has the tests of the rmw interface run by a fork server and passes their reports on."""
+    """Let a fork server run the tests of the rmw interface, and forward its reports."""
 
     def __init__(self, peers: PeerServers) -> None:
         self._peers = peers
@@ -56,7 +56,7 @@ class Isolation:
             self._server = _Server(item.session)
             self._peers.serve([sys.executable, str(PEER)], environment(platform))
         lines, problem = self._server.run(item.nodeid, platform)
-        if problem is not None:  # the server may have suffered, too
+        if problem is not None:  # the server may be affected, too
             self._end_server()
         reports = [_to_report(item.config, json.loads(line)) for line in lines]
         if problem is None and not any(report.failed for report in reports):
@@ -70,7 +70,7 @@ class Isolation:
 
 
 class _Server:
-    """A fork server with the test files of this session."""
+    """A fork server that has collected the test files of this session."""
 
     def __init__(self, session: pytest.Session) -> None:
         self._directory = tempfile.TemporaryDirectory()
@@ -79,7 +79,7 @@ class _Server:
         tests = [item for item in session.items if item.get_closest_marker(MARKER)]
         files = sorted({str(item.path) for item in tests})
         self._connection, remote = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
-        self._connection.settimeout(4 * PATIENCE_S)
+        self._connection.settimeout(4 * TIMEOUT_S)
         env = {SOCKET_VARIABLE: str(remote.fileno()), "OPENBLAS_NUM_THREADS": "1"}
         with remote, self._output.open("w") as output:
             self._process = subprocess.Popen(
@@ -93,7 +93,7 @@ class _Server:
             )
 
     def run(self, test: str, platform: str) -> tuple[list[str], str | None]:
-        """Return the reports of a test, and what is wrong with the process that it ran in."""
+        """Return the reports of a test, and what is wrong with its process."""
         self._reports.unlink(missing_ok=True)
         output_start = self._output.stat().st_size
         names = ("MANYCORE_PLATFORM", "ROS_DOMAIN_ID")
@@ -119,17 +119,17 @@ class _Server:
         try:
             return _problem_of(self._receive())
         except TimeoutError:
-            os.kill(pid, signal.SIGABRT)  # which prints where its threads are
+            os.kill(pid, signal.SIGABRT)  # faulthandler prints the stacks of its threads
             return f"the test hangs: {_problem_of(self._receive())}"
 
     def _receive(self) -> int:
         return int(self._connection.recv(LARGEST_MESSAGE_BYTES))
 
     def end(self) -> None:
-        """End the server, once its test has ended."""
+        """End the server after the running test."""
         self._connection.close()
         try:
-            self._process.wait(PATIENCE_S)
+            self._process.wait(TIMEOUT_S)
         except subprocess.TimeoutExpired:
             self._process.kill()
             self._process.wait()
@@ -154,7 +154,7 @@ def _to_report(config: pytest.Config, data: dict[str, Any]) -> pytest.TestReport
     report = config.hook.pytest_report_from_serializable(config=config, data=data)
     assert isinstance(report, pytest.TestReport)
     if report.skipped and isinstance(report.longrepr, list):
-        report.longrepr = tuple(report.longrepr)  # JSON has no tuples
+        report.longrepr = tuple(report.longrepr)  # JSON turned tuples into lists
     return report
 
 

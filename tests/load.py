@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The nodes that the stress tests load a platform with, and kill."""
+"""Nodes that load a platform in the stress tests, and are killed there."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from ros_support import announce, peer_node, spin_until
 from std_msgs.msg import UInt8MultiArray
-from support import PATIENCE_S
+from support import TIMEOUT_S
 
 PR_SET_PDEATHSIG = 1  # <linux/prctl.h>
 TOPIC = "load"
@@ -30,7 +30,7 @@ LASTING = QoSProfile(depth=1000, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 
 def publish_steadily(rate_hz: float) -> None:
-    """Publish messages of random sizes; the first one once a subscription is there."""
+    """Publish messages of random sizes, the first one once a subscription matches."""
     with peer_node(f"steady_publisher_{os.getpid()}") as node:
         publisher = node.create_publisher(UInt8MultiArray, TOPIC, DEEP)
         spin_until(node, publisher.get_subscription_count)
@@ -48,9 +48,9 @@ def publish_steadily(rate_hz: float) -> None:
 
 
 def check_steadily(writer: int) -> None:
-    """Check every message, and how those come that are from a writer that nobody kills.
+    """Check every message, and the gaps between those of the one writer that is never killed.
 
-    Tells of long gaps between them at once, and on request how many came and how many are missing.
+    Prints long gaps at once, and on request how many messages arrived and how many are missing.
     """
     with peer_node(f"steady_subscriber_{os.getpid()}") as node:
         last, heard, missing = 0, 0, 0
@@ -111,7 +111,7 @@ def check_until_killed() -> None:
 
 
 def publish_without_rest() -> None:
-    """Overwrite a small topic DSM as fast as possible; tell each time it has been filled twice."""
+    """Overwrite a small topic DSM as fast as possible; print each time it was filled twice."""
     with peer_node("restless_publisher") as node:
         publisher = node.create_publisher(UInt8MultiArray, TOPIC, 2)
         spin_until(node, publisher.get_subscription_count)
@@ -127,11 +127,11 @@ VICTIMS = {"publisher": publish_until_killed, "subscriber": check_until_killed}
 
 
 def breed() -> None:
-    """Start a victim for each line of input, "KIND CLUSTER", by fork: python is loaded only once.
+    """Fork a victim for each line of input, "KIND CLUSTER": Python imports everything only once.
 
-    The fork comes before anything of ROS is initialised, so each child is a process as any other.
+    It forks before anything of ROS is initialised, so each child behaves like a new process.
     """
-    signal.signal(signal.SIGCHLD, signal.SIG_IGN)  # nobody waits for the dead
+    signal.signal(signal.SIGCHLD, signal.SIG_IGN)  # the kernel reaps the dead
     announce("ready")
     for line in sys.stdin:
         kind, cluster = line.split()
@@ -139,19 +139,19 @@ def breed() -> None:
 
 
 def fork(function: Callable[[], None], cluster: str) -> None:
-    """Run a function in a child process and tell its pid."""
+    """Run a function in a child process and print its pid."""
     pid = os.fork()
     if pid:
         announce(f"born {pid}")
         return
-    ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)  # no orphans when a test fails
+    ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)  # no orphans if a test fails
     os.environ["MANYCORE_CLUSTER"] = cluster
     function()
     os._exit(0)
 
 
 def crowd(size: int) -> None:
-    """Fork `size` nodes into five clusters; each says when it has heard all of them."""
+    """Fork `size` nodes in five clusters; each prints a line once it has heard all others."""
     signal.signal(signal.SIGCHLD, signal.SIG_IGN)
     for number in range(size):
         fork(lambda number=number: be_one_of(size, number), str(1 + number % 5))
@@ -173,4 +173,4 @@ def be_one_of(size: int, number: int) -> None:
 
 
 def _spin_until_all(node: Node, condition: Callable[[], bool]) -> None:
-    spin_until(node, condition, timeout_s=4 * PATIENCE_S)
+    spin_until(node, condition, timeout_s=4 * TIMEOUT_S)

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Traces as nodes would leave them, with times that are known."""
+"""Traces with known times, in the layout that nodes write."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ NAMES = {
     FILTER_OUT: (True, "/small", "/filter"),
     SINK: (False, "/small", "/sink"),
 }
-INCARNATION = 1 << 16 | 5  # events have its low bits
+INCARNATION = 1 << 16 | 5  # events contain its low bits
 
 
 def event(time_us: int, kind: Kind, slot: int, number: int = 0, value: int = 0):
@@ -43,7 +43,7 @@ def publish(at_us: int, slot: int, number: int) -> list:
 
 
 def take(at_us: int, slot: int, number: int, publisher: int) -> list:
-    origin = endpoint_id(publisher, INCARNATION) | 1 << 48  # all of the incarnation
+    origin = endpoint_id(publisher, INCARNATION) | 1 << 48  # the whole incarnation
     return [
         event(at_us, Kind.CLAIM, slot, number, origin),
         event(at_us + 3, Kind.RELEASE, slot, number, origin),
@@ -64,7 +64,7 @@ def process(cluster: int, rows: list, *, lost: int = 0, is_receive_thread: bool 
 
 
 def example(slower_us: int = 0, rounds: int = 8, *, twice: bool = False) -> Trace:
-    """Camera, filter and sink in three clusters; the sink's clusters are told by a thread."""
+    """Camera, filter and sink in three clusters; a receive thread notifies the sink's cluster."""
     camera, filtering, sink, told = [], [], [], []
     for i in range(1, rounds + 1):
         t = 10_000 * i

@@ -1,9 +1,9 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""A process that reads mutated files: python mutated_files.py DIRECTORY FIRST LAST.
+"""Reads mutated files in a process: python mutated_files.py DIRECTORY FIRST LAST.
 
-Each input follows from its number alone. Prints a line for each input whose reading ends otherwise
-than well or in a MapfileError of one line per problem. An input that does not end ends the process,
-with a traceback of where it hangs; that input stays in the directory.
+Each input is derived from its number alone. Prints a line for each input whose reading ends neither
+well nor in a MapfileError with one line per problem. An input that hangs ends the process with a
+traceback of the place; that input stays in the directory.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ FOLDERS = (
     *("mapfiles", "launch_scripts", "tests/unit/mapfile/invalid"),
     *("tests/unit/mapfile/invalid_launch", "tests/unit/bridge/files"),
 )
-# Far above what any input takes on a busy machine: beyond lies only what never ends.
+# Far above what any input takes on a busy machine: only an endless loop takes longer.
 HANG_S = 120
 
 _YAML = (mutated_data, mutated_data, mutated_lines, mutated_words)
@@ -38,7 +38,7 @@ _OTHER = (mutated_lines, mutated_words)
 
 
 def reader_of(file: Path) -> Callable[[Path], object] | None:
-    """Return what reads such a file."""
+    """Return the function that reads such a file."""
     if file.parent.name == "files":
         return lambda path: load_bridge_file(path, inside=2)
     if file.name.endswith(".params.yaml"):
@@ -49,7 +49,7 @@ def reader_of(file: Path) -> Callable[[Path], object] | None:
 
 
 def corpus(directory: Path) -> list[list[Path]]:
-    """Copy the files to mutate, with what they refer to; return those of each folder in order."""
+    """Copy the files to mutate and what they refer to; return those of each directory, sorted."""
     for folder in FOLDERS:
         shutil.copytree(REPOSITORY / folder, directory / folder, dirs_exist_ok=True)
     files = [
@@ -59,7 +59,7 @@ def corpus(directory: Path) -> list[list[Path]]:
 
 
 def complaint(error: BaseException) -> str | None:
-    """Return what is wrong with how a reader refuses an input."""
+    """Return what is wrong with the error of a refused input."""
     if not isinstance(error, MapfileError):
         return f"{type(error).__name__}: {error}"
     lines = str(error).split("\n")
@@ -69,12 +69,12 @@ def complaint(error: BaseException) -> str | None:
 
 
 def run(directory: Path, numbers: range) -> Counter[str]:
-    """Read the inputs; return how many ended how."""
+    """Read the inputs; return how often each outcome occurred."""
     folders = corpus(directory)
     ends: Counter[str] = Counter()
     for number in numbers:
         chance = random.Random(number)
-        file = chance.choice(chance.choice(folders))  # few files are valid, and few alike
+        file = chance.choice(chance.choice(folders))  # few inputs are valid, and few are alike
         kinds = _YAML if file.suffix in (".yaml", ".map") else _OTHER
         path = file.with_name(f"input{number}_{file.name}")
         faulthandler.dump_traceback_later(HANG_S, exit=True)
@@ -97,7 +97,7 @@ def run(directory: Path, numbers: range) -> Counter[str]:
 
 
 def read_mutated(directory: Path, numbers: range) -> tuple[int, str]:
-    """Run this file as a process; return its exit status and what it says of wrong inputs."""
+    """Run this file in a process; return its exit status and its lines about wrong inputs."""
     words = [sys.executable, __file__, str(directory), str(numbers.start), str(numbers.stop)]
     done = subprocess.run(words, capture_output=True, text=True, errors="replace", check=False)
     return done.returncode, done.stdout + done.stderr

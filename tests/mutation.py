@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Mutations of YAML, XML and Python files: of their data, and of their bytes."""
+"""Mutations of YAML, XML and Python files: of their data and of their bytes."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ Mutate = Callable[[random.Random, str], str]
 _BOMB = "&b0 [x, x, x, x, x, x, x, x, x, x]"
 for _level in range(1, 10):
     _BOMB = f"[&b{_level} [{', '.join([f'*b{_level - 1}'] * 10)}], {_BOMB}]"
-# Written into the text as they stand.
+# Inserted into the text unchanged.
 SNIPPETS = (
     *("null", "true", "-1", "0", "1.5", ".nan", ".inf", "1e999", "''", "[]", "{}", "~", "none"),
     *("2024-01-01", "2024-13-01", "2024-01-01 25:61:61", "12:30:45", "1:" + "59:" * 80 + "0"),
@@ -80,10 +80,10 @@ def _places(data: Any) -> Iterator[tuple[Any, Any]]:
 
 
 def mutated_data(chance: random.Random, text: str) -> str:
-    """Change values, keys and nesting of a YAML text; where it is none, its lines."""
+    """Change values, keys and nesting of a YAML text; if it is invalid, change its lines."""
     try:
         data = parse_yaml(text, Path()).data
-        # Snippets stand in the data under names, as a dumper would quote them.
+        # Names stand for the snippets in the data, as a dumper would quote these.
         for number in range(chance.choice((1, 1, 1, 2, 3))):
             _change(chance, data, f"snippet{number}x")
         written = yaml.safe_dump(data, default_flow_style=chance.random() < 0.5, sort_keys=False)
@@ -114,7 +114,7 @@ def _change(chance: random.Random, data: Any, snippet: str) -> None:
 
 
 def mutated_lines(chance: random.Random, text: str) -> str:
-    """Repeat, drop, swap, indent or cut lines."""
+    """Repeat, remove, swap, indent or cut lines."""
     lines = text.splitlines(keepends=True) or [""]
     at = chance.randrange(len(lines))
     other = chance.randrange(len(lines))
@@ -135,7 +135,7 @@ def mutated_lines(chance: random.Random, text: str) -> str:
 
 
 def mutated_words(chance: random.Random, text: str) -> str:
-    """Put a snippet or a punctuation mark into the text, or in the place of a word."""
+    """Insert a snippet or a punctuation mark, or replace a word by it."""
     at = chance.randrange(len(text) + 1)
     put = chance.choice(SNIPPETS) if chance.random() < 0.6 else chance.choice(_PUNCTUATION)
     end = at
@@ -145,7 +145,7 @@ def mutated_words(chance: random.Random, text: str) -> str:
 
 
 def mutated_bytes(chance: random.Random, content: bytes) -> bytes:
-    """Cut the content off, or put bytes into it that text does not have."""
+    """Truncate the content, or insert bytes that are not valid in text."""
     at = chance.randrange(len(content) + 1)
     what = chance.randrange(4)
     if what == 0:

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""A small street, and what the rest of a stack does around a scan matcher."""
+"""A small street, and the rest of a stack around a scan matcher."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from rclpy.qos import DurabilityPolicy, QoSProfile
 from ros_support import spin_until
 from sensor_msgs.msg import PointCloud2
 from std_srvs.srv import SetBool
-from support import PATIENCE_S
+from support import TIMEOUT_S
 
 from rmw_manycore_py.ndt.geometry import poses
 from rmw_manycore_py.ndt.messages.conversions import matrix_of, nanoseconds, pose_with_covariance
@@ -44,7 +44,7 @@ def command(module: str, *parameters: str) -> list[str]:
 
 
 def ros_arguments(parameters: Sequence[str], remappings: Sequence[str] = ()) -> list[str]:
-    """Return the words of a command line that give a node parameters and names."""
+    """Return the `--ros-args` arguments that set parameters and remap names."""
     options = [("-p", parameter) for parameter in parameters]
     options += [("-r", remapping) for remapping in remappings]
     return ["--ros-args", *(word for option in options for word in option)]
@@ -58,7 +58,7 @@ def matcher_command(**parameters: object) -> list[str]:
 
 
 def street_map() -> np.ndarray:
-    """Return the points of a map, made from six places."""
+    """Return the points (N, 3) [m, map frame] of a map made from six poses."""
     generator = np.random.default_rng(1)
     street = build_street(10.0, generator)
     places = poses_along(np.arange(-5.0, 20.0, 4.0), side_m=0.5)
@@ -67,7 +67,7 @@ def street_map() -> np.ndarray:
 
 
 def street_scan(T: np.ndarray = TRUTH) -> np.ndarray:
-    """Return what the LiDAR sees in the street of the map."""
+    """Return the points that the LiDAR sees in the street of the map."""
     street = build_street(10.0, np.random.default_rng(1))
     return LIDAR.scan(street, T, np.random.default_rng(2))
 
@@ -81,14 +81,14 @@ def nan_points() -> np.ndarray:
 
 
 def write_boastful_npz(path: Path) -> None:
-    """Write a file whose header announces a petabyte, as a few wrong bits may do."""
+    """Write a file whose header announces a petabyte, as a few flipped bits may do."""
     with zipfile.ZipFile(path, "w") as file, file.open("points.npy", "w") as points:
         header = {"descr": "<f4", "fortran_order": False, "shape": (1 << 48, 3)}
         np.lib.format.write_array_header_1_0(points, header)
 
 
 def two_host_cpus() -> list[int]:
-    """Return CPUs for two workers; a test that needs them is skipped where there is one only."""
+    """Return CPUs for two workers; skip the test where there is only one."""
     cpus = sorted(os.sched_getaffinity(0))[:2]
     if len(cpus) < 2:
         pytest.skip("workers need two host CPUs")
@@ -96,7 +96,7 @@ def two_host_cpus() -> list[int]:
 
 
 def workers_below(pid: int) -> list[int]:
-    """Return the worker processes that a process has, at any depth."""
+    """Return the worker processes among the descendants of a process."""
     found: list[int] = []
     for children in Path(f"/proc/{pid}/task").glob("*/children"):
         for child in map(int, children.read_text().split()):
@@ -107,12 +107,12 @@ def workers_below(pid: int) -> list[int]:
 
 @contextmanager
 def killed_as_they_come(pid: int) -> Iterator[None]:
-    """Kill the workers of a process again and again, before they have done anything."""
+    """Kill the workers of a process repeatedly, before they have done any work."""
     enough = threading.Event()
 
     def kill() -> None:
         while not enough.is_set():
-            with suppress(FileNotFoundError, ProcessLookupError):  # it has ended meanwhile
+            with suppress(FileNotFoundError, ProcessLookupError):  # it has ended in the meantime
                 for worker in workers_below(pid):
                     os.kill(worker, signal.SIGKILL)
 
@@ -126,7 +126,7 @@ def killed_as_they_come(pid: int) -> Iterator[None]:
 
 
 class Stack:
-    """Publishers and subscriptions of a stack, at a node of the test."""
+    """Publishers and subscriptions of a stack, at the test's node."""
 
     def __init__(self, node: Node) -> None:
         self.node = node
@@ -148,21 +148,21 @@ class Stack:
         self.reports += [(nanoseconds(message.header.stamp), status) for status in message.status]
 
     def wait_for_matcher(self) -> None:
-        """Wait until everything is connected."""
+        """Wait until all endpoints are matched."""
         ends = (self.maps, self.guesses, self.scans)
         spin_until(self.node, lambda: all(end.get_subscription_count() for end in ends))
         spin_until(self.node, lambda: self.node.count_services("ndt_align_tier4_srv"))  # its last
 
     def stamp(self) -> Any:
-        """Return the present time."""
+        """Return the current time."""
         return self.node.get_clock().now().to_msg()
 
     def publish_map(self, points: np.ndarray) -> None:
         self.maps.publish(encode(points, self.stamp(), "map"))
 
-    def send(self, scan: Any, guess: Any = TRUTH) -> int:
-        """Send a scan (points or a message) after its guess; return its stamp in ns."""
-        stamp = self.stamp()
+    def send(self, scan: Any, guess: Any = TRUTH, stamp: Any = None) -> int:
+        """Publish a guess, then its scan (points or a message); return the stamp [ns]."""
+        stamp = stamp or self.stamp()
         if guess is not None:
             message = guess
             if isinstance(guess, np.ndarray):
@@ -185,7 +185,7 @@ class Stack:
         return found()[0]
 
     def next_report(self, name: str, level: bytes) -> Any:
-        """Wait for diagnostics of this kind and level from now on, and return them."""
+        """Wait for new diagnostics of this kind and level, and return them."""
         self.reports.clear()
 
         def found() -> list[Any]:
@@ -195,26 +195,26 @@ class Stack:
         return found()[0]
 
     def pose_of(self, scan: Any, guess: Any = TRUTH) -> np.ndarray:
-        """Send a scan until there is a pose for it: the map may still be on its way.
+        """Publish scans until one gets a pose: the map may still be loading.
 
-        A warning is no reason to have none: on a busy machine the matching takes long.
+        A warning does not withhold the pose: on a busy machine matching takes long.
         """
-        deadline = time.monotonic() + PATIENCE_S
+        deadline = time.monotonic() + TIMEOUT_S
         while not has_pose(report := self.report_of(stamp_ns := self.send(scan, guess))):
             assert time.monotonic() < deadline, f"no pose: {report}"
         spin_until(self.node, lambda: stamp_ns in self.poses)
         return self.poses[stamp_ns]
 
     def be_sure(self) -> None:
-        """Send scans until their poses confirm each other."""
-        deadline = time.monotonic() + PATIENCE_S
+        """Publish scans until their poses confirm each other."""
+        deadline = time.monotonic() + TIMEOUT_S
         while {pair.key: pair.value for pair in self._answer().values}.get("is_sure") != "True":
             assert time.monotonic() < deadline, "no pose is sure"
 
     def begin_anew(self) -> None:
-        """Have the matcher forget where it was, as a first pose would."""
+        """Make the matcher drop its last pose, as a first pose would."""
         trigger = self.node.create_client(SetBool, "trigger_node_srv")
-        assert trigger.wait_for_service(PATIENCE_S)
+        assert trigger.wait_for_service(TIMEOUT_S)
         answer = trigger.call_async(SetBool.Request(data=True))
         spin_until(self.node, answer.done)
         self.node.destroy_client(trigger)
@@ -224,11 +224,11 @@ class Stack:
 
 
 def has_pose(report: Any) -> bool:
-    """Tell whether a report on a scan says that its pose was published."""
+    """Return whether the report of a scan says that its pose was published."""
     values = {pair.key: pair.value for pair in report.values}
     return "execution_time" in values and values["skipping_publish_num"] == "0"
 
 
 def error_m(T: np.ndarray) -> float:
-    """Return how far a pose is from the truth."""
+    """Return the distance [m] of a pose from the truth."""
     return poses.distance_m(T, TRUTH)

@@ -26,7 +26,7 @@ def street(seed: int = 1, spacing_m: float = 0.25) -> Points:
 
 
 def scan_at(points: Points, T_map_sensor: Points, reach_m: float = 25.0) -> NDArray[np.float32]:
-    """Return what a sensor sees from a pose, in its own frame; every third point, fresh noise."""
+    """Return the points seen from a pose, in the sensor frame; every third point, new noise."""
     rng = np.random.default_rng(7)
     near = points[np.linalg.norm(points - T_map_sensor[:3, 3], axis=1) < reach_m][::3]
     seen = (near - T_map_sensor[:3, 3]) @ T_map_sensor[:3, :3]

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Messages that can tell whether they are whole: writer, number, checksum, then random bytes."""
+"""Messages that detect damage: writer, number, checksum, then random bytes."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ RANDOM_BYTES = random.Random(1).randbytes(1 << 20)
 
 
 def make_message(writer: int, number: int, size_bytes: int) -> UInt8MultiArray:
-    """Return a message of `size_bytes` after its header."""
+    """Return a message with `size_bytes` after its header."""
     start = random.randrange(len(RANDOM_BYTES) - size_bytes + 1)
     body = RANDOM_BYTES[start : start + size_bytes]
     header = HEADER.pack(writer, number, zlib.crc32(body, writer ^ number))
@@ -22,7 +22,7 @@ def make_message(writer: int, number: int, size_bytes: int) -> UInt8MultiArray:
 
 
 def read_message(message: UInt8MultiArray) -> tuple[int, int]:
-    """Return writer and number; a ValueError says that the message is torn."""
+    """Return writer and number; raise a ValueError if the message is torn."""
     data = bytes(message.data)
     writer, number, checksum = HEADER.unpack_from(data)
     if zlib.crc32(data[HEADER.size :], writer ^ number) != checksum:
@@ -32,7 +32,7 @@ def read_message(message: UInt8MultiArray) -> tuple[int, int]:
 
 
 def _damage(body: bytes) -> str:
-    """Say where the body was overwritten, and with what."""
+    """Return where the body was overwritten, and with what."""
     start = max(RANDOM_BYTES.find(body[:16]), 0)
     expected = RANDOM_BYTES[start : start + len(body)]
     foreign = [

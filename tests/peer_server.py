@@ -1,8 +1,8 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Forks peers from a process that has loaded rclpy and has initialised nothing of it.
+"""Forks peers from a process that has imported rclpy and initialised none of it.
 
-A new python that loads rclpy costs half a second of CPU, a fork some milliseconds; from then on
-both do the same. See peers.py for the other end: peer_server.py NUMBER-OF-THE-LISTENING-SOCKET.
+A new interpreter that imports rclpy costs half a second of CPU, a fork some milliseconds; from then
+on both behave the same. peers.py is the other end: peer_server.py NUMBER-OF-THE-LISTENING-SOCKET.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ LARGEST_MESSAGE_BYTES = 1 << 17
 
 
 class Request(NamedTuple):
-    """What a peer does, and the files that become its standard input and output."""
+    """What a peer runs, and the files that become its standard input and output."""
 
     arguments: list[str]
     environment: dict[str, str]
@@ -33,7 +33,7 @@ class Request(NamedTuple):
 
 
 class PeerServer:
-    """Has one connection for each peer: a request comes in, pid and exit status go out."""
+    """Handle one connection per peer: a request arrives, pid and exit status are sent."""
 
     def __init__(self, listener: socket.socket) -> None:
         self._listener = listener
@@ -43,7 +43,7 @@ class PeerServer:
         self._watch(sys.stdin.fileno(), self._end)
 
     def run(self) -> Request:
-        """Serve; return in each peer, with what it is to do."""
+        """Serve; return in each peer, with its request."""
         while True:
             for key, _ in self._selector.select():
                 if request := key.data():
@@ -69,7 +69,7 @@ class PeerServer:
         return None
 
     def _abandon(self, pid: int, connection: socket.socket) -> None:
-        """Kill a peer whose test has crashed; a test asks for nothing more on its connection."""
+        """Kill a peer whose test has crashed: the other end of its connection is closed."""
         if pid in self._peers:
             self._selector.unregister(connection.fileno())
             os.kill(pid, signal.SIGKILL)
@@ -85,14 +85,14 @@ class PeerServer:
             connection.send(str(status).encode())
 
     def _end(self) -> None:
-        """End with the process that started the server, and all peers with it."""
+        """End with the process that started the server, together with all peers."""
         for pid in self._peers:
             os.kill(pid, signal.SIGKILL)
         sys.exit()
 
 
 def become(request: Request) -> None:
-    """Make this process what a new one would be that was started with the request."""
+    """Make this process equal to a new one started with the request."""
     signal.signal(signal.SIGINT, signal.default_int_handler)
     os.environ.clear()
     os.environ.update(request.environment)
@@ -103,7 +103,7 @@ def become(request: Request) -> None:
 
 
 if __name__ == "__main__":
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for those who started the peers
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the process that started the peers
     preload()
     with socket.socket(fileno=int(sys.argv[1])) as listener:
         request = PeerServer(listener).run()

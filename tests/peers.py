@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Peers that a server forks: one server for each middleware, for this process and its children."""
+"""Peers forked by servers: one server per middleware, for this process and its children."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class PeerServers:
         os.environ[DIRECTORY_VARIABLE] = self._directory.name
 
     def serve(self, command: list[str], env: dict[str, str]) -> None:
-        """Start the server that forks this peer, unless it runs or the command is no peer's."""
+        """Start the server that forks this peer, unless it runs or the command is not a peer's."""
         if is_peer(command) and not _address(env).exists():
             self.start(env)
 
@@ -55,12 +55,12 @@ class PeerServers:
 
     def end(self) -> None:
         for server in self._servers:
-            server.communicate()  # the end of its input is the end of a server
+            server.communicate()  # a server ends at the end of its input
         self._directory.cleanup()
 
 
 class ForkedPeer:
-    """A peer that a server has forked, with what Program uses of subprocess.Popen."""
+    """A peer forked by a server, with what Program uses of subprocess.Popen."""
 
     def __init__(self, command: list[str], env: dict[str, str]) -> None:
         own_output, peer_output = os.pipe()
@@ -78,7 +78,7 @@ class ForkedPeer:
         self._exit_status: int | None = None
 
     def wait(self, timeout: float | None = None) -> int:
-        """Return the exit status; as with Popen, that of a killed process is negative."""
+        """Return the exit status; as with Popen, negative for a killed process."""
         if self._exit_status is None:
             if not select.select([self._server], [], [], timeout)[0]:
                 raise subprocess.TimeoutExpired("peer", timeout or 0)
@@ -93,9 +93,9 @@ class ForkedPeer:
             return None
 
     def send_signal(self, number: signal.Signals) -> None:
-        """Signal the peer; as with Popen, nothing happens to one that has ended.
+        """Send a signal; as with Popen, nothing happens if the peer has ended.
 
-        It may have ended although its server has not said so yet.
+        It may have ended before its server reports it.
         """
         if self.poll() is None:
             with contextlib.suppress(ProcessLookupError):
@@ -111,7 +111,7 @@ class ForkedPeer:
 
 
 def has_server(command: list[str], env: dict[str, str]) -> bool:
-    """Tell whether a command is that of a peer which a server can fork."""
+    """Return whether a command starts a peer that the server can fork."""
     return is_peer(command) and DIRECTORY_VARIABLE in os.environ and _address(env).exists()
 
 

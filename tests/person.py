@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""A person at a terminal, here a pseudo-terminal."""
+"""A user at a terminal, here a pseudo-terminal."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ import termios
 import time
 from pathlib import Path
 
-from support import PATIENCE_S
+from support import TIMEOUT_S
 
 
 class Person:
-    """A person at a terminal of their own, with a program that runs there."""
+    """A user at a terminal of their own, with a program that runs in it."""
 
     def __init__(self, command: list[str | Path], env: dict[str, str]) -> None:
         self._terminal, theirs = pty.openpty()
@@ -39,8 +39,8 @@ class Person:
         os.write(self._terminal, keys.encode())
 
     def sees(self, pattern: str) -> re.Match[str]:
-        """Return the next match; what stands before it is then done with."""
-        deadline = time.monotonic() + PATIENCE_S
+        """Return the next match; output before it is then discarded."""
+        deadline = time.monotonic() + TIMEOUT_S
         while not (match := re.search(pattern, self.seen)):
             left_s = max(0, deadline - time.monotonic())
             assert select.select([self._terminal], [], [], left_s)[0], (pattern, self.seen)
@@ -49,8 +49,8 @@ class Person:
         return match
 
     def leaves(self) -> int:
-        """Return the exit status; the terminal is as it was before."""
-        status = self.process.wait(PATIENCE_S)
+        """Return the exit status; check that the terminal has its original settings."""
+        status = self.process.wait(TIMEOUT_S)
         assert termios.tcgetattr(self._theirs) == self.before
         return status
 

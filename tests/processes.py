@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Looking at processes from outside."""
+"""Inspection of processes from outside."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ TICKS_PER_S = os.sysconf("SC_CLK_TCK")
 def processes_of(platform: str, program: str = "") -> dict[int, str]:
     """Return pid and program of every process that has the platform mapped or open.
 
-    Only of programs with `program` in their path: a look at all files of all processes takes long.
+    Only programs with `program` in their path are examined: reading all of /proc takes long.
     """
     directory = f"{PLATFORMS / platform}/"
     return {
@@ -34,27 +34,27 @@ def receive_threads_of(platform: str) -> list[int]:
 
 
 def has_receive_threads(platform: str) -> bool:
-    """Tell whether every cluster that somebody joined has its receive thread."""
+    """Return whether every cluster that a process has joined has its receive thread."""
     clusters = entries(PLATFORMS / platform, "cluster-*.pipe")
     return not clusters or len(receive_threads_of(platform)) >= len(clusters)
 
 
 def kill(pid: int) -> None:
-    """Kill a process that may be gone already."""
+    """Kill a process that may have ended already."""
     with suppress(ProcessLookupError):
         os.kill(pid, signal.SIGKILL)
 
 
 def stop_all(platform: str) -> None:
-    """Stop all processes of a platform: they live, and notice nothing."""
+    """Stop all processes of a platform: they live, but do not run."""
     wait_until(lambda: has_receive_threads(platform), "no receive thread is on its way")
     wait_until(lambda: _stop_all(platform), f"all processes of {platform} are stopped")
 
 
 def kill_all(platform: str) -> None:
-    """Kill all processes of a platform as if at once: none lives to see another one die.
+    """Kill all processes of a platform, stopped first so that none sees another one die.
 
-    Else a receive thread might clean up after the others, or be started again, before its turn.
+    Else a receive thread might clean up after the others, or be replaced, before it is killed.
     """
     stop_all(platform)
     for pid in processes_of(platform):
@@ -63,7 +63,7 @@ def kill_all(platform: str) -> None:
 
 
 def _stop_all(platform: str) -> bool:
-    """Stop what still runs; tell whether all was stopped already."""
+    """Stop what still runs; return whether all were stopped already."""
     running = [pid for pid in processes_of(platform) if not is_stopped(pid)]
     for pid in running:
         with suppress(ProcessLookupError):
@@ -72,23 +72,23 @@ def _stop_all(platform: str) -> bool:
 
 
 def cpu_time_s(pid: int) -> float:
-    """Return the CPU time that a process has used."""
+    """Return the CPU time [s] that a process has used."""
     fields = Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()
     return (int(fields[11]) + int(fields[12])) / TICKS_PER_S
 
 
 def is_stopped(pid: int) -> bool:
-    """Tell whether a signal has stopped all threads of a process; one that is gone has not."""
+    """Return whether all threads of a process are stopped by a signal; False if it has ended."""
     return _states_of(pid) == {"T"}
 
 
 def is_asleep(pid: int) -> bool:
-    """Tell whether no thread of a process has anything to do; one that is gone is not asleep."""
+    """Return whether all threads of a process sleep; False if it has ended."""
     return _states_of(pid) == {"S"}
 
 
 def _states_of(pid: int) -> set[str]:
-    """Return the state letters of a process's threads, see proc(5); none when it is gone."""
+    """Return the state letters of a process's threads, see proc(5); none if it has ended."""
     with suppress(FileNotFoundError, ProcessLookupError):
         threads = Path(f"/proc/{pid}/task").iterdir()
         return {(thread / "stat").read_text().rsplit(")", 1)[1].split()[0] for thread in threads}

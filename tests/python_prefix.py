@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""A virtual environment with our start-up files in it, and real python processes that use it."""
+"""A virtual environment with our start-up files, and real Python processes that use it."""
 
 from __future__ import annotations
 

@@ -25,7 +25,7 @@ def text_message(text: str) -> bytes:
 
 def text_in(data: bytes) -> str:
     """Return the text of a std_msgs/msg/String in CDR."""
-    size = int.from_bytes(data[4:8], "little")  # Fast DDS has padding behind it
+    size = int.from_bytes(data[4:8], "little")  # Fast DDS appends padding
     return data[8 : 7 + size].decode()
 
 
@@ -36,7 +36,7 @@ def string_row(name: str, *offers: Qos, **more: Any) -> TopicRow:
 def write_texts(
     path: Path, texts: Iterable[tuple[str, float, str]], *, compression: str = "none", each: int = 0
 ) -> Path:
-    """Write texts, each with a topic and seconds after START_NS; `each`: so many in a chunk."""
+    """Write texts, each with topic and seconds after START_NS, `each` of them per chunk."""
     output = Output(path, compression)
     rows: dict[str, TopicRow] = {}
     for number, (topic, at_s, text) in enumerate(texts, start=1):

@@ -1,9 +1,9 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The Autoware reference system as its authors describe it, apart from our mapfile of it."""
+"""The Autoware reference system as its authors describe it, independent of our mapfile."""
 
 from __future__ import annotations
 
-# Kind, period in ms where the node has one, inputs. Each node's output has its name.
+# Kind, period [ms] where the node has one, inputs. Each node's output topic has its name.
 SENSORS = {
     "FrontLidarDriver": 100,
     "RearLidarDriver": 100,
@@ -47,7 +47,7 @@ Edges = set[tuple[str, str]]
 
 
 def subscriptions() -> Edges:
-    """Return what each node listens to, as pairs of node and topic."""
+    """Return all subscriptions as pairs of node and topic."""
     return {
         *TRANSFORMS.items(),
         *COMMANDS.items(),
@@ -58,7 +58,7 @@ def subscriptions() -> Edges:
 
 
 def publishers() -> Edges:
-    """Return what each node publishes, as pairs of node and topic."""
+    """Return all publishers as pairs of node and topic."""
     return {
         *((node, node) for node in (*SENSORS, *TRANSFORMS, *FUSIONS, CYCLIC)),
         *((INTERSECTION, topic) for topic in CONNECTIONS.values()),

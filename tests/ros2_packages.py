@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""launch, launch_ros and ros2cli, which are not on PyPI: installed, or from checkouts."""
+"""launch, launch_ros and ros2cli, which PyPI lacks: installed, or from checkouts."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ from pathlib import Path
 
 from installing import run
 
-# Names a directory with checkouts of the repositories launch, launch_ros and ros2cli.
+# Environment variable: a directory with checkouts of launch, launch_ros and ros2cli.
 CHECKOUTS_VARIABLE = "MANYCORE_ROS2_CHECKOUTS"
 PACKAGES = (
     *("launch/launch", "launch/launch_xml", "launch/launch_yaml"),
     *("launch_ros/launch_ros", "launch_ros/ros2launch", "ros2cli/ros2cli", "ros2cli/ros2pkg"),
 )
-# Of PyPI; they need each other's versions no more exactly than this.
+# From PyPI; they need no more exact versions than these.
 REQUIREMENTS = ("osrf_pycommon", "lark", "importlib_metadata", "zipp", "packaging")
 REASON = (
     "needs launch, launch_ros and ros2cli, which PyPI does not have: install them, or name a "
@@ -25,12 +25,12 @@ REASON = (
 
 
 def are_installed() -> bool:
-    """Tell whether this python imports them."""
+    """Return whether this Python imports them."""
     return all(importlib.util.find_spec(name) for name in ("launch_ros", "ros2launch", "ros2cli"))
 
 
 def install(directory: Path) -> dict[str, str]:
-    """Install the checkouts into a directory; return the environment in which they are found."""
+    """Install the checkouts into a directory; return the environment that finds them."""
     checkouts = Path(os.environ[CHECKOUTS_VARIABLE])
     pip = [sys.executable, "-m", "pip", "install", "--quiet", "--no-deps", "--target", directory]
     run(*pip, *REQUIREMENTS, *(checkouts / name for name in PACKAGES))
@@ -42,7 +42,7 @@ def install(directory: Path) -> dict[str, str]:
 
 
 def search_path() -> str:
-    """Return a PATH on which this python is the first: the examples are `python3` scripts."""
+    """Return a PATH with this Python first: the examples are `python3` scripts."""
     return _before(os.environ["PATH"], Path(sys.executable).parent)
 
 

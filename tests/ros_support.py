@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Small helpers around rclpy, for tests and their peers."""
+"""Helpers around rclpy for tests and their peers."""
 
 from __future__ import annotations
 
@@ -14,12 +14,13 @@ from typing import Any
 import rclpy
 from rclpy.executors import Executor, ExternalShutdownException
 from rclpy.node import Node
+from rclpy.signals import uninstall_signal_handlers
 from rclpy.task import Future
-from support import PATIENCE_S
+from support import TIMEOUT_S
 
 
-def spin_until(node: Node, condition: Callable[[], Any], timeout_s: float = PATIENCE_S) -> None:
-    """Spin a node until a condition holds that its callbacks bring about."""
+def spin_until(node: Node, condition: Callable[[], Any], timeout_s: float = TIMEOUT_S) -> None:
+    """Spin a node until a condition holds, which its callbacks make true."""
     deadline = time.monotonic() + timeout_s
     while not condition():
         if time.monotonic() > deadline:
@@ -29,10 +30,10 @@ def spin_until(node: Node, condition: Callable[[], Any], timeout_s: float = PATI
 
 @contextmanager
 def spinning_thread(executor: Executor) -> Iterator[threading.Thread]:
-    """Spin an executor in a thread of its own, and yield that.
+    """Spin an executor in a new thread, and yield it.
 
-    It is asked to end by a future: `Executor.shutdown` takes away what a thread that is about to
-    wait still uses.
+    A future ends the spinning: `Executor.shutdown` destroys what a thread that is about to wait
+    still uses.
     """
     enough = Future()
     thread = threading.Thread(
@@ -41,15 +42,15 @@ def spinning_thread(executor: Executor) -> Iterator[threading.Thread]:
     thread.start()
     yield thread
     enough.set_result(None)
-    thread.join(PATIENCE_S)
+    thread.join(TIMEOUT_S)
     assert not thread.is_alive()
 
 
 def spin(node: Node) -> None:
-    """Spin the node of a peer, which announces it from a callback: "spinning".
+    """Spin the node of a peer; a callback prints "spinning".
 
-    From then on an interruption ends the peer quietly. Before, rclpy may still be making the
-    executor, and reports the end of its context as an error.
+    From then on SIGINT ends the peer quietly. Before, rclpy may still be creating the executor, and
+    would report the end of its context as an error.
     """
     rclpy.get_global_executor().create_task(announce, "spinning")
     rclpy.spin(node)
@@ -57,28 +58,30 @@ def spin(node: Node) -> None:
 
 @contextmanager
 def peer_node(name: str = "peer", **options: Any) -> Iterator[Node]:
-    """Give a peer process its node; it ends quietly when it is interrupted."""
+    """Give a peer process its node; it ends quietly on SIGINT."""
     rclpy.init()
     node = rclpy.create_node(name, **options)
     with suppress(KeyboardInterrupt, ExternalShutdownException):
         yield node
+    # Waits until rclpy's signal thread has triggered the guard conditions that are destroyed next.
+    uninstall_signal_handlers()
     node.destroy_node()
     rclpy.try_shutdown()
 
 
 def announce(line: str) -> None:
-    """Print a line for the test that waits for it, in one write, as several may print at once."""
+    """Print a line for the waiting test, in one write, as several threads may print at once."""
     print(f"{line}\n", end="", flush=True)
 
 
 def type_of(name: str) -> Any:
-    """Return the class of a type, for example "std_msgs/msg/String"."""
+    """Return the class of a type name such as "std_msgs/msg/String"."""
     package, kind, type_name = name.split("/")
     return getattr(importlib.import_module(f"{package}.{kind}"), type_name)
 
 
 def lost_messages(topic: str, role: str = "topic") -> int:
-    """Return what the tools show of lost messages, or requests or replies, of this platform."""
+    """Return the table of lost messages, requests and responses that the tools print."""
     from rmw_manycore_py import _transport
 
     with _transport.Platform(os.environ["MANYCORE_PLATFORM"]) as platform:

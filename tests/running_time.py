@@ -1,9 +1,9 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Time as a process on this machine gets it: what the machine is too busy for does not count.
+"""Running time: like wall time, without the time in which the machine was too busy to run us.
 
-"Within a second" is a promise about our programs. On a machine that lets nobody run for a second it
-cannot be kept, and says nothing about them. So a thread counts the short sleeps that it gets done:
-a process that was ready to run could have run then, too.
+A bound like "within a second" holds for our programs only while the machine schedules them. So a
+thread counts the short sleeps that it completes: a process that was ready to run could have run
+in that time, too.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ NS_PER_S = 1e9
 
 
 class RunningTime:
-    """A clock that stands still while the machine does."""
+    """A clock that stops while the machine does not schedule this process."""
 
     def __init__(self) -> None:
         self._ticks_ns: list[int] = []
@@ -44,7 +44,7 @@ class RunningTime:
         return self.between_s(start_ns, time.monotonic_ns())
 
     def wait_within(self, limit_s: float, condition: Callable[[], Any], what: str) -> None:
-        """Look at a condition until it holds, at most for `limit_s` that count."""
+        """Poll a condition until it holds, for at most `limit_s` of running time."""
         start_ns = time.monotonic_ns()
         while not condition():
             if self.since_s(start_ns) > limit_s:

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Which worker of pytest-xdist runs which tests."""
+"""Distribution of tests over the workers of pytest-xdist."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-# One worker runs all tests of files that begin so, as they share something that takes long to make.
+# One worker runs all tests of files with these prefixes: they share an expensive fixture.
 TOGETHER = ("tests/integration/test_install",)
 
 

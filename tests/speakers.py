@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Nodes that say texts and that print what they hear, on either side of a bridge."""
+"""Nodes that publish texts and that print received texts, on either side of a bridge."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from ros_support import announce, peer_node, spin_until, type_of
 
 
 def qos(words: dict[str, Any]) -> Any:
-    """Return a profile of names of policies, as JSON can carry them."""
+    """Return a profile from names of policies, as JSON contains them."""
     from rclpy.duration import Duration
     from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 
@@ -22,7 +22,7 @@ def qos(words: dict[str, Any]) -> Any:
 
 
 def say(topic: str, words: dict[str, Any], period_s: float | None, *texts: str) -> None:
-    """Publish texts at once, and, where there is a period, the time for ever, once a period."""
+    """Publish texts at once, and, with a period, the time forever, once a period."""
     with peer_node("speaker") as node:
         publisher = node.create_publisher(type_of("std_msgs/msg/String"), topic, qos(words))
         message = type_of("std_msgs/msg/String")
@@ -39,7 +39,7 @@ def say(topic: str, words: dict[str, Any], period_s: float | None, *texts: str) 
 
 
 def hear(topic: str, words: dict[str, Any]) -> None:
-    """Print what is heard, and its source timestamp."""
+    """Print each message received, with its source timestamp."""
     with peer_node("hearer") as node:
 
         def heard(message: Any, info: Any) -> None:

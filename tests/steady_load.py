@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Nodes that go on while others die, and check that they notice nothing."""
+"""Nodes that stay while others die, and check that they notice nothing."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from load import check_steadily, publish_steadily
 from running_time import RunningTime
 from support import Program, peer_command, wait_until
 
-RECOVERY_S = 1.0  # what is promised: the others go on, and what the dead held is free again
+RECOVERY_S = 1.0  # the promise: the others go on, and what a dead process held is reclaimed
 
 
 class Load:
@@ -21,7 +21,7 @@ class Load:
         self.checkers: list[Program] = []
         writer = None
         for cluster in (1, 2):
-            # The publisher waits for the first subscription before it says who it is.
+            # The publisher waits for the first subscription before it prints its pid.
             writer = writer or self.publisher.pid
             checker = start(peer_command(check_steadily, writer), cluster)
             checker.wait_for("checking")
@@ -29,7 +29,7 @@ class Load:
         self.publisher.wait_for(f"publishing as {writer}")
 
     def counts(self) -> list[tuple[int, int]]:
-        """Return how many messages each subscription heard, and how many it misses."""
+        """Return how many messages each subscription has received, and how many it misses."""
         for checker in self.checkers:
             checker.say("how many?")
         matches = [checker.wait_for(r"heard (\d+), missing (\d+)") for checker in self.checkers]
@@ -44,10 +44,10 @@ class Load:
             pairs = zip(self.counts(), before, strict=True)
             return all(now[0] >= then[0] + 10 for now, then in pairs)
 
-        wait_until(all_have_more, "everybody hears the publisher again")
+        wait_until(all_have_more, "every subscription receives messages again")
 
     def assert_unharmed(self) -> None:
-        """Nothing is lost, torn or out of order, and nothing took longer than it may."""
+        """Check that nothing is lost, torn or out of order, and that no gap is too long."""
         self.assert_in_order()
         assert self.missing() == 0
         for program in self.checkers:

@@ -27,14 +27,14 @@ from rmw_manycore_py.launch.processes.ending import is_rclpys
 REPOSITORY = TESTS.parent
 MAPFILES = REPOSITORY / "mapfiles"
 
-# The middleware under test; the tests that are about ROS 2 itself also pass with rmw_fastrtps_cpp.
+# The middleware under test; tests of ROS 2 itself also pass with rmw_fastrtps_cpp.
 RMW = os.environ.get("MANYCORE_TEST_RMW", "rmw_manycore")
 IS_MANYCORE = RMW == "rmw_manycore"
 
-# How long a thing may take that should take milliseconds: only ever waited for by a failing test.
-PATIENCE_S = float(os.environ.get("MANYCORE_TEST_PATIENCE", "30"))
+# Limit for things that take milliseconds: only a failing test waits that long.
+TIMEOUT_S = float(os.environ.get("MANYCORE_TEST_TIMEOUT", "60"))
 
-# How often the stress tests kill or stop something.
+# How often the stress tests kill or stop a process.
 KILLS = int(os.environ.get("MANYCORE_TEST_KILLS", "1000"))
 
 PLATFORMS = Path(f"/dev/shm/manycore-{os.getuid()}")
@@ -50,7 +50,7 @@ def unique_platform() -> str:
 def environment(platform: str, cluster: int = 1, **more: str) -> dict[str, str]:
     """Return the environment of a node in a cluster of a platform.
 
-    Other middlewares have no platforms, so there each platform is a ROS domain of its own.
+    Other middlewares have no platforms: there each platform is a separate ROS domain.
     """
     return {
         **os.environ,
@@ -65,27 +65,27 @@ def environment(platform: str, cluster: int = 1, **more: str) -> dict[str, str]:
 
 
 def is_installed(name: str) -> bool:
-    """Tell whether there is a program or a Python module of this name."""
+    """Return whether a program or a Python module of this name is installed."""
     return shutil.which(name) is not None or importlib.util.find_spec(name) is not None
 
 
 def leftovers(platform: str) -> list[Path]:
-    """Return what a platform has left behind in shared memory."""
+    """Return the files that a platform has left in shared memory."""
     directory = PLATFORMS / platform
-    with suppress(FileNotFoundError):  # the last process may remove it at this moment
+    with suppress(FileNotFoundError):  # the last process may remove it concurrently
         return [directory, *directory.rglob("*")] if directory.exists() else []
     return []
 
 
 def entries(directory: Path, pattern: str) -> list[Path]:
-    """Return what matches in a directory that the last process may remove at this moment."""
+    """Return the matching files of a directory that the last process may remove concurrently."""
     with suppress(FileNotFoundError):
         return list(directory.glob(pattern))
     return []
 
 
-def wait_until(condition: Callable[[], Any], what: str, timeout_s: float = PATIENCE_S) -> None:
-    """Look at a condition that nobody announces until it holds."""
+def wait_until(condition: Callable[[], Any], what: str, timeout_s: float = TIMEOUT_S) -> None:
+    """Poll a condition until it holds; fail after the timeout."""
     deadline = time.monotonic() + timeout_s
     while not condition():
         if time.monotonic() > deadline:
@@ -111,9 +111,9 @@ def _started(
 
 
 class Program:
-    """A started process; its output, errors included, is read line by line.
+    """A started process; its output, standard error included, is read line by line.
 
-    It starts in TESTS: in the repository `python -m` would take the sources there.
+    It starts in TESTS: in the repository, `python -m` would import the sources there.
     """
 
     def __init__(
@@ -149,8 +149,8 @@ class Program:
     def __repr__(self) -> str:
         return f"{' '.join(self.command)} (exit status {self._process.poll()}):\n{self.output}"
 
-    def wait_for(self, pattern: str, timeout_s: float = PATIENCE_S) -> re.Match[str]:
-        """Return the match in the next line that has one; earlier lines are then done with."""
+    def wait_for(self, pattern: str, timeout_s: float = TIMEOUT_S) -> re.Match[str]:
+        """Return the match in the next matching line; earlier lines are then discarded."""
         deadline = time.monotonic() + timeout_s
         with self._changed:
             while True:
@@ -163,7 +163,7 @@ class Program:
                     raise AssertionError(f"no line matches {pattern!r} in the output of {self}")
 
     def skip_output(self) -> None:
-        """Be done with everything printed so far."""
+        """Discard everything printed so far."""
         with self._changed:
             self._next_line = len(self.lines)
 
@@ -174,7 +174,7 @@ class Program:
         self._process.stdin.flush()
 
     def close_input(self) -> None:
-        """End the program's standard input."""
+        """Close the program's standard input."""
         assert self._process.stdin is not None
         self._process.stdin.close()
 
@@ -184,7 +184,7 @@ class Program:
     def is_running(self) -> bool:
         return self._process.poll() is None
 
-    def wait(self, timeout_s: float = PATIENCE_S) -> int:
+    def wait(self, timeout_s: float = TIMEOUT_S) -> int:
         """Return the exit status, once all output has been read."""
         try:
             status = self._process.wait(timeout_s)
@@ -194,20 +194,20 @@ class Program:
         return status
 
     def stop(self) -> int:
-        """Interrupt the program as Ctrl-C does; return its exit status."""
+        """Send SIGINT, as Ctrl-C does; return the exit status."""
         self.signal(signal.SIGINT)
         return self.wait()
 
     def stop_node(self) -> bool:
-        """Interrupt a plain rclpy node; tell whether it ended quietly, as far as rclpy lets it.
+        """Send SIGINT to a plain rclpy node; return whether it ended quietly, if rclpy lets it.
 
-        That turns some interruptions into an error of its own.
+        rclpy turns some interrupts into an error of its own.
         """
         status = self.stop()
         return status == 0 or (status == 1 and is_rclpys(self.lines[-20:]))
 
     def kill(self) -> None:
-        """End the program at once, whatever state it is in, and close our ends of its pipes."""
+        """Kill the program, whatever its state, and close our ends of its pipes."""
         self._process.kill()
         self._process.wait()
         self._reader.join()
@@ -217,7 +217,7 @@ class Program:
 
 
 def peer_command(function: Callable[..., None], *arguments: Any) -> list[str]:
-    """Return the command that calls a function of a test file in a process of its own."""
+    """Return the command that calls a function of a test file in a new process."""
     source = function.__code__.co_filename
     return [sys.executable, str(PEER), source, function.__name__, json.dumps(arguments)]
 
@@ -228,6 +228,6 @@ def example_command(name: str, *arguments: str) -> list[str]:
 
 
 def manycore_command(*arguments: str | Path) -> list[str | Path]:
-    """Return a call of the command line tool that is installed beside this python."""
+    """Return the command of the `manycore` installed beside this Python."""
     beside = Path(sys.executable).with_name("manycore")
     return [beside if beside.exists() else shutil.which("manycore") or "manycore", *arguments]

@@ -3,11 +3,11 @@
 
 #include <cstddef>
 
-/// How much memory was asked for at once, by any library of this process, as the address sanitizer
-/// sees it. More than 16 MiB at once is not to be had.
+/// Size of the largest single allocation by any library of this process, observed through the
+/// address sanitizer. Allocations above 16 MiB fail.
 namespace allocation_watch {
 
-/// Throws std::runtime_error where the sanitizer takes no hooks.
+/// Throws std::runtime_error if the sanitizer does not support hooks.
 void start();
 /// In bytes, since the last call.
 size_t largest() noexcept;

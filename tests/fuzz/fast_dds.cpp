@@ -24,6 +24,6 @@ bool FastDds::accepts(
     rmw_reset_error();
     return code == RMW_RET_OK;
   } catch (const std::length_error &) {
-    return false;  // a bounded sequence beyond its bound: it ends a node of C++
+    return false;  // a bounded sequence exceeds its bound: ends a C++ node
   }
 }

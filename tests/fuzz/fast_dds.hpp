@@ -3,13 +3,13 @@
 
 #include "rmw/rmw.h"
 
-/// rmw_deserialize of rmw_fastrtps_cpp, from its library: the verdict that ours has to equal.
+/// rmw_deserialize of rmw_fastrtps_cpp, whose verdict rmw_manycore has to match.
 class FastDds {
 public:
-  /// Throws std::runtime_error without rmw_fastrtps_cpp.
+  /// Throws std::runtime_error if rmw_fastrtps_cpp is not installed.
   FastDds();
 
-  /// False when it refuses the bytes. `message` keeps what was read until then.
+  /// False if it refuses the bytes. `message` keeps what was read before that.
   bool accepts(
     const rmw_serialized_message_t & cdr, const rosidl_message_type_support_t & type,
     void * message) const;

@@ -1,9 +1,9 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 //
-// fuzz_deserialize SAMPLES [SEED [FIRST]]: deserializes and takes messages that are made up by
-// their types and then damaged. Whatever the bytes are, no take may fail, each message is taken or
-// counted as lost, what was accepted can be serialized, little memory is asked for, and the verdict
-// is that of Fast DDS, but for what that takes half read.
+// fuzz_deserialize SAMPLES [SEED [FIRST]]: deserializes and takes messages that are generated from
+// their types and then damaged. For any bytes: no take fails, each message is taken or counted as
+// lost, accepted messages can be serialized, allocations stay small, and the verdict equals that of
+// Fast DDS, except for messages that Fast DDS reads only in part.
 #include <fcntl.h>
 #include <unistd.h>
 
@@ -28,7 +28,7 @@
 
 namespace {
 
-// Fixed and variable sizes, strings of both kinds, sequences bounded or not, nested to any depth.
+// Fixed and variable sizes, both kinds of strings, bounded and unbounded sequences, deep nesting.
 constexpr const char * type_names[] = {
   "std_msgs/msg/String",
   "std_msgs/msg/Float64MultiArray",
@@ -74,7 +74,7 @@ using Bytes = std::vector<uint8_t>;
 
 rmw_serialized_message_t view_of(const Bytes & cdr) {
   rmw_serialized_message_t view = rmw_get_zero_initialized_serialized_message();
-  view.buffer = const_cast<uint8_t *>(cdr.data());  // only read
+  view.buffer = const_cast<uint8_t *>(cdr.data());  // never written
   view.buffer_length = view.buffer_capacity = cdr.size();
   return view;
 }
@@ -85,8 +85,9 @@ void require(bool holds, const char * what) {
   }
 }
 
-/// Into zeros, as padding is not written. `expected_bytes`: more is more than the message needs.
-/// Nothing where the type support refuses: it reads sequences beyond their bounds, but writes none.
+/// Serializes into zeroed memory, because padding is not written. Fails if the message needs more
+/// than `expected_bytes`. Nothing if the type support refuses: it reads sequences beyond their
+/// bounds, but does not write them.
 std::optional<Bytes> serialize(
   const MessageType & type, const void * message, size_t expected_bytes) {
   constexpr size_t rounding = 8;
@@ -102,25 +103,26 @@ std::optional<Bytes> serialize(
   return code == RMW_RET_OK ? std::optional(cdr) : std::nullopt;
 }
 
-/// What one element may take in memory for each byte in CDR: a string of C++ has 32 for 4.
-constexpr size_t most_times = 16;
-constexpr size_t most_beside = 4096;
+/// Bytes in memory per byte of CDR: an empty C++ string takes 32 for 4.
+constexpr size_t max_factor = 16;
+constexpr size_t max_constant = 4096;
 
-/// Why it is refused; nothing when it is not. Each in memory of its own size: a read behind the end
-/// is seen.
+/// Reason why the message is refused; nothing if it is accepted. Reads from a buffer of the exact
+/// size, so that the sanitizer detects reads beyond the end.
 std::optional<std::string> refusal(const MessageType & type, const Bytes & cdr, void * message) {
   const rmw_serialized_message_t view = view_of(cdr);
   allocation_watch::largest();
   const rmw_ret_t code = rmw_deserialize(&view, type.support(), message);
   const size_t largest = allocation_watch::largest();
   require(
-    largest <= most_times * cdr.size() + most_beside, "more memory was asked for than it can need");
+    largest <= max_factor * cdr.size() + max_constant,
+    "more memory was allocated than the message can need");
   const std::string reason = rmw_get_error_string().str;
   rmw_reset_error();
   return code == RMW_RET_OK ? std::nullopt : std::optional(reason);
 }
 
-/// Without the sanitizer's warnings of memory that Fast DDS asks for in vain.
+/// Suppresses the sanitizer's warnings about allocations of Fast DDS that fail.
 bool fast_dds_accepts(const FastDds & fast_dds, const MessageType & type, const Bytes & cdr) {
   const auto message = type.create();
   set_report_descriptor(null_descriptor);
@@ -129,15 +131,15 @@ bool fast_dds_accepts(const FastDds & fast_dds, const MessageType & type, const 
   return accepted;
 }
 
-/// Both mean bytes that no writer of ROS 2 sends. XCDR version 2: Fast DDS never matches its
-/// writers. A length within: the type support ignores that a part has failed, and hands out what it
-/// has.
+/// Both reasons concern bytes that no ROS 2 writer sends. XCDR version 2: Fast DDS never matches
+/// such writers. A length that is too large: the type support ignores that a nested part has
+/// failed, and delivers what it has.
 bool is_refused_by_us_alone(const std::string & reason) {
   return reason.find("a length in it claims more bytes than are left") != std::string::npos ||
          reason.find("it is not XCDR version 1") != std::string::npos;
 }
 
-/// One type in one language.
+/// One message type in one language.
 class Target {
 public:
   Target(
@@ -147,7 +149,8 @@ public:
     type_(name, language),
     topic_(node, (language == MessageType::Language::c ? "/c/" : "/cpp/") + name, type_) {}
 
-  /// A valid message comes back as it was, but for zeros that round its size up.
+  /// A valid message is unchanged after deserialization and serialization, except for trailing
+  /// zeros that round up its size.
   void accept(const Bytes & cdr) const {
     const auto message = type_.create();
     require(!refusal(type_, cdr, message.get()), "a valid message is refused");
@@ -156,7 +159,7 @@ public:
     again->resize(cdr.size());
     require(*again == cdr, "a valid message becomes another");
   }
-  /// Whatever it is.
+  /// For any bytes.
   void survive(const Bytes & cdr) {
     const auto message = type_.create();
     const std::optional<std::string> reason = refusal(type_, cdr, message.get());
@@ -225,7 +228,8 @@ void say_sample() {
   std::fflush(stdout);
 }
 
-/// The type supports and the RMW say what they refuse; the sanitizers' reports stay.
+/// Silences what type supports and RMW print about refused messages, but not the sanitizers'
+/// reports.
 void silence() {
   report_descriptor = dup(STDERR_FILENO);
   null_descriptor = open("/dev/null", O_WRONLY);

@@ -15,7 +15,7 @@ using CppMembers = rosidl_typesupport_introspection_cpp::MessageMembers;
 constexpr const char * introspection_c = "rosidl_typesupport_introspection_c";
 constexpr const char * introspection_cpp = "rosidl_typesupport_introspection_cpp";
 
-/// From the library that every generated package has for it; those stay loaded.
+/// Type support from the library of a generated package, which stays loaded.
 const rosidl_message_type_support_t * load(const std::string & type, const std::string & library) {
   const size_t end_of_package = type.find('/');
   const std::string package = type.substr(0, end_of_package);
@@ -35,7 +35,7 @@ const rosidl_message_type_support_t * load(const std::string & type, const std::
   return getter();
 }
 
-/// Both languages describe how to make and how to end a message, each in structures of its own.
+/// Both languages describe creation and destruction of a message, each in its own structures.
 template<typename AnyMembers, typename Initialization>
 std::shared_ptr<void> create_as(const void * members, Initialization initialization) {
   const auto & type = *static_cast<const AnyMembers *>(members);

@@ -7,19 +7,18 @@
 #include "rosidl_runtime_c/message_type_support_struct.h"
 #include "rosidl_typesupport_introspection_c/message_introspection.h"
 
-/// How messages of one type look to C, or to C++: a node in Python uses the first, one in C++ the
-/// second.
+/// Representation of one message type in C, used by Python nodes, or in C++.
 class MessageType {
 public:
   enum class Language { c, cpp };
 
-  /// `name` as in "std_msgs/msg/String"; throws std::runtime_error without its library.
+  /// `name` is like "std_msgs/msg/String". Throws std::runtime_error if its library is missing.
   MessageType(const std::string & name, Language language);
 
   const std::string & name() const noexcept { return name_; }
   const rosidl_message_type_support_t * support() const noexcept { return support_; }
 
-  /// A message with the values that a new one has.
+  /// Creates a message with default values.
   std::shared_ptr<void> create() const;
 
 private:

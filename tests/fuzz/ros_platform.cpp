@@ -24,7 +24,7 @@ Handle * created(Handle * handle, const char * what) {
   return handle;
 }
 
-/// For destructors: what fails here shows as a leak.
+/// For destructors: a failure shows up as a leak.
 void ignore(rmw_ret_t) {}
 
 }  // namespace
@@ -74,7 +74,7 @@ Topic::~Topic() {
 
 void Topic::publish(const std::vector<uint8_t> & cdr) {
   rmw_serialized_message_t message = rmw_get_zero_initialized_serialized_message();
-  message.buffer = const_cast<uint8_t *>(cdr.data());  // only read
+  message.buffer = const_cast<uint8_t *>(cdr.data());  // never written
   message.buffer_length = message.buffer_capacity = cdr.size();
   check(rmw_publish_serialized_message(publisher_, &message, nullptr), "publish");
 }

@@ -8,10 +8,10 @@
 #include "message_type.hpp"
 #include "rmw/rmw.h"
 
-/// Throws std::runtime_error with the middleware's own words.
+/// Throws std::runtime_error with the middleware's error text unless `code` is RMW_RET_OK.
 void check(rmw_ret_t code, const char * what);
 
-/// A node on a platform of this process.
+/// A node on a platform of its own.
 class Node {
 public:
   Node();
@@ -35,11 +35,11 @@ public:
   Topic(const Topic &) = delete;
   Topic & operator=(const Topic &) = delete;
 
-  /// Publishes bytes as they are.
+  /// Publishes the bytes unchanged.
   void publish(const std::vector<uint8_t> & cdr);
-  /// Takes a message; false when there is none. Throws when that is refused.
+  /// Takes a message; false if there is none. Throws if the take fails.
   bool take(void * message);
-  /// What the event of lost messages tells.
+  /// Total of the message-lost event.
   uint64_t lost();
 
 private:

@@ -10,10 +10,10 @@ namespace {
 
 constexpr size_t header_bytes = 4;
 constexpr size_t length_bytes = 4;
-/// A sample of more than this gets no further elements: types of sequences of sequences grow fast.
+/// A sample larger than this gets no further elements, because nested sequences grow fast.
 constexpr size_t enough_bytes = 4096;
 
-/// Writes XCDR version 1, little endian.
+/// Writes XCDR version 1, little-endian.
 class Writer {
 public:
   explicit Writer(Random & random) : random_(random) { sample_.cdr = {0, 1, 0, 0}; }
@@ -69,7 +69,7 @@ private:
         throw std::runtime_error(std::string("cannot write ") + member.name_);
     }
   }
-  /// A message without fields has one that is not its own, and whose value is not kept.
+  /// Messages without fields have a generated one, whose value is not preserved.
   static bool is_filler(const Member & member) {
     return std::strcmp(member.name_, "structure_needs_at_least_one_member") == 0;
   }

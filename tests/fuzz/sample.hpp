@@ -10,17 +10,17 @@
 
 using Random = std::mt19937_64;
 
-/// A number from `first` to `last`.
+/// A random number from `first` to `last`.
 uint64_t choose(Random & random, uint64_t first, uint64_t last);
 
-/// The CDR of a message, and where in it the lengths of strings and sequences stand.
+/// CDR of a message, and the positions of its string and sequence lengths.
 struct Sample {
   std::vector<uint8_t> cdr;
   std::vector<size_t> lengths;
 };
 
-/// A valid message with values made up.
+/// A valid message with random values.
 Sample make_sample(const Members & type, Random & random);
 
-/// Changes some bytes: lengths above all, since memory is reserved by them.
+/// Changes some bytes: preferably lengths, because memory is reserved for them.
 void mutate(Sample & sample, Random & random);

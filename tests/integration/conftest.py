@@ -26,13 +26,13 @@ def installation(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Insta
 
 @pytest.fixture
 def bridge(start, platform) -> Bridge:
-    """Return the test's bridge, with which it starts nodes inside and outside."""
+    """Return the test's bridge, which starts nodes inside and outside."""
     return Bridge(start, platform)
 
 
 @pytest.fixture
 def talking(start):
-    """A talker on core 3 and a listener, each in its cluster, that hear each other."""
+    """Start a talker on core 3 and a listener in clusters of their own, and wait for a message."""
     listener = start(forked_example("listener"), cluster=2)
     often = ("--ros-args", "-p", "rate_hz:=20.0")
     talker = start(forked_example("talker", *often), MANYCORE_CORE="3")
@@ -42,7 +42,7 @@ def talking(start):
 
 @pytest.fixture
 def view(start):
-    """A viewer, and its link."""
+    """Start a viewer; return it and its URL."""
     program = start(forked_manycore("view", "--port", "0", "--period", "0.2"))
     link = program.wait_for(r"http://\S+").group()
     yield program, link

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""`manycore attach`: a person's terminal, here a pseudo-terminal, on that of a node."""
+"""`manycore attach`: connects a user's terminal, here a pseudo-terminal, to that of a node."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ pytestmark = [
     pytest.mark.skipif(not IS_MANYCORE, reason="manycore attach is about rmw_manycore"),
 ]
 
-# As teleop_twist_keyboard: single keys in raw mode, published by a node; q ends it.
+# Like teleop_twist_keyboard: reads single keys in raw mode and publishes them; q ends it.
 TELEOP = """
 import os, sys, termios, tty
 import rclpy
@@ -38,14 +38,15 @@ try:
 finally:
     termios.tcsetattr(sys.stdin, termios.TCSADRAIN, before)
 """
+# Each line is written whole: a signal handler prints between the words of a print().
 SHELL = """
 import os, signal, sys, threading
 def resized(*_):
     size = os.get_terminal_size()
-    print("size", size.lines, size.columns, flush=True)
+    print(f"size {size.lines} {size.columns}", flush=True)
 signal.signal(signal.SIGWINCH, resized)
-print("ready", os.isatty(0), os.isatty(1), flush=True)
 try:
+    print(f"ready {os.isatty(0)} {os.isatty(1)}", flush=True)
     for line in sys.stdin:
         print("said", line.strip(), flush=True)
 except KeyboardInterrupt:
@@ -69,7 +70,7 @@ def attach(platform: str) -> Iterator[Callable[..., Person]]:
 
 @pytest.fixture
 def run(start, tmp_path: Path, platform: str):
-    """Start a run with a node of that program; stop it in the end."""
+    """Start a run of a node with that program; stop it at the end."""
     runs = []
 
     def begin(code: str, keys: str = "terminal: true"):
@@ -99,13 +100,13 @@ def test_keys_reach_a_node_that_teleoperates(run, attach, start, platform) -> No
     echo = start(manycore_command("topic", "echo", "/keys", "std_msgs/msg/String"))
     wait_until(lambda: is_heard(platform), "the echo has found the node")
     person = attach("node")
-    person.sees("use the keys")  # what it said before
+    person.sees("use the keys")  # its earlier output
     person.type("i")
     person.sees("key 'i'")
     echo.wait_for("^data: i$")
     running.wait_for("^node .*key 'i'")
     running.skip_output()
-    person.type("\x03")  # raw: a key as any other
+    person.type("\x03")  # raw mode: a key like any other
     person.sees(r"key '\\x03'")
     person.type("k")
     person.sees("key 'k'")
@@ -144,7 +145,7 @@ def test_sizes_and_signals_are_those_of_a_terminal(run, attach) -> None:
     third.sees("node: has ended: exit status 4")
     assert third.leaves() == 0
     dead = attach("node")
-    dead.sees(r"'node' does not run \(exit status 4\): `manycore restart node` starts it")
+    dead.sees(r"'node' is not running \(exit status 4\): `manycore restart node` starts it")
     assert dead.leaves() == 1
 
 
@@ -165,7 +166,7 @@ def test_a_respawned_node_stays_attached(run, attach) -> None:
 def test_a_node_without_a_terminal_can_be_given_one(run, attach) -> None:
     run(SHELL, "wait: block").wait_for("ready False False")
     refused = attach("node")
-    refused.sees("'node' has no terminal: give it `terminal: true` in the mapfile")
+    refused.sees("'node' has no terminal: set `terminal: true` in the mapfile")
     assert refused.leaves() == 1
     person = attach("--restart", "node")
     person.sees("ready True True")

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Topics that move between the lanes of the bridge, under way and without losing a message."""
+"""Topics move between the lanes of a running bridge without losing a message."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ DEPTH = 2000
 
 
 def count_up() -> None:
-    """Publish numbers for ever, many and large ones on the heavy topics."""
+    """Publish numbers forever, many and large ones on the heavy topics."""
     with peer_node("counter") as node:
         message = type_of("std_msgs/msg/UInt8MultiArray")
 
@@ -45,7 +45,7 @@ def count_up() -> None:
 
 
 def check_numbers() -> None:
-    """Print every hundredth number of a topic, and each that does not follow the one before."""
+    """Print every hundredth number of a topic, and each that is not the successor of the last."""
     with peer_node("checker") as node:
         message = type_of("std_msgs/msg/UInt8MultiArray")
 

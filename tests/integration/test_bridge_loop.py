@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The thread of the platform's side: whatever it is told, it is awake for."""
+"""The thread of the platform side wakes up for every change it is notified of."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from collections.abc import Callable
 
 import pytest
 from ros_support import announce
-from support import IS_MANYCORE, PATIENCE_S
+from support import IS_MANYCORE, TIMEOUT_S
 
 pytestmark = [
     pytest.mark.integration,
@@ -17,7 +17,7 @@ pytestmark = [
 
 
 def change_while_looking(platform: str) -> None:
-    """Tell a loop of a change while it looks at the graphs; say whether it looks again."""
+    """Notify a loop of a change while it reads the graphs; return whether it reads them again."""
     from rmw_manycore_bridge.inside import Inside
     from rmw_manycore_bridge.loop import Mover
     from rmw_manycore_py.bridge_plan import Plan
@@ -37,12 +37,12 @@ def change_while_looking(platform: str) -> None:
     inside = Inside(Plan(platform, ()), (1, 0), "looker", lambda: None)
     inside.movers.append(Looker(inside.graphs_changed))
     inside.start()
-    announce(f"looked again: {again.wait(PATIENCE_S)}")
+    announce(f"looked again: {again.wait(TIMEOUT_S)}")
     inside.stop()
     announce("stopped")
 
 
 def test_a_change_while_it_looks_is_looked_at(bridge) -> None:
     peer = bridge.outside(change_while_looking, bridge.platform)
-    peer.wait_for("^looked again: True$", 2 * PATIENCE_S)
+    peer.wait_for("^looked again: True$", 2 * TIMEOUT_S)
     peer.wait_for("^stopped$")

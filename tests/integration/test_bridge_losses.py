@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What the bridge knows of messages that were lost, and of datagrams."""
+"""Lost messages and dropped datagrams that the bridge reports."""
 
 from __future__ import annotations
 
@@ -24,9 +24,9 @@ pytestmark = [
     pytest.mark.skipif(not IS_MANYCORE, reason="the bridge is part of rmw_manycore"),
 ]
 
-GUIDE = REPOSITORY / "docs" / "socket_buffers.md"
+GUIDE = REPOSITORY / "docs" / "how-to" / "socket_buffers.md"
 _SYS_PIDFD_GETFD = 438  # of x86-64
-PORTS = 3  # of a participant: discovery by multicast and by unicast, and messages
+PORTS = 3  # sockets of a participant: multicast and unicast discovery, and messages
 DATAGRAMS = 40
 DATAGRAM = bytes(1000)
 SMALL_BUFFER_BYTES = 4096
@@ -34,7 +34,7 @@ SMALL_BUFFER_BYTES = 4096
 
 @pytest.fixture
 def full_socket():
-    """Yield a socket of this process whose buffer has been too small for what was sent to it."""
+    """Yield a socket of this process that has dropped datagrams for lack of buffer space."""
     with ExitStack() as stack:
         receiver, sender = (
             stack.enter_context(socket.socket(socket.AF_INET, socket.SOCK_DGRAM)) for _ in "ab"
@@ -67,7 +67,7 @@ def test_datagrams_of_a_full_socket_are_counted(full_socket) -> None:
 def test_another_process_s_datagrams_are_not_the_bridge_s(full_socket) -> None:
     with subprocess.Popen(["sleep", "1000"]) as other:
         assert socket_drops(other.pid) == 0
-        assert (receive_buffer_errors(other.pid) or 0) > 0  # of the whole network namespace
+        assert (receive_buffer_errors(other.pid) or 0) > 0  # of the network namespace
         other.kill()
 
 
@@ -82,7 +82,7 @@ def test_datagrams_that_a_stopped_bridge_drops_are_in_its_status(bridge) -> None
     (process,) = bridge.run(bridge.route("inward", "/chatter")).values()
     wait_until(lambda: ports_of(process.pid), "it has joined the domain")
     wait_until(lambda: bridge.row("inward", "/chatter"), "it counts")
-    process.signal(signal.SIGSTOP)  # what empties its sockets stands still
+    process.signal(signal.SIGSTOP)  # the threads that empty its sockets are stopped
     ports = ports_of(process.pid)
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sender:
 
@@ -102,7 +102,7 @@ def test_datagrams_that_a_stopped_bridge_drops_are_in_its_status(bridge) -> None
 
 
 def sockets_of(pid: int) -> dict[int, str]:
-    """Return the sockets of a process by their descriptors there."""
+    """Return the sockets of a process by their file descriptors."""
     found = {}
     for entry in os.scandir(f"/proc/{pid}/fd"):
         with suppress(FileNotFoundError):  # closed meanwhile
@@ -111,7 +111,7 @@ def sockets_of(pid: int) -> dict[int, str]:
 
 
 def ports_of(pid: int) -> set[int]:
-    """Return the ports of a process's UDP sockets."""
+    """Return the port numbers of a process's UDP sockets."""
     links = sockets_of(pid).values()
     with open(f"/proc/{pid}/net/udp") as file:
         rows = [line.split() for line in file.readlines()[1:]]
@@ -132,7 +132,7 @@ def test_the_guide_s_profile_gives_the_bridge_larger_buffers(start, bridge, prof
     allowed = int(Path("/proc/sys/net/core/rmem_max").read_text())
     plan = Plan(bridge.platform, arranged([bridge.route("inward", "/chatter")], 1))
     larger = bridge.run_one(plan, "inward", FASTRTPS_DEFAULT_PROFILES_FILE=str(profile))
-    granted = 2 * min(asked, allowed)  # the kernel's own bookkeeping has half of it
+    granted = 2 * min(asked, allowed)  # half of it is the kernel's overhead
     wait_until(lambda: granted in buffers_of(larger.pid), "it has joined the domain")
 
 

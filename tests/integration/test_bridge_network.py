@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The platform on one host and its listeners on another, as network namespaces; large messages."""
+"""The platform and its listeners on two hosts (network namespaces), with large messages."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ pytestmark = [
 ]
 
 HEARD = "I heard: 'Hello World"
-DEPTH = 1000  # all messages: one that loses the CPU for a while loses none of them
+DEPTH = 1000  # all messages: a process without CPU for a while loses none of them
 _RTPS_MAGIC = b"RTPS"
 _PREFIX = slice(8, 20)  # of a participant's GUID, in the header of an RTPS message
 _ETH_P_ALL = 3
@@ -40,7 +40,7 @@ _ETH_P_ALL = 3
 
 @pytest.fixture
 def hosts() -> Iterator[tuple[Host, Host]]:
-    """Yield what runs a command on either of two hosts with a cable between them."""
+    """Yield two hosts, each a network namespace, with a cable between them."""
     if not can_have_hosts():
         pytest.skip("network namespaces need root")
     with two_hosts() as both:
@@ -48,7 +48,7 @@ def hosts() -> Iterator[tuple[Host, Host]]:
 
 
 def show_participants() -> None:
-    """Print each DDS participant whose packets come in, by the prefix of its GUID."""
+    """Print the GUID prefix of each DDS participant that packets arrive from."""
     seen = set()
     with socket.socket(socket.AF_PACKET, socket.SOCK_DGRAM, socket.htons(_ETH_P_ALL)) as cable:
         cable.bind(("cable", 0))
@@ -86,7 +86,7 @@ def test_only_the_bridge_speaks_to_another_host(start, platform, hosts) -> None:
     listener.wait_for(HEARD)
     for node in more:
         node.wait_for(HEARD)
-    for _ in range(2):  # the inward process may come up last
+    for _ in range(2):  # the inward process may start last
         sniffer.wait_for("^participant")
     for _ in range(4):
         listener.wait_for(HEARD)
@@ -96,7 +96,7 @@ def test_only_the_bridge_speaks_to_another_host(start, platform, hosts) -> None:
 
 
 def send_large(topic: str, type_name: str, size: int, rate_hz: int, count: int) -> None:
-    """Publish empty messages until a line of input comes, then large ones at their rate."""
+    """Publish empty messages until a line of input arrives, then large ones at their rate."""
     may_send = threading.Event()
 
     def listen() -> None:
@@ -120,7 +120,7 @@ def send_large(topic: str, type_name: str, size: int, rate_hz: int, count: int) 
 
 
 def show_large(topic: str, type_name: str) -> None:
-    """Print what each message is called."""
+    """Print the id of each message."""
     with peer_node("viewer") as node:
 
         def heard(message: Any) -> None:
@@ -145,7 +145,7 @@ def test_large_messages_arrive_all(bridge, direction, type_name, size, rate_hz) 
         source, target = target, source
     viewer = target(show_large, "/large", type_name)
     camera = source(send_large, "/large", type_name, size, rate_hz, count)
-    viewer.wait_for("^seen empty$")  # all have found each other
+    viewer.wait_for("^seen empty$")  # discovery is complete
     camera.say("go")
     for number in range(count):
         viewer.wait_for(f"^seen {number}$")

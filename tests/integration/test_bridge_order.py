@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Killed in the middle of its work, the bridge passes on each message once, or counts it."""
+"""A bridge killed at work forwards each message once, or counts it as lost."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 from ros_support import announce, peer_node, spin_until, type_of
 from speakers import qos
-from support import IS_MANYCORE, PATIENCE_S, wait_until
+from support import IS_MANYCORE, TIMEOUT_S, wait_until
 
 from rmw_manycore_bridge.counters import CounterFile, status_path
 from rmw_manycore_py import _transport
@@ -25,15 +25,15 @@ pytestmark = [
 STRING = "std_msgs/msg/String"
 EMPTY_STRING = bytes([0, 1, 0, 0, 1, 0, 0, 0, 0])  # in CDR
 DEPTH = 10
-PASSED = 5  # with one more, fewer than are kept for the bridge
+PASSED = 5  # with one more, still fewer than the history depth for the bridge
 KILLS = 3
 # A publisher outside may go on writing to the place of a killed process until its lease is over.
-LEASES_S = 4 * PATIENCE_S
+LEASES_S = 4 * TIMEOUT_S
 LATCHED = {"durability": "transient_local", "depth": DEPTH}
 
 
 def count_up(topic: str, words: dict[str, Any], period_s: float, last: int) -> None:
-    """Publish numbers up to the last one, then stay."""
+    """Publish numbers up to the last one, then keep the publisher."""
     with peer_node("counter") as node:
         publisher = node.create_publisher(type_of(STRING), topic, qos(words))
         number = 0
@@ -51,7 +51,7 @@ def count_up(topic: str, words: dict[str, Any], period_s: float, last: int) -> N
 
 
 def show_numbers(topic: str, words: dict[str, Any]) -> None:
-    """Print what is heard."""
+    """Print each message received."""
     with peer_node("viewer") as node:
         node.create_subscription(
             type_of(STRING), topic, lambda message: announce(f"heard {message.data}"), qos(words)
@@ -65,7 +65,7 @@ def heard(viewer) -> list[int]:
 
 
 def sides(bridge, direction):
-    """Return what starts a node on the source side, and on the target side."""
+    """Return the functions that start a node on the source side and on the target side."""
     both = (bridge.inside, bridge.outside)
     return both if direction == "outward" else both[::-1]
 
@@ -93,7 +93,7 @@ def test_a_killed_bridge_does_not_go_back(bridge, direction) -> None:
 
 
 def test_what_a_killed_process_has_passed_on_is_dropped_and_counted(bridge) -> None:
-    """Says before the bridge starts that the first messages have crossed."""
+    """The counters say before the bridge starts that the first messages have crossed."""
     route = bridge.route("outward", "/numbers")
     bridge.outside(show_numbers, "/numbers", {}).wait_for("^listening$")
     with _transport.Process(bridge.platform, 1, None, "source") as source:
@@ -134,5 +134,5 @@ def test_what_is_latched_comes_again_and_is_counted(bridge, direction, by_patter
     wait_until(all_counted, "the second process counts")
     assert bridge.row(direction, "/numbers")["repeated"] == DEPTH
     late = target(show_numbers, "/numbers", LATCHED)
-    late.wait_for(f"^heard {2 * DEPTH}$")  # why it is passed on again
+    late.wait_for(f"^heard {2 * DEPTH}$")  # the reason why it is forwarded again
     assert len(heard(viewer)) == 2 * DEPTH  # no more often than counted

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Topics that fit a pattern cross as they appear, between real nodes on both sides."""
+"""Topics that match a pattern are forwarded as they appear, between real nodes on both sides."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ MISSING = "no_such_msgs/msg/Text"
 
 
 def say_true(topic: str) -> None:
-    """Publish a Bool again and again."""
+    """Publish a Bool periodically."""
     with peer_node("other_speaker") as node:
         publisher = node.create_publisher(type_of(BOOL), topic, 10)
         node.create_timer(0.05, lambda: publisher.publish(type_of(BOOL)(data=True)))
@@ -37,12 +37,12 @@ def say_true(topic: str) -> None:
 
 
 def names(bridge: Bridge, direction: Direction) -> set[str]:
-    """Return the names inside of what a direction has routes for."""
+    """Return the inside names of the routes of a direction."""
     return {r["inside"] for r in status(bridge.platform) if r["direction"] == direction}
 
 
 def crossed(bridge: Bridge, direction: Direction) -> set[str]:
-    """Return the names inside of what has passed; a topic may have a route where nothing does."""
+    """Return the inside names of the routes that have forwarded a message."""
     rows = [r for r in status(bridge.platform) if r["direction"] == direction]
     return {r["inside"] for r in rows if r["messages"] > 0}
 
@@ -151,7 +151,7 @@ def test_a_topic_of_two_types_is_named_once_and_works_when_one_is_left(bridge, d
     other.wait_for("^saying$")
     source(say, "/camera/left", {}, 0.05)
     wait_for_state(bridge, direction, "/camera/left", "failed")
-    reason = f"has several types, so none crosses: {BOOL}, {STRING}"
+    reason = f"has several types, so it is not bridged: {BOOL}, {STRING}"
     assert bridge.row(direction, "/camera/left")["reason"] == reason
     process.wait_for(f"^/camera/left: {reason}$")
     other.stop()

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Deadline, lifespan, liveliness and type hash on their way through the bridge, both directions."""
+"""Deadline, lifespan, liveliness and type hash through the bridge, in both directions."""
 
 from __future__ import annotations
 
@@ -28,13 +28,13 @@ def way(request) -> str:
 
 
 def sides(bridge: Bridge, way: str) -> tuple[Any, Any]:
-    """Return how to start a peer on the side of the publisher, and on the other one."""
+    """Return the functions that start a peer on the publisher's side and on the other one."""
     pair = bridge.outside, bridge.inside
     return pair if way == "inward" else (pair[1], pair[0])
 
 
 def qos(words: dict[str, Any]) -> Any:
-    """Return a profile of what JSON can carry; times in milliseconds."""
+    """Return a profile from JSON values; times in milliseconds."""
     from rclpy.duration import Duration
     from rclpy.qos import DurabilityPolicy, LivelinessPolicy, QoSProfile
 
@@ -49,7 +49,7 @@ def qos(words: dict[str, Any]) -> Any:
 
 
 def say(words: dict[str, Any], period_s: float) -> None:
-    """Publish numbers, one each period and at once; when told so, only live."""
+    """Publish a number once a period, the first at once; on request only assert liveliness."""
     told: list[int] = []
     signal.signal(signal.SIGUSR1, lambda number, _: told.append(number))
     with peer_node("speaker") as node:
@@ -68,7 +68,7 @@ def say(words: dict[str, Any], period_s: float) -> None:
 
 
 def hear(words: dict[str, Any]) -> None:
-    """Print what is heard, and what the middleware says about the publishers."""
+    """Print each message received, and the events of its publishers."""
     from rclpy.event_handler import SubscriptionEventCallbacks
 
     with peer_node("hearer") as node:
@@ -86,7 +86,7 @@ def hear(words: dict[str, Any]) -> None:
 
 
 def show_publisher() -> None:
-    """Print the times, the liveliness and the type hash of the first publisher that shows up."""
+    """Print the times, the liveliness and the type hash of the first publisher discovered."""
     with peer_node("watcher") as node:
         spin_until(node, lambda: node.get_publishers_info_by_topic("/topic"))
         found = node.get_publishers_info_by_topic("/topic")[0]
@@ -133,7 +133,7 @@ def test_a_lost_publisher_is_noticed_on_the_other_side(bridge, way, by_hand) -> 
     hearer.wait_for("^alive 1$")
     hearer.wait_for("^heard")
     if by_hand:
-        speaker.signal(signal.SIGUSR1)  # it is enough that it is silent
+        speaker.signal(signal.SIGUSR1)  # its silence is enough
     else:
         speaker.stop()
     hearer.wait_for("^alive 0$")

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Requests and replies that the bridge cannot pass on: their callers are told, others go on."""
+"""Requests and responses that the bridge cannot forward: callers get an error, others go on."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 from bridging import Bridge
 from ros_support import announce, peer_node, spin_until, type_of
-from support import IS_MANYCORE, PATIENCE_S, wait_until
+from support import IS_MANYCORE, TIMEOUT_S, wait_until
 
 from rmw_manycore_py import _transport
 
@@ -18,7 +18,7 @@ pytestmark = [
     pytest.mark.skipif(not IS_MANYCORE, reason="the bridge is part of rmw_manycore"),
 ]
 
-# Requests and replies of any size: `d` of the camera's info, and `status_message`.
+# Requests and responses of any size: `d` of the camera's info, and `status_message`.
 SET_CAMERA = "sensor_msgs/srv/SetCameraInfo"
 SMEM_BYTES, TOO_LARGE = 4 << 20, 8_000_000
 DOES_NOT_FIT = r"^answer False bridge: a message of 8\d{6} bytes on '/camera' does not fit"
@@ -39,7 +39,7 @@ def platform(platform) -> Iterator[str]:
 
 
 def serve_camera() -> None:
-    """Serve SetCameraInfo; the reply is as long as the request's height says."""
+    """Serve SetCameraInfo; the response has as many bytes as the request's height."""
     with peer_node("server") as node:
 
         def answer(request: Any, response: Any) -> Any:
@@ -48,16 +48,18 @@ def serve_camera() -> None:
             return response
 
         node.create_service(type_of(SET_CAMERA), "/camera", answer)
+        # Fast DDS drops a response if it does not discover the client within 100 ms.
+        wait_until(lambda: node.count_clients("/camera"), "the bridge's client is discovered")
         announce("serving")
         spin_until(node, lambda: False, 1e6)
 
 
 def set_camera(*sizes: tuple[int, int]) -> None:
-    """Call SetCameraInfo with requests and replies of so many bytes."""
+    """Call SetCameraInfo with requests and responses of these sizes in bytes."""
     with peer_node("caller") as node:
         request = type_of(SET_CAMERA).Request()
         client = node.create_client(type_of(SET_CAMERA), "/camera")
-        assert client.wait_for_service(PATIENCE_S)
+        assert client.wait_for_service(TIMEOUT_S)
         for request_bytes, reply_bytes in sizes:
             request.camera_info.d = [0.0] * (request_bytes // 8)
             request.camera_info.height = reply_bytes
@@ -67,7 +69,7 @@ def set_camera(*sizes: tuple[int, int]) -> None:
 
 
 def still_works(bridge: Bridge, direction: Any, pid: int) -> None:
-    """Check that one request was refused, one passed, and the bridge is the one it was."""
+    """Check that one request was refused, one forwarded, and the bridge was not restarted."""
     wait_until(lambda: bridge.row(direction, "/camera")["messages"], "what was answered is counted")
     row = bridge.row(direction, "/camera")
     assert (row["pid"], row["alive"]) == (pid, True)
@@ -93,7 +95,7 @@ def test_a_reply_that_does_not_fit(bridge) -> None:
 
 
 def ask_nonsense(platform: str) -> None:
-    """Ask with one byte, which is no request of any type, and print the size of the answer."""
+    """Send one byte, which is no request of any type, and print the size of the response."""
     from rclpy.qos import qos_profile_services_default
 
     from rmw_manycore_bridge.policies import from_rclpy

@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 from bridging import Bridge
 from ros_support import announce, peer_node, spin_until, type_of
-from support import IS_MANYCORE, PATIENCE_S
+from support import IS_MANYCORE, TIMEOUT_S, wait_until
 
 from rmw_manycore_py.routes import action_routes, parameter_routes
 
@@ -23,7 +23,7 @@ pytestmark = [
 
 SET_BOOL = "std_srvs/srv/SetBool"
 FIBONACCI = "test_msgs/action/Fibonacci"
-MANY = 1000  # requests: a good deal more than the bridge reads before it learns something
+MANY = 1000  # requests: many more than the bridge takes before it looks at the graph
 
 
 @pytest.fixture(params=["inward", "outward"])
@@ -32,14 +32,14 @@ def direction(request) -> str:
 
 
 def sides(bridge: Bridge, direction: str) -> tuple[Any, Any]:
-    """Return how a server and its client are started."""
+    """Return the functions that start a server and its client."""
     if direction == "inward":
         return bridge.inside, bridge.outside
     return bridge.outside, bridge.inside
 
 
 def serve(answers: bool) -> None:
-    """Serve SetBool; without answers, stay in the first request for ever."""
+    """Serve SetBool; unless `answers`, block in the first request."""
     with peer_node("server") as node:
 
         def answer(request: Any, response: Any) -> Any:
@@ -50,18 +50,19 @@ def serve(answers: bool) -> None:
             return response
 
         node.create_service(type_of(SET_BOOL), "/lamp", answer)
-        # Fast DDS drops an answer for which it does not find the client within 100 ms.
-        spin_until(node, lambda: node.count_clients("/lamp") > 0)
+        # Fast DDS drops a response if it does not discover the client within 100 ms; not spun, the
+        # node answers no request before.
+        wait_until(lambda: node.count_clients("/lamp"), "the bridge's client is discovered")
         announce("serving")
         spin_until(node, lambda: False, 1e6)
 
 
 def call(times: int) -> None:
-    """Call SetBool one time after the other."""
+    """Call SetBool, one call after the other."""
     with peer_node("caller") as node:
         kind = type_of(SET_BOOL)
         client = node.create_client(kind, "/lamp")
-        assert client.wait_for_service(PATIENCE_S)
+        assert client.wait_for_service(TIMEOUT_S)
         for number in range(times):
             future = client.call_async(kind.Request(data=number % 2 == 0))
             announce("called")
@@ -104,7 +105,7 @@ def test_a_server_that_dies(bridge) -> None:
 
 
 def call_at_once(times: int) -> None:
-    """When told so, call SetBool so often without waiting for answers; print how many came."""
+    """On request call SetBool so often without waiting; print how many responses arrived."""
     from rclpy.qos import QoSProfile
 
     told: list[int] = []
@@ -112,7 +113,7 @@ def call_at_once(times: int) -> None:
     with peer_node("caller") as node:
         kind = type_of(SET_BOOL)
         client = node.create_client(kind, "/lamp", qos_profile=QoSProfile(depth=times))
-        assert client.wait_for_service(PATIENCE_S)
+        assert client.wait_for_service(TIMEOUT_S)
         announce("ready")
         spin_until(node, lambda: told)
         futures = [client.call_async(kind.Request(data=True)) for _ in range(times)]
@@ -127,7 +128,7 @@ def test_requests_that_were_not_read_when_the_server_went(bridge) -> None:
     server = bridge.outside(serve, True)
     caller = bridge.inside(call_at_once, MANY)
     caller.wait_for("^ready$")
-    process.signal(signal.SIGSTOP)  # so that it learns of all at once
+    process.signal(signal.SIGSTOP)  # so that it finds them all at once
     caller.signal(signal.SIGUSR1)
     caller.wait_for("^called$")
     server.stop()
@@ -137,7 +138,7 @@ def test_requests_that_were_not_read_when_the_server_went(bridge) -> None:
 
 
 def serve_as(type_name: str, reliability: str) -> None:
-    """Serve /lamp as another type, or with another QoS, than its callers want."""
+    """Serve /lamp with another type or QoS than its callers use."""
     from rclpy.qos import QoSProfile, ReliabilityPolicy
 
     with peer_node("server") as node:
@@ -157,7 +158,7 @@ def test_a_server_of_another_type_is_said(bridge, direction) -> None:
     process.wait_for(said)
     assert bridge.row(direction, "/lamp")["state"] == "failed"
     server(serve, True).wait_for("^serving$")
-    client(call, 1).wait_for("^answer True served$")  # the other one does no harm
+    client(call, 1).wait_for("^answer True served$")  # the other server does no harm
     odd.stop()
     assert len(re.findall(said, process.output, re.MULTILINE)) == 1
 
@@ -173,7 +174,7 @@ def test_a_server_that_does_not_match_is_said(bridge) -> None:
 
 
 def has_parameters() -> None:
-    """Have a parameter, and say when it is set."""
+    """Declare a parameter, and print when it is set."""
     with peer_node("tuned") as node:
         node.declare_parameter("gain", 1)
         announce("ready")
@@ -183,15 +184,15 @@ def has_parameters() -> None:
 
 
 def tune() -> None:
-    """List, get and set the parameters of the node over there."""
+    """List, get and set the parameters of the node on the other side."""
     from rclpy.parameter import Parameter
     from rclpy.parameter_client import AsyncParameterClient
 
     with peer_node("tuner") as node:
-        # Tools want to see the node itself.
+        # Tools require that the node itself is in the graph.
         spin_until(node, lambda: ("tuned", "/") in node.get_node_names_and_namespaces())
         client = AsyncParameterClient(node, "/tuned")
-        assert client.wait_for_services(PATIENCE_S)
+        assert client.wait_for_services(TIMEOUT_S)
         listed, got = client.list_parameters([], 10), client.get_parameters(["gain"])
         spin_until(node, lambda: listed.done() and got.done())
         announce(f"listed {'gain' in listed.result().result.names}")
@@ -202,7 +203,7 @@ def tune() -> None:
 
 
 def wait_until_it_is_gone() -> None:
-    """Say when the node over there is seen, and when it is not any more."""
+    """Print when the node on the other side appears and disappears."""
     with peer_node("watcher") as node:
         spin_until(node, lambda: "tuned" in node.get_node_names())
         announce("there")
@@ -224,7 +225,7 @@ def test_parameters_from_outside(bridge) -> None:
 
 
 def count() -> None:
-    """Serve Fibonacci with feedback without end; when told so, succeed."""
+    """Serve Fibonacci with endless feedback; succeed on request."""
     from rclpy.action import ActionServer
 
     told: list[int] = []
@@ -236,17 +237,20 @@ def count() -> None:
             announce("executing")
             while not told:
                 goal.publish_feedback(kind.Feedback(sequence=[0, 1]))
-                time.sleep(0.02)  # as an action that takes its time
+                time.sleep(0.02)  # like an action that takes long
             goal.succeed()
             return kind.Result(sequence=[0, 1, 1])
 
         ActionServer(node, kind, "count", execute)
+        for service in ("send_goal", "get_result"):  # as in `serve`
+            name = f"/count/_action/{service}"
+            wait_until(lambda name=name: node.count_clients(name), f"a client of {name}")
         announce("serving")
         spin_until(node, lambda: False, 1e6)
 
 
 def send_goal() -> None:
-    """Send a goal, and print what comes of it."""
+    """Send a goal, and print its feedback and result."""
     from rclpy.action import ActionClient
 
     kind = type_of(FIBONACCI)

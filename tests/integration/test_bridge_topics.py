@@ -14,7 +14,7 @@ from speakers import hear, qos, say
 from support import (
     IS_MANYCORE,
     MAPFILES,
-    PATIENCE_S,
+    TIMEOUT_S,
     example_command,
     leftovers,
     manycore_command,
@@ -27,13 +27,13 @@ pytestmark = [
 ]
 
 TALKER_LISTENER = MAPFILES / "talker_listener.yaml"
-MANY = 500  # messages at once: more than the bridge moves before it looks at the graph
-DEEP = {"depth": 1000}  # more than is said while a test is patient
+MANY = 500  # messages at once: more than the bridge forwards before it looks at the graph
+DEEP = {"depth": 1000}  # more than is published within a test's timeout
 HEARD = "I heard: 'Hello World"
 
 
 def say_much_and_leave(topic: str, count: int) -> None:
-    """Publish all the time; when told so, publish so many numbers at once and end."""
+    """Publish periodically; on request publish so many numbers at once and end."""
     from rclpy.duration import Duration
 
     told: list[int] = []
@@ -46,12 +46,12 @@ def say_much_and_leave(topic: str, count: int) -> None:
         spin_until(node, lambda: told)
         for number in range(count):
             publisher.publish(message(data=str(number)))
-        publisher.wait_for_all_acked(Duration(seconds=PATIENCE_S))  # the bridge has them
+        publisher.wait_for_all_acked(Duration(seconds=TIMEOUT_S))  # the bridge has taken them
     announce("left")
 
 
 def show_publishers(topic: str) -> None:
-    """Print the policies of a topic's publishers whenever they change."""
+    """Print the QoS of a topic's publishers whenever it changes."""
     with peer_node("watcher") as node:
         shown = [""]
 
@@ -91,7 +91,7 @@ def test_a_talker_outside_is_heard_inside(bridge) -> None:
     hearer = bridge.inside(hear, "/news", DEEP)
     first, second = (hearer.wait_for(r"^heard again (\d+) (\d+)$") for _ in range(2))
     said_ns, stamp_ns = map(int, first.groups())
-    assert said_ns <= stamp_ns <= int(second.group(1))  # the time is that of the talker
+    assert said_ns <= stamp_ns <= int(second.group(1))  # the source timestamp is the talker's
     wait_until(lambda: bridge.row("inward", "/news")["messages"], "what was heard is counted")
     row = bridge.row("inward", "/news")
     assert row["lost"] == row["refused"] == row["too_fast"] == 0
@@ -112,7 +112,7 @@ def test_a_late_subscriber_gets_what_was_latched(bridge, direction) -> None:
         source, target = target, source
     source(say, "/map", latched, None, "the map").wait_for("^said$")
     target(hear, "/map", latched).wait_for("^heard the map")
-    target(hear, "/map", latched).wait_for("^heard the map")  # a second one, later still
+    target(hear, "/map", latched).wait_for("^heard the map")  # a second, even later one
 
 
 def test_the_outside_publisher_offers_what_the_inside_one_does(bridge) -> None:
@@ -129,7 +129,7 @@ def test_the_outside_publisher_offers_what_the_inside_one_does(bridge) -> None:
 
 @pytest.mark.parametrize("direction", ["inward", "outward"])
 def test_what_was_said_last_is_heard(bridge, direction) -> None:
-    """A node that ends takes nothing back that the bridge has not read yet."""
+    """A publisher that ends does not take back messages that the bridge has not taken yet."""
     bridge.run(bridge.route(direction, "/news"))
     source, target = bridge.outside, bridge.inside
     if direction == "outward":
@@ -187,7 +187,7 @@ def test_both_directions_make_no_echo(bridge) -> None:
     bridge.outside(say, "/chat", {}, 0.05)
     for side in (inside, outside):
         side.wait_for("^heard again")
-    # The bridge sees its own messages come back, and keeps them.
+    # The bridge receives its own messages, and does not forward them.
     wait_until(lambda: bridge.row("inward", "/chat").get("own", 0) > 10, "own messages outside")
     wait_until(lambda: bridge.row("outward", "/chat").get("own", 0) > 10, "own messages inside")
     for side in (inside, outside):
@@ -209,7 +209,7 @@ def test_rate_and_size_limits_count_what_they_keep(bridge) -> None:
     too_many = before["too_fast"] + 200
     wait_until(lambda: bridge.row("outward", "/fast")["too_fast"] > too_many, "many were too fast")
     passed = bridge.row("outward", "/fast")["messages"] - before["messages"]
-    assert passed <= 2 + 5 * (time.monotonic() - since_s)  # the first two of a late one at once
+    assert passed <= 2 + 5 * (time.monotonic() - since_s)  # the first two at once
     assert bridge.row("outward", "/large")["too_large"] == 1
 
 
@@ -245,7 +245,7 @@ def test_a_policy_that_cannot_match_is_said(bridge, direction) -> None:
     source = bridge.outside if direction == "inward" else bridge.inside
     source(say, "/odd", {"reliability": "best_effort"}, 0.05)
     processes[direction].wait_for(
-        "^/odd: its qos asks for reliability reliable, the publisher offers best_effort$"
+        "^/odd: its qos requests reliability reliable, the publisher offers best_effort$"
     )
 
 
@@ -257,11 +257,11 @@ def test_a_type_that_does_not_fit_is_said_once(bridge, direction) -> None:
     where = "outside" if direction == "inward" else "inside"
     said = f"^/odd: is std_msgs/msg/String {where}, not std_msgs/msg/Int32$"
     process.wait_for(said)
-    for _ in range(3):  # the graphs change, the reason does not
+    for _ in range(3):  # the graphs change; the reason stays the same
         with_it = source(say, f"/{direction}", {}, 0.05)
         with_it.wait_for("^said$")
         with_it.stop()
     assert bridge.row(direction, "/odd")["state"] == "failed"
     speaker.stop()
-    wait_until(lambda: bridge.row(direction, "/odd")["state"] == "waiting", "nobody is there")
+    wait_until(lambda: bridge.row(direction, "/odd")["state"] == "waiting", "the route waits")
     assert len(re.findall(said, process.output, re.MULTILINE)) == 1

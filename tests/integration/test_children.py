@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Which middleware the children of a Python program load, C++ programs above all."""
+"""The middleware that children of a Python program load, C++ programs above all."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
-from support import IS_MANYCORE, PATIENCE_S, TESTS, environment, manycore_command
+from support import IS_MANYCORE, TESTS, TIMEOUT_S, environment, manycore_command
 
 import rmw_manycore_hook as hook
 
@@ -38,7 +38,7 @@ PARENTS = {
     "fork and exec": "os.fork() and os.wait() or os.execv(sys.argv[1], sys.argv[1:])",
     "grandchild": "subprocess.run(['sh', '-c', shlex.join(sys.argv[1:])], check=True)",
 }
-# What a Python program that has rmw_manycore itself does so that its children get another one.
+# What a Python program on rmw_manycore does so that its children load another middleware.
 SELECTIONS = {
     "changed": f"os.environ['RMW_IMPLEMENTATION'] = {OTHER!r}",
     "removed": "del os.environ['RMW_IMPLEMENTATION']",
@@ -65,7 +65,7 @@ if __name__ == '__main__':
 
 @dataclass(frozen=True)
 class Shown:
-    """What a program has printed about itself."""
+    """The output of a program about itself."""
 
     arguments: list[str]
     identifier: str
@@ -74,7 +74,7 @@ class Shown:
 
     @property
     def is_manycore(self) -> bool:
-        """Tell whether it has this middleware alone, by name and by files; anything else fails."""
+        """Return whether it has this middleware alone, by name and files; anything else fails."""
         has_ours = PREFIX / "lib/librmw_manycore.so" in self.libraries
         assert has_ours != bool(FAST_DDS & self.libraries), self
         assert self.identifier == ("rmw_manycore" if has_ours else OTHER), self
@@ -89,7 +89,7 @@ def shown(output: str) -> Shown:
 
 @pytest.fixture(scope="module")
 def programs(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Return the directory of the C++ programs, linked as the libraries of the wheels are."""
+    """Return the directory of C++ programs that are linked like the libraries of the wheels."""
     directory = tmp_path_factory.mktemp("programs")
     headers = [f"-I{path}" for path in (PREFIX / "include").iterdir()]
     for name, libraries in LIBRARIES.items():
@@ -107,7 +107,7 @@ def program(request: pytest.FixtureRequest, programs: Path) -> list[str]:
 
 @pytest.fixture
 def shell(platform: str) -> dict[str, str]:
-    """Return the environment of a shell in which nothing of ROS is set but RMW_IMPLEMENTATION."""
+    """Return the environment of a shell that sets nothing of ROS but RMW_IMPLEMENTATION."""
     variables = environment(platform)
     for name in (hook.LIBRARY_PATH, hook.WHEELS_BOOTSTRAPPED, hook.REPLACED):
         variables.pop(name, None)
@@ -116,7 +116,7 @@ def shell(platform: str) -> dict[str, str]:
 
 @pytest.fixture
 def exported(shell: dict[str, str]) -> dict[str, str]:
-    """Return the environment of a shell that has evaluated what `manycore env` prints."""
+    """Return the environment of a shell that has evaluated the output of `manycore env`."""
     script = ". /dev/stdin && exec env -0"
     lines = subprocess.check_output(manycore_command("env"), env=shell)
     output = subprocess.check_output(["sh", "-c", script], input=lines, env=shell).decode()
@@ -124,9 +124,7 @@ def exported(shell: dict[str, str]) -> dict[str, str]:
 
 
 def run(command: list[str], variables: Mapping[str, str]) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(
-        command, env=variables, capture_output=True, text=True, timeout=PATIENCE_S
-    )
+    return subprocess.run(command, env=variables, capture_output=True, text=True, timeout=TIMEOUT_S)
 
 
 def show(command: list[str], variables: Mapping[str, str]) -> Shown:
@@ -193,7 +191,7 @@ def test_the_stand_ins_are_found_in_the_search_path_however_spelt(
 
 
 def test_a_program_that_cannot_be_restarted_without_them_is_refused(exported, program) -> None:
-    """Neither in silence, nor with a restart without end."""
+    """It fails with a message, and does not restart itself endlessly."""
     preloaded = {"LD_PRELOAD": str(STAND_INS / "librmw_fastrtps_cpp.so")}
     done = run(program, {**exported, **preloaded, "RMW_IMPLEMENTATION": OTHER})
     assert done.returncode == 102
@@ -227,7 +225,7 @@ def test_programs_without_ros_do_not_notice(shell) -> None:
 
 
 def test_a_child_with_an_environment_of_its_own_is_on_its_own(shell, programs) -> None:
-    """A program that is told where the libraries lie, and nothing of rmw_manycore."""
+    """A program started with LD_LIBRARY_PATH as its only variable."""
     libraries = os.pathsep.join(hook.library_path(hook.plain_environment({}, sys.prefix)))
     variables = {"LD_LIBRARY_PATH": libraries}
     code = f"subprocess.run(sys.argv[1:], check=True, env={variables!r})"

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Nodes, runs and tools with their platforms in another directory than that of /dev/shm."""
+"""Nodes, runs and tools whose platforms are in another directory than /dev/shm."""
 
 from __future__ import annotations
 
@@ -7,7 +7,14 @@ import subprocess
 from pathlib import Path
 
 import pytest
-from support import IS_MANYCORE, MAPFILES, environment, example_command, manycore_command
+from support import (
+    IS_MANYCORE,
+    MAPFILES,
+    environment,
+    example_command,
+    manycore_command,
+    wait_until,
+)
 
 pytestmark = [
     pytest.mark.integration,
@@ -38,7 +45,7 @@ def test_nodes_and_tools_meet_there(start, directory, platform):
     assert platform in manycore(directory, platform, "status").stdout
     assert talker.stop_node()
     assert listener.stop_node()
-    assert not (directory / platform).exists()
+    wait_until(lambda: not (directory / platform).exists(), "the last process removes it")
 
 
 def test_nodes_of_a_run_inherit_it(start, directory):

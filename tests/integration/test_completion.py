@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What real shells complete, on a running platform."""
+"""Completions that real shells offer, on a running platform."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ pytestmark = [
     pytest.mark.skipif(not IS_MANYCORE, reason="manycore is about rmw_manycore"),
 ]
 
-# Each calls, for every line, the completion that its shell calls for Tab, and prints what it offers
-# and a line END.
+# For each line: call the completion function that the shell calls for Tab, and print its
+# suggestions and a line END.
 BASH = """
 eval "$(manycore completion bash)"
 compopt() { echo "compopt $*"; }
@@ -30,7 +30,7 @@ for line in "$@"; do
     printf '%s\\n' "${COMPREPLY[@]}" END
 done
 """
-# Only inside of its line editor does zsh complete, so the functions that show the result stand in.
+# zsh completes only inside its line editor, so stand-ins replace the functions that show results.
 ZSH = """
 compdef() { :; }
 compadd() { while [[ $1 == -* ]]; do [[ $1 == -V ]] && shift; shift; done; print -l ${(P)1}; }
@@ -65,7 +65,7 @@ def talking() -> None:
 
 @pytest.fixture
 def complete(start, platform):
-    """Return a function that completes a line in a shell with the talker running."""
+    """Return a function that completes a line in a shell while the talker runs."""
     start(peer_command(talking)).wait_for("ready")
     program = Path(manycore_command()[0])
 

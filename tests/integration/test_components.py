@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""`manycore component` with containers that are rclpy nodes: no wheel has those of rclcpp."""
+"""`manycore component` with containers that are rclpy nodes: no wheel contains rclcpp's."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ SPEAKER = ("demo", "demo::Speaker")
 
 @pytest.fixture
 def manycore(start):
-    """Return a function that runs a verb to its end and returns its output."""
+    """Return a function that runs a verb and returns its output."""
 
     def call(*words: str, status: int = 0, **variables: str) -> str:
         program = start(forked_manycore(*words), **variables)
@@ -33,7 +33,7 @@ def manycore(start):
 
 
 def container(name: str = "box") -> None:
-    """Serve as a container: loading makes a real node, and its parameters tell of the request."""
+    """Act as a container: loading creates a real node whose parameters show the request."""
     import rclpy
     from composition_interfaces.srv import ListNodes, LoadNode, UnloadNode
     from rclpy.node import Node

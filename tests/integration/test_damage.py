@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Shared memory that somebody has damaged gives an error; nobody crashes, hangs or follows it."""
+"""Damaged shared memory gives an error; no process crashes, hangs or follows it."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ pytestmark = [
 
 RANDOM = random.Random(7)
 SEEDS = range(1, 7)
-HEADER_BYTES = 64  # what every segment begins with: magic, layout version, size
+HEADER_BYTES = 64  # header of every segment: magic, layout version, size
 
-# A segment is as large as its cluster's memory, but sparse; what is in use lies at its beginning.
+# A segment is as large as its cluster's memory, but sparse; the part in use is at its beginning.
 HEAD_BYTES = 1 << 20
 
-# From the beginning of a file and its size to those of the damaged one.
+# From the head of a file and its size to those of the damaged one.
 Damage = Callable[[bytes, int], tuple[bytes, int]]
 
 DAMAGES: dict[str, Damage] = {
@@ -50,16 +50,16 @@ def running(start, platform) -> Iterator[Path]:
 
 @pytest.fixture
 def directory(running, platform) -> Path:
-    """Return the directory of a platform whose members live but stand still.
+    """Return the directory of a platform whose members are stopped.
 
-    Running they would notice that another file has taken the place of one that they use.
+    If running, they would notice that another file has replaced one that they use.
     """
     stop_all(platform)
     return running
 
 
 def damage_file(path: Path, damage: Damage) -> None:
-    """Put a damaged copy in the place of a file, which those who have it mapped still see."""
+    """Replace a file by a damaged copy; processes that have it mapped still see the original."""
     with path.open("rb") as file:
         content, size_bytes = damage(file.read(HEAD_BYTES), path.stat().st_size)
     copy = path.with_name(path.name + ".new")
@@ -70,7 +70,7 @@ def damage_file(path: Path, damage: Damage) -> None:
 
 
 def assert_refuses(newcomer: Program, directory: Path) -> None:
-    """The newcomer ends by itself, with an error that names the file, or one that fits it not."""
+    """Check that a new process fails with an error that names a file of the platform."""
     status = newcomer.wait()
     assert status > 0, newcomer
     assert f"{directory}/" in newcomer.output, newcomer
@@ -86,7 +86,7 @@ def test_segment(start, directory, name, damage):
 @pytest.mark.parametrize("seed", SEEDS)
 @pytest.mark.parametrize("name", ["registry", "cluster-1"])
 def test_segment_that_is_random_after_its_header(start, directory, name, seed):
-    """The header is right, so whatever first looks at the rest has to find out."""
+    """The header is valid, so the code that first reads the rest has to detect the damage."""
     noise = random.Random(seed)
 
     def damage(head: bytes, size: int) -> tuple[bytes, int]:
@@ -99,7 +99,7 @@ def test_segment_that_is_random_after_its_header(start, directory, name, seed):
 
 
 def test_segment_of_another_version(start, directory):
-    """It is smaller than ours, and still the version is what the error is about."""
+    """It is smaller than ours, yet the error is about the version."""
 
     def damage(head: bytes, size: int) -> tuple[bytes, int]:
         magic, version, rest = head[:8], head[8:12], head[12:]
@@ -112,7 +112,7 @@ def test_segment_of_another_version(start, directory):
 
 
 def test_segment_of_another_platform(start, directory):
-    """A whole and valid registry, but of somebody else."""
+    """The registry is complete and valid, but belongs to another platform."""
     other = f"{directory.name}-other"
     talker = start(forked_example("talker"), MANYCORE_PLATFORM=other)
     talker.wait_for("Publishing")
@@ -136,7 +136,7 @@ def test_pipe_that_is_none(start, directory, kind):
 
 
 def test_garbage_in_a_pipe(start, running):
-    """The receive thread throws away what is no eMCOS message, and goes on with the next one."""
+    """The receive thread drops what is not an eMCOS message and goes on with the next one."""
     listener = start(forked_example("listener"), cluster=2)
     listener.wait_for("I heard")
     pipe = os.open(running / "cluster-2.pipe", os.O_WRONLY)
@@ -150,7 +150,7 @@ def test_garbage_in_a_pipe(start, running):
 
 @pytest.mark.parametrize("damage", DAMAGES)
 def test_leftovers_of_a_dead_platform(start, platform, damage):
-    """Whatever a dead platform left is in nobody's way: the next start clears it up."""
+    """The next start removes whatever a dead platform left."""
     talker = start(forked_example("talker"))
     talker.wait_for("Publishing")
     kill_all(platform)

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Names in a damaged registry are shown as far as they can be read; the tools go on."""
+"""Names in a damaged registry are shown as far as they are readable; the tools go on."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ pytestmark = [
     pytest.mark.skipif(not IS_MANYCORE, reason="damages the files of rmw_manycore"),
 ]
 
-NAME_BYTES = 256  # of a field in the registry: the name, and zeros
+NAME_BYTES = 256  # a field in the registry: the name, padded with zeros
 
 
 @pytest.fixture
@@ -25,7 +25,7 @@ def talker(start) -> Program:
 
 @pytest.fixture
 def rows(start, platform):
-    """Return a function that runs a verb to its end and returns what it lists."""
+    """Return a function that runs a verb and returns the items it lists."""
 
     def call(*words: str) -> list[dict]:
         program = start(manycore_command(*words, "--platform", platform, "--json"))
@@ -36,7 +36,7 @@ def rows(start, platform):
 
 
 def overwrite_name(platform: str, name: bytes, damaged: bytes) -> None:
-    """Put other bytes in the place of each field that holds this name."""
+    """Overwrite each field that contains this name."""
     with (PLATFORMS / platform / "registry").open("r+b") as file:
         content = file.read()
         field = name.ljust(NAME_BYTES, b"\0")

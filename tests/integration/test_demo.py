@@ -12,7 +12,7 @@ pytestmark = pytest.mark.integration
 
 
 def test_the_demo_runs_and_says_what_there_is_to_see(start, tmp_path: Path) -> None:
-    demo = start(manycore_command("demo", "--duration", "3"), directory=tmp_path)
+    demo = start(manycore_command("demo", "--duration", "10"), directory=tmp_path)
     demo.wait_for("a talker on core 1 of cluster 1, a listener on core 1 of cluster 2")
     demo.wait_for("listener .*I heard")
     demo.wait_for("stopping: the duration is over")
@@ -28,7 +28,7 @@ def test_the_demos_are_listed(start, tmp_path: Path) -> None:
     names = {line.split()[0] for line in demo.lines[1:]}
     assert names == {*(file.stem for file in MAPFILES.glob("*[a-z].yaml"))} - {
         "services_parameters.params"
-    } | {"three_nodes.map"}
+    } | {"ros_lite", "three_nodes.map"}  # the suffix where another file has the same stem
 
 
 @pytest.mark.parametrize(

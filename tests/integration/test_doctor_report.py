@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""`manycore doctor --report`: complete where something runs, made where everything is broken."""
+"""`manycore doctor --report`: complete on a running platform, and written when all is broken."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ def test_a_running_platform(start, platform, report, tmp_path):
     )
     assert chatter["qos"]["reliability"] == "reliable"
     assert chatter["counters"]["messages"] > 0
-    # Other tests may be running it, too.
+    # Other tests may run it at the same time.
     mapfile = next(r for r in sections["mapfiles"] if r["file"] == "talker_listener.yaml")
     assert mapfile["content"]["launch_path"] == "talker_listener.launch.xml"
     assert sections["environment"]["ROS_SOMETHING"] == "~/x"

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Every example mapfile, run by the command line tool, with what its nodes hear from each other."""
+"""Every example mapfile, run by `manycore run`, with the messages its nodes exchange."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from ros_support import announce, peer_node, spin_until
 from support import (
     IS_MANYCORE,
     MAPFILES,
-    PATIENCE_S,
+    TIMEOUT_S,
     Program,
     manycore_command,
     peer_command,
@@ -34,40 +34,40 @@ NAMED = r'"(\w+\.(?:yaml|map))"'
 
 
 class Run:
-    """A `manycore run --json`, read as the output of its nodes."""
+    """The output of `manycore run --json`, grouped by node."""
 
     def __init__(self, program: Program) -> None:
         self.program = program
 
     def wait_for(self, node: str, pattern: str) -> re.Match[str]:
-        """Return the match in the next line of a node that has one."""
+        """Return the match in the next matching line of a node's output."""
         output = rf'"event": "output", "node": "{node}", "line": (".*{pattern}.*")'
-        line = self.program.wait_for(output, timeout_s=2 * PATIENCE_S)
+        line = self.program.wait_for(output, timeout_s=2 * TIMEOUT_S)
         match = re.search(pattern, json.loads(line.group(1)))
         assert match is not None
         return match
 
     def events(self, kind: str) -> Iterator[dict[str, Any]]:
-        """Yield the events of one kind so far."""
+        """Yield the events of one kind received so far."""
         events = (json.loads(line) for line in self.program.lines if line.startswith("{"))
         return (event for event in events if event["event"] == kind)
 
     def wait_until_said(self, node: str, *texts: str) -> None:
-        """Wait until a node has printed all of them, in whatever order."""
+        """Wait until a node has printed all of these lines, in any order."""
 
         def said() -> bool:
             lines = [e["line"] for e in self.events("output") if e["node"] == node]
             return all(any(text in line for line in lines) for text in texts)
 
-        wait_until(said, f"{node} says {texts}: {self.program}", 2 * PATIENCE_S)
+        wait_until(said, f"{node} says {texts}: {self.program}", 2 * TIMEOUT_S)
 
     def stop(self) -> None:
-        """Stop as Ctrl-C does; every node must have worked and ended well."""
+        """Stop with Ctrl-C; every node must have worked and ended with status 0."""
         assert "Traceback" not in self.program.output, self.program
         assert self.program.stop() == 0, self.program
 
     def places(self) -> dict[str, tuple[int, int]]:
-        """Return cluster and core of each node that was started."""
+        """Return cluster and core of each node started."""
         return {
             event["node"]: (event["cluster"], event["core"]) for event in self.events("started")
         }
@@ -114,7 +114,7 @@ def test_three_nodes(run, mapfile):
 
 
 def tick() -> None:
-    """Let more than a picture's time pass on the platform for each line of input."""
+    """Advance the platform's clock by more than a picture's period for each line of input."""
     from rosgraph_msgs.msg import Clock
 
     with peer_node("clock") as node:
@@ -128,9 +128,9 @@ def tick() -> None:
 
 
 def test_image_pipeline(run, start, tmp_path):
-    """Thirty pictures of 1 MiB through three clusters: each byte right, none lost.
+    """Thirty pictures of 1 MiB through three clusters: every byte correct, none lost.
 
-    The source has the time of the test, else a machine that stops another node would lose pictures.
+    The source runs on the test's clock, else a delayed node would lose pictures on a busy machine.
     """
     mapfile = yaml.safe_load((MAPFILES / "image_pipeline.yaml").read_text())
     mapfile["launch_path"] = str(MAPFILES / mapfile["launch_path"])
@@ -161,7 +161,7 @@ def test_services_and_parameters(run):
 
 
 def test_action(run):
-    """Two clients, one in the server's cluster; both cancel every third goal, if it still runs."""
+    """Two clients, one in the server's cluster; both cancel every third goal that still runs."""
     running = run("action.yaml")
     running.wait_until_said(
         "near_client", "goal 1 succeeded: [0, 1, 1, 2, 3, 5]", "cancelled: [0, 1"
@@ -176,7 +176,9 @@ def test_action(run):
 
 
 def test_every_mapfile_is_run_here():
-    others = ("test_ndt_replay.py", "test_reference_system.py", "test_whill.py")
+    others = (
+        *("test_ndt_replay.py", "test_reference_system.py", "test_ros_lite.py", "test_whill.py"),
+    )
     here = (Path(__file__), *(Path(__file__).with_name(other) for other in others))
     tested = {name for file in here for name in re.findall(NAMED, file.read_text())}
     mapfiles = {f.name for f in MAPFILES.iterdir() if f.is_file() and ".params." not in f.name}

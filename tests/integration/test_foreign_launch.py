@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What the extension of `ros2 launch` does of its own, on a real platform, without launch."""
+"""The extension of `ros2 launch` without launch itself, on a real platform."""
 
 from __future__ import annotations
 

@@ -1,8 +1,8 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The wheel: what is in it, and that it works where nothing was installed before.
+"""The wheel: its content, and its use where nothing else is installed.
 
-The wheel of the running python is packed of what setting up compiled; `make stress` builds it with
-isolation for each python, as `pip install .` does.
+The wheel of the running Python is packed from what the set-up compiled; `make stress` builds one
+for each Python with build isolation, as `pip install .` does.
 """
 
 from __future__ import annotations
@@ -24,11 +24,11 @@ pytestmark = pytest.mark.integration
 BUILT_MESSAGES = {path.name for path in (REPOSITORY / "interfaces").iterdir()}
 STAND_INS = {"librmw_fastrtps_cpp.so", "librmw_fastrtps_shared_cpp.so", "libfastrtps.so.2.14"}
 ROS_LIBRARY = re.compile(r"lib(rmw|rcl|rcutils|rcpputils|rosidl_|fastcdr|fastrtps|tracetools)\w*\.")
-STARTUP = ("executor", "hook", "interfaces", "program")
+STARTUP = ("executor", "hook", "interfaces", "program", "receive")
 
 
 def pythons() -> Iterator[Path]:
-    """Find the supported pythons of this machine."""
+    """Return the supported Python interpreters of this machine."""
     yield Path(sys.executable)
     root = Path(os.environ.get("PYENV_ROOT", Path.home() / ".pyenv"))
     for minor in {10, 11, 12, 13} - {sys.version_info.minor}:
@@ -48,7 +48,7 @@ def unpacked(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def prefix(unpacked: Path) -> Path:
-    """What will lie under the prefix of the environment, next to bin/ and lib/pythonX.Y."""
+    """Return what the wheel installs below sys.prefix, next to bin/ and lib/pythonX.Y."""
     return next(unpacked.glob("*.data/data"))
 
 
@@ -82,7 +82,7 @@ def test_no_path_of_the_build_machine_is_in_the_files(
 
 
 def names_a_source(found: bytes) -> bool:
-    """Whether a file of the checkout ends it. Bytes that are no text may stand before its name."""
+    """Return whether bytes end with the name of a file of the checkout, whatever precedes it."""
     starts = [at for at in range(len(found)) if found[at - 1 : at] not in (b"/", b".")]
     return any((REPOSITORY / found[at:].decode()).is_file() for at in starts)
 
@@ -101,7 +101,7 @@ def test_only_the_rmw_interface_is_exported(prefix: Path) -> None:
 
 
 def test_every_function_of_the_rmw_interface_is_exported(prefix: Path) -> None:
-    """As many as the middleware has whose place it takes."""
+    """Every function that rmw_fastrtps_cpp exports is exported."""
     ours = run("nm", "-DP", "--defined-only", prefix / "lib/librmw_manycore.so")
     theirs = run("nm", "-DP", "--defined-only", Path(sys.prefix) / "lib/librmw_fastrtps_cpp.so")
     functions = re.compile(r"^(rmw_\w+) T", re.MULTILINE)

@@ -1,16 +1,17 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The installed wheel, used in directories whose files are named like modules."""
+"""The installed wheel, used in directories with files that are named like modules."""
 
 from __future__ import annotations
 
 import json
 import os
 import shutil
+import sys
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from installing import Installation
+from installing import Installation, run
 from support import REPOSITORY, Program, environment, wait_until
 
 pytestmark = pytest.mark.integration
@@ -19,7 +20,7 @@ HOSTILE = (
     *("random", "yaml", "logging", "rclpy", "types", "numpy", "signal", "selectors", "json"),
     *("socket", "click", "rich", "rmw_manycore_py", "rmw_manycore_bridge", "std_msgs", "enum"),
 )
-# Every way in which a run starts programs of ours: nodes, the bridge, workers.
+# Every kind of our programs that a run starts: nodes, the bridge, workers.
 MAPFILE = """
 platform: {profile: host, clusters: 2, cores_per_cluster: 8}
 nodes:
@@ -43,7 +44,7 @@ Start = Callable[..., Program]
 
 
 class Place:
-    """A working directory, and an installation that is used in it."""
+    """A working directory and an installation that is used in it."""
 
     def __init__(self, installation: Installation, directory: Path, start: Start) -> None:
         self.installation = installation
@@ -57,7 +58,7 @@ class Place:
         return self._start(command, directory=self.directory, **self.variables)
 
     def run(self, *words: str | Path) -> str:
-        """Return what `manycore` prints until it ends."""
+        """Run `manycore` and return its output."""
         program = self.start(*words)
         assert program.wait() == 0, program
         return program.output
@@ -67,7 +68,7 @@ class Place:
 def place(
     request: pytest.FixtureRequest, tmp_path: Path, installation: Installation, start: Start
 ) -> Place:
-    """A place whose files must not take the place of what is installed."""
+    """A directory whose files must not be imported instead of what is installed."""
     place = Place(installation, tmp_path / "here", start)
     place.directory.mkdir()
     if request.param == "checkout":
@@ -79,12 +80,12 @@ def place(
             file = place.directory / f"{name}.py"
             file.write_text(f"raise SystemError('{name} of the folder')\n")
     if request.param == "hostile PYTHONPATH":
-        place.variables["PYTHONPATH"] = ":"  # an empty entry is the working directory
+        place.variables["PYTHONPATH"] = ":"  # an empty entry means the working directory
     return place
 
 
 def workers(installation: Installation) -> list[Path]:
-    """Return the scan matching workers that run from an installation."""
+    """Return the scan matching workers that run from this installation."""
     own = str(installation.directory / "lib/rmw_manycore/manycore_ndt_worker")
     return [path for path in Path("/proc").glob("[0-9]*") if _executable(path) == own]
 
@@ -140,6 +141,41 @@ def test_the_examples_as_modules(place: Place, start: Start) -> None:
     )
     start(talker, directory=place.directory)
     start(listener, 2, directory=place.directory).wait_for("I heard")
+
+
+@pytest.fixture
+def examples(place: Place) -> Path:
+    """The numbered examples, copied out of the repository."""
+    return Path(shutil.copytree(REPOSITORY / "examples", place.directory / "examples"))
+
+
+@pytest.mark.parametrize("place", ["empty folder"], indirect=True)
+def test_the_examples_of_the_python_api(place: Place, start: Start, examples: Path) -> None:
+    """Each public module, and a run with nodes and programs of ours."""
+
+    def begin(name: str) -> Program:
+        return start([place.installation.python, examples / name], directory=place.directory)
+
+    begin("03_publish_arrays.py")
+    programs = [begin("04_take_arrays.py"), begin("05_align_a_scan.py")]
+    for program in programs:
+        assert program.wait() == 0, program
+    assert "cloud 9: (1000, 3)" in programs[0].output
+    assert "converged: True" in programs[1].lines
+    transfers = begin("07_transfers.py")
+    assert transfers.wait() == 0, transfers
+    pipeline = begin("06_pipeline.py")
+    pipeline.wait_for(r"display \| image 30: ")
+    assert pipeline.wait() == 0, pipeline
+
+
+@pytest.mark.parametrize("place", ["empty folder"], indirect=True)
+def test_users_of_the_python_api_have_types(place: Place, examples: Path) -> None:
+    python = ["--python-executable", place.installation.python]
+    for example in sorted(examples.glob("*.py")):  # numbers are no names of modules
+        example.rename(example.with_name(f"example_{example.name}"))
+    command = [sys.executable, "-m", "mypy", "--strict", *python]
+    run(*command, *sorted(examples.glob("*.py")), cwd=place.directory)
 
 
 def test_messages_are_found_where_pythonpath_says(

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Packages of definitions, built with real generators and compilers, and used by real nodes."""
+"""Definition packages built with the real generators and compilers, and used by real nodes."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def sources(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def built(sources: Path, tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
-    """The environment of programs that see the package, and std_srvs built again."""
+    """The environment of programs that find the package, and std_srvs built again."""
     env = {**os.environ, "MANYCORE_INTERFACES": str(tmp_path_factory.mktemp("built"))}
     again = Path(sys.prefix) / "share/std_srvs"
     done = interface("build", sources / THINGS, again, env=env)
@@ -51,7 +51,7 @@ def built(sources: Path, tmp_path_factory: pytest.TempPathFactory) -> dict[str, 
 
 @pytest.fixture
 def here(built: dict[str, str], monkeypatch: pytest.MonkeyPatch) -> None:
-    """Let the programs of the test see the package."""
+    """Make the programs of the test find the package."""
     monkeypatch.setenv("MANYCORE_INTERFACES", built["MANYCORE_INTERFACES"])
 
 
@@ -117,11 +117,11 @@ def test_a_mapfile_says_what_is_built(start, sources, tmp_path, monkeypatch) -> 
     env = dict(os.environ)
     done = interface("build", sources, "--mapfile", tmp_path / "map.yaml", env=env)
     assert "things_msgs: 1 definition in " in done.stdout
-    # An action makes ten structures, a service three, a message one.
+    # An action generates ten structures, a service three, a message one.
     assert done.stdout.endswith("; left out 4 of 5, 94% of the code\n")
     run = start(manycore_command("run", tmp_path / "map.yaml"))
     run.wait_for(r"part things_msgs\.msg\.Part\(number=3")
-    # A later build of other types keeps these.
+    # A later build of other types does not remove these.
     done = interface("build", sources, "--only", f"{THINGS}/msg/Mark", env=env)
     assert "things_msgs: 2 definitions in " in done.stdout
     assert interface("package", THINGS, env=env).stdout.split() == [

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Builds that cannot succeed, are killed, or run at the same time; and removals."""
+"""Builds that fail, are killed, or run at the same time; and removals."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ def test_a_killed_build_leaves_nothing_that_is_imported(start, env, sources, tmp
     for pid in compiling.read_text().split():
         wait_until(lambda pid=pid: not Path("/proc", pid).exists(), "compilers die with it")
     assert "No module named 'tiny_msgs'" in imported("tiny_msgs", env).stderr
-    assert "nothing was built" in interface("list", "--built", env=env).stdout
+    assert "no packages built" in interface("list", "--built", env=env).stdout
     interface("build", sources, env=env)
     assert imported("tiny_msgs.msg", env).returncode == 0
     assert list(Path(env["MANYCORE_INTERFACES"]).glob("*/building/*")) == []
@@ -71,7 +71,7 @@ def test_builds_at_once_wait_for_each_other(start, env, sources, tmp_path) -> No
         names = ("tiny_msgs", "base_msgs")
         builds = [start(manycore_command("interface", "build", sources / name)) for name in names]
         for build in builds:
-            build.wait_for("waiting for the end of another build")
+            build.wait_for("waiting for another build to finish")
     for build in builds:
         assert build.wait(600) == 0, build
     for name in names:
@@ -103,7 +103,7 @@ def test_a_changed_package_is_built_again_with_those_that_contain_it(env, source
 
 
 def test_a_package_that_does_not_compile_is_named_and_none_is_seen(env, sources) -> None:
-    # errno is a macro, which only the compiler knows.
+    # errno is a macro: the generators accept the name, only the compiler fails.
     odd = {"user_msgs/msg/User.msg": "base_msgs/Base base\nint32 errno\n"}
     write_definitions(sources, {**BASE, **odd})
     failed = interface("build", sources, env=env, status=2)
@@ -147,4 +147,4 @@ def test_a_home_that_is_read_only_is_an_error(env, sources, tmp_path) -> None:
     )
     assert done.returncode == 1
     assert f"manycore: {home}" in done.stderr
-    assert "Read-only file system; set MANYCORE_INTERFACES to a folder" in done.stderr
+    assert "Read-only file system; set MANYCORE_INTERFACES to a writable directory" in done.stderr

@@ -1,7 +1,7 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Our matcher in the place of Autoware's: a prefix of its name, with launch and parameter files.
+"""Our matcher instead of Autoware's: a prefix with its package name, launch and parameter files.
 
-The installed Autoware is a stand-in: a package with files of the shape that Autoware's have.
+The installed Autoware is a stand-in: a package with files of the same structure.
 """
 
 from __future__ import annotations
@@ -94,7 +94,7 @@ def autoware(tmp_path: Path) -> Path:
 
 
 def test_the_map_loader_too_where_it_is_asked_for(start, platform, tmp_path, autoware):
-    """Autoware's leaf size thins the topic it is of, not the map; other programs stay its own."""
+    """Autoware's leaf size applies to the downsampled map only; other packages stay Autoware's."""
     overlay, points = tmp_path / "overlay", np.float32(np.mgrid[0:9, 0:9, 0:1].reshape(3, -1).T)
     write_points(tmp_path / "map.npz", points)
     sourced = {"AMENT_PREFIX_PATH": str(autoware)}
@@ -123,7 +123,7 @@ def test_the_map_loader_too_where_it_is_asked_for(start, platform, tmp_path, aut
 
 
 def test_the_launch_file_starts_our_node(start, platform, tmp_path, autoware):
-    """Unmodified, with Autoware's parameter file; where the overlay is not sourced, Autoware's."""
+    """Unmodified, with Autoware's parameter file; without the overlay, Autoware."""
     overlay = tmp_path / "overlay"
     sourced = {"AMENT_PREFIX_PATH": str(autoware)}
     for _ in range(2):  # again over what is there

@@ -1,9 +1,10 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Alignments of a recorded drive; of a simulated one where there are no recordings."""
+"""Alignments of a recorded drive, or of a simulated one where no recording is installed."""
 
 from __future__ import annotations
 
 import os
+from dataclasses import fields
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -13,6 +14,9 @@ import pytest
 from ndt_world import errors, pose, scan_at, street
 
 from rmw_manycore_py.ndt import MatcherOptions, SerialMatcher, VoxelMap
+from rmw_manycore_py.ndt.geometry.thinning import spread_indices
+from rmw_manycore_py.ndt.nodes.scan_matcher.parameters import OwnParameters
+from rmw_manycore_py.ndt.recordings.recording import load_recording
 from rmw_manycore_py.words import Search, VoxelCovariance
 
 pytestmark = pytest.mark.integration
@@ -20,6 +24,7 @@ pytestmark = pytest.mark.integration
 CHECKOUT = Path(__file__).resolve().parents[2]
 DATA = Path(os.environ.get("MANYCORE_DATA", CHECKOUT.parent / "shared" / "data"))
 DRIVE = DATA / "balm_seq177_v0.10.npz"
+DENSE = DATA / "balm_full10.npz"  # ten of its scans, with 73,000 points each
 
 
 def recorded() -> tuple[list[Any], Any]:
@@ -79,3 +84,26 @@ def test_scans_are_found_from_disturbed_guesses(
     good = [distance < 0.2 and angle < 1.0 for distance, angle in found]
     assert np.mean(good) >= share
     assert np.median([distance for distance, _ in found]) <= 0.03
+
+
+@pytest.mark.skipif(
+    not (DRIVE.exists() and DENSE.exists()), reason=f"no {DENSE}; set MANYCORE_DATA"
+)
+def test_the_points_chosen_of_a_large_scan_lead_where_all_lead() -> None:
+    sparse, dense = load_recording(DRIVE), load_recording(DENSE)
+    most = next(
+        field.metadata["default"] for field in fields(OwnParameters) if field.name == "max_matched"
+    )
+    options = MatcherOptions(search="radius")
+    rng = np.random.default_rng(3)
+    apart_m = []
+    with SerialMatcher(options) as matcher:
+        matcher.set_map(VoxelMap.from_points(sparse.accumulated(range(0, len(sparse), 2)), options))
+        for index, true in enumerate(dense.poses):
+            scan, guess = dense.scan(index), disturbed(true, rng, 1.0, 6.0)
+            assert len(scan) > 2 * most
+            chosen = scan[spread_indices(len(scan), most)]
+            every, few = (matcher.align(points, guess).T_map_sensor for points in (scan, chosen))
+            apart_m.append(errors(few, every)[0])
+    assert np.median(apart_m) < 0.005
+    assert max(apart_m) < 0.02

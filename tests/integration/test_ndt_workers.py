@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Workers find what one core finds, whatever happens to them."""
+"""Workers find the poses that a single core finds, also when some are killed."""
 
 from __future__ import annotations
 
@@ -29,6 +29,7 @@ pytestmark = pytest.mark.integration
 WORLD = street()
 TRUE = pose(40, 0.5, 1.8, 0.01, -0.02, 0.3)
 GUESS = pose(40.4, 0.2, 1.9, 0, 0, 0.34)
+FAR = TRUE @ pose(6, 3, 0, 0, 0, 0.3)  # is looked at again
 SCAN = scan_at(WORLD, TRUE)
 OPTIONS = MatcherOptions()
 MAP = VoxelMap.from_points(WORLD, OPTIONS)
@@ -52,6 +53,7 @@ def numbers(alignment: Any) -> tuple[Any, ...]:
         alignment.T_map_sensor.tolist(),
         alignment.covariance.tolist(),
         alignment.iterations,
+        alignment.looks,
         alignment.score,
         alignment.nearest_voxel_likelihood,
     )
@@ -72,7 +74,7 @@ def cpu_ns(pid: int) -> int:
 @pytest.mark.parametrize("count", [1, 2, 3, 7, 16])
 def test_any_number_of_workers_finds_the_same_pose_bit_for_bit(count: int) -> None:
     with workers(count) as matcher:
-        for guess in (GUESS, TRUE, pose(40.9, 0, 1.8, 0, 0, 0.25)):
+        for guess in (GUESS, TRUE, pose(40.9, 0, 1.8, 0, 0, 0.25), FAR):
             assert numbers(matcher.align(SCAN, guess)) == numbers(alone().align(SCAN, guess))
         assert matcher.score(SCAN, GUESS) == alone().score(SCAN, GUESS)
 
@@ -137,7 +139,7 @@ def test_a_stopped_worker_is_replaced() -> None:
 
 
 def test_workers_that_die_again_and_again() -> None:
-    """It is an error that says so; the map before stays, and the matcher works on."""
+    """The error states it; the previous map stays, and the matcher goes on."""
     moved = VoxelMap.from_points(WORLD + np.array([0, 50, 0]), OPTIONS)
     maps = cycle((moved, MAP))
     serial = alone()
@@ -159,7 +161,7 @@ def test_workers_that_die_again_and_again() -> None:
 
 
 def until_it_fails(attempt: Callable[[], object]) -> None:
-    """Try again, as now and then the one who kills comes too late."""
+    """Repeat the attempt until it raises; a kill may come too late for one attempt."""
     while True:
         attempt()
 
@@ -223,7 +225,10 @@ def test_scans_of_nothing_leave_the_workers_well(scan: Any) -> None:
     ("make", "message"),
     [
         (lambda: WorkerMatcher(OPTIONS, []), "host_cpus: expected 1 to 64"),
-        (lambda: WorkerMatcher(OPTIONS, [4095]), "host CPU 4095 cannot be had"),
+        (
+            lambda: WorkerMatcher(OPTIONS, [4095]),
+            "host CPU 4095 is not in this process's affinity mask",
+        ),
     ],
 )
 def test_cores_that_are_not_there_are_refused(make: Callable[[], Any], message: str) -> None:

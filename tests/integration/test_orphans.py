@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Whatever a killed bench or run had started ends with it."""
+"""Processes that a killed bench or run has started end with it."""
 
 from __future__ import annotations
 
@@ -15,15 +15,15 @@ pytestmark = [
     pytest.mark.skipif(not IS_MANYCORE, reason="manycore is about rmw_manycore"),
 ]
 
-MARK = "MANYCORE_TEST_MARK"  # inherited by all that is started, receive threads included
+MARK = "MANYCORE_TEST_MARK"  # inherited by all descendants, receive threads included
 
 
 def marked(mark: str) -> list[int]:
-    """Return the processes that have the mark in the environment they were started with."""
+    """Return the processes that were started with the mark in their environment."""
     words = f"{MARK}={mark}".encode()
     found = []
     for process in Path("/proc").glob("[0-9]*"):
-        with suppress(OSError):  # another user's, or gone
+        with suppress(OSError):  # of another user, or ended
             if words in (process / "environ").read_bytes().split(b"\0"):
                 found.append(int(process.name))
     return found

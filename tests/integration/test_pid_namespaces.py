@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Nodes in PID namespaces of their own on one /dev/shm, as containers with `--ipc=host` are."""
+"""Nodes in separate PID namespaces on one /dev/shm, like containers with `--ipc=host`."""
 
 from __future__ import annotations
 
@@ -17,24 +17,24 @@ pytestmark = [
     pytest.mark.skipif(not IS_MANYCORE, reason="looks at rmw_manycore's members"),
 ]
 
-WATCHED_S = 2.0  # how long processes are watched that have nothing to do
-IDLE_CPU_S = 0.06  # of all together, 3 %; one that looks at a pid again and again uses more
+WATCHED_S = 2.0  # how long idle processes are measured
+IDLE_CPU_S = 0.06  # 3 % for all together; a process that polls a pid uses more
 
 
 def in_namespace(*command: str) -> list[str]:
-    """Return the command that runs another one as the first process of a PID namespace."""
+    """Return a command that runs another one as the first process of a PID namespace."""
     user = [] if os.geteuid() == 0 else ["--user", "--map-current-user"]
     return ["unshare", *user, "--pid", "--fork", "--kill-child", "--mount-proc", *command]
 
 
 def first_process_of(namespace: int) -> int:
-    """Return the pid, as seen from here, of the first process of what `unshare` runs."""
+    """Return the pid, in this namespace, of the process that `unshare` runs."""
     children = Path(f"/proc/{namespace}/task/{namespace}/children").read_text().split()
     return int(children[0])
 
 
 def members(platform: str) -> set[int]:
-    """Return the slots of the members of a platform."""
+    """Return the registry slots of a platform's members."""
     from rmw_manycore_py._transport import Platform
 
     with Platform(platform) as seen:
@@ -42,14 +42,14 @@ def members(platform: str) -> set[int]:
 
 
 def cpu_used_by(pids: list[int]) -> float:
-    """Return the CPU time that processes use while they are watched."""
+    """Return the CPU time that processes use during the measurement."""
     before_s = sum(map(cpu_time_s, pids))
     time.sleep(WATCHED_S)
     return sum(map(cpu_time_s, pids)) - before_s
 
 
 def start_outside(start):
-    """Return a node in no namespace, whose receive thread outlives those in namespaces."""
+    """Return a node in the initial namespace; its receive thread outlives those in namespaces."""
     program = start(example_command("talker", "--ros-args", "-r", "chatter:=unheard"), 3)
     program.wait_for("Publishing")
     return program
@@ -62,7 +62,7 @@ def outside(start):
 
 @pytest.fixture
 def talker(start, outside):
-    """Return a talker in a namespace of its own, in cluster 1."""
+    """Return a talker in its own namespace, in cluster 1."""
     program = start(in_namespace(*example_command("talker")), 1)
     program.wait_for("Publishing")
     return program
@@ -76,7 +76,7 @@ def test_nodes_of_two_namespaces_talk(platform, start, talker, cluster):
 
 @pytest.mark.parametrize("cluster", [1, 2])
 def test_a_node_killed_in_its_namespace_is_reaped(platform, start, talker, cluster):
-    """Where it is in cluster 1 alone, the receive thread that it started dies with it."""
+    """If the talker is alone in cluster 1, the receive thread that it started dies with it."""
     listener = start(example_command("listener"), cluster)
     listener.wait_for("I heard")
     assert len(members(platform)) == 3
@@ -89,7 +89,7 @@ def test_a_node_killed_in_its_namespace_is_reaped(platform, start, talker, clust
 
 
 def test_a_node_with_the_pid_of_a_watched_one_is_reaped(platform, start):
-    """The first process of each namespace has pid 1, and the first reaper watches its own."""
+    """The first process of each namespace has pid 1; the first reaper watches its own only."""
     talker = start(in_namespace(*example_command("talker")), 1)
     talker.wait_for("Publishing")
     listener = start(in_namespace(*example_command("listener")), 1)
@@ -97,11 +97,11 @@ def test_a_node_with_the_pid_of_a_watched_one_is_reaped(platform, start):
     assert len(members(platform)) == 2
     kill(first_process_of(listener.pid))
     wait_until(lambda: len(members(platform)) == 1, "the listener is no member any more")
-    start_outside(start)  # only now: it would have looked as well
+    start_outside(start)  # only now: it would have reaped as well
 
 
 def test_watching_another_namespace_costs_nothing(platform, start, talker):
-    """A pid of another namespace says nothing here; to look at it again and again is no proof."""
+    """A pid of another namespace means nothing here, so receive threads must not poll it."""
     watcher = start([*in_namespace(*example_command("listener")), "--ros-args", "-r", "chatter:=x"])
     wait_until(lambda: len(members(platform)) == 3, "all are members")
     wait_until(lambda: receive_threads_of(platform), "there is a receive thread")

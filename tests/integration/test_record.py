@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""`manycore topic record` and `play`, with real nodes, inside and outside, and after a kill."""
+"""`manycore topic record` and `play` with real nodes, inside, outside, and after a kill."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ def record_command(path: Path, *words: str) -> list[Any]:
 
 
 def test_other_readers_read_what_was_recorded(start, tmp_path, place) -> None:
-    """Latched and fleeting topics, of publishers that come before and after the recorder."""
+    """Transient-local and volatile topics; publishers started before and after the recorder."""
     bag = tmp_path / "bag"
     start(peer_command(say, "/map", LATCHED, None, "first", "second"), **place).wait_for("said")
     recorder = start(record_command(bag, "--all", *options(place)))
@@ -83,7 +83,7 @@ def test_other_readers_read_what_was_recorded(start, tmp_path, place) -> None:
 
 
 def test_a_player_offers_what_was_recorded(start, tmp_path, place) -> None:
-    """A late subscriber hears what was latched; a best-effort topic is heard as such."""
+    """A late subscription gets the transient-local messages; best-effort topics are played so."""
     bag = tmp_path / "bag.mcap"
     speaker = start(peer_command(say, "/map", LATCHED, None, "first", "second"), **place)
     recorder = start(record_command(bag, "/map", *options(place)))
@@ -91,7 +91,7 @@ def test_a_player_offers_what_was_recorded(start, tmp_path, place) -> None:
     wait_until(lambda: texts_of(bag, "/map") == ["first", "second"], "they are on the disk")
     recorder.stop()
     speaker.kill()
-    # The second one comes much later, and the player is there until then.
+    # The second message is much later, so the player still runs.
     play = ["topic", "play", bag, "--remap", "/map:=/old_map", "--rate", "0.01", "--loop"]
     start(manycore_command(*play, "--delay", "0.01", *options(place)))
     hearer = start(peer_command(hear, "/old_map", LATCHED), **place)
@@ -128,7 +128,7 @@ def test_a_killed_recorder_leaves_what_can_be_read_and_played(start, tmp_path) -
 
 
 def test_a_publisher_that_offers_less_is_heard_too(start, tmp_path) -> None:
-    """The recorder subscribes anew; nothing is lost, and what was latched comes once."""
+    """The recorder subscribes again; no message is lost, and the latched one is stored once."""
     bag = tmp_path / "bag.mcap"
     kept = {"durability": "transient_local", "depth": 1000}
     start(peer_command(say, "/news", kept, 0.01, "first"))
@@ -148,7 +148,7 @@ def test_a_publisher_that_offers_less_is_heard_too(start, tmp_path) -> None:
 
 
 def test_a_player_keeps_order_and_rate_and_tells_the_time(start, tmp_path) -> None:
-    """Steps of a clock of its own, and the recorded part between offset and duration."""
+    """The player publishes /clock at its own rate, and plays from the offset for the duration."""
     bag = write_texts(tmp_path / "a.mcap", [("/a", 1.0 * n, f"text {n}") for n in range(8)], each=2)
     clock = start(peer_command(hear_clock))
     clock.wait_for("listening")
@@ -170,7 +170,7 @@ def hear_clock() -> None:
             type_of("rosgraph_msgs/msg/Clock"),
             "/clock",
             lambda m: announce(f"clock {m.clock.sec}.{m.clock.nanosec:09}"),
-            qos(BEST_EFFORT),
+            qos({**BEST_EFFORT, "depth": 1000}),
         )
         announce("listening")
         spin_until(node, lambda: False, 1e6)

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What can go wrong with recordings: full disks, types that clash or are missing, wrong words."""
+"""Errors of recordings: full disks, types that clash or are missing, wrong arguments."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ exit $status
 
 
 def on_small_disk(directory: object, *command: object) -> list[str]:
-    """Return a command whose directory is a small disk, and that shows what is on it then."""
+    """Return a command that runs with its directory on a small disk, then lists the disk."""
     return ["unshare", "--mount", "sh", "-c", ON_SMALL_DISK, str(directory), *map(str, command)]
 
 
@@ -66,7 +66,7 @@ def say_large(topic: str) -> None:
 def test_what_is_there_is_not_overwritten(start, tmp_path) -> None:
     bag = write_texts(tmp_path / "a.mcap", [("/a", 0, "precious")])
     for path, complaint in (
-        (bag, "is there already"),
+        (bag, "already exists"),
         (tmp_path / "nix" / "b.mcap", "No such file or directory"),
         (tmp_path / "nix" / "b", "No such file or directory"),
     ):
@@ -80,7 +80,7 @@ def test_what_is_there_is_not_overwritten(start, tmp_path) -> None:
 def test_nothing_to_record_is_said(start, tmp_path) -> None:
     recorder = start(manycore_command("topic", "record", "-o", tmp_path / "a.mcap"))
     assert recorder.wait() == EXIT_BAD_INPUT
-    assert "which topics?" in recorder.output
+    assert "no topics given" in recorder.output
     assert not (tmp_path / "a.mcap").exists()
 
 
@@ -139,7 +139,7 @@ def test_a_wrong_wish_of_a_player_is_said(start, tmp_path) -> None:
         (["--exclude-topics", "/a"], "no topic is left"),
         (["--start-offset", "2"], "is 1.000 s long"),
         (["--remap", "/a"], "expected OLD:=NEW, found '/a'"),
-        (["--regex", "("], "is no regular expression"),
+        (["--regex", "("], "is not a regular expression"),
         (["--rate", "0"], "--rate"),
     ):
         player = start(manycore_command("topic", "play", bag, *words))

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""A platform whose files are removed while it runs, as systemd-logind does at a logout."""
+"""A platform whose files are removed while it runs, as systemd-logind does at logout."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def test_nodes_end_and_say_why_and_new_ones_meet(start, platform):
     shutil.rmtree(PLATFORMS / platform)
     for program in old:
         assert program.wait() != 0, program
-        assert "start this process again" in program.output
+        assert "restart this process" in program.output
     wait_until(lambda: not (PLATFORMS / platform).exists(), "the old ones leave nothing")
     start(talker)
     start(listener, 2).wait_for("I heard")

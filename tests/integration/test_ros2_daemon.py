@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""A daemon of ros2cli that outlives a run: a node and a command line like its own stand for it."""
+"""A ros2cli daemon that outlives a run; a node with the daemon's command line stands in."""
 
 from __future__ import annotations
 
@@ -34,13 +34,13 @@ def test_a_daemon_left_behind_does_not_block_the_next_run(start, platform) -> No
     doctor.wait()
     assert f"ros2 daemon: {platform} (pid {daemon.pid})" in doctor.output
     run = start(RUN)
-    run.wait_for(rf"the ros2 daemon \({daemon.pid}\) of an earlier run was ended")
-    daemon.wait()  # rclpy itself may stumble over a signal that comes while it spins
+    run.wait_for(rf"the ros2 daemon \({daemon.pid}\) of an earlier run was stopped")
+    daemon.wait()  # rclpy itself may fail on a signal that arrives while it spins
     run.wait_for("talker started")
     second = start([sys.executable, "-c", DAEMON, "--name", "ros2cli.daemon"])
     second.wait_for("serving")
     assert run.stop() == 0
-    assert f"the ros2 daemon ({second.pid}; `ros2 daemon stop` ends it)" in run.output
+    assert f"the ros2 daemon ({second.pid}; `ros2 daemon stop` stops it)" in run.output
     again = start(RUN)
     second.wait()
     again.wait_for("I heard")

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The extensions under real launch, launch_ros and ros2cli; skipped where these are not."""
+"""The extensions under real launch, launch_ros and ros2cli; skipped where these are missing."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ Launch = Callable[..., Program]
 
 @pytest.fixture(scope="module")
 def found(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
-    """The environment in which `ros2` finds what it is made of."""
+    """The environment in which `ros2` finds its parts."""
     if ros2_packages.are_installed():
         return {"PATH": ros2_packages.search_path()}
     return ros2_packages.install(tmp_path_factory.mktemp("ros2"))
@@ -56,7 +56,7 @@ def found(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
 
 @pytest.fixture
 def ros2(start, found, platform) -> Launch:
-    """Return what starts `ros2` with some words."""
+    """Return the command of `ros2` with these arguments."""
 
     def start_ros2(*words: str | Path, directory: Path, **env: str) -> Program:
         program = shutil.which("ros2", path=found["PATH"]) or "ros2"
@@ -67,7 +67,7 @@ def ros2(start, found, platform) -> Launch:
 
 @pytest.fixture
 def launch(ros2, tmp_path: Path) -> Launch:
-    """Return what launches nodes with a mapfile."""
+    """Return the command that launches nodes with a mapfile."""
 
     def launch_nodes(nodes: str, mapfile: str, *arguments: str, **env: str) -> Program:
         (tmp_path / "demo.launch.py").write_text(LAUNCH_FILE.format(nodes=nodes))
@@ -101,7 +101,7 @@ def cores(platform: str) -> set[tuple[int, int | None]]:
 
 
 def place(process: _transport.ProcessInfo) -> tuple[int, int | None, list[int]]:
-    """Return cluster, core and the CPUs that every thread of a process may use."""
+    """Return cluster, core, and the CPU affinity of every thread of a process."""
     threads = os.listdir(f"/proc/{process.pid}/task")
     cpus = {cpu for thread in threads for cpu in os.sched_getaffinity(int(thread))}
     return process.cluster, process.core, sorted(cpus)
@@ -129,7 +129,8 @@ def test_nodes_of_a_launch_file_run_where_the_mapfile_says(launch, platform) -> 
         "/robot/two": (3, 1, [CPUS[0]]),
         "/three": (4, None, CPUS),
     }
-    wait_until(lambda: len(processes(platform)) >= 5, "five names of nodes")
+    names = {*expected, "/two", "/other/two"}
+    wait_until(lambda: names <= processes(platform).keys(), "five names of nodes")
     there = processes(platform)
     assert {name: place(there[name]) for name in expected} == expected
     variables = Path(f"/proc/{there['/robot/two'].pid}/environ").read_bytes().split(b"\0")

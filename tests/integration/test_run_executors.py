@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Nodes with rclpy's MultiThreadedExecutor, on the one CPU of their core."""
+"""Nodes with rclpy's MultiThreadedExecutor on the single CPU of their core."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ pytestmark = [
     pytest.mark.skipif(not IS_MANYCORE, reason="manycore run is about rmw_manycore"),
 ]
 
-# As in the tutorial of ROS 2 on callback groups: a timer's callback waits for a service.
+# As in the ROS 2 tutorial on callback groups: a timer callback calls a service and waits.
 CALLER = """
 import os, sys
 import rclpy

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""`manycore run` does what a launch file wants besides starting nodes: components, order, ends."""
+"""`manycore run` beyond starting nodes: components, order and exit actions of launch files."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ pytestmark = [
     pytest.mark.skipif(not IS_MANYCORE, reason="manycore run is about rmw_manycore"),
 ]
 
-# The service of rclcpp's component_container, which no wheel has; plugins are functions here.
+# Serves like rclcpp's component_container, which no wheel has; plugins are functions here.
 CONTAINER = """\
 #!{python}
 import rclpy
@@ -134,7 +134,7 @@ def events(program: Program, kind: str) -> list[dict[str, Any]]:
 
 @pytest.fixture
 def container(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """Install the package `demo` with its container; return the directory."""
+    """Install the package `demo` with its container; return the prefix."""
     index = tmp_path / "prefix/share/ament_index/resource_index/packages"
     index.mkdir(parents=True)
     (index / "demo").touch()

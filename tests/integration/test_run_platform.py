@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""`manycore run` with real nodes: the platform around them, and what is left afterwards."""
+"""`manycore run` with real nodes: the platform it configures, and what is left afterwards."""
 
 from __future__ import annotations
 
@@ -74,7 +74,7 @@ def test_a_message_type_that_is_not_installed(start, tmp_path, platform) -> None
 
 
 def test_a_message_type_that_is_missed_later(start, tmp_path, platform) -> None:
-    """What a source imports on the way is not known before it runs."""
+    """The imports of a source are unknown before it runs."""
     mapfile = write_mapfile(tmp_path, node="{cluster: 1, script: node.py}")
     source = tmp_path / "node.py"
     source.write_text("if True:\n    from no_such_msgs.msg import Thing\n")

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The runner with real processes: plain programs stand for nodes, so that no ROS is needed."""
+"""The runner with real processes: plain programs stand in for nodes, so no ROS is needed."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from support import PATIENCE_S, Program, peer_command, wait_until
+from support import TIMEOUT_S, Program, peer_command, wait_until
 
 from rmw_manycore_py.launch.processes.program import NodeProgram
 from rmw_manycore_py.launch.processes.state import STOP_STEPS
@@ -58,7 +58,7 @@ def ignored_signals(pid: int) -> set[int]:
 def run_programs(
     commands: dict[str, list[str]], host_cpu: int, duration_s: float | None, grace_s: float
 ) -> None:
-    """Run in a process of its own: a runner over commands, its events on standard output."""
+    """Run a runner over commands; print its events on standard output."""
     for state, step in STOP_STEPS.items():
         STOP_STEPS[state] = step._replace(grace_s=grace_s)
     programs = [
@@ -71,7 +71,7 @@ def run_programs(
 
 
 def run_interrupted() -> None:
-    """Run in a process of its own: Ctrl-C comes while the platform is configured."""
+    """Run until interrupted while the platform is configured."""
     node = NodeProgram("node", ("sleep", "1000"), dict(os.environ), Core(1, 1), (CPU,))
     runner = Runner([node], lambda event: print(event.as_json(), flush=True))
     with signal_inbox() as inbox:
@@ -80,7 +80,7 @@ def run_interrupted() -> None:
 
 
 class Run:
-    """A runner in a process of its own."""
+    """A runner in its own process."""
 
     def __init__(self, *arguments: Any) -> None:
         self.program = Program(peer_command(run_programs, *arguments), dict(os.environ))
@@ -111,7 +111,7 @@ def start_run() -> Iterator[StartRun]:
     def start(
         host_cpu: int = CPU,
         duration_s: float | None = None,
-        grace_s: float = PATIENCE_S,
+        grace_s: float = TIMEOUT_S,
         **commands: list[str],
     ) -> Run:
         runs.append(Run(commands, host_cpu, duration_s, grace_s))
@@ -123,7 +123,7 @@ def start_run() -> Iterator[StartRun]:
 
 
 def state_of(pid: int) -> str:
-    """Return the letter that /proc has for the state of a process; Z when there is none."""
+    """Return the state letter of a process in /proc; Z if there is no such process."""
     try:
         stat = Path(f"/proc/{pid}/stat").read_text()
     except (FileNotFoundError, ProcessLookupError):
@@ -132,7 +132,7 @@ def state_of(pid: int) -> str:
 
 
 def is_gone(pid: int) -> bool:
-    """Tell whether a process has ended; one that nobody has waited for yet has ended too."""
+    """Return whether a process has ended, reaped or not."""
     return state_of(pid) == "Z"
 
 
@@ -196,7 +196,7 @@ def test_a_signal_stops_the_nodes_cleanly(start_run: StartRun, number: signal.Si
 
 
 def test_who_ignores_hanging_up_may_log_out(start_run: StartRun) -> None:
-    before = signal.signal(signal.SIGHUP, signal.SIG_IGN)  # as nohup does, for what is started now
+    before = signal.signal(signal.SIGHUP, signal.SIG_IGN)  # like nohup; children inherit it
     try:
         run = start_run(node=python(POLITE))
     finally:
@@ -300,7 +300,7 @@ def test_nodes_die_with_a_killed_runner(start_run: StartRun) -> None:
 
 def test_a_reader_that_closes_the_pipe_ends_the_run() -> None:
     endless = {"node": ["sh", "-c", "while echo again; do sleep 0.01; done"]}
-    command = shlex.join(peer_command(run_programs, endless, CPU, None, PATIENCE_S))
+    command = shlex.join(peer_command(run_programs, endless, CPU, None, TIMEOUT_S))
     pipeline = Program(["sh", "-c", f"{command} | head -n 3"], dict(os.environ))
     pipeline.wait()
     pipeline.kill()

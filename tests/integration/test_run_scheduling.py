@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Policies and priorities of a mapfile, with the rights that this user has, and without."""
+"""Policies and priorities of a mapfile, with and without the rights to set them."""
 
 from __future__ import annotations
 

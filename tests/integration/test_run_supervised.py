@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Processes that serve the nodes of a run: which are started again, and which end the run."""
+"""Supervised processes of a run: which ones are restarted, and which ones end the run."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from rmw_manycore_py.topology import Core
 pytestmark = pytest.mark.integration
 
 DIES_AT_ONCE = "import sys; print('why'); sys.exit(int(sys.argv[1]))"
-# Comes up in each third process; the sixth one stays.
+# Becomes ready in each third process; the sixth one stays.
 COMES_UP_AT_TIMES = """
 import os, signal, sys
 from rmw_manycore_py.readiness import report_ready
@@ -37,7 +37,7 @@ signal.pause()
 
 
 def run_server(source: str, *arguments: str) -> None:
-    """Run in a process of its own: a runner over a supervised server, and a node."""
+    """Run a runner over a supervised server and a node."""
     runner.RESTART_PAUSE_S = 0.01
     server = (sys.executable, "-c", source, *arguments)
     cpus = (min(os.sched_getaffinity(0)),)

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""A /dev/shm that is too small gives an error that says how much is needed."""
+"""A /dev/shm that is too small gives an error that states the size needed."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ import pytest
 from support import (
     IS_MANYCORE,
     MAPFILES,
+    TIMEOUT_S,
     Program,
     environment,
     example_command,
@@ -24,7 +25,7 @@ SIZE_NEEDED = re.compile(r"\b\d[\d,.]* ?(bytes|[KMG]iB)")
 
 
 def small_shm_command(size_mib: int, command: list[str]) -> list[str]:
-    """Return a command that sees a /dev/shm of its own."""
+    """Return a command that runs with a /dev/shm of its own."""
     script = SMALL.format(size_mib=size_mib)
     return ["unshare", "--mount", "sh", "-c", script, "sh", *map(str, command)]
 
@@ -58,7 +59,7 @@ def start_small():
 
 def assert_says_the_size(program: Program) -> None:
     status = program.wait()
-    assert status > 0, program  # and not the end by a signal, such as SIGBUS
+    assert status > 0, program  # and not killed by a signal such as SIGBUS
     assert "/dev/shm" in program.output, program
     assert SIZE_NEEDED.search(program.output), program
 
@@ -142,9 +143,9 @@ subscriber() if sys.argv[2:] else publisher()
 
 
 def test_images_of_1080p(start_small):
-    """What a container has by default carries a raw image and the history of its topic."""
+    """The default /dev/shm of a container is enough for raw images with their history."""
     publisher = start_small(64, [sys.executable, "-c", IMAGES, IMAGES])
-    assert publisher.wait() == 0, publisher
+    assert publisher.wait(4 * TIMEOUT_S) == 0, publisher
     assert "all images arrived" in publisher.output, publisher
 
 

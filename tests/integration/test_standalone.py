@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Nodes that somebody starts by hand, one by one, with nothing else running."""
+"""Nodes started from a shell, one by one, with nothing else running."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ GROUPS = {
     "action": ["fibonacci_server", "fibonacci_client"],
 }
 
-# What a node prints while it spins, if that is not the first thing.
+# Printed by a node while it spins, where that is not its first line.
 FROM_A_CALLBACK = {"controller": "gain is now"}
 
 
@@ -56,13 +56,13 @@ def test_the_other_end_may_come_back(start):
 
 @pytest.mark.parametrize("group", GROUPS)
 def test_examples_end_quietly(start, group):
-    """Interrupted in the middle of their work they end with status 0 and no traceback."""
+    """Interrupted at work, they end with status 0 and without a traceback."""
     programs = [start(example_command(name)) for name in GROUPS[group]]
     for name, program in zip(GROUPS[group], programs, strict=True):
         program.wait_for(FROM_A_CALLBACK.get(name, "INFO"))
     for program in programs:
         assert program.stop_node(), program
-        if program.wait() == 0:  # else rclpy made an error of its own of the interruption
+        if program.wait() == 0:  # else rclpy turned the interrupt into an error of its own
             assert "Traceback" not in program.output, program
 
 

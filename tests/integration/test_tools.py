@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The tools that look at a running platform, and at the installation."""
+"""The verbs that inspect a running platform and the installation."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import sys
 
 import pytest
 from forked import forked_manycore
-from processes import kill_all
+from processes import has_receive_threads, kill_all
 from support import (
     IS_MANYCORE,
     MAPFILES,
@@ -31,7 +31,7 @@ pytestmark = [
 
 @pytest.fixture
 def manycore(start):
-    """Return a function that runs a verb to its end and returns its output."""
+    """Return a function that runs a verb and returns its output."""
 
     def call(*words: str, status: int = 0) -> str:
         program = start(forked_manycore(*words))
@@ -146,6 +146,7 @@ def test_the_rate_is_printed_as_ros2_does(running, start) -> None:
 
 
 def test_status_shows_who_runs_where(running, manycore, platform) -> None:
+    wait_until(lambda: has_receive_threads(platform), "both clusters have one")
     state = json.loads(manycore("status", "--platform", platform, "--json"))[0]
     assert state["alive"]
     nodes = {node for process in state["processes"] for node in process["nodes"]}
@@ -191,8 +192,8 @@ def test_a_shell_with_the_exports_uses_rmw_manycore(platform) -> None:
 
 def test_ctrl_c_ends_a_bridge_well_that_still_reads_its_file(start, tmp_path) -> None:
     config = tmp_path / "bridge.yaml"
-    os.mkfifo(config)  # reading it takes as long as the test wants
+    os.mkfifo(config)  # a read of it blocks until the test writes
     program = start(manycore_command("bridge", "run", config))
-    with config.open("w"):  # returns once the program has it open
+    with config.open("w"):  # returns once the program has opened it
         assert program.stop() == 0, program
     assert program.output == ""

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""`manycore top`: into a pipe, on a terminal, and in the background of one."""
+"""`manycore top`: into a pipe, on a terminal, and as a background job."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ USUAL_SCREEN = "\x1b\\[\\?1049l"
 
 @pytest.fixture
 def at_a_terminal(platform):
-    """Return a function that has a person start a command."""
+    """Return a function that starts a command at a terminal."""
     people = []
 
     def sit_down(*command: object) -> Person:
@@ -37,9 +37,10 @@ def at_a_terminal(platform):
 
 def test_top_shows_nodes_and_topics(talking, start, platform) -> None:
     talker, _ = talking
-    top = start(forked_manycore("top", "--json", "--count", "2", "--period", "0.6"))
-    assert top.wait() == 0, top
-    look = json.loads(top.lines[-1])
+    top = start(forked_manycore("top", "--json", "--period", "0.6"))
+    moved = r'^\{.*"topic": "/chatter", "messages_per_s": (?!0\.0,).*'
+    look = json.loads(top.wait_for(moved).group())
+    assert top.stop() == 0, top
     nodes = {row["node"]: row for row in look["nodes"]}
     assert (nodes["/talker"]["pid"], nodes["/talker"]["core"]) == (talker.pid, 3)
     topics = {row["topic"]: row for row in look["topics"]}
@@ -75,7 +76,7 @@ def test_a_signal_leaves_the_terminal_as_it_was(talking, at_a_terminal, end) -> 
 
 
 def test_in_the_background_it_prints_and_leaves_the_terminal_alone(talking, at_a_terminal) -> None:
-    """A job that the kernel had stopped would make the shell's wait end with 128 + SIGTTOU."""
+    """If the kernel had stopped the job, the shell's wait would return 128 + SIGTTOU."""
     top = " ".join(map(str, manycore_command("top", "--count", "2", "--period", "0.2")))
     person = at_a_terminal("bash", "-mc", f"{top} & wait $!; echo status $?")
     said = person.sees(r"(?s)(.*)status (\d+)\s")

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Traces of real nodes: each take has one flow from its publish, whatever is killed meanwhile."""
+"""Traces of real nodes: each take has one flow from its publish, also after kills."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ pytestmark = [
 
 @pytest.fixture
 def manycore(start):
-    """Return a function that runs a verb to its end and returns its output."""
+    """Return a function that runs a verb and returns its output."""
 
     def call(*words: object, status: int = 0) -> str:
         program = start(forked_manycore(*map(str, words)))
@@ -39,14 +39,14 @@ def manycore(start):
 
 
 def hear(listener, messages: int = 1) -> None:
-    """Wait until so many messages were published and heard from now on."""
+    """Wait until so many more messages were published and received."""
     listener.skip_output()
-    for _ in range(messages + 1):  # the first one may have been on its way
+    for _ in range(messages + 1):  # the first one may have been in transit
         listener.wait_for("I heard")
 
 
 def check_flows(trace) -> int:
-    """Check that each take whose publish is there has one flow, forward in time; how many."""
+    """Check that each take with a known publish has one flow, forward in time; return how many."""
     claims = sum(int((t.events["kind"] == Kind.CLAIM).sum()) for _, t in trace.threads())
     flows = flows_of(trace)
     assert len(flows.flows) + flows.without_publish == claims
@@ -60,7 +60,7 @@ def check_flows(trace) -> int:
 
 
 def check_drawn(path) -> None:
-    """Check that what viewers show of flows leads from a publish to a take."""
+    """Check that the flow events that viewers draw lead from a publish to a take."""
     events = json.loads(path.read_bytes())["traceEvents"]
     slices = defaultdict(list)
     for event in events:
@@ -158,7 +158,7 @@ def test_bridged_hops_are_parts_of_chains(bridge, manycore, tmp_path) -> None:
     manycore("trace", "stop")
     manycore("trace", "save", "-o", tmp_path / "trace.json")
     saved = json.loads(manycore("trace", "latency", tmp_path / "trace.json", "--json"))
-    for chains in (live, saved):  # looking at it took nothing away
+    for chains in (live, saved):  # showing it removed nothing
         parts = {one["chain"][0]: one["parts"] for one in chains}
         assert [part["part"] for part in parts["/news"][:2]] == [
             "bridge in /news",
@@ -182,7 +182,7 @@ def test_what_is_lost_is_told(talking, manycore, tmp_path) -> None:
 
 
 def test_a_trace_of_losses_alone_is_saved(talking, manycore, platform, tmp_path) -> None:
-    """A process without descriptors has no ring."""
+    """A process without free file descriptors has no ring."""
     talker = talking[0]
 
     def lose_all() -> None:
@@ -206,11 +206,11 @@ def test_one_trace_at_a_time_and_none_is_thrown_away(talking, manycore, tmp_path
     assert "not being traced" in manycore("trace", "stop", status=1)
     assert "no node '/nobody'" in manycore("trace", "start", "--node", "/nobody", status=1)
     manycore("trace", "start", "--node", "/talker")
-    assert "one trace at a time" in manycore("trace", "start", status=1)
+    assert "only one trace can run at a time" in manycore("trace", "start", status=1)
     wait_until(
         lambda: json.loads(manycore("trace", "status", "--json"))["events"], "the talker publishes"
     )
-    assert "one trace at a time" in manycore("trace", "start", "--discard", status=1)
+    assert "only one trace can run at a time" in manycore("trace", "start", "--discard", status=1)
     assert json.loads(manycore("trace", "status", "--json"))["events"]
     manycore("trace", "stop")
     assert "was not saved" in manycore("trace", "start", status=1)

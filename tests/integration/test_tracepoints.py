@@ -1,7 +1,7 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 """The rmw's tracepoints of libtracetools, as ros2_tracing and CARET expect them.
 
-Seen through a library in the place of libtracetools: there is no LTTng session here.
+They are seen through a stand-in for libtracetools: there is no LTTng session here.
 """
 
 from __future__ import annotations

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Platforms seen, configured and joined from Python without ROS."""
+"""Platforms inspected, configured and joined from Python without ROS."""
 
 from __future__ import annotations
 
@@ -85,7 +85,7 @@ def test_with_ends_what_it_began(platform: str) -> None:
             rows = seen.processes()
         with pytest.raises(ValueError, match="the view of the platform is closed"):
             seen.processes()
-        assert rows[0].pid == os.getpid()  # rows outlive the view
+        assert rows[0].pid == os.getpid()  # rows stay valid after the view is closed
     with pytest.raises(ValueError, match="the process is closed"):
         member.epoch()
     assert not leftovers(platform)

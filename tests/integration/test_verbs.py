@@ -23,7 +23,7 @@ SLOW = ("--ros-args", "-p", "rate_hz:=0.001")
 
 @pytest.fixture
 def manycore(start):
-    """Return a function that runs a verb to its end and returns its output."""
+    """Return a function that runs a verb and returns its output."""
 
     def call(*words: str, status: int = 0) -> str:
         program = start(forked_manycore(*words))
@@ -117,7 +117,7 @@ def test_parameters_are_read_and_changed(start, manycore, tmp_path) -> None:
 
 
 def fibonacci_by_steps() -> None:
-    """Serve Fibonacci: each line of input is a step, and the last one the end."""
+    """Serve Fibonacci: each line of input is a step, and the last line succeeds."""
     from rclpy.action import ActionServer
     from test_msgs.action import Fibonacci
 
@@ -140,7 +140,7 @@ def test_actions_are_listed_and_get_goals(start, manycore) -> None:
     goal = ("/fibonacci", "test_msgs/action/Fibonacci")
     sender = start(manycore_command("action", "send_goal", "-f", *goal, "{order: 3}"))
     sender.wait_for("^Goal accepted")
-    for _ in range(2):  # rclpy hands over no feedback any more once the result is there
+    for _ in range(2):  # rclpy drops feedback once the result has arrived
         server.say("step")
         sender.wait_for("^Feedback:$")
     server.say("end")

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""`manycore view` at its doors, and the looks it is made of."""
+"""`manycore view`: its HTTP requests, and the snapshots that it serves."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ pytestmark = [
 ]
 
 
-# A node with two workers, which it needs 20 times a second.
+# A node that uses its two workers 20 times a second.
 MATCHER = """
 import os
 import rclpy
@@ -47,7 +47,7 @@ with WorkerMatcher(options, [min(os.sched_getaffinity(0))] * 2) as matcher:
 
 
 def answer(link: str, method: str = "GET", **headers: str) -> tuple[int, str]:
-    """Return status and text of a request."""
+    """Return status and body of a request."""
     named = {name.replace("_", "-"): value for name, value in headers.items()}
     request = urllib.request.Request(link, method=method, headers=named)
     try:
@@ -114,8 +114,11 @@ def test_a_death_is_told_from_a_leave(talking, platform, start) -> None:
     watch = Watch(platform)
     assert watch.look().dead == ()
     talker.signal(signal.SIGKILL)
-    wait_until(lambda: (look := watch.look()) and look.dead, "the death is seen")
-    # A python of its own: a fork ends without the interpreter's clean-up, so it does not leave.
+    looks = []
+    wait_until(lambda: looks.append(watch.look()) or looks[-1].happened, "the death is seen")
+    assert [event.kind for event in looks[-1].happened] == ["died"]
+    assert [member.pid for member in looks[-1].dead] == [talker.pid]  # in the same look
+    # A new interpreter: a fork ends without the interpreter's clean-up and would not leave.
     again = start([sys.executable, "-m", "rmw_manycore_py.examples.talker"])
     wait_until(lambda: not watch.look().dead, "it runs again")
     again.wait_for("Publishing")

@@ -17,10 +17,10 @@ pytestmark = [
     pytest.mark.skipif(not IS_MANYCORE, reason="manycore is about rmw_manycore"),
 ]
 
-# What a screen reader calls an element by its name; such a role without one is silent.
+# A screen reader names elements of these roles; without a name they are silent.
 NAMED_ROLES = ("button", "checkbox", "group", "heading", "link", "list", "log", "region")
 NAMED_ROLES += ("searchbox", "slider", "status")
-NAMELESS = ("list", "log", "status")  # read by what is in them
+NAMELESS = ("list", "log", "status")  # read by their content
 
 
 @pytest.fixture(scope="module")
@@ -102,7 +102,7 @@ def test_the_keyboard_goes_everywhere(talking, view, browser, start) -> None:
 
     browser.press(None, "/", *"chat", "Tab")
     assert browser.focused_text() == "topic /chatter"
-    start(forked_example("lamp"))  # the list is written anew
+    start(forked_example("lamp"))  # the list is rebuilt
     browser.find("[data-node='/lamp']")
     assert browser.focused_text() == "topic /chatter"
     browser.press(None, "Enter")
@@ -138,7 +138,7 @@ def test_light_and_dark_are_chosen(view, browser) -> None:
 
 
 def test_events_are_told_once_and_lead_to_their_node(talking, view, browser) -> None:
-    """Also after the connection was lost: the server then tells all of it again."""
+    """Also after a lost connection: the server then sends everything again."""
     browser.keep_sockets()
     browser.open(view[1])
     browser.find("[data-node='/talker']")

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The formal models of the data path hold, and each of their seeded bugs is found."""
+"""The formal models of the data path hold, and each seeded bug is found."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ spec = importlib.util.spec_from_file_location("check_models", CHECKER)
 assert spec is not None
 assert spec.loader is not None
 check_models = importlib.util.module_from_spec(spec)
-sys.modules[spec.name] = check_models  # dataclasses look their module up
+sys.modules[spec.name] = check_models  # dataclasses look up their module here
 spec.loader.exec_module(check_models)
 
 CASES = check_models.cases()

@@ -8,7 +8,7 @@
 
 #include "transport/queue/subscriber_queue.hpp"
 
-/// A subscriber queue alone, in memory that later forks and nobody else share.
+/// A subscriber queue without a platform, in memory shared only with later forks.
 class BareQueue {
 public:
   BareQueue(uint32_t depth, bool keep_all) {

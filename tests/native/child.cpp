@@ -14,9 +14,9 @@
 #include <stdexcept>
 #include <utility>
 
-#include "patience.hpp"
 #include "platform/error.hpp"
 #include "platform/os_process.hpp"
+#include "waiting.hpp"
 
 using manycore::FileDescriptor;
 
@@ -72,7 +72,7 @@ Lines::Lines(FileDescriptor in, FileDescriptor out) : in_(std::move(in)), out_(s
 void Lines::say(const std::string & line) {
   const std::string text = line + "\n";
   if (write(out_.get(), text.data(), text.size()) != static_cast<ssize_t>(text.size())) {
-    throw std::runtime_error("nobody to say '" + line + "' to");
+    throw std::runtime_error("the other side has ended before '" + line + "' was sent");
   }
 }
 
@@ -85,12 +85,12 @@ std::string Lines::hear() {
   size_t end = unread_.find('\n');
   while (end == std::string::npos) {
     char buffer[4096];
-    if (!has_news(patience_s * 1000)) {
-      throw std::runtime_error("no word for " + std::to_string(patience_s) + " s");
+    if (!has_news(timeout_s * 1000)) {
+      throw std::runtime_error("no line within " + std::to_string(timeout_s) + " s");
     }
     const ssize_t got = read(in_.get(), buffer, sizeof buffer);
     if (got <= 0) {
-      throw std::runtime_error("the other side has ended, its last words: '" + unread_ + "'");
+      throw std::runtime_error("the other side has ended; its last output: '" + unread_ + "'");
     }
     unread_.append(buffer, static_cast<size_t>(got));
     end = unread_.find('\n');
@@ -103,7 +103,7 @@ std::string Lines::hear() {
 void Lines::expect(const std::string & expected) {
   const std::string heard = hear();
   if (heard != expected) {
-    throw std::runtime_error("expected '" + expected + "', heard '" + heard + "'");
+    throw std::runtime_error("expected '" + expected + "', received '" + heard + "'");
   }
 }
 
@@ -113,7 +113,7 @@ bool Role::play(int argc, char ** argv, int & status) {
   if (argc < 3 || std::string(argv[1]) != role_marker) {
     return false;
   }
-  prctl(PR_SET_PDEATHSIG, SIGKILL);  // a test that crashed leaves nobody behind
+  prctl(PR_SET_PDEATHSIG, SIGKILL);  // a test that crashes leaves no child behind
   Lines test{FileDescriptor(STDIN_FILENO), FileDescriptor(STDOUT_FILENO)};
   try {
     roles().at(argv[2])(test, Arguments(argv + 3, argv + argc));
@@ -149,8 +149,8 @@ void Child::wait_until_stopped() {
   int status = 0;
   waitpid(pid_, &status, WUNTRACED);
   if (!WIFSTOPPED(status)) {
-    pid_ = -1;  // the number may be another process's from now on
-    throw std::runtime_error("it has ended instead of standing still");
+    pid_ = -1;  // the pid may belong to another process from now on
+    throw std::runtime_error("the process has ended instead of stopping");
   }
 }
 
@@ -167,7 +167,7 @@ void Child::kill() {
 int Child::wait() {
   const FileDescriptor pidfd = manycore::open_pidfd(pid_);
   pollfd fd{pidfd.get(), POLLIN, 0};
-  if (poll(&fd, 1, patience_s * 1000) != 1) {
+  if (poll(&fd, 1, timeout_s * 1000) != 1) {
     throw std::runtime_error("process " + std::to_string(pid_) + " does not end");
   }
   int status = 0;

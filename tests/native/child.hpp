@@ -10,16 +10,17 @@
 #include "platform/error.hpp"
 #include "platform/file_descriptor.hpp"
 
-/// Lines of text in both directions between a test and a process that it started.
+/// Bidirectional lines of text between a test and a process that it started.
 class Lines {
 public:
   Lines(manycore::FileDescriptor in, manycore::FileDescriptor out);
   void say(const std::string & line);
-  /// The next line. Throws when none comes within `patience_s`, or when the other side has ended.
+  /// Returns the next line. Throws if none arrives within `timeout_s`, or if the other side has
+  /// ended.
   std::string hear();
   /// Throws unless the next line is `expected`.
   void expect(const std::string & expected);
-  /// True when a line, or the end, is there already.
+  /// True if a line or the end of the stream is available within `timeout_ms`.
   bool has_news(int timeout_ms = 0) const;
 
 private:
@@ -30,7 +31,7 @@ private:
 
 using Arguments = std::vector<std::string>;
 
-/// What a process that a test starts does. At file scope:
+/// Behaviour of a process started by a test. Defined at file scope:
 ///   const Role silent_publisher("silent_publisher", [](Lines & test, const Arguments & arguments)
 ///   {...});
 class Role {
@@ -38,23 +39,23 @@ public:
   using Play = std::function<void(Lines & test, const Arguments & arguments)>;
   Role(const char * name, Play play);
 
-  /// Plays the role that this program was started for; false when it was started to run its tests.
+  /// Plays the role that this program was started for; false if it was started to run its tests.
   static bool play(int argc, char ** argv, int & status);
 };
 
-/// For a role, which is no test: throws errno's text, which the test then hears.
+/// For a role, which is no test case: throws the text of errno, which the test receives.
 inline void require(bool done) {
   if (!done) {
-    manycore::throw_errno("a role cannot be played");
+    manycore::throw_errno("the role failed");
   }
 }
 
-/// A process in one of this program's roles: real, so that it can be stopped and killed.
+/// A process in one of this program's roles: a real process that can be stopped and killed.
 class Child {
 public:
   explicit Child(const std::string & role, const Arguments & arguments = {});
   Child(Child && other) noexcept;
-  /// Killed, if it still lives.
+  /// Kills the process if it still lives.
   ~Child();
 
   pid_t pid() const noexcept { return pid_; }
@@ -63,13 +64,13 @@ public:
   std::string hear() { return lines_.hear(); }
   void expect(const std::string & line) { lines_.expect(line); }
 
-  void stop();  ///< SIGSTOP; returns once it stands still
-  /// For one that stops itself: a SIGCONT that came before would be lost.
+  void stop();  ///< SIGSTOP; returns once it is stopped
+  /// For a process that stops itself: a SIGCONT before that would be lost.
   void wait_until_stopped();
   void resume();  ///< SIGCONT
-  void kill();    ///< SIGKILL; returns once it is gone
-  /// Waits for its end: the exit status, or minus the signal that ended it. Throws when it goes on
-  /// for `patience_s`.
+  void kill();    ///< SIGKILL; returns once it has ended
+  /// Waits for the end; returns the exit status, or minus the terminating signal. Throws if the
+  /// process lives longer than `timeout_s`.
   int wait();
 
 private:

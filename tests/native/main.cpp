@@ -1,7 +1,6 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 //
-// Every test program: its doctest cases, or, started with --role, one of the processes that they
-// need.
+// Main program of each test: runs the doctest cases or, with --role, one of the processes they use.
 #define DOCTEST_CONFIG_IMPLEMENT
 #include <doctest/doctest.h>
 
@@ -11,7 +10,7 @@
 #include "private_shm.hpp"
 
 int main(int argc, char ** argv) {
-  std::signal(SIGPIPE, SIG_IGN);  // talking to the dead is an error of the test, with a message
+  std::signal(SIGPIPE, SIG_IGN);  // writing to a dead process becomes an error with a message
   int status = 0;
   if (Role::play(argc, argv, status)) {
     return status;

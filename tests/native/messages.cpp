@@ -4,8 +4,8 @@
 #include <numeric>
 #include <utility>
 
-#include "patience.hpp"
 #include "platform/clock.hpp"
+#include "waiting.hpp"
 
 using namespace manycore;
 
@@ -56,14 +56,14 @@ std::optional<Payload> take(Subscription & subscription) {
 }
 
 Payload take_next(Process & process, Subscription & subscription) {
-  const int64_t end = monotonic_ns() + patience_s * ns_per_s;
+  const int64_t end = monotonic_ns() + timeout_s * ns_per_s;
   while (true) {
     const uint32_t epoch = process.waiters().common().epoch();
     if (const std::optional<Payload> payload = take(subscription)) {
       return *payload;
     }
     if (!process.waiters().common().wait(epoch, end)) {
-      throw std::runtime_error("no message comes");
+      throw std::runtime_error("no message arrives");
     }
   }
 }

@@ -19,11 +19,11 @@ uint64_t publish(
   manycore::Publisher & publisher, uint64_t number, size_t size_bytes = sizeof(Payload),
   uint64_t writer = 1);
 
-/// The next message if there is one; throws when it is torn.
+/// The next message, if there is one. Throws if it is torn.
 std::optional<Payload> take(manycore::Subscription & subscription);
-/// Waits for it; throws when none comes.
+/// Waits for the next message. Throws if none arrives.
 Payload take_next(manycore::Process & process, manycore::Subscription & subscription);
-/// Takes messages until there is none; their numbers.
+/// Takes all available messages; returns their numbers.
 std::vector<uint64_t> take_all(manycore::Subscription & subscription);
 
 /// first, first + 1, .. last

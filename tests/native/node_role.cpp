@@ -7,8 +7,8 @@
 #include <sstream>
 
 #include "messages.hpp"
-#include "patience.hpp"
 #include "platform/clock.hpp"
+#include "waiting.hpp"
 
 using namespace manycore;
 
@@ -55,7 +55,7 @@ class Puppet {
 public:
   explicit Puppet(const Arguments & arguments) : process_(Process::join(placement_of(arguments))) {}
 
-  /// The answer; none for a command that ends the node.
+  /// Returns the answer; empty for a command that ends the node.
   std::string obey(const std::string & line) {
     std::istringstream words(line);
     std::string command;
@@ -84,7 +84,7 @@ private:
     }
   }
 
-  /// Waits for the next message of `writer`; others are passed over.
+  /// Waits for the next message of `writer`, skipping others.
   uint64_t next_of(uint64_t writer) {
     while (true) {
       const Payload payload = take_next(*process_, *subscription_);
@@ -180,6 +180,11 @@ private:
      [this](Words & words) {
        const uint64_t last = number(words);
        return std::to_string(take_ordered(last, number(words)));
+     }},
+    {"take_all",
+     [this](Words &) {
+       ::take_all(*subscription_);
+       return "ok";
      }},
     {"look",
      [this](Words &) {

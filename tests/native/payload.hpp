@@ -6,16 +6,16 @@
 #include <cstring>
 #include <stdexcept>
 
-/// Content of a test message: who wrote it, which one it is, and bytes that follow from both, so
-/// that a message that is torn, mixed or of another length shows.
+/// Content of a test message: writer, number, and bytes derived from both, so that torn, mixed or
+/// truncated messages are detected.
 struct Payload {
   uint64_t writer;
   uint64_t number;  ///< from 1
   uint64_t size_bytes;
 
-  /// `size_bytes` must be at least sizeof(Payload).
+  /// Requires size_bytes >= sizeof(Payload).
   void write(uint8_t * to) const noexcept;
-  /// Throws when the bytes are not what one writer wrote.
+  /// Throws if the bytes are not a complete message of one writer.
   static Payload read(const uint8_t * from, size_t size_bytes);
 
 private:

@@ -12,10 +12,10 @@
 #include <fstream>
 #include <sstream>
 
-#include "patience.hpp"
 #include "transport/layout/topic_dsm_layout.hpp"
 #include "transport/lifecycle/lifecycle.hpp"
 #include "transport/topic_dsm/reader_table.hpp"
+#include "waiting.hpp"
 
 using namespace manycore;
 
@@ -24,7 +24,7 @@ namespace {
 std::string content_of(const std::string & path) {
   std::ifstream file(path, std::ios::binary);
   std::ostringstream content;
-  content << file.rdbuf();  // throws nothing where a process ends meanwhile
+  content << file.rdbuf();  // does not throw if the process ends meanwhile
   return content.str();
 }
 
@@ -43,7 +43,7 @@ std::vector<std::string> entries_of(const std::string & path) {
   return names;
 }
 
-/// State and parent that /proc shows for a process or a thread; state 0 when it is gone.
+/// State and parent of a process or thread from /proc; state 0 if it is gone.
 struct Status {
   char state = 0;
   pid_t parent = 0;
@@ -68,8 +68,8 @@ bool any_thread(pid_t pid, Predicate has) {
   });
 }
 
-/// The half of a daemon that waits until the other one is ready is still there. When it ends, the
-/// kernel lets the other one go on, should somebody have stopped it before.
+/// True while the parent half of a daemon waits for the child. When it ends, the kernel continues
+/// the child if it was stopped before.
 bool is_starting(pid_t pid) {
   const pid_t parent = status_of("/proc/" + std::to_string(pid)).parent;
   return content_of("/proc/" + std::to_string(parent) + "/comm").rfind("manycore", 0) == 0;
@@ -78,20 +78,22 @@ bool is_starting(pid_t pid) {
 }  // namespace
 
 bool is_running(pid_t pid) {
-  // A killed process has its locks until the last of its threads is gone.
+  // A killed process holds its locks until its last thread has ended.
   return any_thread(pid, [](char state) { return state != 'Z' && state != 'X'; });
 }
 
-bool has_pidfds(pid_t pid) {
+bool has_open(pid_t pid, const std::string & file) {
   for (const auto & entry :
        std::filesystem::directory_iterator("/proc/" + std::to_string(pid) + "/fd")) {
     std::error_code gone;
-    if (std::filesystem::read_symlink(entry, gone) == "anon_inode:[pidfd]") {
+    if (std::filesystem::read_symlink(entry, gone) == file) {
       return true;
     }
   }
   return false;
 }
+
+bool has_pidfds(pid_t pid) { return has_open(pid, "anon_inode:[pidfd]"); }
 
 NoDescriptors::NoDescriptors() {
   getrlimit(RLIMIT_NOFILE, &before_);
@@ -117,7 +119,7 @@ TestPlatform::TestPlatform() {
 
 TestPlatform::~TestPlatform() {
   try {
-    wait_until(name_ + " leaves nothing", [&] { return !exists() && receive_threads().empty(); });
+    wait_until(name_ + " to leave nothing", [&] { return !exists() && receive_threads().empty(); });
   } catch (const std::exception & error) {
     FAIL_CHECK(std::string(error.what()), ", directory: ", exists());
     for (const pid_t pid : receive_threads()) {
@@ -235,4 +237,7 @@ SubscriptionHeader & Inspection::header_of(const Subscription & subscription) {
     registry_.endpoints()[slot_of(subscription.gid())].block);
 }
 
-void Inspection::wait_for_reaper() { const Registry::Lock lock(registry_); }
+void Inspection::wait_until_swept(uint32_t left) {
+  wait_until("the closed endpoints are freed", [&] { return closing_endpoints() == left; });
+  const Registry::Lock lock(registry_);
+}

@@ -12,7 +12,7 @@
 #include "transport/process.hpp"
 #include "transport/registry/registry.hpp"
 
-/// A platform of its own for one test. At its end nothing may be left: no file, no receive thread.
+/// A platform for one test. Its destructor checks that no file and no receive thread is left.
 class TestPlatform {
 public:
   TestPlatform();
@@ -22,11 +22,12 @@ public:
   manycore::PlatformPaths paths() const { return manycore::PlatformPaths::of(name_); }
   std::shared_ptr<manycore::Process> join(
     uint32_t cluster = 1, manycore::WaitMode mode = manycore::WaitMode::block) const;
-  /// Pids of the receive threads that run for it.
+  /// Pids of the platform's receive threads.
   std::vector<pid_t> receive_threads() const;
-  /// Waits until the receive thread of `cluster` serves; its pid. `not_this`: a predecessor.
+  /// Waits until the receive thread of `cluster` serves; returns its pid. `not_this` is a
+  /// predecessor.
   pid_t receive_thread(uint32_t cluster, pid_t not_this = 0) const;
-  /// Stops it at a moment when it holds neither the registry lock nor the JoinLock; its pid.
+  /// Stops it while it holds neither the registry lock nor the JoinLock; returns its pid.
   pid_t stop_receive_thread(uint32_t cluster) const;
   bool exists() const;
 
@@ -34,9 +35,9 @@ private:
   std::string name_;
 };
 
-/// A receive thread that stands still while this lives, and holds no lock. Where no other process
-/// is about, the registry lock is then free for those who wait for it briefly or not at all, and
-/// else put off what a test looks for.
+/// Stops a receive thread, which holds no lock, during its lifetime. If no other process is active,
+/// operations that try the registry lock briefly or without waiting then succeed; otherwise they
+/// would postpone what a test checks.
 class Standstill {
 public:
   Standstill(const TestPlatform & platform, uint32_t cluster);
@@ -48,7 +49,7 @@ private:
   pid_t pid_;
 };
 
-/// The registry as seen from outside, for looking at what the interface does not show.
+/// The registry seen from outside, to inspect what the interface does not show.
 class Inspection {
 public:
   explicit Inspection(const TestPlatform & platform) : registry_(platform.paths()) {}
@@ -59,27 +60,31 @@ public:
   uint32_t live_processes();
   /// Slot of the live endpoint with this gid.
   uint32_t slot_of(const manycore::Gid & gid);
-  /// Allocations of a publisher's topic DSM that are in use.
+  /// Number of generations of a publisher's topic DSM that hold memory.
   uint32_t generations_of(const manycore::Publisher & publisher);
-  /// Readers on a publisher's reader table.
+  /// Number of entries in use in a publisher's reader table.
   uint32_t readers_of(const manycore::Publisher & publisher);
   manycore::SubscriptionHeader & header_of(const manycore::Subscription & subscription);
-  /// Endpoints that are gone, and whose memory is not free yet.
+  /// Endpoints that are closed, but whose memory is not freed yet.
   uint32_t closing_endpoints() { return registry_.header().closing_count; }
-  /// A reaper that was seen at work has done all it could when this returns.
-  void wait_for_reaper();
+  /// Returns once only `left` closed endpoints are not freed, and the hold of the registry lock in
+  /// which that came about is over. A reaper closes and frees in several holds.
+  void wait_until_swept(uint32_t left = 0);
 
 private:
   manycore::Registry registry_;
 };
 
-/// Whether a process runs (a zombie does not).
+/// True if a process runs; false for a zombie.
 bool is_running(pid_t pid);
 
-/// True once the watcher of a process sleeps on its receive thread, and opens nothing any more.
+/// True while a process has a descriptor of this file.
+bool has_open(pid_t pid, const std::string & file);
+
+/// True once the process's watcher waits on its receive thread, and opens no more files.
 bool has_pidfds(pid_t pid);
 
-/// While it lives, this process can open no file.
+/// Prevents this process from opening files during its lifetime.
 class NoDescriptors {
 public:
   NoDescriptors();
@@ -91,10 +96,10 @@ private:
   rlimit before_{};
 };
 
-/// SIGSTOP for a process that is no child; returns once all its threads stand still.
+/// SIGSTOP for a process that is not a child; returns once all its threads are stopped.
 void stop_process(pid_t pid);
 
-/// Code and text of the Error that `act` throws; none when it does not.
+/// Code and text of the Error thrown by `act`; empty if it throws none.
 struct Refusal {
   std::optional<manycore::ErrorCode> code;
   std::string text;

@@ -1,9 +1,9 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// Gives this process and its later children an empty /dev/shm of their own, where the system
-/// allows it: tests then meet nobody else's platforms, and may damage the user directory.
+/// Gives this process and its later children a private, empty /dev/shm if the system permits: tests
+/// then see no platforms of other processes, and may damage the user directory.
 void enter_private_shm();
 
-/// True when enter_private_shm() could do so.
+/// True if enter_private_shm() succeeded.
 bool has_private_shm() noexcept;

@@ -11,7 +11,7 @@
 #include <fstream>
 #include <stdexcept>
 
-#include "patience.hpp"
+#include "waiting.hpp"
 
 namespace {
 
@@ -43,11 +43,11 @@ cpu_set_t only(int cpu) {
   return cpus;
 }
 
-/// The signal that stopped a traced process.
+/// Signal that stopped a traced process.
 int wait_for_stop(pid_t pid) {
   int status = 0;
   if (waitpid(pid, &status, 0) != pid || !WIFSTOPPED(status)) {
-    throw std::runtime_error("a stepped process has ended by itself");
+    throw std::runtime_error("a stepped process has ended");
   }
   return WSTOPSIG(status);
 }
@@ -68,7 +68,7 @@ SteppedChild::SteppedChild(const std::string & role, const Arguments & arguments
   require(sched_setaffinity(0, sizeof one, &one) == 0);
   require(sched_setaffinity(pid(), sizeof one, &one) == 0);
   if (wait_for_stop(pid()) != begin_signal) {
-    throw std::runtime_error("a stepped process has not come to its steps");
+    throw std::runtime_error("a stepped process did not reach begin_steps()");
   }
 }
 

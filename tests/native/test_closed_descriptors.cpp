@@ -1,7 +1,7 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 //
-// Programs that become daemons close all descriptors, those of the platform among them; the numbers
-// are then other files'.
+// Programs that become daemons close all descriptors, including those of the platform, and the
+// numbers are then reused for other files.
 #include <doctest/doctest.h>
 
 #include <fcntl.h>
@@ -14,17 +14,17 @@
 
 #include "child.hpp"
 #include "messages.hpp"
-#include "patience.hpp"
 #include "platform_of_test.hpp"
+#include "waiting.hpp"
 
 using namespace manycore;
 
 namespace {
 
-constexpr size_t large_bytes = 1'000'000;  // the topic DSM has to grow for it
+constexpr size_t large_bytes = 1'000'000;  // requires the topic DSM to grow
 constexpr const char * content = "untouched";
 
-/// Closes all descriptors but those to the test, and opens a file under their numbers.
+/// Closes all descriptors except those to the test, and opens a file under their numbers.
 void take_over_descriptors(const std::string & file) {
   for (int fd = 3; fd < 256; ++fd) {
     close(fd);
@@ -64,7 +64,7 @@ const Role daemon_publisher("daemon", [](Lines & test, const Arguments & argumen
 
 }  // namespace
 
-TEST_CASE("a process whose descriptors were closed goes on, and touches no other's file") {
+TEST_CASE("a process whose descriptors were closed continues, and uses no other file by mistake") {
   const TestPlatform platform;
   const auto process = platform.join(2);
   const auto subscription = process->create_subscription(on_topic("/x", keep_last(10)));

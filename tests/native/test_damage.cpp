@@ -1,8 +1,8 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 //
-// Files of a platform that somebody has damaged: who comes gets an error that says what to do, or
-// gets along; nobody crashes or hangs. Random damage is a sample. A file that is cut short while it
-// is mapped ends those who use it (SIGBUS): the kernel leaves no choice.
+// Damaged files of a platform: a joining process gets an error that says what to do, or works; no
+// process crashes or hangs. Random damage is only a sample. A file that is truncated while it is
+// mapped ends its users with SIGBUS, which the kernel makes unavoidable.
 #include <doctest/doctest.h>
 
 #include <sys/stat.h>
@@ -18,11 +18,11 @@
 
 #include "messages.hpp"
 #include "node_role.hpp"
-#include "patience.hpp"
 #include "transport/layout/registry_layout.hpp"
 #include "transport/layout/subscription_layout.hpp"
 #include "transport/layout/topic_dsm_layout.hpp"
 #include "transport/lifecycle/configurator.hpp"
+#include "waiting.hpp"
 
 using namespace manycore;
 
@@ -30,7 +30,7 @@ namespace {
 
 using Bytes = std::vector<char>;
 
-/// Comes, does a bit of everything, and goes.
+/// Joins, uses everything briefly, and leaves.
 const Role visitor("visitor", [](Lines & test, const Arguments & arguments) {
   Placement placement;
   placement.platform = arguments.at(0);
@@ -48,7 +48,7 @@ const Role visitor("visitor", [](Lines & test, const Arguments & arguments) {
   test.say("got along");
 });
 
-/// Damages the blocks of a table of an endpoint of its own, as asked, and closes it.
+/// Damages the blocks of one of its endpoint's tables as requested, and closes the endpoint.
 const Role table_breaker("table_breaker", [](Lines & test, const Arguments & arguments) {
   Placement placement;
   placement.platform = arguments.at(0);
@@ -81,7 +81,7 @@ const Role table_breaker("table_breaker", [](Lines & test, const Arguments & arg
   test.say("got along");
 });
 
-/// What became of a visit: "got along", or "error: ..". Throws when the visitor crashed or hangs.
+/// Result of a visit: "got along", or "error: ..". Throws if the visitor crashed or hangs.
 std::string outcome_of(Child child) {
   const std::string outcome = child.hear();
   const int status = child.wait();
@@ -100,8 +100,7 @@ Bytes read_file(const std::string & path) {
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }
 
-/// Puts another file in the place of one that is in use; those who have it mapped go on with the
-/// old one.
+/// Replaces a file in use by another one; processes that have mapped the old file keep using it.
 void replace_file(const std::string & path, const Bytes & content) {
   const std::string fresh = path + ".new";
   std::ofstream(fresh, std::ios::binary).write(content.data(), static_cast<long>(content.size()));
@@ -109,7 +108,7 @@ void replace_file(const std::string & path, const Bytes & content) {
   CHECK(std::rename(fresh.c_str(), path.c_str()) == 0);
 }
 
-/// A platform with a node in it; small, so that its segments are read and written quickly.
+/// A platform with one node; small, so that its segments are read and written quickly.
 struct Fixture {
   Fixture() {
     Profile profile = host_profile();
@@ -121,7 +120,7 @@ struct Fixture {
     node->tell("publish 1 10 1000");
     receive_thread = platform.receive_thread(1);
   }
-  /// Nobody can be expected to clear away what is damaged.
+  /// The reaper cannot be expected to clean up damaged files.
   ~Fixture() {
     node.reset();
     kill(receive_thread, SIGKILL);
@@ -199,7 +198,7 @@ TEST_CASE("a segment of another platform is refused") {
   CHECK_MESSAGE(outcome.find("belongs to another platform") != std::string::npos, outcome);
 }
 
-TEST_CASE("something else in the place of a file is refused") {
+TEST_CASE("an object of another kind in place of a file is refused") {
   for (const bool is_pipe : {true, false}) {
     for (const std::string kind : {"file", "directory", "link", "pipe"}) {
       if (kind == "pipe" && is_pipe) {
@@ -228,13 +227,13 @@ TEST_CASE("something else in the place of a file is refused") {
   }
 }
 
-TEST_CASE("random words in the tables of a registry in use: visitors get along or get an error") {
+TEST_CASE("random words in the tables of a registry in use: visitors succeed or get an error") {
   for (int round = 0; round < 60; ++round) {
     CAPTURE(round);
     Fixture f;
     const std::string path = f.platform.paths().registry();
     std::fstream file(path, std::ios::binary | std::ios::in | std::ios::out);
-    // The header and the used part of each table.
+    // The header, and the used part of each table.
     const uint64_t parts[] = {
       sizeof(SegmentHeader), process_table_offset, node_table_offset, endpoint_table_offset};
     const uint64_t part = parts[random_bits() % 4];
@@ -249,7 +248,7 @@ TEST_CASE("random words in the tables of a registry in use: visitors get along o
   }
 }
 
-TEST_CASE("random words in a cluster segment in use: visitors get along or get an error") {
+TEST_CASE("random words in a cluster segment in use: visitors succeed or get an error") {
   for (int round = 0; round < 60; ++round) {
     CAPTURE(round);
     Fixture f;
@@ -266,7 +265,7 @@ TEST_CASE("random words in a cluster segment in use: visitors get along or get a
 }
 
 TEST_CASE(
-  "a size of the memory map that is damaged later: nodes keep to the size that they found") {
+  "a memory map size damaged later: nodes keep the size that they loaded when they joined") {
   const TestPlatform platform;
   const auto process = platform.join(1);
   platform.receive_thread(1);
@@ -276,7 +275,8 @@ TEST_CASE(
 }
 
 TEST_CASE(
-  "a table whose block is out of its cluster, or stands there twice, is freed as far as it goes") {
+  "a table with a block outside its cluster, or the same block twice, is freed as far as "
+  "possible") {
   for (const std::string end : {"publisher", "subscription"}) {
     for (const std::string damage : {"leads out", "stands twice"}) {
       CAPTURE(end);

@@ -1,7 +1,7 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 //
-// The segments of a platform are damaged while its nodes are at work: a node that was told to end
-// ends. What it does until then is its own affair; the damage may even have killed it.
+// Segments are damaged while the platform's nodes run: a node that is asked to end, ends. Its
+// behaviour until then is undefined; the damage may even have killed it.
 #include <doctest/doctest.h>
 
 #include <fcntl.h>
@@ -14,11 +14,11 @@
 
 #include "messages.hpp"
 #include "node_role.hpp"
-#include "patience.hpp"
 #include "platform/clock.hpp"
 #include "transport/layout/registry_layout.hpp"
 #include "transport/layout/topic_dsm_layout.hpp"
 #include "transport/lifecycle/configurator.hpp"
+#include "waiting.hpp"
 
 using namespace manycore;
 
@@ -27,7 +27,7 @@ namespace {
 std::atomic<bool> interrupted{false};
 std::atomic<Waiter *> interrupted_waiter{nullptr};
 
-/// As the one of rclpy does: it notifies the process, which sleeps without a limit.
+/// Like rclpy's signal handler: notifies the process, which sleeps without a timeout.
 void handle_interrupt(int) {
   interrupted = true;
   interrupted_waiter.load()->notify();
@@ -62,7 +62,7 @@ const Role busy_node("busy_node", [](Lines & test, const Arguments & arguments) 
         while (!interrupted && subscriptions[i]->claim()) {
         }
       } catch (const std::exception &) {
-        // Damaged.
+        // damaged
       }
     }
     if (!publishes && !interrupted) {
@@ -87,7 +87,8 @@ public:
       REQUIRE(pwrite(fd.get(), &word, sizeof word, static_cast<off_t>(offset)) == sizeof word);
     }
   }
-  /// Tables or header of the registry, or what is in use of a cluster; a little, or all of it.
+  /// Damages tables or header of the registry, or the used part of a cluster, in a few words or
+  /// many.
   void damage_some(const PlatformPaths & paths) {
     const uint64_t words = random_() % 2 == 0 ? 1 + random_() % 20 : 20'000;
     if (random_() % 2 == 0) {
@@ -121,7 +122,7 @@ struct Fixture {
     }
     receive_threads = {platform.receive_thread(1), platform.receive_thread(2)};
   }
-  /// Nobody can be expected to clear away what is damaged.
+  /// The reaper cannot be expected to clean up damaged files.
   ~Fixture() {
     nodes.clear();
     for (const pid_t pid : platform.receive_threads()) {
@@ -141,14 +142,14 @@ struct Fixture {
 
 }  // namespace
 
-TEST_CASE("damaged while nodes are at work: each ends when it is told to") {
+TEST_CASE("damaged while nodes run: each ends when it is asked to") {
   const char * const rounds = std::getenv("MANYCORE_TEST_DAMAGES");
   for (uint32_t round = 0; round < (rounds == nullptr ? 25u : std::stoul(rounds)); ++round) {
     CAPTURE(round);
     Fixture f;
     Damager damager(round);
     damager.damage_some(f.platform.paths());
-    usleep(2000 * (round % 10));  // the nodes meet the damage, or are told at once
+    usleep(2000 * (round % 10));  // the nodes meet the damage, or are asked to end at once
     for (const Child & node : f.nodes) {
       kill(node.pid(), SIGINT);
     }
@@ -172,7 +173,7 @@ TEST_CASE("a process wakes its sleepers though their count in shared memory is d
   CHECK(waiter.epoch() == 1);
 }
 
-TEST_CASE("a push on a damaged queue ends, and has the subscriber look for itself") {
+TEST_CASE("a push to a damaged queue ends, and makes the subscriber resync") {
   TestPlatform platform;
   const auto process = platform.join();
   const auto publisher = process->create_publisher(on_topic("/x", keep_last(3)));
@@ -185,7 +186,7 @@ TEST_CASE("a push on a damaged queue ends, and has the subscriber look for itsel
   CHECK(header.resync.load() == 1);
 }
 
-TEST_CASE("a record's number that belongs elsewhere does not hold up its publisher") {
+TEST_CASE("a record with a foreign number does not block its publisher") {
   TestPlatform platform;
   const auto process = platform.join();
   const auto publisher = process->create_publisher(on_topic("/x", keep_last(3)));

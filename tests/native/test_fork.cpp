@@ -1,6 +1,6 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 //
-// A child of fork() can use nothing of what it inherits, and spoils nothing of it.
+// A child of fork() cannot use what it inherits, and does not harm it.
 #include <doctest/doctest.h>
 
 #include <sys/wait.h>
@@ -11,10 +11,10 @@
 #include <iostream>
 
 #include "messages.hpp"
-#include "patience.hpp"
 #include "platform_of_test.hpp"
 #include "transport/lifecycle/configurator.hpp"
 #include "transport/lifecycle/trace_control.hpp"
+#include "waiting.hpp"
 
 using namespace manycore;
 
@@ -28,11 +28,11 @@ struct Fixture {
     process->create_subscription(on_topic("/x", keep_last(10)));
 };
 
-/// True in a forked child if `act` returns true there, in which nothing else of the test runs.
+/// Forks, and returns the result of `act` in the child, in which nothing else of the test runs.
 bool in_child(const std::function<bool()> & act) {
   const pid_t child = fork();
   if (child == 0) {
-    alarm(patience_s);  // a hang ends as well
+    alarm(timeout_s);  // ends a hang
     bool succeeded = false;
     try {
       succeeded = act();
@@ -52,7 +52,7 @@ bool is_refused(const std::function<void()> & act) {
 
 }  // namespace
 
-TEST_CASE("in a child of fork() all that is inherited fails, with the cure") {
+TEST_CASE("in a child of fork() everything inherited fails, with an error that says what to do") {
   Fixture f;
   publish(*f.publisher, 1);
   CHECK(in_child([&] { return is_refused([&] { publish(*f.publisher, 2); }); }));
@@ -70,7 +70,7 @@ TEST_CASE("in a child of fork() all that is inherited fails, with the cure") {
   CHECK_FALSE(take(*f.subscription));
 }
 
-TEST_CASE("what a child of fork() destroys stays with its parent") {
+TEST_CASE("objects that a child of fork() destroys stay valid in its parent") {
   Fixture f;
   const uint32_t node = f.process->add_node("parent", "/", "");
   const Configurator configurator(f.platform.name() + "-2", host_profile(), {});
@@ -113,11 +113,12 @@ TEST_CASE("a member that was removed as dead notices before it touches memory") 
   Inspection inspection(f.platform);
   Registry & registry = inspection.registry();
   const uint32_t slot = inspection.slot_of(f.publisher->gid());
-  registry.endpoints()[slot].slot.incarnation.fetch_add(1);  // as if reaped, and the slot taken
+  // As if it was reaped and the slot taken.
+  registry.endpoints()[slot].slot.incarnation.fetch_add(1);
   const Refusal refusal = refusal_of([&] { publish(*f.publisher, 1); });
   CHECK(refusal.code == ErrorCode::system);
   CHECK(refusal.says("removed as dead"));
-  f.publisher.reset();  // leaves the slot to whose it is now
+  f.publisher.reset();  // leaves the slot to its new owner
   CHECK(registry.endpoints().is_live(slot));
   registry.endpoints()[slot].slot.incarnation.fetch_sub(1);
 }
@@ -125,7 +126,7 @@ TEST_CASE("a member that was removed as dead notices before it touches memory") 
 TEST_CASE("a child of fork() writes nothing into its parent's trace") {
   Fixture f;
   Registry registry(f.platform.paths());
-  f.platform.receive_thread(1);  // or it may note later that it has come
+  f.platform.receive_thread(1);  // wait for it: it could otherwise trace its start later
   start_trace(registry, {});
   publish(*f.publisher, 1);
   const uint64_t before = trace_state(registry).pending;

@@ -1,6 +1,6 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 //
-// A cluster whose SMEM, or whose file system, is full of messages still takes nodes.
+// A cluster whose SMEM or file system is full of messages still accepts nodes.
 #include <doctest/doctest.h>
 
 #include <sys/mount.h>
@@ -8,9 +8,9 @@
 
 #include "messages.hpp"
 #include "node_role.hpp"
-#include "patience.hpp"
 #include "private_shm.hpp"
 #include "transport/lifecycle/configurator.hpp"
+#include "waiting.hpp"
 
 using namespace manycore;
 
@@ -30,7 +30,7 @@ public:
   FullCluster(uint64_t smem_bytes, const std::vector<TopicConfiguration> & topics)
   : configurator_(platform.name(), profile_of(smem_bytes), topics), process(platform.join()) {}
 
-  /// Topics that grow, each with a history that keeps what is published on it; until none can.
+  /// Publishes on growing topics whose histories keep all messages, until no message fits.
   Refusal fill() {
     Refusal refusal;
     for (size_t size_bytes = mebibyte / 2; size_bytes >= 4096; size_bytes /= 2) {
@@ -38,7 +38,7 @@ public:
         const std::string topic = "/full_" + std::to_string(publishers_.size());
         publishers_.push_back(process->create_publisher(on_topic(topic, transient_local(1))));
         refusal = refusal_of([&] { publish(*publishers_.back(), 1, size_bytes); });
-      } while (refusal.code != ErrorCode::too_large);  // the lock may be another process's
+      } while (refusal.code != ErrorCode::too_large);  // the lock may be held by another process
     }
     return refusal;
   }
@@ -55,7 +55,7 @@ private:
   std::vector<std::unique_ptr<Publisher>> publishers_;
 };
 
-/// As many endpoints as five nodes of rclpy have, in a process that comes late.
+/// Creates as many endpoints as five rclpy nodes have, in a process that joins late.
 const Role latecomer("latecomer", [](Lines & test, const Arguments & arguments) {
   Placement placement;
   placement.platform = arguments.at(0);
@@ -84,22 +84,22 @@ void check_latecomer(const TestPlatform & platform) {
   Child late("latecomer", {platform.name()});
   const std::string refusal = late.hear();
   const bool explains = refusal.find("has no room for") != std::string::npos &&
-                        refusal.find("are kept for nodes") != std::string::npos;
+                        refusal.find("are reserved for further nodes") != std::string::npos;
   CHECK_MESSAGE(explains, refusal);
   CHECK(late.wait() == 0);
 }
 
 }  // namespace
 
-TEST_CASE("a cluster full of topic DSMs takes nodes, publishers, subscriptions, small messages") {
+TEST_CASE("a cluster full of topic DSMs accepts nodes, publishers, subscriptions, small messages") {
   FullCluster full(4 * mebibyte, {});
   const Refusal refusal = full.fill();
   CHECK(refusal.code == ErrorCode::too_large);
-  CHECK_MESSAGE(refusal.says("are kept for nodes"), refusal.text);
+  CHECK_MESSAGE(refusal.says("are reserved for further nodes"), refusal.text);
   check_latecomer(full.platform);
 }
 
-TEST_CASE("a cluster full of fixed topic DSMs takes nodes as well") {
+TEST_CASE("a cluster full of fixed topic DSMs accepts nodes as well") {
   FullCluster full(4 * mebibyte, {{"/fixed", 1, 700'000, 0}});
   std::vector<std::unique_ptr<Publisher>> publishers;
   const Refusal refusal = refusal_of([&] {
@@ -108,16 +108,16 @@ TEST_CASE("a cluster full of fixed topic DSMs takes nodes as well") {
     }
   });
   CHECK(refusal.code == ErrorCode::no_space);
-  CHECK_MESSAGE(refusal.says("are kept for nodes"), refusal.text);
+  CHECK_MESSAGE(refusal.says("are reserved for further nodes"), refusal.text);
   full.fill();
   check_latecomer(full.platform);
 }
 
-TEST_CASE("a cluster that is full because its file system is takes nodes as well") {
+TEST_CASE("a cluster on a full file system accepts nodes as well") {
   if (!has_private_shm()) {
-    return;  // the machine's /dev/shm is not to be filled
+    return;  // never fills the machine's /dev/shm
   }
-  // The kernel frees the files of a platform a moment after the last process of it is gone.
+  // The kernel frees a platform's files shortly after its last process has ended.
   wait_until("earlier platforms are out of memory", [] {
     struct statvfs fs {};
     return statvfs("/dev/shm", &fs) == 0 && fs.f_bfree == fs.f_blocks;

@@ -1,7 +1,7 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 //
-// The graph is read without the registry lock: a reader holds up no change, and a change that
-// stands still holds up no reader; what is read is whole.
+// The graph is read without the registry lock: a reader delays no change, a stopped change delays
+// no reader, and entries are read consistently.
 #include <doctest/doctest.h>
 
 #include <csignal>
@@ -9,14 +9,14 @@
 
 #include "messages.hpp"
 #include "node_role.hpp"
-#include "patience.hpp"
 #include "transport/registry/snapshot.hpp"
+#include "waiting.hpp"
 
 using namespace manycore;
 
 namespace {
 
-/// Reads the graph without end, and answers what it hears.
+/// Reads the graph in a loop, and answers what it hears.
 const Role reader("reader", [](Lines & test, const Arguments & arguments) {
   Registry registry(PlatformPaths::of(arguments.at(0)));
   Graph graph(registry);
@@ -31,7 +31,7 @@ const Role reader("reader", [](Lines & test, const Arguments & arguments) {
   }
 });
 
-/// Stands still while it holds the registry lock, with a topic's chain taken apart.
+/// Stops while holding the registry lock, with a topic's chain broken.
 const Role changer("changer", [](Lines & test, const Arguments & arguments) {
   Registry registry(PlatformPaths::of(arguments.at(0)));
   const Registry::Lock lock(registry);
@@ -40,7 +40,7 @@ const Role changer("changer", [](Lines & test, const Arguments & arguments) {
   raise(SIGSTOP);
 });
 
-/// A name as long as there can be, of one letter.
+/// A name of one repeated letter, nearly of maximum length.
 std::string long_name(char letter) { return "/" + std::string(200, letter); }
 
 bool is_whole(const std::string & text) {
@@ -55,11 +55,11 @@ EndpointSpec endpoint_of(char letter) {
 
 }  // namespace
 
-TEST_CASE("a reader that stands still in the middle of a read holds up no create") {
+TEST_CASE("a reader stopped in the middle of a read delays no create") {
   TestPlatform platform;
   const auto process = platform.join();
   std::vector<std::unique_ptr<Publisher>> publishers;
-  for (int i = 0; i < 200; ++i) {  // a read takes some time
+  for (int i = 0; i < 200; ++i) {  // makes a read take some time
     publishers.push_back(process->create_publisher(on_topic("/x", keep_last(1))));
   }
   Child child("reader", {platform.name()});
@@ -68,7 +68,7 @@ TEST_CASE("a reader that stands still in the middle of a read holds up no create
     CAPTURE(round);
     child.say("on its way");
     child.expect("on its way");
-    const int64_t moment = monotonic_ns() + round * 7'000;  // a different one each time
+    const int64_t moment = monotonic_ns() + round * 7'000;  // different in each round
     while (monotonic_ns() < moment) {
     }
     child.stop();
@@ -79,7 +79,7 @@ TEST_CASE("a reader that stands still in the middle of a read holds up no create
   }
 }
 
-TEST_CASE("a change that stands still holds up no reader: entries are found without its chains") {
+TEST_CASE("a stopped change delays no reader: entries are found without the chains") {
   TestPlatform platform;
   const auto process = platform.join();
   const auto publisher = process->create_publisher(on_topic("/x", keep_last(1)));
@@ -95,8 +95,8 @@ TEST_CASE("a change that stands still holds up no reader: entries are found with
   child.kill();
 }
 
-TEST_CASE("entries that are read while they come and go are whole, and none is missing") {
-  // Cannot prove that no moment goes wrong; it meets many of them.
+TEST_CASE("entries read while others are added and removed are consistent, and none is missing") {
+  // Cannot prove that all interleavings are harmless; it meets many of them.
   TestPlatform platform;
   const auto process = platform.join();
   std::atomic<bool> running{true};
@@ -146,7 +146,7 @@ TEST_CASE("a copy of an entry holds until the slot is closed, or used again") {
   CHECK_FALSE(of_nothing.holds());
 }
 
-TEST_CASE("what is read beside a change is read again; while changes do not cease, not for ever") {
+TEST_CASE("a read concurrent with a change is repeated, but a bounded number of times") {
   TestPlatform platform;
   const auto process = platform.join();
   platform.receive_thread(1);
@@ -171,13 +171,13 @@ TEST_CASE("what is read beside a change is read again; while changes do not ceas
   CHECK(read_between_changes(registry, [](bool is_changing) { return is_changing; }));
 }
 
-TEST_CASE("activity is what endpoints have counted, and what waits in their queues") {
+TEST_CASE("activity reports the counters of endpoints and the length of their queues") {
   TestPlatform platform;
   const auto process = platform.join();
   const auto publisher = process->create_publisher(on_topic("/x", keep_last(10)));
   const auto subscription = process->create_subscription(on_topic("/x", keep_last(10)));
   publish(*publisher, 1);
-  REQUIRE(take(*subscription));  // a look into the new source's topic DSM, not at hints
+  REQUIRE(take(*subscription));  // scans the new source, so it does not use hints
   publish(*publisher, 2);
   publish(*publisher, 3);
   const std::vector<Activity> rows = process->graph().activity();

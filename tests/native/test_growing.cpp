@@ -1,7 +1,8 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 //
-// A publisher takes SMEM for a larger topic DSM under the registry lock, and backs it with memory
-// without: whatever happens to it in between, others go on, and the SMEM is not lost.
+// A publisher reserves SMEM for a larger topic DSM under the registry lock, and backs it with
+// memory without the lock. Whatever happens to it in between, other processes continue, and the
+// SMEM is not lost.
 #include <doctest/doctest.h>
 
 #include <fcntl.h>
@@ -14,10 +15,10 @@
 
 #include "child.hpp"
 #include "messages.hpp"
-#include "patience.hpp"
 #include "platform_of_test.hpp"
 #include "private_shm.hpp"
 #include "transport/topic_dsm/generation.hpp"
+#include "waiting.hpp"
 
 using namespace manycore;
 
@@ -26,7 +27,7 @@ namespace {
 constexpr uint64_t mebibyte = 1 << 20;
 constexpr uint64_t large = 256 * mebibyte;
 
-/// Publishes a large message whenever it is told, and says "ok" or what it is refused with.
+/// Publishes a large message on each command, and answers "ok" or the error.
 const Role greedy("greedy", [](Lines & test, const Arguments & arguments) {
   Placement placement;
   placement.platform = arguments.at(0);
@@ -40,7 +41,7 @@ const Role greedy("greedy", [](Lines & test, const Arguments & arguments) {
   }
 });
 
-/// Takes SMEM for a generation and goes no further. "locked": stands still with the registry lock.
+/// Reserves SMEM for a generation and then stops. "locked": stops holding the registry lock.
 const Role reserver("reserver", [](Lines & test, const Arguments & arguments) {
   Placement placement;
   placement.platform = arguments.at(0);
@@ -70,13 +71,13 @@ const Role reserver("reserver", [](Lines & test, const Arguments & arguments) {
 
 struct Fixture {
   uint64_t used_bytes() { return inspection.used_bytes(); }
-  /// Memory that the cluster's segment has of the system.
+  /// Memory that backs the cluster's segment.
   uint64_t resident_bytes() const {
     struct stat status {};
     stat(platform.paths().cluster(1).c_str(), &status);
     return static_cast<uint64_t>(status.st_blocks) * 512;
   }
-  /// A process that stands still in the middle of backing a large message.
+  /// A process stopped in the middle of backing a large message.
   Child stopped_while_it_backs() {
     while (true) {
       Child greedy("greedy", {platform.name()});
@@ -91,10 +92,8 @@ struct Fixture {
     }
   }
   void wait_until_alone() {
-    wait_until("the dead are gone", [&] {
-      return inspection.live_processes() == 1 && inspection.closing_endpoints() == 0;
-    });
-    inspection.wait_for_reaper();
+    wait_until("the dead are gone", [&] { return inspection.live_processes() == 1; });
+    inspection.wait_until_swept();
   }
 
   TestPlatform platform;
@@ -102,7 +101,7 @@ struct Fixture {
   Inspection inspection{platform};
 };
 
-/// Nearly all of a /dev/shm that is made small, while this lives.
+/// Nearly fills a /dev/shm that is made small, during its lifetime.
 class FullShm {
 public:
   FullShm() {
@@ -127,7 +126,7 @@ private:
 
 }  // namespace
 
-TEST_CASE("a publisher stopped while it backs memory holds up nobody") {
+TEST_CASE("a publisher stopped while it backs memory delays no other process") {
   Fixture f;
   const auto publisher = f.process->create_publisher(on_topic("/other", keep_last(10)));
   const auto subscription = f.process->create_subscription(on_topic("/other", keep_last(10)));
@@ -168,7 +167,7 @@ TEST_CASE("a publisher killed between reservation and backing: the reservation i
   }
 }
 
-TEST_CASE("what a message asks for is reserved, and no more") {
+TEST_CASE("a message reserves what it needs, and no more") {
   Fixture f;
   const uint64_t used = f.used_bytes();
   const auto publisher = f.process->create_publisher(on_topic("/large", keep_last(1)));
@@ -179,7 +178,7 @@ TEST_CASE("what a message asks for is reserved, and no more") {
 
 TEST_CASE("/dev/shm is full when a reservation is backed: an error, and the SMEM is free again") {
   if (!has_private_shm()) {
-    return;  // the machine's /dev/shm is not to be filled
+    return;  // never fills the machine's /dev/shm
   }
   Fixture f;
   Child greedy = f.stopped_while_it_backs();

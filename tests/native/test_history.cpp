@@ -1,14 +1,14 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 //
-// What a late joiner gets, and what KEEP_ALL promises.
+// What a late joiner receives, and what KEEP_ALL guarantees.
 #include <doctest/doctest.h>
 
 #include <future>
 
 #include "messages.hpp"
-#include "patience.hpp"
 #include "platform_of_test.hpp"
 #include "transport/lifecycle/configurator.hpp"
+#include "waiting.hpp"
 
 using namespace manycore;
 
@@ -31,7 +31,7 @@ struct Fixture {
 
 }  // namespace
 
-TEST_CASE("volatile: a late joiner gets what is published from then on") {
+TEST_CASE("volatile: a late joiner gets messages published from then on") {
   Fixture f;
   const auto publisher = f.publisher(transient_local(10));
   publish(*publisher, 1);
@@ -115,14 +115,13 @@ TEST_CASE("RELIABLE + KEEP_ALL: a full topic DSM refuses with a timeout, and los
   CHECK(refusal.says("/fixed"));
   REQUIRE(last >= 4);
   CHECK(take(*subscription)->number == 1);
-  publish(*publisher, last + 1, 100);  // as much room as was taken
+  publish(*publisher, last + 1, 100);  // as much room as was freed
   CHECK(take_all(*subscription) == numbers(2, last + 1));
   CHECK(subscription->lost() == 0);
 }
 
-TEST_CASE("RELIABLE + KEEP_ALL: a publisher that waits goes on as soon as there is room") {
-  // Cannot prove that a wake-up is never lost: one that is shows as a timeout of publish(), most of
-  // the time.
+TEST_CASE("RELIABLE + KEEP_ALL: a waiting publisher continues as soon as there is room") {
+  // Cannot prove that no wake-up is ever lost: most lost wake-ups show as a timeout of publish().
   Fixture f;
   constexpr uint64_t count = 3000;
   const auto publisher = f.publisher(keep_all(), "/fixed");
@@ -142,7 +141,7 @@ TEST_CASE("RELIABLE + KEEP_ALL: a publisher that waits goes on as soon as there 
   receiver.get();
 }
 
-TEST_CASE("RELIABLE + KEEP_ALL: a reader that goes away lets the publisher go on") {
+TEST_CASE("RELIABLE + KEEP_ALL: a reader that is closed lets the publisher continue") {
   Fixture f;
   const auto publisher = f.publisher(keep_all(), "/fixed");
   auto subscription = f.subscription(keep_all(), "/fixed");
@@ -154,7 +153,7 @@ TEST_CASE("RELIABLE + KEEP_ALL: a reader that goes away lets the publisher go on
   }
 }
 
-TEST_CASE("an expired message is deleted: its room is free, although nobody took it") {
+TEST_CASE("an expired message is deleted: its room is free although it was not taken") {
   Fixture f;
   Qos qos = keep_all();
   qos.durability = Durability::transient_local;
@@ -162,14 +161,14 @@ TEST_CASE("an expired message is deleted: its room is free, although nobody took
   const auto publisher = f.publisher(qos, "/fixed");
   const auto subscription = f.subscription(keep_all(), "/fixed");
   const int64_t expired_ns = realtime_ns() - 2 * qos.lifespan_ns;
-  for (int i = 0; i < 1000; ++i) {  // far more than there is room for
+  for (int i = 0; i < 1000; ++i) {  // far more than fit
     publisher->publish(publisher->draft(100), 100, expired_ns);
   }
   publish(*publisher, 1, 100);
   CHECK(take(*subscription)->number == 1);
 }
 
-TEST_CASE("arrivals never fall: hints of expired messages do not make up for later messages") {
+TEST_CASE("arrivals never decrease: hints of expired messages do not offset later messages") {
   Fixture f;
   Qos qos = keep_last(10);
   qos.lifespan_ns = 3600 * ns_per_s;
@@ -182,7 +181,7 @@ TEST_CASE("arrivals never fall: hints of expired messages do not make up for lat
   const auto other = f.publisher(keep_last(10));
   publish(*other, 2);
   const uint64_t before = subscription->arrivals();
-  CHECK(take_all(*subscription).size() == 2);  // finds the new source, and looks into all of them
+  CHECK(take_all(*subscription).size() == 2);  // finds the new source, and scans all of them
   CHECK(subscription->arrivals() == before);
   publish(*other, 3);
   CHECK(subscription->arrivals() == before + 1);

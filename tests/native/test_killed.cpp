@@ -1,9 +1,10 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 //
-// Killed at any instruction: of joining and leaving, of creating and closing endpoints, of publish
-// and take, of reaping others. The test steps a process through one of them, kills it after so many
-// instructions, and finds all that was its own reclaimed and the others unharmed. Only some numbers
-// of instructions are tried, spread over all: MANYCORE_TEST_STEPS says how many.
+// A process is killed at any instruction of joining, leaving, creating and closing endpoints,
+// publishing, taking, and reaping. The test single-steps a process through one of these, kills it
+// after a number of instructions, and checks that everything it owned is reclaimed and other
+// processes are unharmed. Only a sample of instruction counts is tested, spread over all:
+// MANYCORE_TEST_STEPS sets its size.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -12,13 +13,13 @@
 
 #include "messages.hpp"
 #include "node_role.hpp"
-#include "patience.hpp"
 #include "platform_of_test.hpp"
 #include "stepped_child.hpp"
 #include "transport/lifecycle/configurator.hpp"
 #include "transport/lifecycle/lifecycle.hpp"
 #include "transport/lifecycle/trace_control.hpp"
 #include "transport/matching/sweeping.hpp"
+#include "waiting.hpp"
 
 using namespace manycore;
 
@@ -27,7 +28,9 @@ namespace {
 constexpr const char * topic = "/x";
 constexpr const char * crowded_topic = "/crowded";
 constexpr size_t crowd = 100;          // more matches than one turn undoes
-constexpr size_t large_bytes = 5'000;  // the topic DSM has to grow for it
+constexpr size_t large_bytes = 5'000;  // requires the topic DSM to grow
+constexpr const char * sized_topic = "/sized";
+constexpr uint32_t sized_bytes = 300'000;  // freed in several pieces
 
 std::shared_ptr<Process> join(const std::string & platform) {
   Placement placement;
@@ -54,6 +57,14 @@ const Role creates("creates", [](Lines &, const Arguments & arguments) {
   process->remove_node(process->add_node("node", "/", "/"));
   process->create_publisher(on_topic(topic, transient_local(10)));
   process->create_subscription(on_topic(topic, transient_local(10)));
+  finish_steps();
+});
+
+/// A topic DSM that is backed without the registry lock, and given back piece by piece.
+const Role sizes("sizes", [](Lines &, const Arguments & arguments) {
+  const auto process = join(arguments.at(0));
+  begin_steps();
+  process->create_publisher(on_topic(sized_topic, keep_last(1)));
   finish_steps();
 });
 
@@ -94,7 +105,7 @@ const Role closes_many("closes_many", [](Lines &, const Arguments & arguments) {
   finish_steps();
 });
 
-/// As a receive thread that clears away what other processes left.
+/// Acts like a receive thread that reaps other processes.
 const Role reaps("reaps", [](Lines &, const Arguments & arguments) {
   Registry registry(PlatformPaths::of(arguments.at(0)));
   begin_steps();
@@ -103,7 +114,7 @@ const Role reaps("reaps", [](Lines &, const Arguments & arguments) {
   finish_steps();
 });
 
-/// A message that 100 subscriptions want until a newer one comes: their readers are revoked in
+/// A message that 100 subscriptions want until a newer one arrives: their readers are revoked in
 /// several turns.
 const Role sweeps_many("sweeps_many", [](Lines &, const Arguments & arguments) {
   const auto process = join(arguments.at(0));
@@ -126,7 +137,7 @@ Profile small_profile() {
   return profile;
 }
 
-/// A publisher and two subscriptions that have to go on.
+/// A publisher and two subscriptions that must keep working.
 struct Fixture {
   void crowd_topic(bool with_publishers) {
     const EndpointSpec spec = on_topic(crowded_topic, transient_local(1));
@@ -138,7 +149,7 @@ struct Fixture {
     }
   }
 
-  /// Dead nodes with both kinds of endpoints, which the receive thread cannot have reaped.
+  /// Dead nodes with both kinds of endpoints, not reaped by the receive thread.
   void leave_dead_nodes() {
     Node node(platform, 1);
     node.tell(std::string("publisher ") + topic + " 10");
@@ -148,7 +159,7 @@ struct Fixture {
 
   void wait_until_alone() {
     wait_until("the dead are gone from the registry", [&] {
-      take_all(*subscription);  // topic DSMs of the dead wait for it
+      take_all(*subscription);  // topic DSMs of dead publishers wait for these takes
       take_all(*other);
       for (const auto & each : subscriptions) {
         take_all(*each);
@@ -156,10 +167,10 @@ struct Fixture {
       return inspection.live_processes() == 1 && inspection.closing_endpoints() == 0 &&
              process->graph().nodes().empty();
     });
-    inspection.wait_for_reaper();
+    inspection.wait_until_swept();
   }
 
-  /// What others published aside: messages of this fixture arrive, each once.
+  /// Messages of this fixture arrive, each once; those of other publishers are ignored.
   void check_that_it_goes_on() {
     ++number;
     publish(*publisher, number);
@@ -187,7 +198,7 @@ struct Fixture {
   }
 
   TestPlatform platform;
-  Configurator configurator{platform.name(), small_profile(), {}};
+  Configurator configurator{platform.name(), small_profile(), {{sized_topic, 1, sized_bytes, 0}}};
   std::shared_ptr<Process> process = platform.join(1);
   std::unique_ptr<Publisher> publisher =
     process->create_publisher(on_topic(topic, transient_local(2)));
@@ -211,7 +222,7 @@ uint64_t tries() {
   return asked == nullptr ? 4 : std::stoull(asked);
 }
 
-/// Kills a process in `role` after some instructions; how many they were.
+/// Kills a process in `role` after this many instructions; returns how many it executed.
 uint64_t kill_after(Fixture & f, const std::string & role, uint64_t instructions) {
   const bool reaps = role == "reaps";
   std::optional<Standstill> no_other_reaper;
@@ -224,7 +235,7 @@ uint64_t kill_after(Fixture & f, const std::string & role, uint64_t instructions
   SteppedChild child(role, {f.platform.name()});
   const uint64_t done = child.step(instructions);
   child.kill();
-  if (reaps) {  // whatever is next to hold the lock meets what was left half done
+  if (reaps) {  // the next owner of the lock repairs what was left incomplete
     f.process->create_publisher(on_topic("/y", keep_last(1)));
   }
   return done;
@@ -264,6 +275,10 @@ TEST_CASE("killed at any instruction while it creates and closes endpoints") {
   check_kills("creates");
 }
 
+TEST_CASE("killed at any instruction while it backs a large topic DSM, and gives it back") {
+  check_kills("sizes");
+}
+
 TEST_CASE("killed at any instruction while it publishes") { check_kills("publishes"); }
 
 TEST_CASE("killed at any instruction while it takes messages") { check_kills("takes"); }
@@ -272,18 +287,15 @@ TEST_CASE("killed at any instruction while it closes endpoints of many matches")
   check_kills("closes_many");
 }
 
-TEST_CASE("killed at any instruction while it sweeps what many readers are done with") {
+TEST_CASE("killed at any instruction while it sweeps a topic DSM that many readers are done with") {
   check_kills("sweeps_many");
 }
 
-TEST_CASE("killed at any instruction while it clears away what other dead left") {
-  check_kills("reaps");
-}
+TEST_CASE("killed at any instruction while it reaps other dead processes") { check_kills("reaps"); }
 
-// The kernel ends the threads of a killed process one after the other. The main thread's end gives
-// the registry lock to the next process while the thread that proves the process's life still
-// lives.
-TEST_CASE("killed thread by thread while it closes: nothing is freed that publishers know") {
+// The kernel ends the threads of a killed process one by one. The end of the main thread releases
+// the registry lock to another process while the thread that holds the lifeline still lives.
+TEST_CASE("killed thread by thread while it closes: nothing is freed that publishers still use") {
   Fixture f;
   f.platform.receive_thread(1);
   f.check_that_it_goes_on();
@@ -302,7 +314,7 @@ TEST_CASE("killed thread by thread while it closes: nothing is freed that publis
   CHECK(f.inspection.used_bytes() == used);
 }
 
-TEST_CASE("killed after it noted a death: no other reaper notes that death again") {
+TEST_CASE("killed after it recorded a death: no other reaper records that death again") {
   Fixture f;
   f.platform.receive_thread(1);
   const std::atomic<uint64_t> & deaths = f.inspection.registry().header().death_count;
@@ -320,7 +332,7 @@ TEST_CASE("killed after it noted a death: no other reaper notes that death again
   CHECK(deaths.load() == 1);
 }
 
-TEST_CASE("killed while it brings up a platform: the next process does, and 'clean' works") {
+TEST_CASE("killed while it creates a platform: the next process creates it, and 'clean' works") {
   const TestPlatform platform;
   const std::string directory = platform.paths().directory;
   const auto kill_at = [&](size_t files, uint64_t more) {
@@ -345,7 +357,7 @@ TEST_CASE("killed while it brings up a platform: the next process does, and 'cle
   }
 }
 
-TEST_CASE("killed while it makes its trace file: the file goes") {
+TEST_CASE("killed while it creates its trace file: the file is removed") {
   Fixture f;
   f.platform.receive_thread(1);
   start_trace(f.inspection.registry(), {});
@@ -365,7 +377,7 @@ TEST_CASE("killed while it makes its trace file: the file goes") {
   wait_until("the file is gone", [&] { return !is_unfinished(); });
 }
 
-TEST_CASE("killed while it takes a platform away: the receive threads go on with it") {
+TEST_CASE("killed while it removes a platform: the receive threads finish the removal") {
   const TestPlatform platform;
   SteppedChild last("leaves", {platform.name()});
   platform.receive_thread(1);

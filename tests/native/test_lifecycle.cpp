@@ -1,6 +1,6 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 //
-// How a platform comes into being, and that nothing of it stays.
+// Platforms are created on demand and removed completely.
 #include <doctest/doctest.h>
 
 #include <pthread.h>
@@ -16,10 +16,10 @@
 
 #include "messages.hpp"
 #include "node_role.hpp"
-#include "patience.hpp"
 #include "private_shm.hpp"
 #include "transport/lifecycle/configurator.hpp"
 #include "transport/lifecycle/lifecycle.hpp"
+#include "waiting.hpp"
 
 using namespace manycore;
 
@@ -50,7 +50,7 @@ void write_file(const std::string & path, const std::string & content) {
   std::ofstream(path, std::ios::binary) << content;
 }
 
-/// Kills everything of a platform whose nodes are in clusters 1, 2 ..: nodes first or receive
+/// Kills all processes of a platform whose nodes are in clusters 1, 2 ..: nodes first or receive
 /// threads first.
 void kill_whole(const TestPlatform & platform, std::vector<Node> & nodes, bool nodes_first) {
   std::vector<pid_t> receive_threads;
@@ -58,7 +58,7 @@ void kill_whole(const TestPlatform & platform, std::vector<Node> & nodes, bool n
     receive_threads.push_back(platform.receive_thread(cluster));
   }
   for (Node & node : nodes) {
-    node.stop();  // nobody may notice what happens to the others
+    node.stop();  // so that it does not react to the other deaths
   }
   for (const pid_t pid : receive_threads) {
     stop_process(pid);
@@ -77,7 +77,7 @@ void kill_whole(const TestPlatform & platform, std::vector<Node> & nodes, bool n
 
 }  // namespace
 
-TEST_CASE("a join brings up what is missing, for this user alone; a leave takes it away") {
+TEST_CASE("a join creates what is missing, private to this user; a leave removes it") {
   TestPlatform platform;
   CHECK_FALSE(platform.exists());
   {
@@ -91,7 +91,7 @@ TEST_CASE("a join brings up what is missing, for this user alone; a leave takes 
       CAPTURE(file);
       CHECK(permissions_of(file) == 0600);
     }
-    CHECK(permissions_of(platform.paths().cluster(1)) == 0);  // nobody is there
+    CHECK(permissions_of(platform.paths().cluster(1)) == 0);  // no node has joined it
     CHECK(process->graph().processes().size() == 1);
     CHECK(process->graph().clusters().size() == 1);
   }
@@ -118,16 +118,16 @@ TEST_CASE("the platform stays until the last process leaves") {
   CHECK_FALSE(platform.exists());
 }
 
-TEST_CASE("nodes that are all killed leave nothing: the receive threads see to it") {
+TEST_CASE("nodes that are all killed leave nothing: the receive threads clean up") {
   TestPlatform platform;
   std::vector<Node> nodes;
   for (const uint32_t cluster : {1u, 1u, 2u}) {
     nodes.emplace_back(platform, cluster);
     nodes.back().tell("publisher /x 1");
     platform.receive_thread(
-      cluster);  // who is killed before there is one leaves its files to the next start
+      cluster);  // the files of a process killed before it exists are left to the next start
   }
-  nodes.clear();  // ~TestPlatform waits
+  nodes.clear();  // ~TestPlatform waits for this
 }
 
 TEST_CASE("killed whole, then started again: works, and the leftovers are gone") {
@@ -155,7 +155,7 @@ TEST_CASE("killed whole, then started again: works, and the leftovers are gone")
   }
 }
 
-TEST_CASE("clean_platform removes what a dead platform left, and refuses to touch one that lives") {
+TEST_CASE("clean_platform removes a dead platform, and refuses to touch a live one") {
   TestPlatform platform;
   std::vector<Node> nodes;
   nodes.emplace_back(platform, 1);
@@ -168,7 +168,7 @@ TEST_CASE("clean_platform removes what a dead platform left, and refuses to touc
   CHECK_FALSE(platform.exists());
 }
 
-TEST_CASE("a configurator keeps the platform while no node is there, also in its own process") {
+TEST_CASE("a configurator keeps a platform without nodes, also in its own process") {
   TestPlatform platform;
   Profile profile = host_profile();
   profile.clusters = 3;
@@ -192,7 +192,7 @@ TEST_CASE("a configurator keeps the platform while no node is there, also in its
   CHECK_FALSE(platform.exists());
 }
 
-TEST_CASE("a platform outlives its configurator while a node is there") {
+TEST_CASE("a platform outlives its configurator while it has a node") {
   TestPlatform platform;
   auto configurator = std::make_unique<Configurator>(
     platform.name(), host_profile(), std::vector<TopicConfiguration>{});
@@ -222,7 +222,7 @@ TEST_CASE("a join that fails once it has its slot gives it back") {
   REQUIRE(pthread_getattr_default_np(&usual) == 0);
   pthread_attr_t huge;
   pthread_attr_init(&huge);
-  REQUIRE(pthread_attr_setstacksize(&huge, size_t{1} << 47) == 0);  // more than there are addresses
+  REQUIRE(pthread_attr_setstacksize(&huge, size_t{1} << 47) == 0);  // exceeds the address space
   sigset_t before;
   pthread_sigmask(SIG_SETMASK, nullptr, &before);
   const auto join_without_threads = [&] {
@@ -234,7 +234,7 @@ TEST_CASE("a join that fails once it has its slot gives it back") {
   join_without_threads();
   CHECK_FALSE(platform.exists());
   const Node other(platform, 1);
-  platform.receive_thread(1);  // it clears away what the killed node leaves
+  platform.receive_thread(1);  // it reaps the killed node
   for (int i = 0; i < 3; ++i) {
     join_without_threads();
   }
@@ -260,7 +260,7 @@ TEST_CASE("joining and leaving again and again leaves no descriptor open") {
   CHECK(open_descriptors() == before);
 }
 
-TEST_CASE("names that are no platform names never become paths") {
+TEST_CASE("invalid platform names never become paths") {
   for (const std::string & name :
        {std::string(""), std::string("."), std::string(".."), std::string("a/b"),
         std::string(".hidden"), std::string("-x"), std::string("a b"), std::string(65, 'x'),
@@ -268,14 +268,14 @@ TEST_CASE("names that are no platform names never become paths") {
     CAPTURE(name);
     const Refusal refusal = refusal_of([&] { PlatformPaths::of(name); });
     CHECK(refusal.code == ErrorCode::invalid_argument);
-    CHECK(refusal.says("no platform name"));
+    CHECK(refusal.says("not a valid platform name"));
     CHECK_FALSE(PlatformPaths::is_name(name));
     CHECK(std::all_of(
       refusal.text.begin(), refusal.text.end(), [](char c) { return c >= ' ' && c <= '~'; }));
   }
 }
 
-TEST_CASE("no name of a platform collides with a file of its own or of the user's directory") {
+TEST_CASE("no platform name collides with a file of the platform or of the user directory") {
   for (const std::string name : {"lock", "alive", "registry", "cluster-1"}) {
     CAPTURE(name);
     Placement placement;
@@ -288,7 +288,7 @@ TEST_CASE("no name of a platform collides with a file of its own or of the user'
   }
 }
 
-TEST_CASE("a directory whose name is no platform name is not listed") {
+TEST_CASE("a directory whose name is not a valid platform name is not listed") {
   const TestPlatform platform;
   const auto process = platform.join();
   const std::string stray = platform.paths().user_directory + "/\xff" + std::to_string(getpid());
@@ -299,7 +299,7 @@ TEST_CASE("a directory whose name is no platform name is not listed") {
   rmdir(stray.c_str());
 }
 
-TEST_CASE("variables of the environment are checked, and named when they are wrong") {
+TEST_CASE("environment variables are checked, and named when they are invalid") {
   const std::pair<const char *, const char *> wrong[] = {
     {"MANYCORE_CLUSTER", "0"},  {"MANYCORE_CLUSTER", "65"},  {"MANYCORE_CLUSTER", "two"},
     {"MANYCORE_CLUSTER", "1x"}, {"MANYCORE_CLUSTER", "-1"},  {"MANYCORE_CORE", "1024"},
@@ -323,14 +323,14 @@ TEST_CASE("variables of the environment are checked, and named when they are wro
   CHECK(placement.wait_mode == WaitMode::adaptive);
 }
 
-TEST_CASE("a user directory that others may enter, or that is none, is refused") {
+TEST_CASE("a user directory open to other users, or not a directory, is refused") {
   if (!has_private_shm()) {
-    MESSAGE("skipped: needs a /dev/shm of its own");
+    MESSAGE("skipped: needs a private /dev/shm");
     return;
   }
   TestPlatform platform;
   const std::string directory = platform.paths().user_directory;
-  wait_until("nobody is there", [&] { return access(directory.c_str(), F_OK) != 0; });
+  wait_until("earlier platforms to be gone", [&] { return access(directory.c_str(), F_OK) != 0; });
   SUBCASE("open to others") {
     mkdir(directory.c_str(), 0755);
     chmod(directory.c_str(), 0755);
@@ -349,7 +349,7 @@ TEST_CASE("a user directory that others may enter, or that is none, is refused")
 }
 
 TEST_CASE("many processes join and leave at the same time") {
-  // Cannot prove that no order of joins and leaves goes wrong; it meets many of them.
+  // Cannot prove that all interleavings of joins and leaves are harmless; it meets many of them.
   TestPlatform platform;
   for (int round = 0; round < 3; ++round) {
     std::vector<std::unique_ptr<Child>> children;

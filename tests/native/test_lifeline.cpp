@@ -1,6 +1,6 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 //
-// Proof of life: what a held lifeline outlasts, and what ends it.
+// Proof of life: what a held lifeline survives, and what ends it.
 #include <doctest/doctest.h>
 
 #include <poll.h>
@@ -12,10 +12,10 @@
 
 #include "child.hpp"
 #include "node_role.hpp"
-#include "patience.hpp"
 #include "platform/error.hpp"
 #include "platform/lifeline.hpp"
 #include "platform/os_process.hpp"
+#include "waiting.hpp"
 
 using namespace manycore;
 
@@ -35,7 +35,7 @@ struct File {
   std::string path = "/dev/shm/manycore-lifelines-XXXXXX";
 };
 
-/// Holds a line until it is told what to do.
+/// Holds a line until it receives a command.
 const Role holder("holder", [](Lines & test, const Arguments & arguments) {
   auto lifeline = Lifelines::open(arguments.at(0)).try_hold(line);
   if (!lifeline) {
@@ -59,13 +59,13 @@ const Role holder("holder", [](Lines & test, const Arguments & arguments) {
       _exit(0);
     }
     test.hear();
-    _exit(0);  // its child goes on
+    _exit(0);  // its child continues
   } else if (order == "execute") {
     execl("/bin/sleep", "sleep", "1000", nullptr);
   }
 });
 
-/// Plays a role as the first process of a PID namespace, as programs in containers are.
+/// Plays a role as the first process of a PID namespace, as in a container.
 const Role contained("contained", [](Lines & test, const Arguments & arguments) {
   if (unshare(CLONE_NEWPID) != 0 && unshare(CLONE_NEWUSER | CLONE_NEWPID) != 0) {
     throw_errno("cannot make a PID namespace");
@@ -82,7 +82,7 @@ const Role contained("contained", [](Lines & test, const Arguments & arguments) 
 
 }  // namespace
 
-TEST_CASE("a line is held from one moment to the other, also in one's own process") {
+TEST_CASE("a line is held at once, also within one process") {
   const File file;
   const Lifelines here = Lifelines::open(file.path);
   const Lifelines again = Lifelines::open(file.path);
@@ -137,13 +137,13 @@ TEST_CASE("a child of fork() holds nothing: the line ends with the parent") {
   child.expect("holds");
   child.say("fork");
   child.expect("forked");
-  CHECK(lifelines.is_held(line));  // the child let its copy go
+  CHECK(lifelines.is_held(line));  // the child's copy is closed
   child.say("end");
   CHECK(child.wait() == 0);
   CHECK_FALSE(lifelines.is_held(line));
 }
 
-TEST_CASE("another program in the place of the holder holds nothing") {
+TEST_CASE("a holder that executes another program holds nothing") {
   const File file;
   const Lifelines lifelines = Lifelines::open(file.path);
   Child child("holder", {file.path});
@@ -157,7 +157,7 @@ TEST_CASE("lines are seen across PID namespaces") {
   const File file;
   const Lifelines lifelines = Lifelines::open(file.path);
   Child child("contained", {"holder", file.path});
-  const std::string first = child.hear();  // both say something
+  const std::string first = child.hear();  // both answer, in any order
   CHECK(first + child.hear() == (first == "holds" ? "holdscontains" : "containsholds"));
   CHECK(lifelines.is_held(line));
   CHECK(lifelines.holder(line).pid == 1);
@@ -176,7 +176,7 @@ TEST_CASE("lines are seen from inside another PID namespace") {
   CHECK((first + second).find("error: it is held by another process") != std::string::npos);
 }
 
-TEST_CASE("a file that is none of lifelines is refused") {
+TEST_CASE("a file that is not a lifeline file is refused") {
   const File file;
   SUBCASE("empty") { REQUIRE(truncate(file.path.c_str(), 0) == 0); }
   SUBCASE("without its mark") { SharedMemory::open(file.path, 8).at<uint64_t>(0) = 1; }

@@ -1,6 +1,6 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 //
-// Who is matched with whom, what each side is told, and what is left when they part.
+// Which endpoints are matched, what each side is told, and what is left when they are closed.
 #include <doctest/doctest.h>
 
 #include <filesystem>
@@ -38,7 +38,7 @@ Qos best_effort_transient_local() {
 
 }  // namespace
 
-TEST_CASE("an offer must be at least what is requested; the last failing policy is named") {
+TEST_CASE("an offer must be at least what is requested; the last incompatible policy is reported") {
   const Qos reliable = keep_last(10);
   CHECK(last_incompatible_policy(reliable, reliable) == QosPolicy::none);
   CHECK(last_incompatible_policy(reliable, best_effort(1)) == QosPolicy::none);
@@ -77,7 +77,7 @@ TEST_CASE("incompatible ends are counted on both sides, and exchange nothing") {
   CHECK(take_all(*modest) == numbers(1, 1));
 }
 
-TEST_CASE("another type, another topic or another role is no match; only the type is told") {
+TEST_CASE("endpoints of other type, topic or role do not match; only the type is reported") {
   Fixture f;
   const auto publisher = f.publisher(keep_last(10));
   EndpointSpec type = on_topic("/match", keep_last(10));
@@ -95,7 +95,7 @@ TEST_CASE("another type, another topic or another role is no match; only the typ
   }
 }
 
-TEST_CASE("counts of matches follow who comes and goes, in any order") {
+TEST_CASE("match counts follow endpoints that are created and closed, in any order") {
   Fixture f;
   auto first = f.publisher(keep_last(10));
   const auto subscription = f.subscription(keep_last(10));
@@ -127,7 +127,7 @@ TEST_CASE("ignore_local: not matched with publishers of the same process") {
   CHECK_FALSE(subscription->has_data());
 }
 
-TEST_CASE("what a publisher left is still taken after it has gone, then its memory is free") {
+TEST_CASE("messages of a closed publisher are still taken, then its memory is freed") {
   Fixture f;
   const uint64_t used = f.inspection.used_bytes();
   auto publisher = f.publisher(keep_last(10));
@@ -138,12 +138,13 @@ TEST_CASE("what a publisher left is still taken after it has gone, then its memo
   publisher.reset();
   CHECK(subscription->matched().current == 0);
   CHECK(take_all(*subscription) == numbers(1, 5));
+  f.inspection.wait_until_swept();  // by the reaper, if it held the lock at the last take
   CHECK(f.inspection.live_endpoints() == 1);
   subscription.reset();
   CHECK(f.inspection.used_bytes() == used);
 }
 
-TEST_CASE("memory is free as well when the subscription goes without taking") {
+TEST_CASE("memory is freed as well when the subscription is closed without taking") {
   Fixture f;
   const uint64_t used = f.inspection.used_bytes();
   auto publisher = f.publisher(transient_local(10));
@@ -172,7 +173,7 @@ TEST_CASE("a subscription has more publishers than one block of sources holds") 
   }
   CHECK(take_all(*subscription) == numbers(1, publishers.size()));
   publishers.erase(publishers.begin() + 3, publishers.begin() + 30);
-  publishers.push_back(f.publisher(keep_last(1)));  // in a place that became free
+  publishers.push_back(f.publisher(keep_last(1)));  // reuses a free entry
   publish(*publishers.back(), 1000);
   publish(*publishers[10], 1001);
   CHECK(take_all(*subscription) == numbers(1000, 1001));
@@ -212,7 +213,7 @@ TEST_CASE(
   far.tell("subscription /match 10");
   f.platform.receive_thread(2);
   const std::string path = f.platform.paths().pipe(2);
-  // At no moment is there no file: that would be a platform whose files were removed.
+  // Replaces the file atomically: a missing file would mean that the platform was removed.
   std::filesystem::create_hard_link(path, path + ".away");
   std::ofstream(path + ".no_pipe") << "no pipe";
   std::filesystem::rename(path + ".no_pipe", path);
@@ -230,7 +231,7 @@ TEST_CASE(
 }
 
 TEST_CASE("endpoints that are created at the same time are matched once each") {
-  constexpr uint32_t count = 150;  // more than are matched without giving the registry lock back
+  constexpr uint32_t count = 150;  // more than are matched in one turn
   Fixture f;
   std::vector<std::unique_ptr<Publisher>> publishers;
   std::vector<std::unique_ptr<Subscription>> subscriptions;
@@ -252,7 +253,7 @@ TEST_CASE("endpoints that are created at the same time are matched once each") {
   }
 }
 
-TEST_CASE("a match wakes the process only while somebody watches events of endpoints") {
+TEST_CASE("a match wakes the process only while a thread waits for endpoint events") {
   Fixture f;
   Waiter & waiter = f.process->waiters().common();
   const auto publisher = f.publisher(keep_last(10));
@@ -268,7 +269,7 @@ TEST_CASE("a match wakes the process only while somebody watches events of endpo
   f.process->waiters().event_watchers().remove(common_word);
 }
 
-TEST_CASE("values without a meaning are refused by name, and leave nothing behind") {
+TEST_CASE("invalid values are refused by name, and leave nothing behind") {
   Fixture f;
   Qos deadline = keep_last(10);
   deadline.deadline_ns = 0;

@@ -1,17 +1,17 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 //
-// A hint is missing, as after the death of a receive thread, and `resync` says so; the next message
-// comes with its hint. The subscription must not take that one and pass over the other, wherever in
-// its look for messages both come. The test steps a process that looks again and again, and lets
-// them come after each number of instructions that such a look takes.
+// A hint is missing, as after the death of a receive thread, and `resync` is set; the next message
+// arrives with its hint. The subscription must not take the next message before the missing one, at
+// whatever instruction of a take both arrive. The test single-steps a process that takes in a loop,
+// and lets them arrive after each number of instructions of a take.
 #include <doctest/doctest.h>
 
 #include "messages.hpp"
 #include "node_role.hpp"
-#include "patience.hpp"
 #include "platform_of_test.hpp"
 #include "stepped_child.hpp"
 #include "transport/queue/subscriber_queue.hpp"
+#include "waiting.hpp"
 
 using namespace manycore;
 
@@ -19,7 +19,7 @@ namespace {
 
 constexpr const char * topic = "/x";
 
-/// Looks without a system call until it finds a message, and says its number.
+/// Tries to take without a system call until it finds a message, and reports its number.
 const Role looks("looks", [](Lines & test, const Arguments & arguments) {
   Placement placement;
   placement.platform = arguments.at(0);
@@ -52,7 +52,7 @@ uint64_t next_found(SteppedChild & subscriber) {
 
 }  // namespace
 
-TEST_CASE("a message whose hint is missing is not passed over for a later one") {
+TEST_CASE("a message whose hint is missing is not skipped for a later one") {
   const TestPlatform platform;
   const auto process = platform.join(1);
   const auto publisher = process->create_publisher(on_topic(topic, keep_last(10)));

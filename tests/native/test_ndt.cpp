@@ -1,6 +1,7 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-// The kernel for each kind of CPU against the portable one, at the sizes where groups and bins
-// begin and end; its parts where they have a known answer. Sanitizers see what Python tests do not.
+// Compares the kernels of all instruction sets with the portable one, at the sizes where groups and
+// bins begin and end, and tests parts with known answers. Sanitizers check here what Python tests
+// cannot.
 
 #include <doctest/doctest.h>
 
@@ -20,7 +21,7 @@
 namespace manycore::ndt {
 namespace {
 
-/// A noisy ground with steps, 40 m x 40 m.
+/// Noisy ground with steps, 40 m x 40 m.
 std::vector<double> ground() {
   std::mt19937 random(5);
   std::normal_distribution<double> noise(0, 0.05);
@@ -61,7 +62,7 @@ const Pose6 pose{0.3, -0.2, 0.1, 0.02, -0.03, 0.4};
 
 }  // namespace
 
-TEST_CASE("every kind of CPU adds up the same, whatever the size of the scan") {
+TEST_CASE("all instruction sets compute the same sums, whatever the size of the scan") {
   const std::vector<double> points = ground();
   for (const Search search : {Search::radius, Search::direct7, Search::direct1}) {
     const VoxelMap map = build_voxel_map(points.data(), points.size() / 3, map_options(search));
@@ -86,7 +87,7 @@ TEST_CASE("every kind of CPU adds up the same, whatever the size of the scan") {
   }
 }
 
-TEST_CASE("search and derivatives apart are the pass") {
+TEST_CASE("separate search and derivatives equal the combined pass") {
   const std::vector<double> points = ground();
   const VoxelMap map =
     build_voxel_map(points.data(), points.size() / 3, map_options(Search::direct7));
@@ -106,7 +107,7 @@ TEST_CASE("search and derivatives apart are the pass") {
   }
 }
 
-TEST_CASE("cells that see nothing have the empty list") {
+TEST_CASE("cells without voxels in range have the empty list") {
   const std::vector<double> points = ground();
   const VoxelMap map =
     build_voxel_map(points.data(), points.size() / 3, map_options(Search::direct7));
@@ -114,7 +115,7 @@ TEST_CASE("cells that see nothing have the empty list") {
   CHECK(map.view().lists[empty_list] == 0);
 }
 
-TEST_CASE("every bin of a pass is begun once, whoever begins it") {
+TEST_CASE("each bin of a pass is begun once, by any worker") {
   constexpr size_t workers = 3;
   constexpr uint32_t passes = 200;
   std::array<Share, workers> shares{};
@@ -129,13 +130,13 @@ TEST_CASE("every bin of a pass is begun once, whoever begins it") {
   };
   for (uint32_t pass = 1; pass <= passes; ++pass) {
     std::thread other(work, 0, ticket_of(7, pass));
-    work(1, ticket_of(7, pass));  // worker 2 does not come: its share is done all the same
+    work(1, ticket_of(7, pass));  // worker 2 is missing: its share is done anyway
     other.join();
     CHECK(std::all_of(begun.begin(), begun.end(), [&](uint32_t times) { return times == pass; }));
   }
 }
 
-TEST_CASE("eigenvalues and eigenvectors make the matrix") {
+TEST_CASE("eigenvalues and eigenvectors reproduce the matrix") {
   const Matrix3 matrix{{{4, 1, -2}, {1, 2, 0}, {-2, 0, 3}}};
   const Matrix3 again = symmetric_eigen(matrix).map([](double value) { return value; });
   for (size_t i = 0; i < 3; ++i) {
@@ -145,7 +146,7 @@ TEST_CASE("eigenvalues and eigenvectors make the matrix") {
   }
 }
 
-TEST_CASE("the line search comes near the minimum of a parabola") {
+TEST_CASE("the line search approaches the minimum of a parabola") {
   const auto parabola = [](double x) { return LinePoint{x, (x - 2) * (x - 2), 2 * (x - 2)}; };
   CHECK(more_thuente(parabola(0), 4.5, 0.01, 5, parabola) == doctest::Approx(2).epsilon(0.5));
 }

@@ -1,15 +1,14 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 //
-// DEADLINE and LIVELINESS: what is counted, what wakes, and what becomes of publishers that are
-// killed. Durations are either so short that they only have to pass some time, or so long that they
-// cannot pass during a test.
+// DEADLINE and LIVELINESS: counts, wake-ups, and killed publishers. Durations are either so short
+// that they only have to pass at some point, or so long that they cannot pass during a test.
 #include <doctest/doctest.h>
 
 #include "messages.hpp"
 #include "node_role.hpp"
-#include "patience.hpp"
 #include "platform/clock.hpp"
 #include "transport/layout/deadline_clock.hpp"
+#include "waiting.hpp"
 
 using namespace manycore;
 
@@ -50,7 +49,7 @@ bool is_soon(int64_t due_ns, int64_t duration_ns) {
 
 }  // namespace
 
-TEST_CASE("one word counts periods: a message keeps the count and begins a period") {
+TEST_CASE("one word counts periods: a message keeps the count and starts a new period") {
   constexpr uint64_t period = 100;
   uint64_t origin = DeadlineClock::not_started;
   CHECK(DeadlineClock::missed_at(origin, 5000, period) == 0);
@@ -96,7 +95,7 @@ TEST_CASE("a deadline is missed once per period from the first message on, on bo
   CHECK(subscription->deadline_missed().total >= before);
   CHECK(is_soon(subscription->deadline_missed().next_due_ns, short_ns));
   CHECK(is_soon(publisher->deadline_missed().next_due_ns, short_ns));
-  const uint64_t missed = subscription->deadline_missed().total;  // before the clock is read
+  const uint64_t missed = subscription->deadline_missed().total;  // loaded before the clock
   CHECK(missed <= static_cast<uint64_t>((monotonic_ns() - begin_ns) / short_ns));
 }
 
@@ -171,7 +170,7 @@ TEST_CASE("manual liveliness: a lease that runs out is lost once, until the next
   CHECK(subscription->liveliness().not_alive == 0);
 }
 
-TEST_CASE("an assertion wakes only who watches, and only when it changes something") {
+TEST_CASE("an assertion wakes only waiting threads, and only when it changes something") {
   Fixture f;
   const Qos qos = with_lease(long_ns, Liveliness::manual_by_topic);
   const auto subscription = f.subscription(qos);
@@ -190,7 +189,8 @@ TEST_CASE("an assertion wakes only who watches, and only when it changes somethi
   f.process->waiters().event_watchers().remove(common_word);
 }
 
-TEST_CASE("what starts a publisher's clock wakes who slept in its process as nothing was due") {
+TEST_CASE(
+  "starting a publisher's clock wakes threads of its process that sleep without a due time") {
   Fixture f;
   Waiter & waiter = f.process->waiters().common();
   f.process->waiters().event_watchers().add(common_word);
@@ -213,7 +213,7 @@ TEST_CASE("what starts a publisher's clock wakes who slept in its process as not
   f.process->waiters().event_watchers().remove(common_word);
 }
 
-TEST_CASE("a publisher that was killed is not alive until another one takes its place") {
+TEST_CASE("a killed publisher is not alive until another one is matched in its place") {
   Fixture f;
   const auto subscription = f.subscription(with_lease(long_ns, Liveliness::automatic));
   for (const uint32_t cluster : {1u, 2u}) {
@@ -224,8 +224,8 @@ TEST_CASE("a publisher that was killed is not alive until another one takes its 
       CHECK(subscription->liveliness().not_alive == 0);
     }
     wait_until("the death to be known", [&] { return subscription->liveliness().not_alive == 1; });
-    f.inspection.wait_for_reaper();
+    wait_until("its match ends", [&] { return subscription->matched().current == 0; });
+    f.inspection.wait_until_swept();
     CHECK(subscription->liveliness().alive == 0);
-    CHECK(subscription->matched().current == 0);
   }
 }

@@ -1,6 +1,6 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 //
-// The subscriber queue, one thread.
+// The subscriber queue in a single thread.
 #include <doctest/doctest.h>
 
 #include <vector>
@@ -27,7 +27,7 @@ std::vector<uint64_t> pop_all(BareQueue & queue) {
 
 }  // namespace
 
-TEST_CASE("what is pushed is popped in order, with all its parts") {
+TEST_CASE("pushed hints are popped in order, with all their fields") {
   BareQueue queue(8, false);
   queue.push({3, 5, 7});
   queue.push({Hint::source_limit - 1, Hint::incarnation_mask, Hint::number_mask});
@@ -51,7 +51,7 @@ TEST_CASE("numbers and incarnations beyond their bits are cut, and touch nothing
   CHECK(hint.number == 3);
 }
 
-TEST_CASE("capacity is the depth, also where that is no power of two") {
+TEST_CASE("capacity is the depth, even if that is not a power of two") {
   for (const uint32_t depth : {1u, 2u, 3u, 5u, 8u, 10u}) {
     CAPTURE(depth);
     BareQueue queue(depth, false);

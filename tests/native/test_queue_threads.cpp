@@ -1,8 +1,8 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 //
-// Many pushers and one popper at the same time. Cannot prove that an interleaving is harmless that
-// did not occur: docs/model/ explores all of them for a small queue. A pusher delayed for 65,536
-// laps of the queue is out of reach of both. Pushers that die: test_killed_queue.
+// Many pushers and one popper concurrently. Cannot prove that an interleaving that did not occur is
+// harmless: docs/model/ explores all of them for a small queue. Neither covers a pusher delayed for
+// 65,536 laps of the queue. Pushers that die: test_killed.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -22,7 +22,7 @@ struct Load {
   uint64_t hints_each;
 };
 
-/// What the popper saw of the load.
+/// What the popper observed.
 struct Outcome {
   uint64_t popped = 0;
   uint64_t foreign = 0;
@@ -54,7 +54,7 @@ Outcome run(BareQueue & queue, const Load & load) {
   std::vector<uint64_t> last(load.pushers, 0);
   bool more = true;
   while (more) {
-    more = pushing != 0;  // looked at before the queue is emptied
+    more = pushing != 0;  // loaded before the queue is drained
     while (const std::optional<Hint> hint = queue.pop()) {
       look_at(*hint, last, outcome);
     }
@@ -82,7 +82,7 @@ TEST_CASE("KEEP_LAST: every hint is popped or counted as displaced, in the order
   }
 }
 
-TEST_CASE("KEEP_ALL: nothing is displaced; what did not fit is told by resync") {
+TEST_CASE("KEEP_ALL: nothing is displaced; resync reports what did not fit") {
   for (const uint32_t depth : {1u, 16u, 1024u}) {
     CAPTURE(depth);
     BareQueue queue(depth, true);
@@ -94,7 +94,7 @@ TEST_CASE("KEEP_ALL: nothing is displaced; what did not fit is told by resync") 
   }
 }
 
-TEST_CASE("a queue that nobody empties holds the newest") {
+TEST_CASE("a queue that is never popped holds the newest hints") {
   constexpr uint32_t depth = 10;
   BareQueue queue(depth, false);
   std::vector<std::thread> pushers;

@@ -1,29 +1,29 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 //
-// What the dead leave behind is cleared away, and what they published before is not lost. Each case
-// kills at one moment of importance; test_killed goes through the moments in between.
+// What dead processes leave is reclaimed, and what they published before is not lost. Each test
+// case kills at one significant moment; test_killed covers the moments in between.
 #include <doctest/doctest.h>
 
 #include <sys/resource.h>
 
 #include <csignal>
+#include <thread>
 
 #include "messages.hpp"
 #include "node_role.hpp"
-#include "patience.hpp"
 #include "platform/clock.hpp"
+#include "survivor.hpp"
 #include "transport/lifecycle/configurator.hpp"
 #include "transport/lifecycle/lifecycle.hpp"
+#include "transport/new_endpoint.hpp"
 #include "transport/queue/source_table.hpp"
-#include "transport/registry/smem_charge.hpp"
 #include "transport/topic_dsm/topic_dsm_writer.hpp"
 
 using namespace manycore;
 
 namespace {
 
-/// Publishes record 1 as a whole, writes record 2 down as far as asked, and stays so until it is
-/// killed.
+/// Publishes record 1 completely, writes record 2 as far as requested, and then waits to be killed.
 const Role interrupted_publisher("interrupted", [](Lines & test, const Arguments & arguments) {
   Placement placement;
   placement.platform = arguments.at(0);
@@ -44,12 +44,12 @@ const Role interrupted_publisher("interrupted", [](Lines & test, const Arguments
       writer.commit(size, realtime_ns(), number, {});
     }
   }
-  test.say("interrupted");  // nothing is announced
+  test.say("interrupted");  // nothing was announced
   raise(SIGSTOP);
 });
 
-/// Closes a subscription of the dead as far as its first source, which it has not yet taken off its
-/// publisher's reader table; stays so until it is killed.
+/// Closes a subscription of a dead process as far as its first source, whose reader entry is not
+/// removed yet; then waits to be killed.
 const Role half_reaper("half_reaper", [](Lines & test, const Arguments & arguments) {
   Registry registry(PlatformPaths::of(arguments.at(0)));
   const auto slot = static_cast<uint32_t>(std::stoul(arguments.at(1)));
@@ -80,24 +80,10 @@ const Role limited("limited", [](Lines & test, const Arguments & arguments) {
   join_and_stay(test, arguments.at(0));
 });
 
-struct Fixture {
-  TestPlatform platform;
-  std::shared_ptr<Process> process = platform.join(1);
-  Inspection inspection{platform};
-  pid_t receive_thread = platform.receive_thread(1);
-
-  void wait_until_alone() {
-    wait_until("the dead are gone from the registry", [&] {
-      return inspection.live_processes() == 1 && process->graph().nodes().empty();
-    });
-    inspection.wait_for_reaper();
-  }
-};
-
 }  // namespace
 
 TEST_CASE("a subscriber killed while it holds a claim: its publisher goes on, its memory is free") {
-  Fixture f;
+  Survivor f;
   const uint64_t used = f.inspection.used_bytes();
   auto publisher = f.process->create_publisher(on_topic("/x", keep_last(10)));
   const uint64_t used_with_publisher = f.inspection.used_bytes();
@@ -119,8 +105,9 @@ TEST_CASE("a subscriber killed while it holds a claim: its publisher goes on, it
   CHECK(f.inspection.used_bytes() == used);
 }
 
-TEST_CASE("a reaper killed while it closes a subscription: nothing is freed that publishers know") {
-  Fixture f;
+TEST_CASE(
+  "a reaper killed while it closes a subscription: nothing is freed that publishers still use") {
+  Survivor f;
   const auto first = f.process->create_publisher(on_topic("/x", keep_last(10)));
   const auto second = f.process->create_publisher(on_topic("/x", keep_last(10)));
   const uint64_t used = f.inspection.used_bytes();
@@ -139,15 +126,14 @@ TEST_CASE("a reaper killed while it closes a subscription: nothing is freed that
     publish(*second, 1);
   }
   f.wait_until_alone();
-  CHECK(f.inspection.closing_endpoints() == 0);
   CHECK(f.inspection.readers_of(*first) == 0);
   CHECK(f.inspection.readers_of(*second) == 0);
   CHECK(f.inspection.used_bytes() == used);
 }
 
 TEST_CASE(
-  "a publisher killed after it wrote a record, before it told anybody: the record is found") {
-  Fixture f;
+  "a publisher killed after it wrote a record, before it announced it: the record is found") {
+  Survivor f;
   const uint64_t used = f.inspection.used_bytes();
   auto subscription = f.process->create_subscription(on_topic("/x", keep_last(10)));
   SUBCASE("the second record written") {
@@ -166,8 +152,7 @@ TEST_CASE(
   }
   f.wait_until_alone();
   CHECK_FALSE(take(*subscription));
-  // Where the reaper still held the registry when the last record was taken, it looks again later.
-  wait_until("its place is free", [&] { return f.inspection.live_endpoints() == 1; });
+  CHECK(f.inspection.live_endpoints() == 1);
   subscription.reset();
   CHECK(f.inspection.used_bytes() == used);
 }
@@ -175,7 +160,7 @@ TEST_CASE(
 TEST_CASE(
   "a subscriber killed while its publisher follows references: its memory is free once that has "
   "ended") {
-  Fixture f;
+  Survivor f;
   const auto publisher = f.process->create_publisher(on_topic("/x", keep_last(10)));
   const uint64_t used = f.inspection.used_bytes();
   Registry & registry = f.inspection.registry();
@@ -186,22 +171,22 @@ TEST_CASE(
     subscriber.tell("subscription /x 100");
     writer.enter();
   }
-  f.wait_until_alone();
+  f.wait_until_alone(1);
   CHECK(f.inspection.live_endpoints() == 2);
   writer.leave();
-  wait_until("the memory is free", [&] { return f.inspection.used_bytes() == used; });
-  f.inspection.wait_for_reaper();
+  f.inspection.wait_until_swept();
+  CHECK(f.inspection.used_bytes() == used);
   CHECK(f.inspection.live_endpoints() == 1);
 }
 
 TEST_CASE(
-  "a receive thread killed in its phase, with the last node of its cluster: others go on freeing") {
-  Fixture f;
+  "a receive thread killed in its phase, with the last node of its cluster: others still free") {
+  Survivor f;
   {
     Node last(f.platform, 2);
     const pid_t other = f.platform.stop_receive_thread(2);
     f.inspection.registry().clusters().at(2).header().phase.fetch_or(1);  // as in forward()
-    last.stop();  // or else it starts another one
+    last.stop();  // it would otherwise start another one
     kill(other, SIGKILL);
     wait_until("it is killed", [&] { return !is_running(other); });
   }
@@ -215,7 +200,7 @@ TEST_CASE(
   CHECK(f.inspection.used_bytes() == used);
 }
 
-TEST_CASE("a configurator killed after the last process: the platform goes") {
+TEST_CASE("a configurator killed after the last process: the platform is removed") {
   TestPlatform platform;
   Child configurator("configurator", {platform.name()});
   configurator.expect("configured");
@@ -224,13 +209,13 @@ TEST_CASE("a configurator killed after the last process: the platform goes") {
     platform.receive_thread(1);
   }
   Inspection inspection(platform);
-  wait_until("the node is buried", [&] { return inspection.live_processes() == 0; });
+  wait_until("the node is reaped", [&] { return inspection.live_processes() == 0; });
   CHECK(platform.exists());
   configurator.kill();
   wait_until("the platform is gone", [&] { return !platform.exists(); });
 }
 
-TEST_CASE("a reaper without descriptors left buries all the same") {
+TEST_CASE("a reaper without descriptors left still reaps") {
   TestPlatform platform;
   Child first("limited", {platform.name()});
   first.expect("joined");
@@ -242,30 +227,17 @@ TEST_CASE("a reaper without descriptors left buries all the same") {
   }
   CHECK(inspection.live_processes() == 11);
   nodes.clear();
-  wait_until("all are buried", [&] { return inspection.live_processes() == 1; });
-}
-
-TEST_CASE("memory that a killed process had charged is given back") {
-  Fixture f;
-  const ClusterHeader & cluster = f.inspection.registry().clusters().at(1).header();
-  charge_smem(f.inspection.registry(), getpid(), 300);
-  {
-    Node node(f.platform, 1);
-    charge_smem(f.inspection.registry(), node.pid(), 4000);
-    CHECK(cluster.charged_bytes.load() == 4300);
-  }
-  f.wait_until_alone();
-  CHECK(cluster.charged_bytes.load() == 300);
+  wait_until("all are reaped", [&] { return inspection.live_processes() == 1; });
 }
 
 TEST_CASE("what a killed publisher published is still taken") {
-  Fixture f;
+  Survivor f;
   const auto subscription = f.process->create_subscription(on_topic("/x", keep_last(100)));
   Node publisher(f.platform, 2);
   publisher.tell("publisher /x 1");
   {
-    // A topic DSM that cannot grow, as its publisher does not get the registry lock in time,
-    // overwrites.
+    // A topic DSM that cannot grow, because its publisher does not get the registry lock in time,
+    // overwrites messages.
     const Standstill here(f.platform, 1);
     const Standstill there(f.platform, 2);
     publisher.tell("publish 1 50 5000");
@@ -278,8 +250,8 @@ TEST_CASE("what a killed publisher published is still taken") {
   CHECK(subscription->matched().current == 0);
 }
 
-TEST_CASE("a killed cluster, nodes and receive thread, is buried by the others") {
-  Fixture f;
+TEST_CASE("a killed cluster, nodes and receive thread, is reaped by the others") {
+  Survivor f;
   const auto subscription = f.process->create_subscription(on_topic("/x", keep_last(10)));
   {
     Node node(f.platform, 2);
@@ -297,24 +269,12 @@ TEST_CASE("a killed cluster, nodes and receive thread, is buried by the others")
   CHECK(take_next(*f.process, *subscription).writer == static_cast<uint64_t>(successor.pid()));
 }
 
-TEST_CASE("killed before its cluster has a receive thread: those of other clusters see to it") {
-  Fixture f;
+TEST_CASE("killed before its cluster has a receive thread: those of other clusters reap it") {
+  Survivor f;
   for (int i = 0; i < 10; ++i) {
     Node(f.platform, 2).tell("publisher /x 1");
     f.wait_until_alone();
   }
-}
-
-TEST_CASE("slots of the dead are used again") {
-  Fixture f;
-  for (int i = 0; i < 10; ++i) {
-    Node node(f.platform, 1);
-    node.tell("publisher /x 1");
-    node.kill();
-    f.wait_until_alone();
-  }
-  CHECK(f.inspection.registry().processes().high_water() == 2);
-  CHECK(f.inspection.registry().endpoints().high_water() == 1);
 }
 
 TEST_CASE("a receive thread that is started after all nodes died removes the platform") {
@@ -338,50 +298,36 @@ TEST_CASE("a receive thread that is started after all nodes died removes the pla
     registry.processes()[slot].cluster = 1;
     registry.processes().publish(slot);
   }
-  ensure_receive_thread(paths, 1);  // ~TestPlatform waits
+  ensure_receive_thread(paths, 1);  // ~TestPlatform waits for this
 }
 
-TEST_CASE("a process that is killed is noted as dead, one that leaves is not") {
-  Fixture f;
-  f.platform.join(1).reset();
-  f.wait_until_alone();
-  CHECK(f.process->graph().deaths().empty());
-  pid_t killed = 0;
+/// Its endpoint appears between the reaper's first look, without the lock, and its work.
+TEST_CASE("a process taken for dead while it joined: what it created before its death is closed") {
+  Survivor f;
+  Registry & registry = f.inspection.registry();
+  Node node(f.platform, 1);
+  const uint32_t process = registry.processes().high_water() - 1;
+  const Standstill no_other_reaper(f.platform, 1);
+  node.kill();
+  std::thread reaper;
+  uint32_t endpoint = nothing;
   {
-    Node node(f.platform, 1);
-    killed = node.pid();
-    node.kill();
+    const Registry::Lock lock(registry);
+    reaper = std::thread([&] { reap_dead(registry, 1); });
+    wait_until(
+      "the reaper waits for the lock", [&] { return registry.header().mutex.is_waited_for(); });
+    endpoint =
+      new_endpoint(registry, on_topic("/x", keep_last(1)), EndpointKind::publisher, process, 1);
+    registry.endpoints().publish(endpoint);
+    registry.link_endpoint(endpoint);
   }
-  f.wait_until_alone();
-  const std::vector<Death> deaths = f.process->graph().deaths();
-  REQUIRE(deaths.size() == 1);
-  CHECK(deaths[0].pid == killed);
-  CHECK(deaths[0].found_ns <= monotonic_ns());
+  reaper.join();
+  CHECK(f.inspection.live_processes() == 1);
+  CHECK_FALSE(registry.endpoints().is_live(endpoint));
 }
 
-TEST_CASE("a process that is killed once all its contexts are shut down does not count as dead") {
-  Fixture f;
-  const auto killed_after = [&](const std::vector<const char *> & steps) {
-    const size_t before = f.process->graph().deaths().size();
-    {
-      Node node(f.platform, 1);
-      for (const char * const step : steps) {
-        node.tell(step);
-      }
-      node.kill();
-    }
-    f.wait_until_alone();
-    return f.process->graph().deaths().size() != before;
-  };
-  CHECK(killed_after({"begin_context"}));
-  CHECK_FALSE(killed_after({"begin_context", "end_context"}));
-  CHECK(killed_after({"begin_context", "begin_context", "end_context"}));
-  CHECK_FALSE(killed_after({"begin_context", "end_context", "begin_context", "end_context"}));
-  CHECK(killed_after({"begin_context", "end_context", "begin_context"}));
-}
-
-TEST_CASE("a process that cannot sweep what others left leaves all the same") {
-  Fixture f;
+TEST_CASE("a process that cannot sweep what others left still leaves") {
+  Survivor f;
   const Standstill no_other_sweeper(f.platform, 1);
   const auto stuck = f.process->create_subscription(on_topic("/stuck", keep_last(1)));
   {

@@ -1,8 +1,8 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 //
-// Messages between clusters, and what becomes of them when a receive thread is killed, stopped or
-// fed rubbish. The moments of the kills are those that a test can bring about from outside; all
-// others: tests/stress.
+// Messages between clusters, and what happens to them when a receive thread is killed, stopped or
+// fed garbage. The kills here are those that a test can trigger from outside; for all others see
+// tests/stress.
 #include <doctest/doctest.h>
 
 #include <fcntl.h>
@@ -11,25 +11,26 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <csignal>
 #include <vector>
 
 #include "messages.hpp"
 #include "node_role.hpp"
-#include "patience.hpp"
 #include "transport/lifecycle/configurator.hpp"
 #include "transport/lifecycle/lifecycle.hpp"
+#include "waiting.hpp"
 
 using namespace manycore;
 
 namespace {
 
-constexpr uint32_t deep = 30'000;  ///< a queue that no test fills
+constexpr uint32_t deep = 30'000;  ///< depth of a queue that no test fills
 constexpr uint32_t room_for_all_bytes = 2 << 20;
 
-/// A publisher here, in cluster 1, and a subscriber in cluster 2. The topic DSM has room for all
-/// that a test publishes: one that had to grow would overwrite where a receive thread that starts
-/// or buries keeps the registry lock too long.
+/// A publisher in cluster 1, and a subscriber in cluster 2. The topic DSM has room for everything
+/// that a test publishes: one that had to grow would overwrite messages if a starting or reaping
+/// receive thread holds the registry lock too long.
 struct Fixture {
   explicit Fixture(const std::string & subscriber_qos = std::to_string(deep)) {
     subscriber.tell("subscription /x " + subscriber_qos);
@@ -61,7 +62,7 @@ struct Fixture {
 const Role niced("niced", [](Lines & test, const Arguments & arguments) {
   const sched_param none{};
   require(sched_setscheduler(0, SCHED_BATCH, &none) == 0);
-  if (geteuid() == 0) {  // others cannot take it back
+  if (geteuid() == 0) {  // unprivileged processes could not revert it
     require(setpriority(PRIO_PROCESS, 0, 5) == 0);
   }
   require(chdir("/dev/shm") == 0);
@@ -72,12 +73,12 @@ const Role niced("niced", [](Lines & test, const Arguments & arguments) {
   join_and_stay(test, arguments.at(0));
 });
 
-/// Opens a pipe as a stranger would.
+/// Opens a pipe as a foreign process would.
 FileDescriptor open_pipe(const std::string & path) {
   return FileDescriptor(open(path.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC));
 }
 
-/// How many messages nobody has read yet.
+/// Number of unread messages.
 size_t messages_in(const std::string & path) {
   const FileDescriptor pipe = open_pipe(path);
   int bytes = 0;
@@ -91,7 +92,7 @@ TEST_CASE("one eMCOS message per record and cluster, one hint per subscription t
   Fixture f;
   Node other(f.platform, 2);
   other.tell("subscription /x 30000");
-  f.platform.receive_thread(1);  // when it starts it sends a message as well
+  f.platform.receive_thread(1);  // wait for it: it sends a message when it starts
   const uint64_t notifications = f.far_cluster().notifications;
   {
     const Standstill receive_thread(f.platform, 2);
@@ -102,8 +103,8 @@ TEST_CASE("one eMCOS message per record and cluster, one hint per subscription t
   }
   f.expect(1, 100);
   other.tell("take 1 100 1");
-  // A subscriber that looks for itself at the first hint may be faster than the receive thread.
-  // Once it has the hint of a later message, all the others have been pushed.
+  // A subscriber that scans its sources on the first hint may be faster than the receive thread.
+  // Once it has the hint of a later message, all earlier hints were pushed.
   f.publish_numbers(101, 101);
   f.expect(101, 101);
   other.tell("take 101 101 1");
@@ -141,7 +142,26 @@ TEST_CASE("killed again and again under load: replaced, and nothing is lost") {
   f.expect(1, number + 10);
 }
 
-TEST_CASE("what its first node was started with does not stay with it") {
+TEST_CASE("killed: its successor makes each of many subscriptions look for itself") {
+  TestPlatform platform;
+  const auto process = platform.join();
+  Inspection inspection(platform);
+  constexpr size_t more_than_a_turn_visits = 400;
+  std::vector<std::unique_ptr<Subscription>> subscriptions;
+  for (size_t i = 0; i < more_than_a_turn_visits; ++i) {
+    subscriptions.push_back(process->create_subscription(on_topic("/many", keep_last(1))));
+  }
+  const pid_t pid = platform.receive_thread(1);
+  kill(pid, SIGKILL);
+  platform.receive_thread(1, pid);
+  wait_until("all are to look", [&] {
+    return std::all_of(subscriptions.begin(), subscriptions.end(), [&](const auto & each) {
+      return inspection.header_of(*each).resync.load() == 1;
+    });
+  });
+}
+
+TEST_CASE("a receive thread keeps none of its first node's attributes") {
   TestPlatform platform;
   Child node("niced", {platform.name()});
   node.expect("joined");
@@ -158,25 +178,25 @@ TEST_CASE("what its first node was started with does not stay with it") {
   CHECK(files.rlim_cur == files.rlim_max);
 }
 
-TEST_CASE("killed with messages in hand: its successor has the subscriptions look for themselves") {
+TEST_CASE("killed with unforwarded messages: its successor makes the subscriptions resync") {
   Fixture f;
   f.publish_numbers(1, 10);
   f.expect(1, 10);
   const pid_t pid = f.platform.stop_receive_thread(2);
   f.publish_numbers(11, 50);
-  // What it would have read and not forwarded: reads it in its place.
+  // Reads messages in place of the receive thread, as if it had read and not forwarded them.
   const FileDescriptor pipe = open_pipe(f.platform.paths().pipe(2));
   EmcosMessage message{};
   size_t stolen = 0;
   while (read(pipe.get(), &message, sizeof message) == static_cast<ssize_t>(sizeof message)) {
     ++stolen;
   }
-  CHECK(stolen >= 39);  // one may be in the hands of the stopped read
+  CHECK(stolen >= 39);  // the stopped read may have taken one
   kill(pid, SIGKILL);
   f.expect(11, 50);
 }
 
-TEST_CASE("stopped until its pipe overflows: the publisher goes on, and nothing is lost") {
+TEST_CASE("stopped until its pipe overflows: the publisher continues, and nothing is lost") {
   Fixture f;
   f.publish_numbers(1, 10);
   f.expect(1, 10);
@@ -190,7 +210,7 @@ TEST_CASE("stopped until its pipe overflows: the publisher goes on, and nothing 
   wait_until("the overflow is dealt with", [&] { return f.far_cluster().pipe_overflow == 0; });
 }
 
-TEST_CASE("stopped: a shallow subscription has the newest when it goes on") {
+TEST_CASE("stopped: a shallow subscription has the newest messages when it continues") {
   Fixture f("5");
   const pid_t pid = f.platform.stop_receive_thread(2);
   f.publish_numbers(1, 20'000);
@@ -198,7 +218,7 @@ TEST_CASE("stopped: a shallow subscription has the newest when it goes on") {
   f.expect(19'996, 20'000);
 }
 
-TEST_CASE("a receive thread whose pipe is full when the platform goes ends all the same") {
+TEST_CASE("a receive thread whose pipe is full when the platform is removed still ends") {
   TestPlatform platform;
   pid_t pid = 0;
   {
@@ -211,15 +231,15 @@ TEST_CASE("a receive thread whose pipe is full when the platform goes ends all t
     }
   }
   CHECK_FALSE(platform.exists());
-  kill(pid, SIGCONT);  // ~TestPlatform waits
+  kill(pid, SIGCONT);  // ~TestPlatform waits for this
 }
 
-TEST_CASE("strangers in the pipe: whatever they write, nothing crashes and nothing is lost") {
+TEST_CASE("foreign bytes in the pipe: nothing crashes and nothing is lost") {
   Fixture f;
   f.publish_numbers(1, 10);
   f.expect(1, 10);
   const pid_t pid =
-    f.platform.stop_receive_thread(2);  // so that all that follows is read in one piece
+    f.platform.stop_receive_thread(2);  // so that it reads all of the following at once
   std::vector<uint8_t> rubbish;
   SUBCASE("a byte too many") { rubbish.assign(1, 7); }
   SUBCASE("messages of no kind") { rubbish.assign(64 * 10, 0xff); }
@@ -246,7 +266,7 @@ TEST_CASE("strangers in the pipe: whatever they write, nothing crashes and nothi
   CHECK(is_running(pid));
 }
 
-TEST_CASE("messages of an earlier publisher in the same place reach nobody") {
+TEST_CASE("messages of an earlier publisher in the same slot are not delivered") {
   Fixture f;
   const auto place = [&](const Publisher & publisher) {
     return f.inspection.registry()
@@ -257,7 +277,7 @@ TEST_CASE("messages of an earlier publisher in the same place reach nobody") {
   const pid_t pid = f.platform.stop_receive_thread(2);
   f.publish_numbers(1, 10);  // in the pipe
   f.publisher.reset();
-  f.expect(1, 10);  // without the receive thread, as their publisher has gone
+  f.expect(1, 10);  // without the receive thread, because the publisher is gone
   const auto later = f.process->create_publisher(on_topic("/x", keep_last(10)));
   REQUIRE(place(*later) == earlier);
   publish(*later, 1, 100, 2);

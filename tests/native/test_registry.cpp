@@ -1,6 +1,6 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 //
-// The registry's tables and its lock.
+// Tables and lock of the registry.
 #include <doctest/doctest.h>
 
 #include <csignal>
@@ -11,10 +11,10 @@
 #include "child.hpp"
 #include "messages.hpp"
 #include "node_role.hpp"
-#include "patience.hpp"
 #include "platform_of_test.hpp"
 #include "transport/lifecycle/configurator.hpp"
 #include "transport/registry/smem_charge.hpp"
+#include "waiting.hpp"
 
 using namespace manycore;
 
@@ -24,11 +24,11 @@ namespace {
 const Role lock_holder("lock_holder", [](Lines & test, const Arguments & arguments) {
   Registry registry(PlatformPaths::of(arguments.at(0)));
   const Registry::Lock lock(registry);
-  // As a creator of endpoints that gets no further: slots and SMEM that nothing refers to ..
+  // As if creating endpoints was interrupted: slots and SMEM without references ..
   registry.endpoints().take("endpoints");
   registry.nodes().take("nodes");
   registry.clusters().at(1).allocate(1 << 20);
-  // .. and chains that lead nowhere.
+  // .. and broken chains.
   for (std::atomic<uint32_t> & bucket : registry.header().topic_buckets) {
     bucket = nothing;
   }
@@ -91,7 +91,7 @@ TEST_CASE("names that do not fit are refused with their limit, and cost no slot"
   CHECK(f.registry.endpoints().high_water() == 1);
 }
 
-TEST_CASE("a full table says which one and how large it is; one slot given back is one to use") {
+TEST_CASE("a full table reports its name and size; a freed slot can be used again") {
   Fixture f;
   std::vector<uint32_t> nodes;
   for (uint32_t i = 0; i < node_capacity; ++i) {
@@ -104,7 +104,7 @@ TEST_CASE("a full table says which one and how large it is; one slot given back 
   CHECK(f.process->add_node("one_more", "/", "/") == nodes[7]);
 }
 
-TEST_CASE("topics that share a bucket are told apart") {
+TEST_CASE("topics that share a bucket are distinguished") {
   Fixture f;
   // The first two names whose hashes share a bucket.
   std::map<uint64_t, std::string> names;
@@ -159,7 +159,7 @@ TEST_CASE("the topic table holds as many topics as it says, and refuses more") {
   }
 }
 
-TEST_CASE("killed while it holds the lock: the next owner repairs what was half changed") {
+TEST_CASE("killed while it holds the lock: the next owner repairs incomplete changes") {
   // One state in which the owner may die. All instructions of a change: test_killed.
   Fixture f;
   const auto publisher = f.process->create_publisher(on_topic("/repair", keep_last(10)));
@@ -169,7 +169,7 @@ TEST_CASE("killed while it holds the lock: the next owner repairs what was half 
   holder.expect("holding");
   CHECK(f.inspection.used_bytes() > used);
   EndpointEntry * const endpoints = &f.registry.endpoints()[0];
-  endpoints[0].matched_current.store(0);  // as when it died after one of both ends
+  endpoints[0].matched_current.store(0);  // as if it died after updating one end
   endpoints[1].matched_current.store(2);
   holder.kill();
   CHECK(f.process->graph().endpoints_of("/repair").size() == 2);  // without the chains
@@ -192,18 +192,18 @@ TEST_CASE("killed while it holds the lock: a process that can map no cluster lea
   const auto publisher = f.process->create_publisher(on_topic("/repair", keep_last(10)));
   const auto subscription = f.process->create_subscription(on_topic("/repair", keep_last(10)));
   const uint64_t used = f.inspection.used_bytes();
-  const Standstill reaper(f.platform, 1);  // it would repair, too
+  const Standstill reaper(f.platform, 1);  // it would repair as well
   Child holder("lock_holder", {f.platform.name()});
   holder.expect("holding");
   holder.kill();
   Registry late(f.platform.paths());
-  for (int i = 0; i < 2; ++i) {  // the second time it is not the next owner
+  for (int i = 0; i < 2; ++i) {  // the second time the owner has not just died
     const Refusal refusal = refusal_of([&] {
       const NoDescriptors none;
       const Registry::Lock lock(late);
     });
     CHECK(refusal.code == ErrorCode::system);
-    CHECK_MESSAGE(refusal.says("cluster 1 is out of reach"), refusal.text);
+    CHECK_MESSAGE(refusal.says("this process cannot map cluster 1"), refusal.text);
     CHECK_MESSAGE(refusal.says("ulimit -n"), refusal.text);
     CHECK(f.inspection.used_bytes() > used);
     CHECK(f.process->graph().endpoints_of("/repair").size() == 2);  // without the chains
@@ -216,7 +216,7 @@ TEST_CASE("killed while it holds the lock: a process that can map no cluster lea
   CHECK(f.registry.endpoints().high_water() == 3);
 }
 
-TEST_CASE("memory outside the segment counts as SMEM, up to what there is") {
+TEST_CASE("memory outside the segment counts as SMEM, up to the limit") {
   Fixture f;
   Registry & registry = f.inspection.registry();
   const Cluster & cluster = registry.clusters().at(1);
@@ -240,19 +240,19 @@ TEST_CASE("memory outside the segment counts as SMEM, up to what there is") {
   SUBCASE("a repair finds it again") {
     Child holder("lock_holder", {f.platform.name()});
     holder.expect("holding");
-    cluster.header().charged_bytes.store(5);  // as a change that was cut off may leave it
+    cluster.header().charged_bytes.store(5);  // as an interrupted change may leave it
     holder.kill();
     { const Registry::Lock repairs(registry); }
     CHECK(cluster.used_bytes() == used + 1000);
   }
-  SUBCASE("who leaves gives it back") {
+  SUBCASE("a process that leaves frees it") {
     f.process.reset();
     CHECK(cluster.header().charged_bytes.load() == 0);
     CHECK(refusal_of([&] { charge_smem(registry, getpid(), 1); }).says("is not on the platform"));
   }
 }
 
-TEST_CASE("the lock of a stopped owner is waited for, then it is an error that says so") {
+TEST_CASE("the lock of a stopped owner is waited for, then an error says so") {
   Fixture f;
   Child holder("lock_holder", {f.platform.name()});
   holder.expect("holding");
@@ -263,12 +263,12 @@ TEST_CASE("the lock of a stopped owner is waited for, then it is an error that s
   const std::string pid = std::to_string(holder.pid());
   CHECK_MESSAGE(refusal.says("process " + pid + " ("), refusal.text);
   CHECK_MESSAGE(refusal.says("is stopped; continue it (kill -CONT " + pid + ")"), refusal.text);
-  holder.resume();  // its end gives the lock back
+  holder.resume();  // its end releases the lock
   CHECK(holder.wait() == 0);
   CHECK(f.process->graph().nodes().empty());
 }
 
-TEST_CASE("the lock of an owner that goes on: the error does not call it stopped") {
+TEST_CASE("the lock of a running owner: the error does not call it stopped") {
   Fixture f;
   Child owner("busy_owner", {f.platform.name()});
   owner.expect("holding");
@@ -283,7 +283,7 @@ TEST_CASE("the lock of an owner that goes on: the error does not call it stopped
 
 TEST_CASE("the lock of an owner that does not exist: the error names no process") {
   Fixture f;
-  const Standstill receive_thread(f.platform, 1);  // it would wait for the lock, too
+  const Standstill receive_thread(f.platform, 1);  // it would wait for the lock as well
   // The first word of the lock is the owner's thread id. No thread has an id this large.
   RobustMutex & mutex = f.registry.header().mutex;
   constexpr int32_t no_thread = 0x2fff'ffff;
@@ -298,7 +298,7 @@ TEST_CASE("the lock of an owner that does not exist: the error names no process"
   CHECK_MESSAGE(!refusal.says("process "), refusal.text);
 }
 
-TEST_CASE("a lock that is only tried says nothing about its owner") {
+TEST_CASE("the error of a lock that is only tried does not describe its owner") {
   Fixture f;
   Child owner("busy_owner", {f.platform.name()});
   owner.expect("holding");
@@ -310,7 +310,7 @@ TEST_CASE("a lock that is only tried says nothing about its owner") {
   CHECK(owner.wait() == 0);
 }
 
-TEST_CASE("an endpoint whose closing did not get the lock goes with its process") {
+TEST_CASE("an endpoint whose closing did not get the lock is closed with its process") {
   Fixture f;
   const Node other(f.platform, 1);
   const uint64_t used = f.inspection.used_bytes();

@@ -1,6 +1,6 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 //
-// The files of a platform removed under its processes: all of them find out, and none stays.
+// The files of a platform are removed while its processes run: all notice, and none stays.
 #include <doctest/doctest.h>
 
 #include <unistd.h>
@@ -10,8 +10,8 @@
 
 #include "messages.hpp"
 #include "node_role.hpp"
-#include "patience.hpp"
 #include "transport/registry/registry.hpp"
+#include "waiting.hpp"
 
 using namespace manycore;
 
@@ -35,17 +35,17 @@ TEST_CASE("files removed from outside: members notice, and a new platform begins
   for (const pid_t pid : receive_threads) {
     wait_until("the receive threads have ended", [&] { return !is_running(pid); });
   }
-  wait_until("the member knows", [&] { return process->is_cut_off(); });
-  CHECK(refusal_of([&] { publish(*publisher, 1); }).says("start this process again"));
+  wait_until("the member notices", [&] { return process->is_cut_off(); });
+  CHECK(refusal_of([&] { publish(*publisher, 1); }).says("restart this process"));
   CHECK(refusal_of([&] { process->require_membership(); }).code == ErrorCode::system);
   CHECK(platform.receive_threads().empty());
   std::filesystem::remove_all(platform.paths().directory);
   Node newcomer(platform, 1);
   CHECK(newcomer.ask("publisher /x 1") == "ok");
-  platform.receive_thread(1);  // it clears away what the killed newcomer leaves
+  platform.receive_thread(1);  // it reaps the killed newcomer
 }
 
-// A repair maps all clusters, and the files of those that were not mapped are gone.
+// A repair maps all clusters, and the files of unmapped ones are gone.
 TEST_CASE("files removed from outside after the owner of the registry lock was killed") {
   TestPlatform platform;
   const Node other(platform, 2);

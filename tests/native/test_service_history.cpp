@@ -1,6 +1,6 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 //
-// What a server keeps of requests and a client of replies: their depth, as topics do.
+// What a server keeps of requests and a client of replies: their depth, as for topics.
 #include <doctest/doctest.h>
 
 #include "messages.hpp"
@@ -95,7 +95,7 @@ TEST_CASE("KEEP_ALL: requests and replies are not displaced") {
   }
 }
 
-TEST_CASE("KEEP_ALL: what finds no room is refused after the bound, and nothing is lost") {
+TEST_CASE("KEEP_ALL: a message without room is refused after the bound, and nothing is lost") {
   for (const EndpointRole role : roles) {
     Fixture f;
     const Standstill receive_thread(f.platform, 1);
@@ -132,9 +132,9 @@ TEST_CASE("a client that takes nothing keeps no reply from another, and little m
   CHECK(stuck->lost() == 998);
 }
 
-TEST_CASE("what the topic DSM has no room for is counted where it is missed") {
+TEST_CASE("messages that the topic DSM overwrites are counted where they are missed") {
   for (const EndpointRole role : roles) {
-    for (const bool by_hints : {false, true}) {  // else by a look into the topic DSM
+    for (const bool by_hints : {false, true}) {  // else by a scan of the topic DSM
       Fixture f;
       const auto sender = f.sender(role, keep_last(10), "/fixed");
       const auto receiver = f.receiver(role, keep_last(100), "/fixed");
@@ -149,7 +149,7 @@ TEST_CASE("what the topic DSM has no room for is counted where it is missed") {
   }
 }
 
-TEST_CASE("replies are delivered or counted, whatever a look into the topic DSM finds of them") {
+TEST_CASE("replies are delivered or counted, whatever a scan of the topic DSM finds of them") {
   Fixture f;
   const auto server = f.sender(EndpointRole::reply);
   const auto client = f.receiver(EndpointRole::reply, keep_last(5));
@@ -157,13 +157,13 @@ TEST_CASE("replies are delivered or counted, whatever a look into the topic DSM 
   SubscriptionHeader & header = f.inspection.header_of(*client);
   send(*server, *client, 1, 3);
   header.resync.store(1);
-  CHECK(client->arrivals() == 3);  // looks: the replies are in its backlog
+  CHECK(client->arrivals() == 3);  // arrivals() scans: the replies are in its backlog
   send(*server, *other, 1, 100);
   send(*server, *client, 4, 6);
   CHECK(received_numbers(*client) == numbers(2, 6));
   CHECK(client->lost() == 1);
   send(*server, *client, 7, 16);
-  header.resync.store(1);  // what was displaced by now stays so
+  header.resync.store(1);  // hints displaced by now stay displaced
   CHECK(received_numbers(*client) == numbers(12, 16));
   CHECK(client->lost() == 6);
 }
@@ -183,5 +183,5 @@ TEST_CASE("the topic DSM of a server that is gone does not wait for displaced re
   CHECK(received_numbers(*client) == numbers(3, 4));
   CHECK(client->lost() == 2);
   const auto another = f.receiver(EndpointRole::reply, keep_last(1));  // frees what it can
-  CHECK(f.inspection.closing_endpoints() == 0);
+  f.inspection.wait_until_swept();
 }

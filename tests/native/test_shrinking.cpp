@@ -1,16 +1,16 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 //
-// What a burst or a stuck reader made a topic DSM grow to goes back to the cluster and to the
-// system, once a smaller one has been enough for long; and no reference leads into it any more.
+// Memory to which a burst or a stuck reader made a topic DSM grow is returned to the cluster and to
+// the system once a smaller ring has sufficed for long, and no reference leads into it any more.
 #include <doctest/doctest.h>
 
 #include <sys/stat.h>
 
 #include "messages.hpp"
-#include "patience.hpp"
 #include "platform_of_test.hpp"
 #include "transport/layout/topic_dsm_layout.hpp"
 #include "transport/queue/source_table.hpp"
+#include "waiting.hpp"
 
 using namespace manycore;
 
@@ -19,14 +19,14 @@ namespace {
 constexpr uint64_t mebibyte = 1 << 20;
 
 struct Fixture {
-  /// `count` messages, each of which the subscription takes at once.
+  /// Publishes `count` messages; the subscription takes each at once.
   void stream(Publisher & publisher, Subscription & subscription, uint64_t count) {
     for (uint64_t i = 0; i < count; ++i) {
       publish(publisher, ++published, 100);
       REQUIRE(take(subscription)->number == published);
     }
   }
-  /// Messages that are taken only when all are there.
+  /// Publishes `count` messages, which are taken only when all are published.
   void burst(
     Publisher & publisher, Subscription & subscription, uint64_t count, size_t size_bytes) {
     for (uint64_t i = 0; i < count; ++i) {
@@ -39,7 +39,7 @@ struct Fixture {
     return *registry.clusters().find<TopicDsmHeader>(
       registry.endpoints()[inspection.slot_of(publisher.gid())].block);
   }
-  /// First record number of the generation in use: another one for each that was started.
+  /// First record number of the current generation, which identifies it.
   uint64_t newest_generation(const Publisher & publisher) {
     uint64_t newest = 0;
     for (const GenerationEntry & generation : dsm_of(publisher).generations) {
@@ -62,7 +62,7 @@ struct Fixture {
 
 }  // namespace
 
-TEST_CASE("what a burst made a topic DSM grow to is given back, to cluster and system") {
+TEST_CASE("memory added for a burst is returned to cluster and system") {
   Fixture f;
   const auto publisher = f.process->create_publisher(on_topic("/burst", keep_last(10)));
   const auto subscription = f.process->create_subscription(on_topic("/burst", keep_last(1000)));
@@ -77,7 +77,7 @@ TEST_CASE("what a burst made a topic DSM grow to is given back, to cluster and s
   CHECK(f.resident_bytes() < resident + mebibyte / 4);
 }
 
-TEST_CASE("what a stuck reader made a topic DSM grow to is given back once it goes on") {
+TEST_CASE("memory added for a stuck reader is returned once the reader continues") {
   Fixture f;
   const auto publisher = f.process->create_publisher(on_topic("/stuck", keep_last(10)));
   const auto quick = f.process->create_subscription(on_topic("/stuck", keep_last(10)));
@@ -95,7 +95,7 @@ TEST_CASE("what a stuck reader made a topic DSM grow to is given back once it go
   CHECK(f.used_bytes() < used + 16'000);
 }
 
-TEST_CASE("a history that is kept for late joiners outlives the shrinking") {
+TEST_CASE("a history kept for late joiners survives shrinking") {
   Fixture f;
   const auto publisher = f.process->create_publisher(on_topic("/history", transient_local(20)));
   const auto subscription = f.process->create_subscription(on_topic("/history", keep_last(300)));
@@ -111,7 +111,7 @@ TEST_CASE("a history that is kept for late joiners outlives the shrinking") {
   CHECK(f.used_bytes() < used + mebibyte / 4);
 }
 
-TEST_CASE("bursts that come back make a topic DSM change its size a few times, then no more") {
+TEST_CASE("recurring bursts resize a topic DSM a few times, then no more") {
   Fixture f;
   const auto publisher = f.process->create_publisher(on_topic("/bursts", keep_last(10)));
   const auto subscription = f.process->create_subscription(on_topic("/bursts", keep_last(100)));
@@ -131,7 +131,7 @@ TEST_CASE("bursts that come back make a topic DSM change its size a few times, t
   CHECK(changes_later == 0);
 }
 
-TEST_CASE("a generation that a reader may look into is closed, but not given back") {
+TEST_CASE("a generation that a reader may access is closed, but not freed") {
   Fixture f;
   const auto publisher = f.process->create_publisher(on_topic("/claimed", keep_last(10)));
   const auto subscription = f.process->create_subscription(on_topic("/claimed", keep_last(10)));
@@ -145,7 +145,7 @@ TEST_CASE("a generation that a reader may look into is closed, but not given bac
       reader = &source;
       return true;
     });
-  // As of a reader that was stopped before it looked for its record.
+  // As of a reader that was stopped before it looked up its record.
   reader->reading.store(1);
   publish(*publisher, 2, 100'000);  // grows
   for (uint64_t number = 3; number <= 10 && old.first.load() != 0; ++number) {
@@ -160,7 +160,7 @@ TEST_CASE("a generation that a reader may look into is closed, but not given bac
   });
 }
 
-TEST_CASE("an eMCOS message that comes late does not look into a topic DSM that is gone") {
+TEST_CASE("a late eMCOS message does not access a freed topic DSM") {
   Fixture f;
   auto publisher = f.process->create_publisher(on_topic("/gone", keep_last(10)));
   Cluster & cluster = f.inspection.registry().clusters().at(1);

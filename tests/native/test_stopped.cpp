@@ -1,8 +1,8 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 //
-// A subscriber that stands still, stopped by SIGSTOP while it reads a record, holds up nobody. That
-// the publisher's rate does not change is measured by tests/stress; here: that it publishes at all,
-// and what each side then has.
+// A subscriber stopped by SIGSTOP while it reads a record delays no other process. tests/stress
+// measures that the publisher's rate is unchanged; here: that it publishes at all, and what each
+// side has afterwards.
 #include <doctest/doctest.h>
 
 #include <unistd.h>
@@ -12,16 +12,16 @@
 
 #include "messages.hpp"
 #include "node_role.hpp"
-#include "patience.hpp"
 #include "platform/clock.hpp"
 #include "platform/file_lock.hpp"
 #include "transport/lifecycle/configurator.hpp"
+#include "waiting.hpp"
 
 using namespace manycore;
 
 namespace {
 
-/// Stands still while it holds the registry lock, as one may that is stopped while it joins or
+/// Stops while holding the registry lock, as a process may that is stopped while it joins or
 /// leaves.
 const Role lock_holder("lock_holder", [](Lines & test, const Arguments & arguments) {
   Registry registry(PlatformPaths::of(arguments.at(0)));
@@ -42,7 +42,7 @@ const Role large_publisher("large_publisher", [](Lines & test, const Arguments &
   test.say(refusal.code ? refusal.text : "published");
 });
 
-/// Stands still, or goes on, while it holds a lock file, as a process that joins a platform does.
+/// Holds a lock file, as a process does that joins a platform, stopped or running.
 const Role file_lock_holder("file_lock_holder", [](Lines & test, const Arguments & arguments) {
   const auto lock = FileLock::acquire(arguments.at(0), 0);
   test.say("locked");
@@ -50,7 +50,8 @@ const Role file_lock_holder("file_lock_holder", [](Lines & test, const Arguments
 });
 
 struct Fixture {
-  /// Until the receive thread of the only subscription in `cluster` has pushed so many hints.
+  /// Waits until the receive thread of the only subscription in `cluster` has pushed this many
+  /// hints.
   void wait_for_hints(uint32_t cluster, uint64_t count) {
     const ClusterHeader & header = inspection.registry().clusters().at(cluster).header();
     wait_until("the hints", [&] { return header.notifications.load() >= count; });
@@ -71,7 +72,7 @@ void publish_numbers(Publisher & publisher, uint64_t first, uint64_t last) {
 }  // namespace
 
 TEST_CASE(
-  "stopped with a claim: the publisher goes on, others get everything, the claim stays whole") {
+  "stopped with a claim: the publisher continues, others get everything, the claim stays intact") {
   for (const std::string topic : {"/fixed", "/growing"}) {
     for (const uint32_t cluster : {1u, 2u}) {
       CAPTURE(topic);
@@ -99,7 +100,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("stopped between messages: it finds the newest when it goes on") {
+TEST_CASE("stopped between messages: it finds the newest when it continues") {
   Fixture f;
   const auto publisher = f.process->create_publisher(on_topic("/fixed", keep_last(10)));
   Node stopped(f.platform, 2);
@@ -113,7 +114,8 @@ TEST_CASE("stopped between messages: it finds the newest when it goes on") {
   stopped.tell("take 1997 2000 1");
 }
 
-TEST_CASE("stopped in a RELIABLE + KEEP_ALL match: the publisher waits its time, then says so") {
+TEST_CASE(
+  "stopped in a RELIABLE + KEEP_ALL match: the publisher waits its bound, then reports it") {
   Fixture f;
   Qos qos = keep_all();
   const auto publisher = f.process->create_publisher(on_topic("/fixed", qos));
@@ -137,9 +139,9 @@ TEST_CASE("stopped in a RELIABLE + KEEP_ALL match: the publisher waits its time,
   stopped.tell("take " + std::to_string(last + 1) + " " + std::to_string(last + 1) + " 1");
 }
 
-TEST_CASE("a stopped publisher holds up no subscriber, and no other publisher") {
-  // A fixed topic DSM does not grow. Stopped while it holds the registry lock, as growing does for
-  // microseconds, the publisher would hold up whoever creates or closes an endpoint.
+TEST_CASE("a stopped publisher delays no subscriber, and no other publisher") {
+  // A fixed topic DSM does not grow. A publisher stopped during the microseconds in which growing
+  // holds the registry lock would delay processes that create or close endpoints.
   Fixture f;
   const auto near = f.process->create_subscription(on_topic("/fixed", keep_last(10)));
   Node stopped(f.platform, 1);
@@ -160,18 +162,19 @@ TEST_CASE("a stopped publisher holds up no subscriber, and no other publisher") 
   stopped.kill();
 }
 
-TEST_CASE("stopped while it holds the registry lock: publishers whose topic DSM would grow go on") {
+TEST_CASE(
+  "stopped while it holds the registry lock: publishers whose topic DSM would grow continue") {
   Fixture f;
   const auto publisher = f.process->create_publisher(on_topic("/growing", keep_last(1000)));
   const auto near = f.process->create_subscription(on_topic("/growing", keep_last(1000)));
   Node node(f.platform, 1);
   node.tell("publisher /growing 1000");
   const Standstill receive_thread(
-    f.platform, 1);  // its reaper would wait for the lock as well, and have it first
+    f.platform, 1);  // its reaper would wait for the lock as well, and get it first
   Child holder("lock_holder", {f.platform.name()});
   holder.expect("locked");
-  // Each finds a wanted record in its way. To wait for the lock each time would take longer than
-  // Node::tell() does.
+  // Each publish finds a wanted record in its way. Waiting for the lock each time would take longer
+  // than Node::tell() waits.
   node.tell("publish 1 2000 100");
   const Refusal refusal = refusal_of([&] { publish(*publisher, 1, 100'000); });
   CHECK(refusal.code == ErrorCode::timeout);
@@ -205,7 +208,7 @@ TEST_CASE("a first message waits for the registry lock as long as its owner is n
   CHECK(take_all(*near) == numbers(1, 1));
 }
 
-TEST_CASE("the owner of a lock file is named, and stopped only if it is") {
+TEST_CASE("the owner of a lock file is named, and called stopped only if it is") {
   const std::string path = "/dev/shm/manycore-lock-of-test-" + std::to_string(getpid());
   Child holder("file_lock_holder", {path});
   holder.expect("locked");

@@ -1,7 +1,7 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 //
-// One publisher and its readers in one process, one step at a time: what the writer and the readers
-// of a topic DSM make of the memory. At the same time: test_topic_dsm_threads.
+// One publisher and its readers in one process, step by step: how the writer and the readers of a
+// topic DSM use the memory. Concurrently: test_topic_dsm_threads.
 #include <doctest/doctest.h>
 
 #include <numeric>
@@ -17,7 +17,7 @@ namespace {
 
 constexpr size_t mebibyte = 1 << 20;
 
-/// A platform with one node in it, and a topic whose topic DSM has `fixed_bytes`.
+/// A platform with one node, and a topic whose topic DSM has `fixed_bytes`.
 struct Fixture {
   explicit Fixture(uint32_t fixed_bytes = 4096)
   : configurator(platform.name(), host_profile(), {{"/fixed", 1, fixed_bytes, 0}}),
@@ -83,7 +83,7 @@ TEST_CASE("messages of 0 bytes to several MiB arrive as they were, with their me
   CHECK(subscription->lost() == 0);
 }
 
-TEST_CASE("a draft that is dropped was never sent, and its room is used again") {
+TEST_CASE("a dropped draft sends nothing, and its room is reused") {
   Fixture f;
   const auto publisher = f.publisher("/draft", keep_last(10));
   const auto subscription = f.subscription("/draft", keep_last(10));
@@ -99,7 +99,7 @@ TEST_CASE("a draft that is dropped was never sent, and its room is used again") 
   CHECK(take_all(*subscription) == numbers(1, 1));
 }
 
-TEST_CASE("early release: a reader that keeps up keeps the stream in one place") {
+TEST_CASE("early release: a stream whose reader keeps up stays in the same bytes") {
   Fixture f;
   const auto publisher = f.publisher("/stream", keep_last(10));
   const auto subscription = f.subscription("/stream", keep_last(10));
@@ -124,8 +124,9 @@ TEST_CASE("without readers nothing is kept and nothing grows") {
   CHECK(f.counters(*publisher).overwritten == 0);
 }
 
-TEST_CASE("a reader that lags makes the topic DSM grow; what it took is given back") {
+TEST_CASE("a lagging reader makes the topic DSM grow; what it has taken is freed") {
   Fixture f;
+  const Standstill receive_thread(f.platform, 1);  // a reaper's hold would postpone the freeing
   const auto publisher = f.publisher("/growing", keep_last(10));
   const auto subscription = f.subscription("/growing", keep_last(100));
   const uint64_t used_before = f.inspection.used_bytes();
@@ -159,7 +160,7 @@ TEST_CASE("any depth is held, whatever the sizes of the messages") {
 
 TEST_CASE(
   "a fixed topic DSM wraps around and overwrites the oldest, which is counted on both sides") {
-  Fixture f(1000);  // a size that no number of records divides
+  Fixture f(1000);  // not a multiple of the record size
   const auto publisher = f.publisher("/fixed", keep_last(10));
   const auto subscription = f.subscription("/fixed", keep_last(100));
   const uint64_t used = f.inspection.used_bytes();
@@ -209,7 +210,7 @@ TEST_CASE("a message of more than 4 GiB is refused, not cut") {
   publish(*publisher, 1);
 }
 
-TEST_CASE("a claimed record stays as it is while the publisher goes round and round") {
+TEST_CASE("a claimed record stays unchanged while the publisher laps the ring") {
   for (const std::string topic : {"/fixed", "/growing"}) {
     CAPTURE(topic);
     Fixture f(1000);
@@ -231,7 +232,7 @@ TEST_CASE("a claimed record stays as it is while the publisher goes round and ro
   }
 }
 
-TEST_CASE("once released, the place of a claimed record is used again") {
+TEST_CASE("once released, the bytes of a claimed record are reused") {
   Fixture f(1024);
   const auto publisher = f.publisher("/fixed", keep_last(1));
   const auto subscription = f.subscription("/fixed", keep_last(1));

@@ -1,8 +1,8 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 //
-// Random steps of publishers and subscriptions against the plainest model of KEEP_LAST: each
-// subscription holds the last `depth` of what it has not taken. One thread, so every difference is
-// a fault, and shows again with its seed.
+// Random operations of publishers and subscriptions against the simplest model of KEEP_LAST: each
+// subscription holds the last `depth` messages that it has not taken. Single-threaded, so each
+// difference is a bug, and reproducible by its seed.
 #include <doctest/doctest.h>
 
 #include <deque>
@@ -130,7 +130,7 @@ private:
 
 }  // namespace
 
-TEST_CASE("random steps give what KEEP_LAST promises") {
+TEST_CASE("random operations satisfy KEEP_LAST") {
   TestPlatform platform;
   const std::shared_ptr<Process> process = platform.join();
   const Standstill receive_thread(platform, 1);

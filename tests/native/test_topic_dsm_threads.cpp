@@ -1,14 +1,15 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 //
-// Publishers and subscriptions of one process, all at the same time; every message is checked byte
-// by byte. Under the thread sanitizer this shows that claim and release order every access to a
+// Publishers and subscriptions of one process run concurrently; each message is checked byte by
+// byte. Under the thread sanitizer this shows that claim and release order all accesses to a
 // record's bytes. It cannot prove the absence of a harmful interleaving that did not occur, nor
-// anything about processes that die: see docs/model/ and test_killed. Only one cluster: with
-// receive threads see test_clusters.
+// anything about processes that die: see docs/model/ and test_killed. Only one cluster; with
+// receive threads: test_clusters.
 #include <doctest/doctest.h>
 
 #include <future>
 #include <map>
+#include <thread>
 #include <utility>
 
 #include "messages.hpp"
@@ -40,15 +41,15 @@ void publish_all(Publisher & publisher, uint64_t writer) {
   }
 }
 
-/// Takes until `publishers` is ready and nothing is left; how many. Throws on a torn message or a
-/// wrong order.
+/// Takes until all are published and nothing is left; returns how many. Throws on a torn message or
+/// a wrong order.
 uint64_t take_until(
   Process & process, Subscription & subscription, std::atomic<bool> & published_all) {
   std::map<uint64_t, uint64_t> last;
   uint64_t taken = 0;
   bool more = true;
   while (more) {
-    more = !published_all;  // looked at before the subscription is emptied
+    more = !published_all;  // loaded before the subscription is drained
     while (const std::optional<Payload> payload = take(subscription)) {
       if (payload->number <= std::exchange(last[payload->writer], payload->number)) {
         throw std::runtime_error("wrong order");
@@ -134,7 +135,24 @@ TEST_CASE("one subscription shared by threads: each message is taken once") {
   CHECK(taken[0].get() + taken[1].get() + taken[2].get() == messages_each);
 }
 
-TEST_CASE("subscriptions and publishers come and go under load") {
+TEST_CASE("a claim that one thread made is ended by another") {
+  Fixture f;
+  const auto publisher = f.process->create_publisher(on_topic("/growing", keep_last(10)));
+  const auto subscription = f.process->create_subscription(on_topic("/growing", keep_last(10)));
+  constexpr uint64_t messages = 10;
+  for (uint64_t number = 1; number <= messages; ++number) {
+    publish(*publisher, number);
+  }
+  for (uint64_t number = 1; number <= messages; ++number) {
+    std::optional<Claim> claim = subscription->claim();
+    REQUIRE(claim);
+    CHECK(claim->info().publication_sequence_number == number);
+    std::thread([ended = std::move(*claim)] {}).join();
+  }
+  CHECK_FALSE(subscription->claim());
+}
+
+TEST_CASE("subscriptions and publishers are created and closed under load") {
   for (const std::string topic : {"/fixed", "/growing"}) {
     CAPTURE(topic);
     Fixture f;

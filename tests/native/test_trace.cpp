@@ -1,20 +1,20 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 //
-// What is traced: each claim of a record that was written while traced has its write, earlier than
-// it; what a ring could not hold is counted; killed processes leave their traces.
+// Tracing: each claim of a record written while traced has its write, earlier than the claim; what
+// a ring could not hold is counted; killed processes leave their traces.
 #include <doctest/doctest.h>
 
 #include <csignal>
 #include <thread>
 
 #include "node_role.hpp"
-#include "patience.hpp"
 #include "trace_of_test.hpp"
+#include "waiting.hpp"
 
 using namespace manycore;
 using namespace trace_of_test;
 
-TEST_CASE("a ring gives each event whole and in order, or counts it as lost") {
+TEST_CASE("a ring returns each event complete and in order, or counts it as lost") {
   TraceRing ring{};
   static constexpr uint32_t events_log2 = 7;
   std::vector<TraceEvent> events(uint64_t{1} << events_log2);
@@ -50,7 +50,7 @@ TEST_CASE("a ring gives each event whole and in order, or counts it as lost") {
   CHECK(kept + ring.lost.load() == count);
 }
 
-TEST_CASE("where there is no memory for events they are lost, until there is some") {
+TEST_CASE("events are lost while there is no memory for them") {
   TraceRing ring{};
   std::vector<TraceEvent> events(128);
   TraceRingWriter writer(ring, events.data(), 7);
@@ -66,7 +66,7 @@ TEST_CASE("where there is no memory for events they are lost, until there is som
   CHECK(ring.backed == 128);
 }
 
-TEST_CASE("nothing is recorded, and no file is there, unless a trace was started") {
+TEST_CASE("without a trace nothing is recorded, and no file exists") {
   Fixture f;
   f.talk(1, 10);
   CHECK(mapped_trace_files(f) == 0);
@@ -76,7 +76,7 @@ TEST_CASE("nothing is recorded, and no file is there, unless a trace was started
   CHECK(mapped_trace_files(f) == 0);
 }
 
-TEST_CASE("each claim of what was published while traced has its write, before it") {
+TEST_CASE("each claim of a record published while traced has its write, before it") {
   Fixture f;
   f.talk(1, 5);
   start_trace(f.registry(), {});
@@ -103,7 +103,7 @@ TEST_CASE("between clusters the receive thread's events lie between write and cl
   f.platform.receive_thread(2);
   wait_until("a match", [&] { return f.publisher->matched().current == 2; });
   f.talk(1, 1);
-  listener.tell("take 1 1 1");  // from now on the listener looks for what it was told of
+  listener.tell("take 1 1 1");  // from now on the listener uses hints
   start_trace(f.registry(), {});
   for (uint64_t i = 2; i <= 51; ++i) {
     f.talk(i, i);
@@ -123,7 +123,7 @@ TEST_CASE("between clusters the receive thread's events lie between write and cl
   }
 }
 
-TEST_CASE("a process that joins later is traced, too; only the chosen cluster and nodes are") {
+TEST_CASE("a process that joins later is traced as well; only the selected cluster and nodes are") {
   Fixture f;
   start_trace(f.registry(), {{2}, {}, 0});
   Node late(f.platform, 2);
@@ -154,7 +154,7 @@ TEST_CASE("a process that joins later is traced, too; only the chosen cluster an
   CHECK(refusal_of([&] { start_trace(f.registry(), {{9}, {}, 0}); }).says("no cluster 9"));
 }
 
-TEST_CASE("what a ring cannot hold is told: events saved and lost are all there were") {
+TEST_CASE("a ring reports what it cannot hold: saved and lost events add up to all") {
   Fixture f;
   start_trace(f.registry(), {{}, {}, 128});
   f.talk(1, 200);
@@ -163,14 +163,14 @@ TEST_CASE("what a ring cannot hold is told: events saved and lost are all there 
   start_trace(f.registry(), {});
   f.talk(201, 400);
   stop_trace(f.registry());
-  // The rings keep the size they were made with.
+  // Rings keep the size with which they were created.
   const Saved again(f.registry());
   CHECK(small.lost > 0);
   CHECK(small.events > 0);
   CHECK(small.of_sites() == again.of_sites());
 }
 
-TEST_CASE("an ended thread's ring serves another one, once it was saved") {
+TEST_CASE("an ended thread's ring is reused by another thread once it is saved") {
   Fixture f;
   start_trace(f.registry(), {});
   for (int round = 0; round < 3; ++round) {
@@ -189,8 +189,8 @@ TEST_CASE("an ended thread's ring serves another one, once it was saved") {
   CHECK(full.lost > 0);
 }
 
-TEST_CASE("a killed publisher's events stay until they are saved, and its file goes then") {
-  Fixture f(keep_all());  // or it would be so far ahead that its ring is full
+TEST_CASE("a killed publisher's events stay until they are saved, then its file is removed") {
+  Fixture f(keep_all());  // bounds its lead, so that its ring does not fill up
   start_trace(f.registry(), {});
   for (int round = 0; round < 5; ++round) {
     Node talker(f.platform, 1);
@@ -210,7 +210,7 @@ TEST_CASE("a killed publisher's events stay until they are saved, and its file g
   }
 }
 
-TEST_CASE("a receive thread that is killed leaves its events, and its successor is traced") {
+TEST_CASE("a killed receive thread leaves its events, and its successor is traced") {
   Fixture f;
   Node listener(f.platform, 2);
   listener.tell("subscription /x 1000");

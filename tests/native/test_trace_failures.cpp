@@ -10,18 +10,19 @@
 #include <thread>
 
 #include "node_role.hpp"
-#include "patience.hpp"
 #include "stepped_child.hpp"
 #include "trace_of_test.hpp"
+#include "waiting.hpp"
 
 using namespace manycore;
 using namespace trace_of_test;
 
-TEST_CASE("one trace at a time, one saver at a time, and no trace is thrown away unasked") {
+TEST_CASE("one trace at a time, one saver at a time, and no trace is discarded implicitly") {
   Fixture f;
   CHECK(refusal_of([&] { stop_trace(f.registry()); }).says("not being traced"));
   start_trace(f.registry(), {});
-  CHECK(refusal_of([&] { start_trace(f.registry(), {}); }).says("one trace at a time"));
+  CHECK(
+    refusal_of([&] { start_trace(f.registry(), {}); }).says("only one trace can run at a time"));
   f.talk(1, 3);
   stop_trace(f.registry());
   CHECK(refusal_of([&] { start_trace(f.registry(), {}); }).says("was not saved"));
@@ -37,7 +38,7 @@ TEST_CASE("one trace at a time, one saver at a time, and no trace is thrown away
         }).says("too large"));
 }
 
-TEST_CASE("an event that came after a stopped trace was saved keeps no other from being started") {
+TEST_CASE("an event recorded after a stopped trace was saved does not block the next trace") {
   Fixture f;
   start_trace(f.registry(), {});
   f.talk(1, 3);
@@ -45,14 +46,14 @@ TEST_CASE("an event that came after a stopped trace was saved keeps no other fro
   CHECK(Saved(f.registry()).events > 0);
   const SharedMemory memory =
     SharedMemory::open(trace_files(f.platform.paths()).at(0), sizeof(TraceFileHeader));
-  // As a thread does that was on its way through a site when the trace was stopped.
+  // As by a thread that was passing a site when the trace was stopped.
   memory.at<TraceFileHeader>(0).rings[0].written.fetch_add(1);
   CHECK(trace_state(f.registry()).pending == 1);
   CHECK_NOTHROW(start_trace(f.registry(), {}));
   CHECK(trace_state(f.registry()).pending == 0);
 }
 
-TEST_CASE("a damaged trace file is refused with its name, and costs no one else anything") {
+TEST_CASE("a damaged trace file is refused by name, and affects no other process") {
   Fixture f;
   start_trace(f.registry(), {{}, {}, 128});
   f.talk(1, 3);
@@ -75,7 +76,7 @@ TEST_CASE("a damaged trace file is refused with its name, and costs no one else 
     refused("positions");
     header.rings[0].offset = offset;
     header.events_log2 = 60;
-    refused("does not fit its header");
+    refused("does not match its header");
     header.events_log2 = 7;
     ++header.segment.platform_nonce;
     refused("another platform");
@@ -84,7 +85,7 @@ TEST_CASE("a damaged trace file is refused with its name, and costs no one else 
     refused("layout version");
     header.segment.version = layout_version;
     header.rings[0].read.store(UINT64_MAX / 2);
-    f.talk(4, 8);  // the writer loses its events, no more
+    f.talk(4, 8);  // the writer loses its events, nothing else
     header.rings[0].read.store(read);
     CHECK_NOTHROW(TraceSaver(f.registry()));
   }
@@ -133,7 +134,7 @@ TEST_CASE("a trace that is being started while another process saves still count
     discard_trace(f.registry());
     saved = true;
   });
-  wait_until("the saver is through, or waits for the registry lock", [&] {
+  wait_until("the saver is done, or waits for the registry lock", [&] {
     return saved || f.registry().header().mutex.is_waited_for();
   });
   while (!starter.finished()) {

@@ -1,7 +1,7 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 //
-// The directory that platforms lie in: another one by MANYCORE_DIRECTORY, and what its file system
-// gives to a cluster.
+// The directory that holds platforms: selection by MANYCORE_DIRECTORY, and how much of its file
+// system a cluster gets.
 #include <doctest/doctest.h>
 
 #include <sys/mount.h>
@@ -23,7 +23,7 @@ namespace {
 
 constexpr const char * variable = "MANYCORE_DIRECTORY";
 
-/// A private directory that this program and its children use while this lives.
+/// A private directory that this program and its children use during the object's lifetime.
 class Chosen {
 public:
   Chosen() {
@@ -40,7 +40,7 @@ private:
   std::string path_ = "/dev/shm/chosen-XXXXXX";
 };
 
-/// As Chosen, with a file system of its own mounted on it.
+/// As Chosen, with a separate file system mounted on it.
 class ChosenMount : public Chosen {
 public:
   explicit ChosenMount(const char * type, const char * options = "mode=700") {
@@ -80,13 +80,13 @@ TEST_CASE("a platform lies in the chosen directory, its children find it there, 
   CHECK(std::filesystem::is_empty(chosen.path()));
 }
 
-TEST_CASE("a slash at the end of the chosen directory is no part of its name") {
+TEST_CASE("a trailing slash of the chosen directory is ignored") {
   const Chosen chosen;
   setenv(variable, (chosen.path() + "//").c_str(), 1);
   CHECK(PlatformPaths::of("a").registry() == chosen.path() + "/a/registry");
 }
 
-TEST_CASE("a chosen directory that will not do is refused, in one line that says what to do") {
+TEST_CASE("an unsuitable chosen directory is refused, in one line that says what to do") {
   const Chosen chosen;
   const std::string path = chosen.path();
   SUBCASE("not there") {
@@ -96,11 +96,11 @@ TEST_CASE("a chosen directory that will not do is refused, in one line that says
   }
   SUBCASE("not absolute") {
     setenv(variable, "chosen", 1);
-    check_refused("is no absolute path", ErrorCode::invalid_argument);
+    check_refused("is not an absolute path", ErrorCode::invalid_argument);
   }
   SUBCASE("a file") {
     setenv(variable, "/etc/passwd", 1);
-    check_refused("is no directory", ErrorCode::invalid_argument);
+    check_refused("is not a directory", ErrorCode::invalid_argument);
   }
   SUBCASE("open to others") {
     chmod(path.c_str(), 0750);
@@ -114,9 +114,9 @@ TEST_CASE("a chosen directory that will not do is refused, in one line that says
   }
 }
 
-TEST_CASE("a chosen directory whose file system will not do is refused") {
+TEST_CASE("a chosen directory on an unsuitable file system is refused") {
   if (!has_private_shm()) {
-    return;  // nothing can be mounted
+    return;  // mounting is not permitted
   }
   SUBCASE("read-only") {
     const ChosenMount chosen("tmpfs");
@@ -130,18 +130,18 @@ TEST_CASE("a chosen directory whose file system will not do is refused") {
   }
 }
 
-TEST_CASE("clusters of the host get of the file system of the chosen directory") {
+TEST_CASE("clusters of the host are sized by the file system of the chosen directory") {
   if (!has_private_shm()) {
-    return;  // nothing can be mounted
+    return;  // mounting is not permitted
   }
   const ChosenMount chosen("tmpfs", "mode=700,size=64m");
   CHECK(host_profile().smem_bytes == 48 << 20);
 }
 
-TEST_CASE("each cluster of the host has a share; where that is little, what others leave") {
+TEST_CASE("each cluster of the host has a share; if that is small, what the others leave") {
   constexpr uint64_t mebibyte = 1 << 20;
   struct Row {
-    uint64_t shared;  // MiB, as the SMEM
+    uint64_t shared;  // MiB, like the SMEM
     uint64_t smem;
   };
   for (const Row row : {Row{0, 1024}, {1, 1}, {64, 48}, {2048, 1024}, {24 * 1024, 2457}}) {

@@ -1,19 +1,21 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 //
-// The one place where a process sleeps. The stress cannot prove that no wake-up is ever lost; one
-// that is shows as a wait that ends by its deadline.
+// Waiter, the only place where a process sleeps. The stress cannot prove that no wake-up is ever
+// lost; a lost one shows as a wait that ends by its deadline.
 #include <doctest/doctest.h>
 
+#include <csignal>
 #include <future>
 #include <memory>
+#include <thread>
 #include <vector>
 
-#include "patience.hpp"
 #include "platform/clock.hpp"
 #include "platform/futex_any.hpp"
 #include "transport/layout/wake_words.hpp"
 #include "transport/waiting/joint_wait.hpp"
 #include "transport/waiting/waiter.hpp"
+#include "waiting.hpp"
 
 using namespace manycore;
 
@@ -27,9 +29,9 @@ struct Side {
   Waiter waiter;
 };
 
-int64_t long_from_now() { return monotonic_ns() + patience_s * ns_per_s; }
+int64_t long_from_now() { return monotonic_ns() + timeout_s * ns_per_s; }
 
-/// Passes `ball` to the other side and back, `rounds` times; how often a wait ended by its
+/// Passes `ball` to the other side and back, `rounds` times; returns how many waits ended by their
 /// deadline.
 int play(Side & own, Side & other, std::atomic<int> & ball, int own_parity, int rounds) {
   int missed = 0;
@@ -52,7 +54,7 @@ int play(Side & own, Side & other, std::atomic<int> & ball, int own_parity, int 
 
 }  // namespace
 
-TEST_CASE("a wait for what has happened already ends at once") {
+TEST_CASE("a wait for something that has already happened returns at once") {
   for (const WaitMode mode : modes) {
     Side side(mode);
     const uint32_t seen = side.waiter.epoch();
@@ -75,7 +77,7 @@ TEST_CASE("a wait ends at its deadline, and not before") {
   }
 }
 
-TEST_CASE("one notification wakes all who wait") {
+TEST_CASE("one notification wakes all waiting threads") {
   for (const WaitMode mode : modes) {
     Side side(mode);
     const uint32_t seen = side.waiter.epoch();
@@ -95,7 +97,38 @@ TEST_CASE("one notification wakes all who wait") {
   }
 }
 
-TEST_CASE("no wake-up is lost: a ball goes back and forth between each two modes") {
+TEST_CASE("a signal ends a sleep only where that was asked for") {
+  struct sigaction note {};
+  note.sa_handler = [](int) {};  // without SA_RESTART, as Python installs its handlers
+  struct sigaction before {};
+  sigaction(SIGUSR1, &note, &before);
+  for (const OnSignal on_signal : {OnSignal::resume, OnSignal::give_up}) {
+    Side side(WaitMode::block);
+    const uint32_t seen = side.waiter.epoch();
+    std::atomic<bool> ended{false};
+    bool woken = false;
+    std::thread sleeper([&] {
+      woken = side.waiter.wait(seen, std::nullopt, on_signal);
+      ended = true;
+    });
+    wait_until("it sleeps", [&] { return side.word.sleepers == 1; });
+    if (on_signal == OnSignal::give_up) {
+      wait_until("the sleep ends", [&] {
+        pthread_kill(sleeper.native_handle(), SIGUSR1);
+        return ended.load();
+      });
+    } else {
+      pthread_kill(sleeper.native_handle(), SIGUSR1);
+      side.waiter.notify();
+    }
+    sleeper.join();
+    CHECK(woken == (on_signal == OnSignal::resume));
+    CHECK(side.word.sleepers == 0);
+  }
+  sigaction(SIGUSR1, &before, nullptr);
+}
+
+TEST_CASE("no wake-up is lost: a ball goes back and forth between all pairs of modes") {
   for (const WaitMode mine : modes) {
     for (const WaitMode theirs : modes) {
       const bool both_spin = mine == WaitMode::spin && theirs == WaitMode::spin;
@@ -111,7 +144,7 @@ TEST_CASE("no wake-up is lost: a ball goes back and forth between each two modes
   }
 }
 
-TEST_CASE("no wake-up is lost: many notify one who counts") {
+TEST_CASE("no wake-up is lost: many threads notify one that counts") {
   for (const WaitMode mode : {WaitMode::block, WaitMode::adaptive}) {
     Side side(mode);
     constexpr int each = 5000;
@@ -152,7 +185,7 @@ TEST_CASE("a wait on several platforms ends with a notification on any of them")
     });
     sides[notified]->waiter.notify();
     CHECK(woken.get());
-    CHECK(wait_for_any(seen, 0));  // what has happened already, even after the deadline
+    CHECK(wait_for_any(seen, 0));  // changed before the wait, even after the deadline
     CHECK(sides[notified]->word.sleepers == 0);
   }
 }
@@ -168,11 +201,11 @@ TEST_CASE("a wait on several platforms ends at its deadline, and not before") {
   }
 }
 
-TEST_CASE("more words than the kernel takes at once are looked at again and again") {
+TEST_CASE("more words than the kernel supports at once are polled") {
   FutexWord word{};
   std::vector<AwaitedWord> words(129, AwaitedWord(word, 0));
   const int64_t before = monotonic_ns();
-  futex_wait_any(words, std::nullopt);  // comes back by itself
+  futex_wait_any(words, std::nullopt);  // returns by itself
   CHECK(monotonic_ns() > before);
   const int64_t deadline = monotonic_ns() + 1000;
   futex_wait_any(words, deadline);

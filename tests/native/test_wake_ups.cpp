@@ -1,7 +1,7 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 //
-// Which threads of a process a message wakes. An epoch that was not raised wakes no thread, so the
-// tests compare epochs; that a raised one wakes is test_waiter's matter.
+// Which threads of a process a message wakes. An unchanged epoch wakes no thread, so the tests
+// compare epochs; test_waiter shows that a changed epoch does wake.
 #include <doctest/doctest.h>
 
 #include <future>
@@ -13,15 +13,15 @@
 
 #include "messages.hpp"
 #include "node_role.hpp"
-#include "patience.hpp"
 #include "platform_of_test.hpp"
 #include "transport/waiting/thread_number.hpp"
+#include "waiting.hpp"
 
 using namespace manycore;
 
 namespace {
 
-/// A thread that waits for some subscriptions, as rmw_wait has it, and does nothing else.
+/// A thread that waits for some subscriptions like rmw_wait, and does nothing else.
 class WaitingThread {
 public:
   WaitingThread(Process & process, const std::vector<Subscription *> & awaited)
@@ -45,7 +45,7 @@ public:
   WaitingThread & operator=(const WaitingThread &) = delete;
 
   uint32_t word() const noexcept { return word_; }
-  /// Since the call before.
+  /// Since the previous call.
   uint32_t wake_ups() noexcept {
     const uint32_t epoch = waiter_->epoch();
     return epoch - std::exchange(seen_, epoch);
@@ -63,7 +63,7 @@ private:
 /// A process with a subscription on each of many topics.
 struct Fixture {
   explicit Fixture(uint32_t subscriptions_count) {
-    platform.receive_thread(1);  // which has all threads look when it starts
+    platform.receive_thread(1);  // it wakes all threads when it starts
     for (uint32_t i = 0; i < subscriptions_count; ++i) {
       subscriptions.push_back(process->create_subscription(on_topic(topic(i), keep_last(10))));
       subscriptions.back()->watchers().reset();
@@ -93,10 +93,11 @@ std::vector<std::unique_ptr<WaitingThread>> one_thread_each(const Fixture & f) {
 
 }  // namespace
 
-TEST_CASE("a message wakes the thread that waits for it, and no other one") {
+TEST_CASE("a message wakes the thread that waits for it, and no other") {
   Fixture f(32);
   const auto threads = one_thread_each(f);
-  std::vector<std::unique_ptr<Publisher>> publishers;  // one that ends has its readers look
+  // Kept alive: one that ends wakes its readers.
+  std::vector<std::unique_ptr<Publisher>> publishers;
   for (uint32_t i = 0; i < threads.size(); ++i) {
     publishers.push_back(f.process->create_publisher(on_topic(Fixture::topic(i), keep_last(10))));
     publish(*publishers.back(), 1);
@@ -106,7 +107,7 @@ TEST_CASE("a message wakes the thread that waits for it, and no other one") {
   }
 }
 
-TEST_CASE("a message from another cluster wakes the thread that waits for it, and no other one") {
+TEST_CASE("a message from another cluster wakes the thread that waits for it, and no other") {
   Fixture f(3);
   const auto threads = one_thread_each(f);
   std::list<Node> publishers;
@@ -134,7 +135,8 @@ TEST_CASE("a message wakes a thread once, however many subscriptions it reaches"
     publisher.tell("publisher /many 10");
     publisher.tell("publish 1 1 1");
     wait_until("a wake-up", [&] { return thread.wake_ups() == 1; });
-    // The receive thread wakes when all five are served; a second time it would have by now.
+    // The receive thread wakes the thread after all five pushes; a second wake-up would have come
+    // by now.
     for (const auto & subscription : f.subscriptions) {
       CHECK(subscription->has_data());
     }
@@ -142,7 +144,8 @@ TEST_CASE("a message wakes a thread once, however many subscriptions it reaches"
   }
 }
 
-TEST_CASE("those that wait for events are woken by the first message and by displaced ones only") {
+TEST_CASE(
+  "threads that wait for events are woken by the first message and by displaced ones only") {
   Fixture f(0);
   Qos qos = keep_last(1);
   qos.deadline_ns = 3600 * ns_per_s;
@@ -153,15 +156,15 @@ TEST_CASE("those that wait for events are woken by the first message and by disp
   const auto publisher = f.process->create_publisher(on_topic("/timed", qos));
   CHECK(thread.wake_ups() != 0);  // a match
   publish(*publisher, 1);
-  CHECK(thread.wake_ups() != 0);  // from now on a deadline is due
+  CHECK(thread.wake_ups() != 0);  // a deadline just started
   CHECK(take(*f.subscriptions[0]));
   publish(*publisher, 2);
   CHECK(thread.wake_ups() == 0);
   publish(*publisher, 3);
-  CHECK(thread.wake_ups() != 0);  // the second was lost
+  CHECK(thread.wake_ups() != 0);  // the second message was lost
 }
 
-TEST_CASE("what a thread forgets wakes it no more") {
+TEST_CASE("a forgotten entity does not wake the thread any more") {
   Fixture f(2);
   const Watched first(f.process->waiters(), f.subscriptions[0]->watchers());
   const Watched second(f.process->waiters(), f.subscriptions[1]->watchers());
@@ -186,7 +189,7 @@ TEST_CASE("what a thread forgets wakes it no more") {
   CHECK(other.wake_ups() == 1);
 }
 
-TEST_CASE("threads share words once there are more of them, and then nothing is forgotten") {
+TEST_CASE("threads share words when there are too few, and then nothing is forgotten") {
   Fixture f(1);
   const Watched watched(f.process->waiters(), f.subscriptions[0]->watchers());
   const auto publisher = f.process->create_publisher(on_topic(Fixture::topic(0), keep_last(10)));
@@ -209,5 +212,5 @@ TEST_CASE("threads share words once there are more of them, and then nothing is 
   CHECK(f.subscriptions[0]->watchers().read().contains(Waiters::word_of_this_thread()));
   threads.clear();
   WaitingThread later(*f.process, {});
-  CHECK_FALSE(are_thread_numbers_shared());  // they were given back
+  CHECK_FALSE(are_thread_numbers_shared());  // the numbers were returned
 }

@@ -6,10 +6,10 @@
 #include <map>
 
 #include "messages.hpp"
-#include "patience.hpp"
 #include "platform_of_test.hpp"
 #include "transport/lifecycle/trace_control.hpp"
 #include "transport/lifecycle/trace_saver.hpp"
+#include "waiting.hpp"
 
 namespace trace_of_test {
 
@@ -18,7 +18,7 @@ using namespace manycore;
 /// Publisher and number of a record.
 using Record = std::pair<uint64_t, uint64_t>;
 
-/// A trace as it would be saved, by what the tests ask.
+/// A saved trace, by what the tests ask about it.
 struct Saved {
   explicit Saved(Registry & registry) {
     TraceSaver saver(registry);
@@ -54,7 +54,7 @@ struct Saved {
     events += thread.events.size();
   }
 
-  /// Each claim has exactly one write, which was before it.
+  /// Checks that each claim has exactly one write, before it.
   void check_claims() const {
     CHECK(is_ordered);
     for (const auto & [record, time_ns] : claimed_ns) {
@@ -65,7 +65,7 @@ struct Saved {
     }
   }
 
-  /// Events of what the test does, kept or lost, but not of what comes with time.
+  /// Events of the test's own operations, kept or lost, without periodic samples.
   uint64_t of_sites() const {
     uint64_t count = events + lost;
     for (const TraceKind kind : {TraceKind::cpu, TraceKind::smem}) {
@@ -85,10 +85,10 @@ struct Saved {
   bool is_ordered = true;
 };
 
-/// A publisher and a subscription of this process, in two clusters' reach of a test.
+/// A publisher and a subscription in this process.
 struct Fixture {
   explicit Fixture(const Qos & qos = keep_last(100)) {
-    // Or it would join later, and be traced then, now and again.
+    // Otherwise the receive thread would join later, and be traced occasionally.
     wait_until(
       "a receive thread that is at work", [&] { return has_pidfds(platform.receive_thread(1)); });
     publisher = process->create_publisher(on_topic("/x", qos));

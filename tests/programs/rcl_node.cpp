@@ -1,6 +1,6 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 //
-// A node in C++: prints its arguments, the name of its middleware and what it has loaded while the
+// A C++ node: prints its arguments, the name of its middleware, and the libraries loaded while the
 // node exists.
 
 #include <cstdlib>
@@ -11,8 +11,8 @@
 #include "rcl/rcl.h"
 #include "rmw/rmw.h"
 
-// Libraries of messages for Python, to which librcl.so of the wheels is linked, want these to be
-// there; nothing uses them.
+// Referenced by the Python message libraries, to which librcl.so of the wheels is linked; never
+// used.
 extern "C" {
 void * PyExc_RuntimeError = nullptr;
 void * _Py_TrueStruct = nullptr;

@@ -1,7 +1,7 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 //
-// A program of the rmw interface alone, without rcl's check of RMW_IMPLEMENTATION: prints its
-// arguments, the name of its middleware and what it has loaded.
+// A program over the rmw interface alone, without rcl's check of RMW_IMPLEMENTATION: prints its
+// arguments, the name of its middleware, and the loaded libraries.
 
 #include <fstream>
 #include <iostream>

@@ -1,5 +1,5 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-// In the place of libtracetools' tracepoints of the rmw, by LD_PRELOAD: says each call.
+// Replaces libtracetools' rmw tracepoints by LD_PRELOAD, and prints each call.
 #include <stdbool.h>
 #include <stdint.h>
 #include <stdio.h>

@@ -26,7 +26,7 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 @pytest.fixture
 def node() -> Iterator[Node]:
-    """Yield a node of this process, which runs in cluster 1."""
+    """Yield a node of this process, in cluster 1."""
     rclpy.init()
     node = rclpy.create_node("tester")
     yield node
@@ -36,7 +36,7 @@ def node() -> Iterator[Node]:
 
 @pytest.fixture
 def start_peer(start: Callable[..., Program]) -> Callable[..., Program]:
-    """Return a function that starts a function of the test file in a process of its own."""
+    """Return a function that runs a function of the test file in a new process."""
 
     def start_peer(
         function: Callable[..., None], *arguments: Any, cluster: int = 1, **env: str
@@ -48,9 +48,9 @@ def start_peer(start: Callable[..., Program]) -> Callable[..., Program]:
 
 @pytest.fixture
 def domains() -> Iterator[tuple[int, int]]:
-    """Yield two ROS domains of this test alone; afterwards nothing of their platforms is left.
+    """Yield two ROS domains for this test alone; afterwards check that nothing of them is left.
 
-    Ask for it before programs are started in them: those have to end first.
+    Request it before programs are started in them, so that those end first.
     """
     domains = domain_of("first"), domain_of("second")
     yield domains
@@ -61,7 +61,7 @@ def domains() -> Iterator[tuple[int, int]]:
 
 @pytest.fixture
 def small_topic(start_peer: Callable[..., Program]) -> Iterator[str]:
-    """Yield a topic, or service, with little room, on a platform that rclpy has joined."""
+    """Yield a topic or service with little memory, on a platform that rclpy has joined."""
     topic = "/small"
     start_peer(configure, topic).wait_for("configured")
     rclpy.init()
@@ -70,7 +70,7 @@ def small_topic(start_peer: Callable[..., Program]) -> Iterator[str]:
 
 
 def configure(topic: str) -> None:
-    """Configure a platform. Not in the test's process: rclpy's library would not see it alive."""
+    """Configure a platform, in another process: rclpy's library would not see it in this one."""
     from rmw_manycore_py import _transport
 
     small = _transport.TopicConfiguration(topic, id=1, dsm_size_bytes=8192, receiver_clusters=0)
@@ -88,13 +88,13 @@ def configure(topic: str) -> None:
 
 @pytest.fixture(params=[1, 2], ids=["same_cluster", "other_cluster"])
 def peer_cluster(request: pytest.FixtureRequest) -> int:
-    """Return the cluster of the peer: the test's own, or another one."""
+    """Return the cluster of the peer: the test's own or another one."""
     return int(request.param)
 
 
 @pytest.fixture
 def stack(node: Node) -> Stack:
-    """Return the rest of a stack, around a scan matcher."""
+    """Return the rest of a stack around a scan matcher."""
     return Stack(node)
 
 

@@ -11,7 +11,7 @@ from rclpy.action import ActionClient, ActionServer, CancelResponse, GoalRespons
 from rclpy.node import Node
 from rclpy.task import Future
 from ros_support import peer_node, spin_until
-from support import PATIENCE_S
+from support import TIMEOUT_S
 from test_msgs.action import Fibonacci
 
 FAST = ("--ros-args", "-p", "rate_hz:=50.0")
@@ -22,7 +22,7 @@ def client(node: Node, start, peer_cluster) -> ActionClient:
     """Start the example server and return a client of it."""
     start(forked_example("fibonacci_server", *FAST), peer_cluster)
     client = ActionClient(node, Fibonacci, "fibonacci")
-    assert client.wait_for_server(PATIENCE_S)
+    assert client.wait_for_server(TIMEOUT_S)
     return client
 
 
@@ -39,7 +39,7 @@ def result_of(node, goal):
 
 
 def test_goal_feedback_and_result(node, client):
-    """All feedback first: rclpy passes on no more of it once it has the result."""
+    """rclpy drops feedback that arrives after the result, so all feedback comes first."""
     steps = []
     goal = send(node, client, 5, lambda message: steps.append(list(message.feedback.sequence)))
     spin_until(node, lambda: len(steps) == 4)
@@ -52,7 +52,7 @@ def test_goal_feedback_and_result(node, client):
 def test_cancel(node, start_peer, peer_cluster):
     start_peer(compute_until_cancelled, cluster=peer_cluster)
     client = ActionClient(node, Fibonacci, "fibonacci")
-    assert client.wait_for_server(PATIENCE_S)
+    assert client.wait_for_server(TIMEOUT_S)
     goal = send(node, client, 40)
     cancelled = goal.cancel_goal_async()
     spin_until(node, cancelled.done)
@@ -78,7 +78,7 @@ def compute_until_cancelled() -> None:
 
 
 def test_result_of_a_goal_that_ended_long_ago(node, client):
-    """The result is asked for after the server has it, and it is still there."""
+    """The result is requested after the server has it, and is still available."""
     goal = send(node, client, 2)
     spin_until(node, lambda: goal.status == GoalStatus.STATUS_SUCCEEDED)
     assert list(result_of(node, goal).result.sequence) == [0, 1, 1]
@@ -104,7 +104,7 @@ def test_several_clients(node, start, client):
 def test_rejected_goal(node, start_peer, peer_cluster):
     start_peer(reject, cluster=peer_cluster)
     client = ActionClient(node, Fibonacci, "fibonacci")
-    assert client.wait_for_server(PATIENCE_S)
+    assert client.wait_for_server(TIMEOUT_S)
     assert not send(node, client, 5).accepted
 
 
@@ -123,7 +123,7 @@ def reject() -> None:
 def test_server_goes_away(node, start, peer_cluster):
     server = start(forked_example("fibonacci_server", *FAST), peer_cluster)
     client = ActionClient(node, Fibonacci, "fibonacci")
-    assert client.wait_for_server(PATIENCE_S)
-    result_of(node, send(node, client, 1))  # so it spins
+    assert client.wait_for_server(TIMEOUT_S)
+    result_of(node, send(node, client, 1))  # the server spins
     assert server.stop_node()
     spin_until(node, lambda: not client.server_is_ready())

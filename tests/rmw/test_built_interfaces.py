@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Messages and services that the project builds from definitions work as those of ROS 2 do."""
+"""Messages and services that the project builds from definitions work like those of ROS 2."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from autoware_internal_debug_msgs.msg import Float32Stamped, Int32Stamped
 from geometry_msgs.msg import TransformStamped
 from rclpy.action import ActionClient, ActionServer
 from ros_support import announce, peer_node, spin_until
-from support import PATIENCE_S
+from support import TIMEOUT_S
 from tf2_msgs.action import LookupTransform
 from tf2_msgs.msg import TF2Error, TFMessage
 from tf2_msgs.srv import FrameGraph
@@ -75,7 +75,7 @@ def test_a_message_there_and_back(node, start_peer, message):
 def test_a_service(node, start_peer):
     start_peer(echo, cluster=2)
     client = node.create_client(PoseWithCovarianceStamped, "pose")
-    assert client.wait_for_service(PATIENCE_S)
+    assert client.wait_for_service(TIMEOUT_S)
     request = PoseWithCovarianceStamped.Request()
     request.pose_with_covariance.header.frame_id = "map"
     request.pose_with_covariance.pose.covariance[35] = 0.25
@@ -87,15 +87,15 @@ def test_a_service(node, start_peer):
 
 
 def test_what_the_python_library_of_tf2_imports(node, start_peer):
-    """Our tf2_msgs hides one that the user builds, so it has all of the published one."""
+    """Our tf2_msgs hides one that the user builds, so ours has all of the published types."""
     start_peer(echo, cluster=2)
     frames = node.create_client(FrameGraph, "frames")
-    assert frames.wait_for_service(PATIENCE_S)
+    assert frames.wait_for_service(TIMEOUT_S)
     answer = frames.call_async(FrameGraph.Request())
     spin_until(node, answer.done)
     assert answer.result().frame_yaml == "base_link: {parent: map}"
     client = ActionClient(node, LookupTransform, "lookup")
-    assert client.wait_for_server(PATIENCE_S)
+    assert client.wait_for_server(TIMEOUT_S)
     accepted = client.send_goal_async(LookupTransform.Goal(target_frame="lidar"))
     spin_until(node, accepted.done)
     done = accepted.result().get_result_async()

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Functions that rclpy never calls: in C, on the handles of rclpy's entities."""
+"""Functions that rclpy never calls, called in C on the handles of rclpy's entities."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ def publisher(node) -> Any:
 
 @pytest.fixture
 def subscription(node, publisher) -> ctypes.c_void_p:
-    """Return a subscription that matches the publisher, and that nobody spins."""
+    """Return a subscription that matches the publisher; no executor spins its node."""
     entity = node.create_subscription(Point, "points", print, 10)
     spin_until(node, lambda: publisher.get_subscription_count() == 1)
     return rmw_handle("subscription", entity)
@@ -71,7 +71,7 @@ def publish(publisher, count: int) -> None:
 
 
 def take_until_taken(take) -> None:
-    """Fast DDS delivers some time after publishing."""
+    """Fast DDS delivers asynchronously, some time after publishing."""
     taken = ctypes.c_bool()
     while not taken:
         assert take(ctypes.byref(taken)) == 0

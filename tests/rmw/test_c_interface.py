@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The library as C sees it: complete, safe against null, and agreeing with Fast DDS."""
+"""The library's C interface: complete, safe against null, and in agreement with Fast DDS."""
 
 from __future__ import annotations
 
@@ -20,16 +20,16 @@ LIBRARIES = Path(sys.prefix, "lib")
 
 ERROR, UNSUPPORTED, INVALID_ARGUMENT = 1, 3, 11
 
-# Declared, but removed from ROS 2 long ago; no middleware has it.
+# Declared, but removed from ROS 2 long ago; no middleware defines them.
 GONE = {"rmw_node_assert_liveliness"}
-# Return something else than a code or a handle.
+# Functions that return something other than a code or a handle.
 OTHERS = {
     "rmw_event_type_is_supported",
     "rmw_feature_supported",
     "rmw_get_implementation_identifier",
     "rmw_get_serialization_format",
 }
-# Nothing may be passed to them either; their answer is UNSUPPORTED.
+# Nothing may be passed to these either; they return UNSUPPORTED.
 UNSUPPORTED_ANYWAY = {
     "rmw_fini_publisher_allocation",
     "rmw_fini_subscription_allocation",
@@ -37,14 +37,14 @@ UNSUPPORTED_ANYWAY = {
     "rmw_init_publisher_allocation",
     "rmw_init_subscription_allocation",
 }
-# rmw.h wants the general error code for null.
+# rmw.h requires the general error code for null.
 PLAIN_ERROR = {"rmw_destroy_wait_set", "rmw_service_server_is_available", "rmw_set_log_severity"}
-# Structures are passed by value, so that null pointers are no call.
+# These take structures by value: there are no null pointers to pass.
 BY_VALUE = {"rmw_init_options_init", "rmw_qos_profile_check_compatible"}
 
 
 def declared() -> set[str]:
-    """Return the functions that rmw's headers declare and its own library does not define."""
+    """Return the functions that rmw's headers declare and the rmw library does not define."""
     pattern = re.compile(r"^(rmw_\w+)\(", re.MULTILINE)
     names = {name for header in HEADERS.glob("*.h") for name in pattern.findall(header.read_text())}
     helper = ctypes.CDLL(str(LIBRARIES / "librmw.so"))
@@ -63,7 +63,7 @@ def test_every_function_is_there(library):
 
 
 def test_every_function_is_in_the_conformance_table():
-    table = (REPOSITORY / "docs" / "conformance.md").read_text()
+    table = (REPOSITORY / "docs" / "reference" / "conformance.md").read_text()
     assert [name for name in sorted(declared()) if f"`{name}`" not in table] == []
 
 
@@ -72,7 +72,7 @@ def returns_handle(name: str) -> bool:
 
 
 def answer_to_null(name: str) -> int | None:
-    """Return what a function returns when all its arguments are null."""
+    """Return what a function returns if all its arguments are null."""
     if returns_handle(name):
         return None
     if name in UNSUPPORTED_ANYWAY:
@@ -95,7 +95,7 @@ def test_null_arguments_are_refused(library):
     assert wrong == []
 
 
-# Run apart from the stand-ins, so that the real Fast DDS can be loaded.
+# Run without the stand-ins, so that the real Fast DDS can be loaded.
 VERDICTS = """
 import ctypes, itertools, sys
 class Time(ctypes.Structure):
@@ -146,7 +146,7 @@ def test_profiles_are_compatible_as_with_fast_dds():
 
 
 def test_the_library_stays_when_it_is_unloaded() -> None:
-    """Its threads may be running."""
+    """Its threads may still be running."""
     script = (
         "import _ctypes, ctypes, sys; library = ctypes.CDLL(sys.argv[1]); "
         "_ctypes.dlclose(library._handle); "

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What rmw_wait answers, in C: rclpy takes timeouts and wake-ups for the same, rclcpp does not."""
+"""Return codes of rmw_wait, in C: rclpy treats timeouts and wake-ups alike, rclcpp does not."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 import rclpy
 from c_support import rcl, rcl_handle, rmw
-from support import IS_MANYCORE, PATIENCE_S
+from support import IS_MANYCORE, TIMEOUT_S
 
 OK, TIMEOUT = 0, 2
 
@@ -40,7 +40,7 @@ rmw.rmw_create_wait_set.restype = ctypes.c_void_p
 
 @dataclass
 class Wait:
-    """A context, and what waits for one guard condition in it."""
+    """A context with a wait set that has one guard condition."""
 
     context: rclpy.Context
     guard: Any
@@ -50,7 +50,7 @@ class Wait:
         assert rmw.rmw_trigger_guard_condition(self.guard) == OK
 
     def __call__(self, timeout: Time | None) -> tuple[int, bool]:
-        """Return the code of a wait, and whether it found the guard condition ready."""
+        """Return the code of a wait, and whether the guard condition was ready."""
         data = ctypes.c_void_p(self.guard.contents.data)
         conditions = Conditions(1, ctypes.pointer(data))
         limit = None if timeout is None else ctypes.byref(timeout)
@@ -83,11 +83,11 @@ def test_a_timeout_is_told_when_it_has_passed(wait):
 @pytest.mark.skipif(not IS_MANYCORE, reason="Fast DDS goes on waiting")
 @pytest.mark.parametrize("timeout", [None, Time(3600, 0)], ids=["endless", "an_hour"])
 def test_a_wait_that_its_context_ends_does_not_say_timeout(wait, timeout):
-    """Ends rclcpp's graph listener, which throws when its endless wait is told of a timeout."""
+    """rclcpp's graph listener waits without a timeout, and throws if the wait returns TIMEOUT."""
     answers = []
     thread = threading.Thread(target=lambda: answers.append(wait(timeout)), daemon=True)
     thread.start()
     wait.context.shutdown()
-    thread.join(PATIENCE_S)
+    thread.join(TIMEOUT_S)
     assert answers == [(OK, False)]
-    assert wait(timeout) == (OK, False)  # begun after the end of the context
+    assert wait(timeout) == (OK, False)  # started after the end of the context

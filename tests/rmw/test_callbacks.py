@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Callbacks for arrivals, through the executor that has no wait sets but lives on them alone."""
+"""Callbacks for arrivals, through the EventsExecutor, which uses them instead of wait sets."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from rclpy.qos import QoSProfile
 from ros_support import announce, peer_node
 from std_msgs.msg import String
 from std_srvs.srv import Trigger
-from support import PATIENCE_S, RMW
+from support import RMW, TIMEOUT_S
 
 DEADLINE_MISSED, PUBLISHER_MATCHED = 0, 4  # of rcl_publisher_event_type_t
 
@@ -35,9 +35,9 @@ def executor(node) -> Iterator[EventsExecutor]:
 
 
 def run_until(executor: EventsExecutor, condition: Callable[[], Any]) -> None:
-    deadline = time.monotonic() + PATIENCE_S
+    deadline = time.monotonic() + TIMEOUT_S
     while not condition():
-        assert time.monotonic() < deadline, f"not within {PATIENCE_S:g} s"
+        assert time.monotonic() < deadline, f"not within {TIMEOUT_S:g} s"
         executor.spin_once(0.05)
 
 
@@ -50,7 +50,7 @@ def talk() -> None:
 
 
 def count_to(limit: int) -> None:
-    """Publish numbers bit by bit, all of which fit into the queue of a reader that comes late."""
+    """Publish numbers one by one, all of which fit into the queue of a late reader."""
     with peer_node() as node:
         publisher = node.create_publisher(String, "numbers", limit)
         while not publisher.get_subscription_count():
@@ -91,7 +91,7 @@ def serve() -> None:
 def test_answers(node, executor, start_peer, peer_cluster):
     client = node.create_client(Trigger, "ready")
     start_peer(serve, cluster=peer_cluster)
-    assert client.wait_for_service(PATIENCE_S)
+    assert client.wait_for_service(TIMEOUT_S)
     future = client.call_async(Trigger.Request())
     run_until(executor, future.done)
     assert future.result() == Trigger.Response()
@@ -100,7 +100,7 @@ def test_answers(node, executor, start_peer, peer_cluster):
 def ask() -> None:
     with peer_node() as node:
         client = node.create_client(Trigger, "ready")
-        client.wait_for_service(PATIENCE_S)
+        client.wait_for_service(TIMEOUT_S)
         rclpy.spin_until_future_complete(node, client.call_async(Trigger.Request()))
         announce("answered")
 
@@ -130,7 +130,7 @@ def test_events(node, start_peer, peer_cluster):
 
 
 def test_entities_that_go_while_messages_arrive(node, executor, start_peer, peer_cluster):
-    """No callback runs for a subscription that is gone."""
+    """No callback runs for a destroyed subscription."""
     start_peer(talk, cluster=peer_cluster)
     for _ in range(20):
         received: list[String] = []
@@ -146,7 +146,7 @@ class EventsToWaitFor(ctypes.Structure):
 
 
 def library(name: str, *functions: str) -> ctypes.CDLL:
-    """Return a C library, some of whose functions return pointers."""
+    """Return a C library, some functions of which return pointers."""
     found = ctypes.CDLL(str(Path(sys.prefix, "lib", name)))
     for function in functions:
         getattr(found, function).restype = ctypes.c_void_p
@@ -157,7 +157,7 @@ EventCallback = ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_size_t)
 
 
 def finish(rcl: ctypes.CDLL, event: ctypes.c_void_p) -> None:
-    """Take the callback away, too: time would go on to call it when it is gone."""
+    """Clear the callback, too: the deadline would call it after it has been destroyed."""
     assert rcl.rcl_event_set_callback(ctypes.byref(event), None, None) == 0
     assert rcl.rcl_event_fini(ctypes.byref(event)) == 0
 
@@ -179,15 +179,15 @@ def test_a_deadline_ends_a_sleep_that_began_before_its_callback_was_set(node):
         assert rcl.rcl_publisher_event_init(ctypes.byref(event), handle, kind) == 0
     assert rcl.rcl_event_set_callback(ctypes.byref(events[0]), callbacks[0], None) == 0
     node.create_subscription(String, "other", print, 10)
-    assert matched.wait(PATIENCE_S)  # from here on the thread sleeps without an end
+    assert matched.wait(TIMEOUT_S)  # from here on the thread sleeps without a timeout
     assert rcl.rcl_event_set_callback(ctypes.byref(events[1]), callbacks[1], None) == 0
-    assert missed.wait(PATIENCE_S)
+    assert missed.wait(TIMEOUT_S)
     for event in events:
         finish(rcl, event)
 
 
 def test_the_callback_of_an_event_is_called_before_a_wait_ends(node):
-    """rclpy offers either callbacks or waits, so this is in C, on the handles of rclpy."""
+    """In C on the handles of rclpy, which offers either callbacks or waits."""
     rcl = library("librcl.so", "rcl_publisher_get_context", "rcl_context_get_rmw_context")
     rcl.rcl_event_get_rmw_handle.restype = ctypes.c_void_p
     rmw = library(f"lib{RMW}.so", "rmw_create_wait_set")

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Events: matched, incompatible QoS and type, lost messages; policies that are refused."""
+"""Events: matched, incompatible QoS and type, lost messages; and refused policies."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ STRICT = QoSProfile(
     liveliness=LivelinessPolicy.MANUAL_BY_TOPIC,
 )
 
-# What is offered and requested, and the policy that events name: of several the last by number.
+# QoS offered and requested, and the policy that the event names: of several, the highest number.
 INCOMPATIBLE = {
     "reliability": (BEST_EFFORT, VOLATILE, QoSPolicyKind.RELIABILITY),
     "durability": (VOLATILE, TRANSIENT_LOCAL, QoSPolicyKind.DURABILITY),
@@ -45,7 +45,7 @@ INCOMPATIBLE = {
 
 
 def offer(policy: str) -> None:
-    """Publish with less than the test asks for, and tell when the middleware says so."""
+    """Publish with weaker QoS than the test requests, and print when the event arrives."""
     with peer_node() as node:
         events = PublisherEventCallbacks(
             incompatible_qos=lambda event: announce(f"event {event.last_policy_kind!r}")
@@ -147,7 +147,7 @@ def publish_ten() -> None:
 
 @pytest.mark.skipif(not IS_MANYCORE, reason="Fast DDS supports the event but never tells of one")
 def test_incompatible_type(node, start_peer, peer_cluster):
-    """rclpy passes no counts on in this event."""
+    """rclpy provides no counts in this event."""
     events = []
     callbacks = SubscriptionEventCallbacks(incompatible_type=events.append)
     node.create_subscription(String, "chatter", lambda _: None, 10, event_callbacks=callbacks)
@@ -172,5 +172,5 @@ def test_a_policy_without_a_meaning_is_refused(node, capfd, side):
     }
     with pytest.raises(RCLError) as raised:
         create[side]()
-    # rcl loses the message of a subscription that was not created, so it has to be logged too.
+    # rcl drops the error text of a subscription that it could not create, so it is logged, too.
     assert "liveliness" in str(raised.value).lower() + capfd.readouterr().err.lower()

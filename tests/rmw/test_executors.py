@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""All executors of rclpy: single-threaded, multi-threaded, and the one that lives on events."""
+"""All executors of rclpy: single-threaded, multi-threaded and EventsExecutor."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from rclpy.node import Node
 from ros_support import announce, peer_node, spinning_thread
 from std_msgs.msg import String
 from std_srvs.srv import Trigger
-from support import PATIENCE_S
+from support import TIMEOUT_S
 from test_msgs.action import Fibonacci
 
 THREADS = 4
@@ -31,14 +31,14 @@ EXECUTORS = {
 }
 
 
-# The executor on events has no guard conditions, learns of new entities only between its turns, and
+# The EventsExecutor has no guard conditions, learns of new entities only between its turns, and
 # does not end with its context, whatever the middleware.
 waiting_executors = pytest.mark.parametrize("executor", ["single", "multi"], indirect=True)
 
 
 @pytest.fixture(params=EXECUTORS)
 def executor(request: pytest.FixtureRequest, node: Node) -> Iterator[Any]:
-    """Yield an executor that has the test's node."""
+    """Yield an executor with the test's node."""
     executor = EXECUTORS[request.param]()
     executor.add_node(node)
     yield executor
@@ -47,15 +47,15 @@ def executor(request: pytest.FixtureRequest, node: Node) -> Iterator[Any]:
 
 @pytest.fixture
 def spinning(executor: Any) -> Iterator[None]:
-    """Spin the executor in a thread of its own."""
+    """Spin the executor in a new thread."""
     with spinning_thread(executor):
         yield
 
 
 def run_until(executor: Any, condition: Callable[[], Any]) -> None:
-    deadline = time.monotonic() + PATIENCE_S
+    deadline = time.monotonic() + TIMEOUT_S
     while not condition():
-        assert time.monotonic() < deadline, f"not within {PATIENCE_S:g} s"
+        assert time.monotonic() < deadline, f"not within {TIMEOUT_S:g} s"
         executor.spin_once(0.05)
 
 
@@ -65,7 +65,7 @@ def result_of(executor: Any, future: Any) -> Any:
 
 
 def answer() -> None:
-    """Answer on a topic, a service and an action."""
+    """Serve a topic, a service and an action."""
     with peer_node() as node:
         pongs = node.create_publisher(String, "pong", 10)
         node.create_subscription(String, "ping", pongs.publish, 10)
@@ -111,7 +111,7 @@ def test_topics_services_and_actions(node: Node, executor: Any, peer: None) -> N
     actions = ActionClient(node, Fibonacci, "fibonacci")
     run_until(executor, actions.server_is_ready)
     goal = result_of(executor, actions.send_goal_async(Fibonacci.Goal(order=2), feedback.append))
-    run_until(executor, lambda: feedback)  # before rclpy has the result, which ends feedback
+    run_until(executor, lambda: feedback)  # before the result, which ends feedback
     result = result_of(executor, goal.get_result_async()).result
     assert list(result.sequence) == [0, 1, 1]
 
@@ -150,13 +150,13 @@ def test_a_guard_condition_wakes_a_spinning_thread(node: Node, executor: Any, sp
     guard = node.create_guard_condition(triggered.set)
     for _ in range(20):
         guard.trigger()
-        assert triggered.wait(PATIENCE_S)
+        assert triggered.wait(TIMEOUT_S)
         triggered.clear()
 
 
 @waiting_executors
 def test_entities_are_made_and_destroyed_while_it_spins(node: Node, spinning) -> None:
-    """Without events: rclpy adds one to its wait set though it was destroyed a moment ago."""
+    """Without event callbacks: rclpy may add an event to its wait set that was just destroyed."""
     without = {
         "subscription": SubscriptionEventCallbacks(use_default_callbacks=False),
         "publisher": PublisherEventCallbacks(use_default_callbacks=False),
@@ -173,13 +173,13 @@ def test_entities_are_made_and_destroyed_while_it_spins(node: Node, spinning) ->
         )
         publisher = node.create_publisher(String, topic, 10, event_callbacks=without["publisher"])
         publisher.publish(String())
-        assert heard.wait(PATIENCE_S)
+        assert heard.wait(TIMEOUT_S)
         node.destroy_subscription(subscription)
         node.destroy_publisher(publisher)
 
 
 def spin_until_the_context_ends(executor: Any) -> None:
-    """Spin; rclpy has an exception for the end of a context, unless it is just about to wait."""
+    """Spin; rclpy raises at the end of a context, unless it is about to wait."""
     try:
         executor.spin()
     except ExternalShutdownException:
@@ -195,11 +195,11 @@ def test_the_end_of_the_context_ends_spinning(node: Node, executor: Any) -> None
     node.create_timer(0.01, is_spinning.set)
     thread = threading.Thread(target=spin_until_the_context_ends, args=(executor,))
     thread.start()
-    assert is_spinning.wait(PATIENCE_S)
+    assert is_spinning.wait(TIMEOUT_S)
     rclpy.shutdown()
-    thread.join(PATIENCE_S)
+    thread.join(TIMEOUT_S)
     assert not thread.is_alive()
-    rclpy.init()  # for the fixture, which shuts down once more
+    rclpy.init()  # for the fixture, which shuts down again
 
 
 @pytest.fixture
@@ -211,8 +211,8 @@ def many_threads(node: Node) -> Iterator[MultiThreadedExecutor]:
 
 
 def test_callbacks_run_side_by_side(node: Node, many_threads: MultiThreadedExecutor) -> None:
-    """Each callback waits for all others: none could end if they ran one after the other."""
-    together = threading.Barrier(THREADS, timeout=PATIENCE_S)
+    """Each callback waits for all others: one after the other, none could end."""
+    together = threading.Barrier(THREADS, timeout=TIMEOUT_S)
     met: list[int] = []
 
     def meet(_: String) -> None:
@@ -229,13 +229,13 @@ def test_callbacks_run_side_by_side(node: Node, many_threads: MultiThreadedExecu
 def test_a_callback_waits_for_a_service(
     node: Node, many_threads: MultiThreadedExecutor, peer: None
 ) -> None:
-    """Calls that block are allowed where another thread takes the response."""
+    """Blocking calls are allowed where another thread takes the response."""
     group = ReentrantCallbackGroup()
     client = node.create_client(Trigger, "ask", callback_group=group)
     answers: list[str] = []
 
     def ask(_: String) -> None:
-        assert client.wait_for_service(PATIENCE_S)
+        assert client.wait_for_service(TIMEOUT_S)
         answers.append(client.call(Trigger.Request()).message)
 
     node.create_subscription(String, "go", ask, 10, callback_group=group)

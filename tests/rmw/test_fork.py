@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""fork() in a process with nodes: the child starts anew, the parent does not notice."""
+"""fork() in a process with nodes: the child starts afresh, the parent is not affected."""
 
 from __future__ import annotations
 
@@ -16,17 +16,17 @@ from rclpy.executors import SingleThreadedExecutor
 from ros_support import spin_until
 from std_msgs.msg import String
 from std_srvs.srv import Trigger
-from support import IS_MANYCORE, PATIENCE_S
+from support import IS_MANYCORE, TIMEOUT_S
 
 pytestmark = [
-    # Python 3.12 and newer warn of what is tested here.
+    # Python 3.12 and newer warn about what is tested here.
     pytest.mark.filterwarnings("ignore:.*multi-threaded, use of fork:DeprecationWarning"),
     pytest.mark.skipif(not IS_MANYCORE, reason="other middlewares say nothing about fork()"),
 ]
 
 
 def status_of_child(act: Callable[[], Any]) -> int:
-    """Return how a forked child ends in which `act` runs: 0 if it returns."""
+    """Return the exit status of a forked child that runs `act`: 0 if it returns."""
     child = os.fork()
     if child == 0:
         status = 1
@@ -39,7 +39,7 @@ def status_of_child(act: Callable[[], Any]) -> int:
 
 
 def say_from_a_context_of_its_own(text: str) -> None:
-    """Publish in a new context until somebody subscribes."""
+    """Publish in a new context until a subscription matches."""
     context = rclpy.Context()
     rclpy.init(context=context)
     node = rclpy.create_node("child", context=context)
@@ -49,7 +49,7 @@ def say_from_a_context_of_its_own(text: str) -> None:
     while publisher.get_subscription_count() == 0:
         executor.spin_once(timeout_sec=0.01)
     publisher.publish(String(data=text))
-    publisher.wait_for_all_acked(rclpy.duration.Duration(seconds=PATIENCE_S))
+    publisher.wait_for_all_acked(rclpy.duration.Duration(seconds=TIMEOUT_S))
     node.destroy_node()
     rclpy.shutdown(context=context)
 
@@ -69,7 +69,7 @@ def test_inherited_handles_fail_with_the_cure(node):
         refused(lambda: publisher.publish(String(data="from the child")))
         refused(lambda: client.call_async(Trigger.Request()))
         refused(lambda: node.create_publisher(String, "another", 10))
-        refused(lambda: rclpy.spin_once(node, timeout_sec=PATIENCE_S))
+        refused(lambda: rclpy.spin_once(node, timeout_sec=TIMEOUT_S))
 
     assert status_of_child(use_all) == 0
     publisher.publish(String(data="from the parent"))
@@ -113,7 +113,7 @@ def test_multiprocessing(node, method):
     child = context.Process(target=say_from_a_context_of_its_own, args=[method])
     child.start()
     spin_until(node, lambda: received)
-    child.join(PATIENCE_S)
+    child.join(TIMEOUT_S)
     assert child.exitcode == 0
     assert received == [method]
 

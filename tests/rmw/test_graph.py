@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Graph queries: who is there, with which topics, types, hashes and QoS."""
+"""Graph queries: nodes and their topics, types, type hashes and QoS."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def be_there() -> None:
 
 @pytest.fixture
 def peer(node, start_peer, peer_cluster):
-    """Start a node with one endpoint of each kind and wait until it is known."""
+    """Start a node with one endpoint of each kind and wait until it is discovered."""
     program = start_peer(be_there, cluster=peer_cluster)
     spin_until(node, lambda: ("peer", "/far") in node.get_node_names_and_namespaces())
     spin_until(node, lambda: dict(node.get_client_names_and_types_by_node("peer", "/far")))
@@ -45,7 +45,7 @@ def peer(node, start_peer, peer_cluster):
 
 
 def type_hash(message: str) -> str:
-    """Return the hash that the message's own package states, for example "RIHS01_df66..."."""
+    """Return the hash in the message's own package, for example "RIHS01_df66..."."""
     package, _, name = message.split("/")
     description = Path(sys.prefix, "share", package, "msg", f"{name}.json")
     hashes = json.loads(description.read_text())["type_hashes"]
@@ -95,7 +95,7 @@ def test_by_node(node, peer):
 
 def test_unknown_node(node):
     with pytest.raises(rclpy.node.NodeNameNonExistentError):
-        node.get_publisher_names_and_types_by_node("nobody", "/")
+        node.get_publisher_names_and_types_by_node("none", "/")
 
 
 def test_counts(node, peer):
@@ -126,7 +126,7 @@ def test_endpoint_qos(node, peer):
     assert qos.durability == DurabilityPolicy.TRANSIENT_LOCAL
     assert qos.lifespan == Duration(seconds=2)
     assert qos.deadline == Infinite
-    # Others may not learn history and depth, as they do not in DDS.
+    # Other middlewares may not report history and depth: DDS does not transmit them.
     assert qos.history in (HistoryPolicy.KEEP_LAST, HistoryPolicy.UNKNOWN)
 
 
@@ -139,7 +139,7 @@ def test_a_node_that_ends_leaves_the_graph(node, peer, how):
 
 
 def be_there_briefly() -> None:
-    """Leave get_type_description behind, which rclpy never destroys."""
+    """Leave the service get_type_description behind, which rclpy never destroys."""
     rclpy.init()
     rclpy.create_node("brief").destroy_node()
     rclpy.shutdown()
@@ -162,7 +162,7 @@ def test_endpoints_come_and_go(node):
 
 
 def test_nodes_of_one_process(node):
-    """Several nodes of a process are told apart."""
+    """Several nodes of a process are distinguished."""
     others = [rclpy.create_node(f"other_{n}", namespace="/ns") for n in range(3)]
     wanted = [("other_0", "/ns"), ("other_1", "/ns"), ("other_2", "/ns"), ("tester", "/")]
     spin_until(node, lambda: sorted(node.get_node_names_and_namespaces()) == wanted)

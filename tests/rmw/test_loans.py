@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Loaned messages, which rclpy does not offer: through rcl, on the handles of rclpy's entities."""
+"""Loaned messages, which rclpy does not offer: through rcl, on the handles of its entities."""
 
 from __future__ import annotations
 
@@ -74,7 +74,7 @@ def lender(publisher) -> Lender:
 
 
 def receiver(node, publisher) -> Callable[[], list[Point]]:
-    """Subscribe; return a function that waits for a message and returns all there are so far."""
+    """Subscribe; return a function that waits for a message and returns all received so far."""
     received: list[Point] = []
     node.create_subscription(Point, "points", received.append, 10)
     spin_until(node, publisher.get_subscription_count)

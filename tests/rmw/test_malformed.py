@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Bytes that are no message: dropped and counted; a node goes on with the next message."""
+"""Bytes that are not a valid message are dropped and counted; the node takes the next one."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from rclpy.serialization import deserialize_message, serialize_message
 from ros_support import announce, lost_messages, spin_until
 from sensor_msgs.msg import JointState, PointCloud2, PointField
 from std_msgs.msg import Float64MultiArray, String
-from support import IS_MANYCORE, PATIENCE_S
+from support import IS_MANYCORE, TIMEOUT_S
 from test_msgs.msg import UnboundedSequences, WStrings
 from test_msgs.srv import BasicTypes
 
@@ -28,7 +28,7 @@ HEADER = b"\x00\x01\x00\x00"  # plain CDR, little endian
 FIELD = PointField(name="x", count=1)
 STRING = b"\x02\x00\x00\x00x\x00"  # "x" in CDR
 
-# Each a message, and what of its CDR is replaced by what.
+# Each a message, and the replacement of a part of its CDR.
 BROKEN = {
     "length_of_a_string": (String(data="x"), STRING[:4], HUGE),
     "length_of_numbers": (
@@ -51,7 +51,7 @@ BROKEN = {
 
 
 def broken(case: str) -> tuple[Any, bytes]:
-    """Return a message and the same, broken, in CDR."""
+    """Return a message and its broken CDR."""
     message, found, put = BROKEN[case]
     cdr = serialize_message(message)
     assert found in cdr
@@ -73,9 +73,9 @@ def test_a_node_goes_on(node, case):
         assert lost_messages("/broken") == 3
 
 
-@pytest.mark.skipif(not IS_MANYCORE, reason="Fast DDS tells nobody")
+@pytest.mark.skipif(not IS_MANYCORE, reason="Fast DDS does not report it")
 def test_what_is_dropped_is_told(node, capfd):
-    """By the event of lost messages, and by a line in the log, but not by one for each."""
+    """By the event of lost messages and by a line in the log, but not by one line per message."""
     _, cdr = broken("length_of_a_string")
     publisher = node.create_publisher(String, "broken", 200)
     told: list[int] = []
@@ -87,7 +87,10 @@ def test_what_is_dropped_is_told(node, capfd):
     spin_until(node, lambda: told and told[-1] == 200)
     lines = [line for line in capfd.readouterr().err.splitlines() if "dropped" in line]
     assert 1 <= len(lines) < 200
-    assert f"dropped {len(cdr)} bytes on '/broken' that are no std_msgs/msg/String" in lines[0]
+    assert (
+        f"dropped {len(cdr)} bytes on '/broken' that are not a valid std_msgs/msg/String"
+        in lines[0]
+    )
 
 
 @pytest.mark.skipif(not IS_MANYCORE, reason="its message is not of ours")
@@ -95,7 +98,7 @@ def test_what_is_dropped_is_told(node, capfd):
     "case", ["length_of_strings", "length_of_messages", "length_of_a_wide_string"]
 )
 def test_lengths_are_compared_with_what_is_left_before_memory_is_asked_for(node, case):
-    """The type support would resize first, by several bytes for each that is there."""
+    """The type support would resize first, by several bytes for each byte received."""
     message, cdr = broken(case)
     with pytest.raises(RMWError, match="claims more bytes than are left"):
         deserialize_message(cdr, type(message))
@@ -105,7 +108,7 @@ def test_lengths_are_compared_with_what_is_left_before_memory_is_asked_for(node,
 def test_lengths_are_read_in_the_order_of_their_message(node, big):
     message = JointState(name=["xyz"])
     order = "big" if big else "little"
-    words = [0, 0, 1, 0, 1, 4, b"xyz\0", 0, 0, 0]  # stamp, frame (1 byte), name, the rest
+    words = [0, 0, 1, 0, 1, 4, b"xyz\0", 0, 0, 0]  # stamp, frame (1 byte), name, remainder
     cdr = bytes([0, 0 if big else 1, 0, 0]) + b"".join(
         word if isinstance(word, bytes) else word.to_bytes(4, order) for word in words
     )
@@ -113,7 +116,7 @@ def test_lengths_are_read_in_the_order_of_their_message(node, big):
 
 
 def test_takes_in_c_find_the_next_message(node):
-    """And say so with RMW_RET_OK, in each of the ways to take."""
+    """They skip broken messages and return RMW_RET_OK, in each of the ways to take."""
     _, cdr = broken("end")
     publisher = node.create_publisher(Point, "broken", 10)
     entity = node.create_subscription(Point, "broken", print, 10)
@@ -123,7 +126,7 @@ def test_takes_in_c_find_the_next_message(node):
     publisher.publish(cdr)
     publisher.publish(Point(x=1.0))
     publisher.publish(cdr)
-    while not taken:  # Fast DDS delivers some time after publishing
+    while not taken:  # Fast DDS delivers asynchronously
         assert rmw.rmw_take(subscription, point, ctypes.byref(taken), None) == OK
     assert list(point) == [1, 0, 0]
     assert rmw.rmw_take(subscription, point, ctypes.byref(taken), None) == OK
@@ -161,7 +164,7 @@ def test_a_server_and_a_client_go_on(node, start_peer):
 
     node.create_service(BasicTypes, "ask", serve)
     client = node.create_client(BasicTypes, "ask")
-    assert client.wait_for_service(PATIENCE_S)
+    assert client.wait_for_service(TIMEOUT_S)
     start_peer(send_nonsense).wait_for("sent")
     answer = client.call_async(BasicTypes.Request(int64_value=7))
     spin_until(node, answer.done)
@@ -170,7 +173,7 @@ def test_a_server_and_a_client_go_on(node, start_peer):
 
 
 def send_nonsense() -> None:
-    """Send a request and a reply, which are none, to the server and to its client."""
+    """Send a malformed request and a malformed response, to the server and to its client."""
     from rmw_manycore_py import _transport
 
     process = _transport.Process(os.environ["MANYCORE_PLATFORM"])

@@ -81,7 +81,7 @@ def log_one_line() -> None:
 
 @pytest.mark.parametrize("same", [True, False], ids=["one_domain", "two_domains"])
 def test_domains_are_apart(domains, start_peer, monkeypatch, same):
-    """Without MANYCORE_PLATFORM the ROS domain is the platform."""
+    """Without MANYCORE_PLATFORM the ROS domain determines the platform."""
     monkeypatch.delenv("MANYCORE_PLATFORM", raising=False)
     rclpy.init(domain_id=domains[0])
     node = rclpy.create_node("tester")
@@ -101,7 +101,7 @@ def test_domains_are_apart(domains, start_peer, monkeypatch, same):
 
 
 def talk_in_domain(domain: int) -> None:
-    """Publish to a reader of the own domain, which shows that messages arrive at all."""
+    """Publish to a reader of the own domain, to show that messages arrive at all."""
     os.environ.pop("MANYCORE_PLATFORM", None)
     os.environ["ROS_DOMAIN_ID"] = str(domain)
     talk_to_itself()
@@ -146,7 +146,7 @@ def test_static_peers_are_ignored_with_a_warning(node, start_peer):
 
 @needs_manycore
 def test_security_that_must_be_enforced_is_refused(start_peer, tmp_path):
-    """A node must not run unprotected because its middleware knows no DDS security."""
+    """A node must not run unprotected because its middleware lacks DDS security."""
     (tmp_path / "enclaves").mkdir()
     security = {
         "ROS_SECURITY_ENABLE": "true",
@@ -154,5 +154,5 @@ def test_security_that_must_be_enforced_is_refused(start_peer, tmp_path):
         "ROS_SECURITY_KEYSTORE": str(tmp_path),
     }
     peer = start_peer(talk_to_itself, **security)
-    peer.wait_for("rmw_manycore has no DDS security")
+    peer.wait_for("rmw_manycore does not support DDS security")
     assert peer.wait() != 0

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Scans that were taken while the vehicle moved, with the times of their points."""
+"""Scans taken while the vehicle moved, with the times of their points."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ OK = b"\x00"
 
 
 def report_on(stack: Any, cloud: Any) -> tuple[int, Any]:
-    """Send a scan with the guesses of a drive, exact ones; return its stamp and its diagnostics."""
+    """Publish a scan with the exact guesses of a drive; return its stamp and its diagnostics."""
     stamp = stack.stamp()
     stamp_ns = nanoseconds(stamp)
     for before_s in (0.2, 0.1, 0.0):
@@ -34,7 +34,7 @@ def report_on(stack: Any, cloud: Any) -> tuple[int, Any]:
 
 
 def values_of(report: Any) -> dict[str, str]:
-    """Return what the diagnostics say, by key."""
+    """Return the values of the diagnostics, by key."""
     return {one.key: one.value for one in report.values}
 
 
@@ -57,7 +57,7 @@ def test_motion_is_taken_out_where_the_points_have_times(stack, start):
     spin_until(stack.node, lambda: stamp_ns in stack.poses)
     assert error_m(stack.poses[stamp_ns]) < 0.05
 
-    # Skewed, it fits best half a metre off the exact guess.
+    # Without deskewing it fits best half a metre off the exact guess.
     _, report = report_on(stack, plain)
     assert "not deskewed: the cloud has none of the fields time_stamp" in report.message
     assert float(values_of(report)["distance_initial_to_result"]) > 0.5

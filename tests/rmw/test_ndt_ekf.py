@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""`ekf_localizer` follows what it can use: not NaN, nor what other times and clocks make of it."""
+"""`ekf_localizer` uses valid measurements only: no NaN, none of other times or clocks."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ THERE = from_xyz_rpy((5.0, -2.0, 1.0), (0.0, 0.0, 0.5))
 
 
 class Vehicle:
-    """What measures around a filter whose clock is the test's."""
+    """The sensors around a filter, on the test's clock."""
 
     def __init__(self, node: Node) -> None:
         self.node = node
@@ -41,23 +41,23 @@ class Vehicle:
         spin_until(node, lambda: all(end.get_subscription_count() for end in ends))
 
     def tick(self) -> None:
-        """Let a hundredth of a second pass."""
+        """Advance the clock by 10 ms."""
         self.now_s = round(self.now_s + 0.01, 2)
         self.clock.publish(Clock(clock=self._stamp()))
 
     def send(self, T: np.ndarray, ahead_s: int = 0) -> None:
-        """Measure a pose at a time."""
+        """Publish a pose measured at a time."""
         self.poses.publish(pose_with_covariance(T, COVARIANCE, self._stamp(ahead_s), "map"))
 
     def send_twist(self, ahead_s: int) -> None:
-        """Measure that the vehicle stands still at a time."""
+        """Publish a twist of zero measured at a time."""
         message = TwistWithCovarianceStamped()
         message.header.stamp = self._stamp(ahead_s)
         message.twist.covariance[0] = message.twist.covariance[35] = 0.01
         self.twists.publish(message)
 
     def drive_to(self, T: np.ndarray) -> None:
-        """Measure a pose until the filter has it, at the present time."""
+        """Publish a pose with the current stamp until the filter has it."""
         self.heard.clear()
         spin_until(self.node, lambda: self.tick() or self.send(T) or self._is_at(T))
 
@@ -77,7 +77,7 @@ def ekf(start) -> Program:
 
 @pytest.fixture
 def vehicle(node, ekf) -> Vehicle:
-    """Return a vehicle whose filter has found it."""
+    """Return a vehicle whose filter is initialised."""
     vehicle = Vehicle(node)
     vehicle.drive_to(HERE)
     return vehicle
@@ -85,7 +85,7 @@ def vehicle(node, ekf) -> Vehicle:
 
 def test_what_is_not_finite_is_passed_over(vehicle, ekf):
     vehicle.send(from_xyz_rpy((float("nan"), 0.0, 0.0)))
-    ekf.wait_for("not finite.*: it is passed over")
+    ekf.wait_for("pose ignored: .*not finite")
     vehicle.heard.clear()
     spin_until(vehicle.node, lambda: vehicle.tick() or len(vehicle.heard) > 50)
     for message in vehicle.heard:
@@ -94,32 +94,32 @@ def test_what_is_not_finite_is_passed_over(vehicle, ekf):
 
 
 def test_measurements_of_the_future_are_passed_over(vehicle, ekf):
-    """One alone would make all that follow too old."""
+    """A single stamp ahead must not make all later ones too old."""
     vehicle.send(HERE, ahead_s=3600)
-    ekf.wait_for(r"a pose is of a time 3\d{3}\.\d\d s ahead")
+    ekf.wait_for(r"pose ignored: its stamp is 3\d{3}\.\d\d s in the future")
     vehicle.send_twist(ahead_s=3600)
-    ekf.wait_for(r"a twist is of a time 3\d{3}\.\d\d s ahead")
+    ekf.wait_for(r"twist ignored: its stamp is 3\d{3}\.\d\d s in the future")
     vehicle.drive_to(THERE)
 
 
 def test_old_measurements_are_passed_over_with_a_warning_of_each_kind(vehicle, ekf):
     vehicle.send(THERE, ahead_s=-100)
-    ekf.wait_for("a pose is older than what is kept")
+    ekf.wait_for("pose ignored: it is older than the history")
     vehicle.send_twist(ahead_s=-100)
-    ekf.wait_for("a twist is older than what is kept")
+    ekf.wait_for("twist ignored: it is older than the history")
     vehicle.drive_to(HERE)
 
 
 def test_a_clock_that_jumps_back(vehicle, ekf):
-    """As when a recording begins anew: the filter goes on from where it is, and follows."""
+    """As when a recording starts again: the filter continues from its pose, and follows."""
     vehicle.now_s = 500
     vehicle.drive_to(THERE)
-    ekf.wait_for("the clock has jumped back: going on from the last pose")
+    ekf.wait_for("the clock has jumped back: continuing from the last pose")
     vehicle.drive_to(HERE)
 
 
 def test_a_speed_that_is_no_longer_measured_becomes_uncertain(node, vehicle):
-    """By this a follower knows that the wheels or the IMU have stopped reporting."""
+    """It tells a follower that the wheels or the IMU have stopped."""
     heard: list[Any] = []
     node.create_subscription(Odometry, "ekf_odom", heard.append, 10)
 
@@ -140,7 +140,8 @@ def test_a_speed_that_is_no_longer_measured_becomes_uncertain(node, vehicle):
 def test_a_first_pose_of_the_future_is_none(node, ekf):
     vehicle = Vehicle(node)
     spin_until(
-        node, lambda: vehicle.tick() or vehicle.send(THERE, ahead_s=3600) or "ahead" in ekf.output
+        node,
+        lambda: vehicle.tick() or vehicle.send(THERE, ahead_s=3600) or "future" in ekf.output,
     )
     assert not vehicle.heard
     vehicle.drive_to(HERE)

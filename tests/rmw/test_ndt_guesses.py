@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Guesses of `ndt_scan_matcher`: each scan is matched from its own, or from none."""
+"""Guesses of `ndt_scan_matcher`: each scan is matched from its own guess, or from none."""
 
 from __future__ import annotations
 
@@ -17,11 +17,12 @@ from ndt_support import (
     street_scan,
 )
 from ros_support import spin_until
-from support import PATIENCE_S
+from support import TIMEOUT_S
 
 from rmw_manycore_py.ndt.geometry.poses import from_xyz_rpy
 from rmw_manycore_py.ndt.messages.conversions import matrix_of, nanoseconds, pose_with_covariance
 from rmw_manycore_py.ndt.messages.point_cloud import encode
+from rmw_manycore_py.ndt.nodes.scan_matcher.guesses import PERIODS
 
 
 def stamp_of_ns(time_ns: int) -> Time:
@@ -33,12 +34,12 @@ def value_of(report: DiagnosticStatus, key: str) -> str:
 
 
 def test_no_scan_is_matched_from_the_guess_of_another(stack, start):
-    """Scans and guesses come at once, the scans first, each guess 3 m from the next.
+    """Scans and guesses arrive at once, the scans first, each guess 3 m from the next.
 
-    The newest scan is matched from its own guess, and each other one is answered or reported as
+    The newest scan is matched from its own guess; each other one is answered or reported as
     skipped.
     """
-    start(matcher_command(validation__initial_pose_wait_sec=PATIENCE_S / 10), cluster=2)
+    start(matcher_command(validation__initial_pose_wait_sec=TIMEOUT_S / 10), cluster=2)
     stack.wait_for_matcher()
     stack.publish_map(street_map())
     stack.pose_of(street_scan())
@@ -71,9 +72,11 @@ def test_no_scan_is_matched_from_the_guess_of_another(stack, start):
 
 def test_a_guess_too_old_for_a_scan_is_refused(matched):
     matched.pose_of(street_scan())
-    for _ in range(3):  # a period of some milliseconds
-        matched.report_of(matched.send(street_scan()))
-    ahead_ns = nanoseconds(matched.stamp()) + 900_000_000
+    now_ns = nanoseconds(matched.stamp())
+    for number in range(PERIODS):  # a period of ten milliseconds, however long matching takes
+        stamp_ns = now_ns + number * 10_000_000
+        matched.report_of(matched.send(street_scan(), stamp=stamp_of_ns(stamp_ns)))
+    ahead_ns = stamp_ns + 900_000_000
     matched.scans.publish(encode(street_scan(), stamp_of_ns(ahead_ns), "base_link"))
     report = matched.report_of(ahead_ns)
     assert "Couldn't interpolate pose: the newest pose is" in report.message
@@ -86,8 +89,8 @@ def test_as_in_autoware_a_guess_holds_for_a_second(stack, start):
     stack.wait_for_matcher()
     stack.publish_map(street_map())
     stack.pose_of(street_scan())
-    stack.report_of(stack.send(street_scan()))
-    ahead_ns = nanoseconds(stack.stamp()) + 500_000_000
+    stack.report_of(stamp_ns := stack.send(street_scan()))
+    ahead_ns = stamp_ns + 500_000_000
     stack.scans.publish(encode(street_scan(), stamp_of_ns(ahead_ns), "base_link"))
     spin_until(stack.node, lambda: ahead_ns in stack.poses)
     assert error_m(stack.poses[ahead_ns]) < 0.1

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Maps by cells: our map loader as Autoware's, and the matcher that asks it for what it lacks."""
+"""Maps by cells: our map loader serves as Autoware's does, and the matcher requests cells."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ from ndt_support import (
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from ros_support import spin_until
-from support import PATIENCE_S, Program
+from support import TIMEOUT_S, Program
 
 from rmw_manycore_py.ndt.geometry.poses import from_xyz_rpy
 from rmw_manycore_py.ndt.maps.map_tiles import open_map, write_tiles
@@ -56,14 +56,14 @@ def loader_command(tiles: Path, *parameters: str, remappings: Sequence[str] = ()
 
 
 def served_as_the_matcher_asks(start: Any, tiles: Path) -> Program:
-    """Start a loader that serves by the name that a matcher asks for, and publishes no map."""
+    """Start a loader whose service has the matcher's default name; it publishes no map."""
     names = (f"{DIFFERENTIAL}:=pcd_loader_service", "pointcloud_map:=unheard")
     return start(loader_command(tiles, remappings=names), cluster=1)
 
 
 def answered(node: Node, kind: type, name: str, request: Any) -> Any:
     client = node.create_client(kind, name)
-    assert client.wait_for_service(PATIENCE_S)
+    assert client.wait_for_service(TIMEOUT_S)
     answer = client.call_async(request)
     spin_until(node, answer.done)
     return answer.result()
@@ -115,7 +115,7 @@ def test_a_loader_serves_cells_as_autoware_s(node, start, tiles):
 
 
 def test_a_matcher_asks_for_the_cells_that_it_lacks(stack, start, tiles):
-    """Far away there is no map, and back at the place there is again."""
+    """Far away there is no map; back at the place there is one again."""
     start(matcher_command(**NARROW), cluster=2)
     stack.wait_for_matcher()
     assert "pcd_loader_service" in stack.report_of(stack.send(street_scan())).message
@@ -132,7 +132,7 @@ def test_a_matcher_asks_for_the_cells_that_it_lacks(stack, start, tiles):
 
 
 def cells_removed(stack: Any, guess: np.ndarray) -> bool:
-    """Tell whether a guess elsewhere has had cells taken away."""
+    """Return whether a guess elsewhere has removed cells."""
     stack.report_of(stack.send(street_scan(), guess))
     removed = [
         int(pair.value)
@@ -144,7 +144,7 @@ def cells_removed(stack: Any, guess: np.ndarray) -> bool:
 
 
 def test_a_loader_that_ends_is_asked_again_when_it_is_back(stack, start, tiles):
-    """The map stays meanwhile."""
+    """The map stays until then."""
     start(matcher_command(**NARROW), cluster=2)
     loader = served_as_the_matcher_asks(start, tiles)
     stack.wait_for_matcher()

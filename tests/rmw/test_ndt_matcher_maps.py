@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The maps of `ndt_scan_matcher`: of all kinds and places, swapped under way, and refused."""
+"""Maps of `ndt_scan_matcher`: of all kinds and places, replaced at run time, and refused."""
 
 from __future__ import annotations
 
@@ -37,12 +37,12 @@ UTM = from_xyz_rpy((500_000.0, 5_000_000.0, 100.0))
 
 
 def again(stack: Stack) -> DiagnosticStatus:
-    """Send the scan, and return what the matcher reports of it."""
+    """Publish the scan, and return the diagnostics of it."""
     return stack.report_of(stack.send(street_scan()))
 
 
 def test_a_map_of_another_place_and_back(matched):
-    """Maps are swapped while scans come; the one without the place gives no pose."""
+    """Maps are replaced while scans arrive; a map of another place gives no pose."""
     matched.pose_of(street_scan())
     matched.publish_map(street_map() + np.float32([5000.0, 0.0, 0.0]))
     spin_until(matched.node, lambda: "no convergence" in again(matched).message)
@@ -51,7 +51,7 @@ def test_a_map_of_another_place_and_back(matched):
 
 
 def test_a_place_far_from_the_map_s_origin(matched):
-    """The pose there is as good as at the origin, and so is what is published of it."""
+    """The pose there is as accurate as at the origin, and so are the published messages."""
     clouds = {}
     keep = lambda cloud: clouds.__setitem__(nanoseconds(cloud.header.stamp), cloud)  # noqa: E731
     matched.node.create_subscription(PointCloud2, "points_aligned", keep, 10)
@@ -70,7 +70,7 @@ def test_a_place_far_from_the_map_s_origin(matched):
 
 
 def test_a_map_that_single_precision_has_spoiled(matched):
-    """It is used, and the diagnostics say every second what is wrong with it."""
+    """It is used, and the diagnostics report every second what is wrong with it."""
     matched.publish_map(transform(UTM, street_map().astype(np.float64)).astype(np.float32))
     spin_until(
         matched.node,
@@ -87,7 +87,7 @@ def test_a_map_that_single_precision_has_spoiled(matched):
 
 
 def test_maps_that_are_none(matched):
-    """They are reported, and the map before them stays."""
+    """They are reported, and the previous map stays."""
     matched.pose_of(street_scan())
     for points in (few(0), few(2), nan_points()):
         matched.reports.clear()
@@ -114,11 +114,11 @@ def own_cluster() -> _transport.ClusterInfo:
 
 @pytest.mark.skipif(not IS_MANYCORE, reason="the SMEM of a cluster is rmw_manycore's")
 def test_a_map_that_the_cluster_has_no_room_for(stack, start):
-    """What a matcher shares with its workers is a part of its cluster's SMEM."""
+    """The memory that a matcher shares with its workers is part of its cluster's SMEM."""
     program = start(matcher_command(worker_host_cpus=two_host_cpus()), cluster=1)
     stack.wait_for_matcher()
     before = own_cluster()
-    assert before.used_bytes > before.charged_bytes > 1 << 20  # the place for scans
+    assert before.used_bytes > before.charged_bytes > 1 << 20  # the buffer for scans
     for _ in range(2):
         stack.publish_map(street_map())
         stack.pose_of(street_scan(), NEAR)
@@ -127,7 +127,7 @@ def test_a_map_that_the_cluster_has_no_room_for(stack, start):
     assert cluster.charged_bytes > before.charged_bytes
 
     platform = os.environ["MANYCORE_PLATFORM"]
-    reserve = min(cluster.smem_bytes // 8, 8 << 20)  # nothing but control blocks goes there
+    reserve = min(cluster.smem_bytes // 8, 8 << 20)  # only control blocks are allocated there
     free = cluster.smem_bytes - cluster.used_bytes - reserve
     _transport.charge_smem(platform, free - 64 * 1024)
     stack.publish_map(street_map())
@@ -142,13 +142,13 @@ def test_a_map_that_the_cluster_has_no_room_for(stack, start):
 
 
 def test_tiles_around_the_vehicle(stack, start, tmp_path):
-    """The map comes from files; far away there is none, and back at the place there is again."""
+    """The map comes from files; far away there is none, and back at the place there is one."""
     write_tiles(tmp_path / "tiles", street_map(), 20.0, ".npz")
     more = {
         "dynamic_map_loading__map_radius": 30.0,
         "dynamic_map_loading__lidar_radius": 5.0,
         "dynamic_map_loading__publish_loaded_map": "true",
-        "behaviour": "autoware",  # does not find back by itself from a guess far away
+        "behaviour": "autoware",  # does not recover by itself from a guess far away
     }
     maps = []
     kept = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
@@ -166,7 +166,7 @@ def test_tiles_around_the_vehicle(stack, start, tmp_path):
 
 @pytest.mark.parametrize("damage", ["missing", "cut off", "rubbish", "boastful"])
 def test_a_tile_that_is_damaged_while_driving(stack, start, tmp_path, damage):
-    """It is reported, the map before it stays, and the node finds its place in that again."""
+    """It is reported, the previous map stays, and the node recovers its pose in that map."""
     folder = tmp_path / "tiles"
     beside = street_map() + np.float32([200.0, 0.0, 0.0])
     write_tiles(folder, np.concatenate([street_map(), beside]), 20.0, ".npz")

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The nodes around the matcher, each by itself; integration/test_ndt_replay.py has all together."""
+"""The nodes around the matcher, each alone; integration/test_ndt_replay.py has all together."""
 
 from __future__ import annotations
 
@@ -82,7 +82,7 @@ def test_the_loader_publishes_what_is_near_the_vehicle(node, start, tmp_path):
 
 @pytest.mark.parametrize("kind", [np.float64, np.float32])
 def test_the_loader_far_from_the_map_s_origin(node, start, tmp_path, kind):
-    """Doubles are published as such; of single precision the log says what it has spoiled."""
+    """Doubles are published unchanged; for single precision a warning states the loss."""
     points = (street_map() + np.array([500_000.0, 5_000_000.0, 100.0])).astype(kind)
     write_points(tmp_path / "map.npz", points)
     loader = start(command("pointcloud_map_loader", f"pcd_paths_or_directory:={tmp_path}/map.npz"))
@@ -134,7 +134,7 @@ def unmatched(node, start) -> Stack:
 
 
 def initializer(*parameters: str) -> list[str]:
-    """Return the command of an initializer of the matcher alone."""
+    """Return the command of an initializer that uses the matcher alone."""
     return forked_node(INITIALIZER, *initializer_arguments(*parameters))
 
 
@@ -144,7 +144,7 @@ def initializer_arguments(*parameters: str) -> list[str]:
 
 
 def first_pose(stack: Stack, also: Callable[[], object] = lambda: None) -> np.ndarray:
-    """Send scans until the initializer has found a pose, and return it."""
+    """Publish scans until the initializer has found a pose, and return it."""
     found = []
     stack.node.create_subscription(PoseWithCovarianceStamped, "initialpose3d", found.append, KEPT)
     spin_until(stack.node, lambda: (stack.send(street_scan(), None) and also()) or found)
@@ -152,7 +152,7 @@ def first_pose(stack: Stack, also: Callable[[], object] = lambda: None) -> np.nd
 
 
 def rough(stack: Stack, T: np.ndarray, age_s: int = 0) -> PoseWithCovarianceStamped:
-    """Return a pose half a metre off, without the covariance, which the initializer knows."""
+    """Return a pose half a metre off, without a covariance: the initializer sets it."""
     T = from_xyz_rpy((0.4, -0.3, 0.0)) @ T
     stamp = stack.node.get_clock().now().to_msg()
     stamp.sec -= age_s
@@ -160,7 +160,7 @@ def rough(stack: Stack, T: np.ndarray, age_s: int = 0) -> PoseWithCovarianceStam
 
 
 def test_a_first_pose_by_hand(unmatched, start):
-    """As RViz and `topic pub` send it."""
+    """As RViz and `topic pub` publish it."""
     start(initializer())
     publisher = unmatched.node.create_publisher(PoseWithCovarianceStamped, "initialpose", 1)
     spin_until(unmatched.node, publisher.get_subscription_count)
@@ -169,10 +169,10 @@ def test_a_first_pose_by_hand(unmatched, start):
 
 
 def want_a_pose_of(program: Program, stack: Stack) -> None:
-    """Send a rough pose until the initializer has asked the matcher for a better one."""
+    """Publish a rough pose until the initializer has called the matcher."""
     publisher = stack.node.create_publisher(PoseWithCovarianceStamped, "initialpose", 1)
     spin_until(stack.node, publisher.get_subscription_count)
-    for _ in range(2):  # when it has heard of the second one, it is done with the first
+    for _ in range(2):  # when it has received the second one, it has handled the first
         publisher.publish(rough(stack, TRUTH))
         program.wait_for("]: INITIALIZING")
 
@@ -192,7 +192,7 @@ def test_a_first_pose_though_the_matcher_was_killed_over_it(stack, start):
 
 
 def test_a_first_pose_though_the_matcher_was_stopped_over_it(stack, start):
-    """It is asked again, and what it answers to the first call counts no more.
+    """It is called again, and its late response to the first call is ignored.
 
     It has to answer later calls in time, so it tries few poses.
     """
@@ -221,7 +221,7 @@ def test_a_first_pose_of_the_parameters(unmatched, start):
 
 
 def test_a_first_pose_of_gnss(unmatched, start):
-    """It tells no direction; what is old is passed over, and what comes later changes nothing."""
+    """It contains no direction; old positions are skipped, and later ones change nothing."""
     program = start(initializer("gnss_enabled:=true"))
     publisher = unmatched.node.create_publisher(PoseWithCovarianceStamped, "gnss_pose_cov", 1)
     position = from_xyz_rpy(TRUTH[:3, 3])

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The node `ndt_scan_matcher`: what it publishes, its services, and bad input of all kinds."""
+"""The node `ndt_scan_matcher`: its topics, its services, and bad input of all kinds."""
 
 from __future__ import annotations
 
@@ -105,7 +105,7 @@ def test_a_pose_and_all_that_belongs_to_it(matched):
 
 
 def check_gain(report: DiagnosticStatus) -> None:
-    """Check that what the diagnostics say of the score before, after and between fits."""
+    """Check that the scores in the diagnostics before, after and in between are consistent."""
     values = {pair.key: pair.value for pair in report.values}
     for name in ("transform_probability", "nearest_voxel_transformation_likelihood"):
         gain = float(values[name]) - float(values[f"{name}_before"])
@@ -117,7 +117,7 @@ MADE_OF = {1: (), 2: ("multi_initial_pose", "multi_ndt_pose"), 3: ("multi_initia
 
 
 def stamp_of(message: Any) -> int:
-    """Return the stamp in ns that a message has, or the first of those in it."""
+    """Return the stamp [ns] of a message, or of the first one inside."""
     for name in ("transforms", "markers"):
         message = getattr(message, name, [message])[0]
     return nanoseconds(message.header.stamp if hasattr(message, "header") else message.stamp)
@@ -207,7 +207,7 @@ def test_bad_scans_and_guesses_give_a_diagnostic_and_no_pose(matched):
         stamp_ns = matched.send(few(0), guess)
         report = matched.report_of(stamp_ns, "initial_pose_subscriber_status")
         assert report.level == ERROR, name
-        assert "passed over" in report.message, name
+        assert "pose ignored" in report.message, name
         assert error_m(matched.pose_of(street_scan(), NEAR)) < 0.1, name
     in_wrong_frame = guess_with(5.0)
     in_wrong_frame.header.frame_id = "odom"
@@ -218,7 +218,7 @@ def test_bad_scans_and_guesses_give_a_diagnostic_and_no_pose(matched):
 
 
 def test_workers_that_are_killed_are_replaced(stack, start):
-    """Killed between scans and during one: poses go on, and the workers are others."""
+    """Killed between scans and during one: poses continue, with new workers."""
     program = start(matcher_command(worker_host_cpus=two_host_cpus()), cluster=2)
     stack.wait_for_matcher()
     stack.publish_map(street_map())
@@ -238,7 +238,7 @@ def test_workers_that_are_killed_are_replaced(stack, start):
 
 
 def test_workers_that_die_again_and_again(stack, start):
-    """Scans, maps and poses are tried until refused: on a busy machine some workers live on."""
+    """Scans, maps and poses are retried until refused: on a busy machine some workers survive."""
     program = start(matcher_command(worker_host_cpus=two_host_cpus()), cluster=2)
     points, scan = street_map(), street_scan()
     stack.wait_for_matcher()
@@ -282,7 +282,7 @@ def test_a_scan_of_two_million_points(matched):
 
 
 def test_regularization_poses_that_are_none(stack, start):
-    """One that is not finite is passed over, one of another place not used, one of here is."""
+    """A pose that is not finite is skipped, one elsewhere not used, and a valid one is."""
     program = start(matcher_command(ndt__regularization__enable="true"), cluster=2)
     stack.wait_for_matcher()
     stack.publish_map(street_map())
@@ -300,7 +300,7 @@ def test_regularization_poses_that_are_none(stack, start):
 
     for value in (float("nan"), float("inf"), 1e300):
         report = send(value)
-        assert (report.level, "passed over" in report.message) == (ERROR, True)
+        assert (report.level, "pose ignored" in report.message) == (ERROR, True)
     for _ in range(2):
         assert send(1e4).level == b"\x00"
     stamp_ns = stack.send(street_scan(), NEAR)
@@ -310,12 +310,12 @@ def test_regularization_poses_that_are_none(stack, start):
     for _ in range(2):
         assert send(TRUTH[0, 3]).level == b"\x00"
     assert error_m(stack.pose_of(street_scan(), NEAR)) < 0.1
-    program.wait_for("passed over")
+    program.wait_for("pose ignored")
     program.wait_for("not used")
 
 
 def test_clocks_that_differ(matched):
-    """Scan and guess of a time ahead belong together: matched, with a warning."""
+    """Scan and guess stamped ahead belong together: they are matched, with a warning."""
     matched.pose_of(street_scan())
     ahead = matched.stamp()
     ahead.sec += 1000
@@ -324,7 +324,7 @@ def test_clocks_that_differ(matched):
     report = matched.report_of(nanoseconds(ahead), "initial_pose_subscriber_status")
     assert report.level == b"\x00"
     matched.scans.publish(encode(street_scan(), ahead, "base_link"))
-    assert "s ahead: check the clocks" in matched.report_of(nanoseconds(ahead)).message
+    assert "s in the future: check the clocks" in matched.report_of(nanoseconds(ahead)).message
     spin_until(matched.node, lambda: nanoseconds(ahead) in matched.poses)
     assert error_m(matched.pose_of(street_scan(), NEAR)) < 0.1
 
@@ -355,7 +355,7 @@ def test_the_sensor_is_mounted_somewhere(matched):
         ({"covariance__output_pose_covariance": "[1.0]"}, "36 finite numbers"),
         (
             {"covariance__covariance_estimation__initial_pose_offset_model_x": "[1.0]"},
-            "as many numbers in either, found 1 and 6",
+            "expected equally many numbers in both, found 1 and 6",
         ),
         ({"covariance__covariance_estimation__temperature": 0.0}, "temperature: expected more"),
         (
@@ -365,7 +365,7 @@ def test_the_sensor_is_mounted_somewhere(matched):
         ({"frame__map_frame": "''"}, "map_frame: expected text that is not empty, found ''"),
         ({"worker_host_cpus": "[0.5]"}, "expected whole numbers, none negative, found (0.5,)"),
         ({"worker_host_cpus": "[-1]"}, "expected whole numbers, none negative, found (-1,)"),
-        ({"worker_host_cpus": "[0, 4095]"}, "host CPU 4095 cannot be had"),
+        ({"worker_host_cpus": "[0, 4095]"}, "host CPU 4095 is not in this process's affinity mask"),
         ({"map_path": "/nonexistent.pcd"}, "no such file"),
         ({"map_path": "a" * 300}, "File name too long"),
         ({"map_path": "/etc/passwd"}, "ends in .pcd, .ply, .npz"),

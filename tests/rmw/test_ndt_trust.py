@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What `ndt_scan_matcher` believes, how it finds back, and what it is after a kill."""
+"""What `ndt_scan_matcher` believes, how it recovers, and its state after a kill."""
 
 from __future__ import annotations
 
@@ -22,14 +22,15 @@ from ndt_support import (
     workers_below,
 )
 from ros_support import spin_until
-from support import PATIENCE_S, wait_until
+from support import TIMEOUT_S, wait_until
 
 from rmw_manycore_py.errors import ManycoreError
+from rmw_manycore_py.ndt import MatcherOptions, SerialMatcher, VoxelMap
 from rmw_manycore_py.ndt.geometry import poses
 from rmw_manycore_py.ndt.nodes.scan_matcher.real_time import schedule_in_real_time
 from rmw_manycore_py.ndt.simulation.drive import poses_along
 
-FAR = poses_along([14.0])[0]  # beyond what an alignment from TRUTH reaches
+FAR = poses_along([14.0])[0]  # farther than an alignment from TRUTH converges
 PRIORITY = 5
 
 
@@ -38,9 +39,9 @@ def values_of(report: Any) -> dict[str, str]:
 
 
 def answered(stack: Any, scan: np.ndarray, guess: np.ndarray) -> tuple[list[Any], np.ndarray]:
-    """Send a scan until there is a pose for it; return all reports and the pose."""
+    """Publish a scan until it gets a pose; return all reports and the pose."""
     reports: list[Any] = []
-    deadline = time.monotonic() + PATIENCE_S
+    deadline = time.monotonic() + TIMEOUT_S
     while not reports or values_of(reports[-1])["skipping_publish_num"] != "0":
         assert time.monotonic() < deadline, f"no pose: {reports[-1]}"
         reports.append(stack.report_of(stamp_ns := stack.send(scan, guess)))
@@ -61,6 +62,39 @@ def test_a_first_pose_is_unsure_and_later_ones_are_not(matched):
     spin_until(matched.node, lambda: heard[-1].pose.covariance[0] < 0.1)
 
 
+def far_guess() -> np.ndarray:
+    """Return a guess from which the first look ends elsewhere, and the second one finds home."""
+    options = MatcherOptions(search="radius")
+    matcher = SerialMatcher(options)
+    matcher.set_map(VoxelMap.from_points(street_map(), options))
+    generator = np.random.default_rng(4)
+    while True:
+        guess = poses.perturbed(TRUTH, 6.0, 0.3, generator)
+        first = matcher.align_once(street_scan(), guess)
+        again = matcher.second_look(first, street_scan(), guess)
+        if error_m(first.T_map_sensor) > 1.0 and error_m(again.T_map_sensor) < 0.05:
+            return guess
+
+
+def test_a_first_guess_from_far_off_gets_a_second_look_where_nothing_searches(stack, start):
+    start(matcher_command(recovery__after_scans=0), cluster=2)
+    stack.wait_for_matcher()
+    stack.publish_map(street_map())
+    reports, T = answered(stack, street_scan(), far_guess())
+    assert values_of(reports[-1])["second_looks"] == "1"
+    assert error_m(T) < 0.1
+    stack.pose_of(street_scan())
+    report = stack.report_of(stack.send(street_scan()))
+    assert values_of(report)["second_looks"] == "1"  # one that converges well has none
+
+
+def test_a_first_guess_from_far_off_is_left_to_a_search(matched):
+    reports, T = answered(matched, street_scan(), far_guess())
+    assert {values_of(report)["second_looks"] for report in reports} == {"0"}
+    assert "searching" in {values_of(report)["recovery_step"].split()[0] for report in reports}
+    assert error_m(T) < 0.1
+
+
 def test_guesses_that_jump_do_not_lead_the_poses_astray(matched):
     matched.be_sure()
     for guess in (FAR, FAR, poses.from_xyz_rpy((1e5, 0.0, 0.0))):
@@ -75,7 +109,7 @@ def test_a_vehicle_that_was_carried_away_is_found_while_scans_go_on(matched):
     scan = street_scan(FAR)
     reports, T = answered(matched, scan, TRUTH)
     searching = ["searching" in values_of(report)["recovery_step"] for report in reports]
-    assert sum(searching) > 2  # they were judged while the search went on
+    assert sum(searching) > 2  # they were judged while the search ran
     assert poses.distance_m(T, FAR) < 0.1
 
 
@@ -85,11 +119,12 @@ def test_as_in_autoware_nothing_is_searched(stack, start):
     stack.publish_map(street_map())
     stack.pose_of(street_scan())
     report = stack.report_of(stack.send(street_scan(FAR)))
-    assert not {"recovery_step", "score_level", "is_sure"} & set(values_of(report))
+    ours = {"recovery_step", "score_level", "is_sure", "second_looks"}
+    assert not ours & set(values_of(report))
 
 
 def test_a_matcher_that_was_killed_goes_on_where_it_was(stack, start, tmp_path: Path):
-    """It is activated as it was, and finds itself although its guesses stay behind."""
+    """It is activated as before, and recovers although its guesses stay behind."""
     parameters = {"activated": "false", "last_pose_path": tmp_path / "pose"}
     first = start(matcher_command(**{**parameters, "activated": "true"}), cluster=2)
     stack.wait_for_matcher()
@@ -116,10 +151,10 @@ def test_real_time_where_it_is_allowed(stack, start):
     assert len(workers) == 2
     wait_until(lambda: all(map(is_in_real_time, workers)), "workers are in real time")
     threads = [int(task.name) for task in Path(f"/proc/{program.pid}/task").iterdir()]
-    assert sum(map(is_in_real_time, threads)) >= 2  # executor and matching
+    assert sum(map(is_in_real_time, threads)) >= 2  # executor thread and matching thread
     stack.publish_map(street_map())
     assert error_m(stack.pose_of(street_scan())) < 0.1
-    stack.publish_map(street_map())  # the first one was built in the node's process
+    stack.publish_map(street_map())  # the first map was built in the node's process
     spin_until(stack.node, lambda: stack.send(street_scan()) and helpers_below(program.pid))
     helpers = helpers_below(program.pid)
     assert not any(map(is_in_real_time, helpers))
@@ -144,7 +179,7 @@ def test_real_time_that_limits_forbid_is_refused():
     os.close(reader)
     os.waitpid(child, 0)
     if words == "allowed":
-        pytest.skip("real-time scheduling is allowed to everybody here")
+        pytest.skip("every user may use real-time scheduling here")
     assert "realtime_priority: expected at most" in words
     assert "ulimit -r" in words
 

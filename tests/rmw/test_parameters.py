@@ -10,7 +10,7 @@ from rcl_interfaces.msg import ParameterEvent
 from rclpy.parameter import Parameter
 from rclpy.parameter_client import AsyncParameterClient
 from ros_support import spin_until
-from support import PATIENCE_S
+from support import TIMEOUT_S
 
 
 @pytest.fixture
@@ -18,7 +18,7 @@ def controller(node, start, peer_cluster):
     """Start the example controller and return a client of its parameters."""
     start(forked_example("controller"), peer_cluster).wait_for("gain is")
     client = AsyncParameterClient(node, "controller")
-    assert client.wait_for_services(PATIENCE_S)
+    assert client.wait_for_services(TIMEOUT_S)
     return client
 
 
@@ -75,7 +75,7 @@ def test_from_a_file(start, tmp_path):
 def test_of_the_own_node(node):
     node.declare_parameter("speed", 1)
     client = AsyncParameterClient(node, "tester")
-    assert client.wait_for_services(PATIENCE_S)
+    assert client.wait_for_services(TIMEOUT_S)
     answer(node, client.set_parameters([Parameter("speed", value=2)]))
     assert node.get_parameter("speed").value == 2
     assert rclpy.ok()

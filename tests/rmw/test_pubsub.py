@@ -34,7 +34,7 @@ TEST_TYPES = [
 
 
 def echo(type_name: str, raw: bool = False) -> None:
-    """Send every message of `ping` back on `pong`."""
+    """Send every message from `ping` back on `pong`."""
     with peer_node() as node:
         publisher = node.create_publisher(type_of(type_name), "pong", 10)
         node.create_subscription(type_of(type_name), "ping", publisher.publish, 10, raw=raw)
@@ -78,7 +78,7 @@ def test_every_kind_of_field(node, start_peer, name):
 
 
 def test_serialized_messages(node, start_peer, peer_cluster):
-    """A raw subscription and a publisher of bytes pass on CDR without looking into it."""
+    """A raw subscription and a publisher of bytes pass CDR on without deserialising it."""
     peer = start_peer(echo, "std_msgs/msg/String", True, cluster=peer_cluster)
     ping = Ping(node, String)
     peer.wait_for("ready")
@@ -115,7 +115,7 @@ def talk_best_effort() -> None:
 
 
 def test_publisher_hears_itself(node):
-    """Subscriptions of the publishing process itself are readers like all others."""
+    """Subscriptions of the publishing process are readers like all others."""
     received = []
     publisher = node.create_publisher(String, "chatter", 10)
     for _ in range(3):

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""History, durability and lifespan: which messages a subscription still finds."""
+"""History, durability and lifespan: which messages a subscription still gets."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ LIFESPAN = Duration(seconds=0.1)
 
 
 def publish_burst(count: int, depth: int, end: bool) -> None:
-    """Publish 0 to count - 1 at once, and "end" on another topic once that has a reader."""
+    """Publish 0 to count - 1 at once, then "end" on another topic once that has a reader."""
     with peer_node() as node:
         publisher = node.create_publisher(String, "numbers", depth)
         end_publisher = node.create_publisher(String, "end", 1)
@@ -41,7 +41,7 @@ def publish_burst(count: int, depth: int, end: bool) -> None:
 
 
 def receive_after_burst(node, start_peer, cluster, qos, count):
-    """Return what a subscription holds that nobody looked at during a burst."""
+    """Return the messages that a subscription not taken from during a burst still holds."""
     received, ended = [], []
     node.create_subscription(String, "numbers", lambda m: received.append(int(m.data)), qos)
     node.create_subscription(String, "end", ended.append, 1)
@@ -68,7 +68,7 @@ def test_keep_all_keeps_all(node, start_peer, peer_cluster):
 
 @pytest.mark.skipif(not IS_MANYCORE, reason="sizes are of platforms")
 def test_keep_all_blocks_the_publisher_up_to_its_bound(small_topic):
-    """Reliable and keep all: nothing is overwritten; publishing fails when nobody makes room."""
+    """Reliable and keep all: nothing is overwritten; publishing fails while the ring is full."""
     qos = QoSProfile(history=HistoryPolicy.KEEP_ALL, reliability=ReliabilityPolicy.RELIABLE)
     node, received = rclpy.create_node("tester"), []
     node.create_subscription(String, small_topic, lambda m: received.append(int(m.data)), qos)
@@ -121,7 +121,7 @@ def publish_large() -> None:
 
 
 def publish_history(count: int, depth: int) -> None:
-    """Publish 0 to count - 1 for readers that come later."""
+    """Publish 0 to count - 1 for late readers."""
     with peer_node() as node:
         qos = QoSProfile(depth=depth, durability=TRANSIENT_LOCAL)
         publisher = node.create_publisher(String, "numbers", qos)
@@ -168,7 +168,10 @@ def test_late_joiner_of_the_same_process(node):
 
 @pytest.mark.parametrize("side", ["publisher", "subscription"])
 def test_expired_messages_are_not_delivered(node, start_peer, peer_cluster, side):
-    """The lifespan runs out while the message waits; a later one marks the end."""
+    """The lifespan expires while the message waits; later messages mark the end.
+
+    Each of them may expire, too, where the subscription has the lifespan and the machine is busy.
+    """
     if side == "publisher" and not IS_MANYCORE:
         pytest.skip("Fast DDS only looks at the subscription's lifespan")
     received = []
@@ -179,7 +182,7 @@ def test_expired_messages_are_not_delivered(node, start_peer, peer_cluster, side
     time.sleep(0.3)  # the lifespan itself, not a wait for something to happen
     peer.say("go on")
     spin_until(node, lambda: "lasting" in received)
-    assert received == ["lasting"]
+    assert set(received) == {"lasting"}
 
 
 def publish_short_lived(has_lifespan: bool) -> None:
@@ -192,12 +195,12 @@ def publish_short_lived(has_lifespan: bool) -> None:
         expiring.publish(String(data="short-lived"))
         announce("published")
         input()
-        lasting.publish(String(data="lasting"))
+        node.create_timer(0.02, lambda: lasting.publish(String(data="lasting")))
         rclpy.spin(node)
 
 
 def test_a_reader_takes_what_a_publisher_left(node, start_peer, peer_cluster):
-    """What was published before the publisher went away is not lost."""
+    """Messages published before the publisher was destroyed are not lost."""
     if not IS_MANYCORE:
         pytest.skip("a DDS writer takes its unread samples with it")
     received = []
@@ -211,7 +214,7 @@ def test_a_reader_takes_what_a_publisher_left(node, start_peer, peer_cluster):
 
 
 def test_system_default_and_best_available(node):
-    """The profiles that leave a choice to the middleware come back as what was chosen."""
+    """Profiles that leave a choice to the middleware come back with the chosen policies."""
     received = []
     publisher = node.create_publisher(
         String, "chatter", QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
@@ -250,7 +253,7 @@ def check_times_are_those_of_manual(profile: QoSProfile) -> None:
 
 
 def test_best_available_deadline_and_liveliness(node):
-    """Each side takes what the other one has."""
+    """Each side adopts the policies of the other one."""
     node.create_publisher(String, "offered", MANUAL)
     node.create_subscription(String, "requested", lambda _: None, MANUAL)
     spin_until(node, lambda: node.count_publishers("offered"))
@@ -266,7 +269,7 @@ def test_best_available_deadline_and_liveliness(node):
 
 
 def test_best_available_where_nobody_is(node):
-    """Nobody offers less than the best."""
+    """Without a publisher, best available resolves to the strongest policies."""
     node.create_subscription(
         String, "chatter", lambda _: None, QoSPresetProfiles.BEST_AVAILABLE.value
     )

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""DEADLINE and LIVELINESS: what their events count, and that they come by time alone."""
+"""DEADLINE and LIVELINESS: what their events count, and that time alone triggers them."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from rclpy.experimental import EventsExecutor
 from rclpy.qos import LivelinessPolicy, QoSPolicyKind, QoSProfile
 from ros_support import announce, peer_node, spin_until
 from std_msgs.msg import String
-from support import IS_MANYCORE, PATIENCE_S, wait_until
+from support import IS_MANYCORE, TIMEOUT_S, wait_until
 
 SHORT_S, LONG_S = 0.1, 3600.0
 LEASE_S = 1.0
@@ -45,7 +45,7 @@ def subscribe(node, qos, **callbacks: Any) -> None:
 
 
 def publish_once(seconds: float) -> None:
-    """Publish one message, and tell of each missed deadline of this side."""
+    """Publish one message, and print each missed deadline of the publisher."""
     with peer_node() as node:
         events = PublisherEventCallbacks(
             deadline=lambda event: announce(f"missed {event.total_count}")
@@ -108,7 +108,7 @@ def test_deadlines_that_nobody_watched_are_told_together(node):
 
 
 def test_a_wait_ends_when_a_deadline_falls_due(node):
-    """Where time did not end it, the event would come with the misses of the whole timeout."""
+    """If time did not end the wait, the event would report the misses of the whole timeout."""
     missed = []
     publisher = node.create_publisher(
         String,
@@ -118,8 +118,8 @@ def test_a_wait_ends_when_a_deadline_falls_due(node):
     )
     publisher.publish(String())
     while not missed:
-        rclpy.spin_once(node, timeout_sec=PATIENCE_S)
-    assert missed[0].total_count < PATIENCE_S / SHORT_S / 2
+        rclpy.spin_once(node, timeout_sec=TIMEOUT_S)
+    assert missed[0].total_count < TIMEOUT_S / SHORT_S / 2
 
 
 def test_a_wait_ends_when_a_lease_runs_out(node):
@@ -130,8 +130,8 @@ def test_a_wait_ends_when_a_lease_runs_out(node):
     publisher = node.create_publisher(String, "chatter", qos, event_callbacks=events)
     publisher.publish(String())
     while not lost:
-        rclpy.spin_once(node, timeout_sec=PATIENCE_S)
-    assert missed[-1].total_count < PATIENCE_S / SHORT_S / 2
+        rclpy.spin_once(node, timeout_sec=TIMEOUT_S)
+    assert missed[-1].total_count < TIMEOUT_S / SHORT_S / 2
 
 
 def test_a_longer_deadline_is_incompatible(node):
@@ -148,7 +148,7 @@ def test_a_longer_deadline_is_incompatible(node):
 
 
 def test_events_executor_hears_of_missed_deadlines(node):
-    """Nobody is in a wait set here, and nothing arrives: time alone has to call."""
+    """No thread is in a wait set and no message arrives: the timer alone calls the callback."""
     missed = []
     publisher = node.create_publisher(
         String,
@@ -158,9 +158,9 @@ def test_events_executor_hears_of_missed_deadlines(node):
     )
     executor = EventsExecutor()
     executor.add_node(node)
-    executor.spin_once(0.3)  # whoever looks for what is due has found nothing, and sleeps
+    executor.spin_once(0.3)  # the thread that watches deadlines has found none due, and sleeps
     publisher.publish(String())
-    end = time.monotonic() + PATIENCE_S
+    end = time.monotonic() + TIMEOUT_S
     while not missed or missed[-1].total_count < 3:
         assert time.monotonic() < end
         executor.spin_once(1.0)
@@ -168,7 +168,7 @@ def test_events_executor_hears_of_missed_deadlines(node):
 
 
 def assert_when_told(seconds: float) -> None:
-    """Assert manual liveliness as often as told; tell of leases that ran out."""
+    """Assert manual liveliness on request; print leases that ran out."""
     with peer_node() as node:
         events = PublisherEventCallbacks(
             liveliness=lambda event: announce(f"lost {event.total_count}")
@@ -184,7 +184,7 @@ def assert_when_told(seconds: float) -> None:
 
 
 def test_manual_liveliness_is_lost_on_both_sides(node, start_peer, peer_cluster):
-    """A lease may run out before anybody looks: it is asserted again until somebody has looked."""
+    """A lease may run out before the event is taken: the peer asserts it until that happened."""
     changes = []
     subscribe(node, lease(LEASE_S), liveliness=changes.append)
     peer = start_peer(assert_when_told, LEASE_S, cluster=peer_cluster)
@@ -241,7 +241,7 @@ def test_events_executor_hears_of_lost_liveliness(node, start_peer, peer_cluster
     executor = EventsExecutor()
     executor.add_node(node)
     start_peer(publish_alive, "MANUAL_BY_TOPIC", SHORT_S, cluster=peer_cluster)
-    end = time.monotonic() + PATIENCE_S
+    end = time.monotonic() + TIMEOUT_S
     while not changes or changes[-1].not_alive_count == 0:
         assert time.monotonic() < end
         executor.spin_once(1.0)
@@ -270,7 +270,7 @@ def test_default_liveliness_follows_who_comes_and_goes(node):
 @pytest.mark.skipif(not IS_MANYCORE, reason="Fast DDS has timers anyway")
 @pytest.mark.parametrize("period_s", [None, 0.02], ids=["no_policy", "deadline"])
 def test_without_a_policy_nobody_wakes_up(start_peer, peer_cluster, period_s):
-    """A node that waits costs nothing without a policy of time; with one, wake-ups are seen."""
+    """A waiting node without a timed policy does not wake up; with one, its wake-ups are seen."""
     silent = period_s is None
     one, other = (start_peer(wait_for_events, period_s, cluster=c) for c in (1, peer_cluster))
     for peer in (one, other):
@@ -279,21 +279,21 @@ def test_without_a_policy_nobody_wakes_up(start_peer, peer_cluster, period_s):
 
 
 def are_silent(*peers) -> bool:
-    """Tell whether no thread wakes up during a second."""
+    """Return whether no thread wakes up during a second."""
     before = [switches(peer) for peer in peers]
-    time.sleep(1.0)  # what is watched, not a wait for something to happen
+    time.sleep(1.0)  # the time measured, not a wait for something to happen
     return [switches(peer) for peer in peers] == before
 
 
 def switches(peer) -> int:
-    """How often threads of a process have gone to sleep."""
+    """Return how often the threads of a process have gone to sleep."""
     threads = Path(f"/proc/{peer.pid}/task").glob("*/status")
     pattern = re.compile(r"^voluntary_ctxt_switches:\s+(\d+)", re.MULTILINE)
     return sum(int(pattern.search(status.read_text())[1]) for status in threads)
 
 
 def wait_for_events(period_s: float | None) -> None:
-    """Wait for messages and for all events, of a publisher and a subscription."""
+    """Wait for messages and all events of a publisher and a subscription."""
     qos = 10 if period_s is None else deadline(period_s)
     told = []
 

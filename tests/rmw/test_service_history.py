@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""History of services: a server keeps the last requests, a client the last replies."""
+"""History of services: a server keeps the last requests, a client the last responses."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from rclpy.node import Node
 from rclpy.qos import HistoryPolicy, QoSProfile, ReliabilityPolicy
 from ros_support import lost_messages, peer_node, spin_until
 from std_msgs.msg import String
-from support import IS_MANYCORE, PATIENCE_S
+from support import IS_MANYCORE, TIMEOUT_S
 from test_msgs.srv import BasicTypes
 
 COUNT = 10
@@ -23,7 +23,7 @@ DEPTHS = [1, 2, 3, 5]
 
 
 class Server:
-    """Answers with the number that it is asked with, and remembers the numbers."""
+    """A server that answers with the number in the request, and records the numbers."""
 
     def __init__(self, node: Node, qos: QoSProfile, service: str = "mirror") -> None:
         self.numbers: list[int] = []
@@ -55,7 +55,7 @@ def test_a_server_keeps_the_last_requests(node, other_node, start_peer, peer_clu
     spin_until(other_node, lambda: sent)
     spin_until(node, lambda: COUNT - 1 in server.numbers)
     client = other_node.create_client(BasicTypes, "mirror")
-    assert client.wait_for_service(PATIENCE_S)
+    assert client.wait_for_service(TIMEOUT_S)
     ask(client, COUNT)
     spin_until(node, lambda: COUNT in server.numbers)  # and nothing came before it
     assert server.numbers == list(range(COUNT - depth, COUNT + 1))
@@ -68,7 +68,7 @@ def ask_numbers() -> None:
     with peer_node() as node:
         client = node.create_client(BasicTypes, "mirror", qos_profile=DEEP)
         publisher = node.create_publisher(String, "sent", 1)
-        assert client.wait_for_service(PATIENCE_S)
+        assert client.wait_for_service(TIMEOUT_S)
         spin_until(node, publisher.get_subscription_count)
         for number in range(COUNT):
             ask(client, number)
@@ -80,7 +80,7 @@ def ask_numbers() -> None:
 def test_a_client_keeps_the_last_replies(node, other_node, depth):
     server = Server(node, DEEP)
     client = other_node.create_client(BasicTypes, "mirror", qos_profile=QoSProfile(depth=depth))
-    assert client.wait_for_service(PATIENCE_S)
+    assert client.wait_for_service(TIMEOUT_S)
     answers = [ask(client, number) for number in range(COUNT)]
     spin_until(node, lambda: len(server.numbers) == COUNT)
     spin_until(other_node, answers[-1].done)
@@ -97,7 +97,7 @@ def test_a_client_keeps_the_last_replies(node, other_node, depth):
 def test_keep_all_displaces_nothing(node, other_node):
     server, count = Server(node, KEEP_ALL), 200
     client = other_node.create_client(BasicTypes, "mirror", qos_profile=KEEP_ALL)
-    assert client.wait_for_service(PATIENCE_S)
+    assert client.wait_for_service(TIMEOUT_S)
     answers = [ask(client, number) for number in range(count)]
     spin_until(node, lambda: len(server.numbers) == count)
     spin_until(other_node, lambda: all(answer.done() for answer in answers))
@@ -109,7 +109,7 @@ def test_keep_all_tells_the_client_that_there_is_no_room(small_topic):
     node = rclpy.create_node("tester")
     server = Server(node, KEEP_ALL, small_topic)
     client = node.create_client(BasicTypes, small_topic, qos_profile=KEEP_ALL)
-    assert client.wait_for_service(PATIENCE_S)
+    assert client.wait_for_service(TIMEOUT_S)
     answers: list[Any] = []
     with pytest.raises(RCLError, match="has not taken its messages for 100 ms"):
         answers.extend(ask(client, number) for number in range(10_000))

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What this middleware does not have, it refuses; and what it says to have, it has."""
+"""Features that this middleware lacks are refused; features that it announces work."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ OK, UNSUPPORTED = 0, 3
 STRICTLY = 1  # RMW_UNIQUE_NETWORK_FLOW_ENDPOINTS_STRICTLY_REQUIRED
 PUBLICATION_NUMBER, RECEPTION_NUMBER, TYPE_DISCOVERY, DYNAMIC_MESSAGES = range(4)
 
-# Function, and of whom the handle is that it gets first.
+# Function, and the kind of entity whose handle is its first argument.
 REFUSED = [
     ("rmw_publisher_get_network_flow_endpoints", "publisher"),
     ("rmw_subscription_get_network_flow_endpoints", "subscription"),
@@ -110,7 +110,7 @@ def test_network_flows_of_its_own_are_no_subscriptions_to_insist_on(node):
 
 
 def test_a_content_filter_is_not_enabled_and_everything_arrives(node):
-    """The user of rcl is told so, and filters in the callback."""
+    """rcl is told so, and filters in the callback."""
     publisher = node.create_publisher(Point, "points", 10)
     wanted = SubscriptionOptions(
         filter=ctypes.pointer(ContentFilter(expression=b"x > 100", parameters=Strings()))

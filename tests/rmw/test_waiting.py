@@ -22,7 +22,7 @@ from rclpy.task import Future
 from ros_support import announce, peer_node, spin_until, spinning_thread
 from std_msgs.msg import String
 from std_srvs.srv import Trigger
-from support import IS_MANYCORE, PATIENCE_S, wait_until
+from support import IS_MANYCORE, TIMEOUT_S, wait_until
 
 # The EventsExecutor does not wait: see test_executors.py and test_callbacks.py.
 EXECUTORS = [SingleThreadedExecutor, MultiThreadedExecutor]
@@ -30,7 +30,7 @@ EXECUTORS = [SingleThreadedExecutor, MultiThreadedExecutor]
 
 @contextmanager
 def spinning(node: Node, executor: Executor) -> Iterator[None]:
-    """Spin a node in a thread of its own."""
+    """Spin a node in a new thread."""
     executor.add_node(node)
     with spinning_thread(executor):
         yield
@@ -44,11 +44,11 @@ def test_guard_condition_wakes_a_spinning_thread(node):
         for _ in range(100):  # some of them while the thread sleeps
             triggered.clear()
             guard.trigger()
-            assert triggered.wait(PATIENCE_S)
+            assert triggered.wait(TIMEOUT_S)
 
 
 def status_of(thread: threading.Thread, key: str) -> str:
-    """Return a line of the kernel's account of a thread of this process."""
+    """Return a line of /proc/self/task/TID/status."""
     status = Path(f"/proc/self/task/{thread.native_id}/status").read_text()
     found = re.search(rf"^{key}:\s+(.*)$", status, re.M)
     assert found
@@ -60,17 +60,17 @@ def slept_times(thread: threading.Thread) -> int:
 
 
 def is_asleep(thread: threading.Thread) -> bool:
-    """Whether it waits in the middleware, not for the interpreter."""
+    """Return whether the thread waits in the middleware, not for the interpreter lock."""
     if not status_of(thread, "State").startswith("S"):
         return False
     slept = slept_times(thread)
-    sleeping_s = 0.05  # Python asks for the interpreter every 5 ms
+    sleeping_s = 0.05  # Python requests the interpreter lock every 5 ms
     return not threading.Event().wait(sleeping_s) and slept_times(thread) == slept
 
 
 @pytest.mark.skipif(not IS_MANYCORE, reason="other middlewares have threads of their own")
 def test_a_message_wakes_only_the_thread_that_waits_for_it(node):
-    """Nodes composed in a process, each with an executor in a thread, do not cost each other."""
+    """Nodes composed in a process, each with its executor thread, do not wake up each other."""
     names = [f"composed_{i}" for i in range(8)]
     heard: dict[str, int] = dict.fromkeys(names, 0)
     publishers = [node.create_publisher(String, name, 10) for name in names]
@@ -108,7 +108,7 @@ def test_a_trigger_before_the_wait_is_not_lost(node):
 
 
 def test_wait_times_out(node):
-    """With nothing to do a wait lasts as long as was asked for, and no callback runs."""
+    """With nothing to do a wait lasts as long as requested, and no callback runs."""
     before = time.monotonic()
     rclpy.spin_once(node, timeout_sec=0.2)
     assert time.monotonic() - before >= 0.199
@@ -116,7 +116,7 @@ def test_wait_times_out(node):
 
 @pytest.mark.skipif(not IS_MANYCORE, reason="Fast DDS goes on waiting")
 def test_a_wait_ends_with_its_context():
-    """On SIGTERM rclpy shuts contexts down after it woke its executors: they may be back."""
+    """On SIGTERM rclpy shuts contexts down after it woke its executors, which may wait again."""
     context = rclpy.Context()
     context.init()
     with context.handle:
@@ -127,7 +127,7 @@ def test_a_wait_ends_with_its_context():
     thread = threading.Thread(target=wait_set.wait, args=(-1,), daemon=True)
     thread.start()
     context.shutdown()
-    thread.join(PATIENCE_S)
+    thread.join(TIMEOUT_S)
     assert not thread.is_alive()
 
 
@@ -157,7 +157,7 @@ def test_executors_deliver(node, start_peer, peer_cluster, executor_type):
     node.create_subscription(String, "numbers", hear, 100)
     with spinning(node, executor_type()):
         start_peer(publish_numbers, cluster=peer_cluster)
-        assert all(heard.acquire(timeout=PATIENCE_S) for _ in range(100))
+        assert all(heard.acquire(timeout=TIMEOUT_S) for _ in range(100))
     assert sorted(received) == list(range(100))
 
 
@@ -188,7 +188,7 @@ def call_trigger(executor_name: str) -> None:
     executor = {kind.__name__: kind for kind in EXECUTORS}[executor_name]
     with peer_node() as node:
         client = node.create_client(Trigger, "trigger")
-        assert client.wait_for_service(PATIENCE_S)
+        assert client.wait_for_service(TIMEOUT_S)
         answers = []
 
         def count(answer: Future) -> None:
@@ -203,14 +203,14 @@ def call_trigger(executor_name: str) -> None:
 
 
 def test_call_within_a_callback(node, start_peer):
-    """A callback waits for a service while other threads of its executor go on.
+    """A callback waits for a service while other threads of its executor continue.
 
-    The timer's calls come one after the other: as many as there are threads would leave none for
-    the answers. After the last one no call is under way, which nobody would answer any more.
+    The timer's calls come one after the other: as many at once as there are threads would leave
+    no thread for the responses. No request is pending after the last call.
     """
     start_peer(answer_trigger, cluster=2)
     client = node.create_client(Trigger, "trigger", callback_group=ReentrantCallbackGroup())
-    assert client.wait_for_service(PATIENCE_S)
+    assert client.wait_for_service(TIMEOUT_S)
     answers, done = [], threading.Event()
 
     def call() -> None:
@@ -221,7 +221,7 @@ def test_call_within_a_callback(node, start_peer):
 
     timer = node.create_timer(0.01, call, callback_group=MutuallyExclusiveCallbackGroup())
     with spinning(node, MultiThreadedExecutor(4)):
-        assert done.wait(PATIENCE_S)
+        assert done.wait(TIMEOUT_S)
     assert answers == ["here"] * 20
 
 
@@ -237,7 +237,7 @@ def answer_trigger() -> None:
 
 
 def test_many_entities_in_one_wait(node):
-    """Each of a hundred subscriptions is woken for its own message only."""
+    """Each of a hundred subscriptions wakes up for its own messages only."""
     heard = {}
     publishers = []
     for number in range(100):
@@ -266,7 +266,7 @@ def test_init_and_shutdown_again_and_again():
 
 
 def test_shutdown_with_everything_still_there():
-    """Endpoints that are still held when the context ends do no harm."""
+    """Endpoints that are still referenced when the context ends do no harm."""
     rclpy.init()
     node = rclpy.create_node("tester")
     publisher = node.create_publisher(String, "chatter", 1)
@@ -281,7 +281,7 @@ def test_shutdown_with_everything_still_there():
 
 
 def test_a_node_of_another_domain_wakes_an_executor(domains, start_peer, monkeypatch):
-    """One executor serves nodes of two domains, as a bridge between them does."""
+    """One executor spins nodes of two domains, as a bridge between them does."""
     monkeypatch.delenv("MANYCORE_PLATFORM", raising=False)
     rclpy.init(domain_id=domains[0])
     foreign = rclpy.Context()
@@ -304,7 +304,7 @@ def test_a_node_of_another_domain_wakes_an_executor(domains, start_peer, monkeyp
     with spinning(own_node, executor):
         start_peer(talk_and_ask, domains[1])
         for happened in (matches, *[messages] * 3, *[requests] * 3):
-            assert happened.acquire(timeout=PATIENCE_S)
+            assert happened.acquire(timeout=TIMEOUT_S)
     own_node.destroy_node()
     foreign_node.destroy_node()
     rclpy.shutdown(context=foreign)

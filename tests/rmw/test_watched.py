@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""A watch of a topic names the publishers that have gone, and only those where it can tell."""
+"""A watch of a topic names the publishers that have ended, where it can tell them apart."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ from rmw_manycore_py.ndt.nodes.support.watched import watched
 BY_HAND = QoSProfile(
     depth=1,
     liveliness=LivelinessPolicy.MANUAL_BY_TOPIC,
-    liveliness_lease_duration=Duration(seconds=0.5),
+    liveliness_lease_duration=Duration(seconds=3),  # longer than this process may not run
 )
 
 
 @pytest.fixture
 def sources(node: Node):
-    """Yield two nodes with a publisher each, by their names; a watch knows both."""
+    """Yield two nodes with a publisher each, by their names; a watch has seen both."""
     node.create_subscription(
         String, "news", lambda _: None, BY_HAND, event_callbacks=watched(node, "news")
     )
@@ -41,14 +41,14 @@ def sources(node: Node):
         return 2 in alive[-1:]
 
     spin_until(node, both_are_alive)
-    rclpy.spin_once(node, timeout_sec=0.1)  # the watch's own event, if it is still to come
+    rclpy.spin_once(node, timeout_sec=0.1)  # the watch's own event, if it has not arrived yet
     yield nodes, publishers
     for one in nodes.values():
         one.destroy_node()
 
 
 def said(capfd: pytest.CaptureFixture[str], heard: list[str], words: str) -> bool:
-    """Tell whether a line of the log has these words."""
+    """Return whether a line of the log contains these words."""
     heard.append(capfd.readouterr().err)
     return words in "".join(heard)
 

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The nodes of a soak: some stay all the time, the others come, grow, get stuck and are killed."""
+"""Nodes of a soak: some stay, the others join, grow, get stuck and are killed."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def be_stuck() -> None:
 
 
 def grow() -> None:
-    """Publish larger and larger messages, kept for those that come later."""
+    """Publish ever larger messages, kept for late subscriptions."""
     with peer_node("growing") as node:
         publisher = node.create_publisher(UInt8MultiArray, BURST_TOPIC, STUCK)
         size_bytes = 1000
@@ -69,7 +69,7 @@ def rebuild() -> None:
 
 
 def serve() -> None:
-    """Answer calls."""
+    """Serve calls."""
 
     def answer(_: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
         response.success = True
@@ -81,7 +81,7 @@ def serve() -> None:
 
 
 def call() -> None:
-    """Call whichever servers there are, without waiting for the answers."""
+    """Call any available server, without waiting for the responses."""
     with peer_node("client") as node:
         client = node.create_client(Trigger, SERVICE)
         while True:
@@ -102,8 +102,8 @@ ACTORS: dict[str, Callable[[], None]] = {
 
 
 def breed_actors() -> None:
-    """Start an actor for each line of input, "KIND CLUSTER", by fork before ROS is initialised."""
-    signal.signal(signal.SIGCHLD, signal.SIG_IGN)  # the kernel forgets the dead by itself
+    """Fork an actor for each line of input, "KIND CLUSTER", before ROS is initialised."""
+    signal.signal(signal.SIGCHLD, signal.SIG_IGN)  # the kernel reaps children
     announce("ready")
     for line in sys.stdin:
         kind, cluster = line.split()

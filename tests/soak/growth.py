@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Tells whether something grew over a soak, and draws it."""
+"""Judge and draw whether a value grew over a soak."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from statistics import median
 from rmw_manycore_py.figures import load_figure
 from soak.holdings import Holdings
 
-# Python's and glibc's heaps settle late; everything else returns to exactly where it was.
+# Python's and glibc's heaps settle late; everything else returns to exactly its former value.
 TOLERATED = {"private_bytes": 1.1, "backed_bytes": 1.1}
-# Threads and descriptors come and go with a receive thread that has just been replaced.
+# Threads and descriptors fluctuate with a receive thread that has just been replaced.
 SETTLING = 2
 
 
@@ -30,7 +30,7 @@ def grown(rests: list[Holdings]) -> list[str]:
 
 
 class Record:
-    """Every look at the platform, written to a table as it comes, so that a stop loses nothing."""
+    """All samples of the platform, appended to a table at once, so that a stop loses nothing."""
 
     def __init__(self, directory: Path) -> None:
         directory.mkdir(parents=True, exist_ok=True)
@@ -50,7 +50,7 @@ class Record:
         return [holdings for _, at_rest, holdings in self._rows if at_rest]
 
     def draw(self) -> Path:
-        """Draw every quantity over time: while nodes come and go, and at rest."""
+        """Plot every quantity over time: under churn and at rest."""
         names = Holdings.names()
         figure = load_figure()(figsize=(9, 1.6 * len(names)), layout="constrained")
         for axes, name in zip(figure.subplots(len(names), sharex=True), names, strict=True):

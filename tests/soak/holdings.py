@@ -18,7 +18,7 @@ BLOCK_BYTES = 512  # of st_blocks, see stat(2)
 
 @dataclass(frozen=True)
 class Holdings:
-    """Of the platform, then of the processes that stay and its receive threads together."""
+    """Resources of the platform, then of the lasting processes and its receive threads together."""
 
     smem_used_bytes: int
     backed_bytes: int
@@ -36,7 +36,7 @@ class Holdings:
 
 
 def look(platform: str, lasting: list[int]) -> Holdings:
-    """Return what is held now; `lasting` are the pids of the processes that stay."""
+    """Return what is held now; `lasting` are the pids of the lasting processes."""
     with Platform(platform) as seen:
         clusters = seen.clusters()
         pids = [*lasting, *(cluster.receive_thread_pid for cluster in clusters if cluster.alive)]
@@ -71,7 +71,7 @@ def _count(pid: int, what: str) -> int:
 
 
 def _private_bytes(pid: int) -> int:
-    """Return what a process has of its own, without the segments that it maps."""
+    """Return the private memory of a process, without the segments that it maps."""
     with suppress(OSError):
         found = re.search(r"RssAnon:\s+(\d+) kB", Path(f"/proc/{pid}/status").read_text())
         return int(found.group(1)) * 1024 if found else 0

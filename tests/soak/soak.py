@@ -1,8 +1,8 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""A platform under churn, growth and random kills, for hours: what it holds must stay flat.
+"""A platform under churn, growth and random kills for hours: what it holds must stay flat.
 
-Some nodes stay and check that they notice nothing. Others come, publish more and more, get stuck,
-leave or are killed; so are receive threads. Once a minute all of them are gone, and what is then
+Some nodes stay and check that they notice nothing. Others join, publish more and more, get stuck,
+leave or are killed, as are receive threads. Once a minute all of them are gone, and what is then
 held is compared over time.
 """
 
@@ -32,7 +32,7 @@ from soak.growth import Record, grown
 from soak.holdings import Holdings, look
 
 CLUSTERS = 2
-CROWD = 8  # nodes at a time beside those that stay
+CROWD = 8  # nodes at a time besides the lasting ones
 ROUND_S = 60.0
 LOOK_S = 5.0
 BIRTH_S = 0.1
@@ -43,7 +43,7 @@ STOPPED = 0.1  # share of the killed that hang for a while before
 
 
 class Soak:
-    """The platform, the nodes that stay and those that come and go."""
+    """The platform, the lasting nodes and the temporary ones."""
 
     def __init__(self, start: Callable[..., Program], platform: str, clock: RunningTime) -> None:
         self._platform = platform
@@ -64,7 +64,7 @@ class Soak:
         return [program.pid for program in stay]
 
     def churn(self, look_at: Callable[[], None]) -> None:
-        """Let nodes come and go for a round."""
+        """Start and end nodes for a round."""
         end_s = time.monotonic() + ROUND_S
         next_s = dict.fromkeys((look_at, self._burst, self._kill_a_receive_thread), 0.0)
         every_s = {
@@ -83,8 +83,8 @@ class Soak:
             time.sleep(random.uniform(0, 2 * BIRTH_S))
 
     def rest(self) -> Holdings:
-        """End all that came, and return what is held once only those that stay are left."""
-        # Python ignores an interruption that meets a destructor, so leaving nodes are killed, too.
+        """End all temporary nodes, and return what is held by the lasting ones."""
+        # Python ignores a SIGINT that arrives in a destructor, so leaving nodes are killed, too.
         for pid in (*self._alive, *self._leaving):
             self._kill(pid)
         self._alive.clear()
@@ -96,7 +96,8 @@ class Soak:
         except AssertionError:
             raise AssertionError(self._left()) from None
         self._load.assert_in_order()
-        # On a busy machine the queues of those that check may overflow; what is missing is counted.
+        # On a busy machine the queues of the checking nodes may overflow; missing messages are
+        # counted.
         assert self._load.missing() <= self._lost()
         assert "torn" not in self._nursery.output, self._nursery
         return look(self._platform, self.lasting)
@@ -173,7 +174,7 @@ def programs_on(platform: str) -> Iterator[Callable[..., Program]]:
 
 
 def soak(hours: float, record: Record) -> None:
-    """Soak a platform of its own, and write what it holds into the record."""
+    """Soak a new platform, and write what it holds into the record."""
     platform = unique_platform()
     clock = RunningTime()
     start_s = time.monotonic()

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Marks the tests of this directory, which are long, random or fill the machine."""
+"""Marks the tests of this directory: they are long, random or fill the machine."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Large packages: those of the wheels from their definitions, and one of many actions."""
+"""Large packages: those of the wheels built from their definitions, and one of many actions."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def test_each_type_has_the_hash_of_the_wheel(package: str, tmp_path: Path) -> No
 
 
 def test_a_package_of_many_actions_is_built_and_imported(tmp_path: Path) -> None:
-    """As many definitions as nav2_msgs has, and as many actions among them."""
+    """As many definitions as in nav2_msgs, with as many actions among them."""
     env = {**os.environ, "MANYCORE_INTERFACES": str(tmp_path / "built")}
     package = tmp_path / "many_msgs"
     for kind, name in (("action", "Fibonacci"), ("srv", "Arrays"), ("msg", "BasicTypes")):
@@ -42,7 +42,7 @@ def test_a_package_of_many_actions_is_built_and_imported(tmp_path: Path) -> None
         for number in range(COPIES if kind != "srv" else COPIES // 2):
             source = SHARE / "test_msgs" / kind / f"{name}.{kind}"
             copy = package / kind / f"{name}{number}.{kind}"
-            # Types of test_msgs itself have no package before them.
+            # Types of test_msgs itself are used without a package name.
             copy.write_text(re.sub(r"(?m)^(?=[A-Z]\w*[ \[])", "test_msgs/", source.read_text()))
     done = interface("build", package, env=env)
     print(done.stdout)

@@ -1,7 +1,7 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Any process may be killed at any moment; the others go on, and nothing torn is ever read.
+"""Any process may be killed at any moment; the others go on, and no torn message is ever read.
 
-A random kill hits a critical instruction only by chance, so passing proves little about any one of
+A random kill hits a critical instruction only by chance, so passing proves little about any single
 them; what it shows is that nothing common is wrong. The model in docs/model/ covers the protocol.
 """
 
@@ -26,13 +26,13 @@ from support import (
 )
 
 SEED = int(os.environ.get("MANYCORE_TEST_SEED", str(random.randrange(1 << 32))))
-LONGEST_LIFE_S = 0.2  # of a victim: joining takes some milliseconds, and may itself be hit
-JOINING_S = 0.03  # about what it takes from the fork to the first message
+LONGEST_LIFE_S = 0.2  # lifetime of a victim: joining takes some milliseconds, and may be hit, too
+JOINING_S = 0.03  # about the time from the fork to the first message
 CLUSTERS = 2
 
 
 class Graves:
-    """Kills processes, and looks how long the platform takes them for members."""
+    """Kills processes, and measures how long the platform still lists them as members."""
 
     def __init__(self, platform: str, running_time: RunningTime) -> None:
         self._platform = platform
@@ -44,17 +44,17 @@ class Graves:
         self._killed_ns[pid] = time.monotonic_ns()
 
     def assert_reclaimed(self) -> None:
-        """Find nobody in the registry who has been dead for longer than it may take."""
+        """Check that no process in the registry has been dead for longer than RECOVERY_S."""
         for pid in self._members():
             assert self._running_time.since_s(self._killed_ns[pid]) <= RECOVERY_S, (
                 f"the platform still takes process {pid} for a member"
             )
 
     def assert_all_reclaimed(self) -> None:
-        self._running_time.wait_within(RECOVERY_S, lambda: not self._members(), "nobody is left")
+        self._running_time.wait_within(RECOVERY_S, lambda: not self._members(), "none is left")
 
     def _members(self) -> list[int]:
-        """Return who is dead and has a place in the registry."""
+        """Return the killed processes that still have a slot in the registry."""
         if not IS_MANYCORE:
             return []
         from rmw_manycore_py._transport import Platform
@@ -66,7 +66,7 @@ class Graves:
 
 
 def some_receive_threads_of(platform: str) -> list[int]:
-    """Wait until there are any; return their pids."""
+    """Wait until there is one; return the pids of all."""
     found: list[int] = []
 
     def look() -> bool:
@@ -90,7 +90,7 @@ def graves(platform, running_time) -> Graves:
 
 
 def test_killed_nodes(start, load, graves):
-    """Publishers and subscriptions come, and die at a random moment of their short lives."""
+    """Publishers and subscriptions join, and die at a random moment of their short lives."""
     nursery = start(peer_command(breed))
     nursery.wait_for("ready")
     for number in range(KILLS):
@@ -110,7 +110,7 @@ def test_killed_nodes(start, load, graves):
 
 @pytest.mark.skipif(not IS_MANYCORE, reason="only rmw_manycore has receive threads")
 def test_killed_receive_threads(platform, load):
-    """A receive thread that dies is replaced, and what it had in hand arrives."""
+    """A receive thread that dies is replaced, and the message it was moving arrives."""
     for _ in range(KILLS // 10):
         victim = random.choice(some_receive_threads_of(platform))
         time.sleep(random.uniform(0, LONGEST_LIFE_S))  # the random moment
@@ -146,13 +146,13 @@ def test_everything_dies_at_random(start, platform, load, graves):
 
 @pytest.mark.skipif(not IS_MANYCORE, reason="about what rmw_manycore leaves in /dev/shm")
 def test_the_last_process_is_killed(start, platform, running_time):
-    """Nobody is left to clean up after the last node but the receive threads, and they do."""
+    """The receive threads clean up after the last node."""
     nursery = start(peer_command(breed))
     nursery.wait_for("ready")
     for _ in range(KILLS // 10):
         nursery.say(f"publisher {random.randint(1, CLUSTERS)}")
         victim = int(nursery.wait_for(r"victim (\d+) works").group(1))
-        some_receive_threads_of(platform)  # the machine may put the victim off before it starts one
+        some_receive_threads_of(platform)  # the victim may be delayed before it starts one
         time.sleep(random.uniform(0, LONGEST_LIFE_S / 4))  # the random moment
         kill(victim)
         running_time.wait_within(RECOVERY_S, lambda: not leftovers(platform), "all is removed")
@@ -161,7 +161,7 @@ def test_the_last_process_is_killed(start, platform, running_time):
 
 @pytest.mark.skipif(not IS_MANYCORE, reason="about what rmw_manycore leaves in /dev/shm")
 def test_the_only_process_is_killed_while_it_joins(start, platform):
-    """Before there is a receive thread nobody else knows; then the next start clears up."""
+    """Killed before it has a receive thread, its leftovers are removed by the next start."""
     nursery = start(peer_command(breed))
     nursery.wait_for("ready")
     for _ in range(KILLS // 10):

@@ -1,8 +1,8 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""A record that somebody reads is not overwritten, however long the reader takes.
+"""A record is not overwritten while a reader holds it, however long that takes.
 
 Readers are stopped at random moments, some of them in the middle of a record, until the publisher
-has been around its small topic DSM twice; then they read on.
+has wrapped around its small topic DSM twice; then they read on.
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ def test_readers_that_stop_in_the_middle(small_topic, start):
         reader = random.choice(readers)
         reader.signal(signal.SIGSTOP)
         publisher.skip_output()
-        for _ in range(2):  # the first line may be about what was before
+        for _ in range(2):  # the first line may be about earlier messages
             publisher.wait_for("overwritten")
         reader.signal(signal.SIGCONT)
     for reader in readers:

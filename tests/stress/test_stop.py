@@ -1,8 +1,8 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""A subscriber that stands still does not slow its publisher down.
+"""A stopped subscriber does not slow its publisher down.
 
-A publisher is slow when it works more, or when it waits. Its CPU time and its voluntary context
-switches tell; how long it takes on a busy machine does not.
+A publisher is slower if it does more work or waits. Its CPU time and its voluntary context switches
+show both; the elapsed time on a busy machine does not.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ ROUNDS = 7
 
 
 class Burst(NamedTuple):
-    """What a burst of messages cost the thread that published it."""
+    """What a burst of messages cost the publishing thread."""
 
     cpu_ns: int
     waits: int
@@ -39,7 +39,7 @@ def cost_so_far() -> Burst:
 
 
 def publish_on_request() -> None:
-    """For each line of input publish a burst and tell what that cost."""
+    """For each line of input publish a burst and print its cost."""
     with peer_node("publisher") as node:
         publisher = node.create_publisher(UInt8MultiArray, "load", 10)
         spin_until(node, lambda: publisher.get_subscription_count() == 2)
@@ -73,13 +73,13 @@ def listen() -> None:
 
 
 def heard(subscriber) -> int:
-    """Return a count that the subscriber printed after now."""
+    """Return a count that the subscriber prints from now on."""
     subscriber.skip_output()
     return int(subscriber.wait_for(r"heard (\d+)").group(1))
 
 
 def test_stopped_subscribers(start):
-    """Bursts with both subscribers awake and both stopped, by turns; medians are compared."""
+    """Bursts alternate between subscribers awake and stopped; the medians are compared."""
     subscribers = [start(peer_command(listen), cluster) for cluster in (1, 2)]
     for subscriber in subscribers:
         subscriber.wait_for("ready")

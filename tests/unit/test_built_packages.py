@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What Python finds of built packages, in real processes of a virtual environment for the test."""
+"""Built packages that Python finds, in real processes of a virtual environment for the test."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def test_a_package_that_is_installed_later_wins(python: Prefix, built: Built) ->
 
 
 def test_a_package_that_another_start_up_hook_finds_wins(python: Prefix, built: Built) -> None:
-    """As those of editable installs, which may add to the path after ours."""
+    """Like those of editable installs, which may extend the path after ours."""
     elsewhere = built.directory / "elsewhere/foo_msgs"
     elsewhere.mkdir(parents=True)
     (elsewhere / "__init__.py").write_text(INSTALLED)
@@ -66,7 +66,7 @@ def test_a_package_that_another_start_up_hook_finds_wins(python: Prefix, built: 
 
 
 def test_a_folder_of_definitions_hides_no_package(python: Prefix, built: Built) -> None:
-    (built.directory / "foo_msgs/msg").mkdir(parents=True)  # where the program is started
+    (built.directory / "foo_msgs/msg").mkdir(parents=True)  # working directory of the program
     assert built.run(python, ORIGIN) == "built"
 
 
@@ -118,14 +118,14 @@ def describe(prefix: Path, type_name: str, hash_string: str) -> None:
 
 
 def test_a_package_whose_parts_have_changed_is_refused(python: Prefix, built: Built) -> None:
-    """Its native code would read and write memory of another layout."""
+    """Its native code would access memory with another layout."""
     check = "import rmw_manycore_interfaces as i; i.check('foo_msgs')"
     manifest = built.prefix / "share/foo_msgs/manifest.json"
     manifest.parent.mkdir(parents=True)
     manifest.write_text(json.dumps({"dependencies": {"bar_msgs/msg/Bar": "RIHS01_a"}}))
     describe(built.prefix, "bar_msgs/msg/Bar", "RIHS01_a")
     built.run(python, check)
-    describe(python.path, "bar_msgs/msg/Bar", "RIHS01_b")  # installed, so it wins
+    describe(python.path, "bar_msgs/msg/Bar", "RIHS01_b")  # installed, so it takes precedence
     refused = f"try: {check.split(';')[1].strip()}\nexcept ImportError as e: print(e)"
     text = built.run(python, f"import rmw_manycore_interfaces as i\n{refused}")
     assert "hash RIHS01_a, but found RIHS01_b: run `manycore interface build`" in text

@@ -1,38 +1,146 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Links of the documentation lead to files that exist."""
+"""Pages of the documentation: links, length, navigation, and coverage."""
 
 from __future__ import annotations
 
+import importlib.util
+import json
 import re
+import subprocess
+import xml.etree.ElementTree as ElementTree
 from pathlib import Path
+from typing import Any
 
 import pytest
+import yaml
+from source_texts import texts
 
 pytestmark = pytest.mark.unit
 
 ROOT = Path(__file__).parents[2]
-PAGES = [*ROOT.glob("*.md"), *ROOT.glob("docs/**/*.md")]
+DOCS = sorted(ROOT.glob("docs/**/*.md"))
+PAGES = [*ROOT.glob("*.md"), *DOCS]
+CODE = ("rmw_manycore", "rmw_manycore_py", "bridge", "startup", "scripts", "mapfiles", "Makefile")
 VARIABLE = re.compile(r"\b(MANYCORE_[A-Z_]+)\b")
 SUFFIXES = {".py", ".pth", ".cpp", ".hpp", ".sh"}
-# Of CMake and of the preprocessor, not of the environment.
+# Variables of CMake and of the preprocessor, not of the environment.
 OTHERS = re.compile(
     r"MANYCORE_(BUILD_\w+|CHECK\w*|PREFIX|ROS_\w+|SANITIZE|SITE_PACKAGES|THREAD_SANITIZER|WERROR"
     r"|TRACE|WITHOUT_\w+)"
 )
-LINK = re.compile(r"\]\(([^)#\s]+)(?:#[^)]*)?\)")
+LINK = re.compile(r"\]\(([^)\s]+)\)")
+HEADING = re.compile(r"^#{1,6} (.*)$", re.MULTILINE)
+FENCED = re.compile(r"^```.*?^```", re.MULTILINE | re.DOTALL)
+MENTION = re.compile(r"(?<![/\w])docs/[\w/.-]*\w")
+CODE_SPAN = re.compile(r"`([^`]+)`")
+ROW = re.compile(r"^\| (.*?) \| ", re.MULTILINE)
+SHORTEST_PART = 6  # shorter ones match anywhere
+LONGEST_PAGE_WORDS = 1500
 
 
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
-def test_links_lead_somewhere(page: Path) -> None:
+def name_of(page: Path) -> str:
+    return str(page.relative_to(ROOT))
+
+
+def anchors(page: Path) -> set[str]:
+    """Return the anchors that mkdocs generates for a page's headings."""
+    found: set[str] = set()
+    for heading in HEADING.findall(FENCED.sub("", page.read_text())):
+        text = re.sub(r"[^\w\s-]", "", LINK.sub("]", heading).lower()).strip()
+        anchor = re.sub(r"[-\s]+", "-", text)
+        same = sum(1 for one in found if re.fullmatch(rf"{re.escape(anchor)}(_\d+)?", one))
+        found.add(f"{anchor}_{same}" if same else anchor)
+    return found
+
+
+def broken(page: Path, link: str) -> bool:
+    path, _, anchor = link.partition("#")
+    target = page.parent / path if path else page
+    if not target.exists():
+        return True
+    return bool(anchor) and target.suffix == ".md" and anchor not in anchors(target)
+
+
+@pytest.mark.parametrize("page", PAGES, ids=name_of)
+def test_links_lead_to_files_and_headings(page: Path) -> None:
     links = [link for link in LINK.findall(page.read_text()) if "://" not in link]
-    assert [link for link in links if not (page.parent / link).exists()] == []
+    assert [link for link in links if broken(page, link)] == []
+
+
+def test_pages_that_code_refers_to_exist() -> None:
+    listed = subprocess.run(
+        ["git", "grep", "-Ih", "docs/", "--", *CODE],
+        cwd=ROOT, check=True, text=True, stdout=subprocess.PIPE,
+    ).stdout  # fmt: skip
+    mentions = set(MENTION.findall(listed))
+    assert {mention for mention in mentions if not (ROOT / mention).exists()} == set()
+
+
+@pytest.mark.parametrize("page", DOCS, ids=name_of)
+def test_a_page_can_be_read_at_a_sitting(page: Path) -> None:
+    words = [word for word in page.read_text().split() if any(c.isalnum() for c in word)]
+    assert len(words) <= LONGEST_PAGE_WORDS, "split it along its concepts"
+
+
+def test_every_page_is_in_the_navigation_once() -> None:
+    settings = yaml.safe_load((ROOT / "mkdocs.yml").read_text())
+    assert sorted(pages_of(settings["nav"])) == sorted(
+        str(page.relative_to(ROOT / "docs")) for page in DOCS
+    )
+
+
+def pages_of(part: Any) -> list[str]:
+    """Return the pages in a section of the navigation."""
+    if isinstance(part, str):
+        return [part]
+    parts = part.values() if isinstance(part, dict) else part
+    return [page for one in parts for page in pages_of(one)]
+
+
+def test_error_pages_quote_what_programs_print() -> None:
+    """Their first columns contain error texts, with `…` for names and numbers."""
+    printed = "\n".join(texts())
+    quoted = {
+        (page.name, part.strip())
+        for page in ROOT.glob("docs/how-to/errors_*.md")
+        for row in ROW.findall(page.read_text())
+        for text in CODE_SPAN.findall(row)
+        for part in text.split("…")
+    }
+    long_enough = {(page, part) for page, part in quoted if len(part) >= SHORTEST_PART}
+    assert len(long_enough) > 300
+    assert {(page, part) for page, part in long_enough if part not in printed} == set()
+
+
+def test_the_plot_shows_the_figures_of_the_table() -> None:
+    """Update it with: python scripts/plot_round_trips.py docs/pictures/round_trips.svg."""
+    drawn = ElementTree.parse(ROOT / "docs/pictures/round_trips.svg")
+    description = drawn.find(".//{http://purl.org/dc/elements/1.1/}description")
+    assert description is not None
+    assert json.loads(description.text or "") == plot_round_trips().figures()
+
+
+def plot_round_trips() -> Any:
+    """Return the script as a module."""
+    spec = importlib.util.spec_from_file_location("plot", ROOT / "scripts/plot_round_trips.py")
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def test_what_the_table_of_features_calls_tested_exists() -> None:
+    table = (ROOT / "docs/reference/features.md").read_text()
+    paths = [text for text in CODE_SPAN.findall(table) if text.startswith(("tests/", "docs/"))]
+    assert len(paths) > 30
+    assert [path for path in paths if not list(ROOT.glob(path))] == []
 
 
 def test_every_variable_of_the_environment_is_in_one_place() -> None:
     folders = ("rmw_manycore", "rmw_manycore_py", "bridge", "startup", "scripts", "tests")
     files = [f for folder in folders for f in (ROOT / folder).rglob("*") if f.suffix in SUFFIXES]
     used = {name for file in files for name in VARIABLE.findall(file.read_text())}
-    page = (ROOT / "docs/cli.md").read_text()
-    explained = page[page.index("## Environment variables") : page.index("## Looking at a")]
+    explained = (ROOT / "docs/reference/environment.md").read_text()
     missing = {name for name in used if f"`{name}`" not in explained}
     assert {name for name in missing if not OTHERS.fullmatch(name)} == set()

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Functions called in a process beside this one."""
+"""Functions called in a helper process."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The start-up hook, in real python processes of a virtual environment made for the test."""
+"""The start-up hook, in real Python processes of a virtual environment for the test."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ import rmw_manycore_hook as hook
 
 pytestmark = pytest.mark.unit
 
-# How a program goes over into python with the code in its arguments.
+# How a program executes Python with the code in its arguments.
 STARTS = (
     "subprocess.run([sys.executable, '-c', *sys.argv[1:]], check=True)",
     "os.execv(sys.executable, [sys.executable, '-c', *sys.argv[1:]])",
@@ -28,7 +28,7 @@ def prefix(tmp_path_factory: pytest.TempPathFactory) -> Prefix:
 
 
 def loader_path(shown: dict) -> list[str]:
-    """Return what the dynamic loader of the process saw, which the hook cannot change."""
+    """Return LD_LIBRARY_PATH as the dynamic loader read it, before the hook could change it."""
     return next(
         (line.split("=", 1)[1].split(":") for line in shown["loader"] if line.startswith("LD_LIB")),
         [],
@@ -117,7 +117,7 @@ def test_a_launcher_saves_the_second_start(prefix: Prefix) -> None:
 
 
 def test_a_launcher_leads_to_fast_dds_too(prefix: Prefix) -> None:
-    """From a shell of rmw_manycore, and from a python of other wheels."""
+    """From a shell of rmw_manycore, and from a Python with other wheels."""
     known = f"/opt/other/lib:{prefix.stand_ins}:{prefix.path}/lib"
     environment = hook.plain_environment({"LD_LIBRARY_PATH": known}, str(prefix.path))
     assert environment["LD_LIBRARY_PATH"].split(":") == [*prefix.wheel_libraries, "/opt/other/lib"]
@@ -180,7 +180,7 @@ def test_a_program_on_standard_input_is_read_once(prefix: Prefix) -> None:
 
 
 def test_a_lost_library_path_is_told_and_not_retried(prefix: Prefix) -> None:
-    """Whatever clears LD_LIBRARY_PATH on the way would otherwise make python restart for ever."""
+    """If something clears LD_LIBRARY_PATH on the way, Python must not restart forever."""
     done = subprocess.run(
         ["bash", "-c", f"{hook.REPLACED}=$$ exec {prefix.python} -c 'print(1)'"],
         env={"PATH": "/usr/bin:/bin", "RMW_IMPLEMENTATION": "rmw_manycore"},
@@ -193,7 +193,7 @@ def test_a_lost_library_path_is_told_and_not_retried(prefix: Prefix) -> None:
 
 
 def test_no_interruption_is_lost_between_two_starts(prefix: Prefix) -> None:
-    """Python would note one that comes in `os.execve()`, and be gone before it acts on it."""
+    """Python would record a SIGINT during `os.execve()`, and be replaced before it acts."""
     exec_and_interruption = "os.execve = lambda *_: signal.raise_signal(signal.SIGINT)"
     code = f"import os, signal, rmw_manycore_hook as hook; {exec_and_interruption}; "
     done = prefix.run("-c", code + "hook.restart({}); print('went on')")

@@ -12,7 +12,7 @@ pytestmark = pytest.mark.unit
 
 NATIVE = Path(__file__).parents[2] / "rmw_manycore"
 
-# What each native directory may include of the others, besides itself.
+# Native directories that each one may include, besides itself.
 NATIVE_BELOW = {
     "platform": set(),
     "transport": {"platform"},
@@ -21,12 +21,12 @@ NATIVE_BELOW = {
     "python": {"platform", "transport", "ndt"},
     "bench": {"platform", "transport", "ndt", "python"},
 }
-# Folders inside these directories, lowest first. Files directly in the directory are its face,
-# above all of its folders.
+# Folders inside these directories, lowest first. Files directly in a directory are its public
+# interface, above all of its folders.
 FOLDERS = {
     "transport": [
-        *("layout", "trace", "registry", "queue", "topic_dsm", "qos", "matching", "notification"),
-        *("lifecycle", "waiting", "publisher", "subscription"),
+        *("layout", "trace", "registry", "queue", "transfer", "topic_dsm", "qos", "matching"),
+        *("notification", "movers", "lifecycle", "waiting", "publisher", "subscription"),
     ],
     "rmw": [
         *("common", "serialization", "events", "context", "qos", "graph", "topics", "services"),
@@ -36,7 +36,7 @@ FOLDERS = {
 }
 SEES_ROS = {"rmw", "bench"}
 ROS_HEADER = re.compile(r"(rmw|rcl|rcutils|rcpputils|rosidl_\w+|fastcdr|\w+_msgs)/")
-# Mapping, pinning and futexes are wrapped once.
+# System calls for mapping, pinning and futexes are wrapped in one place.
 PLATFORM_ONLY = {"sys/mman.h", "linux/futex.h", "sys/syscall.h", "sched.h"}
 CALLS_THE_SYSTEM = {"platform", "bench"}
 
@@ -59,7 +59,7 @@ def folder_layer(path: Path) -> int:
 
 
 def allowed(path: Path, header: str) -> bool:
-    """Tell whether the native file `path` may include `header`."""
+    """Return whether the native file `path` may include `header`."""
     directory = directory_of(path)
     if (NATIVE / header).exists():
         included = directory_of(NATIVE / header)

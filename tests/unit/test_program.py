@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Where our own programs import from, in real python processes started among hostile files."""
+"""Import path of our own programs, in real Python processes started among hostile files."""
 
 from __future__ import annotations
 
@@ -34,8 +34,8 @@ def main():
     rmw_manycore_program.raise_on_interrupt()
     shown.main()
 """
-# Interrupts the process once the start-up hooks have run, or when it imports what it needs, or
-# when it is at work; and says if the process went on.
+# Interrupts the process once the start-up hooks have run, while it imports what it needs, or
+# while it works; and prints a line if the process went on.
 INTERRUPTED = "__import__('os').environ.get('INTERRUPTED')"
 INTERRUPT = "__import__('os').kill(__import__('os').getpid(), __import__('signal').SIGINT)"
 STAGES = ("start", "imports", "work")
@@ -43,7 +43,7 @@ STAGES = ("start", "imports", "work")
 
 @pytest.fixture(scope="module")
 def prefix(tmp_path_factory: pytest.TempPathFactory) -> Prefix:
-    """An installation, with a start-up hook of others that imports something."""
+    """An installation with another package's start-up hook that imports something."""
     prefix = Prefix(tmp_path_factory.mktemp("prefix"))
     start, imports, work = (f"{INTERRUPTED} == '{stage}' and {INTERRUPT}" for stage in STAGES)
     hook = f"import pathlib, enum; {start}\n"
@@ -71,7 +71,7 @@ def hostile(tmp_path: Path) -> Path:
 
 @pytest.fixture(params=["module", "manycore", "executable"])
 def own(request: pytest.FixtureRequest, prefix: Prefix) -> list[str | Path]:
-    """The command line of a program of ours, without the interpreter."""
+    """The arguments that start one of our programs, without the interpreter."""
     commands: dict[str, list[str | Path]] = {
         "module": [prefix.site_packages / "rmw_manycore_program.py", "shown"],
         "manycore": [prefix.path / "bin/manycore"],
@@ -149,7 +149,7 @@ def test_other_programs_are_interrupted_by_the_rules_of_python(
 
 @pytest.mark.parametrize("own", ["module", "executable"], indirect=True)
 def test_it_works_where_no_start_up_hook_is_read(prefix: Prefix, hostile: Path, own: list) -> None:
-    """As in an ordinary ROS 2, where rmw_manycore itself lies on PYTHONPATH."""
+    """As in an ordinary ROS 2, with rmw_manycore itself on PYTHONPATH."""
     variables = {"PYTHONPATH": f":{prefix.site_packages}"}
     shown = prefix.show("-S", *own, directory=hostile, **variables)
     assert shown["path"][-1] == str(prefix.site_packages)

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The set-up shows how far it is, and why it failed."""
+"""The set-up shows its progress, and the reason for a failure."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def command(directory: Path, shell: str) -> list[str | Path]:
 
 
 def on_terminal(directory: Path, shell: str) -> str:
-    """Return what is written to a terminal."""
+    """Return the output to a terminal."""
     end, terminal = pty.openpty()
     subprocess.run(command(directory, shell), stdout=terminal, check=True, timeout=60)
     os.close(terminal)
@@ -74,5 +74,5 @@ def test_a_failure_shows_what_the_compiler_said(tmp_path: Path) -> None:
     assert result.stderr.splitlines() == [
         "FAILED: a.o",
         "a.cpp:7:1: error: no luck",
-        f"The whole output: {tmp_path}/log",
+        f"Full output: {tmp_path}/log",
     ]

@@ -16,16 +16,16 @@ ROOTS = (REPOSITORY, REPOSITORY / "bridge", REPOSITORY / "startup")
 
 # Lowest first; packages of one layer do not see each other. A leading dot: in rmw_manycore_py.
 LAYERS = [
-    ("rmw_manycore_executor", "rmw_manycore_hook", "rmw_manycore_interfaces"),
-    ("rmw_manycore_program", "rmw_manycore_py", ".errors", ".examples", ".words"),
+    ("rmw_manycore_hook", "rmw_manycore_interfaces", "rmw_manycore_receive"),
+    ("rmw_manycore_executor", "rmw_manycore_program", ".errors", ".examples", ".words"),
     ("._transport", "._ndt"),
-    ("._ndt_bench", ".native_errors", ".qos", ".reference_system"),
+    ("._ndt_bench", ".native_errors", ".qos", ".reference_system", ".transfers"),
     (".trace",),
     (".trace.files",),
     (".cpu_time", ".figures", ".parent_death", ".progress", ".ros", ".readiness"),
-    (".look", ".runs", ".scheduling", ".signals", ".topology"),
-    (".picture",),
-    (".view",),
+    (".look", ".own_place", ".platform_status", ".runs", ".scheduling", ".signals", ".topology"),
+    (".picture", ".transport"),
+    (".emcos", ".view"),
     (".autoware_overlay", ".helper_process", ".routes"),
     (".bridge_plan", ".interfaces"),
     (".mapfile.format",),
@@ -34,7 +34,7 @@ LAYERS = [
     (".mapfile",),
     (".create", ".launch.processes", "rmw_manycore_bridge"),
     (".launch", ".recording"),
-    (".recording.play", ".recording.record"),
+    ("rmw_manycore_py", ".recording.play", ".recording.record"),
     (".ndt.geometry", ".ndt.nodes.support"),
     (".ndt.files", ".ndt.matching", ".ndt.messages"),
     (".ndt", ".ndt.recordings", ".ndt.trust"),
@@ -43,8 +43,12 @@ LAYERS = [
     (".ndt.nodes", ".whill.laws"),
     (".whill", ".whill.course"),
     (".whill.laptop", ".whill.nodes"),
+    (".ros_lite.laws", ".ros_lite.localization"),
+    (".ros_lite",),
+    (".ros_lite.nodes", ".ros_lite.vehicle"),
     (".bench", ".bench.nodes"),
-    (".bench.ndt", ".bench.reference", ".bench.scale"),
+    (".bench.bostan", ".bench.ndt", ".bench.reference", ".bench.scale"),
+    (".bench.matrix", ".bench.noc", ".bench.ros_lite"),
     (".cli.common", ".cli.topic.meters"),
     (".cli.doctor.report",),
     (
@@ -63,12 +67,12 @@ HEIGHTS = {
 
 
 def not_listed(modules: Mapping[str, Path], heights: Mapping[str, int]) -> set[str]:
-    """Return the rooms that have no layer, and the layers' rooms that do not exist."""
+    """Return the rooms without a layer, and the layers' rooms that do not exist."""
     return set(rooms_of(modules).values()) ^ set(heights)
 
 
 def upward(modules: Mapping[str, Path], heights: Mapping[str, int]) -> list[str]:
-    """Return the imports that leave a room, but not for a lower layer."""
+    """Return the imports that leave a room other than for a lower layer."""
     rooms = rooms_of(modules)
     return [
         f"{name} imports {other}"
@@ -79,7 +83,7 @@ def upward(modules: Mapping[str, Path], heights: Mapping[str, int]) -> list[str]
 
 
 def cycles(modules: Mapping[str, Path]) -> list[list[str]]:
-    """Return a cycle of modules and a cycle of rooms, as far as there are some."""
+    """Return one cycle of modules and one of rooms, if there are any."""
     imports = imports_of(modules)
     found = (cycle(imports), cycle(between_rooms(imports, rooms_of(modules))))
     return [names for names in found if names]
@@ -103,7 +107,7 @@ def test_there_is_no_cycle(ours: dict[str, Path]) -> None:
     assert cycles(ours) == []
 
 
-# A house in small, with one room above the other.
+# A small package, with one room above the other.
 TREE = {
     "hook.py": "",
     "rmw_manycore_py/__init__.py": "",

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""QoS as the transport takes and returns it."""
+"""Conversion of QoS to and from the transport."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Directories of runs and their logs: bounds, order, full disks, proof of life."""
+"""Directories of runs and their logs: limits, order, full disks, and liveness."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from rmw_manycore_py.runs.log_reader import NodeLog, in_order
 pytestmark = pytest.mark.unit
 
 LINE = "x" * 100
-# Writes a line, two that do not fit, and one when there is room again.
+# Writes a line, two that do not fit, and one once there is space again.
 FULL_DISK = """
 import resource, signal, sys
 from pathlib import Path
@@ -116,9 +116,9 @@ def test_lines_that_a_full_disk_has_no_room_for_are_counted(tmp_path: Path, room
     found = texts(NodeLog(run, "node"))
     assert found[0] == "first"
     assert found[-3:] == [
-        "(2 lines were not kept: File too large)",
+        "(2 lines were not written: File too large)",
         "fourth",
-        "(1 lines were not kept: File too large)",
+        "(1 lines were not written: File too large)",
     ]
 
 

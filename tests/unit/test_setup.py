@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The set-up says what it needs before it changes anything."""
+"""The set-up reports missing requirements before it changes anything."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""No file is too long to be read in one go, and no function in one look."""
+"""Limits for the length of files and functions."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ NATIVE_FUNCTION = re.compile(r"^(?! *(?:namespace|class|struct|enum|union|extern
 
 def sources(*suffixes: str) -> list[Path]:
     files = (file for name in DIRECTORIES for file in (ROOT / name).rglob("*"))
-    # Fixtures are wrong on purpose, some of them as Python.
+    # Fixtures are invalid on purpose, some of them as Python.
     return [f for f in files if f.suffix in suffixes and not f.parent.name.startswith("invalid")]
 
 

@@ -76,13 +76,13 @@ def test_lists_of_cpus_are_those_of_the_kernel(text: str, cpus: tuple[int, ...])
 
 
 def test_isolated_cpus_are_those_that_the_cpuset_has(tmp_path: Path) -> None:
-    """CPUs of the machine may be named although the mask lacks them; others may not."""
+    """CPUs of the machine may be named even if outside the affinity mask; others may not."""
     assert isolated_cpus(tmp_path) == ()
     before = os.sched_getaffinity(0)
     first = min(before)
     (tmp_path / "isolated").write_text(f"{first},1000\n")
     try:
-        os.sched_setaffinity(0, {max(before)})  # as a shell has it where `first` is isolated
+        os.sched_setaffinity(0, {max(before)})  # as in a shell where `first` is isolated
         assert isolated_cpus(tmp_path) == (first,)
         assert os.sched_getaffinity(0) == {max(before)}
     finally:

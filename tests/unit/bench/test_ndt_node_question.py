@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What the bench of the whole node plays, and how it reads the replay's table."""
+"""The bench of the whole node: what it replays, and how it reads the replay's table."""
 
 from __future__ import annotations
 
@@ -24,6 +24,19 @@ def test_scans_without_a_pose_are_counted_and_have_no_latency():
     latency, lost = node.results(node.KILLED, rows)
     assert (latency.question, latency.samples) == (node.LATENCY, (7.5, 120.0))
     assert (lost.question, lost.samples) == (node.LOST, (1.0,))
+
+
+def test_errors_and_cpu_time_of_a_run():
+    rows = [
+        {"state": "answered", "latency_ms": "7.5", "error_m": "0.02", "cpu_time_s": "1.50"},
+        {"state": "lost", "latency_ms": "", "error_m": "", "cpu_time_s": ""},
+        {"state": "answered", "latency_ms": "8.5", "error_m": "0.04", "cpu_time_s": "1.60"},
+    ]
+    found = {result.question: result.samples for result in node.results(node.SIZED, rows)}
+    assert found[node.ERROR] == pytest.approx((2.0, 4.0))
+    assert found[node.CPU] == pytest.approx((50.0,))
+    rows[2]["cpu_time_s"] = "0.40"  # killed meanwhile
+    assert node.CPU not in {result.question for result in node.results(node.KILLED, rows)}
 
 
 def test_a_run_without_any_pose_is_one_that_lost_all():

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What only benches of the scan matcher use does the matcher's work."""
+"""Parts that only benches of the scan matcher use do the matcher's work."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The question how many wrong poses are believed, at a small size and with judges that fail it."""
+"""The question how many wrong poses are believed, at a small size and with failing judges."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ pytestmark = pytest.mark.unit
 
 @pytest.fixture(scope="module")
 def cases() -> dict[str, list[Case]]:
-    """Return results of a street and of one that repeats, each judged with the other's shares."""
+    """Return results of a street and of a repetitive one, each judged with the other's shares."""
     names = ("street 2", "street that repeats every 12 m")
     return {name: cases_of(name, 6, 18) for name in names}
 

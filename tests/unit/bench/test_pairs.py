@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Pairs of runs: the interval covers the difference of the builds, not the drift of the machine."""
+"""Pairs of runs: the interval covers the difference of the builds, not the machine's drift."""
 
 from __future__ import annotations
 
@@ -47,10 +47,10 @@ def test_builds_take_turns_and_turns_to_be_first() -> None:
 
 
 def test_stand_ins_come_first_and_then_the_build_they_lead_to(tmp_path: Path) -> None:
-    """Beside a build may lie what the stand-in stands in for, as in a prefix."""
+    """The library that the stand-in replaces may lie beside a build, as in a prefix."""
     for name in ("librmw_fastrtps_cpp.so", LIBRARY):
         (tmp_path / name).touch()
-    path = library_path(replace(INSIDE, library=tmp_path))
+    path = library_path(replace(INSIDE, build=tmp_path))
 
     def first_with(library: str) -> Path:
         return next(Path(entry) for entry in path if Path(entry, library).exists())

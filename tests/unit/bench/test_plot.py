@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""A picture has a panel per question; where it cannot be drawn, that is said before the run."""
+"""A plot has a panel per question; if it cannot be drawn, the bench fails before the run."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def test_a_picture_is_a_file(tmp_path: Path) -> None:
 
 
 def test_the_table_has_curve_and_spread(tmp_path: Path) -> None:
-    Report({}, {}, RESULTS, []).write(tmp_path)
+    Report({}, {}, RESULTS, [], []).write(tmp_path)
     with (tmp_path / "results.csv").open() as file:
         rows = list(csv.DictReader(file))
     assert [(row["curve"], row["at"]) for row in rows[2:4]] == [("workers", "4"), ("", "")]

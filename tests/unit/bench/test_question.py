@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Contenders take turns; the names that --only gives choose among them."""
+"""Contenders take turns; the names given with --only select among them."""
 
 from __future__ import annotations
 
@@ -19,6 +19,9 @@ from rmw_manycore_py.bench import (
     throughput,
 )
 from rmw_manycore_py.bench.question import Run
+from rmw_manycore_py.bench.scale.common import along, on_curve
+from rmw_manycore_py.bench.summary import Result
+from rmw_manycore_py.errors import ManycoreError
 
 pytestmark = pytest.mark.unit
 
@@ -58,6 +61,31 @@ def test_only_the_chosen_take_part() -> None:
     contenders = {name: counting(order, name) for name in ("futex", "Fast DDS", "manycore")}
     run = Run(cpus=(0, 1), rounds=1, only=("futex", "DDS"))
     assert [r.contender for r in run.interleave("q", "us", contenders)] == ["futex", "Fast DDS"]
+
+
+def failing() -> list[float]:
+    raise ManycoreError("no answer")
+
+
+def test_a_contender_that_fails_costs_no_other_its_figures() -> None:
+    order: list[str] = []
+    run = Run(cpus=(0, 1), rounds=2)
+    contenders = {"peer": failing, "own": counting(order, "own")}
+    results = run.interleave("trip", "us", contenders)
+    assert [(result.contender, result.samples) for result in results] == [("own", (1, 2))]
+    assert run.failures == ["trip: peer: no answer"]
+
+
+def test_a_curve_ends_where_its_contender_fails() -> None:
+    def measure(count: int) -> list[Result]:
+        if count > 2:
+            failing()
+        return [on_curve("trip", "peer", count, "nodes", "us", [1.0])]
+
+    run = Run(cpus=(0, 1))
+    results = along(run, "trip: peer", (1, 2, 4, 8), "nodes", measure)
+    assert [result.contender for result in results] == ["peer, 1 nodes", "peer, 2 nodes"]
+    assert run.failures == ["trip: peer, 4 nodes: no answer"]
 
 
 def test_only_some_questions_are_put_to_a_contender() -> None:

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What nodes of the reference system print: the reference system's format, and read back."""
+"""Output of the reference system's nodes: printed in its format, and parsed again."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from rmw_manycore_py.reference_system.statistics import Statistic
 pytestmark = pytest.mark.unit
 
 MS = 1_000_000
-# As the reference system's report scripts look for them.
+# The patterns of the reference system's report scripts.
 LATENCY = (
     r"^ *hot path latency: *(.+)ms \[min=(.+)ms, max=(.+)ms, average=(.+)ms, deviation=(.+)ms\]$"
 )
@@ -33,7 +33,7 @@ DROPS = r"^ *hot path drops: *(.+) \[min=(.+), max=(.+), average=(.+), deviation
 
 
 def message_at(cycle: int, *, drops: int = 0) -> Any:
-    """Return what arrives in a cycle: the later lidar at 10 ms, the end of the hot path at 17."""
+    """Return the arrivals of a cycle: the later lidar at 10 ms, the end of the hot path at 17."""
     message = Message4kb()
     start = (1000 + 100 * cycle) * MS
     add_record(message, "FrontLidarDriver", start, cycle, 0)

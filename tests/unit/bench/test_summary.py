@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The numbers of a report, and what they are held against."""
+"""The figures of a report, and the limits they are compared with."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Which topic moves to which lane."""
+"""Selection of the topic that moves, and of its lane."""
 
 from __future__ import annotations
 

@@ -67,7 +67,7 @@ def test_what_joins_two_other_domains_is_left_out(tmp_path) -> None:
     assert ways(load_bridge_file(path, 2, notes.append)) == [("outward", "/a", "/a", 3)]
     (note,) = notes
     assert "5: topics.a: expected 2, the platform's domain" in note
-    assert note.endswith("found 7 and 8; left out")
+    assert note.endswith("found 7 and 8; skipped")
 
 
 def test_an_empty_new_name_is_none(tmp_path) -> None:

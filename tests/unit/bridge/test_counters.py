@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What a process of the bridge leaves behind for the next one."""
+"""Counters that a bridge process leaves for its successor."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def gid(number: int) -> bytes:
 
 @pytest.fixture
 def created() -> Iterator[Create]:
-    """Return what makes files, each of which is closed afterwards."""
+    """Return a function that makes files, each of which is closed afterwards."""
     with ExitStack() as stack:
 
         def create(path: Path, *routes: Route) -> CounterFile:
@@ -42,10 +42,10 @@ def test_the_last_numbers_outlive_their_process(created: Create, tmp_path: Path)
     first.rows[0].note_last(gid(1), 7)
     first.rows[0].note_last(gid(2), 3)
     first.rows[0].note_last(gid(1), 8)
-    second = created(path, NEWS, CHATTER)  # the plan may be another one
+    second = created(path, NEWS, CHATTER)  # the plan may differ
     assert second.rows[1].last_passed == {gid(1): 8, gid(2): 3}
     assert second.rows[0].last_passed == {}
-    third = created(path, CHATTER)  # killed before a message came
+    third = created(path, CHATTER)  # killed before a message arrived
     assert third.rows[0].last_passed == third.rows[0].last_numbers == {gid(1): 8, gid(2): 3}
 
 

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The command line as a whole: every verb has its help, and errors are one line."""
+"""The whole command line: every verb has a help text, and errors are one line."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ def test_every_command_has_help_with_examples(path: tuple[str, ...]) -> None:
     assert f"Examples:\n    manycore {' '.join(path)}" in result.output or path == ("env",)
 
 
-# What extras install; the command line loads without.
+# Modules that extras install; the command line loads without them.
 WITHOUT_EXTRAS = """
 import sys
 for name in ("aiohttp", "matplotlib", "mcap", "open3d", "perfetto", "pypcd4", "rosbags"):
@@ -112,6 +112,23 @@ def test_an_unknown_verb_is_an_error() -> None:
     result = manycore("fly")
     assert result.exit_code == EXIT_BAD_INPUT
     assert "No such command 'fly'" in result.output
+
+
+def needs_arguments(path: tuple[str, ...]) -> bool:
+    group: click.Command = cli
+    for name in path:
+        assert isinstance(group, click.Group)
+        found = group.get_command(click.Context(group), name)
+        assert found is not None
+        group = found
+    return any(isinstance(one, click.Argument) and one.required for one in group.params)
+
+
+@pytest.mark.parametrize("path", [p for p in commands() if needs_arguments(p)], ids=" ".join)
+def test_a_missing_argument_is_named(path: tuple[str, ...]) -> None:
+    result = manycore(*path)
+    assert result.exit_code == EXIT_BAD_INPUT
+    assert "Error: Missing " in result.output
 
 
 def test_a_mapfile_that_does_not_exist() -> None:

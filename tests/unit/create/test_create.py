@@ -15,7 +15,7 @@ from rmw_manycore_py.errors import ManycoreError
 
 pytestmark = pytest.mark.unit
 
-# Prints how it was started; the topics are for the topic table.
+# Prints its command line and environment; the topics are for the topic table.
 NODE = """\
 import json, os, sys
 def never():

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Definitions: what they refer to, and which line is wrong with them."""
+"""Definitions: the types they refer to, and the line of an error."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def read(directory: Path, name: str, text: str | bytes) -> Definition:
         ("msg/A.msg", "time stamp\n", 1, "expected builtin_interfaces/Time, found time"),
         ("msg/A.msg", b"# \xff\n", 0, "a text file in UTF-8"),
         ("msg/lower.msg", "int32 a\n", 0, "a name such as PoseStamped"),
-        ("msg/A.srv", "---\n", 0, "a .msg or .idl file in a folder 'msg'"),
+        ("msg/A.srv", "---\n", 0, "a .msg or .idl file in a directory 'msg'"),
         ("srv/A.srv", "int32 a\n", 1, "2 parts"),
         ("srv/A.srv", "int32 a\n---\n---\nint32 b\n", 3, "2 parts"),
         ("srv/A.srv", "int32 a\n---\nint32\n", 3, "found 'int32'"),

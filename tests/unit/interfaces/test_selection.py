@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What is built, in which order; references that lead nowhere or in a circle."""
+"""The selection and order of what is built; missing and circular references."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ def test_only_takes_a_type_and_all_that_is_in_it(tmp_path: Path) -> None:
     }
     middle = parts[1]
     assert (middle.available, middle.is_whole) == (2, False)
-    assert middle.share_of_code == 1 / 11  # an action is ten structures
+    assert middle.share_of_code == 1 / 11  # an action consists of ten structures
 
 
 def test_only_of_an_unknown_type_is_an_error(tmp_path: Path) -> None:

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Packages of definitions: which folders are some, and which cannot be told apart."""
+"""Packages of definitions: which directories are some, and which are ambiguous."""
 
 from __future__ import annotations
 
@@ -93,5 +93,5 @@ def test_a_package_without_a_good_name_is_refused(
 def test_a_path_without_definitions_is_an_error(tmp_path: Path) -> None:
     with pytest.raises(ManycoreError, match="found no definitions"):
         find_sources([tmp_path])
-    with pytest.raises(ManycoreError, match="found no such folder"):
+    with pytest.raises(ManycoreError, match="found no such directory"):
         find_sources([tmp_path / "none"])

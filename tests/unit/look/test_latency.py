@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The latency of a topic is what `manycore trace latency` calls its communication."""
+"""The latency of a topic equals the communication time of `manycore trace latency`."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ READER = 9
 
 
 def trace_of(takes_us: dict[int, int], camera: int = CAMERA) -> Trace:
-    """Return a trace of messages by their numbers, each taken so long after its publish began."""
+    """Return a trace of numbered messages, each taken so long after its publish began."""
     published, taken = [], []
     for row, (number, take_us) in enumerate(takes_us.items()):
         published += publish(1000 * (row + 1), camera, number)

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Rates are differences of two samples, also where endpoints have come and gone in between."""
+"""Rates are differences of two samples, also if endpoints appeared or left in between."""
 
 from __future__ import annotations
 
@@ -10,11 +10,12 @@ import numpy as np
 import pytest
 
 from rmw_manycore_py._transport import Qos
+from rmw_manycore_py.look.events import deaths
 from rmw_manycore_py.look.graph import Endpoint, Graph, Member
-from rmw_manycore_py.look.happenings import deaths
-from rmw_manycore_py.look.loads import Loads
+from rmw_manycore_py.look.loads import Loads, TopicLoad
 from rmw_manycore_py.look.losses import Losses
 from rmw_manycore_py.look.sample import Sample, aligned
+from rmw_manycore_py.picture.marks import topic_text
 from rmw_manycore_py.qos import policies_of
 
 pytestmark = pytest.mark.unit
@@ -30,7 +31,7 @@ def endpoint(number: int, kind: Any, topic: str = "/t", role: Any = "topic") -> 
 
 def sample(time_s: float, rows: list[tuple[Endpoint, list[int]]], cpu_ns: dict[int, int]) -> Sample:
     graph = Graph("p", 5, 16, 1 << 20, (TALKER, LISTENER), tuple(end for end, _ in rows))
-    counts = np.zeros((len(rows), 9), dtype=np.int64)
+    counts = np.zeros((len(rows), 10), dtype=np.int64)
     for row, values in enumerate(values for _, values in rows):
         counts[row, : len(values)] = values
     cluster: Any = SimpleNamespace(id=1, messages=int(10 * time_s), receive_thread_pid=9)
@@ -46,7 +47,7 @@ LOADS = Loads(
         [
             (SERVICE, [100, 100]),
             (B, [2, 20]),
-            (C, [3, 30, 4, 0, 0, 0, 3, 10, 2]),
+            (C, [3, 30, 4, 0, 0, 0, 0, 3, 10, 2]),
             (A, [9, 90]),
         ],
         {70: 1_500_000_000, 71: 7},
@@ -60,6 +61,23 @@ def test_rates_are_differences() -> None:
     assert (load.rate_hz, load.bytes_per_s, load.message_bytes) == (3.0, 30.0, 10.0)
     assert (load.queued, load.capacity, load.fill) == (3, 10, 0.3)
     assert (load.lost, load.losses_per_s) == (4, 1.5)
+
+
+def published(messages: int, size_bytes: int, seconds: float) -> TopicLoad:
+    loads = Loads(
+        sample(0.0, [(A, [0, 0])], {}),
+        sample(seconds, [(A, [messages, messages * size_bytes])], {}),
+    )
+    assert topic_text(loads.topics["/t"], None) == topic_text(loads.rounded_topics["/t"], None)
+    return loads.rounded_topics["/t"]
+
+
+def test_rounded_loads_are_equal_where_no_other_text_is_shown() -> None:
+    random = np.random.default_rng(1)
+    for messages in random.integers(0, 10**5, 300).tolist():
+        published(messages, int(random.integers(0, 10**7)), float(random.uniform(0.5, 4)))
+    assert published(4, 100, 2.0) == published(4, 100, 2.01)
+    assert published(4, 100, 2.0) != published(5, 100, 2.0)
 
 
 def test_cpu_time_is_that_since_the_sample_before() -> None:
@@ -81,7 +99,7 @@ def test_losses_and_missed_deadlines_are_told() -> None:
 
 
 def test_what_goes_on_is_summed_up() -> None:
-    """The first at once, then what came in ten seconds; after a pause the first again."""
+    """The first message at once, then the count of ten seconds; after a pause the first again."""
     losses = Losses()
     lost, told = 0, []
     samples = [sample(0.0, [(C, [0, 0, 0])], {})]

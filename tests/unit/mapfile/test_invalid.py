@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""One small file for each way to be wrong; it says in its comments which errors are expected."""
+"""One small file per kind of error; its comments state the expected errors."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Defaults of parameters and options are what the documentation says."""
+"""Defaults of parameters and options equal those in the documentation."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def rows_below(page: str, heading: str) -> list[list[str]]:
 
 
 def written(value: Any) -> str:
-    """Return a default as the documentation writes it."""
+    """Return a default in the notation of the documentation."""
     if isinstance(value, bool):
         return str(value).lower()
     if isinstance(value, tuple):
@@ -57,13 +57,13 @@ def as_number(text: str) -> Any:
 
 
 def test_the_parameters_of_ours():
-    rows = rows_below("ndt_node.md", "Parameters that Autoware does not have:")
+    rows = rows_below("ndt_interface.md", "Parameters that Autoware does not have:")
     documented = {name.strip("`"): as_number(default) for name, default, _ in rows}
     assert documented == {n: as_number(d) for n, d in defaults(OwnParameters).items()}
 
 
 def test_the_parameters_of_autoware():
-    """Each is documented; a covariance of 36 numbers is not written out."""
+    """Each is documented; a covariance of 36 numbers is not spelled out."""
     rows = rows_below("ndt_autoware.md", "## Parameters")
     documented = {name.strip("`"): default for name, default, *_ in rows}
     expected = defaults(MatcherParameters)
@@ -88,7 +88,7 @@ def test_the_levels_of_the_library():
 
 
 def test_the_options_of_simulate():
-    rows = rows_below("../cli.md", "Options of `simulate`")
+    rows = rows_below("../reference/cli/ndt.md", "Options of `simulate`")
     documented = {row[0].strip("`"): as_number(row[1]) for row in rows}
     options = [one for one in simulate.params if isinstance(one, click.Option)]
     values = {one.opts[0]: False if one.is_flag else one.default for one in options}

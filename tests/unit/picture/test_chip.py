@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The picture: nothing overlaps, arcs join their nodes, names cannot break out of it."""
+"""The picture: nothing overlaps, arcs join their nodes, names are escaped."""
 
 from __future__ import annotations
 

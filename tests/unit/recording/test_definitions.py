@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Definitions as other readers need them."""
+"""Definitions in the form that other readers need."""
 
 from __future__ import annotations
 

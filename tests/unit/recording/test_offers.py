@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""QoS profiles as recordings have them."""
+"""QoS profiles in recordings."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ NUMBERS = """
    lifespan: {sec: 1, nsec: 0}, liveliness: 3, liveliness_lease_duration: {sec: 3, nsec: 0},
    avoid_ros_namespace_conventions: false}
 """
-# As Fast DDS tells offers of others; the durations of Foxy.
+# As Fast DDS reports the QoS of others, with the infinite durations of Foxy.
 UNKNOWN = """
 - {history: 3, depth: 0, reliability: 1, durability: 2,
    deadline: {sec: 2147483647, nsec: 4294967295}, lifespan: {sec: 0, nsec: 0}, liveliness: 1,

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Files that are whole, cut off and damaged, and folders of rosbag2."""
+"""Complete, truncated and damaged files, and folders of rosbag2."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def test_what_is_written_is_read(tmp_path: Path, compression: str) -> None:
 
 @pytest.mark.parametrize("compression", ["none", "lz4", "zstd"])
 def test_the_reader_of_mcap_finds_all_of_it_whole(tmp_path: Path, compression: str) -> None:
-    """By the index and without, every checksum compared."""
+    """With and without the index, all checksums verified."""
     path = write_texts(tmp_path / "a.mcap", TEXTS, compression=compression, each=5)
     for kind in (SeekingReader, NonSeekingReader):
         with path.open("rb") as stream:
@@ -67,7 +67,7 @@ def test_messages_come_in_the_order_of_their_times(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("compression", ["none", "zstd"])
 def test_a_file_may_be_cut_off_anywhere(tmp_path: Path, compression: str) -> None:
-    """Each cut leaves the messages of the chunks before it."""
+    """A file truncated anywhere keeps the messages of the chunks before."""
     whole = write_texts(tmp_path / "a.mcap", TEXTS, compression=compression, each=3).read_bytes()
     cut, found = tmp_path / "cut.mcap", set()
     for size in range(len(whole) - 1, 8, -61):
@@ -178,11 +178,11 @@ def test_a_damaged_chunk_is_said(tmp_path: Path) -> None:
     path.write_bytes(data[: data.index(b"text 10")])  # without an index as well
     with Recording(path) as recording:
         assert len(texts_of(recording)) == 6
-        assert "damaged behind byte" in recording.faults[0]
+        assert "damaged after byte" in recording.faults[0]
 
 
 def test_no_damage_leads_to_another_error(tmp_path: Path) -> None:
-    """Flip a bit here and there."""
+    """Flip random bits."""
     whole = write_texts(tmp_path / "a.mcap", TEXTS, each=6).read_bytes()
     path = tmp_path / "b.mcap"
     for place in range(0, len(whole), 23):
@@ -227,7 +227,7 @@ class TestTarget:
         target = Target(tmp_path / "a")
         target.prepare(force=False)
         target.file.touch()
-        with pytest.raises(ManycoreError, match="is there already"):
+        with pytest.raises(ManycoreError, match="already exists"):
             target.prepare(force=False)
         target.prepare(force=True)
         assert list(target.path.iterdir()) == []
@@ -237,7 +237,7 @@ class TestTarget:
         precious.parent.mkdir()
         precious.touch()
         for path in (tmp_path / "a", precious):
-            with pytest.raises(ManycoreError, match="no recording alone"):
+            with pytest.raises(ManycoreError, match="contains more than a recording"):
                 Target(path).prepare(force=True)
         assert precious.is_file()
         shutil.rmtree(precious.parent)

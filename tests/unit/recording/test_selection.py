@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Which topics are chosen."""
+"""Selection of topics."""
 
 from __future__ import annotations
 

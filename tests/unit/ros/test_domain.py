@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The platform of a process that is told none."""
+"""The platform of a process without MANYCORE_PLATFORM."""
 
 from __future__ import annotations
 
@@ -69,7 +69,7 @@ def test_python_and_the_transport_have_the_same_names(name: str) -> None:
 
 @pytest.mark.parametrize("name", sorted(set(NO_NAMES) - {"\udcff"}), ids=ascii)
 def test_the_transport_refuses_what_python_refuses(name: str) -> None:
-    with pytest.raises(_transport.PlatformError, match="is no platform name"):
+    with pytest.raises(_transport.PlatformError, match="is not a valid platform name"):
         _transport.platform_directory(name)
 
 

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Saved traces: what is written is read again, what is no trace is refused, chains are exact."""
+"""Saved traces: round trips, refusal of invalid files, and exact chains."""
 
 from __future__ import annotations
 

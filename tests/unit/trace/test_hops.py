@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What a trace shows of bridges, scan matching, counters, and messages for many."""
+"""Bridges, scan matching, counters and messages to several readers in a trace."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ pytestmark = pytest.mark.unit
 
 
 def bridged(trace: Trace) -> Trace:
-    """The camera's images come from outside, and the sink passes on to the outside."""
+    """The camera's images come from outside, and the sink forwards to the outside."""
     camera, filtering, sink, told = trace.processes
     rows = list(camera.threads[0].events.tolist())
     for at in [i for i, row in enumerate(rows) if row[5] == Kind.PUBLISH_BEGIN][::-1]:
@@ -66,12 +66,12 @@ def test_bridged_hops_are_slices_and_parts_of_chains() -> None:
     parts = {part.name: part.quantile(0.5) for part in found.parts}
     assert parts["bridge in /image"] == 70
     assert parts["bridge out /small"] == 2
-    assert parts["communication /small"] == 197  # to the claim: the bridge has it from then on
+    assert parts["communication /small"] == 197  # up to the claim: the bridge holds it from then on
     assert parts["total"] == 70 + 33 + 100 + 197 + 2
 
 
 def matched(trace: Trace) -> Trace:
-    """The filter works in another thread than it takes in, and has two workers."""
+    """The filter computes in another thread than it takes in, and has two workers."""
     camera, filtering, sink, told = trace.processes
     took, resumed, beside, passes = [], [], [], ([], [])
     for row in filtering.threads[0].events.tolist():
@@ -116,7 +116,7 @@ def test_scan_matching_is_seen_through_threads_and_workers() -> None:
     parts = {part.name: part.quantile(0.5) for part in found.parts}
     assert parts["node /filter"] == 100
     assert parts["NDT alignment /filter"] == 60
-    assert parts["NDT workers /filter"] == 20  # two passes, the second worker's within the first's
+    assert parts["NDT workers /filter"] == 20  # two passes, the second within the first
     drawn = slices_of(trace.processes[2].threads[1])
     assert set(drawn["what"].tolist()) == {What.PASS}
     assert (drawn["end_ns"] - drawn["begin_ns"]).tolist() == [10 * US] * 16
@@ -126,13 +126,13 @@ def test_scan_matching_is_seen_through_threads_and_workers() -> None:
 def test_counters_follow_queues_losses_cpu_and_smem() -> None:
     publisher = endpoint_id(CAMERA, INCARNATION)
     rows = [
-        event(0, Kind.LOST, SINK, 0, 3),  # they came before the trace, too
+        event(0, Kind.LOST, SINK, 0, 3),  # includes losses before the trace
         *(event(i, Kind.HINT, SINK, i, publisher) for i in (1, 2, 3, 4)),
         event(5, Kind.HINT, SINK, 4, publisher),  # twice the same
         event(6, Kind.LOST, SINK, 0, 2),
         event(7, Kind.CLAIM, SINK, 3, publisher),
         event(8, Kind.EXPIRED, SINK, 4, publisher),
-        event(9, Kind.CLAIM, SINK, 9, publisher),  # it was there before the trace
+        event(9, Kind.CLAIM, SINK, 9, publisher),  # the message is older than the trace
         event(10, Kind.CPU, NO_ENDPOINT, 0, 1_000 * US),
         event(10, Kind.SMEM, NO_ENDPOINT, 3, 5_000),
         event(20, Kind.CPU, NO_ENDPOINT, 0, 1_005 * US),
@@ -161,7 +161,7 @@ FIRST_OF_MANY = 10
 
 @pytest.mark.needs("perfetto")
 def test_a_message_for_many_has_a_flow_to_each(tmp_path: Path) -> None:
-    """Takes take no time; the receive thread looks twice, and is too late for some."""
+    """Takes have no duration; the receive thread reads twice, and is too late for some."""
     from perfetto.protos.perfetto.trace import perfetto_trace_pb2
 
     takers = range(FIRST_OF_MANY, FIRST_OF_MANY + 30)

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Courses: nothing stands in the way, the LiDAR sees what is there, files come back."""
+"""Courses: free of obstacles, consistent with the LiDAR, and equal after a round trip to files."""
 
 from __future__ import annotations
 
@@ -68,14 +68,14 @@ def test_a_scan_stands_on_the_ground(course):
 
 
 def test_a_map_of_points_is_seen_as_the_streets_are(course):
-    """Every ray's point is one of the map; near surfaces are as far in both."""
+    """Every ray ends at a point of the map; near surfaces have the same distance in both."""
     place = (3.0, 0.0, 0.1)
     by_points = PointView(course.map_points).scan(*place, np.random.default_rng(1))
     by_streets = course.view.scan(*place, np.random.default_rng(1))
     assert len(by_points) > 0.5 * len(by_streets)
 
     def distances(scan):
-        """Return how far the nearest upright surface is in each of 16 directions."""
+        """Return the distance of the nearest upright surface in each of 16 directions."""
         upright = scan[(scan[:, 2] > 0.5) & (scan[:, 2] < 2.0)]
         part = ((np.arctan2(upright[:, 1], upright[:, 0]) + np.pi) * 8 / np.pi).astype(int) % 16
         ranges = np.hypot(upright[:, 0], upright[:, 1])
@@ -117,7 +117,7 @@ def test_a_course_outside_the_map(course, tmp_path):
     ("options", "said"),
     [
         (("--length", "30"), "expected at least 62 m; or give a smaller --turn-radius"),
-        (("--map", "MAP"), "--map and --trajectory need each other"),
+        (("--map", "MAP"), "--map and --trajectory require each other"),
         (("--speed", "3"), "3.0 is not in the range"),
     ],
 )

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The gate passes one source's commands, and none while a heartbeat is late."""
+"""The gate forwards one source's commands, and none while a heartbeat is late."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ pytestmark = pytest.mark.unit
 
 
 def engaged(**options: object) -> Gate:
-    """Return a gate whose external heartbeat came at 0 s."""
+    """Return a gate whose external heartbeat arrived at 0 s."""
     gate = Gate(GateOptions(**options), is_engaged=True)
     gate.external_heartbeat(0.0)
     return gate
@@ -83,7 +83,7 @@ def test_no_timeout():
 
 
 def test_a_thousand_random_histories():
-    """The emergency command is due when a gap was longer than 0.5 s, until it was cleared."""
+    """The emergency command is due after a gap longer than 0.5 s, until it is cleared."""
     generator = np.random.default_rng(4)
     for _ in range(1000):
         gate, now, beat, stopped = engaged(), 0.0, 0.0, False

@@ -1,8 +1,8 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The laws are the formulas of the case study: each on 1,000 random inputs, computed another way.
+"""The control laws equal the case study's formulas on 1,000 random inputs each.
 
-What is expected uses complex numbers, matrices and sorted triples where the laws use trigonometry,
-scalars and comparisons.
+The expected values are computed with complex numbers, matrices and sorted triples where the laws
+use trigonometry, scalars and comparisons.
 """
 
 from __future__ import annotations
@@ -59,7 +59,7 @@ def test_steering():
         expected = sorted((-0.6, wanted, 0.6))[1]
         limited += expected != wanted
         assert steering_rad(lateral, yaw, speed) == pytest.approx(expected, abs=1e-12)
-    assert 100 < limited < 900  # both cases were tried
+    assert 100 < limited < 900  # both cases occurred
 
 
 def test_acceleration():

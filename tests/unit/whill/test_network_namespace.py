@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Packets that come into a network namespace are counted; those that stay in it are not."""
+"""Packets that enter a network namespace are counted; packets within it are not."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import subprocess
 from subprocess import PIPE
 
 import pytest
+from support import wait_until
 
 from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.whill.laptop.network_namespace import entering, packets_received
@@ -50,11 +51,12 @@ def test_packets_from_outside_are_counted(namespace):
         socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sender,
     ):
         inside.stdin.write(b"!")
-        assert inside.stdout.read(1) == b"!"  # from now on it is in there
+        assert inside.stdout.read(1) == b"!"  # from now on it is in the namespace
         before = packets_received(inside.pid)
         for _ in range(PACKETS):
             sender.sendto(b"scan", (RECEIVER, 9))
-        assert packets_received(inside.pid) >= before + PACKETS
+        counted = lambda: packets_received(inside.pid) >= before + PACKETS  # noqa: E731
+        wait_until(counted, "what the kernel has not passed on yet is counted, too")
         inside.stdin.close()
         inside.wait()
     assert packets_received(inside.pid) is None

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What a fault came to is read off the commands and warnings after it."""
+"""The outcome of a fault, derived from the commands and warnings after it."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def test_zero_commands():
 
 
 def test_no_commands():
-    """Half a second after the last one the wheelchair stands by itself."""
+    """Half a second after the last command the wheelchair stops by itself."""
     (outcome,) = outcomes(log_of((0, 1.02, 1.5), (3, 5, 1.0)))
     assert outcome.stood_s == pytest.approx(0.49)
     assert outcome.drove_on_s == pytest.approx(1.99)
@@ -55,7 +55,7 @@ def test_the_end_of_the_course_is_no_outcome():
     [((1.0, 0.0, 1.0), 1), ((1.0, 0.0, 1.0, 0.0), 1), ((1.0, 0.0), 0), ((1.0, 1.0), 0)],
 )
 def test_where_a_finished_drive_ends_is_no_stand_on_the_way(speeds, stands):
-    """The drive may be over before another moment is noted."""
+    """The drive may end before another sample is recorded."""
     log = log_of((0, 4, 1.0))
     log.is_finished = True
     log.moments += [Moment(1.0 + i, 0.0, 0.0, speed, 0.0, 0.0) for i, speed in enumerate(speeds)]

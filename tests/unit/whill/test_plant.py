@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The plant follows commands with its lag, and stands without them."""
+"""The plant follows commands with its lag, and stops without them."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ STEP_S = 0.001
 
 
 def driven(plant: Plant, speed_m_s: float, rate_rad_s: float, time_s: float) -> Plant:
-    """Return the plant after a time of commands, each millisecond one."""
+    """Return the plant after a time of commands, one per millisecond."""
     for step in range(round(time_s / STEP_S)):
         plant.command(step * STEP_S, speed_m_s, rate_rad_s)
         plant.advance(step * STEP_S, STEP_S)

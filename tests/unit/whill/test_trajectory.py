@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Trajectories: courses that are made, files, and what cannot be driven."""
+"""Trajectories: generated courses, files, and infeasible input."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Reports: tables, CSV and JSON say the same."""
+"""Reports: table, CSV and JSON agree."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ RESULTS = [
     Result("round trip, 64 B", "peer", "us", (8.0,)),
 ]
 GOAL = Goal("round trip, 64 B", 'the "own" one', "better", 3, "peer")
-REPORT = Report({"kernel": "6.1"}, {"CPUs": "0, 1"}, RESULTS, judge(RESULTS, [GOAL]))
+REPORT = Report({"kernel": "6.1"}, {"CPUs": "0, 1"}, RESULTS, judge(RESULTS, [GOAL]), [])
 
 
 def read_csv(path: Path) -> list[dict[str, str]]:

@@ -82,7 +82,7 @@ def test_a_single_value_is_a_line() -> None:
 
 
 def test_flow_style_is_for_arrays() -> None:
-    """As with ros2: a line per field, and each array in one line."""
+    """As with ros2: a line per field, each array in one line."""
     layout = MultiArrayLayout(dim=[MultiArrayDimension(label="x", size=2, stride=2)])
     text = to_yaml(Float64MultiArray(layout=layout, data=[1.0, 2.0]), flow_style=True)
     assert text.splitlines() == [

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What is suggested for names that do not exist."""
+"""Suggestions for names that do not exist."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What the tools make of the rows of a platform."""
+"""How the tools present the rows of a platform."""
 
 from __future__ import annotations
 
@@ -12,7 +12,15 @@ from rmw_manycore_py.cli.common import view
 
 pytestmark = pytest.mark.unit
 
-COUNTERS = {"messages": 9, "bytes": 90, "lost": 0, "expired": 0, "refused": 0, "overwritten": 0}
+COUNTERS = {
+    "messages": 9,
+    "bytes": 90,
+    "lost": 0,
+    "expired": 0,
+    "refused": 0,
+    "overwritten": 0,
+    "dropped": 0,
+}
 
 
 def endpoint(node: str, kind: str, role: str, topic: str, type_name: str, **counters: int) -> Any:

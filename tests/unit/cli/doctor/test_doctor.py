@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""How the doctor judges; what it looks at is tested on the real installation."""
+"""Verdicts of the doctor; its checks are tested on the real installation."""
 
 import pytest
 

@@ -11,7 +11,7 @@ from rmw_manycore_py.cli.doctor.finding import Verdict
 from rmw_manycore_py.cli.doctor.logout import check_logout
 
 pytestmark = pytest.mark.unit
-PERSON = 64_000  # who has no entry in the user database
+PERSON = 64_000  # a uid without an entry in the user database
 
 
 @pytest.fixture

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What a report leaves out."""
+"""What a report omits."""
 
 from __future__ import annotations
 

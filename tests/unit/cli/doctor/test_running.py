@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What the doctor says of built packages and of isolated CPUs."""
+"""The doctor's checks of built packages and of isolated CPUs."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def interfaces(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def build(package: str, **dependencies: str | None) -> Path:
-    """Put a manifest where programs look for built packages."""
+    """Write a manifest where programs look for built packages."""
     file = Path(own_prefix(), "share", package, "manifest.json")
     file.parent.mkdir(parents=True)
     manifest = {
@@ -54,9 +54,9 @@ def test_packages_that_programs_do_not_use_are_warned_of() -> None:
     build("own_msgs", std_msgs__msg__Header="RIHS01_of_long_ago")
     build("std_msgs")
     _, changed, hidden = check_built()
-    assert changed.found == f"own_msgs: {HEADER} is another one than it was built for"
+    assert changed.found == f"own_msgs: {HEADER} has changed since the package was built"
     assert changed.advice.startswith("manycore interface build /src, or ")
-    assert hidden.found.startswith("std_msgs: programs use the one installed in ")
+    assert hidden.found.startswith("std_msgs: programs use the package installed in ")
     assert {changed.verdict, hidden.verdict} == {Verdict.WARNING}
 
 

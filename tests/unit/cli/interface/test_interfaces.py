@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The types that are installed, and their definitions."""
+"""Installed types and their definitions."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Keys, order and room of `manycore top`."""
+"""Keys, order and layout of `manycore top`."""
 
 from __future__ import annotations
 

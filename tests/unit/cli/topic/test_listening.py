@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""How a listening tool finds out type and QoS."""
+"""How subscribing tools find out type and QoS."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What keys do to a player."""
+"""Keys that control a player."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Whether a node ended well, and in what words."""
+"""How the end of a node is judged and described."""
 
 import signal
 

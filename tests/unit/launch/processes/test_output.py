@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Lines out of a pipe."""
+"""Lines read from a pipe."""
 
 import os
 from collections.abc import Iterator

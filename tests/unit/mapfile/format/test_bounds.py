@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Bounds of the YAML reader, at both of their sides."""
+"""Limits of the YAML reader, just below and just above each."""
 
 from __future__ import annotations
 

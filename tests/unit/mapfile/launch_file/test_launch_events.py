@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Components, event handlers, timers, environment: what launch files say besides their nodes."""
+"""Components, event handlers, timers, environment: the content of launch files besides nodes."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def read(tmp_path: Path) -> Read:
 def read_python(read: Read) -> Read:
     def read_actions(actions: str, before: str = "") -> LaunchFile:
         body = f"def generate_launch_description():\n    {before}\n    return LaunchDescription"
-        # `import *` finds what the stand-ins offer, as there is no __all__.
+        # `import *` imports what the stand-ins define, as there is no __all__.
         return read(f"{HEAD}{body}([{actions}])\n", "demo.launch.py")
 
     return read_actions
@@ -80,7 +80,7 @@ def test_components_are_those_of_their_container_wherever_they_are_loaded(read: 
     camera, lens = box.components
     assert (box.label, box.namespace) == ("box", "/left")
     assert (camera.namespace, camera.name, camera.plugin) == ("/left", "camera", "p::Camera")
-    assert camera.parameters == ({"rate": 5}, {"small": "1e-9"})  # as text in LoadNode
+    assert camera.parameters == ({"rate": 5}, {"small": "1e-9"})  # as text in a LoadNode request
     assert camera.remappings == (("a", "b"), ("image", "raw"))
     assert camera.extra_arguments == ({"use_intra_process_comms": True},)
     assert (lens.namespace, lens.remappings) == ("/right", ())

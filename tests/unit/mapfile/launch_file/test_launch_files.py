@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Launch files in XML, YAML and Python say the same things; the package launch is not needed."""
+"""Launch files in XML, YAML and Python give the same nodes, without the package launch."""
 
 from __future__ import annotations
 
@@ -301,7 +301,7 @@ def test_an_installed_launch_package_is_left_as_it_was(
 
 
 def test_arrays_are_of_one_type(read: Read) -> None:
-    """ROS 2 launch makes floats of numbers, and strings of everything else that is mixed."""
+    """ROS 2 launch converts mixed numbers to floats, and any other mixture to strings."""
     text = """\
 launch:
   - node:

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Mapfiles whose nodes `ros2 launch` starts; and how that process finds the places."""
+"""Mapfiles whose nodes `ros2 launch` starts, and how that process finds the placements."""
 
 from __future__ import annotations
 

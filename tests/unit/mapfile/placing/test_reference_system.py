@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The mapfile of the Autoware reference system is what its authors describe."""
+"""The mapfile of the Autoware reference system matches its authors' description."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def test_the_topic_table_has_the_graph(nodes: dict[str, PlacedNode]) -> None:
 
 
 def test_the_parameters_say_the_same(nodes: dict[str, PlacedNode]) -> None:
-    """The order of inputs counts: outputs of an intersection follow it, and merged records."""
+    """The order of inputs matters: outputs of an intersection follow it, and merged records."""
     periods = {
         name: node.parameters["period_ms"]
         for name, node in nodes.items()
@@ -68,7 +68,7 @@ def test_kinds(nodes: dict[str, PlacedNode]) -> None:
 
 
 def test_messages_a_second(nodes: dict[str, PlacedNode]) -> None:
-    """The case study counts 285 publications, 338 deliveries and 190 callbacks that work."""
+    """The case study states 285 publications, 338 deliveries and 190 callbacks that work."""
     rates_hz = described.rates_hz()
     delivered_hz = sum(
         rates_hz[topic.strip("/")] for node in nodes.values() for topic in node.subscribe

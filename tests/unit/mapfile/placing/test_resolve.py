@@ -10,6 +10,7 @@ import pytest
 
 from rmw_manycore_py.errors import MapfileError
 from rmw_manycore_py.mapfile import Placement, as_data, check
+from rmw_manycore_py.mapfile.placing.sessions import MAX_SESSIONS
 from rmw_manycore_py.mapfile.placing.start import parameter_text
 from rmw_manycore_py.ros.names import resolve_topic
 from rmw_manycore_py.topology import Core
@@ -127,6 +128,40 @@ def test_sources_fill_the_topic_table(resolved: Check) -> None:
     ]
     assert placement.topics[1].publisher_clusters == (1,)
     assert placement.topics[1].receiver_mask == 0b110
+
+
+def test_a_transferred_topic_takes_memory_in_each_receiving_cluster(resolved: Check) -> None:
+    placement = resolved(
+        "platform: coolidge\n"
+        "topics: {chatter: {topic_dsm_size: 1MiB, transfer: message, priority: 7}}\n"
+        "nodes:\n"
+        "  a: {cluster: 1, script: talker.py}\n"
+        "  b: {cluster: 2, script: talker.py}\n"
+        "  c: {cluster: 2, script: listener.py}\n"
+        "  d: {cluster: 3, script: listener.py}\n"
+    )
+    topic = placement.topics[0]
+    assert (topic.transfer, topic.priority, topic.synchronous) == ("message", 7, False)
+    assert [(node.name, cluster) for node, cluster in topic.landings] == [
+        ("a", 2),
+        ("a", 3),
+        ("b", 3),
+    ]
+    assert [memory.used >> 20 for memory in placement.memory[:4]] == [1, 2, 2, 0]
+
+
+def test_a_cluster_may_have_so_many_sessions(resolved: Check) -> None:
+    text = (
+        "platform: coolidge\n"
+        "topics: {chatter: {topic_dsm_size: 64KiB, transfer: session}}\n"
+        "nodes:\n"
+        "  listener: {cluster: 2, script: listener.py}\n"
+    )
+    for number in range(MAX_SESSIONS):
+        text += f"  talker{number}: {{cluster: 1, script: talker.py}}\n"
+    assert len(resolved(text).topics[0].landings) == MAX_SESSIONS
+    with pytest.raises(MapfileError, match="at most 8 sessions of cluster 1 to others"):
+        resolved(text + "  talker: {cluster: 1, script: talker.py}\n")
 
 
 def test_each_publisher_takes_a_ring_of_its_clusters_memory(resolved: Check) -> None:

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What a placement says of how nodes run: rules, scheduling, cores of others, notices."""
+"""How a placement runs its nodes: rules, scheduling, cores of others, notices."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Executables of packages, and the modules behind those that installers write."""
+"""Executables of packages, and the modules behind generated entry points."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ main()
 
 @pytest.fixture
 def installed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """Yield where the executables of `demo` lie."""
+    """Yield the directory of the executables of `demo`."""
     monkeypatch.setenv("AMENT_PREFIX_PATH", str(tmp_path))
     directory = tmp_path / "lib/demo"
     directory.mkdir(parents=True)

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""PCD files as other programs write them, and broken ones."""
+"""PCD files as other programs write them, and damaged ones."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ POINTS {points}
 DATA {data}
 """
 PLAIN = np.dtype([(name, "<f8") for name in "xyz"])
-PADDED = np.dtype(  # as PCL writes PointXYZIRT: `_` are bytes that nothing is in
+PADDED = np.dtype(  # as PCL writes PointXYZIRT: `_` is padding
     [
         *((name, "<f4") for name in "xyz"),
         ("_", "u1", 4),
@@ -68,7 +68,7 @@ def header_of(dtype: np.dtype, data: str, **changes: object) -> bytes:
 
 
 def packed(data: bytes) -> bytes:
-    """Return data as LZF that repeats nothing."""
+    """Return data as LZF without back references."""
     parts = [data[at : at + 32] for at in range(0, len(data), 32)]
     lzf = b"".join(bytes([len(part) - 1]) + part for part in parts)
     return len(lzf).to_bytes(4, "little") + len(data).to_bytes(4, "little") + lzf
@@ -97,7 +97,7 @@ def test_layouts(tmp_path, dtype, data):
 
 
 def test_as_windows_writes_it_with_holes(tmp_path):
-    """Lines end with CR LF."""
+    """Header lines end with CR LF."""
     text = header_of(PLAIN, "ascii", points=2).decode() + "1 2 3\nnan NaN nan\n"
     (tmp_path / "map.pcd").write_bytes(text.replace("\n", "\r\n").encode())
     np.testing.assert_array_equal(read_pcd(tmp_path / "map.pcd"), [[1, 2, 3], [np.nan] * 3])

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""A scan taken while the sensor moves, as one moment would have seen it."""
+"""A scan taken while the sensor moves is transformed to a single moment."""
 
 from __future__ import annotations
 

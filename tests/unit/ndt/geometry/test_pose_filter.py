@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The filter follows a vehicle, also when measurements come late or not at all."""
+"""The filter tracks a vehicle, also when measurements are late or missing."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ SPEED_M_S, TURN_RAD_S = 8.0, 0.3
 
 
 def circle(time_s: float) -> np.ndarray:
-    """Return the pose of a vehicle that drives in a circle, from yaw 3 on so that it wraps."""
+    """Return the pose of a vehicle that drives in a circle, starting at yaw 3 so that it wraps."""
     yaw, radius_m = 3.0 + TURN_RAD_S * time_s, SPEED_M_S / TURN_RAD_S
     position = (radius_m * np.sin(yaw), -radius_m * np.cos(yaw), 1.5)
     return from_xyz_rpy(position, (0.02, -0.01, yaw))
@@ -88,7 +88,7 @@ def test_a_twist_is_enough_to_go_on():
 
 
 def test_what_moves_sideways_is_not_left_behind():
-    """A LiDAR that is carried, or not mounted straight ahead: 3 m/s to its left."""
+    """A hand-held LiDAR, or one not mounted straight ahead: 3 m/s to its left."""
     pose_filter = PoseFilter()
     pose_filter.initialize(0.0, np.eye(4), COVARIANCE)
     for time_s in np.arange(0.1, 5.0, 0.1):

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Rigid transforms, checked by what must hold for every pose."""
+"""Rigid transforms, checked by properties that hold for every pose."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""A number of points out of a large cloud."""
+"""Downsampling of a large cloud to a number of points."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from rmw_manycore_py.ndt.geometry.thinning import spread_indices
 pytestmark = pytest.mark.unit
 
 RINGS, COLUMNS = 64, 1000
-WANTED = RINGS * COLUMNS // 16  # every 16th point would be of four rings alone
+WANTED = RINGS * COLUMNS // 16  # every 16th point would be from four rings only
 
 
 @pytest.mark.parametrize("count", [0, 1, WANTED])

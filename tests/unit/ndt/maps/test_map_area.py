@@ -6,6 +6,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.ndt.maps.map_area import MapArea
 from rmw_manycore_py.ndt.maps.map_tiles import open_map, write_tiles
 
@@ -27,3 +28,17 @@ def test_an_area_is_loaded_again_only_where_other_tiles_are_needed(tmp_path):
     np.testing.assert_array_equal(area.update(50.0, 10.0), first)
     moved = area.update(90.0, 10.0)
     assert moved[:, 0].min() > 59.9
+    files = area.update_files(130.0, 10.0)  # for another process to read
+    assert files.read({})[:, 0].min() > 99.9
+    assert area.update_files(131.0, 10.0) is None
+
+
+def test_tiles_that_cannot_be_read_are_asked_for_again(tmp_path):
+    points = np.random.default_rng(1).uniform((0, 0, 0), (40, 20, 5), (2000, 3)).astype("f4")
+    write_tiles(tmp_path, points, 20.0, ".npz")
+    area = MapArea(open_map(tmp_path), radius_m=30.0, update_distance_m=5.0)
+    (tmp_path / "0_0.npz").rename(tmp_path / "away")
+    with pytest.raises(ManycoreError, match="no such file"):
+        area.update(10.0, 10.0)
+    (tmp_path / "away").rename(tmp_path / "0_0.npz")
+    assert len(area.update(16.0, 10.0)) == len(points)

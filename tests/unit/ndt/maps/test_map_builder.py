@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Voxel maps that a process of its own builds."""
+"""Voxel maps built in a separate process."""
 
 from __future__ import annotations
 
@@ -12,12 +12,13 @@ import pytest
 
 from rmw_manycore_py.ndt import MatcherOptions, SerialMatcher, VoxelMap
 from rmw_manycore_py.ndt.maps.map_builder import MapBuilder
+from rmw_manycore_py.ndt.maps.map_tiles import TileFiles, open_map, write_tiles
 
 pytestmark = pytest.mark.unit
 
 
 class Taking:
-    """Takes maps once the builder says that there may be one."""
+    """Takes maps when the builder reports that one may be ready."""
 
     def __init__(self) -> None:
         self.built = threading.Semaphore(0)
@@ -47,6 +48,30 @@ def test_maps_are_built_one_after_the_other_and_problems_are_told():
     builder.close()
 
 
+@pytest.mark.parametrize("with_points", [True, False])
+def test_tiles_are_read_where_the_map_is_built(tmp_path, with_points):
+    """Of the same tiles it is the same map, read once; a tile that is gone is reported."""
+    points = np.random.default_rng(1).uniform(0, 20, (20000, 3)).astype("f4")
+    write_tiles(tmp_path, points, 10.0, ".npz")
+    files = open_map(tmp_path).files_around(5.0, 5.0, 12.0)
+    take = Taking()
+    builder = MapBuilder(MatcherOptions(), take.built.release, with_points=with_points)
+    builder.submit(lambda: files)
+    here = take(builder)  # the first
+    builder.submit(lambda: files)
+    there = take(builder)
+    assert there.voxel_map.own_likelihood == here.voxel_map.own_likelihood
+    assert there.voxel_map.voxels == here.voxel_map.voxels
+    lengths = [0 if one.points is None else len(one.points) for one in (here, there)]
+    assert lengths == [with_points * len(points)] * 2
+    files.paths[0].unlink()  # the process has its points
+    builder.submit(lambda: files)
+    assert take(builder).voxel_map.voxels == here.voxel_map.voxels
+    builder.submit(lambda: TileFiles((tmp_path / "gone.npz",), 0.0))
+    assert "there is no such file" in take(builder).problem
+    builder.close()
+
+
 def test_a_map_outlives_the_process_that_built_it_and_is_what_it_would_be_here():
     points = np.random.default_rng(1).uniform(0, 20, (20000, 3)).astype("f4")
     options = MatcherOptions()
@@ -60,7 +85,7 @@ def test_a_map_outlives_the_process_that_built_it_and_is_what_it_would_be_here()
     assert helper is not None
     os.kill(helper, signal.SIGKILL)
     builder.submit(lambda: points)
-    again = take(builder)  # by another process, unless the kill came amid the call
+    again = take(builder)  # by another process, unless the kill hit the call
     builder.close()
     here = VoxelMap.from_points(points, options)
     assert {one.own_likelihood for one in built} == {here.own_likelihood}

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Recordings and maps in files: there and back, thinned, in tiles, and broken in many ways."""
+"""Recordings and maps in files: round trips, downsampling, tiles, and many kinds of damage."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from rmw_manycore_py.ndt.geometry.poses import from_xyz_rpy
 from rmw_manycore_py.ndt.geometry.precision import needs_doubles, why_coarse
 from rmw_manycore_py.ndt.geometry.thinning import voxel_centroids
 from rmw_manycore_py.ndt.maps.map_file import read_points, write_points
-from rmw_manycore_py.ndt.maps.map_tiles import METADATA, open_map, write_tiles
+from rmw_manycore_py.ndt.maps.map_tiles import METADATA, TileFiles, open_map, write_tiles
 from rmw_manycore_py.ndt.recordings.recording import Recording, load_recording, save_recording
 from rmw_manycore_py.ndt.recordings.scan_folder import read_scan
 
@@ -51,7 +51,7 @@ def test_a_map_there_and_back(tmp_path, suffix):
 
 @pytest.mark.parametrize("suffix", FORMATS)
 def test_a_map_in_utm_coordinates_there_and_back(tmp_path, suffix):
-    """Half a metre lies between two single-precision numbers there; thinned it is exact too."""
+    """Single precision has steps of half a metre there, so points stay doubles, also in tiles."""
     points = cloud().astype(np.float64) + UTM_M
     write_points(tmp_path / f"map{suffix}", points)
     np.testing.assert_array_equal(read_points(tmp_path / f"map{suffix}"), points)
@@ -76,7 +76,7 @@ def test_a_map_in_utm_coordinates_is_thinned_as_at_the_origin(tmp_path):
 
 
 def test_maps_that_single_precision_has_spoiled(tmp_path):
-    """They are read, and it is said what has become of them; those of the usual size are good."""
+    """They are read, and a warning states the lost precision; maps of the usual size get none."""
     near, far = cloud(), (cloud() + UTM_M).astype(np.float32)
     assert why_coarse(near) == ""
     assert why_coarse(far.astype(np.float64)) == ""
@@ -94,7 +94,7 @@ def test_maps_that_single_precision_has_spoiled(tmp_path):
 
 @needs_open3d
 def test_maps_are_thinned_as_scans_are(tmp_path):
-    """Open3D's first voxel is centred on the lower corner of the cloud."""
+    """Open3D centres its first voxel on the lower corner of the cloud."""
     points = cloud(50000)
     write_points(tmp_path / "map.pcd", points)
     thinned = read_points(tmp_path / "map.pcd", leaf_m=5.0)
@@ -125,11 +125,23 @@ def test_tiles_around_a_place(tmp_path, suffix, with_metadata):
     assert len(everything) == len(points)
     names, near = tiles.around(30.0, 10.0, 5.0)
     assert {path.stem for path in names} == {"1_0"}
-    assert names == tiles.names_around(30.0, 10.0, 5.0)
+    assert names == frozenset(tiles.files_around(30.0, 10.0, 5.0).paths)
     assert near[:, 0].min() > 19.9
     assert near[:, 0].max() < 40.1
     names, nothing = tiles.around(5000.0, 0.0, 100.0)
     assert (names, nothing.shape) == (frozenset(), (0, 3))
+
+
+def test_tiles_are_kept_until_others_are_read(tmp_path):
+    first, second = (TileFiles((tmp_path / f"{name}.npz",), 0.0) for name in "ab")
+    for files in (first, second):
+        write_points(files.paths[0], cloud())
+    loaded = {}
+    first.read(loaded)
+    first.paths[0].unlink()
+    assert len(first.read(loaded)) == 5000
+    second.read(loaded)
+    assert list(loaded) == list(second.paths)
 
 
 def test_a_single_file_is_everywhere(tmp_path):
@@ -165,7 +177,7 @@ def test_broken_maps(tmp_path, name, content, words):
 
 @pytest.mark.parametrize("place", range(0, 300, 7))
 def test_damaged_npz_files(tmp_path, place):
-    """Whatever is damaged, the error names the file; a few damages do not matter."""
+    """Whatever the damage, the error names the file; a few kinds of damage do not matter."""
     path = tmp_path / "map.npz"
     write_points(path, cloud(20))
     damaged = bytearray(path.read_bytes())
@@ -210,7 +222,7 @@ def test_a_map_that_announces_more_than_there_is(tmp_path):
 @needs_open3d
 def test_a_map_that_cannot_be_thinned_so_finely(tmp_path):
     write_points(tmp_path / "map.npz", cloud())
-    with pytest.raises(ManycoreError, match=r"map\.npz: it cannot be thinned to 1e-09 m"):
+    with pytest.raises(ManycoreError, match=r"map\.npz: it cannot be downsampled to 1e-09 m"):
         read_points(tmp_path / "map.npz", 1e-9)
 
 
@@ -231,7 +243,7 @@ CORNERS = [[1.0, 2.0, 3.0], [-4.0, 5.0, 6.5], [7.0, 8.0, 5_000_000.25]]
 @pytest.mark.parametrize("number", ["float", "double", "float64"])
 @pytest.mark.parametrize("encoding", ["ascii", "binary_little_endian", "binary_big_endian"])
 def test_ply_files_whole_and_cut_off(tmp_path, encoding, number):
-    """Open3D would take a file that is cut off for one with as many points, and make them up."""
+    """Open3D would read a truncated file as complete, and invent the missing points."""
     path = tmp_path / "map.ply"
     if encoding == "ascii":
         data = "".join(f"{x} {y} {z} 9\n" for x, y, z in CORNERS).encode()
@@ -273,7 +285,7 @@ def test_broken_folders(tmp_path, text, words):
 
 
 def test_scans_are_accumulated_far_from_the_origin(tmp_path):
-    """Poses are doubles; so are the points that they are moved to."""
+    """Poses are doubles, and so are the points transformed by them."""
     T = from_xyz_rpy(UTM_M, (0.0, 0.0, 0.5))
     save_recording(tmp_path / "drive.npz", Recording([cloud(100) / 2], T[None], np.zeros(0)))
     drive = load_recording(tmp_path / "drive.npz")

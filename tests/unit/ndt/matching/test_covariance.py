@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Covariances that take several alignments or scores: of a street with corners, and of a tunnel."""
+"""Covariances from several alignments or scores, in a street with corners and in a tunnel."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ OPTIONS = MatcherOptions()
 
 
 def tunnel() -> Points:
-    """Return ground and two walls without an end, along x."""
+    """Return ground and two endless walls along x."""
     rng = np.random.default_rng(3)
     along, across = rng.uniform(0, 80, 60_000), rng.uniform(-6, 6, 60_000)
     ground = np.stack([along, across, np.zeros(60_000)], axis=1)
@@ -36,7 +36,7 @@ def aligned(world: Points, true: Points = TRUE, **options: Any) -> Alignment:
 
 
 def deviations(found: Alignment) -> tuple[float, float]:
-    """Return the standard deviations along the street and across it."""
+    """Return the standard deviations along and across the street."""
     return float(np.sqrt(found.covariance[0, 0])), float(np.sqrt(found.covariance[1, 1]))
 
 

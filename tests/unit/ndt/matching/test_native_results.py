@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What crosses between the kernel and Python: options in, results out."""
+"""Options passed to the native kernel, and results returned by it."""
 
 from __future__ import annotations
 
@@ -78,7 +78,7 @@ def test_the_kernel_has_no_defaults_of_its_own() -> None:
 
 
 def test_a_coarse_level_pulls_from_farther_off_than_its_points_are_thick() -> None:
-    """1.2 m above a plane, the finest level does not feel it."""
+    """1.2 m above a plane, the finest level has no gradient."""
     options = MatcherOptions(search="direct7")
     ground = np.random.default_rng(1).uniform((-20, -20, -0.02), (20, 20, 0.02), (20_000, 3))
     scan = scan_points(ground[::10])

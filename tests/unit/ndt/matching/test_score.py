@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Score and derivatives are what the published formulas say, re-derived here point by point."""
+"""Score and derivatives equal the published formulas, implemented here point by point."""
 
 from __future__ import annotations
 
@@ -90,7 +90,7 @@ def test_the_score_is_the_published_one(search: Search, covariance: VoxelCovaria
 
 
 def central(scan: Points, at: tuple[float, ...], size_m: float) -> Points:
-    """Return the points that a small change of the pose leaves in their voxel."""
+    """Return the points that stay in their voxel under a small change of the pose."""
     matrix = pose(*at)
     place = (scan @ matrix[:3, :3].T + matrix[:3, 3]) / size_m
     inside = np.abs(place - np.floor(place) - 0.5).max(axis=1) < 0.45
@@ -163,7 +163,7 @@ def test_an_alignment_tells_its_way_and_where_the_score_began():
     assert found.first == matcher.score(SCAN, guess)
     assert found.score > found.first.score
     steep = np.eye(4)
-    steep[:3, :3] = [[0, 0, -1], [0, 1, 0], [1, 0, 0]]  # looks up: aligned in a level frame
+    steep[:3, :3] = [[0, 0, -1], [0, 1, 0], [1, 0, 0]]  # tilted upwards: aligned in a level frame
     turned = matcher.align(SCAN @ steep[:3, :3], guess @ steep)
     np.testing.assert_allclose(turned.path[0], guess @ steep, atol=1e-9)
     np.testing.assert_allclose(turned.path[-1], turned.T_map_sensor, atol=1e-9)

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The matcher finds its place, and answers what it cannot align."""
+"""The matcher converges, and reports what it cannot align."""
 
 from __future__ import annotations
 
@@ -39,13 +39,13 @@ def test_a_scan_finds_its_place(
         found = found_by.align(SCAN, GUESS)
     assert found.converged, found.why
     distance_m, angle_deg = errors(found.T_map_sensor, TRUE)
-    # With its own cell alone a point's score jumps at the borders, and the best pose is less exact.
+    # With search `direct1` a point's score jumps at cell borders, and the best pose is less exact.
     assert distance_m < (0.08 if search == "direct1" else 0.06)
     assert angle_deg < (0.5 if search == "direct1" else 0.3)
 
 
 def test_a_coarse_level_leads_home_from_far_off() -> None:
-    """From 4 m and 14 degrees, where one level ends elsewhere; from nearby both end alike."""
+    """From 4 m and 14 degrees one level ends elsewhere; from nearby both end at the same pose."""
     far = TRUE @ pose(4, 0, 0, 0, 0, 0.25)
     alone, cascade = matcher(coarse_levels=()), matcher()
     assert errors(alone.align(SCAN, far).T_map_sensor, TRUE)[0] > 0.5
@@ -110,7 +110,7 @@ def test_every_kind_of_cpu_finds_the_same_place(simd: str, monkeypatch: pytest.M
         (np.full((50, 3), np.nan), GUESS, "no finite point"),
         (np.full((50, 3), 3e38), GUESS, "no finite point"),
         (SCAN[:5], GUESS, "too few points"),
-        (np.repeat(SCAN[:1], 1000, axis=0), GUESS, "does not say where it fits"),
+        (np.repeat(SCAN[:1], 1000, axis=0), GUESS, "does not constrain the pose"),
         (SCAN, GUESS * np.nan, "not finite"),
         (SCAN, np.zeros((4, 4)), "no rotation"),
         (SCAN, pose(1e300, 0, 0, 0, 0, 0), "more than 1e+09 m"),

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""PointCloud2 in the layouts that drivers make, and in wrong ones."""
+"""PointCloud2 in the layouts of drivers, and in invalid ones."""
 
 from __future__ import annotations
 
@@ -10,7 +10,12 @@ import pytest
 from builtin_interfaces.msg import Time
 from sensor_msgs.msg import PointCloud2, PointField
 
-from rmw_manycore_py.ndt.messages.point_cloud import CloudError, decode, encode
+from rmw_manycore_py.ndt.messages.point_cloud import (
+    CloudError,
+    decode,
+    decode_with,
+    encode,
+)
 
 pytestmark = pytest.mark.unit
 
@@ -27,7 +32,7 @@ DATATYPES = {"i2": 3, "u2": 4, "i4": 5, "f4": 7, "f8": 8}
 
 
 def cloud_of(records: np.ndarray, height: int = 1, padding: int = 0) -> PointCloud2:
-    """Return a message of a structured array, with padding bytes at the end of each row."""
+    """Return a message of a structured array, with padding at the end of each row."""
     fields = []
     for name, (dtype, offset) in records.dtype.fields.items():
         code = DATATYPES[dtype.newbyteorder("<").str[1:]]
@@ -72,6 +77,23 @@ def test_nan_and_infinite_points_are_left_out():
     np.testing.assert_array_equal(decode(cloud_of(records, 3)), kept)
 
 
+@pytest.mark.parametrize(("height", "padding"), [(1, 0), (200, 5)])
+def test_of_a_large_cloud_as_many_points_with_a_return_are_chosen(height, padding):
+    """Evenly spread over those that have one, with their own values of another field."""
+    records = np.zeros(20_000, VELODYNE)
+    records["x"] = records["time"] = np.arange(20_000)
+    records["x"][::2] = np.nan
+    records["y"][101] = np.inf
+    message = cloud_of(records, height, padding)
+    points, times = decode_with(message, "time", most=1000)
+    np.testing.assert_array_equal(points[:, 0], times)
+    assert len(points) in (999, 1000)
+    assert np.all(np.diff(times) > 0)
+    assert np.diff(times).max() < 4 * 20
+    np.testing.assert_array_equal(decode(message, most=1000), points)
+    assert len(decode(message, most=20_000)) == len(decode(message)) == 9_999
+
+
 def test_all_nan_and_empty():
     records = records_of(VELODYNE)
     records["x"] = np.nan
@@ -86,7 +108,7 @@ def test_there_and_back():
 
 
 def test_far_from_the_origin_there_and_back():
-    """Maps in UTM coordinates need doubles; near the origin all programs get what they know."""
+    """Maps in UTM coordinates need doubles; near the origin float32 is what programs expect."""
     far = POINTS.astype(np.float64) / 7.0 + (500_000.0, 5_000_000.0, 100.0)
     message = encode(far, Time(), "map")
     assert (message.point_step, message.fields[0].datatype) == (24, PointField.FLOAT64)

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The times of points, as drivers write them."""
+"""Timestamps of points in the formats of drivers."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Bags of all kinds that drives leave: storages, drivers' layouts, and ways to say the pose."""
+"""Bags of all kinds: storages, drivers' layouts, and sources of the pose."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ LAYOUTS = {
 
 
 def records_of(points: np.ndarray, layout: str = "plain", height: int = 1) -> np.ndarray:
-    """Return a cloud of so many rows, each with a hole at its end."""
+    """Return a cloud of so many rows, each with an invalid point at its end."""
     records = np.zeros((height, len(points) // height + 1), LAYOUTS[layout])
     for axis, name in enumerate("xyz"):
         records[name][:, :-1] = points[:, axis].reshape(height, -1)
@@ -104,7 +104,7 @@ def test_layouts_of_drivers(tmp_path, layout, height):
 @pytest.mark.parametrize("stamped", [True, False])
 @pytest.mark.parametrize("kind", ["odometry", "pose_stamped", "pose_with_covariance", "transform"])
 def test_poses_of_a_topic(tmp_path, kind, stamped):
-    """Messages without stamps are of the time at which they were recorded."""
+    """Messages without stamps get the time at which they were recorded."""
     with Bag(tmp_path / "bag", stamped=stamped) as bag:
         write_mounting(bag)
         if kind == "transform":
@@ -134,7 +134,7 @@ def write_transforms(bag: Bag) -> None:
 @pytest.mark.parametrize("kind", ["ros1", "mcap"])
 @pytest.mark.parametrize("mounting", ["/tf_static", "/tf"])
 def test_poses_of_transforms_alone(tmp_path, kind, mounting):
-    """As ROS 1 has it, what never moves may be on `/tf` too."""
+    """As in ROS 1, static transforms may be on `/tf`, too."""
     with Bag(tmp_path / "bag", kind) as bag:
         write_mounting(bag, mounting)
         write_transforms(bag)
@@ -152,7 +152,7 @@ def test_transforms_instead_of_a_topic(tmp_path):
 
 
 def test_a_lidar_that_no_transform_knows(tmp_path):
-    """Its poses are taken for those of the base, which is noted; /tf alone says nothing then."""
+    """Its poses are taken as those of the base, with a note; with /tf alone that is an error."""
     with Bag(tmp_path / "bag") as bag:
         write_poses(bag)
         write_scans(bag)

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Recordings of all kinds that users bring but bags: folders, poses, stamps in any unit."""
+"""Recordings other than bags: folders, poses, stamps in any unit."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def check(drive, poses=POSES) -> None:
 
 
 def test_a_folder_as_kitti_has_it(tmp_path):
-    """Scans are counted as people do, and poses of the camera taken to the LiDAR."""
+    """Scans sort in numeric order, and camera poses are transformed to the LiDAR."""
     T_camera_lidar = from_xyz_rpy((0.1, -0.3, 0.2), (1.5, 0.1, -1.4))
     folder = kitti_folder(tmp_path / "00")
     of_camera = T_camera_lidar @ POSES @ inverse(T_camera_lidar)
@@ -61,7 +61,7 @@ def test_a_folder_as_kitti_has_it(tmp_path):
 
 
 def test_scans_between_poses(tmp_path):
-    """Poses at 20 Hz that begin late: interpolated, and scans before them left out."""
+    """Poses at 20 Hz that begin late are interpolated, and earlier scans are dropped."""
     folder = kitti_folder(tmp_path / "drive")
     for i, path in enumerate(sorted(folder.rglob("*.bin"), key=lambda p: int(p.stem))):
         path.rename(path.with_name(f"{round(1e9 * T0_S) + i * 100_000_000}.bin"))
@@ -81,7 +81,7 @@ def test_scans_between_poses(tmp_path):
 
 @pytest.mark.parametrize("suffix", [".pcd", ".ply", ".npy"])
 def test_scans_of_other_kinds(tmp_path, suffix):
-    """Points that are not finite, as organised clouds have them, are left out."""
+    """Points that are not finite, as in organised clouds, are dropped."""
     for i, scan in enumerate(SCANS):
         holes = np.vstack([scan, np.full((3, 3), np.nan, np.float32)])
         if suffix == ".npy":
@@ -94,7 +94,7 @@ def test_scans_of_other_kinds(tmp_path, suffix):
 
 @pytest.mark.parametrize("kind", [np.uint64, np.uint32, np.int16, np.float64])
 def test_stamps_of_any_type_must_increase(kind):
-    """Differences of unsigned numbers are never negative."""
+    """Differences of unsigned integers must not wrap around."""
     np.testing.assert_allclose(in_seconds(np.array([1, 2, 4], kind)), [1.0, 2.0, 4.0])
     with pytest.raises(ValueError, match="stamps do not increase: 4"):
         in_seconds(np.array([1, 4, 2], kind))

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The motion between scans is found from the scans alone, or said not to be told by them."""
+"""The motion between scans is estimated from the scans alone, or reported as undetermined."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ SEED = 3
 
 
 def recorded(poses: np.ndarray) -> Recording:
-    """Return what a LiDAR sees from poses in a street."""
+    """Return the scans of a LiDAR at these poses in a street."""
     generator = np.random.default_rng(SEED)
     scans = list(scans_along(build_street(40.0, generator), poses, Lidar(), generator))
     return Recording(scans, poses, np.zeros(0))
 
 
 def turning() -> np.ndarray:
-    """Return poses of somebody who looks around by up to 50 degrees between scans."""
+    """Return poses that turn by up to 50 degrees between scans."""
     turns = np.radians([0.0, 50.0, 10.0, -40.0, 5.0, 55.0])
     poses = poses_along(np.arange(6) * 0.8)
     return np.stack(

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What a replay writes: tables, trajectories, pictures; and how it tells how far it is."""
+"""Output of a replay: tables, trajectories, plots, and progress."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def at(index: int, off_m: float = 0.0) -> np.ndarray:
 
 @pytest.fixture
 def tally() -> Tally:
-    """Return five scans, of which one got no pose and one a late one."""
+    """Return five scans, one of which got no pose and one a late pose."""
     tally = Tally(deadline_ms=100.0)
     for index, stamp_s in enumerate(STAMPS_S):
         row = Played(index, float(stamp_s), at(index), at(index, 0.5), 0.0)

@@ -74,7 +74,7 @@ def test_a_drive_keeps_its_speed():
 
 
 def test_the_command(tmp_path):
-    """Scans lie on the map, which became no copy of them; tiles have all of the map's points."""
+    """Scans lie on the map without being copies of it; tiles contain all of the map's points."""
     street = tmp_path / "street"
     runner = CliRunner()
     result = runner.invoke(cli, ["ndt", "simulate", str(street), "--length", "6"])
@@ -160,7 +160,7 @@ def test_what_is_known_of_the_sensor_and_the_road_can_be_chosen(tmp_path):
 
 
 def test_a_scan_taken_while_driving_is_deskewed_by_its_times(tmp_path):
-    """Deskewed it fits the map of a standing LiDAR at the pose of its stamp, else it does not."""
+    """Only the deskewed scan fits the map of a standing LiDAR at the pose of its stamp."""
     finer = ("--azimuths", "240", "--beams", "16", "--distortion")
     drive = simulated(tmp_path / "moving", *finer)
     times_s = drive.point_times_s(1)

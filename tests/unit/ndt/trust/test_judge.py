@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What is believed: score, drop and motion, each by itself; and what wrong poses may teach."""
+"""Which poses are believed: score, drop and motion separately, and learning from wrong poses."""
 
 from __future__ import annotations
 
@@ -85,6 +85,15 @@ def test_a_first_pose_must_fit_well_unless_nothing_can_search():
         assert judge.judge(0.0, aligned(at(0.0), 2.9, 0.9), at(0.0)).is_believed == is_believed
 
 
+def test_only_a_search_may_replace_a_refused_first_pose():
+    for searches in (True, False):
+        judge = PoseJudge(searches=searches)
+        first = judge.judge(0.0, aligned(at(0.0), 0.1), at(0.0))
+        assert judge.may_look_again(first) != searches
+    judge, stamp_s, x = driven()
+    assert judge.may_look_again(judge.judge(stamp_s, aligned(at(x), 0.1), at(x)))
+
+
 def test_refused_poses_teach_nothing():
     judge, stamp_s, x = driven()
     before = judge.level.level
@@ -105,7 +114,7 @@ def test_a_street_that_repeats_is_told_by_the_motion():
     judge, stamp_s, x = driven()
     period = at(x + 12.0)
     assert "implausible" in judge.judge(stamp_s, aligned(period), period).why
-    assert judge.judge(stamp_s, aligned(at(x)), period).is_believed  # found back from a wrong guess
+    assert judge.judge(stamp_s, aligned(at(x)), period).is_believed  # recovered from a wrong guess
 
 
 def test_guesses_carry_over_a_gap_unless_they_jump():

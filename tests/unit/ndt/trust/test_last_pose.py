@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The pose that a killed process leaves to the next."""
+"""The pose that a killed process leaves for its successor."""
 
 from __future__ import annotations
 

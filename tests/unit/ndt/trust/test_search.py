@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Searching a pose in a process of its own, and the steps of a recovery."""
+"""Search of a pose in a separate process, and the steps of a recovery."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ from rmw_manycore_py.ndt.trust.recovery import Recovery, Step
 pytestmark = pytest.mark.unit
 
 OPTIONS = MatcherOptions()
-TRUTH = pose(8.0, 1.0, 1.8, 0.0, 0.0, 0.3)  # near one end of the street, which tells the place
+TRUTH = pose(8.0, 1.0, 1.8, 0.0, 0.0, 0.3)  # near an end of the street: a unique place
 
 
 @pytest.fixture(scope="module")
 def world() -> tuple[np.ndarray, VoxelMap]:
-    """Return a street with a tower that none of its periods has, and its map."""
+    """Return a street with a tower that breaks its periodicity, and its map."""
     rng = np.random.default_rng(2)
     y, z = rng.uniform(4.0, 7.0, 4000), rng.uniform(0.0, 9.0, 4000)
     tower = np.stack([rng.normal(12.0, 0.02, 4000), y, z], axis=1)
@@ -49,7 +49,7 @@ def judge_of(voxel_map: VoxelMap) -> PoseJudge:
 
 
 def searched(recovery: Recovery, judge: PoseJudge, scan: np.ndarray, at: np.ndarray) -> bool:
-    """Let scans be refused until a search is over; tell whether it found a pose."""
+    """Refuse scans until a search is over; return whether it found a pose."""
     for _ in range(2):
         recovery.refused(1.0, scan, at, at)
     assert recovery.step in (Step.AROUND, Step.GLOBALLY)
@@ -100,7 +100,7 @@ def test_where_the_street_repeats_no_place_stands_out(recovery):
     away[0, 3] += 8.0  # half a period
     searched(recovery, judge, scan, away)
     assert not searched(recovery, judge, scan, away)
-    assert "as well" in recovery.note
+    assert "equally well" in recovery.note
     assert judge.motion.last is None
 
 
@@ -109,7 +109,7 @@ def test_a_search_that_is_killed_is_told_and_done_again(world, recovery):
     scan, judge = scan_at(points, TRUTH), judge_of(voxel_map)
     assert searched(recovery, judge, scan, TRUTH)
     helper = recovery._search._helper
-    os.kill(helper.pid, signal.SIGSTOP)  # so that it is killed while it has the call
+    os.kill(helper.pid, signal.SIGSTOP)  # so that it is killed during the call
     for _ in range(2):
         recovery.refused(2.0, scan, TRUTH, TRUTH)
     wait_until(helper._turn.locked, "the helper is called")

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The time of a player, by a clock that the test moves."""
+"""The position of a player, on a clock that the test sets."""
 
 from __future__ import annotations
 
@@ -27,8 +27,8 @@ class Watch:
 class Waiting:
     """A thread that waits for a position.
 
-    It looks at the watch under the position's lock, and gives that back when it sleeps: what
-    changes the position after the look finds it asleep.
+    The thread reads the clock under the position's lock and releases the lock when it sleeps: a
+    change of the position after that read finds it asleep.
     """
 
     def __init__(self, position: Position, watch: Watch, at_ns: int) -> None:
@@ -57,7 +57,7 @@ def test_it_runs_at_its_rate(watch: Watch) -> None:
     position.jump(100 * S)
     watch.now_ns += 3 * S
     assert position.at_ns() == 106 * S
-    assert position.wait_until(104 * S) == 1 * S  # late by a second of real time
+    assert position.wait_until(104 * S) == 1 * S  # one second late in real time
 
 
 def test_it_stands_while_paused(watch: Watch) -> None:

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What a recorder asks of publishers."""
+"""QoS that a recorder requests from publishers."""
 
 from __future__ import annotations
 

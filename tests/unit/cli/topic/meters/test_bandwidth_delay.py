@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Bandwidth and delay, as `manycore topic` computes and writes them."""
+"""Bandwidth and delay, as `manycore topic` computes and prints them."""
 
 from __future__ import annotations
 

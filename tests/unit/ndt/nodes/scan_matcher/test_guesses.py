@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Guesses: which pose a scan is matched from, and which it is not matched from."""
+"""Guesses: the pose a scan is matched from, and the reasons to refuse one."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def on_a_circle(stamp_s: float) -> np.ndarray:
 
 
 def driven(*stamps_s: float, newest_holds: bool = False) -> Guesses:
-    """Return the guesses of a drive at these times, with scans every 0.1 s before."""
+    """Return the guesses of a drive at these times, after scans every 0.1 s."""
     guesses = Guesses(1.0, 10.0, newest_holds)
     for scan in range(10):
         guesses.note_scan(0.1 * scan)
@@ -95,7 +95,7 @@ def test_a_guess_between_two_is_interpolated():
 
 @pytest.mark.parametrize("age_s", [0.001, 0.05, 0.1, 0.14])
 def test_an_older_guess_is_moved_on(age_s):
-    """Also where two guesses of one pose are sent for a scan, which alone tell no motion."""
+    """Also if two guesses of the same pose are sent for a scan: alone they contain no motion."""
     guesses = driven(*(0.1 * k for k in range(11)))
     guesses.push(1.001, on_a_circle(1.0))
     scan_s = 1.001 + age_s
@@ -120,7 +120,7 @@ def test_the_period_of_the_scans_bounds_the_age():
 
 def test_a_first_guess_holds_only_for_a_moment():
     assert driven(1.0).at(1.015).age_s == pytest.approx(0.015)
-    with pytest.raises(NoPoseError, match="no pose before it tells the motion"):
+    with pytest.raises(NoPoseError, match="no pose before it determines the motion"):
         driven(1.0).at(1.05)
 
 

@@ -1,7 +1,7 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Which scan has its turn, and what goes on while it is matched.
+"""The order in which scans are matched, and what continues meanwhile.
 
-The threads are real; that no interleaving of them loses a scan is not proven.
+The threads are real; this does not prove that no interleaving of them loses a scan.
 """
 
 from __future__ import annotations
@@ -16,12 +16,12 @@ from rmw_manycore_py.ndt.nodes.scan_matcher.scan_inbox import MAX_WAITING, ScanI
 
 pytestmark = pytest.mark.unit
 
-PATIENCE_S = 60.0
+TIMEOUT_S = 60.0
 LONG_S = 1e9
 
 
 class Known:
-    """The stamps that a guess is known for."""
+    """The stamps for which a guess is known."""
 
     def __init__(self, *stamps_s: float) -> None:
         self.stamps_s = set(stamps_s)
@@ -35,7 +35,7 @@ def skipped_of(inbox: ScanInbox) -> list[str]:
 
 
 def test_a_scan_waits_for_its_guess_but_not_for_ever():
-    inbox = ScanInbox(Known(), patience_s=0.05)
+    inbox = ScanInbox(Known(), timeout_s=0.05)
     inbox.put("a", 1.0, now_s=10.0)
     assert inbox.take(10.04) is None
     assert inbox.due_s() == pytest.approx(10.05)
@@ -44,7 +44,7 @@ def test_a_scan_waits_for_its_guess_but_not_for_ever():
 
 
 def test_a_scan_that_waits_does_not_hold_up_the_next():
-    inbox = ScanInbox(Known(2.0), patience_s=0.05)
+    inbox = ScanInbox(Known(2.0), timeout_s=0.05)
     inbox.put("a", 1.0, now_s=10.0)
     inbox.put("b", 2.0, now_s=10.01)
     assert inbox.take(10.01).message == "b"
@@ -53,7 +53,7 @@ def test_a_scan_that_waits_does_not_hold_up_the_next():
 
 
 def test_the_newest_of_several_is_taken_and_the_others_are_counted():
-    inbox = ScanInbox(Known(1.0, 2.0, 3.0), patience_s=0.05)
+    inbox = ScanInbox(Known(1.0, 2.0, 3.0), timeout_s=0.05)
     for stamp_s, name in enumerate("abc", start=1):
         inbox.put(name, float(stamp_s), now_s=10.0)
     assert inbox.take(10.0).message == "c"
@@ -63,7 +63,7 @@ def test_the_newest_of_several_is_taken_and_the_others_are_counted():
 
 def test_a_scan_with_its_guess_goes_before_a_newer_one_without():
     known = Known(1.0)
-    inbox = ScanInbox(known, patience_s=0.05)
+    inbox = ScanInbox(known, timeout_s=0.05)
     inbox.put("a", 1.0, now_s=10.0)
     inbox.put("b", 2.0, now_s=10.0)
     assert inbox.take(10.1).message == "a"
@@ -72,14 +72,14 @@ def test_a_scan_with_its_guess_goes_before_a_newer_one_without():
 
 
 def test_no_more_than_a_few_scans_wait():
-    inbox = ScanInbox(Known(), patience_s=LONG_S)
+    inbox = ScanInbox(Known(), timeout_s=LONG_S)
     for index in range(3 * MAX_WAITING):
         inbox.put(index, float(index), now_s=0.0)
     assert skipped_of(inbox) == list(range(2 * MAX_WAITING))
 
 
 class Node:
-    """What a thread calls; matching waits until the test lets it go on."""
+    """The matcher as the thread calls it; matching blocks until the test lets it continue."""
 
     def __init__(self) -> None:
         self.known = Known()
@@ -99,7 +99,7 @@ class Node:
 
     def match(self, name: str) -> None:
         self.is_matching.release()
-        assert self.may_match.acquire(timeout=PATIENCE_S)
+        assert self.may_match.acquire(timeout=TIMEOUT_S)
         if name == "broken":
             raise ValueError(name)
         self.matched.append(name)
@@ -109,7 +109,7 @@ class Node:
         done = threading.Event()
         self.thread.post(job)
         self.thread.post(done.set)
-        assert done.wait(PATIENCE_S)
+        assert done.wait(TIMEOUT_S)
 
     def put(self, name: str, stamp_s: float) -> None:
         self.known.stamps_s.add(stamp_s)
@@ -127,15 +127,15 @@ def node() -> Iterator[Node]:
 
 
 def test_guesses_get_through_while_a_scan_is_matched(node):
-    """The scans that came meanwhile are skipped, but for the newest."""
+    """Of the scans that arrived meanwhile, all but the newest are skipped."""
     node.put("a", 1.0)
-    assert node.is_matching.acquire(timeout=PATIENCE_S)
+    assert node.is_matching.acquire(timeout=TIMEOUT_S)
     for stamp_s, name in enumerate("bcd", start=2):
         node.thread.put_scan(name, float(stamp_s))
         node.known.stamps_s.add(float(stamp_s))
         node.thread.wake()
     node.may_match.release()
-    assert node.is_matching.acquire(timeout=PATIENCE_S)
+    assert node.is_matching.acquire(timeout=TIMEOUT_S)
     node.may_match.release()
     node.run(lambda: None)
     assert node.matched == ["a", "d"]
@@ -148,7 +148,7 @@ def test_a_guess_wakes_the_scan_that_waits_for_it(node):
     assert node.matched == []
     node.known.stamps_s.add(1.0)
     node.thread.wake()
-    assert node.is_matching.acquire(timeout=PATIENCE_S)
+    assert node.is_matching.acquire(timeout=TIMEOUT_S)
 
 
 def test_jobs_run_between_scans_on_the_thread(node):
@@ -158,26 +158,26 @@ def test_jobs_run_between_scans_on_the_thread(node):
 
 
 def test_steps_and_scans_take_turns(node):
-    """A scan that comes while a step is done is matched before the next one, but only one is."""
+    """A scan that arrives during a step is matched before the next one, but only one is."""
     order, in_step, may_end = [], threading.Event(), threading.Event()
 
     def steps() -> Iterator[bool]:
         order.append("step")
         in_step.set()
-        assert may_end.wait(PATIENCE_S)
+        assert may_end.wait(TIMEOUT_S)
         yield True
         order.append(f"step after {len(node.matched)} scans")
         done.set()
 
     done = threading.Event()
     node.thread.post_steps(steps())
-    assert in_step.wait(PATIENCE_S)
+    assert in_step.wait(TIMEOUT_S)
     node.put("a", 1.0)
     may_end.set()
-    assert node.is_matching.acquire(timeout=PATIENCE_S)
+    assert node.is_matching.acquire(timeout=TIMEOUT_S)
     node.put("b", 2.0)
     node.may_match.release()
-    assert done.wait(PATIENCE_S)
+    assert done.wait(TIMEOUT_S)
     assert order == ["step", "step after 1 scans"]
 
 
@@ -192,7 +192,7 @@ def test_steps_that_wait_sleep_until_they_are_woken(node):
 
     node.thread.post_steps(steps())
     for number in range(3):
-        assert waits.acquire(timeout=PATIENCE_S)
+        assert waits.acquire(timeout=TIMEOUT_S)
         node.run(lambda: None)
         node.run(lambda: None)
         assert taken == list(range(number + 1))
@@ -204,7 +204,7 @@ def test_what_raises_after_the_end_of_the_context_is_no_failure(node):
     node.is_over = True
     node.put("broken", 1.0)
     node.may_match.release()
-    assert node.is_matching.acquire(timeout=PATIENCE_S)
+    assert node.is_matching.acquire(timeout=TIMEOUT_S)
     node.thread.close()
     assert not node.failed.is_set()
 
@@ -212,6 +212,6 @@ def test_what_raises_after_the_end_of_the_context_is_no_failure(node):
 def test_what_ends_the_thread_is_told_and_raised(node):
     node.put("broken", 1.0)
     node.may_match.release()
-    assert node.failed.wait(PATIENCE_S)
+    assert node.failed.wait(TIMEOUT_S)
     with pytest.raises(ValueError, match="broken"):
         node.thread.close()

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Parts of the nodes that need no other process."""
+"""Parts of the nodes that work without other processes."""
 
 from __future__ import annotations
 

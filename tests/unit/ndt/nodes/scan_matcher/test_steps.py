@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""What an alignment's steps tell, and the colours of scores."""
+"""Statistics of an alignment's steps, and the colours of scores."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def path(*x: float) -> np.ndarray:
         ((0.0, 1.0, 2.0, 3.0), 0),
         ((0.0, 1.0, 0.0, 1.0, 0.0), 3),
         ((0.0, 1.0, 0.0, -1.0, 0.0, -1.0), 2),  # twice in a row after once
-        ((0.0, 1.0, 1.0, 0.0), 0),  # a step that was taken back leads nowhere
+        ((0.0, 1.0, 1.0, 0.0), 0),  # a step that was reverted leads nowhere
     ],
 )
 def test_oscillations_are_turns_back_in_a_row(x, expected):
@@ -47,7 +47,7 @@ def test_a_turn_of_a_right_angle_is_none():
     [(12, False, True), (11, False, False), (12, True, False)],
 )
 def test_an_alignment_that_oscillates_has_ended(steps, is_degenerate, expected):
-    """As in Autoware, which counts more than ten turns back in a row."""
+    """As in Autoware, which requires more than ten reversals in a row."""
     to_and_fro = path(*(n % 2 for n in range(steps + 1)))
     refused = Alignment.refused(np.eye(4), "still moving", MatcherOptions())
     alignment = replace(refused, path=to_and_fro, is_degenerate=is_degenerate)

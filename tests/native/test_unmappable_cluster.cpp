@@ -1,19 +1,19 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 //
-// A process that can open no file cannot map a cluster that it meets for the first time. What is
-// there is in use all the same: nothing of it is freed, and nothing is forgotten. test_registry has
-// the repair of the registry.
+// A process that cannot open files cannot map a cluster that it has not used before. The cluster's
+// objects are in use all the same: nothing of it is freed, and nothing is forgotten. Repair of the
+// registry: test_registry.
 #include <doctest/doctest.h>
 
 #include "messages.hpp"
 #include "node_role.hpp"
-#include "patience.hpp"
+#include "waiting.hpp"
 
 using namespace manycore;
 
 namespace {
 
-/// Both receive threads, whose reapers help, stand still while this lives.
+/// Stops both receive threads, whose reapers would help, during its lifetime.
 struct NoReapers {
   explicit NoReapers(const TestPlatform & platform) : here(platform, 2), there(platform, 1) {}
   Standstill here;
@@ -31,7 +31,7 @@ struct Fixture {
     process = platform.join(2);
   }
 
-  /// The node destroys its endpoint, of which nothing is freed.
+  /// The node destroys its endpoint, but nothing of it is freed.
   void close() {
     const uint64_t used = inspection->used_bytes(1);
     node.tell("close");
@@ -40,8 +40,7 @@ struct Fixture {
     CHECK(process->graph().endpoints_of("/x").size() == 1);
   }
   void wait_until_closed() {
-    wait_until("a reaper closes it", [&] { return inspection->closing_endpoints() == 0; });
-    inspection->wait_for_reaper();
+    inspection->wait_until_swept();
     CHECK(inspection->live_endpoints() == 1);
     CHECK(inspection->used_bytes(1) == used_before);
   }
@@ -83,7 +82,7 @@ TEST_CASE("a publisher is closed by a process that reaches its subscription's cl
   CHECK_FALSE(take(*subscription));
 }
 
-TEST_CASE("an endpoint that no other process closes goes with its own") {
+TEST_CASE("an endpoint that no other process closes is closed with its own process") {
   Fixture f("subscription /x 10");
   const auto publisher = f.process->create_publisher(on_topic("/x", keep_last(10)));
   {
@@ -91,7 +90,7 @@ TEST_CASE("an endpoint that no other process closes goes with its own") {
     f.close();
     CHECK(f.inspection->readers_of(*publisher) == 1);
     SUBCASE("which leaves with descriptors") {
-      f.node.say("leave");  // frees them before
+      f.node.say("leave");  // frees the descriptors before
       CHECK(f.node.wait() == 0);
       CHECK(f.inspection->readers_of(*publisher) == 0);
     }
@@ -114,7 +113,8 @@ TEST_CASE("an endpoint without a match is freed by a process that reaches all cl
   f.wait_until_closed();
 }
 
-TEST_CASE("a publisher in a cluster out of reach is heard once the cluster can be mapped") {
+TEST_CASE(
+  "messages of a publisher in an unmappable cluster arrive once the cluster can be mapped") {
   Fixture f("subscription /x 10");
   const auto publisher = f.process->create_publisher(on_topic("/x", keep_last(10)));
   publish(*publisher, 1);
@@ -125,11 +125,12 @@ TEST_CASE("a publisher in a cluster out of reach is heard once the cluster can b
 }
 
 TEST_CASE(
-  "an endpoint that would match one in a cluster out of reach is refused, and no slot lost") {
+  "an endpoint that would match one in a cluster that cannot be mapped is refused, and no slot "
+  "lost") {
   Fixture f("subscription /y 10");
   const auto publisher = f.process->create_publisher(on_topic("/x", keep_last(10)));
   const std::string answer = f.node.ask("subscription /x 10");
-  CHECK_MESSAGE(answer.find("error: cluster 2 is out of reach") == 0, answer);
+  CHECK_MESSAGE(answer.find("error: this process cannot map cluster 2") == 0, answer);
   CHECK_MESSAGE(answer.find("ulimit -n") != std::string::npos, answer);
   CHECK(f.node.wait() > 0);
   f.wait_until_closed();

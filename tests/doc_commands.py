@@ -1,0 +1,56 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Commands in the documentation.
+
+A block marked `sh` is run as is: all blocks of a page, in order, are one script. A block marked
+`console` shows commands after a `$`, with their output, or commands for another machine.
+"""
+
+from __future__ import annotations
+
+import re
+import shlex
+from collections.abc import Iterator
+from itertools import takewhile
+from pathlib import Path
+
+ROOT = Path(__file__).parents[1]
+BLOCK = re.compile(r"^```(sh|console)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+HERE_DOCUMENT = re.compile(r"<<'?(\w+)'?.*?\n(.*?\n)??\1\n", re.DOTALL)
+SUBSTITUTION = re.compile(r"\$\(([^)]*)\)")
+ENDS_OF_COMMANDS = {"&", "&&", "||", "|", ";", ">", ">>"}
+
+
+def script(page: Path) -> str:
+    """Return the shell commands of a page, in order."""
+    return "".join(text for kind, text in BLOCK.findall(page.read_text()) if kind == "sh")
+
+
+def typed_lines(page: Path) -> Iterator[str]:
+    """Yield the lines typed into a shell; continued lines are joined."""
+    for kind, text in BLOCK.findall(page.read_text()):
+        joined = HERE_DOCUMENT.sub("\n", text).replace("\\\n", " ")
+        for line in joined.splitlines():
+            if kind == "sh":
+                yield line
+            elif line.startswith("$ "):
+                yield line[2:]
+
+
+def manycore_calls(page: Path) -> Iterator[list[str]]:
+    """Yield the arguments of each call of `manycore`."""
+    for line in typed_lines(page):
+        for part in (*SUBSTITUTION.findall(line), SUBSTITUTION.sub("VALUE", line)):
+            words = iter(_words(part))
+            for word in words:
+                if word == "manycore":
+                    yield _until_end(words)
+
+
+def _words(line: str) -> list[str]:
+    lexer = shlex.shlex(line, posix=True, punctuation_chars=";&|>")
+    lexer.whitespace_split = True
+    return list(lexer)
+
+
+def _until_end(words: Iterator[str]) -> list[str]:
+    return list(takewhile(lambda word: word not in ENDS_OF_COMMANDS, words))

@@ -1,0 +1,79 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Tutorials and how-to pages, each followed in an empty directory as a reader would type it."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from doc_commands import ROOT, script
+from support import IS_MANYCORE, TIMEOUT_S, environment, manycore_command
+
+pytestmark = [
+    pytest.mark.integration,
+    pytest.mark.skipif(not IS_MANYCORE, reason="they are about rmw_manycore"),
+]
+
+DOCS = ROOT / "docs"
+STRICT = "set -euo pipefail\n"
+LONG_S = 10 * TIMEOUT_S
+
+# What the output of each page must contain, in this order.
+SHOWN = {
+    "tutorials/first_mapfile.md": (
+        r"wrong\.yaml:4: nodes\.adder\.core: expected 0 to 15, the cores of cluster 2, found 16",
+        r"^exit status 2$",
+        r"adder .* makes \d+",
+        r"^data: \d+$",
+        r"/adder +alive",
+        r"/sum",
+    ),
+    "tutorials/laptop_to_chip.md": (
+        r"/sink +alive",
+        r"crowded\.yaml.*bytes of topic DSMs in cluster 1",
+        r"^exit status 2$",
+        r"/image_raw \(/filter\) > /image_inverted",
+        r"topic_name: /image_raw",
+    ),
+    "tutorials/offload_ndt.md": (r"ndt_scan_matcher", r"answered", r"/points_raw"),
+    "tutorials/own_stack.md": (r"recorder", r"average rate", r"Double value is", r"frame_id"),
+    "how-to/domain_bridge.md": (r"^data: 'Hello World", r"-> +/chatter"),
+    "how-to/ros2_launch.md": (r"listener \| .*I heard",),
+    "how-to/troubleshooting.md": (),
+    "how-to/where_does_the_time_go.md": (r"communication /camera/image_inverted",),
+}
+LONG = {
+    "how-to/where_does_the_time_go.md",
+    "tutorials/offload_ndt.md",
+    "tutorials/own_stack.md",
+}
+PAGES = [
+    pytest.param(page, marks=pytest.mark.stress if page in LONG else ()) for page in sorted(SHOWN)
+]
+
+
+@pytest.fixture
+def shell(platform: str) -> Iterator[dict[str, str]]:
+    """Yield the environment of a shell with .venv active; stop what is left running in it."""
+    scripts = Path(sys.executable).parent
+    env = environment(platform, PATH=f"{scripts}:{os.environ['PATH']}")
+    yield env
+    subprocess.run(manycore_command("stop", "--now"), env=env, capture_output=True, check=False)
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_a_page_does_what_it_says(page, start, shell, tmp_path: Path) -> None:
+    command = ["bash", "-c", STRICT + script(DOCS / page)]
+    reader = start(command, directory=tmp_path, PATH=shell["PATH"])
+    assert reader.wait(LONG_S) == 0, reader
+    for pattern in SHOWN[page]:
+        reader.wait_for(pattern)
+
+
+def test_every_page_with_a_script_is_here() -> None:
+    pages = [*DOCS.glob("tutorials/*.md"), *DOCS.glob("how-to/*.md")]
+    assert {str(page.relative_to(DOCS)) for page in pages if script(page)} == set(SHOWN)

@@ -1,0 +1,76 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Mapfiles that say how topics are transferred, with unmodified nodes."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from support import IS_MANYCORE, leftovers, manycore_command
+
+pytestmark = [
+    pytest.mark.integration,
+    pytest.mark.skipif(not IS_MANYCORE, reason="manycore run is about rmw_manycore"),
+]
+
+TRANSFERS = {
+    "transfer: message, priority: 5": "message, priority 5",
+    "transfer: message, synchronous: true": "message, priority 0, synchronous",
+    "transfer: session": "session",
+    "transfer: async": "async",
+}
+
+
+def write_mapfile(directory: Path, transfer: str) -> Path:
+    path = directory / "map.yaml"
+    path.write_text(
+        "platform: coolidge\n"
+        f"topics: {{/chatter: {{topic_dsm_size: 64KiB, {transfer}}}}}\n"
+        "nodes:\n"
+        "  talker: {cluster: 1, core: 1, module: rmw_manycore_py.examples.talker}\n"
+        "  listener: {cluster: 2, core: 1, module: rmw_manycore_py.examples.listener}\n"
+    )
+    return path
+
+
+@pytest.mark.parametrize("transfer", TRANSFERS)
+def test_unmodified_nodes_talk(start, tmp_path, platform, transfer: str) -> None:
+    trace = tmp_path / "trace.json"
+    run = start(manycore_command("run", write_mapfile(tmp_path, transfer), "--trace", trace))
+    for _ in range(3):
+        run.wait_for(r"^listener \| .*I heard: 'Hello World")
+    status = start(manycore_command("status", "--platform", platform))
+    assert status.wait() == 0
+    assert f"/chatter: transfer {TRANSFERS[transfer]}" in status.lines
+    assert run.stop() == 0
+    assert leftovers(platform) == []
+    handed = traced(trace, "hand over /chatter")
+    assert len(handed) >= 3
+    assert {cluster for _, cluster in handed} == {2}
+    if TRANSFERS[transfer] != "async":  # has no mover: the publisher's copy is the arrival
+        arrived = traced(trace, "arrive /chatter")
+        assert len(arrived) >= 3
+        assert arrived <= handed
+
+
+def traced(trace: Path, name: str) -> set[tuple[int, int]]:
+    """Return the message numbers and receiving clusters of the events of a name."""
+    events = json.loads(trace.read_bytes())["traceEvents"]
+    found = [event["args"] for event in events if event["name"] == name]
+    return {(arguments["number"], arguments["cluster"]) for arguments in found}
+
+
+def test_the_mapfile_is_shown_and_written_out_with_its_transfers(start, tmp_path, platform) -> None:
+    mapfile = write_mapfile(tmp_path, "transfer: message, priority: 7")
+    show = start(manycore_command("map", "show", mapfile, "--json"))
+    assert show.wait() == 0
+    topic = json.loads(show.output)["topics"][0]
+    assert (topic["transfer"], topic["priority"], topic["synchronous"]) == ("message", 7, False)
+    table = start(manycore_command("map", "show", mapfile))
+    assert table.wait() == 0
+    assert "message, priority 7" in table.output
+    create = start(manycore_command("create", mapfile, "-o", tmp_path / "out"))
+    assert create.wait() == 0
+    written = (tmp_path / "out" / "topic_table.yaml").read_text()
+    assert "transfer: message, priority 7" in written

@@ -1,0 +1,63 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Every call of `manycore` in the documentation uses existing verbs, options and arguments."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import click
+import pytest
+from doc_commands import ROOT, manycore_calls
+
+from rmw_manycore_py.cli.main import cli
+
+pytestmark = pytest.mark.unit
+
+TARGET = re.compile(r"^([a-z-]+):", re.MULTILINE)
+CALL_OF_MAKE = re.compile(r"(?:^|`)make (?!-)([\w./-]+)", re.MULTILINE)
+PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted(ROOT.glob("docs/**/*.md"))]
+
+
+def parse(arguments: list[str]) -> None:
+    """Parse a call as the command line does, without opening the files it names."""
+    context, command, words = click.Context(cli, info_name="manycore"), cli, arguments
+    while isinstance(command, click.Group) and words and not words[0].startswith("-"):
+        name, found, words = command.resolve_command(context, words)
+        assert found is not None
+        context, command = click.Context(found, context, name, **found.context_settings), found
+    values, left, _ = command.make_parser(context).parse_args(list(words))
+    assert left == [], f"what is left over: {left}"
+    for parameter in command.params:
+        value = values.get(parameter.name or "")
+        if isinstance(parameter, click.Argument) and parameter.required:
+            given = isinstance(value, (str, tuple)) and bool(value)
+            assert given, f"{parameter.make_metavar(context)} is missing"
+        if isinstance(parameter.type, click.Choice) and isinstance(value, str):
+            parameter.type.convert(value, parameter, context)
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
+def test_calls_in_the_documentation_parse(page: Path) -> None:
+    wrong = []
+    for arguments in manycore_calls(page):
+        try:
+            parse(arguments)
+        except (click.ClickException, AssertionError) as error:
+            wrong.append((arguments, getattr(error, "message", str(error))))
+    assert wrong == []
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
+def test_targets_of_make_exist(page: Path) -> None:
+    targets = TARGET.findall((ROOT / "Makefile").read_text())
+    assert set(CALL_OF_MAKE.findall(page.read_text())) <= {*targets, ".venv/tests"}
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [["rum", "map.yaml"], ["run"], ["run", "--fast", "map.yaml"], ["stop", "--now", "--wait", "3"]],
+)
+def test_a_wrong_call_does_not(arguments: list[str]) -> None:
+    with pytest.raises((click.ClickException, AssertionError)):
+        parse(arguments)
