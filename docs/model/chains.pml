@@ -1,19 +1,21 @@
 /* Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
  *
  * Question: does a new endpoint that walks along its topic's chain without the registry lock find
- * each older one that stays, or notice that it was led astray?
+ * each older endpoint that stays, even if the endpoint it has reached leaves?
  *
  * Follows Registry::for_each_older, next_of, link_endpoint, unlink_endpoint, Table::take and the
- * chains of Registry::repair. Its own endpoint and the oldest one stay; those between leave under
- * the lock, and their slots come back in front of its own chain, or in another one. The owner of
- * the lock is killed at any step, and the next one repairs. There is one at a time that stores, and
- * the walk only loads, so what x86 does with stores cannot be seen: these are plain variables.
+ * chains of Registry::repair. The new endpoint and the oldest one stay; those in between leave
+ * under the lock, and their slots are reused in front of the same chain or in another one. The
+ * owner of the lock is killed at any step, and the next owner repairs. Only one process stores at a
+ * time, and the walk only loads, so x86's store buffers have no effect: shared words are plain
+ * variables.
  *
- * BUG 1: a step counts though the endpoint where it stood has left
- * BUG 2: the link not read again after the incarnation of the next one
- * BUG 3: incarnation raised when the endpoint is in its chain
- * BUG 4: incarnation not raised at the next use
+ * BUG 1: a step counts although the endpoint where the walk stood has left
+ * BUG 2: the link is not read again after the incarnation of the next endpoint
+ * BUG 3: incarnation incremented after the endpoint is in its chain
+ * BUG 4: incarnation not incremented when the slot is reused
  * BUG 5: a repair links by slot, not by age
+ * BUG 6: where an endpoint has left, the walk continues with the new incarnation of its slot
  */
 #define OWN 0
 #define OLDEST 3
@@ -25,7 +27,7 @@
 bool live[SLOTS];
 byte incarnation[SLOTS];
 byte next[SLOTS];
-byte chain[SLOTS];        /* which its topic belongs to */
+byte chain[SLOTS];        /* bucket of the endpoint's topic */
 byte order[SLOTS];
 byte first[2];            /* the buckets */
 byte last_order;
@@ -38,7 +40,7 @@ inline link(i) {
   first[chain[i]] = i
 }
 
-/* What leads to slot i, and past it. */
+/* Unlinks slot i. */
 inline unlink(i) {
   if
   :: first[chain[i]] == i -> first[chain[i]] = next[i]
@@ -103,7 +105,7 @@ proctype Changer() {
   } unless { killed }
 }
 
-/* The next owner of the lock: all links anew, from the oldest endpoint on. */
+/* The next owner of the lock rebuilds all links, from the oldest endpoint on. */
 proctype Repairer() {
   byte i, o;
   killed -> first[0] = NOTHING;
@@ -132,50 +134,53 @@ proctype Killer() {
 }
 
 inline read_next() {
-  read = next[slot];
+  read = next[slot[at]];
 #if BUG != 1
   if
-  :: live[slot] -> is_astray = (incarnation[slot] != mine)
+  :: live[slot[at]] -> is_astray = (incarnation[slot[at]] != mine[at])
   :: else -> is_astray = true
   fi
 #endif
 }
 
+/* To the last endpoint of the path that has not left; its own never leaves. */
 proctype Walker() {
-  byte slot, mine, read, found, of_found;
+  byte slot[SLOTS], mine[SLOTS], at, read, found, of_found;
   bool is_astray, visited[SLOTS];
-  slot = OWN;
-  mine = incarnation[OWN];
+  slot[0] = OWN;
+  mine[0] = incarnation[OWN];
   do
   :: read_next();
      if
-     :: is_astray -> break
-     :: else
-     fi;
-     if
-     :: read == NOTHING ->
+#if BUG == 6
+     :: is_astray -> mine[at] = incarnation[slot[at]]
+#else
+     :: is_astray -> at--
+#endif
+     :: !is_astray && read == NOTHING ->
         assert(visited[OLDEST] && (visited[1] || left[1]) && (visited[2] || left[2]));
         break
-     :: else
-     fi;
-     found = read;
-     of_found = incarnation[found];
+     :: !is_astray && read != NOTHING ->
+        found = read;
+        of_found = incarnation[found];
 #if BUG != 2
-     read_next();
-     if
-     :: is_astray || read != found -> break
-     :: else
-     fi;
+        read_next();
 #endif
-     slot = found;
-     mine = of_found;
-     visited[slot] = true
+        if
+        :: is_astray || read != found
+        :: else ->
+           at++;
+           slot[at] = found;
+           mine[at] = of_found;
+           visited[found] = true
+        fi
+     fi
   od
 }
 
 init {
   atomic {
-    /* From the youngest to the oldest, by chance not in the order of their slots. */
+    /* From the youngest to the oldest endpoint, deliberately not in slot order. */
     first[0] = OWN; next[OWN] = 2; next[2] = 1; next[1] = OLDEST; next[OLDEST] = NOTHING;
     first[1] = STRANGER; next[STRANGER] = NOTHING; chain[STRANGER] = 1;
     order[OLDEST] = 1; order[STRANGER] = 2; order[1] = 3; order[2] = 4; order[OWN] = 5;

@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Check the models with spin: each must hold, and must not hold with any of its seeded bugs.
+"""Check the models with spin: each must hold, and must fail with each of its seeded bugs.
 
 Run as `python docs/model/check.py [MODEL..]`. The head of a model lists its configurations
 (` * RUN DEPTH=2`; none: one configuration without definitions) and its seeded bugs
@@ -20,16 +20,16 @@ DIRECTORY = Path(__file__).resolve().parent
 PROGRAMS = ("spin", "gcc")
 
 MEMORY_LIMIT_MIB = 3000
-DEPTH_LIMIT = 100_000  # steps of one execution; exceeding it is an error, not a shorter search
-# Entries of the hash table, as a power of two. It grows no further: a search slows down beyond it.
+DEPTH_LIMIT = 100_000  # steps of one execution; exceeding it is an error
+# log2 of the hash table size. A larger table slows the search down.
 TABLE, SMALL_TABLE = 24, 18
 
-# Without partial order reduction: it is not sound for processes that die (`unless`).
+# Partial order reduction is off: it is unsound for processes that die (`unless`).
 COMPILER_OPTIONS = ("-w", "-DSAFETY", "-DNOREDUCE", f"-DMEMLIM={MEMORY_LIMIT_MIB}")
 
 
 class IncompleteSearchError(RuntimeError):
-    """The verifier ended before it had seen every state."""
+    """The verifier ended before it had visited every state."""
 
 
 @dataclass(frozen=True)
@@ -48,21 +48,21 @@ class Case:
 
 @dataclass(frozen=True)
 class Outcome:
-    """What a search found."""
+    """Result of a search."""
 
-    violation: str  # empty when every property holds
+    violation: str  # empty if all properties hold
     states: int
     seconds: float
 
 
 def cases() -> list[Case]:
-    """List what is to be checked: every model in all its configurations, then with each bug."""
+    """List the checks: every model in all its configurations, then with each bug."""
     return [case for path in sorted(DIRECTORY.glob("*.pml")) for case in _cases_of(path)]
 
 
 def _cases_of(path: Path) -> list[Case]:
     text = path.read_text()
-    if "init {" not in text:  # only included by others
+    if "init {" not in text:  # included by other models only
         return []
     runs = [run.split() for run in re.findall(r"^ \* RUN (.+)$", text, re.M)] or [[]]
     built = [Case(path.stem, tuple(run)) for run in runs]
@@ -79,8 +79,8 @@ def check(case: Case) -> Outcome:
     defines = [f"-D{define}" for define in (f"BUG={case.bug}", *case.defines)]
     with tempfile.TemporaryDirectory() as directory:
         _run(["spin", *defines, "-a", str(DIRECTORY / f"{case.model}.pml")], directory)
-        # A seeded bug is found early: compiling well takes longer than searching, and so does
-        # clearing the table.
+        # A seeded bug is found early: compiling with optimization and clearing a large table would
+        # take longer than the search.
         optimization, table = ("-O0", SMALL_TABLE) if case.bug else ("-O1", TABLE)
         _run(["gcc", optimization, *COMPILER_OPTIONS, "-o", "pan", "pan.c"], directory)
         report = _run(["./pan", f"-m{DEPTH_LIMIT}", f"-w{table}"], directory)

@@ -1,31 +1,31 @@
 /* Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
  *
  * Question: is the memory of a subscription freed only when no publisher and no receive thread can
- * still push to it, and is it freed in the end although they are killed?
+ * still push to it, and is it always freed in the end, although they are killed?
  *
- * Follows closing.cpp (close_some), freeing.cpp (sweep_subscription), TopicDsmWriter::enter and ::leave,
- * ReceiveThread::forward. The publisher pushes through its private reader list, the receive thread
- * reads the table each time. The publisher may be killed at any step, and is then reaped; the
- * receive thread too, and is then replaced if its cluster has a process left, else not. The process
- * that closes the subscription may be killed at any step as well. Then the next owner of the
- * registry lock frees what is closed, from where the dead one stood: a publisher that was seen out is
- * not looked at again. What is not closed, the reaper closes, whose owner of the lock may be a later
- * one.
+ * Follows closing.cpp (close_some), freeing.cpp (sweep_subscription), TopicDsmWriter::enter and
+ * ::leave, ReceiveThread::forward. The publisher pushes through its private reader list; the
+ * receive thread reads the table each time. The publisher may be killed at any step and is then
+ * reaped. So may the receive thread, which is replaced if its cluster has a process left. The
+ * process that closes the subscription may be killed at any step as well. The next owner of the
+ * registry lock then frees closed endpoints, continuing where the dead process stopped: a publisher
+ * seen outside its phase is not checked again. Endpoints not closed yet are closed by the reaper,
+ * which may get the lock later.
  *
- * BUG 1: freed without grace
- * BUG 2: publisher: no fence between phase and the look at match_generation
- * BUG 3: publisher renews its list before its phase is odd
- * BUG 4: receive thread: no fence between phase and the look at the table
- * BUG 5: phases looked at before the reader is taken off the table
- * BUG 6: match_generation not raised
+ * BUG 1: freed without waiting for the phases
+ * BUG 2: publisher: no fence between phase and the load of match_generation
+ * BUG 3: publisher refreshes its list before its phase is odd
+ * BUG 4: receive thread: no fence between phase and the load of the table
+ * BUG 5: phases checked before the reader is removed from the table
+ * BUG 6: match_generation not incremented
  * BUG 7: reaper does not end the phase of a killed publisher
  * BUG 8: a new receive thread does not end the phase of its predecessor
- * BUG 9: publisher's phase even before its last push
- * BUG 10: a receive thread without a successor is waited for
+ * BUG 9: publisher's phase is even before its last push
+ * BUG 10: the sweeper waits for a dead receive thread that has no successor
  * BUG 11: a receive thread counts as dead once its lifeline ends, not once it has stopped
- * BUG 12: what a killed closer left half closed is freed as if it were closed
- * BUG 13: closed before the reader is taken off the table
- * BUG 14: a publisher noted as seen out before it was looked at
+ * BUG 12: an endpoint that a killed process closed in part is freed as if it were closed
+ * BUG 13: closed before the reader is removed from the table
+ * BUG 14: a publisher recorded as seen out before it was checked
  */
 #define GENERATION 0      /* match_generation */
 #define ACTIVE 1          /* of the reader table's entry */
@@ -39,14 +39,14 @@
 
 #include "tso.pml"
 
-bool closed;               /* the subscription's state; what is not closed is closing */
-bool swept;                /* SubscriptionHeader::swept_before is behind the one source */
+bool closed;               /* state of the subscription; while false, it is closing */
+bool swept;                /* SubscriptionHeader::swept_before is past the one source */
 bool freed;
 bool kill_publisher, kill_receiver, kill_closer;
 bool publisher_ended, receiver_ended, closer_ended;
 bool receiver_lives = true;    /* its lifeline is held */
 
-/* Phases count up in C++; here they go between 0 and 1. */
+/* Phases count up in C++; here they alternate between 0 and 1. */
 inline enter(p) {
   if
   :: BUG == 2 + 2 * p -> store_release(p, PHASE(p), 1)
@@ -58,7 +58,7 @@ inline leave(p) {
   store_release(p, PHASE(p), 0)
 }
 
-/* Every step inside a push touches the queue; one stands for all. */
+/* Each step inside a push accesses the queue; one step stands for all. */
 inline push() {
   assert(!freed)
 }
@@ -96,7 +96,7 @@ proctype Publisher() {
 #if BUG != 9
        leave(PUBLISHER)
 #endif
-    :: break              /* for ever silent */
+    :: break              /* silent forever */
     od
   } unless { kill_publisher };
   publisher_ended = true
@@ -114,13 +114,14 @@ proctype ReceiveThread() {
        :: else
        fi;
        leave(RECEIVER)
-    :: break              /* for ever silent */
+    :: break              /* silent forever */
     od
   } unless { kill_receiver };
   receiver_ended = true
 }
 
-/* Kills and buries, or not. Who died has no steps left, but its stores still become visible. */
+/* Kills and reaps, or not. A dead process executes no steps, but its stores still become visible.
+ * */
 proctype Reaper() {
   if
   :: kill_publisher = true;
@@ -186,7 +187,7 @@ inline free_when_out() {
   freed = true
 }
 
-/* With the registry lock held; it tries again whenever the lock is next taken. */
+/* Runs under the registry lock; repeated whenever the lock is taken. */
 proctype Closer() {
   {
 #if BUG == 5
@@ -203,8 +204,8 @@ proctype Closer() {
   closer_ended = true
 }
 
-/* Kills the closer, or not. The next owner of the registry lock, which may not know yet that the
- * closer is dead, and after it the reaper, which closes once more. */
+/* Kills the closer, or not. Runs the next owner of the registry lock, which may not know yet that
+ * the closer is dead, and after it the reaper, which closes once more. */
 proctype NextOwners() {
   if
   :: kill_closer = true;
@@ -220,7 +221,7 @@ proctype NextOwners() {
   fi
 }
 
-/* A phase that stays odd for ever keeps Closer from its end: spin reports an invalid end state. */
+/* A phase that stays odd forever keeps Closer from its end: spin reports an invalid end state. */
 init {
   atomic {
     memory[ACTIVE] = 1;

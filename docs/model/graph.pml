@@ -1,19 +1,19 @@
 /* Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
  *
- * Question: does a reader of the graph, without the registry lock, find each entry whole, and while
- * nothing changes all of them; and does it end, whoever holds the lock and stands still?
+ * Question: does a reader of the graph, without the registry lock, find each entry consistent, and
+ * all entries while nothing changes? Does it terminate although the owner of the lock is stopped?
  *
- * Follows Registry::Lock, Table::take, EntryCopy, and read_between_changes with two attempts. Of
- * two slots one is live outside of changes. The writer replaces one by the other, twice, and is
- * killed at any step. An entry is whole when both its fields are of the same use.
+ * Follows Registry::Lock, Table::take, EntryCopy, and read_between_changes with two attempts.
+ * Outside of changes, one of two slots is live. The writer replaces one by the other, twice, and is
+ * killed at any step. An entry is consistent if both its fields belong to the same use.
  *
  * BUG 1: copy not compared with the slot afterwards
- * BUG 2: incarnation not raised at the next use
- * BUG 3: state read before the incarnation
+ * BUG 2: incarnation not incremented when the slot is reused
+ * BUG 3: state loaded before the incarnation
  * BUG 4: changes not compared after the read
- * BUG 5: changes raised only when the lock is given back
+ * BUG 5: changes incremented only when the lock is released
  * BUG 6: slot live before it is filled in
- * BUG 7: an odd number of changes taken for none
+ * BUG 7: an odd number of changes treated as no change in progress
  */
 #define CHANGES 0
 #define STATE(i) (1 + 4 * (i))
@@ -31,7 +31,7 @@
 
 #include "tso.pml"
 
-byte changes;             /* of the writer, who alone stores them */
+byte changes;             /* stored by the writer only */
 byte uses;
 bool killed;
 

@@ -1,49 +1,61 @@
 /* Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
  *
- * Question: does SMEM that a publisher takes for a generation under the registry lock, and backs
- * with memory without it, belong to one publisher at a time, is it touched only while memory is
- * behind it, and is it given back in the end, whoever dies where and although /dev/shm may be full?
+ * Question: SMEM for a generation is reserved under the registry lock and backed with memory
+ * without it. Does it belong to one publisher at a time, is it accessed only while it is backed,
+ * and is it freed in the end, piece by piece, whichever process dies at whatever step, although
+ * /dev/shm may be full?
  *
- * Follows TopicDsmWriter (add_generation, open_generation, free_old_generations), Generation
- * (reserve, open, free), Registry::repair and freeing.cpp (sweep_publisher). The SMEM has room for
- * one generation, which two publishers want; the first may be killed at any step, and is then
- * reaped. Every store here is ordered by the lock or by a system call, but for that of `first`,
- * which x86 keeps behind the stores before it.
+ * Follows TopicDsmWriter (add_generation, open_generation, free_old_generations,
+ * open_first_generation), Generation (reserve, open, free_some), Registry::repair and freeing.cpp
+ * (free_some_generations). The SMEM has two pieces. One publisher wants both; it may be killed at
+ * any step, and is then reaped, and its reaper may be killed, too. The other publisher wants one
+ * piece. Each store is ordered by the lock or by a system call, except that of `first`, which x86
+ * does not reorder before earlier stores.
  *
  * BUG 1: memory backed with the registry lock held
- * BUG 2: a repairer of the registry goes by first
- * BUG 3: the reaper goes by first
+ * BUG 2: a repairer of the registry uses first
+ * BUG 3: the reaper uses first
  * BUG 4: offset stored after the lock is released
- * BUG 5: SMEM that cannot be backed is not given back
- * BUG 6: first stored before the memory is there
- * BUG 7: offset cleared before the memory is given back
- * BUG 8: the reaper does not wait until a killed process takes no more steps
- * BUG 9: memory given back after the SMEM, without the lock
+ * BUG 5: SMEM that cannot be backed is not freed
+ * BUG 6: first stored before the memory is backed
+ * BUG 7: the entry drops a piece before it is freed
+ * BUG 8: the reaper does not wait until a killed process executes no more steps
+ * BUG 9: the memory of a piece released after its SMEM is freed, without the lock
+ * BUG 10: a repairer uses the initial size, not what is left
+ * BUG 11: a piece freed without the lock
  */
-#define KILLED 1          /* the publisher that may be */
+#define KILLED 1          /* the publisher that may be killed */
 #define OTHER 2
 #define REAPER 3
-#define nobody 0
+#define none 0
+#define PIECES 2
 
-byte lock;                /* who holds it */
+byte lock;                /* its owner */
 bool owner_died;
-bool used;                /* the granule map: derived from the entries */
-bool offset[3];           /* of the publishers' entries, indexed by publisher */
+bool used[PIECES];        /* the granule map: derived from the entries */
+bool backed[PIECES];      /* with memory */
+bool offset[3];           /* of the publishers' entries, by publisher: it holds SMEM */
+byte begin[3], end[3];    /* the pieces that it holds: kept_pieces */
 bool first[3];
-bool backed;              /* memory is behind the SMEM */
-bool killed, dead;
+bool killed, dead, kill_reaper;
+
+#define has(p, i) (offset[p] && begin[p] <= (i) && (i) < end[p])
+#if BUG == 2
+#define is_known(p, i) (first[p] && has(p, i))
+#elif BUG == 10
+#define is_known(p, i) (offset[p] && (p == KILLED || begin[p] == (i)))
+#else
+#define is_known(p, i) has(p, i)
+#endif
 
 inline repair() {
-#if BUG == 2
-  used = first[KILLED] || first[OTHER]
-#else
-  used = offset[KILLED] || offset[OTHER]
-#endif
+  used[0] = is_known(KILLED, 0) || is_known(OTHER, 0);
+  used[1] = is_known(KILLED, 1) || is_known(OTHER, 1)
 }
 
 inline take_lock(p) {
   atomic {
-    lock == nobody -> lock = p;
+    lock == none -> lock = p;
     if
     :: owner_died -> owner_died = false; repair()
     :: else
@@ -52,16 +64,23 @@ inline take_lock(p) {
 }
 
 inline release_lock() {
-  lock = nobody
+  lock = none
 }
 
-/* Any read or write of descriptors or bytes. */
+#define is_whole(p, i) (!has(p, i) || backed[i])
+
+/* Any access to descriptors or bytes. */
 inline touch(p) {
-  assert(backed && offset[p])
+  assert(offset[p] && is_whole(p, 0) && is_whole(p, 1))
 }
 
 inline reserve(p) {
-  used = true;
+  d_step {
+    begin[p] = (p == OTHER && used[0] -> 1 : 0);
+    end[p] = (p == OTHER -> begin[p] + 1 : PIECES);
+    used[begin[p]] = true;
+    used[end[p] - 1] = true
+  };
 #if BUG == 4
   release_lock();
   offset[p] = true;
@@ -71,7 +90,7 @@ inline reserve(p) {
   release_lock();
 #endif
 #endif
-  assert(!offset[KILLED] || !offset[OTHER])
+  assert(!(has(KILLED, 0) && has(OTHER, 0)) && !(has(KILLED, 1) && has(OTHER, 1)))
 }
 
 inline open(p) {
@@ -80,9 +99,10 @@ inline open(p) {
 #endif
   atomic {
     assert(lock != p);
+    backed[begin[p]] = true;
     if
-    :: backed = true
-    :: no_space = true; backed = true                    /* a part; then /dev/shm is full */
+    :: backed[end[p] - 1] = true
+    :: no_space = true                                   /* /dev/shm is full */
     fi
   };
   if
@@ -91,47 +111,72 @@ inline open(p) {
   fi
 }
 
-inline free(p) {
+/* Frees the last piece that a publisher holds. The caller holds the lock. */
+inline free_some(whose) {
 #if BUG == 7
-  offset[p] = false;
+  if
+  :: end[whose] == begin[whose] + 1 -> offset[whose] = false; last = begin[whose]
+  :: else -> end[whose]--; last = end[whose]
+  fi;
+  used[last] = false;
+  backed[last] = false
+#else
+  last = end[whose] - 1;
+  used[last] = false;
+#if BUG == 9
+  release_lock();
 #endif
-  used = false;
-  backed = false;
-#if BUG != 7
-  offset[p] = false
+  backed[last] = false;
+  if
+  :: last == begin[whose] -> offset[whose] = false
+  :: else -> end[whose] = last
+  fi
 #endif
 }
 
+inline free_all(whose, by) {
+  do
+#if BUG == 3
+  :: (by == REAPER -> first[whose] : offset[whose]) ->
+#else
+  :: offset[whose] ->
+#endif
+#if BUG != 11
+     take_lock(by);
+#endif
+     if
+     :: offset[whose] -> free_some(whose)
+     :: else
+     fi;
+#if BUG != 11 && BUG != 9
+     release_lock()
+#endif
+  :: else -> break
+  od
+}
+
+#define has_room(p) (p == OTHER -> !used[0] || !used[1] : !used[0] && !used[1])
+
 proctype Publisher(byte p) {
   bool no_space;
+  byte last;
   {
     take_lock(p);
     if
-    :: !used ->
+    :: has_room(p) ->
        reserve(p);
        open(p);
        if
        :: no_space && BUG == 5
-       :: else ->
-          first[p] = false;
-          if
-          :: !no_space && BUG != 9 -> backed = false
-          :: else
-          fi;
-          take_lock(p);
-          free(p);
-          release_lock();
-#if BUG == 9
-          backed = false
-#endif
+       :: else -> first[p] = false; free_all(p, p)
        fi
-    :: used -> release_lock()                            /* refused (no_space) */
+    :: else -> release_lock()                            /* refused (no_space) */
     fi
   } unless { p == KILLED && killed };
   atomic {
     dead = dead || p == KILLED;
     if
-    :: p == KILLED && lock == KILLED -> lock = nobody; owner_died = true
+    :: p == KILLED && lock == KILLED -> lock = none; owner_died = true
     :: else
     fi
   }
@@ -139,36 +184,46 @@ proctype Publisher(byte p) {
 
 proctype Reader() {
   do
-  :: atomic { first[OTHER] -> assert(backed) }
+  :: atomic { first[OTHER] -> assert(is_whole(OTHER, 0) && is_whole(OTHER, 1)) }
   :: break
   od
 }
 
-/* SIGKILL at any step, or never. */
+/* SIGKILL of the publisher at any step, or never. */
 proctype Reaper() {
+  byte last;
   if
   ::
 #if BUG != 8
      killed = true;
      dead;
 #endif
-     take_lock(REAPER);
-     if
-#if BUG == 3
-     :: first[KILLED] -> free(KILLED)
-#else
-     :: offset[KILLED] -> free(KILLED)
-#endif
-     :: else
-     fi;
-     release_lock();
+     { free_all(KILLED, REAPER) } unless { kill_reaper };
+     atomic {
+       if
+       :: lock == REAPER -> lock = none; owner_died = true
+       :: else
+       fi
+     };
+     free_all(KILLED, REAPER);                           /* the next reaper, if it was killed */
      killed = true
   :: skip
   fi
 }
 
+proctype Killer() {
+  if
+  :: kill_reaper = true
+  :: skip
+  fi
+}
+
 init {
-  atomic { run Publisher(KILLED); run Publisher(OTHER); run Reader(); run Reaper() };
+  atomic { run Publisher(KILLED); run Publisher(OTHER); run Reader(); run Reaper(); run Killer() };
   _nr_pr == 1;
-  assert(!used && !backed && !offset[KILLED] && !offset[OTHER])
+  if
+  :: owner_died -> owner_died = false; repair()          /* done by the next owner */
+  :: else
+  fi;
+  assert(!used[0] && !used[1] && !backed[0] && !backed[1] && !offset[KILLED] && !offset[OTHER])
 }

@@ -1,28 +1,28 @@
 /* Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
  *
- * Question: does a subscription that joins while its publisher publishes get every message from its
- * join on once, and, when both are transient local, what the ring still holds from before?
+ * Question: does a subscription that joins while its publisher publishes get each message from its
+ * join on exactly once, and, if both are transient local, what the ring still holds from before?
  *
- * Follows join in matching.cpp, the publisher's ReaderList::refresh in take_back and commit, and
- * Subscription::Impl (next, resync, claim). The subscription is at work for other publishers
- * already: resync may be set at any time. A message may be missed for one reason: its record was
- * overwritten. The queue is long enough here (queue.pml shows what it does when it is not), and the
- * publisher waits for a pinned record instead of passing it over (record.pml).
+ * Follows join in matching.cpp, the publisher's ReaderList::refresh in reclaim and commit,
+ * RecordFinder (next, resync) and Subscription::claim. The subscription already serves other
+ * publishers, so resync may be set at any time. A message may be missed for one reason only: its
+ * record was overwritten. The queue is long enough here (for a short one see queue.pml), and the
+ * publisher waits for a pinned record instead of skipping it (see record.pml).
  *
  * RUN HISTORY=0
  * RUN HISTORY=1
- * BUG 1: publisher does not look at match_generation again after it stored last
- * BUG 2: no fence between last and the look at match_generation
- * BUG 3: what is published while the match is made is not looked for
- * BUG 4: source opened before match_generation is raised
- * BUG 5: doubles not ignored
+ * BUG 1: publisher does not load match_generation again after it stored last
+ * BUG 2: no fence between last and the load of match_generation
+ * BUG 3: messages published during the match are not scanned for
+ * BUG 4: source active before match_generation is incremented
+ * BUG 5: duplicates not ignored
  * BUG 6: resync cleared after the scan
- * BUG 7: queue emptied after the scan
- * BUG 8: scan noted up to a last that was read after it
- * BUG 9: publisher does not look at match_generation again after it cleared number
+ * BUG 7: queue drained after the scan
+ * BUG 8: scan noted up to a last that was loaded after it
+ * BUG 9: publisher does not load match_generation again after it cleared number
  * BUG 10: a volatile match starts at the first record
- * BUG 11 HISTORY=1: history is not looked for
- * BUG 12 HISTORY=1: a hint is taken before the history that its source came with
+ * BUG 11 HISTORY=1: history is not scanned for
+ * BUG 12 HISTORY=1: a hint is taken before the history of its new source
  */
 #define MESSAGES 3
 #define COUNT 2
@@ -53,7 +53,7 @@ chan queue = [MESSAGES] of { byte };
 bool published_all, joined;
 
 /* For the properties only. */
-byte first_wanted;        /* the match promises the records from here on */
+byte first_wanted;        /* the match promises the records from this one on */
 byte delivered[MESSAGES + 1];
 bool overwritten[MESSAGES + 1];
 
@@ -72,7 +72,7 @@ inline refresh() {
   }
 }
 
-inline take_back(old) {
+inline reclaim(old) {
   atomic { store_seq_cst(PUBLISHER, NUMBER((old) % COUNT), 0); overwritten[old] = true };
 #if BUG != 9
   refresh();
@@ -88,7 +88,7 @@ proctype Publisher() {
      n++;
      refresh();
      if
-     :: n > COUNT -> take_back(n - COUNT)
+     :: n > COUNT -> reclaim(n - COUNT)
      :: else
      fi;
      store_release(PUBLISHER, DATA(n % COUNT), n);
@@ -226,7 +226,7 @@ proctype Subscription() {
      added = false;
      renew_readers();
      if
-     :: added && BUG != 12 -> look_at_everything()      /* finds n too */
+     :: added && BUG != 12 -> look_at_everything()      /* finds n as well */
      :: (!added || BUG == 12) && known && (n > noted || BUG == 5) && n <= load(READER, LAST) ->
         take(n)
      :: else

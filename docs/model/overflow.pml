@@ -1,33 +1,32 @@
 /* Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
  *
- * Question: does a subscription in another cluster learn of every message, although eMCOS messages
- * are thrown away when its cluster's pipe is full, and of none after a later one? It would pass
- * over the earlier one then.
+ * Question: does a subscription in another cluster learn of each message, although eMCOS messages
+ * are dropped when its cluster's pipe is full? And never of an earlier message after a later one,
+ * which would make it skip the earlier one?
  *
- * Follows notifier.cpp (announce, ask_to_look), ReceiveThread::run and RecordFinder::next.
- * Waking is waiting.pml's matter: here the subscriber looks when its epoch was raised, and only
- * then.
+ * Follows notifier.cpp (announce, request_resync), ReceiveThread::run and RecordFinder::next. For
+ * wake-ups see waiting.pml: here the subscriber checks if and only if its epoch was incremented.
  *
  * BUG 1: resync set after pipe_overflow
- * BUG 2: pipe_overflow looked at before the pipe is read, not after
- * BUG 3: no eMCOS message tried after pipe_overflow is set
+ * BUG 2: pipe_overflow checked before the pipe is read, not after
+ * BUG 3: no eMCOS message sent after pipe_overflow is set
  * BUG 4: pipe_overflow cleared after the processes are woken
- * BUG 5: subscriber clears resync after its look
+ * BUG 5: subscriber clears resync after its scan
  * BUG 6: publisher relies on the full pipe alone
- * BUG 7: resync not looked at again once a hint was popped
+ * BUG 7: resync not checked again after a hint was popped
  */
 #define MESSAGES 2
 #define PUBLISHERS 2
 #define CAPACITY 1        /* eMCOS messages in the pipe */
 
-chan pipe = [CAPACITY] of { byte, byte };   /* publisher; record number, 0 in one of kind resync */
+chan pipe = [CAPACITY] of { byte, byte };   /* publisher; record number, 0 = kind resync */
 byte last[PUBLISHERS];    /* published so far */
 chan queue = [PUBLISHERS * MESSAGES] of { byte, byte };
 byte noted[PUBLISHERS];   /* taken up to here */
 bool resync, pipe_overflow;
-bool woken;               /* epoch raised since the subscriber's last look */
+bool woken;               /* epoch incremented since the subscriber's last check */
 
-/* Every store here is one with a full fence, or a system call. */
+/* Each store here has a full fence, or is a system call. */
 proctype Publisher(byte i) {
   do
   :: last[i] < MESSAGES ->
@@ -107,7 +106,7 @@ inline take() {
   }
 }
 
-/* Until it finds nothing more. */
+/* Until nothing is found. */
 inline look() {
   do
   :: resync -> look_at_everything()
@@ -117,7 +116,7 @@ inline look() {
      :: queue?i, n ->
 #if BUG != 7
         if
-        :: resync -> look_at_everything()     /* finds n too */
+        :: resync -> look_at_everything()     /* finds n as well */
         :: else -> take()
         fi;
 #else
@@ -128,7 +127,7 @@ inline look() {
   od
 }
 
-/* An end state in which it sleeps and has missed something is an error. */
+/* An end state in which it sleeps and has missed a message is an error. */
 proctype Subscription() {
   byte i, n;
   do

@@ -3,16 +3,17 @@
  * Question: does a RELIABLE + KEEP_ALL publisher that waits for room wake when its reader has taken
  * the record, or is closed?
  *
- * Follows TopicDsmWriter::wait_for_progress, Source::release and closing.cpp
- * (close_subscription). The time limit of the wait is left out: a publisher that needs it shows as
- * an invalid end state.
+ * Follows TopicDsmWriter::wait_for_progress, notify_waiting_publisher(), Source::release and
+ * closing.cpp (undo_match). The time limit of the wait is omitted: a publisher that needs it shows
+ * as an invalid end state.
  *
- * BUG 1: no fence between taken and the look at writer_waits
- * BUG 2: no fence between writer_waits and the look at taken
- * BUG 3: progress read after the look at taken
+ * BUG 1: no fence between taken and the load of writer_waits
+ * BUG 2: no fence between writer_waits and the load of taken
+ * BUG 3: progress loaded after taken
  * BUG 4: a closed reader's publisher is woken before the source is revoked
- * BUG 5: publisher does not look at taken again after it raised writer_waits
- * BUG 6: woken without raising progress
+ * BUG 5: publisher does not load taken again after it set writer_waits
+ * BUG 6: woken without incrementing progress
+ * BUG 7: no fence between the source's state and the load of writer_waits
  */
 #define TAKEN 0
 #define PROGRESS 1
@@ -30,14 +31,18 @@
 bool asleep;
 bool closing;
 
-inline raise_and_wake(p) {
+inline notify_waiting_publisher(p) {
+  if
+  :: load(p, WRITER_WAITS) != 0 ->
 #if BUG != 6
-  d_step { settled(p) -> memory[PROGRESS]++ };
+     d_step { settled(p) -> memory[PROGRESS]++ };
 #endif
-  asleep = false
+     asleep = false
+  :: else
+  fi
 }
 
-/* The kernel compares and queues at once. */
+/* The kernel compares and queues atomically. */
 inline futex_wait() {
   atomic {
     if
@@ -90,25 +95,25 @@ proctype Reader() {
 #else
        store_seq_cst(READER, TAKEN, n);
 #endif
-       if
-       :: load(READER, WRITER_WAITS) != 0 -> raise_and_wake(READER)
-       :: else
-       fi
+       notify_waiting_publisher(READER)
     :: n == MESSAGES -> break
     od
   } unless { closing }
 }
 
-/* Destroys the reader, or reaps it, at any step; or never. */
+/* Closes or reaps the reader at any step, or never. */
 proctype Closer() {
   if
   :: closing = true;
 #if BUG == 4
-     raise_and_wake(CLOSER);
+     notify_waiting_publisher(CLOSER);
      store_seq_cst(CLOSER, REVOKED, 1)
+#elif BUG == 7
+     store_release(CLOSER, REVOKED, 1);
+     notify_waiting_publisher(CLOSER)
 #else
      store_seq_cst(CLOSER, REVOKED, 1);
-     raise_and_wake(CLOSER)
+     notify_waiting_publisher(CLOSER)
 #endif
   :: skip
   fi

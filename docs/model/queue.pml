@@ -1,31 +1,31 @@
 /* Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
  *
- * Question: does the subscriber queue keep every hint, in order, once, or count it as dropped,
- * whoever dies where?
+ * Question: does the subscriber queue keep each hint exactly once and in order, or count it as
+ * dropped, whichever process dies at whatever step?
  *
- * Follows subscriber_queue::push and ::pop statement by statement. Every store in them is a
- * compare-and-swap, a full fence on x86, so there are no store buffers here.
+ * Follows subscriber_queue::push and ::pop statement by statement. Each store in them is a
+ * compare-and-swap, a full fence on x86, so store buffers are not modelled.
  *
- * The word of a slot is {lap mod LAPS, source}: without the record number, so that two hints of one
- * source differ by their lap alone. That is the worst case for a delayed compare-and-swap, which is
- * safe while no pusher sleeps through LAPS laps of its slot. This run makes fewer than 8 laps; the
- * real queue has 65,536, and 2^28 numbers that must come round at the same time.
+ * The word of a slot is {lap mod LAPS, source}, without the record number, so two hints of one
+ * source differ by their lap only. This is the worst case for a delayed compare-and-swap, which is
+ * safe unless a pusher sleeps through LAPS laps of its slot. This run makes fewer than 8 laps; the
+ * real queue has 65,536, and 2^28 numbers that would have to wrap at the same time.
  *
  * RUN DEPTH=1
  * RUN DEPTH=2
  * BUG 1: no lap in the word
  * BUG 2: laps modulo 2: a pusher that sleeps through two laps overwrites a later hint
  * BUG 3: tail advanced before the slot is filled
- * BUG 4: fullness judged by a tail that head has passed
- * BUG 5: oldest displaced without compare-and-swap
- * BUG 6 DEPTH=2: pop does not look at head again after it read the slot
- * BUG 7: nobody finishes the push of a pusher that died before it moved tail
+ * BUG 4: fullness computed from a tail that head has passed
+ * BUG 5: oldest hint displaced without compare-and-swap
+ * BUG 6 DEPTH=2: pop does not load head again after it loaded the slot
+ * BUG 7: the push of a pusher that died before it advanced tail is never finished
  */
 #define PUSHES 3
 #define KILLED_PUSHES 1
 #define SLOTS DEPTH
 #define PUSHERS 2
-#define LAST_PUSHER 2     /* comes when the others are done, to see that the queue still works */
+#define LAST_PUSHER 2     /* starts when the others are done, to check that the queue still works */
 
 #if BUG == 1
 #define LAPS 1
@@ -47,12 +47,12 @@ byte slot[SLOTS];
 byte head = SLOTS;        /* positions start at lap 1; lap 0 is "never filled" */
 byte tail = SLOTS;
 
-/* What the properties speak of; the protocol does not read it. */
+/* For the properties only; the protocol does not read these. */
 byte number[SLOTS];       /* record number of the hint in the slot */
 byte waiting;             /* hints pushed, neither popped nor counted as dropped */
 byte last_popped[3];      /* record number, by source */
-bool was_empty;           /* at some moment of the present pop */
-bool overtaken[3];        /* some word changed during this pusher's present attempt */
+bool was_empty;           /* at some moment during the current pop */
+bool overtaken[3];        /* some word changed during this pusher's current attempt */
 byte ended;               /* pushers that finished or died */
 bool killed;
 
@@ -80,8 +80,8 @@ inline fill(position, source, record) {
   word_changed()
 }
 
-/* Uses t, h, word of the process. Each atomic step holds one access to a shared word, and what
- * follows from it. */
+/* Uses t, h, word of the process. Each atomic step is one access to a shared word, and what follows
+ * from it. */
 inline push(source, record) {
   skip;
 attempt:
@@ -111,7 +111,7 @@ attempt:
 #if BUG == 4
   atomic {
     if
-    :: tail != t -> goto failed           /* the word may be of a later lap */
+    :: tail != t -> goto failed           /* the word may belong to a later lap */
     :: else
     fi
   };
@@ -145,12 +145,12 @@ displace:
   atomic { if :: head == h -> remove_oldest() :: else fi };
 #endif
 failed:
-  atomic { assert(overtaken[source]); goto attempt };   /* lock-free: who fails was overtaken */
+  atomic { assert(overtaken[source]); goto attempt };   /* lock-free: it was overtaken */
 pushed:
   skip
 }
 
-/* Uses h, word, n of the process; leaves `found`. */
+/* Uses h, word, n of the process; sets `found`. */
 inline pop() {
   d_step { found = false; was_empty = waiting == 0 };
 look:
@@ -178,7 +178,7 @@ look:
        d_step {
          remove_oldest();
          assert(word % 4 != 0);                    /* nothing fabricated */
-         assert(n > last_popped[source_of(word)]); /* nothing twice, order per pusher */
+         assert(n > last_popped[source_of(word)]); /* nothing twice, in order per pusher */
          last_popped[source_of(word)] = n;
          found = true
        }

@@ -1,27 +1,26 @@
 /* Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
  *
- * Question: does a reader that holds a claim read the bytes of its record and no others, while the
- * publisher neither waits nor is refused because of a reader that is stuck, and gets the place back
- * in the end?
+ * Question: does a reader with a claim read the bytes of its record only, while the publisher
+ * neither waits nor is refused because of a stuck reader, and gets the room back in the end?
  *
- * Follows TopicDsmWriter (take_back, claim_descriptor, try_place, commit) on a ring that may not
- * grow, and Source (claim, release, scan). All messages are of one size, so the data area
- * is BLOCKS places that the cursor passes in turn. A hint names any record that the reader has not
- * noted: they come late, twice or never. A stopped reader is one that spin lets take no more steps;
- * reader 0 may be killed at any step, and is then reaped.
+ * Follows TopicDsmWriter (reclaim, claim_descriptor, try_place, commit) on a ring that may not
+ * grow, and Source (claim, release, scan). All messages have the same size, so the data area
+ * consists of BLOCKS blocks that the cursor passes in turn. A hint names any record that the reader
+ * has not noted: hints arrive late, twice or never. A stopped reader is one that spin schedules no
+ * more; reader 0 may be killed at any step, and is then reaped.
  *
  * RUN READERS=1
  * RUN READERS=2
- * BUG 1: no fence between reading and the look at number (reader)
- * BUG 2: no fence between clearing number and the look at reading (publisher)
- * BUG 3: number cleared after the look at reading
+ * BUG 1: no fence between reading and the load of number (reader)
+ * BUG 2: no fence between clearing number and the load of reading (publisher)
+ * BUG 3: number cleared after the load of reading
  * BUG 4: number and last stored before the bytes
  * BUG 5: reading cleared before the bytes are read
  * BUG 6: cursor (taken) advanced before the bytes are read
- * BUG 7: descriptor of a pinned record used again
+ * BUG 7: descriptor of a pinned record reused
  * BUG 8: a scan pins every record
  * BUG 9: publisher does not learn that a reader was reaped
- * BUG 10: publisher passes each hole only once, though quick readers pin one after the other
+ * BUG 10: publisher passes each hole only once, although quick readers pin one after the other
  */
 #if READERS == 1
 #define COUNT 2           /* descriptors: a power of two, more than readers */
@@ -34,7 +33,7 @@
 #define CLAIMS 2
 #define KILLABLE 0
 #endif
-#define BLOCKS (READERS + 1)   /* with every reader stuck, one place is left */
+#define BLOCKS (READERS + 1)   /* with all readers stuck, one block is left */
 
 #if BUG == 10
 #define ROUNDS 1
@@ -49,7 +48,7 @@
 #define TAKEN(r) (13 + (r))
 #define LAST 15
 #define GENERATION 16     /* match_generation */
-#define ACTIVE 17         /* of reader 0's entry in the reader table; reader 1's stays */
+#define ACTIVE 17         /* of reader 0's entry in the reader table; reader 1's never changes */
 #define WORDS 18
 #define PROCESSES 3
 #define PUBLISHER 2       /* readers are processes 0 and 1 */
@@ -59,8 +58,8 @@
 
 #include "tso.pml"
 
-byte finished[READERS];   /* what the reader has read or given up; for the property only */
-byte gone;                /* readers that left for good: ended, or dead and reaped */
+byte finished[READERS];   /* records read or given up; for the property only */
+byte gone;                /* readers that ended, or died and were reaped */
 bool killed, dead;
 
 /* Source */
@@ -109,7 +108,7 @@ inline claim() {
   }
 }
 
-/* `claims` is what it makes at most. */
+/* `claims` is the maximum number of claims. */
 proctype Reader(byte r; byte claims) {
   byte noted, n, b;
   bool holds;
@@ -132,7 +131,7 @@ proctype Reader(byte r; byte claims) {
           read_bytes();
           release()
 #endif
-       :: holds -> store_release(r, READING(r), no_record)   /* a scan: it stays untaken */
+       :: holds -> store_release(r, READING(r), no_record)   /* a scan: the record stays untaken */
        :: !holds -> release()
        fi;
        atomic { noted = n; n = 0; holds = false; claims-- }
@@ -145,7 +144,7 @@ proctype Reader(byte r; byte claims) {
   fi
 }
 
-/* SIGKILL at any step of reader 0, or never; the reaper takes it off the reader table. */
+/* SIGKILL at any step of reader 0, or never; the reaper removes it from the reader table. */
 proctype Reaper() {
   if
   :: KILLABLE -> killed = true;
@@ -177,7 +176,7 @@ inline refresh() {
 
 inline clear_number(n) {
   if
-  :: load(PUBLISHER, NUMBER((n) % COUNT)) == (n) ->      /* the publisher alone writes it */
+  :: load(PUBLISHER, NUMBER((n) % COUNT)) == (n) ->      /* written by the publisher only */
 #if BUG == 2
      store_release(PUBLISHER, NUMBER((n) % COUNT), no_record);
 #else
@@ -208,8 +207,8 @@ inline look_at_readers(n) {
   look_at(1, n)
 }
 
-/* A free record and one that is overwritten are taken back alike. */
-inline take_back(n) {
+/* Takes back free and overwritten records alike. */
+inline reclaim(n) {
 #if BUG == 3
   look_at_readers(n);
   clear_number(n)
@@ -233,7 +232,7 @@ inline claim_descriptor() {
   do
   :: load(PUBLISHER, NUMBER(next % COUNT)) != no_record ->
      old = load(PUBLISHER, NUMBER(next % COUNT));
-     take_back(old);
+     reclaim(old);
      old = no_record
   :: else ->
      if
@@ -252,7 +251,7 @@ inline try_place() {
   do
   :: held[cursor] == no_record -> break
   :: else ->
-     take_back(held[cursor]);
+     reclaim(held[cursor]);
      if
      :: !pinned -> held[cursor] = no_record; break
      :: else -> pass_over(cursor, (cursor + 1) % BLOCKS, BLOCKS)
@@ -307,7 +306,7 @@ proctype Publisher() {
   od
 }
 
-/* It begins with a full ring, of which nothing has been taken. */
+/* Starts with a full ring, of which nothing is taken. */
 init {
   byte i;
   atomic {

@@ -1,24 +1,24 @@
 /* Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
  *
- * Question: is the memory of an old generation given back only when no reader looks into it, nor
- * into what comes to lie in the same memory and entry later?
+ * Question: is the memory of an old generation freed only when no reader accesses it, nor what is
+ * later placed in the same memory and entry?
  *
  * Follows TopicDsmWriter (add_generation, retire, free_old_generations), Source (claim,
- * generation_of, scan) and the publisher's ReaderList::refresh. Each generation has an entry and
- * memory of its own, and one record, whose number is the generation's name. Any reader may have any
- * number in hand that was published; no reader wants the records of old generations any more, so
- * the publisher closes them in any order. It waits here for a pinned generation instead of trying
- * again at its next message. A read in memory that was given back would give it a page again, or
- * end the reader where /dev/shm is full.
+ * generation_of, scan) and the publisher's ReaderList::refresh. Each generation has its own entry
+ * and memory, and one record, whose number names the generation. Any reader may look for any
+ * published number; no reader wants the records of old generations any more, so the publisher
+ * closes them in any order. It waits here for a pinned generation instead of retrying at its next
+ * message. Reading freed memory would allocate a page for it again, or end the reader if /dev/shm
+ * is full.
  *
- * BUG 1: first cleared after the look at reading
- * BUG 2: no fence between first and the look at reading (publisher)
- * BUG 3: no fence between reading and the look at first (reader)
- * BUG 4: publisher looks for claims on the generation's own records alone
+ * BUG 1: first cleared after the load of reading
+ * BUG 2: no fence between first and the load of reading (publisher)
+ * BUG 3: no fence between reading and the load of first (reader)
+ * BUG 4: publisher checks for claims on the generation's own records only
  * BUG 5: publisher does not see a reader that scans
- * BUG 6: list of readers renewed before first is cleared, not after
- * BUG 7: given back before the look at reading
- * BUG 8: reader does not look again at the entry that it chose
+ * BUG 6: reader list refreshed before first is cleared, not after
+ * BUG 7: freed before the load of reading
+ * BUG 8: reader does not check again the entry that it chose
  */
 #define FIRST(e) (e)      /* of the generation entries */
 #define READING 3
@@ -36,9 +36,9 @@
 
 #include "tso.pml"
 
-byte holds[ENTRIES];      /* which generation the memory behind an entry holds; 0 = given back */
+byte holds[ENTRIES];      /* generation held by the memory of an entry; 0 = freed */
 
-/* Any read of descriptors or bytes of the generation that was found in entry e. */
+/* Any access to descriptors or bytes of the generation found in entry e. */
 inline touch(e, generation) {
   assert(holds[e] == generation)
 }
@@ -102,7 +102,7 @@ inline scan() {
   store_release(READER, READING, no_record)
 }
 
-/* It joins at any time; its source is active once match_generation is raised. */
+/* Joins at any time; its source is active once match_generation is incremented. */
 proctype Reader() {
   byte n, seen, best, entry, claims;
   d_step { settled(READER) -> memory[GENERATION] = 1 };

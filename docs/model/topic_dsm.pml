@@ -1,34 +1,34 @@
 /* Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
  *
- * Question: is the topic DSM of a gone publisher freed only when nobody can look into it any more,
- * and does a reader that wakes up late spoil nothing of the next match, which may be given the same
- * source entry and the same memory? Is what the reader never takes counted as lost once, by it or
- * by the sweeper?
+ * Question: is the topic DSM of a gone publisher freed only when no process can access it any more,
+ * and does a late reader leave the next match intact, which may get the same source entry and the
+ * same memory? Are messages that the reader never takes counted as lost once, by the reader or by
+ * the sweeper?
  *
- * Follows freeing.cpp (sweep_publisher, revoke), count_undelivered, matching.cpp (join), Source (claim,
- * release) and ReceiveThread::forward. The subscription holds a hint of the first publisher whose
- * record is gone already. A sweep that finds the topic DSM in use gives up, and is done again
+ * Follows freeing.cpp (sweep_publisher, revoke), count_undelivered, matching.cpp (join), Source
+ * (claim, release) and ReceiveThread::forward. The subscription holds a hint of the first publisher
+ * whose record is already gone. A sweep that finds the topic DSM in use gives up, and is repeated
  * later.
  *
- * BUG 1: no fence between reading and the look at state
- * BUG 2: revoked without a look at reading
- * BUG 3: state revoked after the look at reading
+ * BUG 1: no fence between reading and the load of state
+ * BUG 2: revoked without checking reading
+ * BUG 3: state revoked after the load of reading
  * BUG 4: claim does not compare the source's incarnation
- * BUG 5: a claim that was refused advances the cursor
- * BUG 6: reading cleared before the waiting publisher is told
- * BUG 7: receive thread: no fence between phase and the look at the slot
+ * BUG 5: a refused claim advances the cursor
+ * BUG 6: reading cleared before the waiting publisher is notified
+ * BUG 7: receive thread: no fence between phase and the load of the slot
  * BUG 8: freed while the receive thread is in its phase
- * BUG 9: incarnation raised after the source is opened again
- * BUG 10: sweeper counts what is lost before it looks at reading
- * BUG 11: sweeper counts what is lost before the source is revoked
- * BUG 12: receive thread asks the topic DSM's header whether it is there, not the publisher's slot
- * BUG 13: reader looks at last for the hint's full number without a claim
+ * BUG 9: incarnation incremented after the source is active again
+ * BUG 10: sweeper counts losses before it checks reading
+ * BUG 11: sweeper counts losses before the source is revoked
+ * BUG 12: receive thread checks the topic DSM's header instead of the publisher's slot
+ * BUG 13: reader loads last for the hint's full number without a claim
  */
 #define STATE 0           /* of the source */
 #define INCARNATION 1
 #define READING 2
 #define TAKEN 3
-#define SLOT 4            /* of the publisher whose memory may be followed; 0 = freeing */
+#define SLOT 4            /* publisher whose memory may be accessed; 0 = freeing */
 #define PHASE 5           /* of the receive thread */
 #define ACCOUNTED 6       /* of the source */
 #define WORDS 7
@@ -42,14 +42,14 @@
 #define revoked 2
 
 #define every_record 255
-#define NUMBER 9          /* of the stale hint; the next publisher begins with lower ones */
+#define NUMBER 9          /* of the stale hint; the next publisher starts with lower ones */
 
 #include "tso.pml"
 
 byte lost;                /* for the property: messages of the first publisher */
-byte owner = 1;           /* of the topic DSM's memory: first publisher, nobody (0), second one */
+byte owner = 1;           /* of the topic DSM's memory: 1, 0 (none), 2 */
 
-/* Any read or write in the memory of the topic DSM of publisher `whose`. */
+/* Any access to the memory of publisher `whose`'s topic DSM. */
 inline touch(whose) {
   assert(owner == whose)
 }
@@ -60,7 +60,7 @@ inline release(whose) {
   store_release(READER, READING, 0);
   touch(whose)
 #else
-  touch(whose);                                        /* tell_waiting_publisher */
+  touch(whose);                                        /* notify_waiting_publisher */
   store_release(READER, READING, 0)
 #endif
 }
@@ -78,7 +78,7 @@ inline look_at_last() {
 #endif
 }
 
-/* It found the source of the first publisher and is about to claim. */
+/* Has found the source of the first publisher and is about to claim. */
 proctype Reader() {
   bool may_look;
   look_at_last();
@@ -105,7 +105,7 @@ proctype Reader() {
   fi
 }
 
-/* It has an eMCOS message of the first publisher. */
+/* Has an eMCOS message of the first publisher. */
 proctype ReceiveThread() {
 #if BUG == 7
   store_release(RECEIVER, PHASE, 1);
@@ -172,7 +172,7 @@ inline join_second_publisher() {
   settled(SWEEPER)
 }
 
-/* The registry lock keeps these in line. */
+/* Serialized by the registry lock. */
 proctype Sweeper() {
   revoke();
   free_topic_dsm();
@@ -188,7 +188,7 @@ init {
     run Reader(); run ReceiveThread(); run Sweeper()
   };
   _nr_pr == 4 && settled(READER) && settled(RECEIVER) && settled(SWEEPER);
-  /* The second match begins where it should. */
+  /* The second match starts where it should. */
   assert(memory[TAKEN] == 0 && memory[ACCOUNTED] == 0 && memory[READING] == 0);
   assert(lost == NUMBER)
 }

@@ -1,16 +1,16 @@
 /* Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
  *
- * Shared memory as x86 shows it (total store order): each process has a store buffer, first in
- * first out, which the hardware empties at any time; a load finds the own buffered store first. A
- * model defines before it includes this:
+ * Shared memory under x86's total store order: each process has a FIFO store buffer, which the
+ * hardware drains at any time; a load finds the process's own buffered stores first. A model
+ * defines before including this file:
  *   WORDS      words of shared memory
  *   PROCESSES  processes that store
- * and uses, with p the process, a the word:
+ * and uses, where p is the process and a the word:
  *   load(p, a)               any load
- *   store_release(p, a, v)   a plain, relaxed or release store: may wait in the buffer
+ *   store_release(p, a, v)   a plain, relaxed or release store; may stay in the buffer
  *   store_seq_cst(p, a, v)   a store with a full fence (xchg)
- *   settled(p)               what a locked instruction (compare-and-swap, fetch-and-add) waits for
- * Two places in a buffer are enough to see a later load overtake a store, and a third store wait.
+ *   settled(p)               condition of a locked instruction (compare-and-swap, fetch-and-add)
+ * A buffer of two stores suffices: one store is overtaken by a later load while another one waits.
  */
 #define BUFFERED 2
 
@@ -38,7 +38,7 @@ inline store_seq_cst(p, a, v) {
   d_step { settled(p) -> memory[a] = v }
 }
 
-/* The hardware behind process p. */
+/* The store buffer of process p, drained by the hardware. */
 proctype StoreBuffer(byte p) {
 end:
   do

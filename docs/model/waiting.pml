@@ -1,26 +1,26 @@
 /* Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
  *
  * Question: does a thread that sleeps for its next notification wake for each one, and is the
- * system call spared while it is awake?
+ * system call avoided while the thread is awake?
  *
  * Follows WakeWord::notify, Watchers, Waiters::forget_this_thread and Waiter::wait (mode block),
- * with two threads that share one wake word, each for an entity of its own, and one notifier for
- * each entity. Neither the kernel's own fences nor a spurious wake-up are relied on.
+ * with two threads that share one wake word, each waiting for its own entity, and one notifier per
+ * entity. The model relies neither on fences inside the kernel nor on spurious wake-ups.
  *
- * BUG 1: no fence between epoch and the look at sleepers
+ * BUG 1: no fence between epoch and the load of sleepers
  * BUG 2: no fence between sleepers and the comparison of the epoch
  * BUG 3: sleepers counted after the comparison of the epoch
- * BUG 4: entities looked at before the epoch is read
- * BUG 5: sleepers looked at before the epoch is raised
+ * BUG 4: entities checked before the epoch is loaded
+ * BUG 5: sleepers loaded before the epoch is incremented
  * BUG 6: notified before the hint is pushed
  * BUG 7: only one sleeper woken
- * BUG 8: sleeper not taken off the count when it did not sleep
- * BUG 9: system call at each notification
- * BUG 10: no fence between the hint and the look at its watchers
- * BUG 11: no fence between the word added to the watchers and the look at the entity
- * BUG 12: entities looked at before the word is added to their watchers
- * BUG 13: watchers looked at before the hint is pushed
- * BUG 14: a thread forgets what another one with the same word waits for
+ * BUG 8: sleeper not removed from the count when it did not sleep
+ * BUG 9: system call for each notification
+ * BUG 10: no fence between the hint and the load of its watchers
+ * BUG 11: no fence between adding the word to the watchers and checking the entity
+ * BUG 12: entities checked before the word is added to their watchers
+ * BUG 13: watchers loaded before the hint is pushed
+ * BUG 14: a thread forgets what another thread with the same word waits for
  * BUG 15: watchers not added again after they were forgotten
  */
 #define EPOCH 0
@@ -33,13 +33,13 @@
 #define NOTIFIER(i) (i)
 #define WAITER(i) (2 + (i))
 #define MESSAGES 2
-/* A counter that is not raised by a locked instruction can count for one process only. */
+/* A counter that is not changed by a locked instruction can count for one process only. */
 #define PAIRS (BUG == 1 || BUG == 2 || BUG == 10 || BUG == 11 || BUG == 12 || BUG == 13 -> 1 : 2)
 
 #include "tso.pml"
 
 bool asleep[2];           /* in the kernel's queue */
-byte inside;              /* threads between counting themselves and taking themselves off again */
+byte inside;              /* threads that have counted themselves as sleepers */
 
 inline fetch_add_seq_cst(p, a, d) {
   d_step { settled(p) -> memory[a] = memory[a] + d }
@@ -123,7 +123,7 @@ inline count_sleeper(p) {
 #endif
 }
 
-/* futex_wait: the kernel compares and queues at once. */
+/* futex_wait: the kernel compares and queues atomically. */
 inline futex_wait(p, i) {
   atomic {
     if
@@ -166,8 +166,8 @@ inline watch(p, i) {
   fi
 }
 
-/* After a wake-up for nothing. That the word is shared keeps a thread from it; here it forgets its
- * own entity only, which no other thread waits for. */
+/* Called after a wake-up for nothing. In C++ a shared word is not forgotten; here a thread forgets
+ * its own entity only, for which no other thread waits. */
 inline forget(p, i) {
   store_seq_cst(p, WATCHERS(i), 0);
 #if BUG == 14
@@ -218,7 +218,7 @@ proctype WaitingThread(byte i) {
   od
 }
 
-/* A thread that misses a wake-up sleeps on: spin reports it as an invalid end state. */
+/* A thread that misses a wake-up keeps sleeping: spin reports it as an invalid end state. */
 init {
   atomic {
     run StoreBuffer(NOTIFIER(0)); run StoreBuffer(NOTIFIER(1));
