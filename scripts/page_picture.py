@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Takes a picture of the page of `manycore view`: scripts/page_picture.py LINK TOPIC FILE.png."""
+"""Take a screenshot of `manycore view`: scripts/page_picture.py LINK TOPIC FILE.png."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.support.ui import WebDriverWait
 
-PATIENCE_S = 30.0
-HISTORY_S = 20.0  # that the charts show
+TIMEOUT_S = 30.0
+HISTORY_S = 20.0  # time shown by the charts
 
 
 def main(link: str, topic: str, file: str) -> None:
-    """Trace, choose a topic on the page, wait until there is something to see, and take it."""
+    """Start a trace, select a topic on the page, wait for its charts, and take the screenshot."""
     options = webdriver.ChromeOptions()
     options.binary_location = shutil.which("chromium") or ""
     options.add_argument("--headless=new")
@@ -27,7 +27,7 @@ def main(link: str, topic: str, file: str) -> None:
     if os.geteuid() == 0:
         options.add_argument("--no-sandbox")
     with webdriver.Chrome(options, webdriver.ChromeService(shutil.which("chromedriver"))) as driver:
-        waiting = WebDriverWait(driver, PATIENCE_S)
+        waiting = WebDriverWait(driver, TIMEOUT_S)
         driver.get(link)
         selector = f"[data-topic='{topic}']"
         arc = waiting.until(lambda _: driver.find_element(By.CSS_SELECTOR, selector))

@@ -1,7 +1,7 @@
 #!/bin/sh
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #
-# Draws a run of the image pipeline, and the page that shows it where there is Chromium:
+# Draws a run of the image pipeline and, if Chromium is installed, the page that shows it:
 # scripts/picture.sh CHIP.svg PAGE.png
 set -eu
 export MANYCORE_PLATFORM="picture-$$"
@@ -10,12 +10,12 @@ manycore run image_pipeline >build/picture.log 2>&1 &
 run=$!
 view=
 trap 'kill -INT $view $run 2>/dev/null; wait $view $run' EXIT
-# Waits for the topic, and then for a message at its end.
+# Waits for the topic, and then for a message that has passed the pipeline.
 manycore topic echo --once --no-arr $topic sensor_msgs/msg/Image >/dev/null
 manycore view --once --period 3 -o "$1"
 echo "wrote $1"
 if ! command -v chromium >/dev/null || ! command -v chromedriver >/dev/null; then
-  echo "$2 stays as it was: apt-get install chromium chromium-driver"
+  echo "$2 is unchanged; to draw it: apt-get install chromium chromium-driver"
   exit
 fi
 rm -f build/picture-view.log

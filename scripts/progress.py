@@ -1,9 +1,9 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Run a command and show how far it is: progress.py LOG WHAT COMMAND [ARGUMENT..].
+"""Run a command and show its progress: progress.py LOG WHAT COMMAND [ARGUMENT..].
 
-WHAT the command does ("installing Python packages") stands before the last thing its output tells:
-a step of ninja or a package of pip. On a terminal that is one line, elsewhere a line now and then.
-All output goes to LOG; if the command fails, what it said about that is printed.
+WHAT describes the command ("installing Python packages") and precedes the current step: a step of
+ninja or a package of pip. A terminal shows one updating line, otherwise lines are printed now and
+then. All output goes to LOG; if the command fails, its error lines are printed.
 """
 
 from __future__ import annotations
@@ -18,14 +18,14 @@ NINJA_STEP = re.compile(r"^\s*\[([1-9]\d*)/(\d+)\] ")
 PIP_PACKAGE = re.compile(r"^\s*(?:Collecting|Requirement already satisfied:) ([\w.-]+)")
 PIP_DOWNLOAD = re.compile(r"^\s*Downloading (\S+?)-\d\S* \(([\d.]+ \w+)\)")
 PIP_INSTALL = re.compile(r"^\s*Installing collected packages: (.*)")
-# From here on the log tells of the failure.
+# First lines of an error in the log.
 FAILURE = re.compile(r"^\s*(FAILED: |CMake Error|ERROR: |error: )")
 LAST_LINES = 30
 QUIET_S = 15
 
 
 class Progress:
-    """Says how far a command is."""
+    """Reports the progress of a command."""
 
     def __init__(self, what: str) -> None:
         self._what = what
@@ -35,7 +35,7 @@ class Progress:
         self._say(what)
 
     def read(self, line: str) -> None:
-        """Look at a line of output."""
+        """Process a line of output."""
         if step := NINJA_STEP.match(line):
             self._tell(f"{step[1]} of {step[2]}")
         elif package := PIP_PACKAGE.match(line):
@@ -47,7 +47,7 @@ class Progress:
             self._tell(f"unpacking {len(install[1].split(','))}")
 
     def end(self, verdict: str) -> None:
-        """Say how it ended."""
+        """Print the result."""
         seconds = time.monotonic() - self._start_s
         self._say(f"{self._what}: {verdict} in {seconds:.0f} s")
         if self._is_terminal:
@@ -64,7 +64,7 @@ class Progress:
 
 
 def failure(lines: list[str]) -> str:
-    """Return the lines that say why a command failed."""
+    """Return the lines that explain why a command failed."""
     first = next((i for i, line in enumerate(lines) if FAILURE.match(line)), -LAST_LINES)
     return "".join(lines[first:])
 
@@ -85,7 +85,7 @@ def main(log: str, what: str, *command: str) -> int:
     progress.end("failed" if process.returncode else "done")
     if process.returncode:
         sys.stderr.write(failure(Path(log).read_text().splitlines(keepends=True)))
-        sys.stderr.write(f"The whole output: {log}\n")
+        sys.stderr.write(f"Full output: {log}\n")
     return process.returncode
 
 

@@ -1,20 +1,20 @@
 #!/bin/sh
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #
-# Makes .venv and installs this checkout into it, with everything that is needed for that:
-#   scripts/setup.sh                the system's packages (if any is missing), then .venv
-#   scripts/setup.sh system [PKG..] the system's packages only, and PKG too
-#   scripts/setup.sh extra NAME     what an extra of pyproject.toml asks for, into .venv
-#   scripts/setup.sh tests          what the tests need besides
-# It shows how far it is; everything it has to say is in build/setup-*.log.
+# Creates .venv and installs this checkout into it, with all prerequisites:
+#   scripts/setup.sh                missing system packages, then .venv
+#   scripts/setup.sh system [PKG..] system packages only, including PKG
+#   scripts/setup.sh extra NAME     requirements of an extra of pyproject.toml, into .venv
+#   scripts/setup.sh tests          additional requirements of the tests
+# Shows its progress; all output is in build/setup-*.log.
 set -eu
 cd "$(dirname "$0")/.."
 : "${PYTHON:=python3}"
 BUILD=build/install
-# As newer versions of pip build everything; those of Debian 12 and Python 3.10 complain otherwise.
+# Makes pip build as its newer versions do; those of Debian 12 and Python 3.10 warn otherwise.
 export PIP_USE_PEP517=1 PIP_DISABLE_PIP_VERSION_CHECK=1
 
-# Prints the Debian packages that are missing; the names are the same on Ubuntu.
+# Prints the missing Debian packages; the names are the same on Ubuntu.
 missing_packages() {
   command -v g++ >/dev/null || echo g++
   command -v make >/dev/null || echo make
@@ -41,12 +41,12 @@ check_python() {
   "$PYTHON" -c 'import sys; sys.exit(sys.version_info < (3, 10))' 2>/dev/null && return
   found=$("$PYTHON" --version 2>&1) || found="no such program"
   echo "Python 3.10 or newer is needed. $PYTHON: $found." >&2
-  echo "Name another: PYTHON=/path/to/python3 make" >&2
+  echo "Choose another one: PYTHON=/path/to/python3 make" >&2
   exit 1
 }
 
-# What pyproject.toml asks for, line by line: with all of it in .venv a rebuild takes seconds and
-# no network.
+# Prints the requirements in pyproject.toml, one per line. With all of them in .venv, a rebuild
+# takes seconds and no network.
 # requirements [EXTRA]
 requirements() {
   .venv/bin/python - "$@" <<'END'
@@ -64,7 +64,7 @@ print("\n".join(extras[sys.argv[1]] if len(sys.argv) > 1 else everything))
 END
 }
 
-# progress NAME WHAT COMMAND.. shows how far a command is.
+# progress NAME WHAT COMMAND.. runs a command and shows its progress.
 progress() {
   log=build/setup-$1.log
   shift
@@ -80,8 +80,8 @@ install_requirements() {
 
 install_checkout() {
   if [ ! -x .venv/bin/python ]; then
-    echo "making .venv with $("$PYTHON" --version)"
-    rm -rf "$BUILD" # it may be for another python
+    echo "creating .venv with $("$PYTHON" --version)"
+    rm -rf "$BUILD"  # it may be for another python
     "$PYTHON" -m venv .venv
   fi
   install_requirements
@@ -92,7 +92,7 @@ install_checkout() {
 
 install_extra() {
   install_requirements "$1"
-  # Open3D's wheel needs libraries of the system that a machine without a display lacks.
+  # Open3D's wheel needs system libraries that a machine without a display lacks.
   [ "$1" != ndt ] || .venv/bin/python -c 'import open3d' 2>/dev/null ||
     install_packages libusb-1.0-0 libgl1 libegl1 libgomp1 libx11-6
   touch ".venv/$1"
