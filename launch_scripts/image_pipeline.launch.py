@@ -1,12 +1,12 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""A camera, a filter and a check of what comes out, all under /camera."""
+"""A camera, a filter and a checker of the output, all in the namespace /camera."""
 
 from launch import LaunchDescription
 from launch_ros.actions import Node
 
 
 def generate_launch_description() -> LaunchDescription:
-    """Return the three nodes with their topics renamed."""
+    """Return the three nodes with remapped topics."""
     raw = ("image_raw", "/camera/image_raw")
     inverted = ("image_inverted", "/camera/image_inverted")
     return LaunchDescription(
