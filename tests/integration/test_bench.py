@@ -244,7 +244,8 @@ def test_transfers_lose_nothing_with_flow_control(model: tuple[str, ...], tmp_pa
     assert bases == ({"derived", "fitted"} if model else {"measured"})
     lost = {r["contender"]: r["largest"] for r in report["results"] if "lost" in r["question"]}
     assert lost["with credits"] == 0
-    assert lost["without flow control"] > 0
+    if model:  # on the host the reader may keep up
+        assert lost["without flow control"] > 0
     figures = [f"figure_{name}.svg" for name in ("4_2", "4_3", "4_4", "4_5", "4_6_and_4_7")]
     assert sorted(path.name for path in tmp_path.glob("figure_*")) == figures
     assert "UC from CC SMEM, cluster to cluster" in (tmp_path / "samples.csv").read_text()
