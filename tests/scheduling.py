@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 # One worker runs all tests of files with these prefixes: they share an expensive fixture.
-TOGETHER = ("tests/integration/test_install",)
+TOGETHER = ("tests/integration/test_install", "tests/integration/test_interface_build.py")
 
 
 def make_scheduler(config: pytest.Config, log: Any) -> Any:

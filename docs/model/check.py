@@ -3,7 +3,8 @@
 
 Run as `python docs/model/check.py [MODEL..]`. The head of a model lists its configurations
 (` * RUN DEPTH=2`; none: one configuration without definitions) and its seeded bugs
-(` * BUG 1: what`, in the first configuration, or ` * BUG 1 DEPTH=2: what`).
+(` * BUG 1: what`, in the first configuration, or ` * BUG 1 DEPTH=2: what`). A search that takes
+half a minute is marked: ` * RUN DEPTH=3 (long)`.
 """
 
 from __future__ import annotations
@@ -40,6 +41,7 @@ class Case:
     defines: tuple[str, ...]
     bug: int = 0
     what: str = "as built"
+    is_long: bool = False
 
     @property
     def name(self) -> str:
@@ -64,11 +66,13 @@ def _cases_of(path: Path) -> list[Case]:
     text = path.read_text()
     if "init {" not in text:  # included by other models only
         return []
-    runs = [run.split() for run in re.findall(r"^ \* RUN (.+)$", text, re.M)] or [[]]
-    built = [Case(path.stem, tuple(run)) for run in runs]
+    runs = re.findall(r"^ \* RUN (.+?)( \(long\))?$", text, re.M) or [("", "")]
+    built = [Case(path.stem, tuple(run.split()), is_long=bool(long)) for run, long in runs]
     seeded = [
-        Case(path.stem, tuple(run.split() or runs[0]), int(bug), what)
-        for bug, run, what in re.findall(r"^ \* BUG (\d+)(.*?): (.+)$", text, re.M)
+        Case(path.stem, tuple(run.split()) or built[0].defines, int(bug), what, bool(long))
+        for bug, run, long, what in re.findall(
+            r"^ \* BUG (\d+)(.*?)( \(long\))?: (.+)$", text, re.M
+        )
     ]
     return built + seeded
 
@@ -81,7 +85,8 @@ def check(case: Case) -> Outcome:
         _run(["spin", *defines, "-a", str(DIRECTORY / f"{case.model}.pml")], directory)
         # A seeded bug is found early: compiling with optimization and clearing a large table would
         # take longer than the search.
-        optimization, table = ("-O0", SMALL_TABLE) if case.bug else ("-O1", TABLE)
+        is_short = case.bug and not case.is_long
+        optimization, table = ("-O0", SMALL_TABLE) if is_short else ("-O1", TABLE)
         _run(["gcc", optimization, *COMPILER_OPTIONS, "-o", "pan", "pan.c"], directory)
         report = _run(["./pan", f"-m{DEPTH_LIMIT}", f"-w{table}"], directory)
     return _read(report, time.monotonic() - started)

@@ -1,11 +1,15 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""The formal models of the data path hold, and each seeded bug is found."""
+"""The formal models of the data path hold, and each seeded bug is found.
+
+Searches of half a minute are left to `make stress`.
+"""
 
 from __future__ import annotations
 
 import importlib.util
 import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -20,15 +24,23 @@ spec.loader.exec_module(check_models)
 
 CASES = check_models.cases()
 
+
+def parameters(cases: list[Any]) -> list[Any]:
+    return [
+        pytest.param(case, id=case.name, marks=[pytest.mark.stress] if case.is_long else [])
+        for case in cases
+    ]
+
+
 pytestmark = pytest.mark.needs(*check_models.PROGRAMS)
 
 
-@pytest.mark.parametrize("case", [case for case in CASES if not case.bug], ids=lambda c: c.name)
+@pytest.mark.parametrize("case", parameters([case for case in CASES if not case.bug]))
 def test_model_holds(case) -> None:
     assert check_models.check(case).violation == ""
 
 
-@pytest.mark.parametrize("case", [case for case in CASES if case.bug], ids=lambda c: c.name)
+@pytest.mark.parametrize("case", parameters([case for case in CASES if case.bug]))
 def test_seeded_bug_is_found(case) -> None:
     assert check_models.check(case).violation != ""
 
