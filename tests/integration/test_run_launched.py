@@ -86,7 +86,8 @@ def process(name, code, **options):
 
 def generate_launch_description():
     stays = process("stays", "sleep 1000")
-    last = process("last", "true", on_exit=[EmitEvent(event=Shutdown(reason="done"))])
+    enough = "until test $(wc -l < tries) -ge 3; do sleep 0.01; done"
+    last = process("last", enough, on_exit=[EmitEvent(event=Shutdown(reason="done"))])
     tries = "echo x >> tries; test $(wc -l < tries) -ge 3"
     again = process("again", tries, respawn=True, respawn_max_retries=2)
     return LaunchDescription([

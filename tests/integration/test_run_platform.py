@@ -137,8 +137,13 @@ def test_a_node_from_outside_keeps_the_platform_and_is_named(start, platform) ->
     echo.stop()
 
 
-def test_duration_counts_from_the_last_start(start) -> None:
-    run = start(manycore_command("run", TALKER_LISTENER, "--duration", "2", "--json"))
+def test_duration_counts_from_the_last_start(start, tmp_path, platform) -> None:
+    mapfile = write_mapfile(
+        tmp_path,
+        one="{cluster: 1, core: 1, command: [sleep, '1000'], ros_arguments: false}",
+        two="{cluster: 2, core: 1, command: [sleep, '1000'], ros_arguments: false}",
+    )
+    run = start(manycore_command("run", mapfile, "--duration", "1", "--json"))
     assert run.wait() == 0
     assert events(run, "stopping")[0]["reason"] == "the duration is over"
     assert events(run, "finished") == [{"event": "finished", "failed": [], "exit_status": 0}]

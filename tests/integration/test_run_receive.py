@@ -37,8 +37,9 @@ for topic in ("one", "two"):
     node.create_subscription(Int32, topic, lambda _: both.wait(), 10)
 rclpy.spin(node)
 """
-# Its groups and its executor let callbacks overlap.
-OVERLAPPING = """
+# Its groups and its executor let callbacks overlap. SPEND_TIME is what each does: `compute`, or
+# `wait_for_another` to overlap with.
+OVERLAPPING = f"""
 import threading, time
 import rclpy
 from rclpy.callback_groups import ReentrantCallbackGroup
@@ -48,21 +49,31 @@ from std_msgs.msg import Int32
 rclpy.init()
 node = rclpy.create_node("listener")
 running, most, calls = set(), 0, 0
+met = threading.Event()
 
-def compute(message):
+def call(message):
     global most, calls
     running.add(threading.get_ident())
     most = max(most, len(running))
-    end = time.thread_time() + 0.003
-    while time.thread_time() < end:
-        pass
+    if most > 1:
+        met.set()
+    spend_time()
     running.discard(threading.get_ident())
     calls += 1
     if calls == 60:
         print("at most", most, flush=True)
 
+def compute():
+    end = time.thread_time() + 0.003
+    while time.thread_time() < end:
+        pass
+
+def wait_for_another():
+    met.wait({TIMEOUT_S})
+
+spend_time = SPEND_TIME
 for topic in ("one", "two"):
-    node.create_subscription(Int32, topic, compute, 10, callback_group=ReentrantCallbackGroup())
+    node.create_subscription(Int32, topic, call, 10, callback_group=ReentrantCallbackGroup())
 executor = MultiThreadedExecutor(4)
 executor.add_node(node)
 executor.spin()
@@ -89,13 +100,14 @@ def test_per_topic_serves_each_topic_beside_the_others(start, tmp_path, platform
 
 
 def test_queue_keeps_callbacks_from_overlapping(start, tmp_path, platform) -> None:
-    run = run_listener(start, tmp_path, OVERLAPPING, "receive: queue")
+    code = OVERLAPPING.replace("SPEND_TIME", "compute")
+    run = run_listener(start, tmp_path, code, "receive: queue")
     assert run.wait_for(r"^listener \| at most (\d+)$").group(1) == "1"
     assert run.stop() == 0
 
 
 def test_without_the_key_a_program_does_as_it_does(start, tmp_path, platform) -> None:
-    run = run_listener(start, tmp_path, OVERLAPPING)
+    run = run_listener(start, tmp_path, OVERLAPPING.replace("SPEND_TIME", "wait_for_another"))
     assert int(run.wait_for(r"^listener \| at most (\d+)$").group(1)) > 1
     assert run.stop() == 0
 
