@@ -19,7 +19,7 @@ from recordings import text_in, write_texts
 from ros_support import announce, peer_node, spin_until, type_of
 from rosbags.highlevel import AnyReader
 from speakers import hear, qos, say
-from support import IS_MANYCORE, manycore_command, peer_command, wait_until
+from support import IS_MANYCORE, leftovers, manycore_command, peer_command, wait_until
 
 from rmw_manycore_py.recording.recording import Recording
 
@@ -127,14 +127,15 @@ def test_a_killed_recorder_leaves_what_can_be_read_and_played(start, tmp_path) -
     assert [hearer.wait_for("^heard (again .*) ").group(1) for _ in texts] == texts
 
 
-def test_a_publisher_that_offers_less_is_heard_too(start, tmp_path) -> None:
+def test_a_publisher_that_offers_less_is_heard_too(start, platform, tmp_path) -> None:
     """The recorder subscribes again; no message is lost, and the latched one is stored once."""
     bag = tmp_path / "bag.mcap"
     kept = {"durability": "transient_local", "depth": 1000}
-    start(peer_command(say, "/news", kept, 0.01, "first"))
     recorder = start(record_command(bag, "/news"))
+    wait_until(lambda: leftovers(platform), "the recorder looks")
+    start(peer_command(say, "/news", kept, 0.02, "first"))  # kept for 20 s
     recorder.wait_for("^recording /news")
-    start(peer_command(say, "/news", {**BEST_EFFORT, **kept}, 0.01))
+    start(peer_command(say, "/news", {**BEST_EFFORT, **kept}, 0.02))
     recorder.wait_for("some publishers offer best effort")
     size = bag.stat().st_size
     wait_until(lambda: bag.stat().st_size > size + 8192, "both are recorded")

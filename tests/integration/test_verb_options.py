@@ -75,7 +75,7 @@ def running(start):
     return node
 
 
-def test_topics_with_the_options_of_ros2(running, manycore) -> None:
+def test_topics_with_the_options_of_ros2(running, start, manycore) -> None:
     looks = ("--no-daemon", "--spin-time", "1", "-s")
     assert manycore("topic", "list", *looks).splitlines()[:2] == ["/array", "/chatter"]
     assert "/_hidden" in manycore("topic", "--include-hidden-topics", "list").splitlines()
@@ -91,8 +91,9 @@ def test_topics_with_the_options_of_ros2(running, manycore) -> None:
         assert manycore(*once, "/chatter", "--field", "data", *style) == "it is: 'x'\n---"
     assert manycore(*once, "/array", "--field", "data") == "array('d', [1.0, 2.5])\n---"
     liveliness = ("--qos-liveliness", "manual_by_topic")
-    never = ("topic", "echo", "--timeout", "0.2", "/chatter", *liveliness)
-    assert "incompatible policy: LIVELINESS" in manycore(*never)
+    never = start(manycore_command("topic", "echo", "/chatter", *liveliness))
+    never.wait_for("incompatible policy: LIVELINESS")
+    assert never.stop() == 0
     refused = manycore(*once, "/chatter", "--qos-profile", "fast", status=2)
     assert "'fast' is not one of 'unknown', 'default', 'system_default', 'sensor_data'" in refused
 

@@ -96,12 +96,12 @@ def test_the_keyboard_goes_everywhere(talking, view, browser, start) -> None:
     browser.open(view[1])
     browser.press("[data-node='/talker']", "Enter")
     browser.wait_for_text("#details-title", "/talker")
-    assert browser.focused("id") == "details-title"
+    browser.until(lambda: browser.focused("id") == "details-title", "the title has the focus")
     browser.press(None, "Escape")
-    assert browser.focused("data-node") == "/talker"
+    browser.until(lambda: browser.focused("data-node") == "/talker", "the node has the focus")
 
     browser.press(None, "/", *"chat", "Tab")
-    assert browser.focused_text() == "topic /chatter"
+    browser.until(lambda: browser.focused_text() == "topic /chatter", "the only one found")
     start(forked_example("lamp"))  # the list is rebuilt
     browser.find("[data-node='/lamp']")
     assert browser.focused_text() == "topic /chatter"
@@ -147,6 +147,8 @@ def test_events_are_told_once_and_lead_to_their_node(talking, view, browser) -> 
     told = browser.text("#happened")
     browser.driver.execute_script("sockets[0].close()")
     browser.until(lambda: browser.driver.execute_script("return sockets.length") == 2, "again")
-    browser.until(lambda: browser.text("#happened") == told, "the same events")
+    # Later ones, such as losses of a slow listener, may have been added.
+    browser.until(lambda: told in browser.text("#happened"), "the same events")
+    assert browser.text("#happened").count("/talker died") == told.count("/talker died")
     browser.click("#happened button[aria-label='show /talker']")
     browser.wait_for_text("#details-facts", "died")
