@@ -15,6 +15,7 @@ pytestmark = [
     pytest.mark.skipif(not IS_MANYCORE, reason="manycore is about rmw_manycore"),
 ]
 
+ENDLESS = ("--rounds", "100000", "--only")  # it does not end before all are seen
 MARK = "MANYCORE_TEST_MARK"  # inherited by all descendants, receive threads included
 
 
@@ -32,12 +33,12 @@ def marked(mark: str) -> list[int]:
 @pytest.mark.parametrize(
     ("words", "processes"),
     [
-        (("bench", "rmw", "round-trip", "--only", "(block)"), 3),
-        (("bench", "rmw", "round-trip", "--only", "futex"), 3),
-        (("bench", "rmw", "round-trip", "--only", "pipe"), 4),
-        (("bench", "rclpy", "--only", "Fast DDS"), 3),
-        (("bench", "idle", "--nodes", "6", "--only", "manycore"), 7),
-        (("bench", "bridge", "--only", "bridged"), 5),
+        (("bench", "rmw", "round-trip", *ENDLESS, "(block)"), 3),
+        (("bench", "rmw", "round-trip", *ENDLESS, "futex"), 3),
+        (("bench", "rmw", "round-trip", *ENDLESS, "pipe"), 4),
+        (("bench", "rclpy", *ENDLESS, "Fast DDS"), 3),
+        (("bench", "idle", "--nodes", "6", *ENDLESS, "manycore"), 7),
+        (("bench", "bridge", *ENDLESS, "bridged"), 5),
         (("run", MAPFILES / "talker_listener.yaml"), 7),
     ],
     ids=lambda value: "-".join(map(str, value[:2])) if isinstance(value, tuple) else None,

@@ -7,6 +7,7 @@ import shutil
 import sys
 
 import pytest
+from processes import has_receive_threads
 from support import PLATFORMS, wait_until
 
 pytestmark = pytest.mark.integration
@@ -21,6 +22,7 @@ def test_nodes_end_and_say_why_and_new_ones_meet(start, platform):
     )
     old = [start(talker), start(listener, 2)]
     old[1].wait_for("I heard")
+    wait_until(lambda: has_receive_threads(platform), "no process adds files any more")
     shutil.rmtree(PLATFORMS / platform)
     for program in old:
         assert program.wait() != 0, program

@@ -9,7 +9,8 @@ import sys
 from pathlib import Path
 
 import pytest
-from support import IS_MANYCORE, PLATFORMS, RMW, environment, example_command
+from processes import has_receive_threads
+from support import IS_MANYCORE, PLATFORMS, RMW, environment, example_command, wait_until
 
 pytestmark = pytest.mark.integration
 
@@ -71,6 +72,7 @@ def test_what_exists_while_a_node_runs_is_private(start, platform):
     start(example_command("talker")).wait_for("Publishing")
     directory = PLATFORMS / platform
     assert (directory / "registry").exists()
+    wait_until(lambda: has_receive_threads(platform), "no process adds or removes files any more")
     for path in [PLATFORMS, directory, *directory.rglob("*")]:
         assert path.stat().st_mode & 0o077 == 0, f"others may use {path}"
         assert path.stat().st_uid == os.getuid()
