@@ -10,7 +10,15 @@ from pathlib import Path
 import pytest
 import reference_system as described
 import yaml
-from support import IS_MANYCORE, MAPFILES, Program, leftovers, manycore_command, wait_until
+from support import (
+    IS_MANYCORE,
+    MAPFILES,
+    TIMEOUT_S,
+    Program,
+    leftovers,
+    manycore_command,
+    wait_until,
+)
 
 from rmw_manycore_py import _transport
 from rmw_manycore_py.bench.reference.text import losses_in, reports_in, values
@@ -20,10 +28,12 @@ pytestmark = [
     pytest.mark.skipif(not IS_MANYCORE, reason="a mapfile is about rmw_manycore"),
 ]
 
-CYCLES = 100  # of the planner, in ten seconds
+LONG_S = 6 * TIMEOUT_S
+SLOWER = 4  # than the reference system: CPUs that are taken away for seconds have to catch up
+CYCLES = 25  # of the planner, in ten seconds
 PATIENT = {"crunch_ms": 0.0, "payload": "checked"}
-# Other processes use the CPUs, too: depths that cover four seconds in which a node does not run, at
-# 10 Hz, and two at 40 Hz, around EuclideanClusterSettings: more has no room in its cluster.
+# Other processes use the CPUs, too: depths that cover 16 seconds in which a node does not run, at
+# 2.5 Hz, and 8 at 10 Hz, around EuclideanClusterSettings: more has no room in its cluster.
 DEPTH, FAST_DEPTH = 40, 80
 FAST = ("EuclideanClusterSettings", "EuclideanClusterDetector", "IntersectionOutput")
 MESSAGE = "manycore_reference_msgs/msg/Message4kb"
@@ -49,10 +59,13 @@ def dsm_bytes(depth: int) -> int:
 
 @pytest.fixture
 def mapfile(tmp_path: Path) -> Path:
-    """Return the mapfile with depths for a busy machine."""
+    """Return the mapfile with depths and periods for a busy machine."""
     data = yaml.safe_load((MAPFILES / "autoware_reference.yaml").read_text())
     for name, node in data["nodes"].items():
-        node["parameters"] = {**node["parameters"], **PATIENT, "depth": depth_of(name)}
+        given = node["parameters"]
+        node["parameters"] = {**given, **PATIENT, "depth": depth_of(name)}
+        if "period_ms" in given:
+            node["parameters"]["period_ms"] = SLOWER * given["period_ms"]
     data["topics"] = {
         f"/{topic}": {"type": MESSAGE, "topic_dsm_size": dsm_bytes(depth_of(name))}
         for name, topic in sorted(described.publishers())
@@ -92,7 +105,7 @@ def test_24_nodes_run_for_ten_seconds_and_lose_nothing(
     start: Callable[..., Program], mapfile: Path, platform: str
 ) -> None:
     run = start(manycore_command("run", mapfile))
-    wait_until(lambda: has_heard_all_for_long(run), "messages of all nodes", timeout_s=120)
+    wait_until(lambda: has_heard_all_for_long(run), "messages of all nodes", LONG_S)
     assert endpoints(platform) == (described.publishers(), described.subscriptions(), {MESSAGE})
     with _transport.Platform(platform) as view:
         nodes = [process for process in view.processes() if process.core is not None]
