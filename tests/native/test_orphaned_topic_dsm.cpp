@@ -5,12 +5,14 @@
 #include <doctest/doctest.h>
 
 #include <numeric>
+#include <optional>
 
 #include "messages.hpp"
 #include "node_role.hpp"
 #include "transport/lifecycle/configurator.hpp"
 #include "transport/matching/closing.hpp"
 #include "transport/matching/sweeping.hpp"
+#include "transport/registry/odd_phase.hpp"
 #include "waiting.hpp"
 
 using namespace manycore;
@@ -101,6 +103,33 @@ TEST_CASE("the newest messages may be of many publishers") {
   CHECK(take_all(*stuck) == numbers(41, 50));
   CHECK(stuck->lost() == 40);
   f.sweep();
+  f.inspection.wait_until_swept();
+}
+
+TEST_CASE("a subscription closed while its publisher writes is freed after that") {
+  Fixture f;
+  const auto publisher = f.publisher();
+  for (int i = 0; i < 3; ++i) {  // the reaper may not have finished its first check in the first
+    auto subscription = f.subscription(keep_last(10));
+    auto draft = std::make_optional(publisher->draft(sizeof(Payload)));
+    subscription.reset();
+    CHECK(f.inspection.closing_endpoints() == 1);
+    draft.reset();
+    f.inspection.wait_until_swept();
+  }
+}
+
+TEST_CASE("a topic DSM taken whole while a receive thread is in its phase is freed after that") {
+  Fixture f;
+  f.platform.receive_thread(1);  // it resets its phase when it starts
+  const auto subscription = f.subscription(keep_last(10));
+  f.drive(1);
+  {
+    // Inside a cluster, the receive thread forwards nothing: its phase stays as it is.
+    const OddPhase phase(f.inspection.registry().clusters().at(1).header().phase);
+    CHECK(take_all(*subscription) == numbers(1, 1));
+    CHECK(f.inspection.closing_endpoints() == 1);
+  }
   f.inspection.wait_until_swept();
 }
 

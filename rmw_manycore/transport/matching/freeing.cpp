@@ -76,13 +76,13 @@ Progress revoke(
       return Progress::turn_over;
     }
     if (*is_wanted && !gets_no_more(registry, reader, turn)) {
-      return Progress::blocked;
+      return Progress::kept;
     }
     // Dekker with the claim: the reader stores `reading` before it loads the state.
     source.state.store(SourceState::revoked, std::memory_order_seq_cst);
   }
   if (source.reading.load(std::memory_order_seq_cst) != no_record) {
-    return Progress::blocked;
+    return Progress::in_use;
   }
   closing::count_undelivered(registry, reader);
   // Remove the reader before the source entry can be reused: if this process dies in between, the
@@ -97,8 +97,8 @@ Progress revoke(
 
 /// False if the turn ended before the last reader.
 bool revoke_up_to_last(
-  Registry & registry, WantedSources & wanted, const Cluster & cluster, TopicDsmHeader & dsm,
-  Turn & turn) {
+  Registry & registry, WantedSources & wanted, ReaderPass & pass, const Cluster & cluster,
+  TopicDsmHeader & dsm, Turn & turn) {
   bool stopped = false;
   const auto visit = [&](ReaderEntry & entry, uint32_t index) {
     stopped = turn.is_over();
@@ -106,7 +106,10 @@ bool revoke_up_to_last(
       turn.spend(steps_of_a_reader);
       const std::optional<OrphanReader> reader =
         closing::orphan_reader(registry, cluster, dsm, entry);
-      stopped = reader && revoke(registry, wanted, *reader, entry, turn) == Progress::turn_over;
+      const Progress progress =
+        reader ? revoke(registry, wanted, *reader, entry, turn) : Progress::kept;
+      stopped = progress == Progress::turn_over;
+      pass.is_any_in_use = pass.is_any_in_use || progress == Progress::in_use;
     } else if (index % free_readers_in_a_step == 0) {
       turn.spend(1);
     }
@@ -133,10 +136,10 @@ Progress revoke_some(
   Registry & registry, WantedSources & wanted, ReaderPass & pass, uint32_t endpoint,
   const Cluster & cluster, TopicDsmHeader & dsm, Turn & turn) {
   if (pass.endpoint != endpoint) {
-    pass = {endpoint, dsm.swept_before == 0};
+    pass = {endpoint, dsm.swept_before == 0, false};
   }
   while (true) {
-    if (!revoke_up_to_last(registry, wanted, cluster, dsm, turn)) {
+    if (!revoke_up_to_last(registry, wanted, pass, cluster, dsm, turn)) {
       return Progress::turn_over;
     }
     dsm.swept_before = 0;
@@ -144,8 +147,7 @@ Progress revoke_some(
       return Progress::freed;
     }
     if (std::exchange(pass.began_first, true)) {
-      pass = {};
-      return Progress::blocked;
+      return std::exchange(pass, {}).is_any_in_use ? Progress::in_use : Progress::kept;
     }
   }
 }
@@ -225,7 +227,7 @@ Progress see_publishers_out(
     }
     turn.spend(steps_of_a_source);
     if (source.state.load() != SourceState::free && !publisher_is_out(registry, source)) {
-      progress = Progress::blocked;
+      progress = Progress::in_use;
       return true;
     }
     header.swept_before = i + 1;
@@ -248,7 +250,7 @@ Progress free_landings(Registry & registry, Cluster & cluster, SubscriptionHeade
       return false;
     }
     if (!publisher_is_out(registry, source)) {
-      progress = Progress::blocked;
+      progress = Progress::in_use;
       return true;
     }
     landings::free_retired(*publisher, *dsm, cluster);
@@ -275,7 +277,7 @@ Progress sweep_publisher(
     // Dekker with the receive threads: each stores its phase before it looks at the state.
     entry.slot.state.store(SlotState::freeing, std::memory_order_seq_cst);
     if (!receive_threads_are_out(registry)) {
-      return Progress::blocked;
+      return Progress::in_use;
     }
     entry.slot.state.store(SlotState::unreachable);
   }
@@ -301,12 +303,12 @@ Progress sweep_subscription(Registry & registry, EndpointEntry & entry, Turn & t
       return progress;
     }
     if (!receive_threads_are_out(registry)) {
-      return Progress::blocked;
+      return Progress::in_use;
     }
     if (
       entry.transfer != Transfer::dsm &&
-      free_landings(registry, *cluster, *header) == Progress::blocked) {
-      return Progress::blocked;
+      free_landings(registry, *cluster, *header) == Progress::in_use) {
+      return Progress::in_use;
     }
     header->magic.store(0);
     entry.slot.state.store(SlotState::unreachable);

@@ -28,7 +28,7 @@ Progress sweep_endpoint(
     return Progress::turn_over;
   }
   if (!is_closed(entry.slot.state.load())) {
-    return Progress::blocked;
+    return Progress::kept;
   }
   const Progress progress = entry.kind == EndpointKind::publisher
                               ? sweep_publisher(registry, wanted, pass, slot, turn)
@@ -46,9 +46,10 @@ bool Round::try_to_sweep(uint32_t slot, Turn & turn) {
   try {
     const Progress progress = sweep_endpoint(registry_, wanted_, pass_, slot, turn);
     has_freed_ = has_freed_ || progress == Progress::freed || progress == Progress::freed_some;
-    return progress == Progress::freed || progress == Progress::blocked;
+    needs_reaper_ = needs_reaper_ || progress == Progress::in_use;
+    return progress != Progress::freed_some && progress != Progress::turn_over;
   } catch (const ClusterUnmappable &) {
-    mapped_all_ = false;
+    needs_reaper_ = true;
     return true;
   }
 }
@@ -99,7 +100,7 @@ void sweep_a_little(Registry & registry, uint32_t cluster, long wait_ns) {
     const Registry::Lock lock(registry, wait_ns);
     over = round.sweep_some();
   }
-  if (!over || !round.mapped_all()) {
+  if (!over || round.needs_reaper()) {
     registry.clusters().at(cluster).wake_reaper();
   }
 }
@@ -108,7 +109,7 @@ void try_to_sweep(Registry & registry, uint32_t endpoint, const Cluster & cluste
   try {
     Round round(registry);
     const Registry::Lock lock(registry, Registry::Lock::no_wait_ns);
-    if (round.sweep_some_of(endpoint) && round.mapped_all()) {
+    if (round.sweep_some_of(endpoint) && !round.needs_reaper()) {
       return;
     }
   } catch (const std::exception &) {

@@ -22,8 +22,9 @@ public:
   bool sweep_some();
   /// One turn for one endpoint. True when its check is complete. The caller holds the lock.
   bool sweep_some_of(uint32_t endpoint);
-  /// False if this process could not map a cluster, whose endpoints are left to other processes.
-  bool mapped_all() const noexcept { return mapped_all_; }
+  /// True if an endpoint is left that no process is sure to sweep by itself: this one could not map
+  /// a cluster, or another one was accessing the memory.
+  bool needs_reaper() const noexcept { return needs_reaper_; }
   /// Steps since this round last freed memory.
   uint64_t idle_steps() const noexcept { return idle_steps_; }
 
@@ -39,20 +40,20 @@ private:
   uint32_t looked_at_ = 0;  ///< slots checked so far
   bool has_freed_ = false;  ///< in this turn
   uint64_t idle_steps_ = 0;
-  bool mapped_all_ = true;
+  bool needs_reaper_ = false;
 };
 
 /// A complete round. Takes the registry lock anew for each turn.
 void sweep_all(Registry & registry);
 
 /// Sweeps one round for a process of `cluster` that creates or closes an endpoint. Ends early after
-/// about 0.5 ms without progress. Wakes the cluster's reaper for endpoints that are then left, or
-/// whose memory this process cannot map.
+/// about 0.5 ms without progress. Wakes the cluster's reaper for endpoints that are then left (see
+/// Round::needs_reaper()).
 void sweep_a_little(
   Registry & registry, uint32_t cluster, long wait_ns = Registry::Lock::usual_wait_ns);
 
 /// One turn for one endpoint, if it is closed. Never waits for the registry lock. Wakes the reaper
-/// of `cluster` for what is then left, or cannot be mapped by this process.
+/// of `cluster` for what is then left (see Round::needs_reaper()).
 void try_to_sweep(Registry & registry, uint32_t endpoint, const Cluster & cluster) noexcept;
 
 }  // namespace manycore::sweeping
