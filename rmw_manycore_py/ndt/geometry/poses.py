@@ -112,11 +112,56 @@ def from_quaternion(quaternion: npt.ArrayLike) -> Matrix:
     )
 
 
-def interpolate(T_old: Matrix, T_new: Matrix, share: float) -> Matrix:
-    """Interpolate between two poses, share 0 to 1: linear, and about one rotation axis."""
+def velocities(motion: Matrix) -> tuple[Matrix, Matrix]:
+    """Return the body twist (v, w), each (3,), that makes a motion (4, 4) in unit time.
+
+    The logarithm of SE(3), v = J(w)^-1 t: Barfoot, State Estimation for Robotics, ch. 7.
+    """
+    w = rotation_vector(motion[:3, :3])
+    t = motion[:3, 3]
+    half = 0.5 * float(np.linalg.norm(w))
+    if half < 1e-12:
+        return t.copy(), w
+    axis = 0.5 * w / half
+    along = float(axis @ t) * axis
+    v: Matrix = along + half / np.tan(half) * (t - along) - half * np.cross(axis, t)
+    return v, w
+
+
+def travelled(v: Matrix, w: Matrix, shares: Matrix) -> Matrix:
+    """Return where constant body velocities have led after shares (N) of unit time: (N, 3).
+
+    The translation of SE(3)'s exponential, s J(s w) v: an arc of a helix.
+    """
+    s = shares[:, None]
+    angle = float(np.linalg.norm(w))
+    if angle < 1e-12:
+        return s * v
+    axis = w / angle
+    along: Matrix = float(axis @ v) * axis
+    sine, versine = np.sin(s * angle), 2.0 * np.square(np.sin(0.5 * s * angle))
+    where: Matrix = s * along + (sine * (v - along) + versine * np.cross(axis, v)) / angle
+    return where
+
+
+def part_of_motion(motion: Matrix, share: float) -> Matrix:
+    """Return a share of a motion (4, 4) with constant body velocities; extrapolated beyond 0, 1."""
+    v, w = velocities(motion)
     T = np.eye(4)
-    turn = rotation_vector(T_old[:3, :3].T @ T_new[:3, :3])
-    T[:3, :3] = T_old[:3, :3] @ from_rotation_vector(share * turn)
+    T[:3, :3] = from_rotation_vector(share * w)
+    T[:3, 3] = travelled(v, w, np.array([share]))[0]
+    return T
+
+
+def interpolate(T_old: Matrix, T_new: Matrix, share: float) -> Matrix:
+    """Interpolate between two poses, share 0 to 1, with constant body velocities."""
+    T: Matrix = T_old @ part_of_motion(inverse(T_old) @ T_new, share)
+    return T
+
+
+def interpolate_on_chord(T_old: Matrix, T_new: Matrix, share: float) -> Matrix:
+    """Interpolate as Autoware does: positions on the chord, whatever the vehicle's turn."""
+    T = interpolate(T_old, T_new, share)
     T[:3, 3] = (1.0 - share) * T_old[:3, 3] + share * T_new[:3, 3]
     return T
 

@@ -105,8 +105,8 @@ class StackInputs:
             return
         nearest = min(index, len(self._motions) - 1)
         motion, period_s = self._motions[nearest], float(self._periods_s[nearest])
-        turn_rad = float(poses.to_rpy(motion)[2])
-        self._publish_twist(stamp_ns, float(motion[0, 3]) / period_s, turn_rad / period_s)
+        v, w = poses.velocities(motion)
+        self._publish_twist(stamp_ns, float(v[0]) / period_s, float(w[2]) / period_s)
 
     def result(self, index: int, time_s: float, T_map_sensor: Matrix) -> None:
         """Ignore the result: the stack has it."""

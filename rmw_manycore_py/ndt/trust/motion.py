@@ -138,11 +138,7 @@ class MotionModel:
         if span_s > STEADY_S:
             return None
         motion = poses.inverse(before.T) @ last.T
-        share = age_s / span_s
-        T = np.eye(4)
-        T[:3, :3] = poses.from_rotation_vector(share * poses.rotation_vector(motion[:3, :3]))
-        T[:3, 3] = share * motion[:3, 3]
-        continued: Pose = last.T @ T
+        continued: Pose = last.T @ poses.part_of_motion(motion, age_s / span_s)
         return continued
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import threading
 from collections import deque
+from collections.abc import Callable
 from dataclasses import dataclass
 
 from rmw_manycore_py.ndt.geometry import poses
@@ -92,7 +93,7 @@ class PoseBuffer:
         with self._lock:
             if len(self._poses) < 2 or stamp_s < self._poses[0].stamp_s:
                 return None
-            found = self._between(stamp_s)
+            found = self._between(stamp_s, poses.interpolate_on_chord)
         return None if isinstance(found, str) else found
 
     def at(self, stamp_s: float, reach_s: float) -> Interpolated:
@@ -109,12 +110,14 @@ class PoseBuffer:
                 raise NoPoseError(f"the oldest pose is {first.stamp_s - stamp_s:.3f} s newer")
             if stamp_s > newest.stamp_s:
                 return self._moved_on(stamp_s, min(reach_s, self._timeout_s))
-            found = self._between(stamp_s)
+            found = self._between(stamp_s, poses.interpolate)
         if isinstance(found, str):
             raise NoPoseError(found)
         return found
 
-    def _between(self, stamp_s: float) -> Interpolated | str:
+    def _between(
+        self, stamp_s: float, interpolate: Callable[[Matrix, Matrix, float], Matrix]
+    ) -> Interpolated | str:
         """Return the pose interpolated between its neighbours, or why that is impossible."""
         old = next(p for p in reversed(self._poses) if p.stamp_s <= stamp_s)
         new = next((p for p in self._poses if p.stamp_s > stamp_s), old)
@@ -129,7 +132,7 @@ class PoseBuffer:
         if new is old:
             return Interpolated(old.T, old, old, stamp_s - old.stamp_s)
         share = (stamp_s - old.stamp_s) / (new.stamp_s - old.stamp_s)
-        return Interpolated(poses.interpolate(old.T, new.T, share), old, new)
+        return Interpolated(interpolate(old.T, new.T, share), old, new)
 
     def _moved_on(self, stamp_s: float, reach_s: float) -> Interpolated:
         """Extrapolate the newest motion, estimated over at least as long a time."""
@@ -151,8 +154,5 @@ class PoseBuffer:
             raise NoPoseError(f"the newest pose is {moved_m:.1f} m from the one before it")
         share = age_s / (newest.stamp_s - before.stamp_s)
         motion = poses.inverse(before.T) @ newest.T
-        T = newest.T @ poses.interpolate(_IDENTITY, motion, share)
+        T = newest.T @ poses.part_of_motion(motion, share)
         return Interpolated(T, before, newest, age_s)
-
-
-_IDENTITY: Matrix = poses.from_xyz_rpy((0.0, 0.0, 0.0))

@@ -42,10 +42,28 @@ def test_frames():
 
 
 def test_interpolation_ends_and_middle():
-    old, new = np.eye(4), poses.from_xyz_rpy((2.0, 0.0, 0.0), (0.0, 0.0, 1.0))
+    """A vehicle that turns by one radian over two metres of a circle."""
+    old = np.eye(4)
     for share in (0.0, 0.5, 1.0):
-        expected = poses.from_xyz_rpy((2.0 * share, 0.0, 0.0), (0.0, 0.0, share))
+        place = (2.0 * np.sin(share), 2.0 * (1.0 - np.cos(share)), 0.0)
+        expected = poses.from_xyz_rpy(place, (0.0, 0.0, share))
+        new = poses.from_xyz_rpy((2.0 * np.sin(1.0), 2.0 * (1.0 - np.cos(1.0)), 0.0), (0, 0, 1.0))
         np.testing.assert_allclose(poses.interpolate(old, new, share), expected, atol=1e-12)
+
+
+@pytest.mark.parametrize("T", some_poses())
+def test_parts_of_a_motion_add_up(T):
+    third = poses.part_of_motion(T, 1.0 / 3.0)
+    np.testing.assert_allclose(third @ third @ third, T, atol=1e-7)
+    beyond = poses.part_of_motion(T, 4.0 / 3.0)
+    np.testing.assert_allclose(beyond, T @ third, atol=1e-7)
+
+
+def test_interpolation_as_in_autoware_is_on_the_chord():
+    old, new = np.eye(4), poses.from_xyz_rpy((2.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+    expected = poses.from_xyz_rpy((0.5, 0.25, 0.0), (0.0, 0.0, 0.25))
+    found = poses.interpolate_on_chord(old, new, 0.25)
+    np.testing.assert_allclose(found, expected, atol=1e-12)
 
 
 def test_perturbation_has_its_size():

@@ -10,6 +10,7 @@ from rmw_manycore_py.ndt.geometry.poses import angle_rad, distance_m, from_xyz_r
 from rmw_manycore_py.ndt.recordings.recording import Recording
 from rmw_manycore_py.ndt.replay import motion
 from rmw_manycore_py.ndt.replay.guess_kinds import GuessKind
+from rmw_manycore_py.ndt.replay.guess_source import StackInputs
 from rmw_manycore_py.ndt.simulation.drive import poses_along, scans_along
 from rmw_manycore_py.ndt.simulation.lidar import Lidar
 from rmw_manycore_py.ndt.simulation.street import build_street
@@ -81,3 +82,13 @@ def test_drift_is_a_share_of_the_motion():
     found = motion.drifted(true, 0.1, np.random.default_rng(SEED))
     assert distance_m(true, found) == pytest.approx(0.5)
     assert angle_rad(true, found) == pytest.approx(0.05)
+
+
+def test_the_speed_of_a_stack_is_that_along_the_arc():
+    """Its filter drives arcs: of a turn by 0.8 rad over a metre, 0.9 m of x would be too slow."""
+    sent: list[tuple[float, float]] = []
+    arc = from_xyz_rpy((np.sin(0.8) / 0.8, (1.0 - np.cos(0.8)) / 0.8, 0.0), (0.0, 0.0, 0.8))
+    inputs = StackInputs(np.eye(4), [arc], np.array([0.5]))
+    inputs._publish_twist = lambda _, speed, turn: sent.append((speed, turn))
+    inputs.send(0, 0.0, 0)
+    assert sent == [pytest.approx((2.0, 1.6))]

@@ -11,7 +11,7 @@ import pytest
 from rmw_manycore_py.ndt import Alignment, MatcherOptions
 from rmw_manycore_py.ndt.geometry.poses import from_xyz_rpy
 from rmw_manycore_py.ndt.trust.judge import WEAK_M, PoseJudge, Verdict
-from rmw_manycore_py.ndt.trust.motion import Believed
+from rmw_manycore_py.ndt.trust.motion import Believed, MotionModel
 
 pytestmark = pytest.mark.unit
 
@@ -163,3 +163,15 @@ def test_the_covariance_says_what_is_not_known():
     along = judge.judge(stamp_s, tunnel, at(x)).covariance(sure)
     assert along[0, 0] == pytest.approx(WEAK_M**2, rel=0.01)
     assert along[1, 1] == pytest.approx(0.02)
+
+
+def test_the_motion_leads_along_the_arc_that_a_vehicle_turns_on():
+    def on_a_circle(angle: float) -> np.ndarray:
+        return at(30.0 * np.sin(angle), 30.0 * (1.0 - np.cos(angle)), angle)
+
+    model = MotionModel()
+    for scan in range(2):
+        model.believe(scan * PERIOD_S, on_a_circle(0.05 * scan), None)
+    expected = model.at(5 * PERIOD_S, None)
+    assert expected is not None
+    np.testing.assert_allclose(expected.by_motion, on_a_circle(0.25), atol=1e-9)

@@ -89,8 +89,18 @@ def test_a_guess_of_the_stamp_of_the_scan_is_taken_as_it_is():
 
 def test_a_guess_between_two_is_interpolated():
     guess = driven(0.9, 1.0).at(0.96)
-    assert poses.distance_m(guess.T, on_a_circle(0.96)) < 0.01
-    assert poses.angle_rad(guess.T, on_a_circle(0.96)) < 0.001
+    np.testing.assert_allclose(guess.T, on_a_circle(0.96), atol=1e-9)
+
+
+def test_autoware_behaviour_interpolates_on_the_chord():
+    old, new = on_a_circle(0.9), on_a_circle(1.0)
+    found = driven(0.9, 1.0, newest_holds=True).at(0.96).T
+    np.testing.assert_allclose(found[:3, 3], 0.4 * old[:3, 3] + 0.6 * new[:3, 3], atol=1e-9)
+
+
+def test_a_guess_is_moved_on_along_the_arc():
+    guess = driven(0.8, 0.9, 1.0).at(1.1)
+    np.testing.assert_allclose(guess.T, on_a_circle(1.1), atol=1e-9)
 
 
 @pytest.mark.parametrize("age_s", [0.001, 0.05, 0.1, 0.14])
