@@ -193,7 +193,10 @@ def test_motion_of_the_reference(start, offload, street):
 
 
 def test_a_drive_with_motion_distortion_at_twice_its_rate(start, platform, tmp_path):
-    """The LiDAR turns faster, as the vehicle drives faster: deskewing still fits."""
+    """The LiDAR turns faster, as the vehicle drives faster: deskewing still fits.
+
+    Also for the first scan, which the vehicle reaches at full speed.
+    """
     options = ("--length", "32", "--beams", "16", "--azimuths", "360", "--distortion")
     made = start(manycore_command("ndt", "simulate", tmp_path, *options))
     assert made.wait(LONG_S) == 0, made
@@ -206,7 +209,8 @@ def test_a_drive_with_motion_distortion_at_twice_its_rate(start, platform, tmp_p
     more = ("--rate", "20", "--motion", "reference", "--voxel", "0")
     figures = replayed(start, tmp_path / "drive.npz", *more)
     assert figures["answered"] == figures["scans"]
-    assert figures["error_m_median"] < 0.1
+    assert figures["error_m_median"] < 0.05
+    assert figures["error_m_max"] < 0.1
 
 
 def test_no_scan_is_lost_while_maps_are_swapped(start, platform, tmp_path):

@@ -12,7 +12,7 @@ from rmw_manycore_py.ndt.geometry import poses
 from rmw_manycore_py.ndt.geometry.arrays import Matrix
 from rmw_manycore_py.ndt.recordings.recording import Recording
 from rmw_manycore_py.ndt.replay import motion, prediction
-from rmw_manycore_py.ndt.replay.guess_source import Guesses, GuessSource, StackInputs
+from rmw_manycore_py.ndt.replay.guess_source import Approach, Guesses, GuessSource, StackInputs
 from rmw_manycore_py.progress import tracked
 
 FIRST_OFF_M, FIRST_OFF_RAD = 0.3, 0.05  # error of an initial pose set in RViz
@@ -82,13 +82,21 @@ class GuessKind:
         """Return the source of guesses for a recording played by its stamps or at a rate."""
         generator = np.random.default_rng(self.seed)
         first_pose = poses.perturbed(drive.poses[0], FIRST_OFF_M, FIRST_OFF_RAD, generator)
+        times_s = drive.times_s() if rate_hz is None else np.arange(len(drive)) / rate_hz
+        periods_s = np.diff(times_s)
         if self.kind == "perturbed":
             perturbed = prediction.Perturbed(drive, self.offset_m, self.turn_deg, self.seed)
-            return Guesses(first_pose, perturbed)
+            reference = list(motion.of_reference(drive))
+            return Guesses(first_pose, perturbed, _lead_in(drive.poses[0], reference, periods_s))
         if self.kind == "velocity":
             return Guesses(first_pose, prediction.Velocity(first_pose))
         drifted = [motion.drifted(one, self.drift, generator) for one in motions.between]
         if self.kind == "odometry":
-            return Guesses(first_pose, prediction.Odometry(first_pose, drifted))
-        times_s = drive.times_s() if rate_hz is None else np.arange(len(drive)) / rate_hz
-        return StackInputs(first_pose, drifted, np.diff(times_s))
+            odometry = prediction.Odometry(first_pose, drifted)
+            return Guesses(first_pose, odometry, _lead_in(first_pose, drifted, periods_s))
+        return StackInputs(first_pose, drifted, periods_s)
+
+
+def _lead_in(T: Matrix, motions: Sequence[Matrix], periods_s: Matrix) -> Approach | None:
+    """Return the drive up to the first scan; None if there is no second one."""
+    return Approach(T, motions[0], float(periods_s[0])) if len(motions) > 0 else None

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
@@ -21,6 +22,7 @@ MAP_FRAME = "map"
 # a busy host; a new one restarts it.
 FIRST_POSE_PERIOD_S = 20.0
 ROUGH = np.diag([0.25, 0.25, 0.01, 0.0001, 0.0001, 0.1])  # m^2, rad^2
+LEAD_IN_S = (0.5, 0.4, 0.3, 0.2, 0.1)  # before the first scan; a matcher looks back 0.4 s
 SPEED_VARIANCE, TURN_VARIANCE = 0.04, 0.01  # (m/s)^2, (rad/s)^2
 
 
@@ -33,6 +35,9 @@ class GuessSource(Protocol):
     def send_first(self, stamp_ns: int) -> None:
         """Send the inputs of the first scan, while waiting for its answer."""
 
+    def lead_in(self, stamp_ns: int) -> None:
+        """Send what precedes the first scan, whose stamp this is, on a drive that goes on."""
+
     def send(self, index: int, time_s: float, stamp_ns: int) -> Matrix | None:
         """Send the inputs of a scan; return the guess if there is one."""
 
@@ -40,12 +45,36 @@ class GuessSource(Protocol):
         """Take the pose found for a scan."""
 
 
-class Guesses:
-    """Sends guesses of a prediction, like the EKF of a laptop."""
+@dataclass(frozen=True)
+class Approach:
+    """The drive up to the first scan, with the speed and turn rate that follow it.
 
-    def __init__(self, first_pose: Matrix, prediction: Prediction) -> None:
+    :param T: pose of the first scan.
+    :param motion: from the first scan to the second, which takes `period_s`.
+    """
+
+    T: Matrix
+    motion: Matrix
+    period_s: float
+
+    def at(self, before_s: float) -> Matrix:
+        """Return the pose at a time before the first scan."""
+        T: Matrix = self.T @ poses.part_of_motion(self.motion, -before_s / self.period_s)
+        return T
+
+
+class Guesses:
+    """Sends guesses of a prediction, like the EKF of a laptop.
+
+    :param lead_in: None if the motion up to the first scan is unknown.
+    """
+
+    def __init__(
+        self, first_pose: Matrix, prediction: Prediction, lead_in: Approach | None = None
+    ) -> None:
         self._first_pose = first_pose
         self._prediction = prediction
+        self._lead_in = lead_in
 
     def advertise(self, node: Node) -> None:
         """Create the publisher."""
@@ -56,6 +85,13 @@ class Guesses:
     def send_first(self, stamp_ns: int) -> None:
         """Send the initial pose."""
         self._publish(stamp_ns, self._first_pose)
+
+    def lead_in(self, stamp_ns: int) -> None:
+        """Send guesses of a vehicle that drives already, else the first scans are not deskewed."""
+        if self._lead_in is None:
+            return
+        for before_s in LEAD_IN_S:
+            self._publish_one(stamp_ns - round(1e9 * before_s), self._lead_in.at(before_s))
 
     def send(self, index: int, time_s: float, stamp_ns: int) -> Matrix:
         """Send the prediction."""
@@ -70,8 +106,11 @@ class Guesses:
     def _publish(self, stamp_ns: int, guess: Matrix) -> None:
         """Publish a guess for the time of the scan, twice, since a matcher interpolates."""
         for time_ns in (stamp_ns - 1_000_000, stamp_ns):
-            message = pose_with_covariance(guess, MEASURED, stamp_of(time_ns), MAP_FRAME)
-            self._publisher.publish(message)
+            self._publish_one(time_ns, guess)
+
+    def _publish_one(self, time_ns: int, guess: Matrix) -> None:
+        message = pose_with_covariance(guess, MEASURED, stamp_of(time_ns), MAP_FRAME)
+        self._publisher.publish(message)
 
 
 class StackInputs:
@@ -97,6 +136,9 @@ class StackInputs:
             self._next_first_s = time.monotonic() + FIRST_POSE_PERIOD_S
             message = pose_with_covariance(self._first_pose, ROUGH, stamp_of(stamp_ns), MAP_FRAME)
             self._initial.publish(message)
+
+    def lead_in(self, stamp_ns: int) -> None:
+        """Send nothing: a speed would move the stack's filter away from the first pose."""
 
     def send(self, index: int, time_s: float, stamp_ns: int) -> None:  # noqa: ARG002
         """Send speed and turn rate from this scan to the next."""

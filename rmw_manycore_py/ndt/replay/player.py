@@ -28,7 +28,9 @@ from rmw_manycore_py.ndt.replay.tally import Played, Tally
 
 BASE_FRAME = "base_link"
 WARM_UP_PERIOD_S = 0.25
-LEAD_S = 0.05  # before the first scan
+# Before the first scan. A matcher remembers guesses for a second: those of the warm-up stand still,
+# which is not how the drive begins.
+LEAD_S = 1.1
 # Topics may overtake each other; a filter's prediction precedes the scan, which a LiDAR takes 0.1 s
 # to record.
 GUESS_LEAD_S = 0.005
@@ -98,6 +100,7 @@ class Player(Node):
             self._pace = 1.0 / (rate_hz * float(np.median(periods_s))) if len(periods_s) else 1.0
             self._times_s = np.arange(len(self._drive)) / rate_hz
         start, start_ns = time.monotonic() + LEAD_S, time.time_ns() + round(1e9 * LEAD_S)
+        self._source.lead_in(start_ns)
         for index, time_s in enumerate(self._times_s):
             scan = self._scan(index)
             self._spin_until(start + float(time_s))

@@ -20,6 +20,7 @@ PERIODS = 9  # number of intervals in the median of the period
 MOTION_S = 0.4  # time over which motion is estimated, if guesses reach back
 MIN_MOTION_S = 0.05  # half a period of most LiDARs
 KEPT_S = 1.0  # age of guesses kept for motion estimates
+JUMP_M, MAX_SPEED_M_S = 2.0, 60.0  # of a vehicle; corrections of guesses are smaller
 
 
 class Guesses:
@@ -60,11 +61,13 @@ class Guesses:
         """Return the motion (4, 4) up to a pose at a time, and its duration; None if unknown.
 
         If guesses follow results, a correction makes the next guess jump, which would count as
-        motion; averaging over several periods reduces its effect.
+        motion; averaging over several periods reduces its effect. A guess that no vehicle reaches
+        from the one before it begins a new drive: the motion before it is not looked at.
         """
-        before = self._buffer.newest_before(stamp_s - MOTION_S)
-        before = before or self._buffer.oldest()
-        if before is None or not MIN_MOTION_S <= stamp_s - before.stamp_s <= KEPT_S:
+        drive = self._buffer.drive_until(stamp_s, stamp_s - KEPT_S, JUMP_M, MAX_SPEED_M_S)
+        old = [guess for guess in drive if guess.stamp_s <= stamp_s - MOTION_S]
+        before = old[-1] if old else next(iter(drive), None)
+        if before is None or stamp_s - before.stamp_s < MIN_MOTION_S:
             return None
         return poses.inverse(before.T) @ T, stamp_s - before.stamp_s
 

@@ -75,15 +75,21 @@ class PoseBuffer:
         with self._lock:
             return bool(self._poses) and self._poses[-1].stamp_s >= stamp_s
 
-    def newest_before(self, stamp_s: float) -> StampedPose | None:
-        """Return the newest pose that is not after a time; None if there is none."""
-        with self._lock:
-            return next((p for p in reversed(self._poses) if p.stamp_s <= stamp_s), None)
+    def drive_until(
+        self, stamp_s: float, since_s: float, jump_m: float, max_speed_m_s: float
+    ) -> list[StampedPose]:
+        """Return the poses up to a time, oldest first, after the last jump among them.
 
-    def oldest(self) -> StampedPose | None:
-        """Return the oldest pose."""
+        A jump is a step of more than `jump_m` beyond what `max_speed_m_s` allows.
+        """
         with self._lock:
-            return self._poses[0] if self._poses else None
+            found = [pose for pose in self._poses if since_s <= pose.stamp_s <= stamp_s]
+        for index in range(len(found) - 1, 0, -1):
+            old, new = found[index - 1], found[index]
+            reach_m = jump_m + max_speed_m_s * (new.stamp_s - old.stamp_s)
+            if poses.distance_m(old.T, new.T) > reach_m:
+                return found[index:]
+        return found
 
     def newest_at(self, stamp_s: float) -> Interpolated | None:
         """Return the pose at a time as Autoware's node does: the newest one holds after its time.

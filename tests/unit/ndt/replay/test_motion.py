@@ -92,3 +92,20 @@ def test_the_speed_of_a_stack_is_that_along_the_arc():
     inputs._publish_twist = lambda _, speed, turn: sent.append((speed, turn))
     inputs.send(0, 0.0, 0)
     assert sent == [pytest.approx((2.0, 1.6))]
+
+
+@pytest.mark.parametrize(("kind", "count"), [("odometry", 5), ("perturbed", 5), ("velocity", 0)])
+def test_guesses_before_the_first_scan_drive_already(kind, count):
+    """At the rate that is played; a filter of results alone knows no motion yet."""
+    drive = Recording([np.zeros((1, 3), np.float32)] * 3, poses_along([0.0, 0.8, 1.6]), np.zeros(0))
+    wanted = GuessKind(kind, "reference", 0.0, 0.0, 0.0, 1)
+    source = wanted.source(drive, wanted.motions(drive), rate_hz=20.0)
+    sent: dict[int, np.ndarray] = {}
+    source._publish_one = lambda stamp_ns, T: sent.update({stamp_ns // 1_000_000: T})
+    source.lead_in(10_000_000_000)
+    assert len(sent) == count
+    if sent:
+        source.send(0, 0.0, 10_000_000_000)
+        assert sorted(sent) == [9500, 9600, 9700, 9800, 9900, 9999, 10_000]
+        assert distance_m(sent[9500], sent[9600]) == pytest.approx(1.6, abs=0.01)
+        assert distance_m(sent[9900], sent[10_000]) == pytest.approx(1.6, abs=0.01)

@@ -50,6 +50,27 @@ def test_the_motion_is_seen_over_several_periods():
     assert driven(1.0).motion_until(5.0, on_a_circle(5.0)) is None
 
 
+def test_guesses_more_than_a_second_old_do_not_tell_the_motion():
+    """Nor do they hide those that came since, as after a pause."""
+    guesses = driven(0.0, 1.1, 1.2)
+    assert guesses.motion_until(1.1, on_a_circle(1.1)) is None
+    motion, duration_s = guesses.motion_until(1.2, on_a_circle(1.2))
+    assert duration_s == pytest.approx(0.1)
+    np.testing.assert_allclose(on_a_circle(1.1) @ motion, on_a_circle(1.2), atol=1e-9)
+
+
+def test_a_jump_of_the_guesses_is_no_motion():
+    """A new first pose 20 m ahead: from there on the motion is known again after a scan."""
+    guesses = driven(*(0.1 * k for k in range(11)))
+    ahead = poses.from_xyz_rpy((20.0, 0.0, 0.0))
+    for stamp_s in (1.1, 1.2):
+        guesses.push(stamp_s, ahead @ on_a_circle(stamp_s))
+    assert guesses.motion_until(1.1, ahead @ on_a_circle(1.1)) is None
+    motion, duration_s = guesses.motion_until(1.2, ahead @ on_a_circle(1.2))
+    assert duration_s == pytest.approx(0.1)
+    np.testing.assert_allclose(on_a_circle(1.1) @ motion, on_a_circle(1.2), atol=1e-9)
+
+
 def test_autoware_rule_holds_the_newest_pose():
     buffer = PoseBuffer(1.0, 10.0)
     buffer.push(1.0, at(0.0))
