@@ -5,12 +5,14 @@ The reference poses of a recording have errors of their own. Of three poses of o
 are independent, the distances between them tell each one's: with d_ab^2 the mean square of the
 distance between a and b, the mean square error of a is (d_ab^2 + d_ac^2 - d_bc^2) / 2. The three
 are the reference, our pose in a map of every fourth scan, and that of ICP in a map of other scans.
-Streets have exact poses.
+References are also refined (refined.py): the surfaces of points that were not aligned tell whether
+that was an improvement. Streets have exact poses.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -22,10 +24,13 @@ from rmw_manycore_py.bench.ndt.basin import (
     STREETS,
     Place,
     contender,
+    place_of,
     recorded_drive,
     street,
 )
 from rmw_manycore_py.bench.ndt.contenders import VOXEL_SIZE_M, on_cpu, usable
+from rmw_manycore_py.bench.ndt.refined import Halves, cloud, refined_poses, thicknesses_cm
+from rmw_manycore_py.bench.ndt.world import recorded, world_of
 from rmw_manycore_py.bench.question import Question, Run
 from rmw_manycore_py.bench.summary import Goal, Result
 from rmw_manycore_py.ndt import MatcherOptions
@@ -50,7 +55,10 @@ OFF_ICP = f"off {ICP}"
 OFF_ITSELF = "off itself from another guess"
 OF_THREE = "error by three poses, in maps of different scans"
 OFF_EXACT = "off the exact pose, streets"
-REFERENCE = "reference poses"
+OFF_REFINED = "off the refined reference pose"
+SURFACES = "thickness of surfaces of points that were not aligned"
+REFERENCE, REFINED = "reference poses", "refined reference poses"
+JUDGED = (OFF_EXACT, OFF_REFERENCE, OFF_REFINED)
 STEP = 4  # between the scans of a map, so that two maps share none
 CM = 100.0
 
@@ -63,6 +71,8 @@ def measure(run: Run) -> list[Result]:
         run.note(f"{QUESTION.name}: recorded scans")
         scans = run.iterations(SCANS)
         results = [*_of_recording(recorded_drive(scans)), *_of_three(scans)]
+        run.note(f"{QUESTION.name}: refined references")
+        results += _of_refined(scans)
         off_exact: dict[str, list[float]] = {}
         for name in STREETS:
             run.note(f"{QUESTION.name}: {name}")
@@ -115,6 +125,22 @@ def _of_three(scans: int) -> list[Result]:
     return results
 
 
+def _of_refined(scans: int) -> list[Result]:
+    """Return errors to better references, in a map of theirs, and how much better these are."""
+    recording, name = recorded()
+    halves = Halves.of(recording)
+    T = refined_poses(halves.aligned, recording.poses)
+    results = [
+        _result(SURFACES, of, [float(cm) for cm in thicknesses_cm(cloud(halves.judging, given))])
+        for of, given in ((REFERENCE, recording.poses), (REFINED, T))
+    ]
+    drive = place_of(world_of(replace(recording, poses=T), name, scans))
+    truths = _places(drive.truths)
+    for own, found in _found(drive, SEED).items():
+        results.append(_result(OFF_REFINED, own, _apart_cm(found, truths)))
+    return results
+
+
 def own_error_cm(own: Matrix, second: Matrix, third: Matrix) -> float:
     """Return the root mean square error of one of three whose errors are independent.
 
@@ -143,6 +169,6 @@ def _result(question: str, contender_name: str, samples: Sequence[float]) -> Res
 QUESTION = Question(
     "accuracy",
     measure,
-    (Goal(OFF_EXACT, OWN, "within", 1.2),),
+    tuple(Goal(question, OWN, "within", 1.2) for question in JUDGED),
     "all contenders in turn on the first usable CPU",
 )

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 from rmw_manycore_py.bench.ndt.contenders import VOXEL_SIZE_M, on_cpu, usable
 from rmw_manycore_py.bench.ndt.python_peer import open3d_multi_scale_aligner
 from rmw_manycore_py.bench.ndt.trust_worlds import simulated
-from rmw_manycore_py.bench.ndt.world import world
+from rmw_manycore_py.bench.ndt.world import World, world
 from rmw_manycore_py.bench.question import Question, Run
 from rmw_manycore_py.bench.summary import Goal, Result
 from rmw_manycore_py.ndt import MatcherOptions, SerialMatcher, VoxelMap
@@ -124,7 +124,11 @@ def recorded_drive(scans: int, first: int = 0, step: int = 2) -> Place:
 
     :param first: of the even scans that the map is made of; `step` from one to the next.
     """
-    recorded = world(scans, first, step)
+    return place_of(world(scans, first, step))
+
+
+def place_of(recorded: World) -> Place:
+    """Return map and scans of a recording."""
     return Place("", recorded.map_points, recorded.scans, list(recorded.poses))
 
 

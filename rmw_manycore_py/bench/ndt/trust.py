@@ -8,7 +8,7 @@ usable CPU aligns drives and searches places (trust_helpers.py).
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
@@ -27,6 +27,7 @@ CASES = 1000  # of right poses, and of wrong ones
 SCANS = 40  # per drive
 BELIEVED, REFUSED = "wrong poses believed", "right poses refused"
 AT_START = "wrong poses believed at a start"
+LET_OUT, LET_OUT_AT_START = "wrong poses let out at all", "wrong poses let out at a start"
 REFUSED_AT_START = "right poses refused at a start"
 SHARES = "share of the drive's median, chosen without the drive"
 FIRST_SHARES = "share of the map's score for a first pose, chosen without the drive"
@@ -75,18 +76,19 @@ def judged(
         [[case for case in pool if case.is_wrong and _is_judged(case)] for pool in pools], count
     )
 
-    def is_misled(case: Case) -> bool:
-        return misleads(case, shares[case.drive], helpers)
+    def outcome_of(case: Case) -> Outcome:
+        return outcome(case, shares[case.drive], helpers)
 
     def refused(case: Case) -> bool:
         return is_refused(case, shares[case.drive], helpers)
 
-    mislead = dict(zip(map(id, wrong), helpers.map(is_misled, wrong), strict=True))
+    outcomes = dict(zip(map(id, wrong), helpers.map(outcome_of, wrong), strict=True))
     refuse = dict(zip(map(id, right), helpers.map(refused, right), strict=True))
     starts = [replace(case, before=()) for case in right]
     refuse_at_start = list(helpers.map(refused, starts))
     results = [
-        _share(BELIEVED, OURS, list(mislead.values())),
+        _share(BELIEVED, OURS, [one.misleads for one in outcomes.values()]),
+        _share(LET_OUT, OURS, [one.is_let_out for one in outcomes.values()]),
         _share(BELIEVED, AUTOWARE, [_as_autoware(case) for case in wrong]),
         _share(REFUSED, OURS, list(refuse.values())),
         _share(REFUSED, AUTOWARE, [not _as_autoware(case) for case in right]),
@@ -96,10 +98,12 @@ def judged(
     ]
     for name in cases:
         of_drive = [case for case in wrong if case.drive == name]
-        fresh = list(helpers.map(is_misled, [replace(case, before=()) for case in of_drive]))
+        fresh = list(helpers.map(outcome_of, [replace(case, before=()) for case in of_drive]))
         answers = {
-            f"{BELIEVED}: {name}": [mislead[id(case)] for case in of_drive],
-            f"{AT_START}: {name}": fresh,
+            f"{BELIEVED}: {name}": [outcomes[id(case)].misleads for case in of_drive],
+            f"{LET_OUT}: {name}": [outcomes[id(case)].is_let_out for case in of_drive],
+            f"{AT_START}: {name}": [one.misleads for one in fresh],
+            f"{LET_OUT_AT_START}: {name}": [one.is_let_out for one in fresh],
             f"{REFUSED}: {name}": [refuse[id(case)] for case in right if case.drive == name],
             f"{REFUSED_AT_START}: {name}": [
                 is_so
@@ -166,19 +170,32 @@ def chosen(cases: Sequence[Case]) -> Shares:
     )
 
 
-def misleads(case: Case, shares: Shares, helpers: Helpers) -> bool:
-    """Return whether a wrong pose is believed with a covariance that does not cover its error.
+@dataclass(frozen=True)
+class Outcome:
+    """What becomes of a wrong pose.
+
+    :param is_let_out: it is published, whatever its covariance says.
+    :param misleads: it is published with a covariance that does not cover its error.
+    """
+
+    is_let_out: bool
+    misleads: bool
+
+
+def outcome(case: Case, shares: Shares, helpers: Helpers) -> Outcome:
+    """Return what becomes of a wrong pose.
 
     If the first look is refused, this is about the pose of the second look, which a first pose of
-    a drive does not get.
+    a drive does not get. A second look may find the right pose: that is let out, but not wrong.
     """
     verdict = case.judged(shares)
     if not verdict.is_believed and case.before:
         case = helpers.call(looked_again, case, shares)
         verdict = case.judged(shares)
     if not verdict.is_believed:
-        return False
-    return not verdict.covers(case.alignment.T_map_sensor, case.truth)
+        return Outcome(False, False)
+    covers = verdict.covers(case.alignment.T_map_sensor, case.truth)
+    return Outcome(case.is_wrong, not covers)
 
 
 def is_refused(case: Case, shares: Shares, helpers: Helpers) -> bool:

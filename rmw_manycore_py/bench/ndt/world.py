@@ -61,7 +61,11 @@ def world(scans: int = SCANS, first: int = 0, step: int = 2) -> World:
     :param scans: maximum number of the odd scans, which are not part of the map.
     :param first: first scan of the map, an even one; `step` to the next one.
     """
-    recording, name = _recording()
+    return world_of(*recorded(), scans, first, step)
+
+
+def world_of(recording: Recording, name: str, scans: int, first: int = 0, step: int = 2) -> World:
+    """Return the world of a recording; parameters as for `world`."""
     last = (len(recording) - 1) // 2 * 2 - 1
     odd = np.unique(np.linspace(1, last, scans).astype(int) // 2 * 2 + 1)
     odd = odd[odd < len(recording)]
@@ -77,7 +81,8 @@ def world(scans: int = SCANS, first: int = 0, step: int = 2) -> World:
     )
 
 
-def _recording() -> tuple[Recording, str]:
+def recorded() -> tuple[Recording, str]:
+    """Return the recording and its name; a simulated drive where there is none."""
     checkout = Path(__file__).resolve().parents[3]
     directory = Path(os.environ.get(DATA_VARIABLE, checkout.parent / "shared" / "data"))
     if (directory / RECORDING).exists():

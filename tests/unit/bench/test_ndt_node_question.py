@@ -10,6 +10,7 @@ import pytest
 
 from rmw_manycore_py.bench.ndt import node
 from rmw_manycore_py.bench.ndt.driven import Scenario
+from rmw_manycore_py.bench.summary import Result, judge
 from rmw_manycore_py.mapfile import load_mapfile
 
 pytestmark = pytest.mark.unit
@@ -37,6 +38,35 @@ def test_errors_and_cpu_time_of_a_run():
     assert found[node.CPU] == pytest.approx((50.0,))
     rows[2]["cpu_time_s"] = "0.40"  # killed meanwhile
     assert node.CPU not in {result.question for result in node.results(node.KILLED, rows)}
+
+
+def test_the_node_s_part_of_the_way_is_told_beside_it():
+    rows = [
+        {"state": "answered", "latency_ms": "9.5", "execution_time": "6.25"},
+        {"state": "lost", "latency_ms": "", "execution_time": "6.5"},  # refused after matching
+        {"state": "lost", "latency_ms": "", "execution_time": ""},
+    ]
+    found = {result.question: result.samples for result in node.results(node.ALONE, rows)}
+    assert found[node.EXECUTION] == (6.25, 6.5)
+
+
+def test_maps_that_delay_scans_miss_their_goals():
+    def run(name: str, slowest_ms: float, lost: int) -> list[Result]:
+        times_ms = [6.0] * 97 + [slowest_ms] * 3
+        rows = [
+            {"state": "answered", "latency_ms": str(3.0 + ms), "execution_time": str(ms)}
+            for ms in times_ms
+        ]
+        return node.results(name, rows + lost * [{"state": "lost", "latency_ms": ""}])
+
+    def missed(slowest_ms: float, lost: int) -> set[str]:
+        found = run(node.ALONE, 10.0, 0) + run(node.SWAPPED, slowest_ms, lost)
+        verdicts = judge(found, node.QUESTION.goals)
+        return {verdict.goal.question for verdict in verdicts if not verdict.reached}
+
+    assert missed(12.0, 0) == set()
+    assert missed(120.0, 0) == {node.LATENCY, node.EXECUTION}
+    assert missed(12.0, 1) == {node.LOST}
 
 
 def test_a_run_without_any_pose_is_one_that_lost_all():

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from rmw_manycore_py import _ndt, _ndt_bench
+from rmw_manycore_py.bench.ndt import passes
 from rmw_manycore_py.ndt import MatcherOptions
 from rmw_manycore_py.ndt.geometry.arrays import map_points, scan_points
 from rmw_manycore_py.ndt.matching.kernel_options import coarse_options, map_options, match_options
@@ -56,3 +57,8 @@ def test_errors_of_the_kernel_come_as_those_of_ndt(monkeypatch: pytest.MonkeyPat
     monkeypatch.setenv("MANYCORE_NDT_SIMD", "abacus")
     with pytest.raises(_ndt.NdtError, match="MANYCORE_NDT_SIMD"):
         _ndt_bench.Profiler(OPTIONS)
+
+
+def test_a_pass_is_held_against_fifty_of_pclomp():
+    goals = {(one.contender, one.peer): one.factor for one in passes.question(None).goals}
+    assert goals["rmw_manycore avx512", "pclomp"] == 50

@@ -42,3 +42,14 @@ def test_a_judge_that_believes_all_is_found_out(cases, monkeypatch):
     assert any(case.is_wrong for case in cases["street that repeats every 12 m"])
     monkeypatch.setattr(PoseJudge, "judge", believe_all)
     assert answered(cases)[trust.BELIEVED].summary.mean == 100.0
+
+
+def test_wrong_poses_with_a_wide_covariance_are_let_out_all_the_same(cases, monkeypatch):
+    def believe_all(judge: PoseJudge, stamp_s: float, alignment: object, guess: object) -> Verdict:
+        return Verdict("", False, 0.0, None)
+
+    monkeypatch.setattr(PoseJudge, "judge", believe_all)
+    monkeypatch.setattr(Verdict, "covers", lambda *_: True)
+    found = answered(cases)
+    assert found[trust.BELIEVED].summary.mean == 0.0
+    assert found[trust.LET_OUT].summary.mean == 100.0
