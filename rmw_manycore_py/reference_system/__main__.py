@@ -5,6 +5,7 @@ python -m rmw_manycore_py.reference_system --ros-args -r __node:=PointsTransform
     -p kind:=transform -p inputs:="[FrontLidarDriver]"
 """
 
+import signal
 import sys
 from contextlib import suppress
 
@@ -19,8 +20,11 @@ from rmw_manycore_py.reference_system.settings import read_settings
 
 def main() -> int:
     """Run the node until interrupted."""
+    # rclpy's own handler ends spinning. A KeyboardInterrupt in the middle of a conversion of a
+    # message becomes a RuntimeError of pybind11.
+    signal.signal(signal.SIGINT, lambda _number, _frame: None)
     rclpy.init()
-    with suppress(KeyboardInterrupt, ExternalShutdownException):
+    with suppress(ExternalShutdownException):
         node = Node("reference_node")
         try:
             settings = read_settings(node, KINDS)

@@ -230,6 +230,14 @@ def test_the_reference_system_is_measured_and_loses_nothing_where_all_is_kept() 
     assert rows["messages through the hot path, untouched, cycles 0"]["median"] > 0
 
 
+def test_the_same_rclpy_nodes_of_the_reference_system_run_on_each_middleware() -> None:
+    parts = ("--nodes", "rclpy", *only("untouched: manycore", "untouched: Fast DDS as installed"))
+    rows = run_bench("reference", *parts)["results"]
+    medians = {r["contender"]: r["median"] for r in rows if r["question"] == "hot path, untouched"}
+    assert set(medians) == {"manycore", "Fast DDS as installed"}
+    assert all(median > 0 for median in medians.values())
+
+
 TRANSFERS = ("noc", "--size", "100", "--size", "2000", "--size", "10000")
 PRODUCTS = ("matrix", "--n", "32", "--n", "48")
 BOSTAN = ("--model", "bostan")

@@ -41,8 +41,13 @@ def _always(payload: str) -> list[Goal]:
         Goal(question(kpis.LOST, setup), OWN.name, "within", 0, None, "largest")
         for setup in (payload, beside, f"{payload}, {WITHOUT_PAUSE}")
     ]
+    dropped = [
+        Goal(question(kpis.HOT_PATH_DROPS, setup), OWN.name, "within", 0, None, "largest")
+        for setup in (payload, beside)
+    ]
     return [
         *lost,
+        *dropped,
         *(
             Goal(question(kpis.HOT_PATH_RATE, setup), OWN.name, "better", LIDAR_HZ * 0.99)
             for setup in (payload, beside)
