@@ -235,6 +235,50 @@ TEST_CASE("many readers are revoked in turns; the next sweep continues one that 
   }
 }
 
+TEST_CASE("a server with a deep history is closed in turns, also within the look for one client") {
+  Fixture f;
+  const Standstill no_other_sweeper(f.platform, 1);
+  constexpr int64_t many = 20'000;
+  constexpr size_t bystander_count = 3;
+  const auto client = [&](uint32_t depth) {
+    EndpointSpec spec = on_topic("/service", keep_last(depth));
+    spec.role = EndpointRole::reply;
+    return f.process->create_subscription(spec);
+  };
+  std::vector<std::unique_ptr<Subscription>> bystanders;
+  for (size_t i = 0; i < bystander_count; ++i) {
+    bystanders.push_back(client(1));
+  }
+  const auto deep = client(many);
+  const auto late = client(1);
+  EndpointSpec spec = on_topic("/service", keep_last(1));
+  spec.role = EndpointRole::reply;
+  const auto server = f.process->create_publisher(spec);
+  for (int64_t number = 1; number <= many; ++number) {
+    server->publish(server->draft(8), 8, number, {deep->gid(), number});
+  }
+  server->publish(server->draft(8), 8, many + 1, {late->gid(), 1});
+  const auto resync_of = [&](const Subscription & subscription) -> std::atomic<uint32_t> & {
+    return f.inspection.header_of(subscription).resync;
+  };
+  for (const auto * each : {deep.get(), late.get(), bystanders.front().get()}) {
+    resync_of(*each).store(0);
+  }
+  Registry & registry = f.inspection.registry();
+  const Registry::Lock lock(registry);
+  size_t turns = 0;
+  for (bool closed = false; !closed; ++turns) {
+    Turn turn;
+    const auto slot = static_cast<uint32_t>(endpoint_in(server->gid()));
+    closed = closing::close_some(registry, slot, false, turn);
+  }
+  constexpr size_t records_in_a_turn = Turn::steps * Turn::records_in_a_step;
+  CHECK(turns > bystander_count * (many / records_in_a_turn));
+  CHECK(resync_of(*deep) == 1);
+  CHECK(resync_of(*late) == 1);
+  CHECK(resync_of(*bystanders.front()) == 0);
+}
+
 TEST_CASE("a subscription with many publishers is freed in turns") {
   Fixture f;
   const Standstill no_other_sweeper(f.platform, 1);

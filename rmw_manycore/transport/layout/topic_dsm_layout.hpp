@@ -88,6 +88,9 @@ struct TopicDsmHeader {
   uint32_t process;           ///< slot of the publisher's process
   uint32_t free_reader_from;  ///< no reader below this index is free; under the registry lock
   Gid gid;
+  /// Closing: descriptors below this index hold no reply to reader `closed_before`; under the
+  /// registry lock.
+  uint32_t looked_before;
 
   /// Written by the publisher for each message, read by all readers.
   alignas(64) std::atomic<uint64_t> last;  ///< highest record number published
@@ -110,7 +113,7 @@ struct TopicDsmHeader {
   /// Sweeping: readers below this index have been checked; under the registry lock.
   uint32_t swept_before;
 };
-static_assert(sizeof(TopicDsmHeader) == 1024);
+static_assert(sizeof(TopicDsmHeader) == 1024 && offsetof(TopicDsmHeader, looked_before) == 56);
 static_assert(std::is_standard_layout_v<TopicDsmHeader>);
 
 }  // namespace manycore

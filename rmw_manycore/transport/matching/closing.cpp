@@ -66,17 +66,37 @@ bool close_some_of_subscription(Registry & registry, EndpointEntry & entry, Turn
 
 /// Hints of the last records may not have been pushed (`died`) or may have been displaced. A reader
 /// with undelivered records is set to resync, so that the topic DSM does not wait for it forever.
-void notify_of_end(
-  Registry & registry, const EndpointEntry & publisher, const OrphanReader & reader, bool died) {
+/// False if the turn ended before the reader was notified.
+bool notify_of_end(
+  Registry & registry, const EndpointEntry & publisher, const OrphanReader & reader, bool died,
+  Turn & turn) {
+  const std::optional<bool> has_some = may_have_undelivered(reader, turn);
+  if (!has_some) {
+    return false;
+  }
   EndpointEntry & subscription = registry.endpoints()[reader.endpoint_slot];
   if (died) {
     note_death(publisher, subscription);
   }
   count_unmatched(registry, subscription);
-  if (has_undelivered(reader)) {
+  if (*has_some) {
     reader.subscription.resync.store(1, std::memory_order_seq_cst);
     notify_watchers(registry, reader.subscription);
   }
+  turn.spend(steps_of_a_match);
+  return true;
+}
+
+/// Notifies the reader of an entry, if there is one. False if the turn ended before that.
+bool notify_entry_of_end(
+  Registry & registry, const EndpointEntry & publisher, const Cluster & cluster,
+  TopicDsmHeader & dsm, const ReaderEntry & entry, bool died, Turn & turn) {
+  if (entry.active.load(std::memory_order_acquire) == 0) {
+    return true;
+  }
+  const std::optional<OrphanReader> reader = orphan_reader(registry, cluster, dsm, entry);
+  return !reader || !registry.endpoints().is_live(reader->endpoint_slot) ||
+         notify_of_end(registry, publisher, *reader, died, turn);
 }
 
 /// Notifies readers until the turn is over; true when all are notified. `closed_before` advances
@@ -97,22 +117,18 @@ bool close_some_of_publisher(Registry & registry, EndpointEntry & entry, bool di
   bool stopped = false;
   visit_reader_table(
     *cluster, *dsm,
-    [&](ReaderEntry & reader_entry, uint32_t index) {
+    [&](const ReaderEntry & reader_entry, uint32_t index) {
       stopped = turn.is_over();
       if (stopped) {
         return true;
       }
       turn.spend(steps_of_an_entry);
-      if (reader_entry.active.load(std::memory_order_acquire) != 0) {
-        const std::optional<OrphanReader> reader =
-          orphan_reader(registry, *cluster, *dsm, reader_entry);
-        if (reader && registry.endpoints().is_live(reader->endpoint_slot)) {
-          notify_of_end(registry, entry, *reader, died);
-        }
-        turn.spend(steps_of_a_match);
+      stopped = !notify_entry_of_end(registry, entry, *cluster, *dsm, reader_entry, died, turn);
+      if (!stopped) {
+        dsm->looked_before = 0;  // first: the search for the next reader starts anew
+        dsm->closed_before = index + 1;
       }
-      dsm->closed_before = index + 1;
-      return false;
+      return stopped;
     },
     dsm->closed_before);
   if (!stopped) {

@@ -14,25 +14,39 @@ namespace {
 
 constexpr uint32_t processes_in_a_step = 16;
 
+/// Calls `visit(RecordDescriptor &, index)` for each descriptor of open generations from index
+/// `from` on, until it returns true. Indices continue from one generation to the next.
+template<typename Visit>
+void visit_descriptors(const Cluster & cluster, TopicDsmHeader & dsm, uint32_t from, Visit visit) {
+  uint32_t begin = 0;
+  for (GenerationEntry & generation : dsm.generations) {
+    const uint32_t count = generation.descriptor_count.load();
+    auto * const descriptors = cluster.find<RecordDescriptor>(
+      generation.offset.load(), uint64_t{count} * sizeof(RecordDescriptor));
+    if (generation.first.load() == 0 || descriptors == nullptr) {
+      continue;
+    }
+    for (uint32_t i = from > begin ? from - begin : 0; i < count; ++i) {
+      if (visit(descriptors[i], begin + i)) {
+        return;
+      }
+    }
+    begin += count;
+  }
+}
+
 /// Calls `visit(RecordDescriptor &, number)` for each record above `taken`, until it returns true.
 template<typename Visit>
 void visit_records_above(
   uint64_t taken, const Cluster & cluster, TopicDsmHeader & dsm, Visit visit) {
   const uint64_t last = dsm.last.load(std::memory_order_acquire);
-  for (GenerationEntry & generation : dsm.generations) {
-    const uint32_t count = generation.descriptor_count.load();
-    auto * const descriptors = cluster.find<RecordDescriptor>(
-      generation.offset.load(), uint64_t{count} * sizeof(RecordDescriptor));
-    if (taken >= last || generation.first.load() == 0 || descriptors == nullptr) {
-      continue;
-    }
-    for (uint32_t i = 0; i < count; ++i) {
-      const uint64_t number = descriptors[i].number.load(std::memory_order_acquire);
-      if (number > taken && number <= last && visit(descriptors[i], number)) {
-        return;
-      }
-    }
+  if (taken >= last) {
+    return;
   }
+  visit_descriptors(cluster, dsm, 0, [&](RecordDescriptor & record, uint32_t) {
+    const uint64_t number = record.number.load(std::memory_order_acquire);
+    return number > taken && number <= last && visit(record, number);
+  });
 }
 
 /// Calls `visit(number, source_timestamp_ns)` for each record that a source has not taken, in no
@@ -65,6 +79,19 @@ bool has_movers(Registry & registry, uint32_t cluster) {
     }
   }
   return false;
+}
+
+bool is_of_replies(const TopicDsmHeader & dsm) {
+  return static_cast<EndpointRole>(dsm.role) == EndpointRole::reply;
+}
+
+/// Replies are for the client that asked, unless their hint was displaced; other records are for
+/// all.
+bool is_for(const OrphanReader & reader, const RecordDescriptor & record, uint64_t number) {
+  const uint32_t incarnation = reader.source.incarnation.load(std::memory_order_relaxed);
+  return !is_of_replies(reader.dsm) ||
+         (record.correlation.client == reader.endpoint.gid &&
+          !Displaced::covers(reader.source.displaced, incarnation, number));
 }
 
 /// Empty where the reader is in the publisher's own cluster.
@@ -133,16 +160,39 @@ uint32_t count_newer_than(
 }
 
 bool has_undelivered(const OrphanReader & reader) {
-  const bool of_replies = static_cast<EndpointRole>(reader.dsm.role) == EndpointRole::reply;
-  const uint32_t incarnation = reader.source.incarnation.load(std::memory_order_relaxed);
   bool found = false;
   visit_records_above(
     reader.source.taken.load(std::memory_order_acquire), reader.cluster, reader.dsm,
-    [&](RecordDescriptor & record, uint64_t number) {
-      found = !of_replies || (record.correlation.client == reader.endpoint.gid &&
-                              !Displaced::covers(reader.source.displaced, incarnation, number));
-      return found;
+    [&](const RecordDescriptor & record, uint64_t number) {
+      return found = is_for(reader, record, number);
     });
+  return found;
+}
+
+/// Other records than replies are for all readers, so the newest one is not taken if `taken` is
+/// less than `last`. A server may have answered any of its clients last, and has one reader for
+/// each: the search for replies goes on in the next turn.
+std::optional<bool> may_have_undelivered(const OrphanReader & reader, Turn & turn) {
+  const uint64_t taken = reader.source.taken.load(std::memory_order_acquire);
+  const bool is_behind = taken < reader.dsm.last.load(std::memory_order_acquire);
+  if (!is_behind || !is_of_replies(reader.dsm)) {
+    return is_behind;
+  }
+  std::optional<bool> found = false;
+  const auto visit = [&](const RecordDescriptor & record, uint32_t index) {
+    if (index % Turn::records_in_a_step == 0) {
+      if (turn.is_over()) {
+        reader.dsm.looked_before = index;
+        found.reset();
+        return true;
+      }
+      turn.spend(1);
+    }
+    const uint64_t number = record.number.load(std::memory_order_acquire);
+    found = number > taken && is_for(reader, record, number);
+    return *found;
+  };
+  visit_descriptors(reader.cluster, reader.dsm, reader.dsm.looked_before, visit);
   return found;
 }
 
@@ -173,8 +223,7 @@ bool has_arrived(Registry & registry, const OrphanReader & reader) {
 void count_undelivered(Registry & registry, const OrphanReader & reader) {
   const LastPublished published = last_published(reader.dsm);
   const uint64_t accounted = reader.source.accounted.load(std::memory_order_acquire);
-  const bool of_replies = static_cast<EndpointRole>(reader.dsm.role) == EndpointRole::reply;
-  if (of_replies || !published.exact || published.sequence <= accounted) {
+  if (is_of_replies(reader.dsm) || !published.exact || published.sequence <= accounted) {
     return;
   }
   registry.endpoints()[reader.endpoint_slot].counters.lost.fetch_add(

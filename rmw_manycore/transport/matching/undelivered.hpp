@@ -51,6 +51,11 @@ uint64_t records_to_look_at(TopicDsmHeader & dsm, const SourceEntry & source);
 /// own count, unless their hint was displaced.
 bool has_undelivered(const OrphanReader & reader);
 
+/// As has_undelivered(), without a search if the topic DSM holds no replies: then also true if the
+/// records have expired. Nothing if the turn ended before the answer was found: ask for the same
+/// reader in the next turn, which continues at `looked_before`.
+std::optional<bool> may_have_undelivered(const OrphanReader & reader, Turn & turn);
+
 /// True if the reader's session has no mover any more, nor a process that starts one: the last
 /// process of the publisher's cluster has gone.
 bool is_abandoned(Registry & registry, const OrphanReader & reader, Turn & turn);
