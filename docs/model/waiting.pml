@@ -6,6 +6,11 @@
  * Follows WakeWord::notify, Watchers, Waiters::forget_this_thread and Waiter::wait (mode block),
  * with two threads that share one wake word, each waiting for its own entity, and one notifier per
  * entity. The model relies neither on fences inside the kernel nor on spurious wake-ups.
+ * GRAPH=1: the entities are those of which the notifier first looks whether any thread of the
+ * process has ever watched one (Registry::graph_changed, Waiters::watch_graph).
+ *
+ * RUN GRAPH=0
+ * RUN GRAPH=1
  *
  * BUG 1: no fence between epoch and the load of sleepers
  * BUG 2: no fence between sleepers and the comparison of the epoch
@@ -22,19 +27,24 @@
  * BUG 13: watchers loaded before the hint is pushed
  * BUG 14: a thread forgets what another thread with the same word waits for
  * BUG 15: watchers not added again after they were forgotten
+ * BUG 16 GRAPH=1: process marked as watching only after the entities were checked
+ * BUG 17 GRAPH=1: mark loaded before the hint is pushed
+ * BUG 18 GRAPH=1: a thread that forgets what it waits for takes the mark off its process
  */
 #define EPOCH 0
 #define SLEEPERS 1
 #define HINT(i) (2 + (i))
 #define WATCHERS(i) (4 + (i))   /* of entity i: whether they hold the word */
-#define WORDS 6
+#define MARK 6                  /* whether the process has ever watched */
+#define WORDS 7
 #define PROCESSES 4
 
 #define NOTIFIER(i) (i)
 #define WAITER(i) (2 + (i))
 #define MESSAGES 2
 /* A counter that is not changed by a locked instruction can count for one process only. */
-#define PAIRS (BUG == 1 || BUG == 2 || BUG == 10 || BUG == 11 || BUG == 12 || BUG == 13 -> 1 : 2)
+#define PAIRS (BUG == 1 || BUG == 2 || BUG == 10 || BUG == 11 || BUG == 12 || BUG == 13 || \
+               BUG == 16 || BUG == 17 -> 1 : 2)
 
 #include "tso.pml"
 
@@ -87,17 +97,28 @@ inline notify_watchers(p, i) {
   fi
 }
 
+inline notify_marked(p, i) {
+#if GRAPH
+  if
+  :: load(p, MARK) != 0 -> notify_watchers(p, i)
+  :: load(p, MARK) == 0
+  fi
+#else
+  notify_watchers(p, i)
+#endif
+}
+
 proctype Notifier(byte i) {
   byte counted, message, next;
   do
   :: message < MESSAGES ->
      message++;
 #if BUG == 6
-     notify_watchers(NOTIFIER(i), i);
+     notify_marked(NOTIFIER(i), i);
      store_seq_cst(NOTIFIER(i), HINT(i), message)
 #elif BUG == 10
      store_release(NOTIFIER(i), HINT(i), message);
-     notify_watchers(NOTIFIER(i), i)
+     notify_marked(NOTIFIER(i), i)
 #elif BUG == 13
      if
      :: load(NOTIFIER(i), WATCHERS(i)) != 0 ->
@@ -105,9 +126,16 @@ proctype Notifier(byte i) {
         notify(NOTIFIER(i))
      :: load(NOTIFIER(i), WATCHERS(i)) == 0 -> store_seq_cst(NOTIFIER(i), HINT(i), message)
      fi
+#elif BUG == 17
+     if
+     :: load(NOTIFIER(i), MARK) != 0 ->
+        store_seq_cst(NOTIFIER(i), HINT(i), message);
+        notify_watchers(NOTIFIER(i), i)
+     :: load(NOTIFIER(i), MARK) == 0 -> store_seq_cst(NOTIFIER(i), HINT(i), message)
+     fi
 #else
      store_seq_cst(NOTIFIER(i), HINT(i), message);
-     notify_watchers(NOTIFIER(i), i)
+     notify_marked(NOTIFIER(i), i)
 #endif
   :: message == MESSAGES -> break
   od
@@ -154,7 +182,18 @@ inline sleep(p, i) {
 #endif
 }
 
+/* Sticky, so that waiting again costs one load. */
+inline mark(p) {
+  if
+  :: GRAPH && load(p, MARK) == 0 -> store_seq_cst(p, MARK, 1)
+  :: !GRAPH || load(p, MARK) != 0
+  fi
+}
+
 inline watch(p, i) {
+#if BUG != 16
+  mark(p);
+#endif
   if
   :: load(p, WATCHERS(i)) == 0 ->
 #if BUG == 11
@@ -172,6 +211,8 @@ inline forget(p, i) {
   store_seq_cst(p, WATCHERS(i), 0);
 #if BUG == 14
   store_seq_cst(p, WATCHERS(1 - (i)), 0);
+#elif BUG == 18
+  store_seq_cst(p, MARK, 0);
 #endif
 #if BUG != 15
   watch(p, i)
@@ -204,7 +245,11 @@ proctype WaitingThread(byte i) {
      do
      :: seen = load(WAITER(i), EPOCH);
         if
-        :: load(WAITER(i), HINT(i)) == taken -> sleep(WAITER(i), i)
+        :: load(WAITER(i), HINT(i)) == taken ->
+#if BUG == 16
+           mark(WAITER(i));
+#endif
+           sleep(WAITER(i), i)
         :: else -> break
         fi;
         if

@@ -100,7 +100,8 @@ Process::Impl::Impl(const Placement & placement_, JoinOnly)
 
 /// Delegates, so that ~Impl() leaves the platform if the rest fails.
 Process::Impl::Impl(const Placement & placement_) : Impl(placement_, JoinOnly{}) {
-  waiters = std::make_unique<Waiters>(registry->processes()[slot].wake, placement.wait_mode);
+  waiters = std::make_unique<Waiters>(
+    registry->header().graph_watchers, slot, registry->processes()[slot].wake, placement.wait_mode);
   graph = std::make_unique<Graph>(*registry);
   watcher = std::make_unique<ReceiveThreadWatcher>(*registry, placement.cluster);
   registry->tracer().follow(
@@ -145,6 +146,7 @@ uint32_t Process::Impl::take_process_slot() {
   std::memset(entry.label, 0, sizeof entry.label);
   std::strncpy(entry.label, placement.label.c_str(), sizeof entry.label - 1);
   entry.wake.reset();
+  registry->header().graph_watchers.remove(taken);
   attach(taken);
   processes.publish(taken);
   membership.emplace(*registry, entry.slot);

@@ -172,10 +172,10 @@ TEST_CASE("a forgotten entity does not wake the thread any more") {
   Waiter & own = f.process->waiters().of_this_thread();
   const uint32_t word = Waiters::word_of_this_thread();
   for (Watchers * const watchers :
-       {&first.watchers(), &second.watchers(), &f.process->waiters().graph_watchers(),
-        &f.process->waiters().event_watchers()}) {
+       {&first.watchers(), &second.watchers(), &f.process->waiters().event_watchers()}) {
     watchers->add(word);
   }
+  f.process->waiters().watch_graph(word);
   f.process->waiters().forget_this_thread();
   second.watchers().add(word);
   const auto unread = f.process->create_publisher(on_topic(Fixture::topic(0), keep_last(10)));
@@ -187,6 +187,42 @@ TEST_CASE("a forgotten entity does not wake the thread any more") {
   publish(*awaited, 1);
   CHECK(own.epoch() == seen + 1);
   CHECK(other.wake_ups() == 1);
+}
+
+TEST_CASE("a change of the graph looks at processes that have ever watched it, and no others") {
+  Fixture f(0);
+  Inspection inspection(f.platform);
+  RegistryHeader & header = inspection.registry().header();
+  Table<ProcessEntry> & processes = inspection.registry().processes();
+  WaitingThread thread(*f.process, {});
+  const auto change_graph = [&] { f.process->remove_node(f.process->add_node("node", "/", "/")); };
+  CHECK_FALSE(header.graph_watchers.contains(0));
+  processes[0].wake.graph.add(thread.word());  // without its process
+  change_graph();
+  CHECK(thread.wake_ups() == 0);
+  f.process->waiters().watch_graph(thread.word());
+  CHECK(header.graph_watchers.contains(0));
+  change_graph();
+  CHECK(thread.wake_ups() == 2);
+  processes[0].wake.graph.remove(thread.word());
+  change_graph();
+  CHECK(thread.wake_ups() == 0);
+  CHECK(header.graph_watchers.contains(0));  // another thread may wait
+}
+
+TEST_CASE("a slot that is given back, or taken anew, does not watch the graph") {
+  Fixture f(0);
+  Inspection inspection(f.platform);
+  GraphWatchers & watchers = inspection.registry().header().graph_watchers;
+  {
+    Node watching(f.platform, 1);
+    watchers.add(1);
+  }
+  wait_until("the node has left", [&] { return inspection.live_processes() == 1; });
+  CHECK_FALSE(watchers.contains(1));
+  watchers.add(1);  // a process that was taken for dead does so
+  const Node next(f.platform, 1);
+  CHECK_FALSE(watchers.contains(1));
 }
 
 TEST_CASE("threads share words when there are too few, and then nothing is forgotten") {

@@ -103,7 +103,7 @@ public:
     return with_node_names(member()->graph().endpoints_of(topic), nodes);
   }
   uint64_t graph_generation() const { return member()->graph().generation(); }
-  void watch_graph() { member()->waiters().graph_watchers().add(common_word); }
+  void watch_graph() { member()->waiters().watch_graph(common_word); }
   uint32_t epoch() const { return member()->waiters().common().epoch(); }
   bool wait(uint32_t seen, std::optional<double> timeout_s) {
     std::optional<int64_t> deadline_ns;

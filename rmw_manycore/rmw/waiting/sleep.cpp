@@ -15,7 +15,7 @@ void Sleep::watch() noexcept {
   waited_.for_each_place([&](const Place & place) { place.watchers.add(word); });
   waited_.conditions.for_each([&](const GuardCondition & condition) {
     if (condition.source() == GuardCondition::Source::graph) {
-      condition.waiters().graph_watchers().add(word);
+      condition.waiters().watch_graph(word);
     }
   });
 }

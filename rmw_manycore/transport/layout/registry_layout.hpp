@@ -6,6 +6,7 @@
 #include "platform/robust_mutex.hpp"
 #include "transport/layout/endpoint.hpp"
 #include "transport/layout/segment_layout.hpp"
+#include "transport/layout/slot_set.hpp"
 #include "transport/layout/trace_layout.hpp"
 #include "transport/layout/transfer_layout.hpp"
 #include "transport/layout/wake_words.hpp"
@@ -172,6 +173,9 @@ struct Profile {
   int32_t host_cpu_of_receive_thread[max_clusters];  ///< index cluster - 1; -1 = not pinned
 };
 
+using GraphWatchers = SlotSet<process_capacity>;
+static_assert(sizeof(GraphWatchers) == 128);
+
 /// Head of the registry; its tables follow at the offsets below.
 struct RegistryHeader {
   SegmentHeader segment;
@@ -191,6 +195,10 @@ struct RegistryHeader {
   uint32_t sweep_from;    ///< endpoint slot at which the next sweep starts
   uint32_t last_order;    ///< EndpointEntry::order of the youngest endpoint
   TraceControl trace;
+  /// Processes of which a thread has ever watched the graph. A thread adds its process before it
+  /// adds its wake word to WakeWords::graph; the slot is removed when it is given back and when it
+  /// is taken anew. Model: docs/model/waiting.pml.
+  GraphWatchers graph_watchers;
   std::atomic<uint64_t> death_count;  ///< incremented after the entry in `deaths` is written
   Death deaths[kept_deaths];  ///< ring; the next death goes to index death_count mod kept_deaths
   std::atomic<uint32_t> topic_buckets[topic_bucket_count];

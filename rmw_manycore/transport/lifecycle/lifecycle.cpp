@@ -286,6 +286,7 @@ bool NodesOfProcess::remove_some(Turn & turn) {
 
 void leave_registry(Registry & registry, uint32_t process) {
   discharge(registry, process);
+  registry.header().graph_watchers.remove(process);
   registry.processes().give_back(process);
 }
 

@@ -347,14 +347,16 @@ void Registry::for_each_of_bucket(
   }
 }
 
+/// Looks at the processes that have watched the graph, not at all processes: most never do. See
+/// Waiters::watch_graph() for the order.
 void Registry::graph_changed() noexcept {
   header().graph_generation.fetch_add(1, std::memory_order_seq_cst);
-  for (uint32_t slot = 0; slot < processes_.high_water(); ++slot) {
-    ProcessEntry & process = processes_[slot];
+  header().graph_watchers.for_each([this](uint32_t slot) {
     if (processes_.is_live(slot)) {
-      process.wake.notify(process.wake.graph);
+      WakeWords & wake = processes_[slot].wake;
+      wake.notify(wake.graph);
     }
-  }
+  });
 }
 
 }  // namespace manycore

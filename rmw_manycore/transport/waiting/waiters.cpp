@@ -7,13 +7,22 @@ namespace manycore {
 
 static_assert(thread_numbers + 1 == wake_words_per_process);
 
-Waiters::Waiters(WakeWords & words, WaitMode mode) : words_(words) {
+Waiters::Waiters(GraphWatchers & graph_watchers, uint32_t process, WakeWords & words, WaitMode mode)
+: graph_watchers_(graph_watchers), process_(process), words_(words) {
   for (WakeWord & word : words.words) {
     waiters_.emplace_back(word, mode);
   }
 }
 
 uint32_t Waiters::word_of_this_thread() noexcept { return 1 + thread_number(); }
+
+/// No wake-up is lost: both are added, seq_cst, before the thread looks at the graph. A notifier
+/// changes the graph before it reads either, so at least one of them sees the other. The process
+/// stays a watcher, as another of its threads may wait.
+void Waiters::watch_graph(uint32_t word) noexcept {
+  graph_watchers_.add(process_);
+  words_.graph.add(word);
+}
 
 void Waiters::notify(const Watchers & watchers) noexcept {
   watchers.read().for_each([this](uint32_t word) { waiters_[word].notify(); });

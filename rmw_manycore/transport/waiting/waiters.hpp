@@ -6,7 +6,7 @@
 #include <unordered_set>
 
 #include "platform/fork_side.hpp"
-#include "transport/layout/wake_words.hpp"
+#include "transport/layout/registry_layout.hpp"
 #include "transport/waiting/waiter.hpp"
 
 namespace manycore {
@@ -15,7 +15,8 @@ namespace manycore {
 /// that wait for it. Thread-safe.
 class Waiters {
 public:
-  Waiters(WakeWords & words, WaitMode mode);
+  /// The waiters of the process in slot `process`, whose wake words are `words`.
+  Waiters(GraphWatchers & graph_watchers, uint32_t process, WakeWords & words, WaitMode mode);
   Waiters(const Waiters &) = delete;
   Waiters & operator=(const Waiters &) = delete;
 
@@ -26,7 +27,8 @@ public:
   /// Word to add to the Watchers of everything that this thread waits for.
   static uint32_t word_of_this_thread() noexcept;
 
-  Watchers & graph_watchers() noexcept { return words_.graph; }
+  /// Wakes `word` at each change of the graph.
+  void watch_graph(uint32_t word) noexcept;
   Watchers & event_watchers() noexcept { return words_.endpoint_events; }
 
   void notify(const Watchers & watchers) noexcept;
@@ -39,6 +41,8 @@ public:
 private:
   friend class Watched;
 
+  GraphWatchers & graph_watchers_;
+  const uint32_t process_;  ///< slot
   WakeWords & words_;
   /// In a child of fork() the mutex may be locked forever.
   const ForkSide side_;
