@@ -17,6 +17,7 @@
 
 #include "messages.hpp"
 #include "node_role.hpp"
+#include "transport/layout/topic_dsm_layout.hpp"
 #include "transport/lifecycle/configurator.hpp"
 #include "transport/lifecycle/lifecycle.hpp"
 #include "waiting.hpp"
@@ -110,6 +111,41 @@ TEST_CASE("one eMCOS message per record and cluster, one hint per subscription t
   other.tell("take 101 101 1");
   wait_until("all hints", [&] { return f.far_cluster().notifications - notifications >= 202; });
   CHECK(f.far_cluster().notifications - notifications == 202);
+}
+
+TEST_CASE("a message for one subscription is pushed to the entry that it names, if that fits") {
+  Fixture f;
+  Node other(f.platform, 2);
+  other.tell("subscription /x 30000");
+  wait_until("a match", [&] { return f.publisher->matched().current == 2; });
+  f.platform.receive_thread(2);
+  f.publish_numbers(1, 1);
+  wait_until("both hints", [&] { return f.far_cluster().notifications == 2; });
+  const uint32_t slot = f.inspection.slot_of(f.publisher->gid());
+  Registry & registry = f.inspection.registry();
+  const EndpointEntry & publisher = registry.endpoints()[slot];
+  auto & dsm = *registry.clusters().at(1).find<TopicDsmHeader>(publisher.block.offset());
+  EmcosMessage message{};
+  message.kind = EmcosMessageKind::publish;
+  message.topic_dsm = publisher.block;
+  message.endpoint = slot;
+  message.incarnation = publisher.slot.incarnation;
+  message.number = 1;
+  message.target = dsm.readers[1].endpoint;
+  const auto hints_of = [&](uint32_t target_index) {
+    const uint64_t messages = f.far_cluster().messages;
+    const uint64_t notifications = f.far_cluster().notifications;
+    message.target_index = target_index;
+    REQUIRE(registry.clusters().at(2).send(message));
+    wait_until("the message", [&] { return f.far_cluster().messages > messages; });
+    return f.far_cluster().notifications - notifications;
+  };
+  for (const uint32_t elsewhere : {0u, 5u, 1000u, nothing}) {
+    CHECK(hints_of(elsewhere) == 1);
+  }
+  dsm.readers[0].endpoint.store(message.target);  // a walk would push to both
+  CHECK(hints_of(1) == 1);
+  CHECK(hints_of(5) == 2);
 }
 
 TEST_CASE("inside a cluster no eMCOS message is sent") {

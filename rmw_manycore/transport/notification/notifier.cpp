@@ -85,6 +85,7 @@ void announce(
   message.number = announcement.number;
   // Names the client by its slot: the receive thread does not compare gids.
   message.target = is_targeted ? readers.begin()->endpoint : nothing;
+  message.target_index = is_targeted ? readers.begin()->index : 0;
   for (; others != 0; others &= others - 1) {
     const uint32_t id = static_cast<uint32_t>(__builtin_ctzll(others)) + 1;
     Cluster * const cluster = registry.clusters().find(id);

@@ -12,6 +12,17 @@ namespace {
 
 constexpr uint64_t steps_of_a_subscription = 3;
 
+/// Entry of the only reader to notify, or nullptr if it is not where the message says: the table
+/// changed since the message was sent, or there are several readers.
+const ReaderEntry * target_of(
+  const Cluster & source, TopicDsmHeader & dsm, const EmcosMessage & message) noexcept {
+  const ReaderEntry * const entry =
+    message.target == nothing ? nullptr : find_reader(source, dsm, message.target_index);
+  const bool is_there = entry != nullptr && entry->active.load(std::memory_order_acquire) != 0 &&
+                        entry->endpoint.load(std::memory_order_acquire) == message.target;
+  return is_there ? entry : nullptr;
+}
+
 }  // namespace
 
 ReceiveThread::ReceiveThread(Registry & registry, uint32_t cluster)
@@ -102,26 +113,34 @@ void ReceiveThread::forward(const EmcosMessage & message) noexcept {
 bool ReceiveThread::push_to_readers(
   const Cluster & source, TopicDsmHeader & dsm, const EmcosMessage & message) noexcept {
   const uint64_t generation = dsm.match_generation.load(std::memory_order_seq_cst);
+  if (const ReaderEntry * const target = target_of(source, dsm, message)) {
+    return push_to_reader(*target, dsm, generation, message);
+  }
   bool unchanged = true;
-  visit_reader_table(source, dsm, [&](ReaderEntry & entry, uint32_t) {
-    if (entry.active.load(std::memory_order_acquire) == 0) {
-      return false;
-    }
-    // Acquire: a field of the entry's next reader implies that `match_generation` is incremented.
-    const uint32_t endpoint = entry.endpoint.load(std::memory_order_acquire);
-    if (message.target != nothing && message.target != endpoint) {
-      return false;
-    }
-    const SegmentRef subscription{entry.subscription.load(std::memory_order_acquire)};
-    const Hint hint{
-      entry.source_index.load(std::memory_order_acquire),
-      entry.source_incarnation.load(std::memory_order_acquire), message.number};
-    unchanged = dsm.match_generation.load(std::memory_order_seq_cst) == generation;
-    if (unchanged && subscription.cluster() == cluster_.id()) {
-      push(subscription, hint, message);
-    }
+  visit_reader_table(source, dsm, [&](const ReaderEntry & entry, uint32_t) {
+    unchanged = entry.active.load(std::memory_order_acquire) == 0 ||
+                push_to_reader(entry, dsm, generation, message);
     return !unchanged;
   });
+  return unchanged;
+}
+
+bool ReceiveThread::push_to_reader(
+  const ReaderEntry & entry, const TopicDsmHeader & dsm, uint64_t generation,
+  const EmcosMessage & message) noexcept {
+  // Acquire: a field of the entry's next reader implies that `match_generation` is incremented.
+  const uint32_t endpoint = entry.endpoint.load(std::memory_order_acquire);
+  if (message.target != nothing && message.target != endpoint) {
+    return true;
+  }
+  const SegmentRef subscription{entry.subscription.load(std::memory_order_acquire)};
+  const Hint hint{
+    entry.source_index.load(std::memory_order_acquire),
+    entry.source_incarnation.load(std::memory_order_acquire), message.number};
+  const bool unchanged = dsm.match_generation.load(std::memory_order_seq_cst) == generation;
+  if (unchanged && subscription.cluster() == cluster_.id()) {
+    push(subscription, hint, message);
+  }
   return unchanged;
 }
 

@@ -35,6 +35,9 @@ private:
   void forward(const EmcosMessage & message) noexcept;
   bool push_to_readers(
     const Cluster & source, TopicDsmHeader & dsm, const EmcosMessage & message) noexcept;
+  bool push_to_reader(
+    const ReaderEntry & entry, const TopicDsmHeader & dsm, uint64_t generation,
+    const EmcosMessage & message) noexcept;
   void push(SegmentRef subscription, const Hint & hint, const EmcosMessage & message) noexcept;
   bool request_resync(uint32_t slot) noexcept;
   bool take_overflow() noexcept;

@@ -47,17 +47,25 @@ void ReaderList::throw_unresolved(const std::string & topic) const {
     "cannot publish on '" + topic + "': cannot reach a subscription: " + unresolved_->what());
 }
 
+void ReaderList::add(ReaderEntry & entry, uint32_t index) {
+  try {
+    readers_.push_back(resolve(entry));
+    readers_.back().index = index;
+  } catch (const Error & error) {
+    unresolved_ = error;
+  }
+}
+
 void ReaderList::rebuild() {
   do {
     seen_ = dsm_.match_generation.load(std::memory_order_seq_cst);
     readers_.clear();
     unresolved_.reset();
-    for_each_reader(cluster_, dsm_, [&](ReaderEntry & entry) {
-      try {
-        readers_.push_back(resolve(entry));
-      } catch (const Error & error) {
-        unresolved_ = error;
+    visit_reader_table(cluster_, dsm_, [&](ReaderEntry & entry, uint32_t index) {
+      if (entry.active.load(std::memory_order_acquire) != 0) {
+        add(entry, index);
       }
+      return false;
     });
   } while (dsm_.match_generation.load(std::memory_order_seq_cst) != seen_);
   if (unresolved_) {

@@ -19,6 +19,7 @@ struct Reader {
   WakeWords * wake = nullptr;
   uint32_t cluster = 0;
   uint32_t endpoint = 0;
+  uint32_t index = 0;  ///< in the reader table
   uint32_t source_index = 0;
   uint32_t source_incarnation = 0;
   bool reliable = false;
@@ -102,6 +103,7 @@ public:
 private:
   [[noreturn]] void throw_unresolved(const std::string & topic) const;
   void rebuild();
+  void add(ReaderEntry & entry, uint32_t index);
   /// Throws Error if the cluster cannot be mapped or the entry is invalid.
   Reader resolve(ReaderEntry & entry);
 

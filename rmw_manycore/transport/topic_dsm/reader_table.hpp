@@ -31,6 +31,13 @@ void visit_reader_table(
       [&](ReaderEntry & entry, uint32_t i) { return visit(entry, i + readers_in_header); });
 }
 
+/// Nullptr beyond the end of the table.
+inline ReaderEntry * find_reader(
+  const Cluster & cluster, TopicDsmHeader & dsm, uint32_t index) noexcept {
+  return index < readers_in_header ? &dsm.readers[index]
+                                   : further_readers(cluster, dsm).find(index - readers_in_header);
+}
+
 /// Index of an entry of this reader table; nothing for any other entry.
 inline std::optional<uint32_t> index_of_reader(
   const Cluster & cluster, TopicDsmHeader & dsm, const ReaderEntry & reader) noexcept {
