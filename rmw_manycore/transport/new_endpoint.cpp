@@ -54,6 +54,7 @@ uint32_t new_endpoint(
   entry.incompatible_policy.store(0);
   entry.asserted_ns.store(ManualLiveliness::never);
   entry.dead_publishers.store(0);
+  entry.spare.ref.store(0);
   return taken;
 }
 

@@ -30,6 +30,7 @@ constexpr const char * crowded_topic = "/crowded";
 constexpr size_t crowd = 100;          // more matches than one turn undoes
 constexpr size_t large_bytes = 5'000;  // requires the topic DSM to grow
 constexpr const char * sized_topic = "/sized";
+constexpr const char * moved_topic = "/moved";
 constexpr uint32_t sized_bytes = 300'000;  // freed in several pieces
 
 std::shared_ptr<Process> join(const std::string & platform) {
@@ -57,6 +58,18 @@ const Role creates("creates", [](Lines &, const Arguments & arguments) {
   process->remove_node(process->add_node("node", "/", "/"));
   process->create_publisher(on_topic(topic, transient_local(10)));
   process->create_subscription(on_topic(topic, transient_local(10)));
+  finish_steps();
+});
+
+/// A subscription and a publisher of a transferred topic, each of which makes a landing.
+const Role moves("moves", [](Lines &, const Arguments & arguments) {
+  Placement placement;
+  placement.platform = arguments.at(0);
+  placement.cluster = 2;
+  const auto process = Process::join(placement);
+  begin_steps();
+  process->create_subscription(on_topic(moved_topic, keep_last(1)));
+  process->create_publisher(on_topic(moved_topic, keep_last(1)));
   finish_steps();
 });
 
@@ -149,6 +162,18 @@ struct Fixture {
     }
   }
 
+  /// A publisher and a subscription of the topic that is transferred, and a process in cluster 2,
+  /// so that the cluster stays.
+  void move_topic() {
+    resident.emplace(platform, 2);
+    publishers.push_back(process->create_publisher(on_topic(moved_topic, keep_last(1))));
+    subscriptions.push_back(process->create_subscription(on_topic(moved_topic, keep_last(1))));
+  }
+
+  uint64_t used_bytes() {
+    return inspection.used_bytes(1) + (resident ? inspection.used_bytes(2) : 0);
+  }
+
   /// Dead nodes with both kinds of endpoints, not reaped by the receive thread.
   void leave_dead_nodes() {
     Node node(platform, 1);
@@ -164,8 +189,8 @@ struct Fixture {
       for (const auto & each : subscriptions) {
         take_all(*each);
       }
-      return inspection.live_processes() == 1 && inspection.closing_endpoints() == 0 &&
-             process->graph().nodes().empty();
+      return inspection.live_processes() == (resident ? 2 : 1) &&
+             inspection.closing_endpoints() == 0 && process->graph().nodes().empty();
     });
     inspection.wait_until_swept();
   }
@@ -173,6 +198,9 @@ struct Fixture {
   /// Messages of this fixture arrive, each once; those of other publishers are ignored.
   void check_that_it_goes_on() {
     ++number;
+    if (resident) {
+      resident->tell("begin_context");  // it ends if it hears nothing for long
+    }
     publish(*publisher, number);
     for (Subscription * const each : {subscription.get(), other.get()}) {
       std::optional<Payload> found;
@@ -198,7 +226,11 @@ struct Fixture {
   }
 
   TestPlatform platform;
-  Configurator configurator{platform.name(), small_profile(), {{sized_topic, 1, sized_bytes, 0}}};
+  Configurator configurator{
+    platform.name(),
+    small_profile(),
+    {{sized_topic, 1, sized_bytes, 0},
+     {moved_topic, 2, sized_bytes, 0, TransferSettings{Transfer::async}}}};
   std::shared_ptr<Process> process = platform.join(1);
   std::unique_ptr<Publisher> publisher =
     process->create_publisher(on_topic(topic, transient_local(2)));
@@ -208,6 +240,7 @@ struct Fixture {
     process->create_subscription(on_topic(topic, transient_local(10)));
   std::vector<std::unique_ptr<Publisher>> publishers;
   std::vector<std::unique_ptr<Subscription>> subscriptions;
+  std::optional<Node> resident;
   Inspection inspection{platform};
   uint64_t number = 0;
 };
@@ -247,6 +280,9 @@ void check_kills(const std::string & role) {
   if (role == "closes_many" || role == "sweeps_many") {
     f.crowd_topic(role == "closes_many");
   }
+  if (role == "moves") {
+    f.move_topic();
+  }
   f.check_that_it_goes_on();
   const uint64_t all = kill_after(f, role, UINT64_MAX);
   CHECK(all > 1000);
@@ -254,7 +290,7 @@ void check_kills(const std::string & role) {
   while (f.number < 2000) {
     f.check_that_it_goes_on();
   }
-  const uint64_t used = f.inspection.used_bytes();
+  const uint64_t used = f.used_bytes();
   for (uint64_t i = 1; i <= tries(); ++i) {
     const uint64_t instructions = all * i / (tries() + 1);
     CAPTURE(instructions);
@@ -263,7 +299,7 @@ void check_kills(const std::string & role) {
     f.wait_until_alone();
     f.check_that_it_goes_on();
     f.check_crowd();
-    CHECK(f.inspection.used_bytes() == used);
+    CHECK(f.used_bytes() == used);
   }
 }
 
@@ -277,6 +313,10 @@ TEST_CASE("killed at any instruction while it creates and closes endpoints") {
 
 TEST_CASE("killed at any instruction while it backs a large topic DSM, and gives it back") {
   check_kills("sizes");
+}
+
+TEST_CASE("killed at any instruction while it makes landings, and gives them back") {
+  check_kills("moves");
 }
 
 TEST_CASE("killed at any instruction while it publishes") { check_kills("publishes"); }

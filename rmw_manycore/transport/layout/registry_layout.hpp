@@ -129,11 +129,14 @@ struct EndpointEntry {
   std::atomic<uint32_t> dead_publishers;
   Transfer transfer;  ///< of the topic, from the topic table
   uint8_t reserved[3];
+  SpareLanding spare;
   EndpointCounters counters;
   char topic[name_bytes];
   char type[name_bytes];
 };
-static_assert(sizeof(EndpointEntry) == 760 && offsetof(EndpointEntry, topic_hash) == 40);
+static_assert(
+  sizeof(EndpointEntry) == 784 && offsetof(EndpointEntry, topic_hash) == 40 &&
+  offsetof(EndpointEntry, spare) == 192);
 
 /// One line of the topic table (ROS-lite2 Fig. 7).
 struct TopicEntry {

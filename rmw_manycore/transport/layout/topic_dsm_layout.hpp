@@ -28,6 +28,15 @@ static_assert(sizeof(RecordDescriptor) == 64);
 /// The SMEM of a generation is freed in pieces that begin at multiples of this size. Freeing a
 /// piece takes about 30 us.
 constexpr uint64_t freed_piece_bytes = 64 << 10;
+/// Offset at which the last piece of [begin, begin + bytes) begins.
+constexpr uint64_t last_piece_of(uint64_t begin, uint64_t bytes) {
+  const uint64_t piece = bytes == 0 ? 0 : (begin + bytes - 1) / freed_piece_bytes;
+  return piece * freed_piece_bytes > begin ? piece * freed_piece_bytes : begin;
+}
+/// Bytes that are left of [begin, begin + bytes) by `kept_pieces`; see GenerationEntry.
+constexpr uint64_t kept_bytes(uint64_t begin, uint64_t bytes, uint64_t kept_pieces) {
+  return kept_pieces == 0 ? bytes : kept_pieces * freed_piece_bytes - begin;
+}
 
 /// One allocation of descriptors followed by record data.
 struct GenerationEntry {
@@ -47,14 +56,16 @@ struct GenerationEntry {
     return offset.load(std::memory_order_relaxed) +
            uint64_t{descriptor_count.load(std::memory_order_relaxed)} * sizeof(RecordDescriptor);
   }
-  /// Bytes that the generation holds, starting at `offset`.
-  uint64_t extent_bytes() const noexcept {
-    const uint64_t kept = kept_pieces.load(std::memory_order_relaxed);
-    if (kept != 0) {
-      return kept * freed_piece_bytes - offset.load(std::memory_order_relaxed);
-    }
+  /// Bytes of the whole generation.
+  uint64_t whole_bytes() const noexcept {
     return uint64_t{descriptor_count.load(std::memory_order_relaxed)} * sizeof(RecordDescriptor) +
            data_bytes.load(std::memory_order_relaxed);
+  }
+  /// Bytes that the generation holds, starting at `offset`.
+  uint64_t extent_bytes() const noexcept {
+    return kept_bytes(
+      offset.load(std::memory_order_relaxed), whole_bytes(),
+      kept_pieces.load(std::memory_order_relaxed));
   }
 };
 static_assert(sizeof(GenerationEntry) == 32);

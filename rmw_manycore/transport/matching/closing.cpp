@@ -25,7 +25,7 @@ void count_unmatched(Registry & registry, EndpointEntry & entry) {
   notify_event_watchers(registry, entry.process);
 }
 
-void undo_match(Registry & registry, SourceEntry & source) {
+void undo_match(Registry & registry, SourceEntry & source, uint32_t receiver) {
   const SourceState state = source.state.load();
   const uint32_t publisher = source.topic_dsm_endpoint.load();
   if (
@@ -34,7 +34,7 @@ void undo_match(Registry & registry, SourceEntry & source) {
     count_unmatched(registry, registry.endpoints()[publisher]);
   }
   source.state.store(SourceState::revoked, std::memory_order_seq_cst);
-  detach_reader(registry, source);
+  detach_reader(registry, source, receiver);
 }
 
 /// Undoes matches until the turn is over; true when none is left. `closed_before` advances after
@@ -55,7 +55,7 @@ bool close_some_of_subscription(Registry & registry, EndpointEntry & entry, Turn
       }
       turn.spend(steps_of_an_entry);
       if (source.state.load() != SourceState::free) {
-        undo_match(registry, source);
+        undo_match(registry, source, entry.cluster);
         turn.spend(steps_of_a_match);
       }
       header->closed_before = index + 1;

@@ -5,6 +5,8 @@
 #include <optional>
 #include <utility>
 
+#include "transport/matching/detaching.hpp"
+#include "transport/matching/spare_landings.hpp"
 #include "transport/queue/source_table.hpp"
 #include "transport/registry/endpoint_blocks.hpp"
 #include "transport/topic_dsm/generation.hpp"
@@ -87,7 +89,7 @@ Progress revoke(
   closing::count_undelivered(registry, reader);
   // Remove the reader before the source entry can be reused: if this process dies in between, the
   // next sweep must not mistake a new match for this one.
-  free_reader_entry(reader.cluster, reader.dsm, entry);
+  remove_reader(reader.cluster, reader.dsm, entry);
   SubscriptionHeader & subscription = reader.subscription;
   subscription.free_source_from = std::min(subscription.free_source_from, reader.source_index);
   source.state.store(SourceState::free, std::memory_order_release);
@@ -120,9 +122,10 @@ bool revoke_up_to_last(
   return !stopped;
 }
 
-bool is_read(Registry & registry, const Cluster & cluster, TopicDsmHeader & dsm) {
+bool is_read(Registry & registry, const Cluster & cluster, TopicDsmHeader & dsm, Turn & turn) {
   bool found = false;
-  visit_reader_table(cluster, dsm, [&](const ReaderEntry & entry, uint32_t) {
+  visit_reader_table(cluster, dsm, [&](const ReaderEntry & entry, uint32_t index) {
+    turn.spend(index % free_readers_in_a_step == 0 ? 1 : 0);
     found = entry.active.load(std::memory_order_acquire) != 0 &&
             closing::orphan_reader(registry, cluster, dsm, entry);
     return found;
@@ -143,20 +146,13 @@ Progress revoke_some(
       return Progress::turn_over;
     }
     dsm.swept_before = 0;
-    if (!is_read(registry, cluster, dsm)) {
+    if (!is_read(registry, cluster, dsm, turn)) {
       return Progress::freed;
     }
     if (std::exchange(pass.began_first, true)) {
       return std::exchange(pass, {}).is_any_in_use ? Progress::in_use : Progress::kept;
     }
   }
-}
-
-/// Returns the steps that freeing so much SMEM and the memory behind it takes.
-uint64_t steps_of_freeing(uint64_t bytes) {
-  constexpr uint64_t steps_of_a_system_call = 20;
-  constexpr uint64_t bytes_in_a_step = 256;
-  return steps_of_a_system_call + bytes / bytes_in_a_step;
 }
 
 /// Frees blocks of a table, last block first, as the turn allows. Returns true when none is left.
@@ -167,7 +163,7 @@ bool free_some_of_table(Cluster & cluster, const EntryTable<Entry> & table, Turn
     if (bytes == 0) {
       return true;
     }
-    turn.spend(steps_of_freeing(bytes));
+    turn.spend_on_freeing(bytes);
   }
   return false;
 }
@@ -179,9 +175,22 @@ bool free_some_generations(Cluster & cluster, TopicDsmHeader & dsm, Turn & turn)
       if (turn.is_over()) {
         return false;
       }
-      turn.spend(steps_of_freeing(std::min(generation.extent_bytes(), freed_piece_bytes)));
+      turn.spend_on_freeing(std::min(generation.extent_bytes(), freed_piece_bytes));
       Generation::free_some(cluster, generation);
     }
+  }
+  return true;
+}
+
+/// Frees pieces of the retired landing in `receiver` as the turn allows. True when none is left.
+bool free_some_of_retired(
+  const Cluster & cluster, TopicDsmHeader & dsm, Cluster & receiver, Turn & turn) {
+  for (bool is_free = false; !is_free;) {
+    if (turn.is_over()) {
+      return false;
+    }
+    turn.spend_on_freeing(std::min(landing_bytes(dsm), freed_piece_bytes));
+    is_free = landings::free_piece_of_retired(cluster, dsm, receiver);
   }
   return true;
 }
@@ -189,19 +198,18 @@ bool free_some_generations(Cluster & cluster, TopicDsmHeader & dsm, Turn & turn)
 /// Before the generations, which say how large landings are. True when none is left.
 bool free_some_landings(
   Registry & registry, const Cluster & cluster, TopicDsmHeader & dsm, Turn & turn) {
-  while (!turn.is_over()) {
-    if (!landings::free_one(registry, cluster, dsm)) {
-      return true;
+  while (Cluster * const receiver = landings::retire_next(registry, cluster, dsm)) {
+    if (!free_some_of_retired(cluster, dsm, *receiver, turn)) {
+      return false;
     }
-    turn.spend(steps_of_freeing(landing_bytes(dsm)));
   }
-  return false;
+  return true;
 }
 
 /// Frees the head of an endpoint that holds no other memory. Clears the reference in the entry
 /// first: if this process dies in between, no repairer follows a reference to freed memory.
 void free_head(Cluster & cluster, EndpointEntry & entry, uint64_t bytes, Turn & turn) {
-  turn.spend(steps_of_freeing(bytes));
+  turn.spend_on_freeing(bytes);
   cluster.free(std::exchange(entry.block, SegmentRef{}).offset(), bytes);
 }
 
@@ -214,11 +222,24 @@ bool publisher_is_out(Registry & registry, const SourceEntry & source) {
          dsm->phase.load(std::memory_order_seq_cst) % 2 == 0;
 }
 
+/// Frees the landing of a publisher that the subscription was the last to read in its cluster. The
+/// publisher and all movers have been seen out of their phases since, so they find it no more.
+/// False if the turn ended before that.
+bool free_landing_of(
+  Registry & registry, Cluster & cluster, const SourceEntry & source, Turn & turn) {
+  TopicDsmHeader * const dsm =
+    source.state.load() == SourceState::free ? nullptr : topic_dsm_of(registry, source);
+  const Cluster * const publisher =
+    dsm == nullptr ? nullptr : registry.map_cluster(SegmentRef{source.topic_dsm.load()}.cluster());
+  return publisher == nullptr || !landings::has_retired(*publisher, *dsm, cluster.id()) ||
+         free_some_of_retired(*publisher, *dsm, cluster, turn);
+}
+
 /// Checks the publishers of the sources, continuing where the last turn of any process ended. A
 /// publisher seen outside its phase once stays outside this subscription: it cannot find it any
 /// more. `freed` when all were seen.
 Progress see_publishers_out(
-  Registry & registry, const Cluster & cluster, SubscriptionHeader & header, Turn & turn) {
+  Registry & registry, Cluster & cluster, SubscriptionHeader & header, Turn & turn) {
   Progress progress = Progress::freed;
   source_table(cluster, header).visit(header.swept_before, [&](SourceEntry & source, uint32_t i) {
     if (turn.is_over()) {
@@ -230,30 +251,11 @@ Progress see_publishers_out(
       progress = Progress::in_use;
       return true;
     }
-    header.swept_before = i + 1;
-    return false;
-  });
-  return progress;
-}
-
-/// Frees the landings of publishers that the subscription was the last to read in its cluster.
-/// A publisher that is seen out here finds its landing no more.
-Progress free_landings(Registry & registry, Cluster & cluster, SubscriptionHeader & header) {
-  Progress progress = Progress::freed;
-  visit_source_table(cluster, header, [&](SourceEntry & source, uint32_t) {
-    TopicDsmHeader * const dsm =
-      source.state.load() == SourceState::free ? nullptr : topic_dsm_of(registry, source);
-    const Cluster * const publisher =
-      dsm == nullptr ? nullptr
-                     : registry.map_cluster(SegmentRef{source.topic_dsm.load()}.cluster());
-    if (publisher == nullptr || !landings::has_retired(*publisher, *dsm, cluster.id())) {
-      return false;
-    }
-    if (!publisher_is_out(registry, source)) {
-      progress = Progress::in_use;
+    if (!free_landing_of(registry, cluster, source, turn)) {
+      progress = Progress::freed_some;
       return true;
     }
-    landings::free_retired(*publisher, *dsm, cluster);
+    header.swept_before = i + 1;
     return false;
   });
   return progress;
@@ -282,6 +284,7 @@ Progress sweep_publisher(
     entry.slot.state.store(SlotState::unreachable);
   }
   if (
+    !spare_landings::free_some(registry, entry.spare, turn) ||
     !free_some_landings(registry, *cluster, *dsm, turn) ||
     !free_some_generations(*cluster, *dsm, turn) ||
     !free_some_of_table(*cluster, further_readers(*cluster, *dsm), turn)) {
@@ -298,22 +301,20 @@ Progress sweep_subscription(Registry & registry, EndpointEntry & entry, Turn & t
     return Progress::freed;
   }
   if (entry.slot.state.load() != SlotState::unreachable) {
+    // First: movers follow references to the landings that are then freed.
+    if (!receive_threads_are_out(registry)) {
+      return Progress::in_use;
+    }
     const Progress progress = see_publishers_out(registry, *cluster, *header, turn);
     if (progress != Progress::freed) {
       return progress;
     }
-    if (!receive_threads_are_out(registry)) {
-      return Progress::in_use;
-    }
-    if (
-      entry.transfer != Transfer::dsm &&
-      free_landings(registry, *cluster, *header) == Progress::in_use) {
-      return Progress::in_use;
-    }
     header->magic.store(0);
     entry.slot.state.store(SlotState::unreachable);
   }
-  if (!free_some_of_table(*cluster, source_table(*cluster, *header), turn)) {
+  if (
+    !spare_landings::free_some(registry, entry.spare, turn) ||
+    !free_some_of_table(*cluster, source_table(*cluster, *header), turn)) {
     return Progress::freed_some;
   }
   free_head(

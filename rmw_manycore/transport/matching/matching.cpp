@@ -1,6 +1,7 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #include "transport/matching/matching.hpp"
 
+#include <algorithm>
 #include <vector>
 
 #include "platform/error.hpp"
@@ -13,6 +14,7 @@
 #include "transport/registry/snapshot.hpp"
 #include "transport/topic_dsm/last_published.hpp"
 #include "transport/topic_dsm/reader_table.hpp"
+#include "transport/transfer/landing.hpp"
 #include "transport/transfer/landings.hpp"
 
 namespace manycore::matching {
@@ -28,6 +30,13 @@ struct Pair {
   uint32_t subscription_slot;
   EndpointEntry & publisher;
   EndpointEntry & subscription;
+  SpareLanding & spare;  ///< of the new one
+};
+
+/// What a candidate has come to.
+struct Considered {
+  bool is_done = true;
+  std::optional<spare_landings::Needed> needed{};
 };
 
 SourceEntry & free_source(
@@ -84,7 +93,26 @@ void count_match(Registry & registry, const Pair & pair) {
   }
 }
 
-void join(Registry & registry, const Pair & pair, Turn & turn) {
+/// Gives the publisher's records a place in the subscription's cluster, where they are transferred.
+/// A former landing that is being freed is freed first: nothing follows references to it any more.
+Considered find_place(
+  Registry & registry, const Pair & pair, TopicDsmHeader & dsm, Cluster & receiver, Turn & turn) {
+  const landings::Place place =
+    landings::find_place(registry, pair.publisher, dsm, receiver, pair.spare);
+  if (place == landings::Place::ready) {
+    return {};
+  }
+  const uint64_t bytes = landing_bytes(dsm);
+  if (place == landings::Place::missing) {
+    const uint64_t data_bytes = dsm.generations[0].data_bytes.load(std::memory_order_relaxed);
+    return {false, spare_landings::Needed{receiver.id(), bytes, bytes - data_bytes}};
+  }
+  turn.spend_on_freeing(std::min(bytes, freed_piece_bytes));
+  landings::free_piece_of_retired(registry.clusters().at(pair.publisher.cluster), dsm, receiver);
+  return {false};
+}
+
+Considered join(Registry & registry, const Pair & pair, Turn & turn) {
   turn.spend(steps_of_a_match);
   Cluster & publisher_cluster = registry.clusters().at(pair.publisher.cluster);
   Cluster & subscription_cluster = registry.clusters().at(pair.subscription.cluster);
@@ -98,7 +126,10 @@ void join(Registry & registry, const Pair & pair, Turn & turn) {
   uint32_t index = 0;
   SourceEntry & source = free_source(subscription_cluster, *header, index, turn);
   ReaderEntry & reader = free_reader(publisher_cluster, *dsm, turn);
-  landings::ensure(registry, pair.publisher, *dsm, subscription_cluster);
+  if (const Considered found = find_place(registry, pair, *dsm, subscription_cluster, turn);
+      !found.is_done) {
+    return found;
+  }
   const bool history = wants_history(pair.publisher, pair.subscription);
 
   // Invalidates references to the entry's former use.
@@ -113,6 +144,8 @@ void join(Registry & registry, const Pair & pair, Turn & turn) {
   source.displaced.store(0, std::memory_order_relaxed);
   source.reader.store(publisher_cluster.ref_of(&reader).word, std::memory_order_relaxed);
   source.state.store(SourceState::joining, std::memory_order_release);
+  // From here on the source leads to the landing, should this process die.
+  landings::attach(publisher_cluster, *dsm, subscription_cluster, pair.spare);
 
   // Release: a receive thread may still be reading the entry's former reader.
   reader.endpoint.store(pair.subscription_slot, std::memory_order_release);
@@ -121,6 +154,7 @@ void join(Registry & registry, const Pair & pair, Turn & turn) {
   reader.source_index.store(index, std::memory_order_release);
   reader.source_incarnation.store(source.incarnation.load(), std::memory_order_release);
   reader.active.store(1, std::memory_order_release);
+  landings::count_reader(publisher_cluster, *dsm, subscription_cluster.id());
   // From here on the publisher finds this reader: it checks `match_generation` after storing `last`
   // (seq_cst). A claim before this point would be invisible to the publisher, which could recycle
   // the record.
@@ -138,6 +172,7 @@ void join(Registry & registry, const Pair & pair, Turn & turn) {
     TraceKind::match, pair.subscription_slot, 0,
     trace_endpoint(pair.publisher_slot, pair.publisher.slot.incarnation));
   count_match(registry, pair);
+  return {};
 }
 
 void count_incompatible(Registry & registry, const Pair & pair, QosPolicy policy) {
@@ -155,23 +190,22 @@ void count_incompatible_type(Registry & registry, const Pair & pair) {
   }
 }
 
-void consider(Registry & registry, const Pair & pair, Turn & turn) {
-  turn.spend(steps_of_a_candidate);
+Considered consider(Registry & registry, const Pair & pair, Turn & turn) {
   if (
     pair.publisher.role != pair.subscription.role ||
     (pair.subscription.ignore_local != 0 && pair.publisher.process == pair.subscription.process)) {
-    return;
+    return {};
   }
   if (std::strcmp(pair.publisher.type, pair.subscription.type) != 0) {
     count_incompatible_type(registry, pair);
-    return;
+    return {};
   }
   const QosPolicy policy = last_incompatible_policy(pair.publisher.qos, pair.subscription.qos);
   if (policy != QosPolicy::none) {
     count_incompatible(registry, pair, policy);
-    return;
+    return {};
   }
-  join(registry, pair, turn);
+  return join(registry, pair, turn);
 }
 
 void undo_half_matches_of(Registry & registry, EndpointEntry & entry) {
@@ -182,7 +216,7 @@ void undo_half_matches_of(Registry & registry, EndpointEntry & entry) {
   }
   visit_source_table(*cluster, *header, [&](SourceEntry & source, uint32_t) {
     if (source.state.load() == SourceState::joining) {
-      detach_reader(registry, source);
+      detach_reader(registry, source, entry.cluster);
       // Not `free`: the publisher may have seen the reader, so its phase must be checked through
       // this entry when the subscription is freed.
       source.state.store(SourceState::revoked, std::memory_order_seq_cst);
@@ -253,24 +287,27 @@ std::vector<Candidate> candidates_of(Registry & registry, uint32_t endpoint) {
   return candidates;
 }
 
-void connect_some(Registry & registry, uint32_t endpoint, std::vector<Candidate> & candidates) {
+std::optional<spare_landings::Needed> connect_some(
+  Registry & registry, uint32_t endpoint, std::vector<Candidate> & candidates) {
   EndpointEntry & own = registry.endpoints()[endpoint];
   for (Turn turn; !turn.is_over() && !candidates.empty();) {
     const Candidate candidate = candidates.back();
-    candidates.pop_back();
     EndpointEntry & other = registry.endpoints()[candidate.slot];
-    if (
-      !registry.endpoints().is_live(candidate.slot) ||
-      other.slot.incarnation.load() != candidate.incarnation) {
-      turn.spend(steps_of_a_candidate);
-      continue;
+    const bool is_there = registry.endpoints().is_live(candidate.slot) &&
+                          other.slot.incarnation.load() == candidate.incarnation;
+    const Pair pair = own.kind == EndpointKind::publisher
+                        ? Pair{endpoint, candidate.slot, own, other, own.spare}
+                        : Pair{candidate.slot, endpoint, other, own, own.spare};
+    turn.spend(steps_of_a_candidate);
+    const Considered considered = is_there ? consider(registry, pair, turn) : Considered{};
+    if (considered.needed) {
+      return considered.needed;
     }
-    if (own.kind == EndpointKind::publisher) {
-      consider(registry, {endpoint, candidate.slot, own, other}, turn);
-    } else {
-      consider(registry, {candidate.slot, endpoint, other, own}, turn);
+    if (considered.is_done) {
+      candidates.pop_back();
     }
   }
+  return std::nullopt;
 }
 
 void undo_half_matches(Registry & registry) {

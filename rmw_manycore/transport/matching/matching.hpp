@@ -1,8 +1,10 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <vector>
 
+#include "transport/matching/spare_landings.hpp"
 #include "transport/registry/registry.hpp"
 
 namespace manycore::matching {
@@ -26,8 +28,10 @@ struct Candidate {
 std::vector<Candidate> candidates_of(Registry & registry, uint32_t endpoint);
 
 /// Matches a live endpoint with the compatible and live ones among the last candidates, and removes
-/// these from the list, until the turn is over. The caller holds the registry lock.
-void connect_some(Registry & registry, uint32_t endpoint, std::vector<Candidate> & candidates);
+/// these from the list, until the turn is over or a match needs a landing that the endpoint has to
+/// make first. Returns that landing. The caller holds the registry lock.
+std::optional<spare_landings::Needed> connect_some(
+  Registry & registry, uint32_t endpoint, std::vector<Candidate> & candidates);
 
 /// Undoes the match that an owner of the registry lock left incomplete when it died.
 void undo_half_matches(Registry & registry);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "transport/matching/matching.hpp"
+#include "transport/matching/spare_landings.hpp"
 #include "transport/queue/source_table.hpp"
 #include "transport/registry/registry.hpp"
 #include "transport/topic_dsm/reader_table.hpp"
@@ -15,6 +16,7 @@ namespace manycore {
 
 void Registry::mark_blocks_of(EndpointEntry & entry) noexcept {
   Cluster * const cluster = clusters_.find(entry.block.cluster());
+  spare_landings::mark(clusters_, entry.spare);
   if (cluster == nullptr || !entry.block) {
     return;
   }
@@ -28,6 +30,10 @@ void Registry::mark_blocks_of(EndpointEntry & entry) noexcept {
     }
     mark(entry.block.offset(), header_bytes(*dsm));
     landings::mark_all(clusters_, *cluster, *dsm);
+    landings::forget_readers(*cluster, *dsm);
+    for_each_reader(*cluster, *dsm, [&](const ReaderEntry & reader) {
+      landings::count_reader(*cluster, *dsm, SegmentRef{reader.subscription.load()}.cluster());
+    });
     for (GenerationEntry & generation : dsm->generations) {
       if (generation.offset.load() != 0) {
         mark(generation.offset.load(), generation.extent_bytes());

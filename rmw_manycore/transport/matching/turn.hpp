@@ -20,6 +20,13 @@ public:
   bool is_over() const noexcept { return left_ == 0 || is_late_; }
   uint32_t spent() const noexcept { return steps - left_; }
 
+  /// Charges what it takes to free so much SMEM and the memory behind it.
+  void spend_on_freeing(uint64_t bytes) noexcept {
+    constexpr uint64_t steps_of_a_system_call = 20;
+    constexpr uint64_t bytes_in_a_step = 256;
+    spend(steps_of_a_system_call + bytes / bytes_in_a_step);
+  }
+
   void spend(uint64_t cost) noexcept {
     left_ -= static_cast<uint32_t>(std::min<uint64_t>(cost, left_));
     if (left_ <= look_at_) {

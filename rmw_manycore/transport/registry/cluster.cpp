@@ -7,6 +7,7 @@
 #include "platform/error.hpp"
 #include "platform/user_directory.hpp"
 #include "transport/layout/registry_layout.hpp"
+#include "transport/layout/topic_dsm_layout.hpp"
 
 namespace manycore {
 namespace {
@@ -274,6 +275,13 @@ void Cluster::free(uint64_t offset, uint64_t length) noexcept {
   if (count * granule_bytes_ >= min_hole_bytes) {
     memory_.release(offset, count * granule_bytes_);
   }
+}
+
+uint32_t Cluster::free_last_piece(uint64_t offset, uint64_t length, uint32_t kept_pieces) noexcept {
+  const uint64_t left = kept_bytes(offset, length, kept_pieces);
+  const uint64_t from = contains(offset, left) ? last_piece_of(offset, left) : offset;
+  free(from, offset + left - from);
+  return from == offset ? 0 : static_cast<uint32_t>(from / freed_piece_bytes);
 }
 
 void Cluster::wake_reaper(uint32_t process) const noexcept {

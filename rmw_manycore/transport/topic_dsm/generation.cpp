@@ -1,8 +1,6 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #include "transport/topic_dsm/generation.hpp"
 
-#include <algorithm>
-
 namespace manycore {
 
 /// Stores `offset` last: the repair of the registry treats an entry with an offset as allocated,
@@ -29,14 +27,11 @@ void Generation::open(const Cluster & cluster, GenerationEntry & entry, uint64_t
 /// comes after the piece was freed: if this process dies in between, repair marks the piece as used
 /// again, because the entry still holds it.
 bool Generation::free_some(Cluster & cluster, GenerationEntry & entry) noexcept {
-  const uint64_t begin = entry.offset.load(std::memory_order_relaxed);
-  const uint64_t bytes = entry.extent_bytes();
-  const bool is_sound = bytes != 0 && cluster.contains(begin, bytes);
-  const uint64_t last_piece = is_sound ? (begin + bytes - 1) / freed_piece_bytes : 0;
-  const uint64_t from = std::max(begin, last_piece * freed_piece_bytes);
-  cluster.free(from, begin + bytes - from);
-  if (from != begin) {
-    entry.kept_pieces.store(static_cast<uint32_t>(last_piece), std::memory_order_release);
+  const uint32_t kept_pieces = cluster.free_last_piece(
+    entry.offset.load(std::memory_order_relaxed), entry.whole_bytes(),
+    entry.kept_pieces.load(std::memory_order_relaxed));
+  if (kept_pieces != 0) {
+    entry.kept_pieces.store(kept_pieces, std::memory_order_release);
     return false;
   }
   entry.offset.store(0, std::memory_order_release);

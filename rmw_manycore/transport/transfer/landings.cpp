@@ -1,8 +1,6 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #include "transport/transfer/landings.hpp"
 
-#include <cstring>
-
 #include "transport/transfer/landing.hpp"
 #include "transport/transfer/sessions.hpp"
 
@@ -17,54 +15,111 @@ void begin(LandingHeader & landing, uint64_t last) noexcept {
   }
 }
 
-LandingHeader & make(TopicDsmHeader & dsm, Cluster & receiver) {
-  const uint64_t bytes = landing_bytes(dsm);
-  receiver.require_message_room(bytes);
-  receiver.require_file_system_room(bytes);
-  const uint64_t offset = receiver.allocate(bytes);
-  auto & landing = *receiver.find<LandingHeader>(offset);
-  const uint32_t marks = dsm.generations[0].descriptor_count.load();
-  std::memset(
-    static_cast<void *>(&landing), 0, sizeof landing + uint64_t{marks} * sizeof(uint64_t));
+bool fits(const SpareLanding & spare, const TopicDsmHeader & dsm, const Cluster & receiver) {
+  return SegmentRef{spare.ref.load()}.cluster() == receiver.id() &&
+         spare.bytes.load() == landing_bytes(dsm) && spare.kept_pieces.load() == 0;
+}
+
+/// Takes a spare landing that fits off its owner. If this process dies before the landing is
+/// attached, the next owner of the lock builds the map without it.
+LandingHeader * take_spare(const Cluster & receiver, SpareLanding & spare) {
+  const SegmentRef ref{spare.ref.exchange(0)};
+  return receiver.find<LandingHeader>(ref.offset(), spare.bytes.load());
+}
+
+void name_publisher(LandingHeader & landing, const TopicDsmHeader & dsm) noexcept {
   landing.endpoint.store(dsm.endpoint.load());
   landing.incarnation.store(dsm.incarnation.load());
   landing.magic.store(landing_magic, std::memory_order_release);
-  return landing;
+}
+
+/// A retired landing that is not being freed yet, or nullptr.
+LandingHeader * whole_retired(
+  const LandingTable & table, const TopicDsmHeader & dsm, const Cluster & receiver) noexcept {
+  const uint64_t offset = table.retired[receiver.id() - 1].load();
+  const bool is_whole = offset != 0 && table.kept_pieces[receiver.id() - 1].load() == 0;
+  return is_whole ? receiver.find<LandingHeader>(offset, landing_bytes(dsm)) : nullptr;
+}
+
+void retire(LandingTable & table, uint32_t receiver) noexcept {
+  if (table.landings[receiver - 1].load() != 0) {
+    table.kept_pieces[receiver - 1].store(0);
+    table.retired[receiver - 1].store(table.landings[receiver - 1].load());
+    // Dekker with publisher and movers: each stores its phase before it looks for the landing.
+    table.landings[receiver - 1].store(0, std::memory_order_seq_cst);
+  }
 }
 
 }  // namespace
 
-void ensure(
-  Registry & registry, const EndpointEntry & publisher, TopicDsmHeader & dsm, Cluster & receiver) {
-  LandingTable * const table = landing_table(registry.clusters().at(publisher.cluster), dsm);
-  if (table == nullptr || receiver.id() == publisher.cluster) {
-    return;
-  }
-  std::atomic<uint64_t> & used = table->landings[receiver.id() - 1];
-  std::atomic<uint64_t> & retired = table->retired[receiver.id() - 1];
-  if (used.load() != 0) {
-    return;
+Place find_place(
+  Registry & registry, const EndpointEntry & publisher, TopicDsmHeader & dsm,
+  const Cluster & receiver, const SpareLanding & spare) {
+  const LandingTable * const table = landing_table(registry.clusters().at(publisher.cluster), dsm);
+  if (
+    table == nullptr || receiver.id() == publisher.cluster ||
+    table->landings[receiver.id() - 1].load() != 0) {
+    return Place::ready;
   }
   if (publisher.transfer == Transfer::session) {
     require_free_session(registry, publisher, receiver.id());
   }
-  auto * landing = receiver.find<LandingHeader>(retired.load(), landing_bytes(dsm));
-  const bool is_new = retired.load() == 0 || landing == nullptr;
-  if (is_new) {
-    landing = &make(dsm, receiver);
+  if (whole_retired(*table, dsm, receiver) != nullptr) {
+    return Place::ready;
   }
-  begin(*landing, dsm.last.load(std::memory_order_seq_cst));
-  used.store(receiver.ref_of(landing).offset(), std::memory_order_seq_cst);
-  retired.store(0);
+  if (table->retired[receiver.id() - 1].load() != 0) {
+    return Place::retiring;
+  }
+  return fits(spare, dsm, receiver) ? Place::ready : Place::missing;
 }
 
-void retire(const Cluster & cluster, TopicDsmHeader & dsm, uint32_t receiver) noexcept {
+void attach(
+  const Cluster & cluster, TopicDsmHeader & dsm, const Cluster & receiver, SpareLanding & spare) {
   LandingTable * const table = landing_table(cluster, dsm);
-  const bool is_cluster = receiver != 0 && receiver <= max_clusters;
-  if (table != nullptr && is_cluster && table->landings[receiver - 1].load() != 0) {
-    table->retired[receiver - 1].store(table->landings[receiver - 1].load());
-    // Dekker with publisher and movers: each stores its phase before it looks for the landing.
-    table->landings[receiver - 1].store(0, std::memory_order_seq_cst);
+  if (
+    table == nullptr || receiver.id() == cluster.id() ||
+    table->landings[receiver.id() - 1].load() != 0) {
+    return;
+  }
+  LandingHeader * landing = whole_retired(*table, dsm, receiver);
+  if (landing == nullptr) {
+    landing = take_spare(receiver, spare);
+    if (landing == nullptr) {
+      return;  // damaged
+    }
+    name_publisher(*landing, dsm);
+  }
+  begin(*landing, dsm.last.load(std::memory_order_seq_cst));
+  table->landings[receiver.id() - 1].store(
+    receiver.ref_of(landing).offset(), std::memory_order_seq_cst);
+  table->retired[receiver.id() - 1].store(0);
+}
+
+void count_reader(const Cluster & cluster, TopicDsmHeader & dsm, uint32_t receiver) noexcept {
+  LandingTable * const table = landing_table(cluster, dsm);
+  if (table != nullptr && receiver - 1 < max_clusters) {
+    table->readers[receiver - 1].fetch_add(1);
+  }
+}
+
+void discount_reader(const Cluster & cluster, TopicDsmHeader & dsm, uint32_t receiver) noexcept {
+  LandingTable * const table = landing_table(cluster, dsm);
+  if (table != nullptr && receiver - 1 < max_clusters && table->readers[receiver - 1].load() != 0) {
+    table->readers[receiver - 1].fetch_sub(1);
+  }
+}
+
+void forget_readers(const Cluster & cluster, TopicDsmHeader & dsm) noexcept {
+  LandingTable * const table = landing_table(cluster, dsm);
+  for (uint32_t i = 0; table != nullptr && i < max_clusters; ++i) {
+    table->readers[i].store(0);
+  }
+}
+
+void retire_unread(const Cluster & cluster, TopicDsmHeader & dsm, uint32_t receiver) noexcept {
+  LandingTable * const table = landing_table(cluster, dsm);
+  if (table != nullptr && receiver - 1 < max_clusters && table->readers[receiver - 1].load() == 0) {
+    retire(*table, receiver);
   }
 }
 
@@ -74,32 +129,38 @@ bool has_retired(const Cluster & cluster, TopicDsmHeader & dsm, uint32_t receive
          table->landings[receiver - 1].load() == 0;
 }
 
-void free_retired(const Cluster & cluster, TopicDsmHeader & dsm, Cluster & receiver) noexcept {
+/// The store to the table comes after the piece was freed: if this process dies in between, the
+/// next owner of the lock marks the piece as used again. The last one is that of the offset, as 0
+/// pieces stand for a whole landing.
+bool free_piece_of_retired(
+  const Cluster & cluster, TopicDsmHeader & dsm, Cluster & receiver) noexcept {
   LandingTable * const table = landing_table(cluster, dsm);
-  const uint64_t offset = table == nullptr ? 0 : table->retired[receiver.id() - 1].exchange(0);
-  if (offset != 0) {
-    receiver.free(offset, landing_bytes(dsm));
-  }
-}
-
-/// Out of the table before it is free: should this process die in between, the next owner of the
-/// lock builds the map without it.
-bool free_one(Registry & registry, const Cluster & cluster, TopicDsmHeader & dsm) {
-  LandingTable * const table = landing_table(cluster, dsm);
-  for (uint32_t id = 1; table != nullptr && id <= max_clusters; ++id) {
-    std::atomic<uint64_t> & used = table->landings[id - 1];
-    if (used.load() == 0 && table->retired[id - 1].load() == 0) {
-      continue;
-    }
-    Cluster * const receiver = registry.map_cluster(id);
-    if (receiver == nullptr) {
-      continue;
-    }
-    retire(cluster, dsm, id);
-    free_retired(cluster, dsm, *receiver);
+  if (table == nullptr) {
     return true;
   }
-  return false;
+  std::atomic<uint32_t> & kept_pieces = table->kept_pieces[receiver.id() - 1];
+  const uint64_t offset = table->retired[receiver.id() - 1].load();
+  const uint32_t kept = receiver.free_last_piece(offset, landing_bytes(dsm), kept_pieces.load());
+  if (kept != 0) {
+    kept_pieces.store(kept);
+    return false;
+  }
+  table->retired[receiver.id() - 1].store(0);
+  return true;
+}
+
+Cluster * retire_next(Registry & registry, const Cluster & cluster, TopicDsmHeader & dsm) {
+  LandingTable * const table = landing_table(cluster, dsm);
+  for (uint32_t id = 1; table != nullptr && id <= max_clusters; ++id) {
+    if (table->landings[id - 1].load() == 0 && table->retired[id - 1].load() == 0) {
+      continue;
+    }
+    if (Cluster * const receiver = registry.map_cluster(id)) {
+      retire(*table, id);
+      return receiver;
+    }
+  }
+  return nullptr;
 }
 
 void mark_all(Clusters & clusters, const Cluster & cluster, TopicDsmHeader & dsm) noexcept {
@@ -109,7 +170,8 @@ void mark_all(Clusters & clusters, const Cluster & cluster, TopicDsmHeader & dsm
     const uint64_t offset = used != 0 ? used : table->retired[id - 1].load();
     Cluster * const receiver = offset == 0 ? nullptr : clusters.find(id);
     if (receiver != nullptr) {
-      receiver->mark_allocated(offset, landing_bytes(dsm));
+      const uint32_t kept_pieces = used != 0 ? 0 : table->kept_pieces[id - 1].load();
+      receiver->mark_allocated(offset, kept_bytes(offset, landing_bytes(dsm), kept_pieces));
     }
   }
 }

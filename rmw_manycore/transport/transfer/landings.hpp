@@ -4,25 +4,44 @@
 #include "transport/layout/topic_dsm_layout.hpp"
 #include "transport/registry/registry.hpp"
 
-/// Making and freeing landings. The caller holds the registry lock.
+/// Attaching and freeing landings. The caller holds the registry lock.
 namespace manycore::landings {
 
-/// Before a subscription in `receiver` is matched: gives the publisher's records a place there.
-/// Nothing to do where they are not transferred. Throws Error{no_space}, for a ninth session with
-/// the names of the eight.
-void ensure(
-  Registry & registry, const EndpointEntry & publisher, TopicDsmHeader & dsm, Cluster & receiver);
+/// Whether a publisher's records have a place in a receiving cluster. `retiring`: a former landing
+/// has to be freed first. `missing`: the endpoint that is being created has to make a landing of
+/// landing_bytes(), as its spare one.
+enum class Place { ready, retiring, missing };
 
-/// Once no subscription of `receiver` reads the topic DSM any more: from here on no thread finds
-/// the landing. `cluster`: that of the topic DSM.
-void retire(const Cluster & cluster, TopicDsmHeader & dsm, uint32_t receiver) noexcept;
+/// Before a subscription in `receiver` is matched. Always `ready` where records are not
+/// transferred. Throws Error{no_space} for a ninth session, with the names of the eight.
+Place find_place(
+  Registry & registry, const EndpointEntry & publisher, TopicDsmHeader & dsm,
+  const Cluster & receiver, const SpareLanding & spare);
+/// Then, unless one is attached: attaches the retired landing or the spare one. `cluster`: that of
+/// the topic DSM.
+void attach(
+  const Cluster & cluster, TopicDsmHeader & dsm, const Cluster & receiver, SpareLanding & spare);
+
+/// Once a reader in `receiver` is in the reader table.
+void count_reader(const Cluster & cluster, TopicDsmHeader & dsm, uint32_t receiver) noexcept;
+void discount_reader(const Cluster & cluster, TopicDsmHeader & dsm, uint32_t receiver) noexcept;
+/// Before all are counted anew.
+void forget_readers(const Cluster & cluster, TopicDsmHeader & dsm) noexcept;
+
+/// If no subscription of `receiver` reads the topic DSM any more: from here on no thread finds the
+/// landing.
+void retire_unread(const Cluster & cluster, TopicDsmHeader & dsm, uint32_t receiver) noexcept;
 
 /// True while a landing waits for its publisher and all movers to be out of their phases.
 bool has_retired(const Cluster & cluster, TopicDsmHeader & dsm, uint32_t receiver) noexcept;
-void free_retired(const Cluster & cluster, TopicDsmHeader & dsm, Cluster & receiver) noexcept;
+/// Frees the last piece that is left of the retired landing, as Generation::free_some(). Returns
+/// true when no piece is left.
+bool free_piece_of_retired(
+  const Cluster & cluster, TopicDsmHeader & dsm, Cluster & receiver) noexcept;
 
-/// With the topic DSM; false when none is left. Throws ClusterUnmappable.
-bool free_one(Registry & registry, const Cluster & cluster, TopicDsmHeader & dsm);
+/// Retires any landing of a topic DSM to which no reference leads any more. Returns its cluster, or
+/// nullptr when none is left. Throws ClusterUnmappable.
+Cluster * retire_next(Registry & registry, const Cluster & cluster, TopicDsmHeader & dsm);
 
 /// Rebuilding the maps of the clusters.
 void mark_all(Clusters & clusters, const Cluster & cluster, TopicDsmHeader & dsm) noexcept;

@@ -1,0 +1,71 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#include "transport/matching/spare_landings.hpp"
+
+#include <algorithm>
+#include <cstring>
+
+#include "transport/layout/topic_dsm_layout.hpp"
+
+namespace manycore::spare_landings {
+
+/// Stores `ref` last: a spare landing with a reference counts as allocated.
+void make(
+  Registry & registry, const Membership & membership, SpareLanding & spare, const Needed & needed) {
+  free_all(registry, membership, spare);
+  Cluster & receiver = registry.clusters().at(needed.cluster);
+  uint64_t offset = 0;
+  {
+    const Registry::Lock lock(registry);
+    membership.require();
+    receiver.require_message_room(needed.bytes);
+    offset = receiver.reserve(needed.bytes);
+    spare.bytes.store(needed.bytes);
+    spare.kept_pieces.store(0);
+    spare.ref.store(SegmentRef::make(needed.cluster, offset).word);
+  }
+  receiver.require_file_system_room(needed.bytes);
+  receiver.back(offset, needed.bytes);
+  std::memset(receiver.find<uint8_t>(offset, needed.bytes), 0, needed.cleared_bytes);
+}
+
+void free_all(Registry & registry, const Membership & membership, SpareLanding & spare) {
+  for (bool is_free = spare.ref.load() == 0; !is_free;) {
+    const Registry::Lock lock(registry);
+    membership.require();
+    Turn turn;
+    is_free = free_some(registry, spare, turn);
+  }
+}
+
+/// The store to the entry comes after the piece was freed: if this process dies in between, the
+/// next owner of the lock marks the piece as used again. The last one is that of `ref`, as 0 pieces
+/// stand for a whole landing.
+bool free_some(Registry & registry, SpareLanding & spare, Turn & turn) {
+  const SegmentRef ref{spare.ref.load()};
+  Cluster * const cluster = ref ? registry.map_cluster(ref.cluster()) : nullptr;
+  while (cluster != nullptr) {
+    if (turn.is_over()) {
+      return false;
+    }
+    const uint64_t bytes = spare.bytes.load();
+    turn.spend_on_freeing(std::min(bytes, freed_piece_bytes));
+    const uint32_t kept = cluster->free_last_piece(ref.offset(), bytes, spare.kept_pieces.load());
+    if (kept == 0) {
+      break;
+    }
+    spare.kept_pieces.store(kept);
+  }
+  spare.ref.store(0);
+  return true;
+}
+
+void mark(Clusters & clusters, const SpareLanding & spare) noexcept {
+  const SegmentRef ref{spare.ref.load()};
+  Cluster * const cluster = ref ? clusters.find(ref.cluster()) : nullptr;
+  if (cluster != nullptr) {
+    cluster->mark_allocated(
+      ref.offset(), kept_bytes(ref.offset(), spare.bytes.load(), spare.kept_pieces.load()));
+  }
+}
+
+}  // namespace manycore::spare_landings
