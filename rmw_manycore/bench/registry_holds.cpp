@@ -6,9 +6,12 @@
 // Prints the longest hold of each operation in nanoseconds, and as OPERATION_p99 its 99th
 // percentile:
 //   create                all endpoints of the topic, each matched with the earlier ones
+//   repair                by the owner after one that was killed, of all these endpoints
 //   close_subscription    `changes` subscriptions that have taken nothing
 //   close_publisher       `changes` publishers, each leaving a message that is not taken
 //   sweep                 freeing what these left, after newer messages have displaced theirs
+//   close_deep            a publisher whose last 1,000 messages N subscriptions have not taken
+//   close_server          a server with 1,000 replies to one of N clients
 //   free_large            a publisher whose topic DSM has grown to more than 16 MiB
 //   reap                  a killed process with `changes` endpoints of each kind, and such a
 //   publisher
@@ -123,6 +126,26 @@ EndpointSpec spec_of(Process & process) {
 void publish(Publisher & publisher, size_t bytes = 64) {
   publisher.publish(publisher.draft(bytes), bytes, realtime_ns());
 }
+
+constexpr uint32_t deep = 1000;
+
+/// A publisher with many readers, which holds `deep` messages. All replies are for the last reader.
+struct DeepHistory {
+  DeepHistory(Process & process, EndpointSpec spec, EndpointRole role, size_t readers) {
+    spec.topic = "/deep";
+    spec.role = role;
+    for (size_t i = 0; i < readers; ++i) {
+      spec.qos.depth = role == EndpointRole::reply && i + 1 != readers ? 1 : deep;
+      subscriptions.push_back(process.create_subscription(spec));
+    }
+    publisher = process.create_publisher(spec);
+    for (uint32_t i = 0; i < deep; ++i) {
+      publisher->publish(publisher->draft(64), 64, realtime_ns(), {subscriptions.back()->gid(), i});
+    }
+  }
+  std::vector<std::unique_ptr<Subscription>> subscriptions;
+  std::unique_ptr<Publisher> publisher;
+};
 
 constexpr size_t large_bytes = 16 << 20;
 
@@ -244,6 +267,10 @@ void run(const bench::Arguments & arguments) {
     endpoints.add_one(*process, spec);
   }
   report(holds, "create", found);
+  registry.header().needs_repair = 1;  // as if the owner of the lock had been killed
+  { const Registry::Lock lock(registry); }
+  process->add_node("next", "/", "/");  // once its hold is seen, that of the repair is noted
+  report(holds, "repair", found);
   endpoints.publish_all();
   endpoints.subscriptions.resize(endpoints.subscriptions.size() - changes);
   report(holds, "close_subscription", found);
@@ -256,6 +283,12 @@ void run(const bench::Arguments & arguments) {
     process->create_publisher(other);
   }
   report(holds, "sweep", found);
+  for (const EndpointRole role : {EndpointRole::topic, EndpointRole::reply}) {
+    DeepHistory history(*process, spec, role, arguments.number("endpoints"));
+    holds.take_holds_ns();
+    history.publisher.reset();
+    report(holds, role == EndpointRole::reply ? "close_server" : "close_deep", found);
+  }
   {
     auto large = large_publisher(*process, spec);
     holds.take_holds_ns();

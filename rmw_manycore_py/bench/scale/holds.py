@@ -12,14 +12,19 @@ from rmw_manycore_py.bench.session import Session
 from rmw_manycore_py.bench.summary import Goal, Result
 
 HOLD = "99 % of the holds of the registry lock end within"
+LONGEST = "the longest hold of the registry lock"
 OPERATIONS = {
     "create": "creating endpoints",
     "close_subscription": "closing subscriptions",
     "close_publisher": "closing publishers",
     "sweep": "sweeping what they left",
+    "close_deep": "closing a publisher with 1,000 untaken messages",
+    "close_server": "closing a server with 1,000 untaken replies",
     "free_large": "freeing a topic DSM of 16 MiB",
     "reap": "reaping a killed process",
 }
+REPAIR = {"repair": "repairing after the owner of the lock was killed"}
+FIGURES = {HOLD: ("_p99", OPERATIONS), LONGEST: ("", OPERATIONS | REPAIR)}
 ENDPOINTS = (100, 200, 400, 800)
 CHANGES = 10
 MOST_US = 100
@@ -31,24 +36,29 @@ def measure(run: Run) -> list[Result]:
 
 
 def _watch(run: Run, count: int) -> list[Result]:
-    found: dict[str, list[float]] = {operation: [] for operation in OPERATIONS}
+    rounds = []
     for _ in range(run.rounds):
         with Session(INSIDE, run.cpus) as session:
-            holds = session.native(
-                "registry_holds", 0, endpoints=count, changes=CHANGES, cpu=run.cpus[1]
-            ).finish()
-        for operation, samples in found.items():
-            if (hold_ns := holds.get(f"{operation}_p99")) is not None:  # observed at least once
-                samples.append(hold_ns / 1e3)
+            rounds.append(
+                session.native(
+                    "registry_holds", 0, endpoints=count, changes=CHANGES, cpu=run.cpus[1]
+                ).finish()
+            )
     return [
-        on_curve(HOLD, _curve(operation), count, "endpoints", "us", samples)
-        for operation, samples in found.items()
-        if samples
+        on_curve(figure, _curve(operation), count, "endpoints", "us", samples)
+        for figure, (suffix, operations) in FIGURES.items()
+        for operation in operations
+        if (samples := _samples(rounds, operation + suffix))
     ]
 
 
+def _samples(rounds: list[dict[str, float]], name: str) -> list[float]:
+    """Return the hold times, us, of the rounds in which one was observed."""
+    return [holds[name] / 1e3 for holds in rounds if name in holds]
+
+
 def _curve(operation: str) -> str:
-    return f"{INSIDE.name}, {OPERATIONS[operation]}"
+    return f"{INSIDE.name}, {(OPERATIONS | REPAIR)[operation]}"
 
 
 GOALS = tuple(
