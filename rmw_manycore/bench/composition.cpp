@@ -6,7 +6,7 @@
 //   composition role=source threads=N messages=N rate_hz=N
 //
 // The sink counts the context switches of its threads and its CPU time, for all messages except the
-// first one of each thread.
+// first one of each thread. It ends when its input ends.
 #include <sys/resource.h>
 
 #include <memory>
@@ -18,6 +18,9 @@
 namespace {
 
 using namespace manycore::bench;
+
+/// For all threads to take their first message and wait again, before messages count.
+constexpr std::chrono::milliseconds settle_time{200};
 
 std::string topic(size_t thread) { return "/composed_" + std::to_string(thread); }
 
@@ -58,11 +61,12 @@ void source(const Arguments & arguments) {
     publisher->publish(message);
   }
   const std::chrono::nanoseconds period(1'000'000'000 / arguments.number("rate_hz"));
-  auto next = std::chrono::steady_clock::now();
+  auto next = std::chrono::steady_clock::now() + settle_time;
   for (size_t i = 0; i < arguments.number("messages"); ++i) {
     std::this_thread::sleep_until(next += period);
     publishers.front()->publish(message);
   }
+  std::this_thread::sleep_until(next += period);
   for (const auto & publisher : publishers) {
     stop_subscribers(*publisher);
   }
@@ -114,6 +118,7 @@ void sink(const Arguments & arguments) {
     throw std::runtime_error("a message was lost");
   }
   print_samples({}, {{"sleeps", spent[0].sleeps}, {"cpu_ns", spent[0].cpu_ns}});
+  wait_for_end_of_input();
 }
 
 }  // namespace

@@ -110,6 +110,10 @@ def test_idle_nodes_do_nothing() -> None:
 def test_a_message_wakes_one_thread_of_many() -> None:
     report = run_bench("scale", "--only", "message to one of its threads: manycore")
     assert all_reached(report)
+    waits = {"block", "adaptive", "spin"}
+    notified = [row for row in report["results"] if row["question"].startswith("wake words")]
+    assert {wait for row in notified for wait in waits if f"({wait})" in row["contender"]} == waits
+    assert all(row["median"] >= 1 for row in notified)  # each message notifies its thread
 
 
 def test_many_matches_are_measured() -> None:
