@@ -168,7 +168,8 @@ def test_what_each_publisher_costs_a_subscription_is_measured() -> None:
 
 def test_composed_nodes_are_measured_with_each_executor() -> None:
     rows = run_bench("scale", "--only", "next in its process: manycore")["results"]
-    assert len(rows) == 2 * 3 * 2
+    assert len(rows) == 2 * 4 * 2
+    assert any("one executor each" in row["contender"] for row in rows)
     assert all(row["median"] > 0 for row in rows)
 
 

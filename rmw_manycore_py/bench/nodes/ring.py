@@ -2,6 +2,8 @@
 """Many nodes in one process: a single message circulates from node to node.
 
 Usage: ring EXECUTOR NODES WARM_UP LAPS
+
+With the executor `each`, every node has a SingleThreadedExecutor in a thread of its own.
 """
 
 from __future__ import annotations
@@ -26,6 +28,7 @@ EXECUTORS = {
     "single": SingleThreadedExecutor,
     "multi": lambda: MultiThreadedExecutor(num_threads=THREADS),
     "events": EventsExecutor,
+    "each": SingleThreadedExecutor,
 }
 
 
@@ -49,6 +52,19 @@ class Link(Node):  # type: ignore[misc]
         self.next.publish(message)
 
 
+def _executors(kind: str, links: list[Link]) -> list[Any]:
+    """Return the executors of all links: one, or one each."""
+    if kind != "each":
+        shared = EXECUTORS[kind]()
+        for link in links:
+            shared.add_node(link)
+        return [shared]
+    executors = [EXECUTORS[kind]() for _ in links]
+    for executor, link in zip(executors, links, strict=True):
+        executor.add_node(link)
+    return executors
+
+
 def _spin(executor: Any, done: threading.Event) -> None:
     # Do not use spin(): that of EventsExecutor misses messages, with any middleware.
     while not done.is_set():
@@ -60,21 +76,21 @@ def main() -> None:
     kind, *numbers = sys.argv[1:]
     count, warm_up, laps = map(int, numbers)
     rclpy.init()
-    executor = EXECUTORS[kind]()
     links = [Link(number, count, warm_up + laps) for number in range(count)]
     while any(link.next.get_subscription_count() == 0 for link in links):
         time.sleep(LOOK_S)
-    for link in links:
-        executor.add_node(link)
+    executors = _executors(kind, links)
     done = links[0].done
-    spinner = threading.Thread(target=_spin, args=(executor, done))
-    spinner.start()
+    spinners = [threading.Thread(target=_spin, args=(each, done)) for each in executors]
+    for spinner in spinners:
+        spinner.start()
     before_ns = time.process_time_ns()
     links[0].next.publish(UInt64())
     done.wait()
     used_ns = time.process_time_ns() - before_ns
-    spinner.join()
-    executor.shutdown()
+    for spinner, executor in zip(spinners, executors, strict=True):
+        spinner.join()
+        executor.shutdown()
     ends_ns = links[0].lap_ends_ns
     hops = [(end - start) / count for start, end in itertools.pairwise(ends_ns)]
     cpu_ns = used_ns / count / (warm_up + laps + 1)

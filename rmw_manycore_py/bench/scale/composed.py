@@ -18,6 +18,7 @@ EXECUTORS = {
     "single": "SingleThreadedExecutor",
     "multi": "MultiThreadedExecutor, 16 threads",
     "events": "EventsExecutor",
+    "each": "one executor each",
 }
 NODES = (2, 10, 25, 50)
 WARM_UP, LAPS = 2, 20
