@@ -166,6 +166,13 @@ def test_what_each_publisher_costs_a_subscription_is_measured() -> None:
     assert min(bytes_of_matches) <= 200  # where their blocks are full
 
 
+def test_publishing_beside_a_deep_history_is_measured() -> None:
+    rows = run_bench("scale", "--only", "keeps a full history")["results"]
+    assert {row["curve"] for row in rows} == {"manycore inside (block)", "Fast DDS as installed"}
+    assert {(row["at"], row["axis"]) for row in rows} == {(n, "messages kept") for n in (1, 10)}
+    assert all(row["median"] > 0 for row in rows)
+
+
 def test_composed_nodes_are_measured_with_each_executor() -> None:
     rows = run_bench("scale", "--only", "next in its process: manycore")["results"]
     assert len(rows) == 2 * 4 * 2

@@ -9,6 +9,7 @@ from rmw_manycore_py.bench.scale import (
     clock,
     composed,
     endpoints,
+    history,
     holds,
     nodes,
     sources,
@@ -16,11 +17,11 @@ from rmw_manycore_py.bench.scale import (
 )
 from rmw_manycore_py.bench.summary import Result
 
-PARTS = (threads, composed, endpoints, sources, holds, clock, clients, nodes)
+PARTS = (threads, composed, endpoints, sources, history, holds, clock, clients, nodes)
 
 
 def measure(run: Run) -> list[Result]:
-    """Return the curves over threads, endpoints of a topic, clients of a service, and nodes."""
+    """Return the curves over threads, endpoints, kept messages, clients and nodes."""
     return [result for part in PARTS for result in part.measure(run)]
 
 
