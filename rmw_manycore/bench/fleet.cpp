@@ -81,7 +81,8 @@ private:
 
 using Fleet = std::deque<FleetNode>;
 
-void take(const rcl_subscription_t & subscription) {
+/// Returns false if there was no message.
+bool take(const rcl_subscription_t & subscription) {
   rcl_interfaces__msg__ParameterEvent message;
   rcl_interfaces__msg__ParameterEvent__init(&message);
   const rcl_ret_t status = rcl_take(&subscription, &message, nullptr, nullptr);
@@ -89,12 +90,13 @@ void take(const rcl_subscription_t & subscription) {
     check_rcl(status, "rcl_take");
   }
   rcl_interfaces__msg__ParameterEvent__fini(&message);
+  return status == RCL_RET_OK;
 }
 
-/// Acts as a single executor of all nodes until `end` is triggered. Without messages, no wake-up is
-/// allowed.
+/// Acts as a single executor of all nodes until `end` is triggered. While the fleet is silent, a
+/// wake-up without a message from outside of it is an error.
 void wait_for_anything(
-  RclContext & context, const Fleet & fleet, const RclGuardCondition & end, bool has_messages) {
+  RclContext & context, const Fleet & fleet, const RclGuardCondition & end, bool is_silent) {
   std::vector<const RclNode *> nodes;
   for (const FleetNode & node : fleet) {
     nodes.push_back(&node.node());
@@ -102,10 +104,12 @@ void wait_for_anything(
   RclWaitSet wait_set(context.get(), std::move(nodes), end);
   do {
     wait_set.wait();
-    if (!wait_set.is_ended() && !has_messages) {
+    bool has_taken = false;
+    wait_set.for_each_ready_subscription(
+      [&](const rcl_subscription_t & subscription) { has_taken |= take(subscription); });
+    if (is_silent && !has_taken && !wait_set.is_ended()) {
       throw std::runtime_error("a node of the fleet woke up without a message");
     }
-    wait_set.for_each_ready_subscription(take);
   } while (!wait_set.is_ended());
 }
 
@@ -145,7 +149,7 @@ void run(const Arguments & arguments) {
   }
   RclGuardCondition end(context);
   const std::chrono::milliseconds period(arguments.number("period_ms"));
-  std::thread waiter([&] { wait_for_anything(context, fleet, end, period.count() > 0); });
+  std::thread waiter([&] { wait_for_anything(context, fleet, end, period.count() == 0); });
   for (const FleetNode & node : fleet) {
     while (arguments.number("all") != 0 && !node.is_matched()) {
       std::this_thread::sleep_for(poll_period);

@@ -1,14 +1,12 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Mutual cost of hundreds of nodes, each a process with parameter services."""
+"""Mutual cost of hundreds of nodes with parameter services."""
 
 from __future__ import annotations
 
 import os
 import signal
-import threading
 import time
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from functools import partial
 
 from rmw_manycore_py._transport import Platform
@@ -16,8 +14,10 @@ from rmw_manycore_py.bench.contenders import FAST_DDS, Middleware
 from rmw_manycore_py.bench.idle import cpu_ns, wait_until_quiet, wake_ups
 from rmw_manycore_py.bench.question import Run
 from rmw_manycore_py.bench.round_trip import WARM_UP, in_us
+from rmw_manycore_py.bench.scale import fleet, graph
 from rmw_manycore_py.bench.scale.common import CLUSTERS, OWN, along, at_count, on_curve, spread
-from rmw_manycore_py.bench.session import TIMEOUT_S, Process, Session
+from rmw_manycore_py.bench.scale.fleet import MAX_PROCESSES, Fleet
+from rmw_manycore_py.bench.session import TIMEOUT_S, Session
 from rmw_manycore_py.bench.summary import Goal, Result
 from rmw_manycore_py.errors import ManycoreError
 
@@ -26,18 +26,26 @@ CREATE = "creating one more node"
 WOKEN = "sleeps of all others per node that joins"
 REAPERS = "CPU time of the receive threads per node that joins"
 IDLE = "CPU time of all when nothing happens"
+PUBLISH = "publishing on one of their topics"
 ROUND_TRIP = "round trip of 64 B beside them"
 GRAPH = "reading all nodes and endpoints of the graph"
-READ = ", its graph read over and over"
+LIST = "`manycore node list`, from the start of the command to its end"
 RECLAIM = "until nothing is left of those killed at once"
+READ = ", its graph read over and over"
+LISTED = ", manycore node list over and over"
 
-NODES = (30, 60, 125, 250, 500)
+# Beyond 500, several of them share a process.
+NODES = (30, 60, 250, 500, 1000)
+PROMISED = 500
 # Fast DDS processes discover each other pairwise: more would take minutes.
 MOST_NODES_OF_FAST_DDS = 60
-KILLED = 0.4  # fraction of the nodes
+KILLED = 0.4  # fraction of the processes
 JOINS = 5
+CREATED = 15
 READS = 20
+LISTS = 5
 ROUND_TRIPS = 1000
+PUBLISHED = 500
 WINDOW_S = 5.0
 
 
@@ -47,88 +55,89 @@ def measure(run: Run) -> list[Result]:
     for middleware in (OWN, FAST_DDS):
         most = NODES[-1] if middleware.is_manycore else MOST_NODES_OF_FAST_DDS
         counts = (count for count in NODES if count <= most)
-        measured = partial(_in_clusters, run, middleware)
+        measured = partial(_watch, run, spread(middleware, MAX_PROCESSES))
         results += along(run, f"{UP}: {middleware.name}", counts, "nodes", measured)
     return results
 
 
-def _in_clusters(run: Run, middleware: Middleware, count: int) -> list[Result]:
-    return _watch(run, spread(middleware, count), count)
-
-
 def _watch(run: Run, middleware: Middleware, count: int) -> list[Result]:
-    def found(question: str, unit: str, samples: Sequence[float]) -> Result:
-        return on_curve(question, middleware.name, count, "nodes", unit, samples)
+    def found(question: str, unit: str, samples: Sequence[float], beside: str = "") -> Result:
+        curve = f"{middleware.name}{beside}"
+        return on_curve(question, curve, count, "nodes", unit, samples)
 
     with Session(middleware, run.cpus) as session:
         start = time.monotonic()
-        nodes = [
-            session.native("fleet", party, first=party, nodes=1, all=count, period_ms=0)
-            for party in range(count)
-        ]
-        for node in nodes:
-            node.wait_until_ready()
+        nodes = fleet.start(session, count)
         results = [found(UP, "s", [time.monotonic() - start])]
-        pids = [node.pid for node in nodes]
-        wait_until_quiet(pids)
-        joins = [_join(session, pids, count + i) for i in range(JOINS)]
+        wait_until_quiet(nodes.pids)
+        joins = [_join(session, nodes) for _ in range(JOINS)]
         results += [
-            found(CREATE, "ms", [create_ms for create_ms, _, _ in joins]),
-            found(WOKEN, "count", [woken for _, woken, _ in joins]),
-            found(IDLE, "ms/s", [_idle_ms(session, pids, WINDOW_S * max(run.share, 0.2))]),
+            found(CREATE, "ms", _creations_ms(run, session, nodes)),
+            found(WOKEN, "count", [woken for woken, _ in joins]),
+            found(IDLE, "ms/s", [_idle_ms(session, nodes, WINDOW_S * max(run.share, 0.2))]),
+            found(PUBLISH, "us", _publishes_us(run, session, nodes)),
             found(ROUND_TRIP, "us", _round_trips_us(run, session)),
         ]
         if middleware.is_manycore:
             with Platform(session.platform) as platform:
-                with _reading(platform, run.cpus[1]):
-                    beside = [_join(session, pids, count + i)[0] for i in range(JOINS)]
+                read = partial(graph.read, platform)
+                list_all = partial(graph.list_nodes, session, count)
+                for action, beside in ((read, READ), (list_all, LISTED)):
+                    with graph.over_and_over(action, run.cpus[1]):
+                        created_ms = _creations_ms(run, session, nodes)
+                    results.append(found(CREATE, "ms", created_ms, beside))
                 results += [
-                    on_curve(CREATE, f"{middleware.name}{READ}", count, "nodes", "ms", beside),
-                    found(GRAPH, "ms", [_read_ms(platform) for _ in range(READS)]),
-                    found(REAPERS, "us", [reapers_us for _, _, reapers_us in joins]),
+                    found(GRAPH, "ms", graph.times_ms(read, READS, run.cpus)),
+                    found(LIST, "ms", graph.times_ms(list_all, LISTS, run.cpus)),
+                    found(REAPERS, "us", [reapers_us for _, reapers_us in joins]),
                     found(RECLAIM, "ms", [_reclaim_ms(platform, nodes)]),
                 ]
     return results
 
 
-def _join(session: Session, others: Sequence[int], number: int) -> tuple[float, float, float]:
-    """Return a node's milliseconds to create, sleeps of others, receive threads' microseconds."""
-    receive_threads = session.receive_thread_pids()
-    before, before_ns = wake_ups(others), cpu_ns(receive_threads)
+def _create(session: Session, number: int) -> float:
+    """Create a node in a process of its own; return the time of that in ms."""
     node = session.native("fleet", 0, first=number, nodes=1, all=0, period_ms=0)
     node.wait_until_ready()
-    wait_until_quiet(receive_threads)
-    woken, used_ns = wake_ups(others) - before, cpu_ns(receive_threads) - before_ns
     node.release()
-    return node.finish()["samples_ns"][0] / 1e6, woken, used_ns / 1e3
+    return float(node.finish()["samples_ns"][0]) / 1e6
 
 
-@contextmanager
-def _reading(platform: Platform, cpu: int) -> Iterator[None]:
-    """Read the graph continuously, on a CPU other than that of joining nodes."""
-    is_over = threading.Event()
-
-    def read() -> None:
-        os.sched_setaffinity(0, [cpu])  # this thread only
-        while not is_over.is_set():
-            platform.nodes()
-            platform.endpoints()
-
-    reader = threading.Thread(target=read)
-    reader.start()
-    try:
-        yield
-    finally:
-        is_over.set()
-        reader.join()
+def _creations_ms(run: Run, session: Session, nodes: Fleet) -> list[float]:
+    return [_create(session, nodes.count) for _ in range(run.iterations(CREATED))]
 
 
-def _idle_ms(session: Session, nodes: Sequence[int], window_s: float) -> float:
-    pids = [*nodes, *session.receive_thread_pids()]
+def _join(session: Session, nodes: Fleet) -> tuple[float, float]:
+    """Return what a node that joins costs: sleeps of others, receive threads' microseconds."""
+    receive_threads = session.receive_thread_pids()
+    before, before_ns = wake_ups(nodes.pids), cpu_ns(receive_threads)
+    node = session.native("fleet", 0, first=nodes.count, nodes=1, all=0, period_ms=0)
+    node.wait_until_ready()
+    wait_until_quiet(receive_threads)
+    woken, used_ns = wake_ups(nodes.pids) - before, cpu_ns(receive_threads) - before_ns
+    node.release()
+    node.finish()
+    return woken, used_ns / 1e3
+
+
+def _idle_ms(session: Session, nodes: Fleet, window_s: float) -> float:
+    pids = [*nodes.pids, *session.receive_thread_pids()]
     wait_until_quiet(pids)
     before = cpu_ns(pids)
     time.sleep(window_s)
     return (cpu_ns(pids) - before) / 1e6 / window_s
+
+
+def _publishes_us(run: Run, session: Session, nodes: Fleet) -> list[float]:
+    """Publish on a topic of the first node, to which the last one subscribes."""
+    speaker = session.native(
+        "fleet_speaker",
+        len(nodes.processes) % len(run.cpus),  # not on the CPU of the last node's process
+        topic="/fleet_0_0",
+        warm_up=WARM_UP,
+        iterations=run.iterations(PUBLISHED),
+    )
+    return in_us(speaker.finish()["samples_ns"])
 
 
 def _round_trips_us(run: Run, session: Session) -> list[float]:
@@ -147,39 +156,34 @@ def _round_trips_us(run: Run, session: Session) -> list[float]:
     return samples
 
 
-def _read_ms(platform: Platform) -> float:
-    return _ms_of(lambda: (platform.nodes(), platform.endpoints()))
-
-
-def _reclaim_ms(platform: Platform, nodes: Sequence[Process]) -> float:
-    victims = nodes[: int(len(nodes) * KILLED)]
-    left = len(nodes) - len(victims)
+def _reclaim_ms(platform: Platform, nodes: Fleet) -> float:
+    victims = int(len(nodes.processes) * KILLED)
+    processes, left = len(nodes.processes) - victims, nodes.nodes_after(victims)
 
     def kill() -> None:
-        for victim in victims:
-            os.kill(victim.pid, signal.SIGKILL)
+        for victim in nodes.pids[:victims]:
+            os.kill(victim, signal.SIGKILL)
         deadline = time.monotonic() + TIMEOUT_S
-        while len(platform.processes()) > left or len(platform.nodes()) > left:
+        while len(platform.processes()) > processes or len(platform.nodes()) > left:
             if time.monotonic() > deadline:
                 raise ManycoreError("killed nodes stay in the registry")
             time.sleep(0.005)
 
-    return _ms_of(kill)
+    return graph.ms_of(kill)
 
 
-def _ms_of(action: Callable[[], object]) -> float:
-    start = time.monotonic_ns()
-    action()
-    return (time.monotonic_ns() - start) / 1e6
-
-
-_most, _least = (at_count(OWN.name, count, "nodes") for count in (NODES[-1], NODES[0]))
+_promised, _least = (at_count(OWN.name, count, "nodes") for count in (PROMISED, NODES[0]))
 GOALS = (
-    Goal(UP, _most, "within", 20),
-    Goal(CREATE, at_count(f"{OWN.name}{READ}", NODES[-1], "nodes"), "within", 1.2, _most),
-    Goal(WOKEN, _most, "within", 0),
-    Goal(IDLE, _most, "within", 0),
-    Goal(ROUND_TRIP, _most, "within", 1.1, _least),
-    Goal(RECLAIM, _most, "within", 1000),
+    Goal(UP, _promised, "within", 20),
+    *(
+        Goal(CREATE, at_count(f"{OWN.name}{beside}", PROMISED, "nodes"), "within", 1.2, _promised)
+        for beside in (READ, LISTED)
+    ),
+    Goal(WOKEN, _promised, "within", 0),
+    Goal(REAPERS, _promised, "within", 2, _least),
+    Goal(IDLE, _promised, "within", 0),
+    Goal(PUBLISH, _promised, "within", 1.2, _least),
+    Goal(ROUND_TRIP, _promised, "within", 1.1, _least),
+    Goal(RECLAIM, _promised, "within", 1000),
 )
 PLACEMENT = f"nodes: on both in turn, over {CLUSTERS} clusters"
