@@ -157,6 +157,15 @@ def test_simulated_time_crosses_the_bridge() -> None:
     assert all(row["median"] > 0 for row in rows)
 
 
+def test_simulated_time_moves_the_clocks_of_rclpy_nodes() -> None:
+    rows = run_bench("scale", "--only", "node with use_sim_time per time it gets")["results"]
+    assert {row["at"] for row in rows} == {5}
+    assert len({row["curve"] for row in rows}) == 3
+    assert all(row["median"] > 0 for row in rows)
+    seen = [row for row in rows if row["unit"] == "1/s"]
+    assert {(row["samples"], row["largest"] <= 1000) for row in seen} == {(5, True)}
+
+
 def test_what_each_publisher_costs_a_subscription_is_measured() -> None:
     rows = run_bench("scale", "--only", "into all its publishers: manycore")["results"]
     assert len({row["question"] for row in rows}) == 2

@@ -12,12 +12,13 @@ from rmw_manycore_py.bench.scale import (
     history,
     holds,
     nodes,
+    sim_time,
     sources,
     threads,
 )
 from rmw_manycore_py.bench.summary import Result
 
-PARTS = (threads, composed, endpoints, sources, history, holds, clock, clients, nodes)
+PARTS = (threads, composed, endpoints, sources, history, holds, clock, sim_time, clients, nodes)
 
 
 def measure(run: Run) -> list[Result]:
