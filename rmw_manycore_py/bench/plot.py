@@ -12,7 +12,7 @@ from rmw_manycore_py.bench.summary import SPREAD, Result, nearest_rank
 from rmw_manycore_py.figures import load_figure
 
 COLUMNS = 2
-# Maximum ratio of the longest line to the shortest bar on a linear scale.
+# Maximum ratio of the largest to the smallest value on a linear scale.
 LINEAR_UP_TO = 20
 
 
@@ -62,7 +62,8 @@ def _draw_curves(panel: Any, results: Sequence[Result]) -> None:
         (line,) = panel.plot(places, medians, marker="o", markersize=4, label=name)
         panel.fill_between(places, low, high, alpha=0.2, color=line.get_color())
         panel.vlines(places, low, high, alpha=0.5, color=line.get_color())
-    panel.set(xlabel=axis, ylabel=results[0].unit, xticks=sorted({_place(r) for r in results}))
+    panel.set(xlabel=axis, ylabel=results[0].unit)
+    _mark_places(panel, sorted({_place(r) for r in results}))
     if max(r.summary.median for r in results) > LINEAR_UP_TO * min(
         r.summary.median for r in results
     ):
@@ -70,6 +71,14 @@ def _draw_curves(panel: Any, results: Sequence[Result]) -> None:
     else:
         panel.set_ylim(bottom=0)
     panel.legend(fontsize="small")
+
+
+def _mark_places(panel: Any, places: Sequence[int]) -> None:
+    """Label the measured places; over several orders of magnitude on a logarithmic axis."""
+    if places[-1] > LINEAR_UP_TO * places[0]:
+        panel.set_xscale("log")
+    panel.set_xticks(places, [f"{place:,}" for place in places])
+    panel.tick_params(axis="x", which="minor", bottom=False, labelbottom=False)
 
 
 def _place(result: Result) -> int:

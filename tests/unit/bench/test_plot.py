@@ -46,8 +46,27 @@ def test_curves_and_bars_are_drawn(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     }
     assert [line.get_ydata()[0] for line in over_cores.lines] == [6.5, 210.0]
     assert over_cores.get_yscale() == "log"
+    assert over_cores.get_xscale() == "linear"
     assert bars.get_title() == "share"
     assert len(bars.patches) == 1
+
+
+@pytest.mark.needs("matplotlib")
+def test_a_curve_over_orders_of_magnitude_has_a_logarithmic_axis(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    drawn = []
+    figure = load_figure()
+    monkeypatch.setattr(figure, "savefig", lambda self, path: drawn.append(self))
+    depths = (1, 100, 10_000)
+    curve = [
+        Result("publish", f"{n} kept", "us", (0.2,), curve=Curve("own", n, "messages kept"))
+        for n in depths
+    ]
+    plot(curve, tmp_path / "plot.svg")
+    (panel,) = drawn[0].axes
+    assert panel.get_xscale() == "log"
+    assert [label.get_text() for label in panel.get_xticklabels()] == ["1", "100", "10,000"]
 
 
 @pytest.mark.needs("matplotlib")
