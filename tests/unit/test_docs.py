@@ -120,9 +120,25 @@ def test_the_plot_shows_the_figures_of_the_table() -> None:
     assert json.loads(description.text or "") == plot_round_trips().figures()
 
 
+def test_the_table_of_the_scale_bench_has_a_row_per_goal() -> None:
+    """Update it with: python scripts/scale_figures.py REPORT PAGE."""
+    page = (ROOT / "docs/reference/benchmarks/scale_figures.md").read_text()
+    expected = script("scale_figures").filled(page, [])
+    rows, wanted = (
+        [line.split(" | ")[:3] for line in text.splitlines() if line.startswith("| ")]
+        for text in (page, expected)
+    )
+    assert rows == wanted
+
+
 def plot_round_trips() -> Any:
     """Return the script as a module."""
-    spec = importlib.util.spec_from_file_location("plot", ROOT / "scripts/plot_round_trips.py")
+    return script("plot_round_trips")
+
+
+def script(name: str) -> Any:
+    """Return a script as a module."""
+    spec = importlib.util.spec_from_file_location(name, ROOT / f"scripts/{name}.py")
     assert spec is not None
     assert spec.loader is not None
     module = importlib.util.module_from_spec(spec)
