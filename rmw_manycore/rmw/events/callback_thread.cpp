@@ -51,12 +51,11 @@ void CallbackThread::run() noexcept {
       wake_.wait(lock);
       continue;
     }
-    // Register watchers and read epoch and due time before checking: anything that happens or falls
-    // due in between ends the wait at once.
+    // Register watchers and read the epoch before checking: anything that happens in between ends
+    // the wait at once.
     watch_all(word);
     const uint32_t epoch = waiter.epoch();
-    const std::optional<int64_t> due_ns = next_due_ns();
-    report_all();
+    const std::optional<int64_t> due_ns = report_all();
     lock.unlock();
     waiter.wait(epoch, due_ns);
     lock.lock();
@@ -76,21 +75,16 @@ void CallbackThread::watch_all(uint32_t word) noexcept {
   }
 }
 
-std::optional<int64_t> CallbackThread::next_due_ns() const {
-  int64_t soonest = manycore::infinite_ns;
-  for (const Callback * const callback : active_) {
-    soonest = std::min(soonest, callback->next_due_ns_());
-  }
-  return soonest == manycore::infinite_ns ? std::nullopt : std::optional(soonest);
-}
-
-void CallbackThread::report_all() noexcept {
+std::optional<int64_t> CallbackThread::report_all() noexcept {
+  int64_t soonest_ns;
   do {
     changed_ = false;
+    soonest_ns = manycore::infinite_ns;
     for (size_t i = 0; i < active_.size() && !changed_; ++i) {
-      active_[i]->report();
+      soonest_ns = std::min(soonest_ns, active_[i]->report());
     }
   } while (changed_);
+  return soonest_ns == manycore::infinite_ns ? std::nullopt : std::optional(soonest_ns);
 }
 
 void Callback::set(rmw_event_callback_t function, const void * user_data) {
@@ -101,7 +95,7 @@ void Callback::set(rmw_event_callback_t function, const void * user_data) {
   const std::lock_guard lock(thread_.mutex_);
   function_ = function;
   user_data_ = user_data;
-  const uint64_t arrivals = arrivals_();
+  const uint64_t arrivals = arrivals_().count;
   const uint64_t pending = std::min(unread_(), arrivals - reported_);
   reported_ = arrivals;
   if (pending != 0) {
@@ -126,13 +120,14 @@ void Callback::clear() noexcept {
   thread_.remove(*this);
 }
 
-void Callback::report() noexcept {
-  const uint64_t arrivals = arrivals_();
-  if (arrivals > reported_) {
-    const uint64_t fresh = arrivals - reported_;
-    reported_ = arrivals;
+int64_t Callback::report() noexcept {
+  const Arrivals arrivals = arrivals_();
+  if (arrivals.count > reported_) {
+    const uint64_t fresh = arrivals.count - reported_;
+    reported_ = arrivals.count;
     function_(user_data_, fresh);
   }
+  return arrivals.next_due_ns;
 }
 
 }  // namespace rmw_manycore

@@ -36,10 +36,10 @@ private:
   void add(Callback & callback);
   void remove(Callback & callback) noexcept;
   void run() noexcept;
-  void report_all() noexcept;
+  /// Returns when the passage of time may raise a count next.
+  std::optional<int64_t> report_all() noexcept;
   void wake_sleep() noexcept;
   void watch_all(uint32_t word) noexcept;
-  std::optional<int64_t> next_due_ns() const;
 
   manycore::Waiters & waiters_;
   /// In a child of fork() the thread does not exist, and the mutex may be locked forever.
@@ -58,21 +58,20 @@ private:
 /// A settable callback: a count that only rises, and the function to call for each rise.
 class Callback {
 public:
-  using Count = std::function<uint64_t()>;
-  using Due = std::function<int64_t()>;
-  static int64_t never() noexcept { return manycore::infinite_ns; }
+  struct Arrivals {
+    uint64_t count;                               ///< since creation
+    int64_t next_due_ns = manycore::infinite_ns;  ///< when time may raise it; CLOCK_MONOTONIC
+  };
 
-  /// `watchers` are notified when `arrivals` rises. `arrivals` counts since creation; `unread` is
-  /// how many of these are not taken yet. `next_due_ns` is when the passage of time may raise
-  /// `arrivals` (CLOCK_MONOTONIC).
+  /// `watchers` are notified when the count of `arrivals` rises. `unread` is how many of these are
+  /// not taken yet.
   Callback(
-    CallbackThread & thread, manycore::Watchers & watchers, Count arrivals, Count unread,
-    Due next_due_ns = never)
+    CallbackThread & thread, manycore::Watchers & watchers, std::function<Arrivals()> arrivals,
+    std::function<uint64_t()> unread)
   : thread_(thread),
     watchers_(watchers),
     arrivals_(std::move(arrivals)),
-    unread_(std::move(unread)),
-    next_due_ns_(std::move(next_due_ns)) {}
+    unread_(std::move(unread)) {}
   ~Callback() { clear(); }
   Callback(const Callback &) = delete;
   Callback & operator=(const Callback &) = delete;
@@ -86,13 +85,13 @@ public:
 private:
   friend class CallbackThread;
   void clear() noexcept;
-  void report() noexcept;
+  /// Returns when the passage of time may raise the count next.
+  int64_t report() noexcept;
 
   CallbackThread & thread_;
   manycore::Watchers & watchers_;
-  const Count arrivals_;
-  const Count unread_;
-  const Due next_due_ns_;
+  const std::function<Arrivals()> arrivals_;
+  const std::function<uint64_t()> unread_;
   rmw_event_callback_t function_ = nullptr;
   const void * user_data_ = nullptr;
   uint64_t reported_ = 0;

@@ -33,8 +33,12 @@ Callback & EndpointEvents::callback(rmw_event_type_t type) {
   const std::lock_guard lock(mutex_);
   if (!callbacks_[type]) {
     callbacks_[type] = std::make_unique<Callback>(
-      thread_, thread_.waiters().event_watchers(), [this, type] { return counts(type).changes; },
-      [this, type] { return untold(type); }, [this, type] { return next_due_ns(type); });
+      thread_, thread_.waiters().event_watchers(),
+      [this, type] {
+        const EventCounts now = counts(type);
+        return Callback::Arrivals{now.changes, now.next_due_ns};
+      },
+      [this, type] { return untold(type); });
   }
   return *callbacks_[type];
 }

@@ -18,7 +18,7 @@ public:
   : subscription_(std::move(subscription)),
     watched_(thread.waiters(), subscription_->watchers()),
     on_arrival_(
-      thread, watched_.watchers(), [this] { return subscription_->arrivals(); },
+      thread, watched_.watchers(), [this] { return Callback::Arrivals{subscription_->arrivals()}; },
       [this] { return unread(); }) {
     watched_.watchers().reset();  // waiting threads add their own words
   }
