@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import time
 from typing import Any
 
 import numpy as np
@@ -22,6 +23,22 @@ def answer_of(stack: Any, client: Any, request: Any) -> Any:
     answer = client.call_async(request)
     spin_until(stack.node, answer.done)
     return answer.result()
+
+
+def answer_during_scans(stack: Any, client: Any, request: Any) -> Any:
+    """Return an answer during whose search more scans than the one under way got their poses.
+
+    A search that ends while the test gets no CPU shows nothing: repeat it.
+    """
+    deadline = time.monotonic() + TIMEOUT_S
+    while True:
+        stack.poses.clear()
+        answer = client.call_async(request)
+        while not answer.done():
+            stack.report_of(stack.send(street_scan(), NEAR))
+        if len(stack.poses) > 2:
+            return answer.result()
+        assert time.monotonic() < deadline, "no scan was matched during a search"
 
 
 def test_activation_and_initial_pose(stack, start):
@@ -76,10 +93,7 @@ def test_scans_are_matched_while_a_pose_is_searched(stack, start):
     assert today.wait_for_service(TIMEOUT_S)
     assert old.wait_for_service(TIMEOUT_S)
     found = answer_of(stack, today, AlignService.Request(pose_with_covariance=rough))
-    answer = old.call_async(Tier4AlignService.Request(pose_with_covariance=rough))
-    stack.poses.clear()
-    while not answer.done():
-        stack.report_of(stack.send(street_scan(), NEAR))
-    assert len(stack.poses) > 2  # others than the one that was under way
+    request = Tier4AlignService.Request(pose_with_covariance=rough)
+    answer = answer_during_scans(stack, old, request)
     assert all(error_m(T) < 0.1 for T in stack.poses.values())
-    assert answer.result().pose_with_covariance == found.pose_with_covariance
+    assert answer.pose_with_covariance == found.pose_with_covariance
