@@ -123,8 +123,8 @@ def test_what_is_latched_comes_again_and_is_counted(bridge, direction, by_patter
     assert bridge.row(direction, "/numbers")["repeated"] == 0
     os.kill(first.pid, signal.SIGKILL)
     first.wait()
-    second = bridge.run(route)[direction]
     viewer.skip_output()
+    second = bridge.run(route)[direction]
     viewer.wait_for(f"^heard {2 * DEPTH}$")
 
     def all_counted() -> bool:
