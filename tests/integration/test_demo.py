@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import signal
 from pathlib import Path
 
 import pytest
@@ -12,10 +13,11 @@ pytestmark = pytest.mark.integration
 
 
 def test_the_demo_runs_and_says_what_there_is_to_see(start, tmp_path: Path) -> None:
-    demo = start(manycore_command("demo", "--duration", "10"), directory=tmp_path)
+    demo = start(manycore_command("demo", "--duration", "60"), directory=tmp_path)
     demo.wait_for("a talker on core 1 of cluster 1, a listener on core 1 of cluster 2")
     demo.wait_for("listener .*I heard")
-    demo.wait_for("stopping: the duration is over")
+    demo.signal(signal.SIGINT)
+    demo.wait_for("stopping: SIGINT")
     demo.wait_for("/listener: cluster 2, core 1, host CPU")
     demo.wait_for("manycore run talker_listener ")
     demo.wait_for("manycore topic echo /chatter ")
