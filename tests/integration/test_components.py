@@ -165,6 +165,7 @@ def test_registered_types_and_a_container_of_its_own(start, manycore, tmp_path) 
     program.wait_for("^log level 0, extra 0$")
     assert manycore("component", "list").splitlines() == ["/own_box", "  1  /left"]
     assert manycore("node", "list").splitlines() == ["/left", "/own_box"]
+    program.wait_for("^Loaded component 1 into '/own_box' container node as '/left'$")
     assert program.stop() == 0, program
     refused = manycore(*alone[:2], "demo", "demo::Hearer", "-c", "own_box", status=1, **prefix)
     assert "Failed to load component: No such plugin" in refused

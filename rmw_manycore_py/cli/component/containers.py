@@ -104,6 +104,11 @@ class Container:
         return answer_of(self._node, client, service_type.Request(**fields))
 
 
+def loaded_line(unique_id: int, container: str, node: str) -> str:
+    """Return the line that `ros2 component load` prints for a loaded component."""
+    return f"Loaded component {unique_id} into '{container}' container node as '{node}'"
+
+
 def _parameters(values: Sequence[str], option: str) -> list[Any]:
     """Return values "name:=value" as rcl_interfaces Parameters."""
     from rcl_interfaces.msg import Parameter

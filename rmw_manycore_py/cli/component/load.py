@@ -12,6 +12,7 @@ from rmw_manycore_py.cli.component.containers import (
     Wanted,
     complete_containers,
     existing_container,
+    loaded_line,
 )
 from rmw_manycore_py.cli.component.wanted_options import wanted_options
 
@@ -36,4 +37,4 @@ def command(container: str, wanted: Wanted, quiet: bool, platform: str) -> None:
     if quiet:
         click.echo(f"{unique_id}  {node}")
     else:
-        click.echo(f"Loaded component {unique_id} into '{name}' container node as '{node}'")
+        click.echo(loaded_line(unique_id, name, node))

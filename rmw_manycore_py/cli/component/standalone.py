@@ -13,7 +13,7 @@ import click
 from rmw_manycore_py.cli.common.node_names import absolute_name, existing_node
 from rmw_manycore_py.cli.common.options import discovery_options, examples, platform_option
 from rmw_manycore_py.cli.common.tool_node import tool_node
-from rmw_manycore_py.cli.component.containers import Container, Wanted
+from rmw_manycore_py.cli.component.containers import Container, Wanted, loaded_line
 from rmw_manycore_py.cli.component.wanted_options import wanted_options
 from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.launch.processes.environment import enter_middleware, program_environment
@@ -53,21 +53,27 @@ def command(wanted: Wanted, name: str | None, platform: str) -> None:
         start_new_session=True,  # only `_end` forwards Ctrl-C, once
         preexec_fn=dies_with_this_process(),
     )
+    full_name, loaded = absolute_name(name), None
     try:
         existing_node(platform, name, START_TIMEOUT_S, "Unable to find container node")
-        is_loaded = False
         with tool_node(platform) as tool:
-            Container(tool, absolute_name(name)).load(wanted)
-            is_loaded = True
+            loaded = Container(tool, full_name).load(wanted)
     except (ManycoreError, KeyboardInterrupt):
         _end(container)
         raise
-    sys.exit(_end_of(container) if is_loaded else _end(container))
+    if loaded is None:  # interrupted
+        sys.exit(_end(container))
+    unique_id, node = loaded
+    sys.exit(_end_of(container, loaded_line(unique_id, full_name, node)))
 
 
-def _end_of(container: subprocess.Popen[bytes]) -> int:
-    """Wait for the container to exit, e.g. after an interrupt; return its exit status."""
+def _end_of(container: subprocess.Popen[bytes], line: str) -> int:
+    """Print a line, wait for the container to exit, and return its exit status.
+
+    From the line on, an interrupt ends the container and counts as success.
+    """
     try:
+        click.echo(line)
         return container.wait()
     except KeyboardInterrupt:
         return _end(container)
