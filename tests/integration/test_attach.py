@@ -29,9 +29,9 @@ before = termios.tcgetattr(sys.stdin)
 rclpy.init()
 node = Node("teleop")
 publisher = node.create_publisher(String, "keys", 10)
-print("use the keys", flush=True)
 try:
-    tty.setraw(sys.stdin.fileno())
+    tty.setraw(sys.stdin.fileno())  # discards what was typed before
+    print("use the keys\\r", flush=True)
     while (key := sys.stdin.read(1)) != "q":
         publisher.publish(String(data=key))
         print(f"key {key!r}\\r", flush=True)
