@@ -133,9 +133,12 @@ def test_endpoint_qos(node, peer):
 @pytest.mark.parametrize("how", ["stop", "kill"])
 def test_a_node_that_ends_leaves_the_graph(node, peer, how):
     getattr(peer, how)()
-    spin_until(node, lambda: node.get_node_names() == ["tester"])
-    assert node.count_publishers("/far/chatter") == 0
-    assert node.count_services("/far/serve") == 0
+
+    def is_gone() -> bool:  # endpoints and node names are read one after the other
+        names, publishers = node.get_node_names(), node.count_publishers("/far/chatter")
+        return (names, publishers, node.count_services("/far/serve")) == (["tester"], 0, 0)
+
+    spin_until(node, is_gone)
 
 
 def be_there_briefly() -> None:
