@@ -25,12 +25,14 @@ class Share:
     """Owner of a topic, and the progress of a move.
 
     Sequence numbers are kept by publisher gid. `first` is the first message that the heir has, None
-    until the heir is ready; `last` is the last message that the previous owner forwarded.
+    until the heir is ready; `last` is the last message that the previous owner forwarded. `matched`
+    is the number of endpoints outside that the heir is matched with.
     """
 
     owner: int
     heir: int | None = None
     first: dict[str, int] | None = None
+    matched: int = 0
     last: dict[str, int] = field(default_factory=dict)
 
 

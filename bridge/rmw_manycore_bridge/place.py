@@ -10,7 +10,8 @@ from rmw_manycore_bridge.lanes import LaneTable, Share
 
 Role = Literal["owner", "heir", "none"]
 
-SETTLE_S = 1.0  # by then the heir's endpoints have matched, including silent publishers
+# Once no more endpoints match with the heir's: by then silent publishers outside have matched, too.
+SETTLE_S = 1.0
 STEP_S = 0.02  # polling period of a move in progress
 
 
@@ -110,13 +111,13 @@ class Place:
         """Start keeping messages."""
         self._held = []
 
-    def report(self, share: Share) -> None:
-        """Report progress to the owner."""
+    def report(self, share: Share, matched: int) -> None:
+        """Report progress to the owner, and the number of endpoints matched outside."""
         first = {gid.hex(): number for gid, number in self._first.items()}
-        if self._table is not None and share.first != first:
+        if self._table is not None and (share.first, share.matched) != (first, matched):
             with self._table.change(self._index) as present:
                 if present.heir == self._lane:
-                    present.first = first
+                    present.first, present.matched = first, matched
 
     def inherit(self, share: Share) -> list[Held]:
         """As the new owner, return the held messages that the previous owner did not forward."""

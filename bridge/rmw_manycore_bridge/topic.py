@@ -38,7 +38,9 @@ class Topic(Mover):
         self._paused = False
         self._paused_s = 0.0
         self._settled_s = _NEVER_S
-        self._offer_held: Qos | None = None  # offer that the heir's endpoints were created for
+        # As heir: the offer that its endpoints were created for, and how many have matched.
+        self._offer_held: Qos | None = None
+        self._matched = 0
 
     def reconcile(self) -> None:
         """Adapt the endpoints to both graphs, and advance a move by one step."""
@@ -97,14 +99,17 @@ class Topic(Mover):
         if self._offer is None:
             if self._place.holds:
                 self._place.decline()
-        elif self._offer.durability == "transient_local":
+            return
+        matched = self.matched_outside()
+        if self._offer.durability == "transient_local":
             self._place.decline()
-        elif self._settled_s == _NEVER_S and not self._place.holds:
+        elif not self._place.holds and (self._settled_s == _NEVER_S or matched != self._matched):
             self._settled_s, self._offer_held = now_s + SETTLE_S, self._offer
+            self._matched = matched
         elif self._offer is not self._offer_held:
             self._place.decline()  # the endpoints were recreated
         elif self._place.holds:
-            self._place.report(share)
+            self._place.report(share, matched)
         elif now_s >= self._settled_s:
             self._settled_s = _NEVER_S
             self._place.begin_to_hold()
@@ -116,6 +121,8 @@ class Topic(Mover):
             self._place.decline()
         elif self._place.may_hand_over(share):
             if not self._paused:
+                if share.matched < self.matched_outside():
+                    return  # an endpoint outside has not discovered the heir, or is gone
                 if not self.is_acknowledged():
                     return  # a slow subscriber would prolong the pause
                 self._paused, self._paused_s = True, time.monotonic()
@@ -200,6 +207,10 @@ class Topic(Mover):
     @abstractmethod
     def stop_listening(self) -> None:
         """Destroy the subscription."""
+
+    @abstractmethod
+    def matched_outside(self) -> int:
+        """Return the number of endpoints that the own one outside is matched with."""
 
     @abstractmethod
     def is_acknowledged(self) -> bool:

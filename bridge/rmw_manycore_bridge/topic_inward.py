@@ -147,6 +147,10 @@ class InwardTopic(Topic):
         if self.entity is not None:
             self._sides.outside.readers.append(self)
 
+    def matched_outside(self) -> int:
+        """Return the number of DDS publishers that the subscription is matched with."""
+        return 0 if self.entity is None else int(self.entity.get_publisher_count())
+
     def is_acknowledged(self) -> bool:
         """Return True: on the platform, readers have a message as soon as it is published."""
         return True

@@ -154,6 +154,10 @@ class OutwardTopic(Topic):
         if self._subscription is not None:
             self._sides.inside.readers.append(self)
 
+    def matched_outside(self) -> int:
+        """Return the number of DDS subscriptions that the publisher is matched with."""
+        return 0 if self._publisher is None else int(self._publisher.get_subscription_count())
+
     def is_acknowledged(self) -> bool:
         """Return whether every reliable subscriber has acknowledged everything."""
         return bool(self._publisher.wait_for_all_acked(Duration(seconds=0)))

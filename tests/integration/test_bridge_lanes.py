@@ -10,7 +10,7 @@ import signal
 import pytest
 from bridging import Bridge
 from ros_support import announce, peer_node, spin_until, type_of
-from support import IS_MANYCORE, wait_until
+from support import IS_MANYCORE, TIMEOUT_S, wait_until
 
 pytestmark = [
     pytest.mark.integration,
@@ -20,6 +20,7 @@ pytestmark = [
 HEAVY, LIGHT = ("/heavy_1", "/heavy_2"), ("/light_1", "/light_2")
 TOPICS = [name for pair in zip(HEAVY, LIGHT, strict=True) for name in pair]  # both heavy in lane 0
 DEPTH = 2000
+MOVE_S = 3 * TIMEOUT_S  # a move that failed is tried again after a minute
 
 
 def count_up() -> None:
@@ -83,8 +84,8 @@ def test_heavy_topics_end_up_in_different_lanes(bridge, way) -> None:
     source(count_up)
     for name in HEAVY:
         checker.wait_for(f"^{name} ")
-    lanes[0].wait_for(r"^/heavy_\d: moves to lane 1$")
-    wait_until(lambda: sorted(lanes_of(bridge, way)) == [0, 1], "the heavy ones are apart")
+    lanes[0].wait_for(r"^/heavy_\d: moves to lane 1$", MOVE_S)
+    wait_until(lambda: sorted(lanes_of(bridge, way)) == [0, 1], "the heavy are apart", MOVE_S)
     checker.skip_output()
     for name in (*HEAVY, *HEAVY):  # both go on
         checker.wait_for(f"^{name} ")
@@ -99,8 +100,8 @@ def test_a_killed_lane_comes_back_to_its_topics(bridge) -> None:
     plan_lanes = bridge.run_lanes(2, "outward", *routes)
     checker = bridge.outside(check_numbers)
     bridge.inside(count_up)
-    plan_lanes[0].wait_for("moves to lane 1$")
-    wait_until(lambda: sorted(lanes_of(bridge, "outward")) == [0, 1], "apart")
+    plan_lanes[0].wait_for("moves to lane 1$", MOVE_S)
+    wait_until(lambda: sorted(lanes_of(bridge, "outward")) == [0, 1], "apart", MOVE_S)
     moved = HEAVY[lanes_of(bridge, "outward").index(1)]
     os.kill(bridge.row("outward", moved)["pid"], signal.SIGKILL)
     wait_until(lambda: not bridge.row("outward", moved)["alive"], "the lane is dead")
