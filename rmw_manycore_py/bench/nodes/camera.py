@@ -1,11 +1,11 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 """Publishes images at a fixed rate, or counts them.
 
-Usage: camera RELIABILITY BYTES HZ COUNT | camera RELIABILITY count
+Usage: camera RELIABILITY BYTES HZ COUNT | camera RELIABILITY count COUNT
 
 The camera publishes empty messages until the end of its input, then the images; it reports ready
-when all are sent. The counter reports ready at the first empty message, and exits at the end of its
-input.
+when all are sent. The counter reports ready at the first empty message. After the end of its input
+it exits once COUNT images have come, or none for QUIET_S.
 """
 
 from __future__ import annotations
@@ -25,6 +25,7 @@ from std_msgs.msg import UInt8MultiArray
 TOPIC = "/images"
 HELLO_PERIOD_S = 0.1
 DEPTH = 10
+QUIET_S = 5.0  # several times what a busy host needs to send an image again
 
 
 def _send(node: Node, qos: QoSProfile, size_bytes: int, rate_hz: int, count: int) -> None:
@@ -47,13 +48,14 @@ def _send(node: Node, qos: QoSProfile, size_bytes: int, rate_hz: int, count: int
     threading.Event().wait()  # stay for retransmissions
 
 
-def _count(node: Node, qos: QoSProfile) -> None:
-    is_ready = threading.Event()
+def _count(node: Node, qos: QoSProfile, expected: int) -> None:
+    is_ready, has_come = threading.Event(), threading.Event()
     images = 0
 
     def hear(message: UInt8MultiArray) -> None:
         nonlocal images
         images += bool(message.data)
+        has_come.set()
         if not is_ready.is_set():
             is_ready.set()
             print("ready", flush=True)
@@ -64,6 +66,8 @@ def _count(node: Node, qos: QoSProfile) -> None:
     spinner = threading.Thread(target=executor.spin)
     spinner.start()
     sys.stdin.read()
+    while images < expected and has_come.wait(QUIET_S):
+        has_come.clear()
     executor.shutdown()
     spinner.join()
     print(json.dumps({"images": images}))
@@ -73,9 +77,10 @@ def main() -> None:
     """Publish or count."""
     reliability, *rest = sys.argv[1:]
     rclpy.init()
-    node = rclpy.create_node("counter" if rest == ["count"] else "camera")
+    counts = rest[0] == "count"
+    node = rclpy.create_node("counter" if counts else "camera")
     qos = QoSProfile(depth=DEPTH, reliability=ReliabilityPolicy[reliability.upper()])
-    _count(node, qos) if rest == ["count"] else _send(node, qos, *map(int, rest))
+    _count(node, qos, int(rest[1])) if counts else _send(node, qos, *map(int, rest))
     node.destroy_node()
     rclpy.shutdown()
 
