@@ -98,6 +98,7 @@ def _call(run: Run, middleware: Middleware, served: Served, clients: int) -> lis
         for process in idle:
             process.wait_until_ready()
         pids = [process.pid for process in idle]
+        session.receive_thread_pids()  # one that is still starting would wake the clients
         wait_until_quiet(pids)
         caller = served.start(session, 1, "caller", served.warm_up, calls)
         before_ns, before = cpu_ns(pids), wake_ups(pids)
