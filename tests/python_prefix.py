@@ -9,6 +9,8 @@ import subprocess
 import venv
 from pathlib import Path
 
+from support import TIMEOUT_S
+
 import rmw_manycore_hook as hook
 
 SHOW = (
@@ -46,7 +48,7 @@ class Prefix:
             cwd=directory,
             capture_output=True,
             text=True,
-            timeout=30,
+            timeout=TIMEOUT_S,
         )
 
     def show(self, *arguments: str | Path, directory: Path | None = None, **variables: str) -> dict:

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 from python_prefix import SHOW, Prefix
+from support import TIMEOUT_S
 
 import rmw_manycore_hook as hook
 
@@ -111,7 +112,7 @@ def test_a_launcher_saves_the_second_start(prefix: Prefix) -> None:
     process = subprocess.Popen(
         [prefix.python, "-c", SHOW], env=environment, stdout=subprocess.PIPE, text=True
     )
-    shown = json.loads(process.communicate(timeout=30)[0])
+    shown = json.loads(process.communicate(timeout=TIMEOUT_S)[0])
     assert loader_path(shown)[0] == str(prefix.stand_ins)
     assert hook.REPLACED not in "".join(shown["loader"])
 
@@ -173,7 +174,7 @@ def test_a_program_on_standard_input_is_read_once(prefix: Prefix) -> None:
         input=SHOW,
         capture_output=True,
         text=True,
-        timeout=30,
+        timeout=TIMEOUT_S,
         env={"RMW_IMPLEMENTATION": "rmw_manycore"},
     )
     assert loader_path(json.loads(done.stdout))[0] == str(prefix.stand_ins)
@@ -186,7 +187,7 @@ def test_a_lost_library_path_is_told_and_not_retried(prefix: Prefix) -> None:
         env={"PATH": "/usr/bin:/bin", "RMW_IMPLEMENTATION": "rmw_manycore"},
         capture_output=True,
         text=True,
-        timeout=30,
+        timeout=TIMEOUT_S,
     )
     assert done.stdout == "1\n"
     assert "LD_LIBRARY_PATH was lost" in done.stderr
@@ -209,7 +210,7 @@ def test_an_ignored_interruption_stays_ignored(prefix: Prefix) -> None:
         env={"PATH": "/usr/bin:/bin", "RMW_IMPLEMENTATION": "rmw_manycore"},
         capture_output=True,
         text=True,
-        timeout=30,
+        timeout=TIMEOUT_S,
     )
     assert (done.stdout, done.stderr) == ("True\n", "")
 

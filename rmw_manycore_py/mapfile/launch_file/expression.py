@@ -22,7 +22,7 @@ from typing import Any
 CPU_S = 2
 MEMORY_BYTES = 1 << 30
 # Wall-clock limit, for expressions that block.
-TIMEOUT_S = 30
+TIMEOUT_S = 60
 
 
 def evaluate(text: str, modules: Sequence[str]) -> str:
