@@ -10,6 +10,7 @@ import sys
 from contextlib import suppress
 
 import rclpy
+from rclpy._rclpy_pybind11 import RCLError
 from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
 
@@ -34,6 +35,9 @@ def main() -> int:
         kind = KINDS[settings.kind](node, settings)
         try:
             rclpy.spin(node)
+        except RCLError:  # a callback published while the interrupt invalidated the context
+            if rclpy.ok():
+                raise
         finally:
             kind.say_losses()
     return 0
