@@ -74,7 +74,7 @@ lint: setup  ## style, types, spelling
 tidy: setup  ## clang-tidy with the checks of .clang-tidy
 	$(VENV)/cmake -S . -B build/tidy -G Ninja -DCMAKE_MAKE_PROGRAM=$(CURDIR)/$(VENV)/ninja \
 	  -DCMAKE_PREFIX_PATH=$(CURDIR)/.venv -DMANYCORE_BUILD_TESTS=ON -DMANYCORE_BUILD_BENCH=ON \
-	  -DMANYCORE_BUILD_INTERFACES=OFF -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON \
+	  -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON \
 	  -DCMAKE_EXPORT_COMPILE_COMMANDS=ON >build/tidy.log 2>&1
 	git ls-files 'rmw_manycore/*.cpp' 'tests/native/*.cpp' ':!*/bench/ndt/peer.cpp' | \
 	  xargs -P $(JOBS) -n 3 $(VENV)/clang-tidy -p build/tidy --quiet 2>build/tidy.log
