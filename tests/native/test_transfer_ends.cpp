@@ -127,6 +127,7 @@ TEST_CASE("a landing is freed in turns; a subscription that comes meanwhile gets
   CHECK(take_next(*f.process, *next).number == 2);
   subscription.reset();
   next.reset();
+  f.inspection.wait_until_swept();  // by the reaper, where publisher or mover was in its phase
   CHECK(f.inspection.used_bytes(2) == used);
 }
 
