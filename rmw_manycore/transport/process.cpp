@@ -13,9 +13,9 @@
 #include "transport/lifecycle/receive_thread_watcher.hpp"
 #include "transport/lifecycle/trace_control.hpp"
 #include "transport/matching/closing.hpp"
+#include "transport/matching/connecting.hpp"
 #include "transport/matching/leaving.hpp"
 #include "transport/matching/matching.hpp"
-#include "transport/matching/spare_landings.hpp"
 #include "transport/matching/sweeping.hpp"
 #include "transport/new_endpoint.hpp"
 #include "transport/publisher/publisher_impl.hpp"
@@ -58,7 +58,6 @@ struct Process::Impl {
   uint32_t take_process_slot();
   void require_movers();
   uint32_t publish_endpoint(const EndpointSpec & spec, EndpointKind kind);
-  void connect(uint32_t endpoint);
   uint32_t add_endpoint(const EndpointSpec & spec, EndpointKind kind);
   template<typename Endpoint>
   std::unique_ptr<Endpoint> handle_of(uint32_t endpoint);
@@ -252,24 +251,6 @@ uint32_t Process::Impl::publish_endpoint(const EndpointSpec & spec, EndpointKind
   return taken;
 }
 
-/// Backs landings between the turns, without the registry lock.
-void Process::Impl::connect(uint32_t endpoint) {
-  SpareLanding & spare = registry->endpoints()[endpoint].spare;
-  std::vector<matching::Candidate> candidates = matching::candidates_of(*registry, endpoint);
-  while (!candidates.empty()) {
-    std::optional<spare_landings::Needed> needed;
-    {
-      const Registry::Lock lock(*registry);
-      membership->require();
-      needed = matching::connect_some(*registry, endpoint, candidates);
-    }
-    if (needed) {
-      spare_landings::make(*registry, *membership, spare, *needed);
-    }
-  }
-  spare_landings::free_all(*registry, *membership, spare);
-}
-
 uint32_t Process::Impl::add_endpoint(const EndpointSpec & spec, EndpointKind kind) {
   check_qos_ranges(spec);
   membership->require();
@@ -280,7 +261,7 @@ uint32_t Process::Impl::add_endpoint(const EndpointSpec & spec, EndpointKind kin
     if (kind == EndpointKind::publisher) {
       TopicDsmWriter::open_first_generation(*registry, taken);
     }
-    connect(taken);
+    matching::connect(*registry, *membership, taken);
   } catch (...) {
     if (membership->holds()) {
       leave_graph(*registry, taken);

@@ -11,6 +11,7 @@
 #include <cstdlib>
 #include <filesystem>
 
+#include "killed_roles.hpp"
 #include "messages.hpp"
 #include "node_role.hpp"
 #include "platform_of_test.hpp"
@@ -22,126 +23,14 @@
 #include "waiting.hpp"
 
 using namespace manycore;
+using killed_roles::crowd;
+using killed_roles::crowded_topic;
+using killed_roles::moved_topic;
+using killed_roles::sized_bytes;
+using killed_roles::sized_topic;
+using killed_roles::topic;
 
 namespace {
-
-constexpr const char * topic = "/x";
-constexpr const char * crowded_topic = "/crowded";
-constexpr size_t crowd = 100;          // more matches than one turn undoes
-constexpr size_t large_bytes = 5'000;  // requires the topic DSM to grow
-constexpr const char * sized_topic = "/sized";
-constexpr const char * moved_topic = "/moved";
-constexpr uint32_t sized_bytes = 300'000;  // freed in several pieces
-
-std::shared_ptr<Process> join(const std::string & platform) {
-  Placement placement;
-  placement.platform = platform;
-  return Process::join(placement);
-}
-
-const Role joins("joins", [](Lines &, const Arguments & arguments) {
-  begin_steps();
-  join(arguments.at(0));
-  finish_steps();
-});
-
-const Role leaves("leaves", [](Lines &, const Arguments & arguments) {
-  auto process = join(arguments.at(0));
-  begin_steps();
-  process.reset();
-  finish_steps();
-});
-
-const Role creates("creates", [](Lines &, const Arguments & arguments) {
-  const auto process = join(arguments.at(0));
-  begin_steps();
-  process->remove_node(process->add_node("node", "/", "/"));
-  process->create_publisher(on_topic(topic, transient_local(10)));
-  process->create_subscription(on_topic(topic, transient_local(10)));
-  finish_steps();
-});
-
-/// A subscription and a publisher of a transferred topic, each of which makes a landing.
-const Role moves("moves", [](Lines &, const Arguments & arguments) {
-  Placement placement;
-  placement.platform = arguments.at(0);
-  placement.cluster = 2;
-  const auto process = Process::join(placement);
-  begin_steps();
-  process->create_subscription(on_topic(moved_topic, keep_last(1)));
-  process->create_publisher(on_topic(moved_topic, keep_last(1)));
-  finish_steps();
-});
-
-/// A topic DSM that is backed without the registry lock, and given back piece by piece.
-const Role sizes("sizes", [](Lines &, const Arguments & arguments) {
-  const auto process = join(arguments.at(0));
-  begin_steps();
-  process->create_publisher(on_topic(sized_topic, keep_last(1)));
-  finish_steps();
-});
-
-const Role publishes("publishes", [](Lines &, const Arguments & arguments) {
-  const auto process = join(arguments.at(0));
-  const auto publisher = process->create_publisher(on_topic(topic, transient_local(2)));
-  begin_steps();
-  publish(*publisher, 1, sizeof(Payload), 2);
-  publish(*publisher, 2, large_bytes, 2);
-  publish(*publisher, 3, sizeof(Payload), 2);
-  finish_steps();
-});
-
-const Role takes("takes", [](Lines &, const Arguments & arguments) {
-  const auto process = join(arguments.at(0));
-  const auto subscription = process->create_subscription(on_topic(topic, transient_local(2)));
-  begin_steps();
-  take_all(*subscription);
-  finish_steps();
-});
-
-const Role closes("closes", [](Lines &, const Arguments & arguments) {
-  const auto process = join(arguments.at(0));
-  auto subscription = process->create_subscription(on_topic(topic, transient_local(2)));
-  begin_steps();
-  subscription.reset();
-  finish_steps();
-});
-
-/// Endpoints whose matches are undone in several turns.
-const Role closes_many("closes_many", [](Lines &, const Arguments & arguments) {
-  const auto process = join(arguments.at(0));
-  auto publisher = process->create_publisher(on_topic(crowded_topic, transient_local(2)));
-  auto subscription = process->create_subscription(on_topic(crowded_topic, transient_local(2)));
-  begin_steps();
-  publisher.reset();
-  subscription.reset();
-  finish_steps();
-});
-
-/// Acts like a receive thread that reaps other processes.
-const Role reaps("reaps", [](Lines &, const Arguments & arguments) {
-  Registry registry(PlatformPaths::of(arguments.at(0)));
-  begin_steps();
-  reap_dead(registry, 1);
-  sweeping::sweep_all(registry);
-  finish_steps();
-});
-
-/// A message that 100 subscriptions want until a newer one arrives: their readers are revoked in
-/// several turns.
-const Role sweeps_many("sweeps_many", [](Lines &, const Arguments & arguments) {
-  const auto process = join(arguments.at(0));
-  const EndpointSpec spec = on_topic(crowded_topic, transient_local(1));
-  const auto newer = process->create_publisher(spec);
-  auto older = process->create_publisher(spec);
-  publish(*older, 1, sizeof(Payload), 2);
-  older.reset();
-  publish(*newer, 2, sizeof(Payload), 2);
-  Registry registry(PlatformPaths::of(arguments.at(0)));
-  begin_steps();
-  sweeping::sweep_all(registry);
-  finish_steps();
-});
 
 /// Small, so that no part of a change takes many instructions.
 Profile small_profile() {

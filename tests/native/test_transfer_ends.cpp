@@ -59,16 +59,34 @@ LandingTable & table_of(Registry & registry, uint32_t publisher) {
   return *landing_table(own, *own.find<TopicDsmHeader>(entry.block.offset()));
 }
 
-/// A publisher in cluster 1, and a subscription of this process in cluster 2.
+bool is_any_made(Registry & registry) {
+  for (uint32_t slot = 0; slot < registry.endpoints().high_water(); ++slot) {
+    if (registry.endpoints()[slot].spare.ref.load() != 0) {
+      return true;
+    }
+  }
+  return false;
+}
+
+Profile profile_of(uint64_t smem_bytes) {
+  Profile profile = host_profile();
+  profile.smem_bytes = smem_bytes;
+  return profile;
+}
+
+/// A publisher in cluster 1, and subscriptions in cluster 2.
 struct FromAfar {
-  FromAfar() { publisher.tell("publisher /x 1"); }
+  explicit FromAfar(const Profile & profile_ = host_profile()) : profile(profile_) {
+    publisher.tell("publisher /x 1");
+  }
   std::unique_ptr<Subscription> subscription() const {
     return process->create_subscription(on_topic("/x", keep_last(1)));
   }
 
+  const Profile profile;
   TestPlatform platform;
   Configurator configurator{
-    platform.name(), host_profile(), {{"/x", 1, dsm_bytes, 0, by(Transfer::async)}}};
+    platform.name(), profile, {{"/x", 1, dsm_bytes, 0, by(Transfer::async)}}};
   Node publisher{platform, 1};
   std::shared_ptr<Process> process = platform.join(2);
   Inspection inspection{platform};
@@ -129,6 +147,25 @@ TEST_CASE("a landing is freed in turns; a subscription that comes meanwhile gets
   next.reset();
   f.inspection.wait_until_swept();  // by the reaper, where publisher or mover was in its phase
   CHECK(f.inspection.used_bytes(2) == used);
+}
+
+TEST_CASE("room for one landing is enough for subscriptions that are created at the same time") {
+  FromAfar f(profile_of(dsm_bytes + dsm_bytes / 2));
+  Registry & registry = f.inspection.registry();
+  SteppedChild child("subscribes", {f.platform.name()});
+  while (!is_any_made(registry)) {
+    child.run_to_system_call();
+  }
+  const uint32_t before = f.inspection.live_endpoints();
+  auto other = std::async(std::launch::async, [&] { return f.subscription(); });
+  wait_until("the other subscription needs a landing", [&] {
+    return f.inspection.live_endpoints() > before;
+  });
+  while (!child.finished()) {
+    child.run_to_system_call();
+  }
+  const auto subscription = other.get();
+  CHECK(subscription->matched().current == 1);
 }
 
 TEST_CASE("the readers of each cluster are counted anew when the owner of the lock has died") {

@@ -222,37 +222,43 @@ bool publisher_is_out(Registry & registry, const SourceEntry & source) {
          dsm->phase.load(std::memory_order_seq_cst) % 2 == 0;
 }
 
-/// Frees the landing of a publisher that the subscription was the last to read in its cluster. The
-/// publisher and all movers have been seen out of their phases since, so they find it no more.
-/// False if the turn ended before that.
+/// Frees the landing of a publisher that the subscription was the last to read in its cluster, once
+/// no thread follows references to it: all are out, or its first piece was freed. False if the turn
+/// ended before that.
 bool free_landing_of(
-  Registry & registry, Cluster & cluster, const SourceEntry & source, Turn & turn) {
+  Registry & registry, Cluster & cluster, const SourceEntry & source, bool are_out, Turn & turn) {
   TopicDsmHeader * const dsm =
     source.state.load() == SourceState::free ? nullptr : topic_dsm_of(registry, source);
   const Cluster * const publisher =
     dsm == nullptr ? nullptr : registry.map_cluster(SegmentRef{source.topic_dsm.load()}.cluster());
-  return publisher == nullptr || !landings::has_retired(*publisher, *dsm, cluster.id()) ||
+  if (publisher == nullptr || !landings::has_retired(*publisher, *dsm, cluster.id())) {
+    return true;
+  }
+  return (!are_out && !landings::is_being_freed(*publisher, *dsm, cluster.id())) ||
          free_some_of_retired(*publisher, *dsm, cluster, turn);
 }
 
 /// Checks the publishers of the sources, continuing where the last turn of any process ended. A
 /// publisher seen outside its phase once stays outside this subscription: it cannot find it any
-/// more. `freed` when all were seen.
+/// more. `threads_are_out`: see receive_threads_are_out(). `freed` when all were seen.
 Progress see_publishers_out(
-  Registry & registry, Cluster & cluster, SubscriptionHeader & header, Turn & turn) {
-  Progress progress = Progress::freed;
+  Registry & registry, Cluster & cluster, SubscriptionHeader & header, bool threads_are_out,
+  Turn & turn) {
+  Progress progress = threads_are_out ? Progress::freed : Progress::in_use;
   source_table(cluster, header).visit(header.swept_before, [&](SourceEntry & source, uint32_t i) {
     if (turn.is_over()) {
       progress = Progress::turn_over;
       return true;
     }
     turn.spend(steps_of_a_source);
-    if (source.state.load() != SourceState::free && !publisher_is_out(registry, source)) {
-      progress = Progress::in_use;
+    const bool are_out = threads_are_out && (source.state.load() == SourceState::free ||
+                                             publisher_is_out(registry, source));
+    if (!free_landing_of(registry, cluster, source, are_out, turn)) {
+      progress = Progress::freed_some;
       return true;
     }
-    if (!free_landing_of(registry, cluster, source, turn)) {
-      progress = Progress::freed_some;
+    if (!are_out) {
+      progress = Progress::in_use;
       return true;
     }
     header.swept_before = i + 1;
@@ -302,10 +308,8 @@ Progress sweep_subscription(Registry & registry, EndpointEntry & entry, Turn & t
   }
   if (entry.slot.state.load() != SlotState::unreachable) {
     // First: movers follow references to the landings that are then freed.
-    if (!receive_threads_are_out(registry)) {
-      return Progress::in_use;
-    }
-    const Progress progress = see_publishers_out(registry, *cluster, *header, turn);
+    const bool are_out = receive_threads_are_out(registry);
+    const Progress progress = see_publishers_out(registry, *cluster, *header, are_out, turn);
     if (progress != Progress::freed) {
       return progress;
     }

@@ -112,6 +112,21 @@ Considered find_place(
   return {false};
 }
 
+/// Invalidates references to the entry's former use. Returns the number of the last record that the
+/// subscription does not want.
+uint64_t begin_source(const Pair & pair, const TopicDsmHeader & dsm, SourceEntry & source) {
+  source.incarnation.fetch_add(1, std::memory_order_release);
+  source.topic_dsm.store(pair.publisher.block.word, std::memory_order_relaxed);
+  source.topic_dsm_endpoint.store(pair.publisher_slot, std::memory_order_relaxed);
+  source.topic_dsm_incarnation.store(pair.publisher.slot.incarnation, std::memory_order_relaxed);
+  const LastPublished published = last_published(dsm);
+  const uint64_t taken = wants_history(pair.publisher, pair.subscription) ? 0 : published.number;
+  source.taken.store(taken, std::memory_order_relaxed);
+  source.accounted.store(published.sequence, std::memory_order_relaxed);
+  source.displaced.store(0, std::memory_order_relaxed);
+  return taken;
+}
+
 Considered join(Registry & registry, const Pair & pair, Turn & turn) {
   turn.spend(steps_of_a_match);
   Cluster & publisher_cluster = registry.clusters().at(pair.publisher.cluster);
@@ -130,18 +145,7 @@ Considered join(Registry & registry, const Pair & pair, Turn & turn) {
       !found.is_done) {
     return found;
   }
-  const bool history = wants_history(pair.publisher, pair.subscription);
-
-  // Invalidates references to the entry's former use.
-  source.incarnation.fetch_add(1, std::memory_order_release);
-  source.topic_dsm.store(pair.publisher.block.word, std::memory_order_relaxed);
-  source.topic_dsm_endpoint.store(pair.publisher_slot, std::memory_order_relaxed);
-  source.topic_dsm_incarnation.store(pair.publisher.slot.incarnation, std::memory_order_relaxed);
-  const LastPublished published = last_published(*dsm);
-  const uint64_t taken = history ? 0 : published.number;
-  source.taken.store(taken, std::memory_order_relaxed);
-  source.accounted.store(published.sequence, std::memory_order_relaxed);
-  source.displaced.store(0, std::memory_order_relaxed);
+  const uint64_t taken = begin_source(pair, *dsm, source);
   source.reader.store(publisher_cluster.ref_of(&reader).word, std::memory_order_relaxed);
   source.state.store(SourceState::joining, std::memory_order_release);
   // From here on the source leads to the landing, should this process die.

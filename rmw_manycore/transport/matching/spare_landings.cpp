@@ -2,11 +2,46 @@
 #include "transport/matching/spare_landings.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cstring>
+#include <thread>
 
+#include "platform/clock.hpp"
 #include "transport/layout/topic_dsm_layout.hpp"
 
 namespace manycore::spare_landings {
+namespace {
+
+constexpr int64_t max_wait_ns = 5 * ns_per_s;
+constexpr std::chrono::milliseconds look_again_after{1};
+
+bool is_another_made(Registry & registry, const SpareLanding & own, const Needed & needed) {
+  for (uint32_t slot = 0; slot < registry.endpoints().high_water(); ++slot) {
+    const SpareLanding & spare = registry.endpoints()[slot].spare;
+    if (
+      &spare != &own && SegmentRef{spare.ref.load()}.cluster() == needed.cluster &&
+      spare.bytes.load() == needed.bytes) {
+      return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
+/// Polls, as this is rare: no room, and endpoints that are created at the same time.
+bool await_another(Registry & registry, const SpareLanding & own, const Needed & needed) {
+  const int64_t until_ns = monotonic_ns() + max_wait_ns;
+  bool was_made = false;
+  while (is_another_made(registry, own, needed)) {
+    if (monotonic_ns() >= until_ns) {
+      return false;
+    }
+    was_made = true;
+    std::this_thread::sleep_for(look_again_after);
+  }
+  return was_made;
+}
 
 /// Stores `ref` last: a spare landing with a reference counts as allocated.
 void make(

@@ -17,6 +17,10 @@ struct Needed {
   uint64_t cleared_bytes;  ///< of header and marks
 };
 
+/// Waits for another endpoint that is making a landing like the needed one: its match may be the
+/// one that needs it. False if there is none, or it takes longer than five seconds.
+bool await_another(Registry & registry, const SpareLanding & own, const Needed & needed);
+
 /// Replaces the spare landing of a live endpoint of this process. Takes the registry lock. Throws
 /// Error{no_space}, and the errors of `membership`.
 void make(

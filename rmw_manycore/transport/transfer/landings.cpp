@@ -129,9 +129,9 @@ bool has_retired(const Cluster & cluster, TopicDsmHeader & dsm, uint32_t receive
          table->landings[receiver - 1].load() == 0;
 }
 
-/// The store to the table comes after the piece was freed: if this process dies in between, the
-/// next owner of the lock marks the piece as used again. The last one is that of the offset, as 0
-/// pieces stand for a whole landing.
+/// The table forgets the piece before it is freed: a landing with a hole must never be taken up
+/// again. If this process dies in between, the next owner of the lock builds the map without the
+/// piece, whose memory stays until it is allocated again.
 bool free_piece_of_retired(
   const Cluster & cluster, TopicDsmHeader & dsm, Cluster & receiver) noexcept {
   LandingTable * const table = landing_table(cluster, dsm);
@@ -140,13 +140,23 @@ bool free_piece_of_retired(
   }
   std::atomic<uint32_t> & kept_pieces = table->kept_pieces[receiver.id() - 1];
   const uint64_t offset = table->retired[receiver.id() - 1].load();
-  const uint32_t kept = receiver.free_last_piece(offset, landing_bytes(dsm), kept_pieces.load());
-  if (kept != 0) {
-    kept_pieces.store(kept);
-    return false;
+  const uint64_t bytes = kept_bytes(offset, landing_bytes(dsm), kept_pieces.load());
+  const bool is_sound = receiver.find<uint8_t>(offset, bytes) != nullptr;
+  const uint64_t from = is_sound ? last_piece_of(offset, bytes) : offset;
+  const bool is_last = from == offset;
+  if (is_last) {
+    table->retired[receiver.id() - 1].store(0);
+  } else {
+    kept_pieces.store(static_cast<uint32_t>(from / freed_piece_bytes));
   }
-  table->retired[receiver.id() - 1].store(0);
-  return true;
+  receiver.free(from, offset + bytes - from);
+  return is_last;
+}
+
+bool is_being_freed(const Cluster & cluster, TopicDsmHeader & dsm, uint32_t receiver) noexcept {
+  const LandingTable * const table = landing_table(cluster, dsm);
+  return table != nullptr && table->retired[receiver - 1].load() != 0 &&
+         table->kept_pieces[receiver - 1].load() != 0;
 }
 
 Cluster * retire_next(Registry & registry, const Cluster & cluster, TopicDsmHeader & dsm) {

@@ -34,8 +34,9 @@ void retire_unread(const Cluster & cluster, TopicDsmHeader & dsm, uint32_t recei
 
 /// True while a landing waits for its publisher and all movers to be out of their phases.
 bool has_retired(const Cluster & cluster, TopicDsmHeader & dsm, uint32_t receiver) noexcept;
-/// Frees the last piece that is left of the retired landing, as Generation::free_some(). Returns
-/// true when no piece is left.
+/// True once a piece of it was freed: no thread follows references to it any more.
+bool is_being_freed(const Cluster & cluster, TopicDsmHeader & dsm, uint32_t receiver) noexcept;
+/// Frees the last piece that is left of the retired landing. Returns true when no piece is left.
 bool free_piece_of_retired(
   const Cluster & cluster, TopicDsmHeader & dsm, Cluster & receiver) noexcept;
 
