@@ -26,8 +26,12 @@ def list_nodes(session: Session, nodes: int) -> None:
     """Run `manycore node list`, which must show at least as many nodes."""
     command = own_program(*("rmw_manycore_py.cli", "node", "list", "--platform", session.platform))
     listed = subprocess.run(command, capture_output=True, text=True, timeout=TIMEOUT_S)
-    if listed.returncode != 0 or len(listed.stdout.splitlines()) < nodes:
-        raise ManycoreError(f"manycore node list shows fewer than {nodes} nodes: {listed.stderr}")
+    shown = len(listed.stdout.splitlines())
+    if listed.returncode != 0 or shown < nodes:
+        raise ManycoreError(
+            f"manycore node list shows {shown} of {nodes} nodes, "
+            f"exit status {listed.returncode}: {listed.stderr}"
+        )
 
 
 @contextmanager
