@@ -81,8 +81,7 @@ private:
 
 using Fleet = std::deque<FleetNode>;
 
-/// Returns false if there was no message.
-bool take(const rcl_subscription_t & subscription) {
+void take(const rcl_subscription_t & subscription) {
   rcl_interfaces__msg__ParameterEvent message;
   rcl_interfaces__msg__ParameterEvent__init(&message);
   const rcl_ret_t status = rcl_take(&subscription, &message, nullptr, nullptr);
@@ -90,11 +89,11 @@ bool take(const rcl_subscription_t & subscription) {
     check_rcl(status, "rcl_take");
   }
   rcl_interfaces__msg__ParameterEvent__fini(&message);
-  return status == RCL_RET_OK;
 }
 
 /// Acts as a single executor of all nodes until `end` is triggered. While the fleet is silent, a
-/// wake-up without a message from outside of it is an error.
+/// wake-up for anything but a subscription, whose publisher is outside, is an error. There need not
+/// be a message: a subscription looks again when a publisher leaves that may have had one.
 void wait_for_anything(
   RclContext & context, const Fleet & fleet, const RclGuardCondition & end, bool is_silent) {
   std::vector<const RclNode *> nodes;
@@ -104,11 +103,13 @@ void wait_for_anything(
   RclWaitSet wait_set(context.get(), std::move(nodes), end);
   do {
     wait_set.wait();
-    bool has_taken = false;
-    wait_set.for_each_ready_subscription(
-      [&](const rcl_subscription_t & subscription) { has_taken |= take(subscription); });
-    if (is_silent && !has_taken && !wait_set.is_ended()) {
-      throw std::runtime_error("a node of the fleet woke up without a message");
+    bool is_for_messages = false;
+    wait_set.for_each_ready_subscription([&](const rcl_subscription_t & subscription) {
+      is_for_messages = true;
+      take(subscription);
+    });
+    if (is_silent && !is_for_messages && !wait_set.is_ended()) {
+      throw std::runtime_error("a node of the fleet woke up, but not for a subscription");
     }
   } while (!wait_set.is_ended());
 }

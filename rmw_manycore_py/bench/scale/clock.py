@@ -28,6 +28,8 @@ AGE = "age of the time that a node gets, at 1 kHz"
 SEEN = "times that a node gets, of 1,000"
 CPU = "CPU time of all nodes per second of simulated time"
 NODES = (10, 25, 50, 100)
+# Its source does not find 100 nodes within its time.
+MOST_NODES_OF_FAST_DDS = 50
 RATE_HZ = 1000
 BYTES = 16  # header and time
 WARM_UP, TIMES = 100, 3000
@@ -40,8 +42,10 @@ def measure(run: Run) -> list[Result]:
     """Return age, coverage and cost of simulated time, over the nodes."""
     results: list[Result] = []
     for middleware in (ONE, OWN, BRIDGED, FAST_DDS):
+        most = MOST_NODES_OF_FAST_DDS if middleware is FAST_DDS else NODES[-1]
+        counts = (count for count in NODES if count <= most)
         measured = partial(_tick, run, middleware)
-        results += along(run, f"{AGE}: {middleware.name}", NODES, "nodes", measured)
+        results += along(run, f"{AGE}: {middleware.name}", counts, "nodes", measured)
     return results
 
 
@@ -56,9 +60,9 @@ def _tick(run: Run, middleware: Middleware, nodes: int) -> list[Result]:
         heard_by = [sink.pid for sink in sinks]
         if middleware is BRIDGED:
             outside = stack.enter_context(Session(FAST_DDS, run.cpus))
-            heard_by.append(_bridge(inside, outside).pid)
+            heard_by.append(bridge_inward(inside, outside, TOPIC, TYPE).pid)
             source = _source(outside, 1, times)
-            _wait_until_heard(inside, nodes)
+            wait_until_heard(inside, TOPIC, nodes)
         else:
             source = _source(inside, nodes, times)
         pids = [*heard_by, *inside.receive_thread_pids()]
@@ -98,27 +102,26 @@ def _source(session: Session, subscribers: int, times: int) -> Process:
     return source
 
 
-def _bridge(inside: Session, outside: Session) -> Process:
-    """Start the inward process, on the CPU of the source."""
-    route = Route("topic", "inward", TOPIC, TOPIC, TYPE, outside.domain)
+def bridge_inward(inside: Session, outside: Session, topic: str, type_name: str) -> Process:
+    """Start an inward bridge process, on the CPU of the source."""
+    route = Route("topic", "inward", topic, topic, type_name, outside.domain)
     return outside.start(bridge_command(inside, [route], "inward"), 0)
 
 
-def _wait_until_heard(session: Session, nodes: int) -> None:
+def wait_until_heard(session: Session, topic: str, nodes: int) -> None:
     """Return once the bridge's publisher has found all nodes."""
     deadline = time.monotonic() + TIMEOUT_S
     with Platform(session.platform) as platform:
         while time.monotonic() < deadline:
-            endpoints = [e for e in platform.endpoints() if e.topic == TOPIC]
+            endpoints = [e for e in platform.endpoints() if e.topic == topic]
             if any(e.kind == "publisher" and e.matched >= nodes for e in endpoints):
                 return
             time.sleep(0.05)
     raise ManycoreError("the nodes and the bridge do not find each other")
 
 
-_one, _spread, _bridged, _fast_dds = (
-    at_count(each.name, NODES[-1], "nodes") for each in (ONE, OWN, BRIDGED, FAST_DDS)
-)
+_one, _spread, _bridged = (at_count(each.name, NODES[-1], "nodes") for each in (ONE, OWN, BRIDGED))
+_fast_dds = at_count(FAST_DDS.name, MOST_NODES_OF_FAST_DDS, "nodes")
 GOALS = (
     Goal(AGE, _one, "better", 1.0, _fast_dds),
     Goal(AGE, _spread, "better", 1.0, _fast_dds),

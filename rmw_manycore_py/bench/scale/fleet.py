@@ -3,11 +3,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
 from rmw_manycore_py.bench.session import Process, Session
+from rmw_manycore_py.errors import ManycoreError
 
 MAX_PROCESSES = 500
 # A process with one node takes 2 MiB of its own, on Fast DDS more.
@@ -27,6 +29,16 @@ class Fleet:
     def pids(self) -> list[int]:
         """Return the processes."""
         return [process.pid for process in self.processes]
+
+    @contextmanager
+    def required(self) -> Iterator[None]:
+        """Tell of a process that ended early, not of what failed without it."""
+        try:
+            yield
+        except ManycoreError:
+            for process in self.processes:
+                process.raise_if_failed()
+            raise
 
     def nodes_after(self, victims: int) -> int:
         """Return how many nodes are left without the first processes."""

@@ -61,37 +61,62 @@ def measure(run: Run) -> list[Result]:
 
 
 def _watch(run: Run, middleware: Middleware, count: int) -> list[Result]:
-    def found(question: str, unit: str, samples: Sequence[float], beside: str = "") -> Result:
-        curve = f"{middleware.name}{beside}"
-        return on_curve(question, curve, count, "nodes", unit, samples)
-
     with Session(middleware, run.cpus) as session:
         start = time.monotonic()
         nodes = fleet.start(session, count)
-        results = [found(UP, "s", [time.monotonic() - start])]
-        wait_until_quiet(nodes.pids)
-        joins = [_join(session, nodes) for _ in range(JOINS)]
+        up_s = time.monotonic() - start
+        with nodes.required():
+            return [
+                _found(middleware, count, UP, "s", [up_s]),
+                *_beside(run, session, nodes),
+                *(_read(run, session, nodes) if middleware.is_manycore else ()),
+            ]
+
+
+def _found(
+    middleware: Middleware,
+    count: int,
+    question: str,
+    unit: str,
+    samples: Sequence[float],
+    beside: str = "",
+) -> Result:
+    return on_curve(question, f"{middleware.name}{beside}", count, "nodes", unit, samples)
+
+
+def _beside(run: Run, session: Session, nodes: Fleet) -> list[Result]:
+    """Return what joins, rest and messages cost beside the nodes."""
+    found = partial(_found, session.middleware, nodes.count)
+    wait_until_quiet(nodes.pids)
+    joins = [_join(session, nodes) for _ in range(JOINS)]
+    results = [
+        found(CREATE, "ms", _creations_ms(run, session, nodes)),
+        found(WOKEN, "count", [woken for woken, _ in joins]),
+        found(IDLE, "ms/s", [_idle_ms(session, nodes, WINDOW_S * max(run.share, 0.2))]),
+        found(PUBLISH, "us", _publishes_us(run, session, nodes)),
+        found(ROUND_TRIP, "us", _round_trips_us(run, session)),
+    ]
+    if session.middleware.is_manycore:
+        results.append(found(REAPERS, "us", [reapers_us for _, reapers_us in joins]))
+    return results
+
+
+def _read(run: Run, session: Session, nodes: Fleet) -> list[Result]:
+    """Return what reading the graph costs, itself and to others, and what kills leave."""
+    found = partial(_found, session.middleware, nodes.count)
+    results: list[Result] = []
+    with Platform(session.platform) as platform:
+        read = partial(graph.read, platform)
+        list_all = partial(graph.list_nodes, session, nodes.count)
+        for action, beside in ((read, READ), (list_all, LISTED)):
+            with graph.over_and_over(action, run.cpus[1]):
+                created_ms = _creations_ms(run, session, nodes)
+            results.append(found(CREATE, "ms", created_ms, beside))
         results += [
-            found(CREATE, "ms", _creations_ms(run, session, nodes)),
-            found(WOKEN, "count", [woken for woken, _ in joins]),
-            found(IDLE, "ms/s", [_idle_ms(session, nodes, WINDOW_S * max(run.share, 0.2))]),
-            found(PUBLISH, "us", _publishes_us(run, session, nodes)),
-            found(ROUND_TRIP, "us", _round_trips_us(run, session)),
+            found(GRAPH, "ms", graph.times_ms(read, READS, run.cpus)),
+            found(LIST, "ms", graph.times_ms(list_all, LISTS, run.cpus)),
+            found(RECLAIM, "ms", [_reclaim_ms(platform, nodes)]),
         ]
-        if middleware.is_manycore:
-            with Platform(session.platform) as platform:
-                read = partial(graph.read, platform)
-                list_all = partial(graph.list_nodes, session, count)
-                for action, beside in ((read, READ), (list_all, LISTED)):
-                    with graph.over_and_over(action, run.cpus[1]):
-                        created_ms = _creations_ms(run, session, nodes)
-                    results.append(found(CREATE, "ms", created_ms, beside))
-                results += [
-                    found(GRAPH, "ms", graph.times_ms(read, READS, run.cpus)),
-                    found(LIST, "ms", graph.times_ms(list_all, LISTS, run.cpus)),
-                    found(REAPERS, "us", [reapers_us for _, reapers_us in joins]),
-                    found(RECLAIM, "ms", [_reclaim_ms(platform, nodes)]),
-                ]
     return results
 
 

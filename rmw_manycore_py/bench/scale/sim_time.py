@@ -3,12 +3,20 @@
 
 from __future__ import annotations
 
+from contextlib import ExitStack
 from functools import partial
 
 from rmw_manycore_py.bench.contenders import FAST_DDS, Middleware
 from rmw_manycore_py.bench.idle import cpu_ns
 from rmw_manycore_py.bench.question import Run
-from rmw_manycore_py.bench.scale.clock import ONE, RATE_HZ, TIMES
+from rmw_manycore_py.bench.scale.clock import (
+    BRIDGED,
+    ONE,
+    RATE_HZ,
+    TIMES,
+    bridge_inward,
+    wait_until_heard,
+)
 from rmw_manycore_py.bench.scale.common import OWN, along, at_count, on_curve, spread
 from rmw_manycore_py.bench.session import Session
 from rmw_manycore_py.bench.summary import Goal, Result
@@ -17,12 +25,13 @@ EACH = "CPU time of an rclpy node with use_sim_time per time it gets"
 CPU = "CPU time of all rclpy nodes with use_sim_time per second"
 SEEN = "times per second that an rclpy node with use_sim_time gets"
 NODES = (5, 10)
+CLOCK, TYPE = "/clock", "rosgraph_msgs/msg/Clock"
 
 
 def measure(run: Run) -> list[Result]:
     """Return cost and received rate of simulated time, over the nodes."""
     results: list[Result] = []
-    for middleware in (ONE, OWN, FAST_DDS):
+    for middleware in (ONE, OWN, BRIDGED, FAST_DDS):
         measured = partial(_tick, run, middleware)
         results += along(run, f"{EACH}: {middleware.name}", NODES, "nodes", measured)
     return results
@@ -30,14 +39,22 @@ def measure(run: Run) -> list[Result]:
 
 def _tick(run: Run, middleware: Middleware, count: int) -> list[Result]:
     times = run.iterations(TIMES)
-    placed = spread(middleware, count + 1) if middleware is OWN else middleware
-    with Session(placed, run.cpus) as session:
+    placed = spread(middleware, count + 1) if middleware in (OWN, BRIDGED) else middleware
+    with ExitStack() as stack:
+        session = outside = stack.enter_context(Session(placed, run.cpus))
         nodes = [session.python("sim_time", 1 + i, "node", i) for i in range(count)]
         for node in nodes:
             node.wait_until_ready()
-        clock = session.python("sim_time", 0, "clock", count, times, RATE_HZ)
+        pids = [node.pid for node in nodes]
+        if middleware is BRIDGED:
+            outside = stack.enter_context(Session(FAST_DDS, run.cpus))
+            pids.append(bridge_inward(session, outside, CLOCK, TYPE).pid)
+        heard_by = 1 if middleware is BRIDGED else count
+        clock = outside.python("sim_time", 0, "clock", heard_by, times, RATE_HZ)
         clock.wait_until_ready()
-        pids = [*(node.pid for node in nodes), *session.receive_thread_pids()]
+        if middleware is BRIDGED:
+            wait_until_heard(session, CLOCK, count)
+        pids += session.receive_thread_pids()
         before_ns = cpu_ns(pids)
         seconds = clock.finish()["seconds"]
         used_ns = cpu_ns(pids) - before_ns
@@ -49,9 +66,10 @@ def _tick(run: Run, middleware: Middleware, count: int) -> list[Result]:
     ]
 
 
-_one, _spread, _fast_dds = (
-    at_count(each.name, NODES[-1], "nodes") for each in (ONE, OWN, FAST_DDS)
-)
+_fast_dds = at_count(FAST_DDS.name, NODES[-1], "nodes")
 # Where the CPUs are saturated, nodes that get fewer times use less of them.
-GOALS = (Goal(EACH, _one, "better", 1.0, _fast_dds), Goal(EACH, _spread, "better", 1.0, _fast_dds))
-PLACEMENT = "simulated time: /clock on the first, nodes on both in turn"
+GOALS = tuple(
+    Goal(EACH, at_count(each.name, NODES[-1], "nodes"), "better", 1.0, _fast_dds)
+    for each in (ONE, OWN)
+)
+PLACEMENT = "simulated time: /clock on the first, and the bridge, nodes on both in turn"
