@@ -175,6 +175,24 @@ TEST_CASE(
   CHECK(f.counters(*publisher).overwritten == 100 - taken.size());
 }
 
+TEST_CASE("a take that finds losses wakes those that wait for the event") {
+  Fixture f(1000);
+  const auto publisher = f.publisher("/fixed", keep_last(10));
+  const auto subscription = f.subscription("/fixed", keep_last(100));
+  for (uint64_t number = 1; number <= 100; ++number) {
+    publish(*publisher, number, 100);
+  }
+  f.process->waiters().event_watchers().add(callback_word);  // which arrivals do not wake
+  const Waiter & waiter = f.process->waiters().of_word(callback_word);
+  const uint32_t before = waiter.epoch();
+  CHECK(subscription->lost() == 0);  // nobody knows of them yet
+  REQUIRE(take(*subscription));
+  CHECK(subscription->lost() != 0);
+  CHECK(waiter.epoch() == before + 1);
+  REQUIRE(take(*subscription));
+  CHECK(waiter.epoch() == before + 1);
+}
+
 TEST_CASE("a message beyond topic_dsm_size is refused with the size it needs") {
   Fixture f(1000);
   const auto publisher = f.publisher("/fixed", keep_last(10));

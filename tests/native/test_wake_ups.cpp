@@ -13,6 +13,7 @@
 
 #include "messages.hpp"
 #include "node_role.hpp"
+#include "platform/clock.hpp"
 #include "platform_of_test.hpp"
 #include "transport/waiting/thread_number.hpp"
 #include "waiting.hpp"
@@ -225,6 +226,33 @@ TEST_CASE("a slot that is given back, or taken anew, does not watch the graph") 
   CHECK_FALSE(watchers.contains(1));
 }
 
+TEST_CASE("a publisher spares words of its own process, but not from events") {
+  Fixture f(1);
+  Watchers & watchers = f.subscriptions[0]->watchers();
+  const Waiter & waiter = f.process->waiters().of_word(callback_word);
+  WaitingThread thread(*f.process, f.from(0, 1));
+  watchers.add(callback_word);
+  const auto publisher = f.process->create_publisher(on_topic(Fixture::topic(0), keep_last(10)));
+  uint32_t seen = waiter.epoch();
+  const auto wake_ups = [&] { return waiter.epoch() - std::exchange(seen, waiter.epoch()); };
+  const auto publish_sparing = [&] {
+    publisher->publish(publisher->draft(8), 8, realtime_ns(), {}, WakeSet::of(callback_word));
+  };
+
+  publish_sparing();
+  CHECK(wake_ups() == 0);
+  CHECK(thread.wake_ups() == 1);
+  publish(*publisher, 1);
+  CHECK(wake_ups() == 1);
+  f.process->waiters().event_watchers().add(callback_word);
+  publish_sparing();
+  CHECK(wake_ups() == 0);
+  for (int i = 0; i < 8; ++i) {
+    publish_sparing();  // the last one displaces the first: a loss
+  }
+  CHECK(wake_ups() == 1);
+}
+
 TEST_CASE("threads share words when there are too few, and then nothing is forgotten") {
   Fixture f(1);
   const Watched watched(f.process->waiters(), f.subscriptions[0]->watchers());
@@ -238,6 +266,7 @@ TEST_CASE("threads share words when there are too few, and then nothing is forgo
   }
   CHECK(threads.size() == thread_numbers);  // this thread has one as well
   words |= WakeSet::of(common_word);
+  words |= WakeSet::of(callback_word);
   CHECK(words.parts == std::array<uint64_t, 2>{UINT64_MAX, UINT64_MAX});
   publish(*publisher, 1);
   for (const auto & thread : threads) {

@@ -1,43 +1,75 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+#include <atomic>
 #include <condition_variable>
 #include <cstdint>
-#include <functional>
 #include <mutex>
-#include <optional>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "platform/fork_side.hpp"
-#include "rmw/event_callback_type.h"
-#include "transport/layout/qos.hpp"
+#include "rmw/events/callback.hpp"
 #include "transport/waiting/waiters.hpp"
 
 namespace rmw_manycore {
 
-class Callback;
-
 /// Calls the "on new message / request / response / event" callbacks of one context. Started when
-/// the first callback is set; sleeps on its own wake word. Thread-safe.
+/// the first callback is set; sleeps on its own wake word. A thread of the context that publishes
+/// calls for its message itself. Thread-safe.
 class CallbackThread {
 public:
   explicit CallbackThread(manycore::Waiters & waiters) noexcept : waiters_(waiters) {}
-  ~CallbackThread() { stop(); }
+  ~CallbackThread();
   CallbackThread(const CallbackThread &) = delete;
   CallbackThread & operator=(const CallbackThread &) = delete;
 
   manycore::Waiters & waiters() const noexcept { return waiters_; }
+  /// Words to spare when a message of `topic` is published. Unless empty, call report() afterwards,
+  /// whether or not it was published.
+  manycore::WakeSet spared(const MessageTopic & topic) const noexcept;
+  /// Calls the callbacks for what has arrived on `topic`. Never waits for another thread: leaves it
+  /// to this one if others are calling or taking. Nor does it call from a callback.
+  void report(const MessageTopic & topic) noexcept;
   /// Stops the thread; no callback is called afterwards. Must not be called from a callback.
   void stop() noexcept;
 
 private:
   friend class Callback;
+
+  /// Callbacks for messages of topics with the same hash.
+  struct Bucket {
+    std::vector<Callback *> callbacks;
+    std::atomic<size_t> count{0};
+  };
+  /// Marks that a callback runs. Requires the mutex.
+  class Calling {
+  public:
+    explicit Calling(CallbackThread & thread) noexcept
+    : thread_(thread), is_nested_(std::exchange(thread.is_calling_, true)) {}
+    ~Calling() { thread_.is_calling_ = is_nested_; }
+    Calling(const Calling &) = delete;
+    Calling & operator=(const Calling &) = delete;
+
+  private:
+    CallbackThread & thread_;
+    const bool is_nested_;
+  };
+
   void add(Callback & callback);
   void remove(Callback & callback) noexcept;
+  Bucket * bucket_of(const Callback & callback) noexcept;
+  void start();
   void run() noexcept;
   /// Returns when the passage of time may raise a count next.
-  std::optional<int64_t> report_all() noexcept;
+  int64_t report_all();
+  /// False if that would wait for another thread.
+  bool report_all_of(const MessageTopic & topic);
+  /// Starts over when a callback sets or clears callbacks.
+  template<typename Visit>
+  void for_each(const std::vector<Callback *> & callbacks, Visit visit);
   void wake_sleep() noexcept;
   void watch_all(uint32_t word) noexcept;
 
@@ -49,52 +81,14 @@ private:
   std::recursive_mutex mutex_;
   std::condition_variable_any wake_;
   std::vector<Callback *> active_;
+  std::array<Bucket, 256> by_topic_;       ///< of `active_`
   manycore::Waiter * sleeping_ = nullptr;  ///< the waiter of the thread while it runs
-  bool changed_ = false;
+  uint64_t changes_ = 0;                   ///< of `active_`
+  bool is_calling_ = false;
   bool stopping_ = false;
+  /// One context of a process has it. Set before the first callback is in `by_topic_`.
+  bool has_callback_word_ = false;
   std::thread thread_;
-};
-
-/// A settable callback: a count that only rises, and the function to call for each rise.
-class Callback {
-public:
-  struct Arrivals {
-    uint64_t count;                               ///< since creation
-    int64_t next_due_ns = manycore::infinite_ns;  ///< when time may raise it; CLOCK_MONOTONIC
-  };
-
-  /// `watchers` are notified when the count of `arrivals` rises. `unread` is how many of these are
-  /// not taken yet.
-  Callback(
-    CallbackThread & thread, manycore::Watchers & watchers, std::function<Arrivals()> arrivals,
-    std::function<uint64_t()> unread)
-  : thread_(thread),
-    watchers_(watchers),
-    arrivals_(std::move(arrivals)),
-    unread_(std::move(unread)) {}
-  ~Callback() { clear(); }
-  Callback(const Callback &) = delete;
-  Callback & operator=(const Callback &) = delete;
-
-  /// Sets, replaces or (nullptr) clears the function. Earlier arrivals that are neither reported
-  /// nor taken are reported at once, from the calling thread.
-  void set(rmw_event_callback_t function, const void * user_data);
-  /// Reports new arrivals from the calling thread if a function is set.
-  void report_now();
-
-private:
-  friend class CallbackThread;
-  void clear() noexcept;
-  /// Returns when the passage of time may raise the count next.
-  int64_t report() noexcept;
-
-  CallbackThread & thread_;
-  manycore::Watchers & watchers_;
-  const std::function<Arrivals()> arrivals_;
-  const std::function<uint64_t()> unread_;
-  rmw_event_callback_t function_ = nullptr;
-  const void * user_data_ = nullptr;
-  uint64_t reported_ = 0;
 };
 
 }  // namespace rmw_manycore

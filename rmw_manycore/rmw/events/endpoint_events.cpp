@@ -33,12 +33,13 @@ Callback & EndpointEvents::callback(rmw_event_type_t type) {
   const std::lock_guard lock(mutex_);
   if (!callbacks_[type]) {
     callbacks_[type] = std::make_unique<Callback>(
-      thread_, thread_.waiters().event_watchers(),
-      [this, type] {
-        const EventCounts now = counts(type);
-        return Callback::Arrivals{now.changes, now.next_due_ns};
-      },
-      [this, type] { return untold(type); });
+      thread_, Callback::Source{
+                 thread_.waiters().event_watchers(),
+                 [this, type] {
+                   const EventCounts now = counts(type);
+                   return Callback::Arrivals{now.changes, now.next_due_ns};
+                 },
+                 [this, type] { return untold(type); }, nullptr});
   }
   return *callbacks_[type];
 }

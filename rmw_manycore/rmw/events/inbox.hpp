@@ -14,12 +14,16 @@ namespace rmw_manycore {
 /// Receiving side of a subscription, service or client, and its on-arrival callback.
 class Inbox {
 public:
-  Inbox(std::unique_ptr<manycore::Subscription> subscription, CallbackThread & thread)
+  Inbox(
+    std::unique_ptr<manycore::Subscription> subscription, MessageTopic topic,
+    CallbackThread & thread)
   : subscription_(std::move(subscription)),
+    topic_(std::move(topic)),
     watched_(thread.waiters(), subscription_->watchers()),
     on_arrival_(
-      thread, watched_.watchers(), [this] { return Callback::Arrivals{subscription_->arrivals()}; },
-      [this] { return unread(); }) {
+      thread,
+      {watched_.watchers(), [this] { return Callback::Arrivals{subscription_->arrivals()}; },
+       [this] { return unread(); }, &topic_, [this] { return subscription_->has_to_resync(); }}) {
     watched_.watchers().reset();  // waiting threads add their own words
   }
 
@@ -42,6 +46,7 @@ private:
   uint64_t unread() const;
 
   std::unique_ptr<manycore::Subscription> subscription_;
+  const MessageTopic topic_;
   manycore::Watched watched_;
   Callback on_arrival_;
   std::atomic<int64_t> next_warning_ns_{0};  ///< CLOCK_MONOTONIC

@@ -21,9 +21,11 @@ Client::Client(
   replies_(
     node.process().create_subscription(
       endpoint_spec(node, EndpointRole::reply, name, type_, profile, EndpointKind::subscription)),
-    node.callback_thread()),
-  requests_(node.process().create_publisher(
-    endpoint_spec(node, EndpointRole::request, name, type_, profile, EndpointKind::publisher))) {
+    MessageTopic(EndpointRole::reply, name_), node.callback_thread()),
+  requests_(
+    node.process().create_publisher(
+      endpoint_spec(node, EndpointRole::request, name, type_, profile, EndpointKind::publisher)),
+    MessageTopic(EndpointRole::request, name_), node.callback_thread()) {
   handle.implementation_identifier = identifier;
   handle.data = this;
   handle.service_name = name_.c_str();
@@ -70,7 +72,7 @@ rmw_ret_t rmw_client_request_publisher_get_actual_qos(
   MANYCORE_CHECK_ARGUMENT(qos);
 
   // Implementation
-  *qos = rmw_manycore::to_rmw(Client::of(client).requests().qos());
+  *qos = rmw_manycore::to_rmw(Client::of(client).requests().transport().qos());
   return RMW_RET_OK;
 }
 

@@ -2,14 +2,13 @@
 #pragma once
 
 #include <atomic>
-#include <memory>
 #include <string>
 
 #include "rmw/context/node.hpp"
 #include "rmw/events/inbox.hpp"
+#include "rmw/events/outbox.hpp"
 #include "rmw/serialization/type_support.hpp"
 #include "rmw/types.h"
-#include "transport/publisher/publisher.hpp"
 
 namespace rmw_manycore {
 
@@ -27,7 +26,7 @@ public:
   rmw_client_t handle{};
 
   const ServiceType & type() const noexcept { return type_; }
-  manycore::Publisher & requests() const noexcept { return *requests_; }
+  Outbox & requests() noexcept { return requests_; }
   Inbox & replies() noexcept { return replies_; }
 
   /// Identifies the client in requests and replies.
@@ -38,7 +37,7 @@ private:
   const std::string name_;
   const ServiceType type_;
   Inbox replies_;
-  const std::unique_ptr<manycore::Publisher> requests_;
+  Outbox requests_;
   std::atomic<int64_t> last_number_{0};
 };
 

@@ -18,12 +18,14 @@ Service::Service(
   const Node & node, ServiceType type, const char * name, const rmw_qos_profile_t & profile)
 : name_(name),
   type_(std::move(type)),
-  replies_(node.process().create_publisher(
-    endpoint_spec(node, EndpointRole::reply, name, type_, profile, EndpointKind::publisher))),
+  replies_(
+    node.process().create_publisher(
+      endpoint_spec(node, EndpointRole::reply, name, type_, profile, EndpointKind::publisher)),
+    MessageTopic(EndpointRole::reply, name_), node.callback_thread()),
   requests_(
     node.process().create_subscription(
       endpoint_spec(node, EndpointRole::request, name, type_, profile, EndpointKind::subscription)),
-    node.callback_thread()) {
+    MessageTopic(EndpointRole::request, name_), node.callback_thread()) {
   handle.implementation_identifier = identifier;
   handle.data = this;
   handle.service_name = name_.c_str();
@@ -81,6 +83,6 @@ rmw_ret_t rmw_service_response_publisher_get_actual_qos(
   MANYCORE_CHECK_ARGUMENT(qos);
 
   // Implementation
-  *qos = rmw_manycore::to_rmw(Service::of(service).replies().qos());
+  *qos = rmw_manycore::to_rmw(Service::of(service).replies().transport().qos());
   return RMW_RET_OK;
 }

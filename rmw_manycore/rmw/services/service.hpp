@@ -1,14 +1,13 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <memory>
 #include <string>
 
 #include "rmw/context/node.hpp"
 #include "rmw/events/inbox.hpp"
+#include "rmw/events/outbox.hpp"
 #include "rmw/serialization/type_support.hpp"
 #include "rmw/types.h"
-#include "transport/publisher/publisher.hpp"
 
 namespace rmw_manycore {
 
@@ -29,13 +28,13 @@ public:
   rmw_service_t handle{};
 
   const ServiceType & type() const noexcept { return type_; }
-  manycore::Publisher & replies() const noexcept { return *replies_; }
+  Outbox & replies() noexcept { return replies_; }
   Inbox & requests() noexcept { return requests_; }
 
 private:
   const std::string name_;
   const ServiceType type_;
-  const std::unique_ptr<manycore::Publisher> replies_;
+  Outbox replies_;
   Inbox requests_;
 };
 

@@ -16,7 +16,7 @@ rmw_ret_t rmw_service_server_is_available(
   // Implementation
   return rmw_manycore::guarded([&] {
     auto & asking = rmw_manycore::Client::of(client);
-    *is_available = asking.requests().matched().current != 0 &&
+    *is_available = asking.requests().transport().matched().current != 0 &&
                     asking.replies().transport().matched().current != 0;
     return RMW_RET_OK;
   });

@@ -28,12 +28,12 @@ rmw_ret_t rmw_publish(
 
   // Implementation: serializes directly into the topic DSM
   return rmw_manycore::guarded([&] {
-    const Publisher & sender = Publisher::of(publisher);
+    Publisher & sender = Publisher::of(publisher);
     const int64_t now_ns = manycore::realtime_ns();
     trace_publish(publisher, ros_message, now_ns);
-    manycore::Draft draft = sender.transport().draft(sender.cdr().size_bound(ros_message));
+    manycore::Draft draft = sender.outbox().draft(sender.cdr().size_bound(ros_message));
     const size_t size = sender.cdr().serialize(ros_message, draft.data(), draft.capacity());
-    sender.transport().publish(std::move(draft), size, now_ns);
+    sender.outbox().publish(std::move(draft), size, now_ns);
     return RMW_RET_OK;
   });
 }
@@ -47,15 +47,15 @@ rmw_ret_t rmw_publish_serialized_message(
 
   // Implementation
   return rmw_manycore::guarded([&] {
-    manycore::Publisher & transport = Publisher::of(publisher).transport();
+    rmw_manycore::Outbox & outbox = Publisher::of(publisher).outbox();
     const int64_t now_ns = manycore::realtime_ns();
     trace_publish(publisher, serialized_message, now_ns);
     const size_t size = serialized_message->buffer_length;
-    manycore::Draft draft = transport.draft(size);
+    manycore::Draft draft = outbox.draft(size);
     if (size != 0) {
       std::memcpy(draft.data(), serialized_message->buffer, size);
     }
-    transport.publish(std::move(draft), size, now_ns);
+    outbox.publish(std::move(draft), size, now_ns);
     return RMW_RET_OK;
   });
 }

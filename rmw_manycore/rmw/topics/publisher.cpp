@@ -23,27 +23,29 @@ Publisher::Publisher(
   topic_(topic),
   cdr_(type.cdr),
   loans_(cdr_.plain_bytes()),
-  transport_(node.process().create_publisher(
-    endpoint_spec(node, EndpointRole::topic, topic, type, profile, EndpointKind::publisher))) {
+  outbox_(
+    node.process().create_publisher(
+      endpoint_spec(node, EndpointRole::topic, topic, type, profile, EndpointKind::publisher)),
+    MessageTopic(EndpointRole::topic, topic_), node.callback_thread()) {
   handle.implementation_identifier = identifier;
   handle.data = this;
   handle.topic_name = topic_.c_str();
   handle.options = options;
-  handle.can_loan_messages = loans_.lends() && transport_->transfer() == manycore::Transfer::dsm;
+  handle.can_loan_messages = loans_.lends() && transport().transfer() == manycore::Transfer::dsm;
 }
 
 EventCounts Publisher::counts(rmw_event_type_t type) const {
   switch (type) {
     case RMW_EVENT_LIVELINESS_LOST:
-      return EventCounts::of(transport_->liveliness_lost());
+      return EventCounts::of(transport().liveliness_lost());
     case RMW_EVENT_OFFERED_DEADLINE_MISSED:
-      return EventCounts::of(transport_->deadline_missed());
+      return EventCounts::of(transport().deadline_missed());
     case RMW_EVENT_OFFERED_QOS_INCOMPATIBLE:
-      return EventCounts::of(transport_->incompatible());
+      return EventCounts::of(transport().incompatible());
     case RMW_EVENT_PUBLISHER_INCOMPATIBLE_TYPE:
-      return EventCounts::of(transport_->incompatible_types());
+      return EventCounts::of(transport().incompatible_types());
     case RMW_EVENT_PUBLICATION_MATCHED:
-      return EventCounts::of(transport_->matched());
+      return EventCounts::of(transport().matched());
     default:
       return {};
   }

@@ -1,15 +1,14 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <memory>
 #include <string>
 
 #include "rmw/context/node.hpp"
 #include "rmw/events/endpoint_events.hpp"
+#include "rmw/events/outbox.hpp"
 #include "rmw/serialization/type_support.hpp"
 #include "rmw/topics/loans.hpp"
 #include "rmw/types.h"
-#include "transport/publisher/publisher.hpp"
 
 namespace rmw_manycore {
 
@@ -30,7 +29,8 @@ public:
 
   const Cdr & cdr() const noexcept { return cdr_; }
   Loans & loans() const noexcept { return loans_; }
-  manycore::Publisher & transport() const noexcept { return *transport_; }
+  Outbox & outbox() noexcept { return outbox_; }
+  manycore::Publisher & transport() const noexcept { return outbox_.transport(); }
 
 private:
   EventCounts counts(rmw_event_type_t type) const override;
@@ -38,7 +38,7 @@ private:
   const std::string topic_;
   const Cdr cdr_;
   mutable Loans loans_;
-  const std::unique_ptr<manycore::Publisher> transport_;
+  Outbox outbox_;
 };
 
 }  // namespace rmw_manycore

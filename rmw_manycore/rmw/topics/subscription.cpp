@@ -36,7 +36,7 @@ Subscription::Subscription(
   inbox_(
     node.process().create_subscription(
       spec_of(node, type, topic, profile, options.ignore_local_publications)),
-    node.callback_thread()) {
+    MessageTopic(manycore::EndpointRole::topic, topic_), node.callback_thread()) {
   handle.implementation_identifier = identifier;
   handle.data = this;
   handle.topic_name = topic_.c_str();

@@ -30,6 +30,10 @@ constexpr uint32_t wake_words_per_process = 128;
 /// Word of the threads that wait for any notification of their process; each other word belongs to
 /// one thread.
 constexpr uint32_t common_word = 0;
+/// Word of the thread that calls callbacks for arrivals. No other thread sleeps on it, so whoever
+/// makes the calls for a message itself need not wake it.
+constexpr uint32_t callback_word = 1;
+constexpr uint32_t first_thread_word = 2;
 
 /// Set of wake words of one process.
 struct WakeSet {
@@ -62,6 +66,13 @@ struct WakeSet {
       words += static_cast<uint32_t>(__builtin_popcountll(part));
     }
     return words;
+  }
+  WakeSet without(const WakeSet & other) const noexcept {
+    WakeSet rest = *this;
+    for (uint32_t i = 0; i < part_count; ++i) {
+      rest.parts[i] &= ~other.parts[i];
+    }
+    return rest;
   }
   WakeSet & operator|=(const WakeSet & other) noexcept {
     for (uint32_t i = 0; i < part_count; ++i) {
@@ -126,9 +137,11 @@ struct alignas(64) WakeWords {
   void notify(const WakeSet & set) noexcept {
     set.for_each([this](uint32_t word) { words[word].notify(); });
   }
-  /// Words to wake for an arrival at a subscription of the process.
-  WakeSet set_of(const Watchers & arrivals, bool changes_events) const noexcept {
-    WakeSet set = arrivals.read();
+  /// Words to wake for an arrival at a subscription of the process; `spared` are woken for events
+  /// only.
+  WakeSet set_of(
+    const Watchers & arrivals, bool changes_events, const WakeSet & spared = {}) const noexcept {
+    WakeSet set = arrivals.read().without(spared);
     if (changes_events) {
       set |= endpoint_events.read();
     }

@@ -42,7 +42,9 @@ uint64_t push_to_own_cluster(
       pending->notify(std::exchange(words, {}));
     }
     pending = reader.wake;
-    words |= pending->set_of(reader.subscription->watchers, changes_events);
+    words |= pending->set_of(
+      reader.subscription->watchers, changes_events,
+      pending == announcement.publishing ? announcement.spared : WakeSet{});
   }
   if (pending != nullptr) {
     tracer.note(TraceKind::wake, announcement.endpoint, announcement.number, words.count());

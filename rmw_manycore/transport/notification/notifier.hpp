@@ -12,7 +12,9 @@ struct Announcement {
   uint32_t endpoint;     ///< slot of the publisher
   uint32_t incarnation;  ///< of that slot
   uint64_t number;
-  const Gid * target;  ///< gid of the only reader to notify, or nullptr for all
+  const Gid * target;            ///< gid of the only reader to notify, or nullptr for all
+  const WakeWords * publishing;  ///< words of the publisher's process
+  WakeSet spared;                ///< words of that process that need not be woken for the arrival
 };
 
 /// Step 1 of ROS-lite2 Fig. 4, last part: pushes a hint to each reader of the `own` cluster and

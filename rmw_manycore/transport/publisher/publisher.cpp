@@ -38,7 +38,8 @@ Draft Publisher::draft(size_t size_bytes) {
 }
 
 uint64_t Publisher::publish(
-  Draft && draft, size_t size_bytes, int64_t source_timestamp_ns, const Correlation & correlation) {
+  Draft && draft, size_t size_bytes, int64_t source_timestamp_ns, const Correlation & correlation,
+  const WakeSet & spared) {
   Impl & impl = *impl_;
   const Writing writing = std::move(draft.writing_);
   const uint64_t sequence_number = ++impl.published;
@@ -55,7 +56,8 @@ uint64_t Publisher::publish(
   announce(
     impl.registry, impl.cluster, impl.writer.readers(),
     {impl.entry.block, impl.slot, impl.entry.slot.incarnation, number,
-     targeted ? &correlation.client : nullptr},
+     targeted ? &correlation.client : nullptr, &impl.registry.processes()[impl.entry.process].wake,
+     spared},
     impl.sender.get());
   impl.registry.tracer().note(TraceKind::publish_end, impl.slot, number);
   EndpointCounters & counters = impl.entry.counters;

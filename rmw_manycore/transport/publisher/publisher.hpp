@@ -7,6 +7,7 @@
 
 #include "transport/layout/endpoint.hpp"
 #include "transport/layout/transfer_layout.hpp"
+#include "transport/layout/wake_words.hpp"
 #include "transport/publisher/draft.hpp"
 
 namespace manycore {
@@ -31,9 +32,11 @@ public:
   /// Step 1, second half: publishes the first `size_bytes` of the draft as a record and notifies
   /// readers. `source_timestamp_ns` is CLOCK_REALTIME. Returns the publication sequence number,
   /// which starts at 1. In role reply, only the client named in `correlation` receives the message.
+  /// The caller does what threads that sleep on the words `spared` of this process would do about
+  /// the arrival, also if this throws.
   uint64_t publish(
     Draft && draft, size_t size_bytes, int64_t source_timestamp_ns,
-    const Correlation & correlation = {});
+    const Correlation & correlation = {}, const WakeSet & spared = {});
 
   /// Renews the lease of MANUAL_BY_TOPIC liveliness, as publish() does. No effect on other kinds.
   void assert_liveliness();

@@ -14,17 +14,18 @@ namespace manycore {
 
 namespace {
 
-/// Traces the messages found lost during its lifetime.
-class LossTrace {
+/// Traces the messages found lost during its lifetime, and wakes threads that wait for the event.
+class LossNotice {
 public:
-  explicit LossTrace(Subscription::Impl & impl) noexcept : impl_(impl), before_(now()) {}
-  ~LossTrace() {
+  explicit LossNotice(Subscription::Impl & impl) noexcept : impl_(impl), before_(now()) {}
+  ~LossNotice() {
     if (const uint64_t lost = now() - before_; lost != 0) {
       impl_.registry.tracer().note(TraceKind::lost, impl_.slot, 0, lost);
+      notify_event_watchers(impl_.registry, impl_.entry.process);
     }
   }
-  LossTrace(const LossTrace &) = delete;
-  LossTrace & operator=(const LossTrace &) = delete;
+  LossNotice(const LossNotice &) = delete;
+  LossNotice & operator=(const LossNotice &) = delete;
 
 private:
   uint64_t now() const noexcept {
@@ -63,7 +64,7 @@ std::optional<Claim> Subscription::claim() {
   Impl & impl = *impl_;
   impl.membership.require();
   std::unique_lock<HandoverMutex> lock(impl.mutex);
-  const LossTrace losses(impl);
+  const LossNotice losses(impl);
   while (const auto candidate = impl.finder.next()) {
     Source & source = *candidate->source;
     Source::View view;
@@ -103,10 +104,13 @@ uint64_t Subscription::arrivals() const noexcept {
   Impl & impl = *impl_;
   if (impl.finder.has_to_resync()) {
     const std::lock_guard<HandoverMutex> lock(impl.mutex);
+    const LossNotice losses(impl);
     impl.finder.resync_if_asked();
   }
   return impl.finder.arrivals();
 }
+
+bool Subscription::has_to_resync() const noexcept { return impl_->finder.has_to_resync(); }
 
 uint64_t Subscription::waiting() const noexcept { return impl_->finder.waiting(); }
 
@@ -143,7 +147,7 @@ void Subscription::Impl::trace_claim(const RecordInfo & info, uint64_t number) n
 void Subscription::Impl::settle_after_last() noexcept {
   // Displaced hints alone are counted already.
   if (counts.is_unsettled() && !finder.has_records()) {
-    const LossTrace losses(*this);
+    const LossNotice losses(*this);
     finder.settle();
   }
 }

@@ -36,8 +36,11 @@ public:
   /// Step 3 of ROS-lite2 Fig. 4: pops the queue and claims the record in its topic DSM.
   std::optional<Claim> claim();
 
-  /// Notifications since creation (for on_new_message callbacks).
+  /// Notifications since creation (for on_new_message callbacks). Waits while a claim is held if
+  /// has_to_resync().
   uint64_t arrivals() const noexcept;
+  /// True if all publishers have to be looked at, for want of a notification of each message.
+  bool has_to_resync() const noexcept;
 
   /// Notifications not claimed yet; some may be stale or duplicates.
   uint64_t waiting() const noexcept;

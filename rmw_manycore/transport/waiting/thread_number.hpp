@@ -5,7 +5,7 @@
 
 namespace manycore {
 
-constexpr uint32_t thread_numbers = 127;
+constexpr uint32_t thread_numbers = 126;
 
 /// Number of the calling thread, below `thread_numbers`. Unique from the thread's first call to its
 /// end while at most `thread_numbers` threads have one; further threads share numbers.

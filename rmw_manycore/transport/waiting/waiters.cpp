@@ -5,7 +5,7 @@
 
 namespace manycore {
 
-static_assert(thread_numbers + 1 == wake_words_per_process);
+static_assert(first_thread_word + thread_numbers == wake_words_per_process);
 
 Waiters::Waiters(GraphWatchers & graph_watchers, uint32_t process, WakeWords & words, WaitMode mode)
 : graph_watchers_(graph_watchers), process_(process), words_(words) {
@@ -14,7 +14,7 @@ Waiters::Waiters(GraphWatchers & graph_watchers, uint32_t process, WakeWords & w
   }
 }
 
-uint32_t Waiters::word_of_this_thread() noexcept { return 1 + thread_number(); }
+uint32_t Waiters::word_of_this_thread() noexcept { return first_thread_word + thread_number(); }
 
 /// No wake-up is lost: both are added, seq_cst, before the thread looks at the graph. A notifier
 /// changes the graph before it reads either, so at least one of them sees the other. The process

@@ -1,6 +1,7 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <atomic>
 #include <deque>
 #include <mutex>
 #include <unordered_set>
@@ -27,6 +28,12 @@ public:
   /// Word to add to the Watchers of everything that this thread waits for.
   static uint32_t word_of_this_thread() noexcept;
 
+  /// Reserves `callback_word` for one thread; false if it is reserved. The thread may end before
+  /// give_back_callback_word().
+  bool take_callback_word() noexcept { return !is_callback_word_taken_.exchange(true); }
+  void give_back_callback_word() noexcept { is_callback_word_taken_ = false; }
+  Waiter & of_word(uint32_t word) noexcept { return waiters_[word]; }
+
   /// Wakes `word` at each change of the graph.
   void watch_graph(uint32_t word) noexcept;
   Watchers & event_watchers() noexcept { return words_.endpoint_events; }
@@ -47,7 +54,8 @@ private:
   /// In a child of fork() the mutex may be locked forever.
   const ForkSide side_;
   std::deque<Waiter> waiters_;  ///< one per word
-  std::mutex mutex_;            ///< guards watched_
+  std::atomic<bool> is_callback_word_taken_{false};
+  std::mutex mutex_;  ///< guards watched_
   std::unordered_set<Watchers *> watched_;
 };
 

@@ -1,0 +1,235 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Callbacks for messages of the same process, which the publishing thread calls.
+
+In C on the handles of rclpy, which sets callbacks only for its executor.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Any
+
+import pytest
+import rclpy
+from c_support import rcl, rcl_handle
+from rclpy.experimental import EventsExecutor
+from rclpy.node import Node
+from rclpy.qos import DurabilityPolicy, QoSProfile
+from std_msgs.msg import String
+from std_srvs.srv import Trigger
+from support import IS_MANYCORE, TIMEOUT_S, wait_until
+
+pytestmark = pytest.mark.skipif(not IS_MANYCORE, reason="Fast DDS calls from other threads, too")
+
+DEEP = 1000
+
+_Function = ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_size_t)
+
+
+class Arrivals:
+    """What the callback of a subscription was told, and by which threads; it calls `then`."""
+
+    def __init__(self, subscription: Any, then: Callable[[], Any] = int) -> None:
+        self.count = 0
+        self.threads: list[int] = []
+        self._then = then
+        self._function = _Function(self._called)
+        self._handle = rcl_handle(subscription)
+        self._set(self._function)
+
+    def _called(self, _: Any, count: int) -> None:
+        self.count += count
+        self.threads.append(threading.get_ident())
+        self._then()
+
+    def _set(self, function: Any) -> None:
+        assert rcl.rcl_subscription_set_on_new_message_callback(self._handle, function, None) == 0
+
+    def clear(self) -> None:
+        self._set(None)
+
+
+@contextmanager
+def other_node(name: str) -> Iterator[Node]:
+    """Yield a node of a context of its own."""
+    context = rclpy.Context()
+    rclpy.init(context=context)
+    node = rclpy.create_node(name, context=context)
+    yield node
+    node.destroy_node()
+    rclpy.shutdown(context=context)
+
+
+def listen(node: Node, depth: int = DEEP) -> Any:
+    return node.create_subscription(String, "chatter", print, depth)
+
+
+def speak(node: Node, depth: int = DEEP) -> Any:
+    return node.create_publisher(String, "chatter", depth)
+
+
+def test_the_thread_that_publishes_calls(node):
+    arrivals = Arrivals(listen(node))
+    publisher = speak(node)
+    for number in range(1, 4):
+        publisher.publish(String())
+        assert arrivals.threads == number * [threading.get_ident()]
+    assert arrivals.count == 3
+    arrivals.clear()
+    publisher.publish(String())
+    assert arrivals.count == 3
+
+
+def test_a_callback_that_publishes_is_called_for_that_too_but_not_inside_itself(node):
+    publisher = speak(node)
+    depth, depths, done = 0, [], threading.Event()
+
+    def publish_again() -> None:
+        nonlocal depth
+        depth += 1
+        depths.append(depth)
+        if arrivals.count < 100:
+            publisher.publish(String())
+        else:
+            done.set()
+        depth -= 1
+
+    arrivals = Arrivals(listen(node), publish_again)
+    publisher.publish(String())
+    assert done.wait(TIMEOUT_S)
+    arrivals.clear()
+    assert set(depths) == {1}
+
+
+def test_publishing_does_not_wait_for_a_callback_that_runs(node):
+    """Such a callback may wait for a lock that the publishing thread holds."""
+    entered, released, both = threading.Event(), threading.Event(), threading.Event()
+
+    def hold() -> None:
+        entered.set()
+        assert released.wait(TIMEOUT_S)
+        if arrivals.count == 2:
+            both.set()
+
+    arrivals = Arrivals(listen(node), hold)
+    threads = [
+        threading.Thread(target=speak(node).publish, args=(String(),), daemon=True)
+        for _ in range(2)
+    ]
+    threads[0].start()
+    assert entered.wait(TIMEOUT_S)
+    threads[1].start()
+    threads[1].join(TIMEOUT_S)
+    assert not threads[1].is_alive(), "publish waits for the callback"
+    released.set()
+    threads[0].join()
+    assert both.wait(TIMEOUT_S)
+    arrivals.clear()
+
+
+def test_messages_of_many_threads_are_all_reported_once(node):
+    arrivals = Arrivals(listen(node))
+    publishers = [speak(node) for _ in range(4)]
+
+    def publish(publisher: Any) -> None:
+        for _ in range(DEEP // 4):
+            publisher.publish(String())
+
+    threads = [threading.Thread(target=publish, args=(publisher,)) for publisher in publishers]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    wait_until(lambda: arrivals.count >= DEEP, "all are reported")
+    arrivals.clear()
+    assert arrivals.count == DEEP
+
+
+def test_a_callback_clears_itself_and_destroys_others_of_its_topic(node):
+    """The one that is destroyed may be next in turn, or told before."""
+    subscriptions = [listen(node) for _ in range(3)]
+    arrivals: list[Arrivals] = []
+
+    def destroy_others() -> None:
+        for arrival in arrivals:
+            arrival.clear()
+        while subscriptions:
+            node.destroy_subscription(subscriptions.pop())
+
+    arrivals += [Arrivals(subscription, destroy_others) for subscription in subscriptions]
+    publisher = speak(node)
+    publisher.publish(String())
+    publisher.publish(String())
+    assert sum(arrival.count for arrival in arrivals) == 1
+
+
+def test_a_callback_that_is_told_of_earlier_messages_may_clear_itself(node):
+    subscription = listen(node)
+    publisher = speak(node)
+    publisher.publish(String())
+    calls = []
+
+    def called(_: Any, count: int) -> None:
+        calls.append(count)
+        set_callback(rcl_handle(subscription), None, None)
+
+    set_callback = rcl.rcl_subscription_set_on_new_message_callback
+    function = _Function(called)
+    assert set_callback(rcl_handle(subscription), function, None) == 0
+    assert calls == [1]
+    publisher.publish(String())
+    assert calls == [1]
+
+
+def test_history_is_reported_to_a_callback_set_before_its_publisher_came(node):
+    """The subscription has to look at all its publishers, which publishing leaves to the thread."""
+    qos = QoSProfile(depth=10, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+    publisher = node.create_publisher(String, "chatter", qos)
+    publisher.publish(String())
+    arrivals = Arrivals(node.create_subscription(String, "chatter", print, qos))
+    publisher.publish(String())
+    wait_until(lambda: arrivals.count == 2, "both are reported")
+    arrivals.clear()
+
+
+def test_contexts_of_one_process_call_for_each_other(node):
+    """They are one process to the platform, and each has a thread of its own."""
+    seen = [threading.Event(), threading.Event()]
+    with other_node("other") as other:
+        arrivals = [
+            Arrivals(listen(owner), event.set)
+            for owner, event in zip((node, other), seen, strict=True)
+        ]
+        for publishing in (node, other):
+            publisher = speak(publishing)
+            for event in seen:
+                event.clear()
+            publisher.publish(String())
+            for event in seen:
+                assert event.wait(TIMEOUT_S)
+        for arrival in arrivals:
+            arrival.clear()
+
+
+def test_a_context_calls_itself_once_the_one_before_it_has_ended(platform):
+    for _ in range(2):
+        with other_node("one_of_two") as node:
+            arrivals = Arrivals(listen(node))
+            speak(node).publish(String())
+            assert arrivals.threads == [threading.get_ident()]
+            arrivals.clear()
+
+
+def test_a_service_and_its_client_in_one_process(node):
+    executor = EventsExecutor()
+    executor.add_node(node)
+    node.create_service(Trigger, "ready", lambda _, answer: answer)
+    client = node.create_client(Trigger, "ready")
+    for _ in range(20):
+        future = client.call_async(Trigger.Request())
+        executor.spin_until_future_complete(future, TIMEOUT_S)
+        assert future.result() == Trigger.Response()
+    executor.shutdown()
