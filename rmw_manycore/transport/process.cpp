@@ -176,8 +176,9 @@ void Process::Impl::sweep_at_parting() noexcept {
   }
 }
 
+/// The JoinLock is the user's, not the platform's: it is taken last, so that no join waits for the
+/// endpoints of this process. The registry lock's owner may be stopped.
 void Process::Impl::leave() {
-  const JoinLock join_lock(paths);
   // Close endpoints whose destructors could not get the lock.
   closing::EndpointsOfProcess endpoints(*registry, slot, false);
   for (bool closed = false; !closed;) {
@@ -190,15 +191,17 @@ void Process::Impl::leave() {
   }
   sweep_at_parting();
   NodesOfProcess nodes(*registry, slot);
-  for (bool has_left = false; !has_left;) {
+  for (bool are_removed = false; !are_removed;) {
     const Registry::Lock lock(*registry, registry->parting_wait_ns());
     Turn turn;
-    has_left = nodes.remove_some(turn);
-    if (has_left) {
-      registry->tracer().note(TraceKind::leave);
-      registry->tracer().unfollow();
-      leave_registry(*registry, slot);
-    }
+    are_removed = nodes.remove_some(turn);
+  }
+  const JoinLock join_lock(paths);
+  {
+    const Registry::Lock lock(*registry, registry->parting_wait_ns());
+    registry->tracer().note(TraceKind::leave);
+    registry->tracer().unfollow();
+    leave_registry(*registry, slot);
   }
   registry->graph_changed();
   lifeline.reset();
