@@ -26,7 +26,7 @@ def only(*parts: str) -> tuple[str, ...]:
 
 OWN = only("(block)")
 FAST_DDS_AND_OURS = "Fast DDS + platform"
-OTHERS = only("64 B: futex", "64 B: pipe", "64 B: Fast DDS", "8 MiB: Fast DDS")
+OTHERS = only("64 B: futex", "64 B: pipe", "64 B: Fast DDS", "1 MiB: Fast DDS")
 RCLPY = only("64 B: manycore run", "8 MiB: manycore run, inside", "1 MiB: manycore inside (block)")
 STARTUP = only("by hand: manycore inside", "set: manycore between")
 ROS_LITE = only("1000 waypoints: session", "1 derivatives, 2", "SMEM: left")
