@@ -101,6 +101,8 @@ install_extra() {
 missing_for_tests() {
   command -v spin >/dev/null || echo spin
   command -v ip >/dev/null || echo iproute2
+  command -v zsh >/dev/null || echo zsh
+  command -v fish >/dev/null || echo fish
   command -v chromedriver >/dev/null || echo chromium chromium-driver
   echo '#include <doctest/doctest.h>' | ${CXX:-c++} -E -x c++ - >/dev/null 2>&1 ||
     echo doctest-dev

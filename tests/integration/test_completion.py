@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import shutil
 import subprocess
 from collections.abc import Iterable
 from pathlib import Path
@@ -107,19 +106,17 @@ def test_bash_completes(complete, tmp_path) -> None:
     assert dict(zip(expected, found, strict=True)) == expected
 
 
+@pytest.mark.needs("zsh", "fish")
 @pytest.mark.parametrize(
     ("shell", "options"), [("zsh", ["-f", "-c", ZSH, "zsh"]), ("fish", ["--no-config", "-c", FISH])]
 )
 def test_other_shells_complete(complete, tmp_path, shell: str, options: list[str]) -> None:
-    program = shutil.which(shell)
-    if program is None:
-        pytest.skip(f"{shell} is not installed")
     expected = {
         "manycore top": ["top", "topic"],
         "manycore topic echo /ch": ["/chatter"],
         "manycore run talker_l": ["talker_listener"],
     }
-    found = complete([program, *options], tmp_path, expected)
+    found = complete([shell, *options], tmp_path, expected)
     assert dict(zip(expected, found, strict=True)) == expected
 
 
