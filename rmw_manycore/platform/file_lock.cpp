@@ -5,8 +5,10 @@
 #include <sys/file.h>
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <ctime>
+#include <utility>
 
 #include "platform/clock.hpp"
 #include "platform/error.hpp"
@@ -16,8 +18,8 @@ namespace manycore {
 namespace {
 
 /// A waiter that did not run for a while, as a whole virtual machine may not, has not seen that the
-/// lock was free meanwhile. So a timeout takes as many looks as well.
-constexpr int least_looks = 1000;
+/// lock was free meanwhile. So at most this much counts between two looks.
+constexpr int64_t longest_between_looks_ns = 10'000'000;
 
 bool same_file(int fd, const std::string & path) {
   struct stat opened {};
@@ -35,8 +37,8 @@ FileLock::~FileLock() {
 }
 
 std::optional<FileLock> FileLock::acquire(const std::string & path, int timeout_ms) {
-  const int64_t deadline = monotonic_ns() + int64_t{timeout_ms} * 1'000'000;
-  int looks = 0;
+  int64_t left_ns = int64_t{timeout_ms} * 1'000'000;
+  int64_t last_ns = monotonic_ns();
   while (true) {
     FileDescriptor fd(::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600));
     if (!fd && errno == ENOENT) {
@@ -50,7 +52,9 @@ std::optional<FileLock> FileLock::acquire(const std::string & path, int timeout_
       if (errno != EWOULDBLOCK && errno != EINTR) {
         throw_errno("cannot lock " + path);
       }
-      if (++looks > least_looks && monotonic_ns() > deadline) {
+      const int64_t now_ns = monotonic_ns();
+      left_ns -= std::min(now_ns - std::exchange(last_ns, now_ns), longest_between_looks_ns);
+      if (left_ns < 0) {
         throw Error(
           ErrorCode::timeout, path + " has been locked for " + std::to_string(timeout_ms) +
                                 " ms: " + describe_flock_owner(fd.get()));

@@ -196,6 +196,7 @@ void Process::Impl::leave() {
     Turn turn;
     are_removed = nodes.remove_some(turn);
   }
+  registry->graph_changed();  // the lock may take a while
   const JoinLock join_lock(paths);
   {
     const Registry::Lock lock(*registry, registry->parting_wait_ns());

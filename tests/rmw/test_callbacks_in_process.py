@@ -15,9 +15,8 @@ from typing import Any
 import pytest
 import rclpy
 from c_support import rcl, rcl_handle
-from rclpy.experimental import EventsExecutor
 from rclpy.node import Node
-from rclpy.qos import DurabilityPolicy, QoSProfile
+from rclpy.qos import HistoryPolicy, QoSProfile
 from std_msgs.msg import String
 from std_srvs.srv import Trigger
 from support import IS_MANYCORE, TIMEOUT_S, wait_until
@@ -25,19 +24,26 @@ from support import IS_MANYCORE, TIMEOUT_S, wait_until
 pytestmark = pytest.mark.skipif(not IS_MANYCORE, reason="Fast DDS calls from other threads, too")
 
 DEEP = 1000
+QUEUE = 1024  # hints that the queue of a subscription holds that keeps all
 
 _Function = ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_size_t)
 
 
 class Arrivals:
-    """What the callback of a subscription was told, and by which threads; it calls `then`."""
+    """What the callback of an entity was told, and by which threads; it calls `then`."""
 
-    def __init__(self, subscription: Any, then: Callable[[], Any] = int) -> None:
+    def __init__(
+        self,
+        entity: Any,
+        setter: str = "rcl_subscription_set_on_new_message_callback",
+        then: Callable[[], Any] = int,
+    ) -> None:
         self.count = 0
         self.threads: list[int] = []
         self._then = then
         self._function = _Function(self._called)
-        self._handle = rcl_handle(subscription)
+        self._handle = rcl_handle(entity)
+        self._setter = getattr(rcl, setter)
         self._set(self._function)
 
     def _called(self, _: Any, count: int) -> None:
@@ -46,7 +52,7 @@ class Arrivals:
         self._then()
 
     def _set(self, function: Any) -> None:
-        assert rcl.rcl_subscription_set_on_new_message_callback(self._handle, function, None) == 0
+        assert self._setter(self._handle, function, None) == 0
 
     def clear(self) -> None:
         self._set(None)
@@ -71,16 +77,27 @@ def speak(node: Node, depth: int = DEEP) -> Any:
     return node.create_publisher(String, "chatter", depth)
 
 
+def is_called_by_this_thread(arrivals: Arrivals, publisher: Any) -> bool:
+    """Return whether a message is reported by the thread that publishes, sooner or later.
+
+    The callback thread does it where it is looking just then.
+    """
+    for published in range(arrivals.count + 1, DEEP):
+        publisher.publish(String())
+        wait_until(lambda count=published: arrivals.count == count, "it is reported")
+        if arrivals.threads[-1] == threading.get_ident():
+            return True
+    return False
+
+
 def test_the_thread_that_publishes_calls(node):
     arrivals = Arrivals(listen(node))
     publisher = speak(node)
-    for number in range(1, 4):
-        publisher.publish(String())
-        assert arrivals.threads == number * [threading.get_ident()]
-    assert arrivals.count == 3
+    assert is_called_by_this_thread(arrivals, publisher)
     arrivals.clear()
+    before = arrivals.count
     publisher.publish(String())
-    assert arrivals.count == 3
+    assert arrivals.count == before
 
 
 def test_a_callback_that_publishes_is_called_for_that_too_but_not_inside_itself(node):
@@ -97,7 +114,7 @@ def test_a_callback_that_publishes_is_called_for_that_too_but_not_inside_itself(
             done.set()
         depth -= 1
 
-    arrivals = Arrivals(listen(node), publish_again)
+    arrivals = Arrivals(listen(node), then=publish_again)
     publisher.publish(String())
     assert done.wait(TIMEOUT_S)
     arrivals.clear()
@@ -114,7 +131,7 @@ def test_publishing_does_not_wait_for_a_callback_that_runs(node):
         if arrivals.count == 2:
             both.set()
 
-    arrivals = Arrivals(listen(node), hold)
+    arrivals = Arrivals(listen(node), then=hold)
     threads = [
         threading.Thread(target=speak(node).publish, args=(String(),), daemon=True)
         for _ in range(2)
@@ -159,7 +176,7 @@ def test_a_callback_clears_itself_and_destroys_others_of_its_topic(node):
         while subscriptions:
             node.destroy_subscription(subscriptions.pop())
 
-    arrivals += [Arrivals(subscription, destroy_others) for subscription in subscriptions]
+    arrivals += [Arrivals(subscription, then=destroy_others) for subscription in subscriptions]
     publisher = speak(node)
     publisher.publish(String())
     publisher.publish(String())
@@ -184,14 +201,14 @@ def test_a_callback_that_is_told_of_earlier_messages_may_clear_itself(node):
     assert calls == [1]
 
 
-def test_history_is_reported_to_a_callback_set_before_its_publisher_came(node):
-    """The subscription has to look at all its publishers, which publishing leaves to the thread."""
-    qos = QoSProfile(depth=10, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-    publisher = node.create_publisher(String, "chatter", qos)
-    publisher.publish(String())
-    arrivals = Arrivals(node.create_subscription(String, "chatter", print, qos))
-    publisher.publish(String())
-    wait_until(lambda: arrivals.count == 2, "both are reported")
+def test_what_only_a_look_at_all_publishers_finds_is_reported(node):
+    """A full queue that keeps all has no room for a hint. The look is left to the thread."""
+    keep_all = QoSProfile(history=HistoryPolicy.KEEP_ALL, depth=1)
+    arrivals = Arrivals(node.create_subscription(String, "chatter", print, keep_all))
+    publisher = speak(node, depth=2 * QUEUE)
+    for _ in range(QUEUE + 100):
+        publisher.publish(String())
+    wait_until(lambda: arrivals.count >= QUEUE + 100, "all are reported")
     arrivals.clear()
 
 
@@ -200,7 +217,7 @@ def test_contexts_of_one_process_call_for_each_other(node):
     seen = [threading.Event(), threading.Event()]
     with other_node("other") as other:
         arrivals = [
-            Arrivals(listen(owner), event.set)
+            Arrivals(listen(owner), then=event.set)
             for owner, event in zip((node, other), seen, strict=True)
         ]
         for publishing in (node, other):
@@ -218,18 +235,23 @@ def test_a_context_calls_itself_once_the_one_before_it_has_ended(platform):
     for _ in range(2):
         with other_node("one_of_two") as node:
             arrivals = Arrivals(listen(node))
-            speak(node).publish(String())
-            assert arrivals.threads == [threading.get_ident()]
+            assert is_called_by_this_thread(arrivals, speak(node))
             arrivals.clear()
 
 
-def test_a_service_and_its_client_in_one_process(node):
-    executor = EventsExecutor()
-    executor.add_node(node)
-    node.create_service(Trigger, "ready", lambda _, answer: answer)
+@pytest.mark.parametrize("role", ["service", "client"])
+def test_the_thread_that_asks_or_answers_calls(node, role: str):
+    service = node.create_service(Trigger, "ready", lambda _, answer: answer)
     client = node.create_client(Trigger, "ready")
-    for _ in range(20):
-        future = client.call_async(Trigger.Request())
-        executor.spin_until_future_complete(future, TIMEOUT_S)
-        assert future.result() == Trigger.Response()
-    executor.shutdown()
+    kind, entity = ("request", service) if role == "service" else ("response", client)
+    arrivals = Arrivals(entity, f"rcl_{role}_set_on_new_{kind}_callback")
+    for published in range(1, DEEP):
+        client.call_async(Trigger.Request())
+        with service.handle:
+            request, header = service.handle.service_take_request(Trigger.Request)
+            service.handle.service_send_response(Trigger.Response(), header.request_id)
+        wait_until(lambda count=published: arrivals.count == count, "it is reported")
+        if arrivals.threads[-1] == threading.get_ident():
+            break
+    assert arrivals.threads[-1] == threading.get_ident()
+    arrivals.clear()

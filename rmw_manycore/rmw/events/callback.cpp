@@ -46,12 +46,22 @@ void Callback::clear() noexcept {
 
 int64_t Callback::report() {
   const Arrivals arrivals = source_.arrivals();
-  if (arrivals.count > reported_) {
-    const uint64_t fresh = arrivals.count - reported_;
-    reported_ = arrivals.count;
+  report_up_to(arrivals.count);
+  return arrivals.next_due_ns;
+}
+
+bool Callback::report_known() {
+  const Known known = source_.known();
+  report_up_to(known.count);
+  return known.is_all;
+}
+
+void Callback::report_up_to(uint64_t count) {
+  if (count > reported_) {
+    const uint64_t fresh = count - reported_;
+    reported_ = count;
     call(fresh);
   }
-  return arrivals.next_due_ns;
 }
 
 void Callback::call(uint64_t arrivals) {

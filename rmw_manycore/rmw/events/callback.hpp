@@ -21,13 +21,17 @@ public:
     uint64_t count;                               ///< since creation
     int64_t next_due_ns = manycore::infinite_ns;  ///< when time may raise it; CLOCK_MONOTONIC
   };
+  /// What is known without waiting for a thread that takes a message.
+  struct Known {
+    uint64_t count;
+    bool is_all;
+  };
   struct Source {
-    manycore::Watchers & watchers;       ///< notified when the count rises
-    std::function<Arrivals()> arrivals;  ///< thread-safe
-    std::function<uint64_t()> unread;    ///< how many of them are not taken yet
-    const MessageTopic * topic;          ///< of messages; nullptr for events
-    /// Whether arrivals() would wait for a thread that takes a message.
-    std::function<bool()> would_wait = [] { return false; };
+    manycore::Watchers & watchers;         ///< notified when the count rises
+    std::function<Arrivals()> arrivals;    ///< thread-safe
+    std::function<uint64_t()> unread;      ///< how many of them are not taken yet
+    const MessageTopic * topic = nullptr;  ///< of messages
+    std::function<Known()> known = {};     ///< of messages; thread-safe
   };
 
   Callback(CallbackThread & thread, Source source) : thread_(thread), source_(std::move(source)) {}
@@ -49,6 +53,9 @@ private:
   void call(uint64_t arrivals);
   /// Returns when the passage of time may raise the count next.
   int64_t report();
+  /// Never waits. False if more may have arrived.
+  bool report_known();
+  void report_up_to(uint64_t count);
 
   CallbackThread & thread_;
   const Source source_;

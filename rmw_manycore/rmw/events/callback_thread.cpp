@@ -83,13 +83,8 @@ void CallbackThread::report(const MessageTopic & topic) noexcept {
 bool CallbackThread::report_all_of(const MessageTopic & topic) {
   bool is_done = true;
   for_each(by_topic_[topic.hash() % by_topic_.size()].callbacks, [&](Callback & callback) {
-    if (!(*callback.source_.topic == topic)) {
-      return;
-    }
-    if (callback.source_.would_wait()) {
+    if (*callback.source_.topic == topic && !callback.report_known()) {
       is_done = false;
-    } else {
-      callback.report();
     }
   });
   return is_done;

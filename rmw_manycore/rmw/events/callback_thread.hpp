@@ -65,7 +65,7 @@ private:
   void run() noexcept;
   /// Returns when the passage of time may raise a count next.
   int64_t report_all();
-  /// False if that would wait for another thread.
+  /// False if more may have arrived, which to find out would wait for another thread.
   bool report_all_of(const MessageTopic & topic);
   /// Starts over when a callback sets or clears callbacks.
   template<typename Visit>

@@ -39,7 +39,7 @@ Callback & EndpointEvents::callback(rmw_event_type_t type) {
                    const EventCounts now = counts(type);
                    return Callback::Arrivals{now.changes, now.next_due_ns};
                  },
-                 [this, type] { return untold(type); }, nullptr});
+                 [this, type] { return untold(type); }});
   }
   return *callbacks_[type];
 }

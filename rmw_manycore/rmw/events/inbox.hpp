@@ -23,7 +23,7 @@ public:
     on_arrival_(
       thread,
       {watched_.watchers(), [this] { return Callback::Arrivals{subscription_->arrivals()}; },
-       [this] { return unread(); }, &topic_, [this] { return subscription_->has_to_resync(); }}) {
+       [this] { return unread(); }, &topic_, [this] { return known(); }}) {
     watched_.watchers().reset();  // waiting threads add their own words
   }
 
@@ -42,6 +42,11 @@ private:
   /// Logs at most once per second.
   void warn_of_drop(size_t size, const char * reason) noexcept;
 
+  /// The count is read first: who asks for a resync later wakes the callback thread.
+  Callback::Known known() const noexcept {
+    const uint64_t count = subscription_->announced();
+    return {count, !subscription_->has_to_resync()};
+  }
   /// Arrivals not claimed yet; an estimate while other threads push or claim.
   uint64_t unread() const;
 

@@ -7,8 +7,9 @@ namespace {
 /// Reports at its end, whether or not publishing throws: readers may have been notified before.
 class Report {
 public:
-  Report(CallbackThread & thread, const MessageTopic & topic) noexcept
-  : thread_(thread), topic_(topic), spared_(thread.spared(topic)) {}
+  Report(
+    CallbackThread & thread, const MessageTopic & topic, const manycore::WakeSet & spared) noexcept
+  : thread_(thread), topic_(topic), spared_(spared) {}
   ~Report() {
     if (!spared_.empty()) {
       thread_.report(topic_);
@@ -16,8 +17,6 @@ public:
   }
   Report(const Report &) = delete;
   Report & operator=(const Report &) = delete;
-
-  const manycore::WakeSet & spared() const noexcept { return spared_; }
 
 private:
   CallbackThread & thread_;
@@ -30,9 +29,11 @@ private:
 void Outbox::publish(
   manycore::Draft && draft, size_t size_bytes, int64_t source_timestamp_ns,
   const manycore::Correlation & correlation) {
-  const Report report(thread_, topic_);
-  publisher_->publish(
-    std::move(draft), size_bytes, source_timestamp_ns, correlation, report.spared());
+  // A transferred message may wait for another cluster once it has arrived in this one.
+  const bool may_wait = publisher_->transfer() != manycore::Transfer::dsm;
+  const manycore::WakeSet spared = may_wait ? manycore::WakeSet{} : thread_.spared(topic_);
+  const Report report(thread_, topic_, spared);
+  publisher_->publish(std::move(draft), size_bytes, source_timestamp_ns, correlation, spared);
 }
 
 }  // namespace rmw_manycore

@@ -110,6 +110,8 @@ uint64_t Subscription::arrivals() const noexcept {
   return impl.finder.arrivals();
 }
 
+uint64_t Subscription::announced() const noexcept { return impl_->finder.arrivals(); }
+
 bool Subscription::has_to_resync() const noexcept { return impl_->finder.has_to_resync(); }
 
 uint64_t Subscription::waiting() const noexcept { return impl_->finder.waiting(); }

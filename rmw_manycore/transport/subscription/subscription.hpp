@@ -39,6 +39,8 @@ public:
   /// Notifications since creation (for on_new_message callbacks). Waits while a claim is held if
   /// has_to_resync().
   uint64_t arrivals() const noexcept;
+  /// Those that are known without a resync; never waits.
+  uint64_t announced() const noexcept;
   /// True if all publishers have to be looked at, for want of a notification of each message.
   bool has_to_resync() const noexcept;
 
