@@ -27,6 +27,7 @@ DEEP = 1000
 QUEUE = 1024  # hints that the queue of a subscription holds that keeps all
 
 _Function = ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_size_t)
+_KEPT: list[Any] = []  # a test that fails does not clear its callbacks
 
 
 class Arrivals:
@@ -42,6 +43,7 @@ class Arrivals:
         self.threads: list[int] = []
         self._then = then
         self._function = _Function(self._called)
+        _KEPT.append(self._function)
         self._handle = rcl_handle(entity)
         self._setter = getattr(rcl, setter)
         self._set(self._function)
@@ -248,7 +250,7 @@ def test_the_thread_that_asks_or_answers_calls(node, role: str):
     for published in range(1, DEEP):
         client.call_async(Trigger.Request())
         with service.handle:
-            request, header = service.handle.service_take_request(Trigger.Request)
+            _, header = service.handle.service_take_request(Trigger.Request)
             service.handle.service_send_response(Trigger.Response(), header.request_id)
         wait_until(lambda count=published: arrivals.count == count, "it is reported")
         if arrivals.threads[-1] == threading.get_ident():
