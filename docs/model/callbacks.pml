@@ -1,7 +1,7 @@
 /* Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
  *
  * Question: is each message reported to its callback, though a publisher of the same context spares
- * the thread that calls callbacks, and waits for nobody?
+ * the thread that calls callbacks, and never waits?
  *
  * Follows Outbox::publish, CallbackThread::spared, ::report and ::run, and Callback::set, with two
  * publishers, the thread, and one that sets the callback meanwhile. What they share is guarded by

@@ -14,6 +14,7 @@ import pytest
 from support import IS_MANYCORE, TESTS, TIMEOUT_S, environment, manycore_command
 
 import rmw_manycore_hook as hook
+from rmw_manycore_hook import library_path
 
 if not IS_MANYCORE:
     pytest.skip("is about rmw_manycore in the place of Fast DDS", allow_module_level=True)
@@ -226,7 +227,7 @@ def test_programs_without_ros_do_not_notice(shell) -> None:
 
 def test_a_child_with_an_environment_of_its_own_is_on_its_own(shell, programs) -> None:
     """A program started with LD_LIBRARY_PATH as its only variable."""
-    libraries = os.pathsep.join(hook.library_path(hook.plain_environment({}, sys.prefix)))
+    libraries = os.pathsep.join(library_path(hook.plain_environment({}, sys.prefix)))
     variables = {"LD_LIBRARY_PATH": libraries}
     code = f"subprocess.run(sys.argv[1:], check=True, env={variables!r})"
     assert not show(python(code, str(programs / "rmw_program")), shell).is_manycore

@@ -185,7 +185,7 @@ TEST_CASE("a take that finds losses wakes those that wait for the event") {
   f.process->waiters().event_watchers().add(callback_word);  // which arrivals do not wake
   const Waiter & waiter = f.process->waiters().of_word(callback_word);
   const uint32_t before = waiter.epoch();
-  CHECK(subscription->lost() == 0);  // nobody knows of them yet
+  CHECK(subscription->lost() == 0);  // only a take finds them
   REQUIRE(take(*subscription));
   CHECK(subscription->lost() != 0);
   CHECK(waiter.epoch() == before + 1);

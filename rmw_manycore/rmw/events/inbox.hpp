@@ -42,7 +42,7 @@ private:
   /// Logs at most once per second.
   void warn_of_drop(size_t size, const char * reason) noexcept;
 
-  /// The count is read first: who asks for a resync later wakes the callback thread.
+  /// The count is read first: a resync that is requested later wakes the callback thread.
   Callback::Known known() const noexcept {
     const uint64_t count = subscription_->announced();
     return {count, !subscription_->has_to_resync()};

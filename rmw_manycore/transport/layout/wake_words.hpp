@@ -30,8 +30,8 @@ constexpr uint32_t wake_words_per_process = 128;
 /// Word of the threads that wait for any notification of their process; each other word belongs to
 /// one thread.
 constexpr uint32_t common_word = 0;
-/// Word of the thread that calls callbacks for arrivals. No other thread sleeps on it, so whoever
-/// makes the calls for a message itself need not wake it.
+/// Word of the thread that calls callbacks for arrivals. No other thread sleeps on it, so a
+/// publisher that makes the calls for its message need not wake it.
 constexpr uint32_t callback_word = 1;
 constexpr uint32_t first_thread_word = 2;
 
