@@ -8,6 +8,8 @@
 #include <unistd.h>
 
 #include <csignal>
+#include <fstream>
+#include <optional>
 #include <string>
 
 #include "messages.hpp"
@@ -48,6 +50,38 @@ const Role file_lock_holder("file_lock_holder", [](Lines & test, const Arguments
   test.say("locked");
   test.hear();
 });
+
+/// Waits for such a lock.
+constexpr int lock_timeout_ms = 2000;
+const Role file_lock_waiter("file_lock_waiter", [](Lines & test, const Arguments & arguments) {
+  test.say("waiting");
+  const Refusal refusal = refusal_of([&] { FileLock::acquire(arguments.at(0), lock_timeout_ms); });
+  test.say(refusal.code ? refusal.text : "locked");
+});
+
+/// Leaves a platform when it is told to.
+const Role leaver("leaver", [](Lines & test, const Arguments & arguments) {
+  Placement placement;
+  placement.platform = arguments.at(0);
+  auto process = Process::join(placement);
+  test.say("ready");
+  test.hear();
+  process.reset();
+  test.say("left");
+});
+
+/// How often the process has slept.
+uint64_t sleeps_of(pid_t pid) {
+  std::ifstream status("/proc/" + std::to_string(pid) + "/status");
+  for (std::string word; status >> word;) {
+    if (word == "voluntary_ctxt_switches:") {
+      uint64_t count = 0;
+      status >> count;
+      return count;
+    }
+  }
+  return 0;
+}
 
 struct Fixture {
   /// Waits until the receive thread of the only subscription in `cluster` has pushed this many
@@ -206,6 +240,42 @@ TEST_CASE("a first message waits for the registry lock as long as its owner is n
   }
   publisher.expect("published");
   CHECK(take_all(*near) == numbers(1, 1));
+}
+
+TEST_CASE("a process that leaves where the registry lock stays taken keeps no other from joining") {
+  Fixture f;
+  Child leaving("leaver", {f.platform.name()});
+  leaving.expect("ready");
+  const Standstill receive_thread(f.platform, 1);  // its reaper would wait for the lock as well
+  Child holder("lock_holder", {f.platform.name()});
+  holder.expect("locked");
+  leaving.say("go");
+  wait_until("it waits for the lock", [&] {
+    return f.inspection.registry().header().mutex.is_waited_for();
+  });
+  const TestPlatform other;
+  const auto joined = other.join();
+  CHECK_FALSE(leaving.lines().has_news());  // it is leaving still
+  holder.kill();
+  leaving.expect("left");
+}
+
+TEST_CASE("time in which a process is stopped does not count as waiting for a lock file") {
+  const std::string path = "/dev/shm/manycore-lock-of-test-" + std::to_string(getpid());
+  std::optional<FileLock> lock = FileLock::acquire(path, 0);
+  Child waiter("file_lock_waiter", {path});
+  waiter.expect("waiting");
+  waiter.stop();
+  const int64_t until_ns = monotonic_ns() + int64_t{lock_timeout_ms} * 1'100'000;
+  wait_until("it would wait no longer", [&] { return monotonic_ns() > until_ns; });
+  const uint64_t before = sleeps_of(waiter.pid());
+  waiter.resume();
+  wait_until("it has looked again and again", [&] {
+    return sleeps_of(waiter.pid()) > before + 3 || waiter.lines().has_news();
+  });
+  lock.reset();
+  waiter.expect("locked");
+  unlink(path.c_str());
 }
 
 TEST_CASE("the owner of a lock file is named, and called stopped only if it is") {

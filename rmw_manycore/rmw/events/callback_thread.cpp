@@ -61,13 +61,13 @@ void CallbackThread::remove(Callback & callback) noexcept {
 
 CallbackThread::Bucket * CallbackThread::bucket_of(const Callback & callback) noexcept {
   const MessageTopic * const topic = callback.source_.topic;
-  return topic == nullptr ? nullptr : &by_topic_[topic->hash() % by_topic_.size()];
+  return topic == nullptr ? nullptr : &by_topic_[bucket_of(*topic)];
 }
 
 /// Acquire: the word was taken before the first callback came. Without a callback in sight the
 /// thread is woken as usual.
 manycore::WakeSet CallbackThread::spared(const MessageTopic & topic) const noexcept {
-  const Bucket & bucket = by_topic_[topic.hash() % by_topic_.size()];
+  const Bucket & bucket = by_topic_[bucket_of(topic)];
   return bucket.count.load(std::memory_order_acquire) != 0 && has_callback_word_
            ? manycore::WakeSet::of(manycore::callback_word)
            : manycore::WakeSet{};
@@ -82,7 +82,7 @@ void CallbackThread::report(const MessageTopic & topic) noexcept {
 
 bool CallbackThread::report_all_of(const MessageTopic & topic) {
   bool is_done = true;
-  for_each(by_topic_[topic.hash() % by_topic_.size()].callbacks, [&](Callback & callback) {
+  for_each(by_topic_[bucket_of(topic)].callbacks, [&](Callback & callback) {
     if (*callback.source_.topic == topic && !callback.report_known()) {
       is_done = false;
     }

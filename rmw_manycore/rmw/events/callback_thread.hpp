@@ -60,6 +60,10 @@ private:
 
   void add(Callback & callback);
   void remove(Callback & callback) noexcept;
+  size_t bucket_of(const MessageTopic & topic) const noexcept {
+    return topic.hash() % by_topic_.size();
+  }
+  /// nullptr for events.
   Bucket * bucket_of(const Callback & callback) noexcept;
   void start();
   void run() noexcept;

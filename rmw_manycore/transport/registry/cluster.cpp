@@ -277,11 +277,18 @@ void Cluster::free(uint64_t offset, uint64_t length) noexcept {
   }
 }
 
-uint32_t Cluster::free_last_piece(uint64_t offset, uint64_t length, uint32_t kept_pieces) noexcept {
+Cluster::LastPiece Cluster::last_piece(
+  uint64_t offset, uint64_t length, uint32_t kept_pieces) const noexcept {
   const uint64_t left = kept_bytes(offset, length, kept_pieces);
   const uint64_t from = contains(offset, left) ? last_piece_of(offset, left) : offset;
-  free(from, offset + left - from);
-  return from == offset ? 0 : static_cast<uint32_t>(from / freed_piece_bytes);
+  const uint64_t kept = from == offset ? 0 : from / freed_piece_bytes;
+  return {from, offset + left - from, static_cast<uint32_t>(kept)};
+}
+
+uint32_t Cluster::free_last_piece(uint64_t offset, uint64_t length, uint32_t kept_pieces) noexcept {
+  const LastPiece piece = last_piece(offset, length, kept_pieces);
+  free(piece.offset, piece.length);
+  return piece.kept_pieces;
 }
 
 void Cluster::wake_reaper(uint32_t process) const noexcept {

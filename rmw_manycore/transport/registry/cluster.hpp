@@ -92,8 +92,15 @@ public:
   /// Frees SMEM, and returns the memory of larger blocks to the system. The caller holds the
   /// registry lock. The range must not be accessed until it is allocated again.
   void free(uint64_t offset, uint64_t length) noexcept;
-  /// Frees the last piece that is left of a block of `length` bytes; `kept_pieces` as in
-  /// GenerationEntry. Returns its new value, 0 when no piece is left.
+  /// A piece to free, and what `kept_pieces` of its block is without it: 0 when no piece is left.
+  struct LastPiece {
+    uint64_t offset;
+    uint64_t length;
+    uint32_t kept_pieces;
+  };
+  /// The last piece that is left of a block of `length` bytes; `kept_pieces` as in GenerationEntry.
+  LastPiece last_piece(uint64_t offset, uint64_t length, uint32_t kept_pieces) const noexcept;
+  /// Frees it. Returns the new `kept_pieces`.
   uint32_t free_last_piece(uint64_t offset, uint64_t length, uint32_t kept_pieces) noexcept;
   /// Changes the bytes that a process has charged from `before` to `after`. The caller holds the
   /// registry lock. Throws Error{no_space}.

@@ -139,17 +139,15 @@ bool free_piece_of_retired(
     return true;
   }
   std::atomic<uint32_t> & kept_pieces = table->kept_pieces[receiver.id() - 1];
-  const uint64_t offset = table->retired[receiver.id() - 1].load();
-  const uint64_t bytes = kept_bytes(offset, landing_bytes(dsm), kept_pieces.load());
-  const bool is_sound = receiver.find<uint8_t>(offset, bytes) != nullptr;
-  const uint64_t from = is_sound ? last_piece_of(offset, bytes) : offset;
-  const bool is_last = from == offset;
+  const Cluster::LastPiece piece = receiver.last_piece(
+    table->retired[receiver.id() - 1].load(), landing_bytes(dsm), kept_pieces.load());
+  const bool is_last = piece.kept_pieces == 0;
   if (is_last) {
     table->retired[receiver.id() - 1].store(0);
   } else {
-    kept_pieces.store(static_cast<uint32_t>(from / freed_piece_bytes));
+    kept_pieces.store(piece.kept_pieces);
   }
-  receiver.free(from, offset + bytes - from);
+  receiver.free(piece.offset, piece.length);
   return is_last;
 }
 

@@ -18,7 +18,7 @@ from rmw_manycore_py.bench.contenders import FAST_DDS, INSIDE, Middleware
 from rmw_manycore_py.bench.idle import cpu_ns
 from rmw_manycore_py.bench.question import Run
 from rmw_manycore_py.bench.round_trip import in_us
-from rmw_manycore_py.bench.scale.common import OWN, along, at_count, on_curve, spread
+from rmw_manycore_py.bench.scale.common import OWN, along, at_count, followed, on_curve, spread
 from rmw_manycore_py.bench.session import TIMEOUT_S, Process, Session
 from rmw_manycore_py.bench.summary import Goal, Result
 from rmw_manycore_py.errors import ManycoreError
@@ -42,8 +42,7 @@ def measure(run: Run) -> list[Result]:
     """Return age, coverage and cost of simulated time, over the nodes."""
     results: list[Result] = []
     for middleware in (ONE, OWN, BRIDGED, FAST_DDS):
-        most = MOST_NODES_OF_FAST_DDS if middleware is FAST_DDS else NODES[-1]
-        counts = (count for count in NODES if count <= most)
+        counts = followed(middleware, NODES, MOST_NODES_OF_FAST_DDS)
         measured = partial(_tick, run, middleware)
         results += along(run, f"{AGE}: {middleware.name}", counts, "nodes", measured)
     return results
@@ -52,7 +51,7 @@ def measure(run: Run) -> list[Result]:
 def _tick(run: Run, middleware: Middleware, nodes: int) -> list[Result]:
     times = run.iterations(TIMES)
     with ExitStack() as stack:
-        inside = stack.enter_context(Session(_placed(middleware, nodes), run.cpus))
+        inside = stack.enter_context(Session(placed(middleware, nodes), run.cpus))
         sinks = [
             inside.native("fan_out", party, role="sink", depth=1, best_effort=1)
             for party in range(1, nodes + 1)
@@ -81,7 +80,8 @@ def _tick(run: Run, middleware: Middleware, nodes: int) -> list[Result]:
     ]
 
 
-def _placed(middleware: Middleware, nodes: int) -> Middleware:
+def placed(middleware: Middleware, nodes: int) -> Middleware:
+    """Distribute the source and its nodes over the clusters, if the curve is about several."""
     return spread(middleware, nodes + 1) if middleware in (OWN, BRIDGED) else middleware
 
 

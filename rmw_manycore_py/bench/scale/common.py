@@ -23,6 +23,11 @@ def spread(middleware: Middleware, parties: int) -> Middleware:
     return replace(middleware, clusters=tuple(i % CLUSTERS + 1 for i in range(parties)))
 
 
+def followed(middleware: Middleware, places: Sequence[int], most: int) -> Sequence[int]:
+    """Return the points of a curve to which the middleware follows; Fast DDS up to `most`."""
+    return [place for place in places if middleware.is_manycore or place <= most]
+
+
 def along(
     run: Run,
     contender: str,

@@ -7,7 +7,7 @@ from functools import partial
 
 from rmw_manycore_py.bench.contenders import FAST_DDS, INSIDE, Middleware
 from rmw_manycore_py.bench.question import Run
-from rmw_manycore_py.bench.scale.common import along, at_count, on_curve
+from rmw_manycore_py.bench.scale.common import along, at_count, followed, on_curve
 from rmw_manycore_py.bench.session import Session
 from rmw_manycore_py.bench.summary import Goal, Result
 
@@ -27,8 +27,7 @@ def measure(run: Run) -> list[Result]:
     """Return the time for creating and publishing, over the endpoints of a topic."""
     results: list[Result] = []
     for middleware in (INSIDE, FAST_DDS):
-        most = ENDPOINTS[-1] if middleware.is_manycore else MOST_ENDPOINTS_OF_FAST_DDS
-        counts = (count for count in ENDPOINTS if count <= most)
+        counts = followed(middleware, ENDPOINTS, MOST_ENDPOINTS_OF_FAST_DDS)
         measured = partial(_match, run, middleware)
         results += along(run, f"{PUBLISH}: {middleware.name}", counts, "endpoints", measured)
     return results

@@ -15,7 +15,15 @@ from rmw_manycore_py.bench.idle import cpu_ns, wait_until_quiet, wake_ups
 from rmw_manycore_py.bench.question import Run
 from rmw_manycore_py.bench.round_trip import WARM_UP, in_us
 from rmw_manycore_py.bench.scale import fleet, graph
-from rmw_manycore_py.bench.scale.common import CLUSTERS, OWN, along, at_count, on_curve, spread
+from rmw_manycore_py.bench.scale.common import (
+    CLUSTERS,
+    OWN,
+    along,
+    at_count,
+    followed,
+    on_curve,
+    spread,
+)
 from rmw_manycore_py.bench.scale.fleet import MAX_PROCESSES, Fleet
 from rmw_manycore_py.bench.session import TIMEOUT_S, Session
 from rmw_manycore_py.bench.summary import Goal, Result
@@ -53,8 +61,7 @@ def measure(run: Run) -> list[Result]:
     """Return the cost of starting, joining, waiting, reading and killing, over the nodes."""
     results: list[Result] = []
     for middleware in (OWN, FAST_DDS):
-        most = NODES[-1] if middleware.is_manycore else MOST_NODES_OF_FAST_DDS
-        counts = (count for count in NODES if count <= most)
+        counts = followed(middleware, NODES, MOST_NODES_OF_FAST_DDS)
         measured = partial(_watch, run, spread(middleware, MAX_PROCESSES))
         results += along(run, f"{UP}: {middleware.name}", counts, "nodes", measured)
     return results

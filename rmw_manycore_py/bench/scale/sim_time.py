@@ -15,9 +15,10 @@ from rmw_manycore_py.bench.scale.clock import (
     RATE_HZ,
     TIMES,
     bridge_inward,
+    placed,
     wait_until_heard,
 )
-from rmw_manycore_py.bench.scale.common import OWN, along, at_count, on_curve, spread
+from rmw_manycore_py.bench.scale.common import OWN, along, at_count, on_curve
 from rmw_manycore_py.bench.session import Session
 from rmw_manycore_py.bench.summary import Goal, Result
 
@@ -39,9 +40,8 @@ def measure(run: Run) -> list[Result]:
 
 def _tick(run: Run, middleware: Middleware, count: int) -> list[Result]:
     times = run.iterations(TIMES)
-    placed = spread(middleware, count + 1) if middleware in (OWN, BRIDGED) else middleware
     with ExitStack() as stack:
-        session = outside = stack.enter_context(Session(placed, run.cpus))
+        session = outside = stack.enter_context(Session(placed(middleware, count), run.cpus))
         nodes = [session.python("sim_time", 1 + i, "node", i) for i in range(count)]
         for node in nodes:
             node.wait_until_ready()
