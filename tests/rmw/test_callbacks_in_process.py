@@ -27,7 +27,6 @@ DEEP = 1000
 QUEUE = 1024  # hints that the queue of a subscription holds that keeps all
 
 _Function = ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_size_t)
-_KEPT: list[Any] = []  # a test that fails does not clear its callbacks
 
 
 class Arrivals:
@@ -43,10 +42,10 @@ class Arrivals:
         self.threads: list[int] = []
         self._then = then
         self._function = _Function(self._called)
-        _KEPT.append(self._function)
         self._handle = rcl_handle(entity)
         self._setter = getattr(rcl, setter)
         self._set(self._function)
+        self._is_set = True
 
     def _called(self, _: Any, count: int) -> None:
         self.count += count
@@ -57,7 +56,26 @@ class Arrivals:
         assert self._setter(self._handle, function, None) == 0
 
     def clear(self) -> None:
-        self._set(None)
+        if self._is_set:
+            self._is_set = False
+            self._set(None)
+
+
+@pytest.fixture
+def arrivals_of() -> Iterator[Callable[..., Arrivals]]:
+    """Return a function that makes Arrivals, and clear them before the node is destroyed.
+
+    rclpy destroys with the lock of the interpreter, for which a callback may be waiting.
+    """
+    made: list[Arrivals] = []
+
+    def make(*arguments: Any, **options: Any) -> Arrivals:
+        made.append(Arrivals(*arguments, **options))
+        return made[-1]
+
+    yield make
+    for arrivals in made:
+        arrivals.clear()
 
 
 @contextmanager
@@ -92,8 +110,8 @@ def is_called_by_this_thread(arrivals: Arrivals, publisher: Any) -> bool:
     return False
 
 
-def test_the_thread_that_publishes_calls(node):
-    arrivals = Arrivals(listen(node))
+def test_the_thread_that_publishes_calls(node, arrivals_of):
+    arrivals = arrivals_of(listen(node))
     publisher = speak(node)
     assert is_called_by_this_thread(arrivals, publisher)
     arrivals.clear()
@@ -102,7 +120,7 @@ def test_the_thread_that_publishes_calls(node):
     assert arrivals.count == before
 
 
-def test_a_callback_that_publishes_is_called_for_that_too_but_not_inside_itself(node):
+def test_a_callback_that_publishes_is_called_for_that_too_but_not_inside_itself(node, arrivals_of):
     publisher = speak(node)
     depth, depths, done = 0, [], threading.Event()
 
@@ -116,14 +134,14 @@ def test_a_callback_that_publishes_is_called_for_that_too_but_not_inside_itself(
             done.set()
         depth -= 1
 
-    arrivals = Arrivals(listen(node), then=publish_again)
+    arrivals = arrivals_of(listen(node), then=publish_again)
     publisher.publish(String())
     assert done.wait(TIMEOUT_S)
     arrivals.clear()
     assert set(depths) == {1}
 
 
-def test_publishing_does_not_wait_for_a_callback_that_runs(node):
+def test_publishing_does_not_wait_for_a_callback_that_runs(node, arrivals_of):
     """Such a callback may wait for a lock that the publishing thread holds."""
     entered, released, both = threading.Event(), threading.Event(), threading.Event()
 
@@ -133,7 +151,7 @@ def test_publishing_does_not_wait_for_a_callback_that_runs(node):
         if arrivals.count == 2:
             both.set()
 
-    arrivals = Arrivals(listen(node), then=hold)
+    arrivals = arrivals_of(listen(node), then=hold)
     threads = [
         threading.Thread(target=speak(node).publish, args=(String(),), daemon=True)
         for _ in range(2)
@@ -146,11 +164,10 @@ def test_publishing_does_not_wait_for_a_callback_that_runs(node):
     released.set()
     threads[0].join()
     assert both.wait(TIMEOUT_S)
-    arrivals.clear()
 
 
-def test_messages_of_many_threads_are_all_reported_once(node):
-    arrivals = Arrivals(listen(node))
+def test_messages_of_many_threads_are_all_reported_once(node, arrivals_of):
+    arrivals = arrivals_of(listen(node))
     publishers = [speak(node) for _ in range(4)]
 
     def publish(publisher: Any) -> None:
@@ -167,7 +184,7 @@ def test_messages_of_many_threads_are_all_reported_once(node):
     assert arrivals.count == DEEP
 
 
-def test_a_callback_clears_itself_and_destroys_others_of_its_topic(node):
+def test_a_callback_clears_itself_and_destroys_others_of_its_topic(node, arrivals_of):
     """The one that is destroyed may be next in turn, or told before."""
     subscriptions = [listen(node) for _ in range(3)]
     arrivals: list[Arrivals] = []
@@ -178,7 +195,7 @@ def test_a_callback_clears_itself_and_destroys_others_of_its_topic(node):
         while subscriptions:
             node.destroy_subscription(subscriptions.pop())
 
-    arrivals += [Arrivals(subscription, then=destroy_others) for subscription in subscriptions]
+    arrivals += [arrivals_of(subscription, then=destroy_others) for subscription in subscriptions]
     publisher = speak(node)
     publisher.publish(String())
     publisher.publish(String())
@@ -203,23 +220,22 @@ def test_a_callback_that_is_told_of_earlier_messages_may_clear_itself(node):
     assert calls == [1]
 
 
-def test_what_only_a_look_at_all_publishers_finds_is_reported(node):
+def test_what_only_a_look_at_all_publishers_finds_is_reported(node, arrivals_of):
     """A full queue that keeps all has no room for a hint. The look is left to the thread."""
     keep_all = QoSProfile(history=HistoryPolicy.KEEP_ALL, depth=1)
-    arrivals = Arrivals(node.create_subscription(String, "chatter", print, keep_all))
+    arrivals = arrivals_of(node.create_subscription(String, "chatter", print, keep_all))
     publisher = speak(node, depth=2 * QUEUE)
     for _ in range(QUEUE + 100):
         publisher.publish(String())
     wait_until(lambda: arrivals.count >= QUEUE + 100, "all are reported")
-    arrivals.clear()
 
 
-def test_contexts_of_one_process_call_for_each_other(node):
+def test_contexts_of_one_process_call_for_each_other(node, arrivals_of):
     """They are one process to the platform, and each has a thread of its own."""
     seen = [threading.Event(), threading.Event()]
     with other_node("other") as other:
         arrivals = [
-            Arrivals(listen(owner), then=event.set)
+            arrivals_of(listen(owner), then=event.set)
             for owner, event in zip((node, other), seen, strict=True)
         ]
         for publishing in (node, other):
@@ -233,20 +249,20 @@ def test_contexts_of_one_process_call_for_each_other(node):
             arrival.clear()
 
 
-def test_a_context_calls_itself_once_the_one_before_it_has_ended(platform):
+def test_a_context_calls_itself_once_the_one_before_it_has_ended(platform, arrivals_of):
     for _ in range(2):
         with other_node("one_of_two") as node:
-            arrivals = Arrivals(listen(node))
+            arrivals = arrivals_of(listen(node))
             assert is_called_by_this_thread(arrivals, speak(node))
             arrivals.clear()
 
 
 @pytest.mark.parametrize("role", ["service", "client"])
-def test_the_thread_that_asks_or_answers_calls(node, role: str):
+def test_the_thread_that_asks_or_answers_calls(node, arrivals_of, role: str):
     service = node.create_service(Trigger, "ready", lambda _, answer: answer)
     client = node.create_client(Trigger, "ready")
     kind, entity = ("request", service) if role == "service" else ("response", client)
-    arrivals = Arrivals(entity, f"rcl_{role}_set_on_new_{kind}_callback")
+    arrivals = arrivals_of(entity, f"rcl_{role}_set_on_new_{kind}_callback")
     for published in range(1, DEEP):
         client.call_async(Trigger.Request())
         with service.handle:
@@ -256,4 +272,3 @@ def test_the_thread_that_asks_or_answers_calls(node, role: str):
         if arrivals.threads[-1] == threading.get_ident():
             break
     assert arrivals.threads[-1] == threading.get_ident()
-    arrivals.clear()
