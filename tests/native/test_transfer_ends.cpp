@@ -3,7 +3,6 @@
 // Topics that are transferred: one side leaves, or a mover dies, while a message is under way.
 #include <doctest/doctest.h>
 
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -12,14 +11,10 @@
 #include <future>
 #include <vector>
 
-#include "stepped_child.hpp"
 #include "transfer_of_test.hpp"
-#include "transport/matching/closing.hpp"
-#include "transport/matching/sweeping.hpp"
 
 using namespace manycore;
 using transfer_of_test::by;
-using transfer_of_test::dsm_bytes;
 using transfer_of_test::Fixture;
 using transfer_of_test::open_pipe;
 using transfer_of_test::packets_in;
@@ -37,136 +32,13 @@ std::future<Refusal> publish_synchronously(Fixture & f, uint64_t number) {
   return refusal;
 }
 
-const Role subscribes("subscribes", [](Lines &, const Arguments & arguments) {
-  Placement placement;
-  placement.platform = arguments.at(0);
-  placement.cluster = 2;
-  const auto process = Process::join(placement);
-  begin_steps();
-  const auto subscription = process->create_subscription(on_topic("/x", keep_last(1)));
-  finish_steps();
-});
-
-uint64_t file_bytes(const std::string & path) {
-  struct stat status {};
-  REQUIRE(stat(path.c_str(), &status) == 0);
-  return static_cast<uint64_t>(status.st_blocks) * 512;
-}
-
 LandingTable & table_of(Registry & registry, uint32_t publisher) {
   const Cluster & own = registry.clusters().at(1);
   const EndpointEntry & entry = registry.endpoints()[publisher];
   return *landing_table(own, *own.find<TopicDsmHeader>(entry.block.offset()));
 }
 
-bool is_any_made(Registry & registry) {
-  for (uint32_t slot = 0; slot < registry.endpoints().high_water(); ++slot) {
-    if (registry.endpoints()[slot].spare.ref.load() != 0) {
-      return true;
-    }
-  }
-  return false;
-}
-
-Profile profile_of(uint64_t smem_bytes) {
-  Profile profile = host_profile();
-  profile.smem_bytes = smem_bytes;
-  return profile;
-}
-
-/// A publisher in cluster 1, and subscriptions in cluster 2.
-struct FromAfar {
-  explicit FromAfar(const Profile & profile_ = host_profile()) : profile(profile_) {
-    publisher.tell("publisher /x 1");
-  }
-  std::unique_ptr<Subscription> subscription() const {
-    return process->create_subscription(on_topic("/x", keep_last(1)));
-  }
-
-  const Profile profile;
-  TestPlatform platform;
-  Configurator configurator{
-    platform.name(), profile, {{"/x", 1, dsm_bytes, 0, by(Transfer::async)}}};
-  Node publisher{platform, 1};
-  std::shared_ptr<Process> process = platform.join(2);
-  Inspection inspection{platform};
-};
-
 }  // namespace
-
-TEST_CASE("a landing is backed with memory without the registry lock") {
-  FromAfar f;
-  const std::string file = f.platform.paths().cluster(2);
-  const std::atomic<uint64_t> & changes = f.inspection.registry().header().changes;
-  SteppedChild child("subscribes", {f.platform.name()});
-  uint64_t under_the_lock = 0;
-  uint64_t without_it = 0;
-  bool was_locked = false;
-  for (uint64_t before = file_bytes(file); !child.finished();) {
-    child.run_to_system_call();
-    const bool is_locked = changes.load() % 2 != 0;
-    const uint64_t now = file_bytes(file);
-    (is_locked && was_locked ? under_the_lock : without_it) += now - std::min(now, before);
-    before = now;
-    was_locked = is_locked;
-  }
-  CHECK(without_it >= dsm_bytes);
-  CHECK(under_the_lock < dsm_bytes / 8);
-}
-
-TEST_CASE("a landing is freed in turns; a subscription that comes meanwhile gets another one") {
-  FromAfar f;
-  auto no_other_sweeper = std::make_optional<Standstill>(f.platform, 2);
-  const uint64_t used = f.inspection.used_bytes(2);
-  auto subscription = f.subscription();
-  Registry & registry = f.inspection.registry();
-  const auto slot = static_cast<uint32_t>(endpoint_in(subscription->gid()));
-  const auto sweep_once = [&] {
-    const Registry::Lock lock(registry);
-    return sweeping::Round(registry).sweep_some_of(slot);
-  };
-  for (bool closed = false; !closed;) {
-    const Registry::Lock lock(registry);
-    Turn turn;
-    closed = closing::close_some(registry, slot, false, turn);
-  }
-  for (int turns = 0; turns < 4; ++turns) {
-    const uint64_t left = f.inspection.used_bytes(2);
-    REQUIRE_FALSE(sweep_once());
-    CHECK(f.inspection.used_bytes(2) < left);
-  }
-  auto next = f.subscription();
-  no_other_sweeper.reset();
-  f.publisher.tell("publish 1 1 1000");
-  CHECK(take_next(*f.process, *next).number == 1);
-  while (!sweep_once()) {
-  }
-  f.publisher.tell("publish 2 2 1000");
-  CHECK(take_next(*f.process, *next).number == 2);
-  subscription.reset();
-  next.reset();
-  f.inspection.wait_until_swept();  // by the reaper, where publisher or mover was in its phase
-  CHECK(f.inspection.used_bytes(2) == used);
-}
-
-TEST_CASE("room for one landing is enough for subscriptions that are created at the same time") {
-  FromAfar f(profile_of(dsm_bytes + dsm_bytes / 2));
-  Registry & registry = f.inspection.registry();
-  SteppedChild child("subscribes", {f.platform.name()});
-  while (!is_any_made(registry)) {
-    child.run_to_system_call();
-  }
-  const uint32_t before = f.inspection.live_endpoints();
-  auto other = std::async(std::launch::async, [&] { return f.subscription(); });
-  wait_until("the other subscription needs a landing", [&] {
-    return f.inspection.live_endpoints() > before;
-  });
-  while (!child.finished()) {
-    child.run_to_system_call();
-  }
-  const auto subscription = other.get();
-  CHECK(subscription->matched().current == 1);
-}
 
 TEST_CASE("the readers of each cluster are counted anew when the owner of the lock has died") {
   Fixture f(by(Transfer::async));

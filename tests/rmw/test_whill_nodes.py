@@ -171,7 +171,7 @@ def test_the_gate_holds_passes_stops_and_is_cleared(node, start):
     bench.until(told(0.0, -1.5), beat)  # not engaged: held
     bench.send("input/engage", Engage(engage=True))
     bench.until(told(1.2, 0.0), beat)
-    assert not emergencies[-1].emergency
+    bench.until(lambda: emergencies and not emergencies[-1].emergency, beat)
     bench.until(told(0.0, -2.4), command)  # without heartbeats
     bench.until(lambda: emergencies[-1].emergency, command)
     bench.program.wait_for("no external_emergency_stop_heartbeat for more than 0.5 s")
@@ -206,8 +206,8 @@ def test_the_gate_passes_the_gear_and_tells_its_state(node, start):
     bench.until(lambda: engagements and not engagements[-1].engage, beat)
     bench.send("input/engage", Engage(engage=True))
     bench.until(lambda: engagements[-1].engage, beat)
-    assert modes[-1].data == GateMode.AUTO
-    assert not stops[-1].emergency
+    bench.until(lambda: modes and modes[-1].data == GateMode.AUTO, beat)
+    bench.until(lambda: stops and not stops[-1].emergency, beat)
     bench.send("input/gate_mode", GateMode(data=GateMode.EXTERNAL))
     bench.until(lambda: modes[-1].data == GateMode.EXTERNAL, beat)
     bench.until(lambda: gears[-1].command == GearCommand.REVERSE, beat)

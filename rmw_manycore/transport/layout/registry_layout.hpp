@@ -7,6 +7,7 @@
 #include "transport/layout/endpoint.hpp"
 #include "transport/layout/segment_layout.hpp"
 #include "transport/layout/slot_set.hpp"
+#include "transport/layout/spare_block.hpp"
 #include "transport/layout/trace_layout.hpp"
 #include "transport/layout/transfer_layout.hpp"
 #include "transport/layout/wake_words.hpp"
@@ -129,7 +130,7 @@ struct EndpointEntry {
   std::atomic<uint32_t> dead_publishers;
   Transfer transfer;  ///< of the topic, from the topic table
   uint8_t reserved[3];
-  SpareLanding spare;
+  SpareBlock spare;
   EndpointCounters counters;
   char topic[name_bytes];
   char type[name_bytes];

@@ -43,16 +43,6 @@ struct LandingTable {
 };
 static_assert(sizeof(LandingTable) == 1536);
 
-/// SMEM that an endpoint has reserved for a landing and backs without the registry lock, before the
-/// match that needs the landing. Changed under the registry lock.
-struct SpareLanding {
-  std::atomic<uint64_t> ref;          ///< SegmentRef; null = none; stored last when reserved
-  std::atomic<uint64_t> bytes;        ///< of the whole landing
-  std::atomic<uint32_t> kept_pieces;  ///< while it is freed, as GenerationEntry::kept_pieces
-  uint32_t reserved;
-};
-static_assert(sizeof(SpareLanding) == 24);
-
 /// Where the records of one publisher arrive in one receiving cluster: a mirror of the data of its
 /// topic DSM in that cluster's SMEM. Header, one mark per descriptor, data; a record lies at the
 /// same distance from the beginning of the data as in the topic DSM.

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "transport/matching/detaching.hpp"
-#include "transport/matching/spare_landings.hpp"
+#include "transport/matching/spare_blocks.hpp"
 #include "transport/queue/source_table.hpp"
 #include "transport/registry/endpoint_blocks.hpp"
 #include "transport/topic_dsm/generation.hpp"
@@ -290,7 +290,7 @@ Progress sweep_publisher(
     entry.slot.state.store(SlotState::unreachable);
   }
   if (
-    !spare_landings::free_some(registry, entry.spare, turn) ||
+    !spare_blocks::free_some(registry, entry.spare, turn) ||
     !free_some_landings(registry, *cluster, *dsm, turn) ||
     !free_some_generations(*cluster, *dsm, turn) ||
     !free_some_of_table(*cluster, further_readers(*cluster, *dsm), turn)) {
@@ -317,7 +317,7 @@ Progress sweep_subscription(Registry & registry, EndpointEntry & entry, Turn & t
     entry.slot.state.store(SlotState::unreachable);
   }
   if (
-    !spare_landings::free_some(registry, entry.spare, turn) ||
+    !spare_blocks::free_some(registry, entry.spare, turn) ||
     !free_some_of_table(*cluster, source_table(*cluster, *header), turn)) {
     return Progress::freed_some;
   }

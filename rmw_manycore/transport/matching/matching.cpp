@@ -6,6 +6,7 @@
 
 #include "platform/error.hpp"
 #include "transport/matching/detaching.hpp"
+#include "transport/matching/free_entries.hpp"
 #include "transport/matching/turn.hpp"
 #include "transport/qos/liveliness.hpp"
 #include "transport/qos/qos_compatibility.hpp"
@@ -22,7 +23,6 @@ namespace {
 
 constexpr uint64_t steps_of_a_candidate = 3;
 constexpr uint64_t steps_of_a_match = 7;
-constexpr uint64_t steps_of_growing = 200;  ///< adding a block takes system calls
 
 /// Both ends of a potential match.
 struct Pair {
@@ -30,51 +30,14 @@ struct Pair {
   uint32_t subscription_slot;
   EndpointEntry & publisher;
   EndpointEntry & subscription;
-  SpareLanding & spare;  ///< of the new one
+  SpareBlock & spare;  ///< of the new one
 };
 
 /// What a candidate has come to.
 struct Considered {
   bool is_done = true;
-  std::optional<spare_landings::Needed> needed{};
+  std::optional<spare_blocks::Needed> needed{};
 };
-
-SourceEntry & free_source(
-  Cluster & cluster, SubscriptionHeader & subscription, uint32_t & index_out, Turn & turn) {
-  EntryTable<SourceEntry> table = source_table(cluster, subscription);
-  SourceEntry * found = nullptr;
-  table.visit(subscription.free_source_from, [&](SourceEntry & entry, uint32_t) {
-    found = entry.state.load() == SourceState::free ? &entry : nullptr;
-    return found != nullptr;
-  });
-  if (found == nullptr) {
-    found = &table.grow(cluster);
-    turn.spend(steps_of_growing);
-  }
-  index_out = table.index_of(*found).value_or(Hint::source_limit);
-  if (index_out >= Hint::source_limit) {
-    throw Error(ErrorCode::no_space, "a subscription has more than 16,000 publishers");
-  }
-  subscription.free_source_from = index_out;
-  return *found;
-}
-
-ReaderEntry & free_reader(Cluster & cluster, TopicDsmHeader & dsm, Turn & turn) {
-  ReaderEntry * found = nullptr;
-  visit_reader_table(
-    cluster, dsm,
-    [&](ReaderEntry & entry, uint32_t) {
-      found = entry.active.load() == 0 ? &entry : nullptr;
-      return found != nullptr;
-    },
-    dsm.free_reader_from);
-  if (found == nullptr) {
-    found = &further_readers(cluster, dsm).grow(cluster);
-    turn.spend(steps_of_growing);
-  }
-  dsm.free_reader_from = index_of_reader(cluster, dsm, *found).value_or(0);
-  return *found;
-}
 
 /// True if the subscription gets the remaining history, false if only messages published from now
 /// on.
@@ -105,7 +68,8 @@ Considered find_place(
   const uint64_t bytes = landing_bytes(dsm);
   if (place == landings::Place::missing) {
     const uint64_t data_bytes = dsm.generations[0].data_bytes.load(std::memory_order_relaxed);
-    return {false, spare_landings::Needed{receiver.id(), bytes, bytes - data_bytes}};
+    return {
+      false, spare_blocks::Needed{SpareUse::landing, receiver.id(), bytes, bytes - data_bytes}};
   }
   turn.spend_on_freeing(std::min(bytes, freed_piece_bytes));
   landings::free_piece_of_retired(registry.clusters().at(pair.publisher.cluster), dsm, receiver);
@@ -138,9 +102,14 @@ Considered join(Registry & registry, const Pair & pair, Turn & turn) {
     throw Error(
       ErrorCode::corrupt, "the registry is damaged; stop the nodes, run 'manycore clean'");
   }
-  uint32_t index = 0;
-  SourceEntry & source = free_source(subscription_cluster, *header, index, turn);
-  ReaderEntry & reader = free_reader(publisher_cluster, *dsm, turn);
+  FreeEntries entries(pair.spare, turn);
+  const FreeEntries::Source free_source = entries.source(subscription_cluster, *header);
+  ReaderEntry * const free_reader = entries.reader(publisher_cluster, *dsm);
+  if (entries.needed()) {
+    return {false, entries.needed()};
+  }
+  SourceEntry & source = *free_source.entry;
+  ReaderEntry & reader = *free_reader;
   if (const Considered found = find_place(registry, pair, *dsm, subscription_cluster, turn);
       !found.is_done) {
     return found;
@@ -155,7 +124,7 @@ Considered join(Registry & registry, const Pair & pair, Turn & turn) {
   reader.endpoint.store(pair.subscription_slot, std::memory_order_release);
   reader.subscription.store(pair.subscription.block.word, std::memory_order_release);
   reader.source.store(subscription_cluster.ref_of(&source).word, std::memory_order_release);
-  reader.source_index.store(index, std::memory_order_release);
+  reader.source_index.store(free_source.index, std::memory_order_release);
   reader.source_incarnation.store(source.incarnation.load(), std::memory_order_release);
   reader.active.store(1, std::memory_order_release);
   landings::count_reader(publisher_cluster, *dsm, subscription_cluster.id());
@@ -291,7 +260,7 @@ std::vector<Candidate> candidates_of(Registry & registry, uint32_t endpoint) {
   return candidates;
 }
 
-std::optional<spare_landings::Needed> connect_some(
+std::optional<spare_blocks::Needed> connect_some(
   Registry & registry, uint32_t endpoint, std::vector<Candidate> & candidates) {
   EndpointEntry & own = registry.endpoints()[endpoint];
   for (Turn turn; !turn.is_over() && !candidates.empty();) {

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "transport/matching/spare_landings.hpp"
+#include "transport/matching/spare_blocks.hpp"
 #include "transport/registry/registry.hpp"
 
 namespace manycore::matching {
@@ -28,9 +28,9 @@ struct Candidate {
 std::vector<Candidate> candidates_of(Registry & registry, uint32_t endpoint);
 
 /// Matches a live endpoint with the compatible and live ones among the last candidates, and removes
-/// these from the list, until the turn is over or a match needs a landing that the endpoint has to
-/// make first. Returns that landing. The caller holds the registry lock.
-std::optional<spare_landings::Needed> connect_some(
+/// these from the list, until the turn is over or a match needs a block that the endpoint has to
+/// make first. Returns that block. The caller holds the registry lock.
+std::optional<spare_blocks::Needed> connect_some(
   Registry & registry, uint32_t endpoint, std::vector<Candidate> & candidates);
 
 /// Undoes the match that an owner of the registry lock left incomplete when it died.

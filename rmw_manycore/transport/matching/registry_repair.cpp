@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "transport/matching/matching.hpp"
-#include "transport/matching/spare_landings.hpp"
+#include "transport/matching/spare_blocks.hpp"
 #include "transport/queue/source_table.hpp"
 #include "transport/registry/registry.hpp"
 #include "transport/topic_dsm/reader_table.hpp"
@@ -16,7 +16,7 @@ namespace manycore {
 
 void Registry::mark_blocks_of(EndpointEntry & entry) noexcept {
   Cluster * const cluster = clusters_.find(entry.block.cluster());
-  spare_landings::mark(clusters_, entry.spare);
+  spare_blocks::mark(clusters_, entry.spare);
   if (cluster == nullptr || !entry.block) {
     return;
   }

@@ -80,24 +80,38 @@ public:
     }
   }
 
-  /// Adds a block of cleared entries and returns its first entry. The caller holds the registry
-  /// lock and passes the table's own cluster. Throws Error{no_space|corrupt}.
-  Entry & grow(Cluster & cluster) {
+  /// Size of the block with which the table would grow. The caller holds the registry lock. Throws
+  /// Error{corrupt}.
+  uint64_t next_block_bytes() const { return bytes_of(next_block()); }
+
+  /// Adds a block of that size, of cleared entries, at an offset in the table's cluster. Returns
+  /// its first entry. The caller holds the registry lock. Throws Error{corrupt}.
+  Entry & grow(uint64_t offset) const {
+    const uint32_t block = next_block();
+    auto * const first = cluster_.find<Entry>(offset, bytes_of(block));
+    if (first == nullptr) {
+      throw damaged();
+    }
+    blocks_.offsets[block].store(offset, std::memory_order_release);
+    return *first;
+  }
+
+private:
+  Error damaged() const {
+    return Error(
+      ErrorCode::corrupt, "cluster " + std::to_string(cluster_.id()) +
+                            " is damaged; stop the platform's nodes and run 'manycore clean'");
+  }
+  uint32_t next_block() const {
     uint32_t block = 0;
     while (block < max_entry_blocks && entries_of(block) != nullptr) {
       ++block;
     }
     if (block == max_entry_blocks || blocks_.offsets[block].load() != 0) {
-      throw Error(
-        ErrorCode::corrupt, "cluster " + std::to_string(cluster.id()) +
-                              " is damaged; stop the platform's nodes and run 'manycore clean'");
+      throw damaged();
     }
-    auto & first = cluster.allocate_cleared<Entry>(bytes_of(block));
-    blocks_.offsets[block].store(cluster.ref_of(&first).offset(), std::memory_order_release);
-    return first;
+    return block;
   }
-
-private:
   uint64_t bytes_of(uint32_t block) const noexcept {
     return entry_block_bytes(block, cluster_.granule_bytes());
   }

@@ -15,18 +15,6 @@ void begin(LandingHeader & landing, uint64_t last) noexcept {
   }
 }
 
-bool fits(const SpareLanding & spare, const TopicDsmHeader & dsm, const Cluster & receiver) {
-  return SegmentRef{spare.ref.load()}.cluster() == receiver.id() &&
-         spare.bytes.load() == landing_bytes(dsm) && spare.kept_pieces.load() == 0;
-}
-
-/// Takes a spare landing that fits off its owner. If this process dies before the landing is
-/// attached, the next owner of the lock builds the map without it.
-LandingHeader * take_spare(const Cluster & receiver, SpareLanding & spare) {
-  const SegmentRef ref{spare.ref.exchange(0)};
-  return receiver.find<LandingHeader>(ref.offset(), spare.bytes.load());
-}
-
 void name_publisher(LandingHeader & landing, const TopicDsmHeader & dsm) noexcept {
   landing.endpoint.store(dsm.endpoint.load());
   landing.incarnation.store(dsm.incarnation.load());
@@ -54,7 +42,7 @@ void retire(LandingTable & table, uint32_t receiver) noexcept {
 
 Place find_place(
   Registry & registry, const EndpointEntry & publisher, TopicDsmHeader & dsm,
-  const Cluster & receiver, const SpareLanding & spare) {
+  const Cluster & receiver, const SpareBlock & spare) {
   const LandingTable * const table = landing_table(registry.clusters().at(publisher.cluster), dsm);
   if (
     table == nullptr || receiver.id() == publisher.cluster ||
@@ -70,11 +58,12 @@ Place find_place(
   if (table->retired[receiver.id() - 1].load() != 0) {
     return Place::retiring;
   }
-  return fits(spare, dsm, receiver) ? Place::ready : Place::missing;
+  const bool is_made = spare.fits(SpareUse::landing, receiver.id(), landing_bytes(dsm));
+  return is_made ? Place::ready : Place::missing;
 }
 
 void attach(
-  const Cluster & cluster, TopicDsmHeader & dsm, const Cluster & receiver, SpareLanding & spare) {
+  const Cluster & cluster, TopicDsmHeader & dsm, const Cluster & receiver, SpareBlock & spare) {
   LandingTable * const table = landing_table(cluster, dsm);
   if (
     table == nullptr || receiver.id() == cluster.id() ||
@@ -83,7 +72,7 @@ void attach(
   }
   LandingHeader * landing = whole_retired(*table, dsm, receiver);
   if (landing == nullptr) {
-    landing = take_spare(receiver, spare);
+    landing = receiver.find<LandingHeader>(spare.take().offset(), landing_bytes(dsm));
     if (landing == nullptr) {
       return;  // damaged
     }

@@ -16,11 +16,11 @@ enum class Place { ready, retiring, missing };
 /// transferred. Throws Error{no_space} for a ninth session, with the names of the eight.
 Place find_place(
   Registry & registry, const EndpointEntry & publisher, TopicDsmHeader & dsm,
-  const Cluster & receiver, const SpareLanding & spare);
+  const Cluster & receiver, const SpareBlock & spare);
 /// Then, unless one is attached: attaches the retired landing or the spare one. `cluster`: that of
 /// the topic DSM.
 void attach(
-  const Cluster & cluster, TopicDsmHeader & dsm, const Cluster & receiver, SpareLanding & spare);
+  const Cluster & cluster, TopicDsmHeader & dsm, const Cluster & receiver, SpareBlock & spare);
 
 /// Once a reader in `receiver` is in the reader table.
 void count_reader(const Cluster & cluster, TopicDsmHeader & dsm, uint32_t receiver) noexcept;

@@ -1,5 +1,5 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-#include "transport/matching/spare_landings.hpp"
+#include "transport/matching/spare_blocks.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -9,18 +9,16 @@
 #include "platform/clock.hpp"
 #include "transport/layout/topic_dsm_layout.hpp"
 
-namespace manycore::spare_landings {
+namespace manycore::spare_blocks {
 namespace {
 
 constexpr int64_t max_wait_ns = 5 * ns_per_s;
 constexpr std::chrono::milliseconds look_again_after{1};
 
-bool is_another_made(Registry & registry, const SpareLanding & own, const Needed & needed) {
+bool is_another_made(Registry & registry, const SpareBlock & own, const Needed & needed) {
   for (uint32_t slot = 0; slot < registry.endpoints().high_water(); ++slot) {
-    const SpareLanding & spare = registry.endpoints()[slot].spare;
-    if (
-      &spare != &own && SegmentRef{spare.ref.load()}.cluster() == needed.cluster &&
-      spare.bytes.load() == needed.bytes) {
+    const SpareBlock & spare = registry.endpoints()[slot].spare;
+    if (&spare != &own && spare.fits(needed.use, needed.cluster, needed.bytes)) {
       return true;
     }
   }
@@ -30,7 +28,7 @@ bool is_another_made(Registry & registry, const SpareLanding & own, const Needed
 }  // namespace
 
 /// Polls, as this is rare: no room, and endpoints that are created at the same time.
-bool await_another(Registry & registry, const SpareLanding & own, const Needed & needed) {
+bool await_another(Registry & registry, const SpareBlock & own, const Needed & needed) {
   const int64_t until_ns = monotonic_ns() + max_wait_ns;
   bool was_made = false;
   while (is_another_made(registry, own, needed)) {
@@ -43,27 +41,33 @@ bool await_another(Registry & registry, const SpareLanding & own, const Needed &
   return was_made;
 }
 
-/// Stores `ref` last: a spare landing with a reference counts as allocated.
+/// Stores `ref` last: a spare block with a reference counts as allocated. Entries are control
+/// blocks, which may use the reserve of the SMEM.
 void make(
-  Registry & registry, const Membership & membership, SpareLanding & spare, const Needed & needed) {
+  Registry & registry, const Membership & membership, SpareBlock & spare, const Needed & needed) {
   free_all(registry, membership, spare);
-  Cluster & receiver = registry.clusters().at(needed.cluster);
+  Cluster & cluster = registry.clusters().at(needed.cluster);
   uint64_t offset = 0;
   {
     const Registry::Lock lock(registry);
     membership.require();
-    receiver.require_message_room(needed.bytes);
-    offset = receiver.reserve(needed.bytes);
+    if (needed.use == SpareUse::landing) {
+      cluster.require_message_room(needed.bytes);
+    }
+    offset = cluster.reserve(needed.bytes);
+    spare.use.store(needed.use);
     spare.bytes.store(needed.bytes);
     spare.kept_pieces.store(0);
     spare.ref.store(SegmentRef::make(needed.cluster, offset).word);
   }
-  receiver.require_file_system_room(needed.bytes);
-  receiver.back(offset, needed.bytes);
-  std::memset(receiver.find<uint8_t>(offset, needed.bytes), 0, needed.cleared_bytes);
+  if (needed.use == SpareUse::landing) {
+    cluster.require_file_system_room(needed.bytes);
+  }
+  cluster.back(offset, needed.bytes);
+  std::memset(cluster.find<uint8_t>(offset, needed.bytes), 0, needed.cleared_bytes);
 }
 
-void free_all(Registry & registry, const Membership & membership, SpareLanding & spare) {
+void free_all(Registry & registry, const Membership & membership, SpareBlock & spare) {
   for (bool is_free = spare.ref.load() == 0; !is_free;) {
     const Registry::Lock lock(registry);
     membership.require();
@@ -74,8 +78,8 @@ void free_all(Registry & registry, const Membership & membership, SpareLanding &
 
 /// The store to the entry comes after the piece was freed: if this process dies in between, the
 /// next owner of the lock marks the piece as used again. The last one is that of `ref`, as 0 pieces
-/// stand for a whole landing.
-bool free_some(Registry & registry, SpareLanding & spare, Turn & turn) {
+/// stand for a whole block.
+bool free_some(Registry & registry, SpareBlock & spare, Turn & turn) {
   const SegmentRef ref{spare.ref.load()};
   Cluster * const cluster = ref ? registry.map_cluster(ref.cluster()) : nullptr;
   while (cluster != nullptr) {
@@ -94,7 +98,7 @@ bool free_some(Registry & registry, SpareLanding & spare, Turn & turn) {
   return true;
 }
 
-void mark(Clusters & clusters, const SpareLanding & spare) noexcept {
+void mark(Clusters & clusters, const SpareBlock & spare) noexcept {
   const SegmentRef ref{spare.ref.load()};
   Cluster * const cluster = ref ? clusters.find(ref.cluster()) : nullptr;
   if (cluster != nullptr) {
@@ -103,4 +107,4 @@ void mark(Clusters & clusters, const SpareLanding & spare) noexcept {
   }
 }
 
-}  // namespace manycore::spare_landings
+}  // namespace manycore::spare_blocks

@@ -1,0 +1,200 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+//
+// SMEM that an endpoint makes for a match to come: landings, and large blocks of reader and source
+// tables.
+#include <doctest/doctest.h>
+
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <future>
+#include <vector>
+
+#include "stepped_child.hpp"
+#include "transfer_of_test.hpp"
+#include "transport/matching/closing.hpp"
+#include "transport/matching/sweeping.hpp"
+
+using namespace manycore;
+using transfer_of_test::by;
+using transfer_of_test::dsm_bytes;
+
+namespace {
+
+const Role subscribes("subscribes", [](Lines &, const Arguments & arguments) {
+  Placement placement;
+  placement.platform = arguments.at(0);
+  placement.cluster = static_cast<uint32_t>(std::stoul(arguments.at(1)));
+  const auto process = Process::join(placement);
+  begin_steps();
+  const auto subscription = process->create_subscription(on_topic("/x", keep_last(1)));
+  finish_steps();
+});
+
+uint64_t file_bytes(const std::string & path) {
+  struct stat status {};
+  REQUIRE(stat(path.c_str(), &status) == 0);
+  return static_cast<uint64_t>(status.st_blocks) * 512;
+}
+
+bool is_any_made(Registry & registry) {
+  for (uint32_t slot = 0; slot < registry.endpoints().high_water(); ++slot) {
+    if (registry.endpoints()[slot].spare.ref.load() != 0) {
+      return true;
+    }
+  }
+  return false;
+}
+
+Profile profile_of(uint64_t smem_bytes) {
+  Profile profile = host_profile();
+  profile.smem_bytes = smem_bytes;
+  return profile;
+}
+
+/// Memory that the file of a cluster gets while a child creates an endpoint.
+struct Backed {
+  uint64_t without_lock = 0;
+  uint64_t in_longest_hold = 0;  ///< in one hold of the registry lock, the largest
+};
+
+Backed run_to_end(SteppedChild & child, const std::string & file, Registry & registry) {
+  Backed backed;
+  uint64_t in_hold = 0;
+  uint64_t hold = 0;
+  for (uint64_t before = file_bytes(file); !child.finished();) {
+    const uint64_t changes = registry.header().changes.load();
+    in_hold = changes == hold ? in_hold : 0;
+    hold = changes;
+    child.run_to_system_call();
+    const uint64_t more = file_bytes(file) - std::min(file_bytes(file), before);
+    before = file_bytes(file);
+    const bool was_locked = changes % 2 != 0 && registry.header().changes.load() == changes;
+    in_hold += was_locked ? more : 0;
+    backed.without_lock += was_locked ? 0 : more;
+    backed.in_longest_hold = std::max(backed.in_longest_hold, in_hold);
+  }
+  return backed;
+}
+
+/// As many publishers of a topic as fill the small blocks of a source table.
+struct Crowd {
+  Crowd() {
+    while (publishers.size() < 500) {
+      publishers.push_back(process->create_publisher(on_topic("/x", keep_last(1))));
+    }
+  }
+
+  TestPlatform platform;
+  std::shared_ptr<Process> process = platform.join();
+  Inspection inspection{platform};
+  std::vector<std::unique_ptr<Publisher>> publishers;
+};
+
+constexpr uint64_t large_block_bytes = 32 << 10;  ///< the first that is not made under the lock
+
+/// A publisher in cluster 1, and subscriptions in cluster 2.
+struct FromAfar {
+  explicit FromAfar(const Profile & profile_ = host_profile()) : profile(profile_) {
+    publisher.tell("publisher /x 1");
+  }
+  std::unique_ptr<Subscription> subscription() const {
+    return process->create_subscription(on_topic("/x", keep_last(1)));
+  }
+
+  const Profile profile;
+  TestPlatform platform;
+  Configurator configurator{
+    platform.name(), profile, {{"/x", 1, dsm_bytes, 0, by(Transfer::async)}}};
+  Node publisher{platform, 1};
+  std::shared_ptr<Process> process = platform.join(2);
+  Inspection inspection{platform};
+};
+
+}  // namespace
+
+TEST_CASE("a landing is backed with memory without the registry lock") {
+  FromAfar f;
+  SteppedChild child("subscribes", {f.platform.name(), "2"});
+  const Backed backed = run_to_end(child, f.platform.paths().cluster(2), f.inspection.registry());
+  CHECK(backed.without_lock >= dsm_bytes);
+  CHECK(backed.in_longest_hold < dsm_bytes / 8);
+}
+
+TEST_CASE("a large block of a table is backed with memory without the registry lock") {
+  Crowd f;
+  const uint64_t used = f.inspection.used_bytes();
+  SteppedChild child("subscribes", {f.platform.name(), "1"});
+  const Backed backed = run_to_end(child, f.platform.paths().cluster(1), f.inspection.registry());
+  CHECK(f.publishers.back()->matched().current == 1);
+  CHECK(f.inspection.used_bytes() >= used + 2 * large_block_bytes - 4096);  // with the smaller ones
+  CHECK(backed.without_lock >= large_block_bytes);
+  CHECK(backed.in_longest_hold < large_block_bytes);
+}
+
+TEST_CASE("a process that dies with a block of a table in hand leaves none of it") {
+  Crowd f;
+  const uint64_t used = f.inspection.used_bytes();
+  SteppedChild child("subscribes", {f.platform.name(), "1"});
+  while (!is_any_made(f.inspection.registry())) {
+    REQUIRE_FALSE(child.finished());
+    child.run_to_system_call();
+  }
+  child.kill();
+  wait_until("it is reaped", [&] { return f.inspection.used_bytes() == used; });
+  CHECK(f.publishers.front()->matched().current == 0);
+}
+
+TEST_CASE("a landing is freed in turns; a subscription that comes meanwhile gets another one") {
+  FromAfar f;
+  auto no_other_sweeper = std::make_optional<Standstill>(f.platform, 2);
+  const uint64_t used = f.inspection.used_bytes(2);
+  auto subscription = f.subscription();
+  Registry & registry = f.inspection.registry();
+  const auto slot = static_cast<uint32_t>(endpoint_in(subscription->gid()));
+  const auto sweep_once = [&] {
+    const Registry::Lock lock(registry);
+    return sweeping::Round(registry).sweep_some_of(slot);
+  };
+  for (bool closed = false; !closed;) {
+    const Registry::Lock lock(registry);
+    Turn turn;
+    closed = closing::close_some(registry, slot, false, turn);
+  }
+  for (int turns = 0; turns < 4; ++turns) {
+    const uint64_t left = f.inspection.used_bytes(2);
+    REQUIRE_FALSE(sweep_once());
+    CHECK(f.inspection.used_bytes(2) < left);
+  }
+  auto next = f.subscription();
+  no_other_sweeper.reset();
+  f.publisher.tell("publish 1 1 1000");
+  CHECK(take_next(*f.process, *next).number == 1);
+  while (!sweep_once()) {
+  }
+  f.publisher.tell("publish 2 2 1000");
+  CHECK(take_next(*f.process, *next).number == 2);
+  subscription.reset();
+  next.reset();
+  f.inspection.wait_until_swept();  // by the reaper, where publisher or mover was in its phase
+  CHECK(f.inspection.used_bytes(2) == used);
+}
+
+TEST_CASE("room for one landing is enough for subscriptions that are created at the same time") {
+  FromAfar f(profile_of(dsm_bytes + dsm_bytes / 2));
+  Registry & registry = f.inspection.registry();
+  SteppedChild child("subscribes", {f.platform.name(), "2"});
+  while (!is_any_made(registry)) {
+    child.run_to_system_call();
+  }
+  const uint32_t before = f.inspection.live_endpoints();
+  auto other = std::async(std::launch::async, [&] { return f.subscription(); });
+  wait_until("the other subscription needs a landing", [&] {
+    return f.inspection.live_endpoints() > before;
+  });
+  while (!child.finished()) {
+    child.run_to_system_call();
+  }
+  const auto subscription = other.get();
+  CHECK(subscription->matched().current == 1);
+}
