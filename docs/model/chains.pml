@@ -10,19 +10,20 @@
  * time, and the walk only loads, so x86's store buffers have no effect: shared words are plain
  * variables.
  *
- * BUG 1: a step counts although the endpoint where the walk stood has left
- * BUG 2: the link is not read again after the incarnation of the next endpoint
- * BUG 3: incarnation incremented after the endpoint is in its chain
- * BUG 4: incarnation not incremented when the slot is reused
+ * RUN MOVES=1
+ * RUN MOVES=2 (long)
+ * BUG 1 (reversed): a step counts although the endpoint where the walk stood has left
+ * BUG 2 (reversed): the link is not read again after the incarnation of the next endpoint
+ * BUG 3 (reversed): incarnation incremented after the endpoint is in its chain
+ * BUG 4 (reversed): incarnation not incremented when the slot is reused
  * BUG 5: a repair links by slot, not by age
- * BUG 6: where an endpoint has left, the walk continues with the new incarnation of its slot
+ * BUG 6 (reversed): where an endpoint has left, the walk continues with the new incarnation of its slot
  */
 #define OWN 0
 #define OLDEST 3
 #define STRANGER 4        /* alone in the other chain */
 #define SLOTS 5
 #define NOTHING 5
-#define MOVES 2
 
 bool live[SLOTS];
 byte incarnation[SLOTS];

@@ -4,7 +4,8 @@
 Run as `python docs/model/check.py [MODEL..]`. The head of a model lists its configurations
 (` * RUN DEPTH=2`; none: one configuration without definitions) and its seeded bugs
 (` * BUG 1: what`, in the first configuration, or ` * BUG 1 DEPTH=2: what`). A search that takes
-half a minute is marked: ` * RUN DEPTH=3 (long)`.
+half a minute is marked: ` * RUN DEPTH=3 (long)`. One that meets the bug much sooner if the last
+process runs first: ` * BUG 1 (reversed): what`.
 """
 
 from __future__ import annotations
@@ -41,7 +42,15 @@ class Case:
     defines: tuple[str, ...]
     bug: int = 0
     what: str = "as built"
-    is_long: bool = False
+    marks: str = ""
+
+    @property
+    def is_long(self) -> bool:
+        return "(long)" in self.marks
+
+    @property
+    def is_reversed(self) -> bool:
+        return "(reversed)" in self.marks
 
     @property
     def name(self) -> str:
@@ -66,13 +75,11 @@ def _cases_of(path: Path) -> list[Case]:
     text = path.read_text()
     if "init {" not in text:  # included by other models only
         return []
-    runs = re.findall(r"^ \* RUN (.+?)( \(long\))?$", text, re.M) or [("", "")]
-    built = [Case(path.stem, tuple(run.split()), is_long=bool(long)) for run, long in runs]
+    runs = re.findall(r"^ \* RUN ([^(\n]+)(.*)$", text, re.M) or [("", "")]
+    built = [Case(path.stem, tuple(run.split()), marks=marks) for run, marks in runs]
     seeded = [
-        Case(path.stem, tuple(run.split()) or built[0].defines, int(bug), what, bool(long))
-        for bug, run, long, what in re.findall(
-            r"^ \* BUG (\d+)(.*?)( \(long\))?: (.+)$", text, re.M
-        )
+        Case(path.stem, tuple(run.split()) or built[0].defines, int(bug), what, marks)
+        for bug, run, marks, what in re.findall(r"^ \* BUG (\d+)([^(:]*)(.*?): (.+)$", text, re.M)
     ]
     return built + seeded
 
@@ -87,7 +94,8 @@ def check(case: Case) -> Outcome:
         # take longer than the search.
         is_short = case.bug and not case.is_long
         optimization, table = ("-O0", SMALL_TABLE) if is_short else ("-O1", TABLE)
-        _run(["gcc", optimization, *COMPILER_OPTIONS, "-o", "pan", "pan.c"], directory)
+        order = ["-DREVERSE"] if case.is_reversed else []
+        _run(["gcc", optimization, *order, *COMPILER_OPTIONS, "-o", "pan", "pan.c"], directory)
         report = _run(["./pan", f"-m{DEPTH_LIMIT}", f"-w{table}"], directory)
     return _read(report, time.monotonic() - started)
 

@@ -24,8 +24,8 @@
  * BUG 10: the sweeper waits for a dead receive thread that has no successor
  * BUG 11: a receive thread counts as dead once its lifeline ends, not once it has stopped
  * BUG 12: an endpoint that a killed process closed in part is freed as if it were closed
- * BUG 13: closed before the reader is removed from the table
- * BUG 14: a publisher recorded as seen out before it was checked
+ * BUG 13 (reversed): closed before the reader is removed from the table
+ * BUG 14 (reversed): a publisher recorded as seen out before it was checked
  */
 #define GENERATION 0      /* match_generation */
 #define ACTIVE 1          /* of the reader table's entry */

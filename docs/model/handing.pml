@@ -11,16 +11,16 @@
  *
  * RUN RECORDS=2
  * RUN RECORDS=3 (long)
- * BUG 1: the publisher does not look for a successor of the mover
+ * BUG 1 (reversed): the publisher does not look for a successor of the mover
  * BUG 2: of drops in a row only the first one is told
  * BUG 3 RECORDS=3: publisher looks whether a record is under way before it stores closed
  * BUG 4: losses are settled in an empty take only
- * BUG 5: a successor does not have the readers look
- * BUG 6: a successor leaves a record alone that was marked and not done
- * BUG 7: the reaper does not close the landing
- * BUG 8 RECORDS=3 (long): closed stored before handed
+ * BUG 5 (reversed): a successor does not have the readers look
+ * BUG 6 (reversed): a successor leaves a record alone that was marked and not done
+ * BUG 7 (reversed): the reaper does not close the landing
+ * BUG 8 RECORDS=3 (reversed): closed stored before handed
  * BUG 9: a hint pushed before done
- * BUG 10: publisher does not look whether a record was given up before it stored closed
+ * BUG 10 (reversed): publisher does not look whether a record was given up before it stored closed
  * BUG 11 RECORDS=3: settled although a later record was closed meanwhile
  */
 #define CAPACITY 1
