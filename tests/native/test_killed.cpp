@@ -1,195 +1,25 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 //
 // A process is killed at any instruction of joining, leaving, creating and closing endpoints,
-// publishing, taking, and reaping. The test single-steps a process through one of these, kills it
-// after a number of instructions, and checks that everything it owned is reclaimed and other
-// processes are unharmed. Only a sample of instruction counts is tested, spread over all:
-// MANYCORE_TEST_STEPS sets its size.
+// publishing, taking, and reaping.
 #include <doctest/doctest.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <filesystem>
 
-#include "killed_roles.hpp"
-#include "messages.hpp"
-#include "node_role.hpp"
-#include "platform_of_test.hpp"
-#include "stepped_child.hpp"
-#include "transport/lifecycle/configurator.hpp"
+#include "killed_of_test.hpp"
 #include "transport/lifecycle/lifecycle.hpp"
 #include "transport/lifecycle/trace_control.hpp"
-#include "transport/matching/sweeping.hpp"
-#include "waiting.hpp"
 
 using namespace manycore;
-using killed_roles::crowd;
-using killed_roles::crowded_topic;
-using killed_roles::moved_topic;
-using killed_roles::sized_bytes;
-using killed_roles::sized_topic;
-using killed_roles::topic;
+using killed_of_test::check_kills;
+using killed_of_test::Fixture;
 
 namespace {
-
-/// Small, so that no part of a change takes many instructions.
-Profile small_profile() {
-  Profile profile = host_profile();
-  profile.smem_bytes = 8 << 20;
-  return profile;
-}
-
-/// A publisher and two subscriptions that must keep working.
-struct Fixture {
-  void crowd_topic(bool with_publishers) {
-    const EndpointSpec spec = on_topic(crowded_topic, transient_local(1));
-    for (size_t i = 0; i < crowd; ++i) {
-      if (with_publishers) {
-        publishers.push_back(process->create_publisher(spec));
-      }
-      subscriptions.push_back(process->create_subscription(spec));
-    }
-  }
-
-  /// A publisher and a subscription of the topic that is transferred, and a process in cluster 2,
-  /// so that the cluster stays.
-  void move_topic() {
-    resident.emplace(platform, 2);
-    publishers.push_back(process->create_publisher(on_topic(moved_topic, keep_last(1))));
-    subscriptions.push_back(process->create_subscription(on_topic(moved_topic, keep_last(1))));
-  }
-
-  uint64_t used_bytes() {
-    return inspection.used_bytes(1) + (resident ? inspection.used_bytes(2) : 0);
-  }
-
-  /// Dead nodes with both kinds of endpoints, not reaped by the receive thread.
-  void leave_dead_nodes() {
-    Node node(platform, 1);
-    node.tell(std::string("publisher ") + topic + " 10");
-    node.tell(std::string("subscription ") + topic + " 10");
-    node.tell("publish 1 3 1000");
-  }
-
-  void wait_until_alone() {
-    wait_until("the dead are gone from the registry", [&] {
-      take_all(*subscription);  // topic DSMs of dead publishers wait for these takes
-      take_all(*other);
-      for (const auto & each : subscriptions) {
-        take_all(*each);
-      }
-      return inspection.live_processes() == (resident ? 2 : 1) &&
-             inspection.closing_endpoints() == 0 && process->graph().nodes().empty();
-    });
-    inspection.wait_until_swept();
-  }
-
-  /// Messages of this fixture arrive, each once; those of other publishers are ignored.
-  void check_that_it_goes_on() {
-    ++number;
-    if (resident) {
-      resident->tell("begin_context");  // it ends if it hears nothing for long
-    }
-    publish(*publisher, number);
-    for (Subscription * const each : {subscription.get(), other.get()}) {
-      std::optional<Payload> found;
-      while (const std::optional<Payload> taken = take(*each)) {
-        found = taken->writer == 1 ? taken : found;
-      }
-      REQUIRE(found);
-      CHECK(found->number == number);
-    }
-    CHECK(inspection.live_endpoints() == 3 + publishers.size() + subscriptions.size());
-    CHECK(inspection.readers_of(*publisher) == 2);
-    CHECK(publisher->matched().current == 2);
-    CHECK(subscription->matched().current == 1);
-  }
-
-  void check_crowd() {
-    for (const auto & each : publishers) {
-      CHECK(each->matched().current == subscriptions.size());
-    }
-    for (const auto & each : subscriptions) {
-      CHECK(each->matched().current == publishers.size());
-    }
-  }
-
-  TestPlatform platform;
-  Configurator configurator{
-    platform.name(),
-    small_profile(),
-    {{sized_topic, 1, sized_bytes, 0},
-     {moved_topic, 2, sized_bytes, 0, TransferSettings{Transfer::async}}}};
-  std::shared_ptr<Process> process = platform.join(1);
-  std::unique_ptr<Publisher> publisher =
-    process->create_publisher(on_topic(topic, transient_local(2)));
-  std::unique_ptr<Subscription> subscription =
-    process->create_subscription(on_topic(topic, transient_local(10)));
-  std::unique_ptr<Subscription> other =
-    process->create_subscription(on_topic(topic, transient_local(10)));
-  std::vector<std::unique_ptr<Publisher>> publishers;
-  std::vector<std::unique_ptr<Subscription>> subscriptions;
-  std::optional<Node> resident;
-  Inspection inspection{platform};
-  uint64_t number = 0;
-};
 
 size_t files_in(const std::string & directory) {
   const std::filesystem::directory_iterator all(directory);
   return static_cast<size_t>(std::distance(begin(all), end(all)));
-}
-
-uint64_t tries() {
-  const char * const asked = std::getenv("MANYCORE_TEST_STEPS");
-  return asked == nullptr ? 4 : std::stoull(asked);
-}
-
-/// Kills a process in `role` after this many instructions; returns how many it executed.
-uint64_t kill_after(Fixture & f, const std::string & role, uint64_t instructions) {
-  const bool reaps = role == "reaps";
-  std::optional<Standstill> no_other_reaper;
-  if (reaps || role == "sweeps_many") {
-    no_other_reaper.emplace(f.platform, 1);
-  }
-  if (reaps) {
-    f.leave_dead_nodes();
-  }
-  SteppedChild child(role, {f.platform.name()});
-  const uint64_t done = child.step(instructions);
-  child.kill();
-  if (reaps) {  // the next owner of the lock repairs what was left incomplete
-    f.process->create_publisher(on_topic("/y", keep_last(1)));
-  }
-  return done;
-}
-
-void check_kills(const std::string & role) {
-  Fixture f;
-  f.platform.receive_thread(1);
-  if (role == "closes_many" || role == "sweeps_many") {
-    f.crowd_topic(role == "closes_many");
-  }
-  if (role == "moves") {
-    f.move_topic();
-  }
-  f.check_that_it_goes_on();
-  const uint64_t all = kill_after(f, role, UINT64_MAX);
-  CHECK(all > 1000);
-  f.wait_until_alone();
-  while (f.number < 2000) {
-    f.check_that_it_goes_on();
-  }
-  const uint64_t used = f.used_bytes();
-  for (uint64_t i = 1; i <= tries(); ++i) {
-    const uint64_t instructions = all * i / (tries() + 1);
-    CAPTURE(instructions);
-    CAPTURE(all);
-    kill_after(f, role, instructions);
-    f.wait_until_alone();
-    f.check_that_it_goes_on();
-    f.check_crowd();
-    CHECK(f.used_bytes() == used);
-  }
 }
 
 }  // namespace
@@ -211,14 +41,6 @@ TEST_CASE("killed at any instruction while it makes landings, and gives them bac
 TEST_CASE("killed at any instruction while it publishes") { check_kills("publishes"); }
 
 TEST_CASE("killed at any instruction while it takes messages") { check_kills("takes"); }
-
-TEST_CASE("killed at any instruction while it closes endpoints of many matches") {
-  check_kills("closes_many");
-}
-
-TEST_CASE("killed at any instruction while it sweeps a topic DSM that many readers are done with") {
-  check_kills("sweeps_many");
-}
 
 TEST_CASE("killed at any instruction while it reaps other dead processes") { check_kills("reaps"); }
 
