@@ -1,5 +1,8 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Every bench runs in its shortest form; no figure is compared with a limit."""
+"""Every bench runs in its shortest form; no figure is compared with a limit.
+
+What still takes half a minute of CPU time is left to `make stress`.
+"""
 
 from __future__ import annotations
 
@@ -29,7 +32,8 @@ FAST_DDS_AND_OURS = "Fast DDS + platform"
 OTHERS = only("64 B: futex", "64 B: pipe", "64 B: Fast DDS", "1 MiB: Fast DDS")
 RCLPY = only("64 B: manycore run", "8 MiB: manycore run, inside", "1 MiB: manycore inside (block)")
 STARTUP = only("by hand: manycore inside", "set: manycore between")
-ROS_LITE = only("1000 waypoints: session", "1 derivatives, 2", "SMEM: left")
+SPLIT = only("1 derivatives, 2")
+PIPELINE = only("1000 waypoints: session", "SMEM: left")
 BRIDGE = only("trip 64 B", "throughput", "idle")
 
 
@@ -70,7 +74,8 @@ def test_a_contender_that_does_not_exist_is_an_error() -> None:
         ("rclpy", *RCLPY),
         ("startup", *STARTUP),
         ("memory", *OWN),
-        ("ros-lite", *ROS_LITE),
+        ("ros-lite", *SPLIT),
+        pytest.param(("ros-lite", *PIPELINE), marks=pytest.mark.stress),
     ],
     ids=[
         "round-trip",
@@ -80,6 +85,7 @@ def test_a_contender_that_does_not_exist_is_an_error() -> None:
         "startup",
         "memory",
         "ros-lite",
+        "ros-lite-pipeline",
     ],
 )
 def test_a_bench_measures_every_contender(arguments: tuple[str, ...]) -> None:
@@ -268,6 +274,7 @@ def test_the_reference_system_is_measured_and_loses_nothing_where_all_is_kept() 
     assert rows["messages through the hot path, untouched, cycles 0"]["median"] > 0
 
 
+@pytest.mark.stress
 def test_the_same_rclpy_nodes_of_the_reference_system_run_on_each_middleware() -> None:
     parts = ("--nodes", "rclpy", *only("untouched: manycore", "untouched: Fast DDS as installed"))
     rows = run_bench("reference", *parts)["results"]

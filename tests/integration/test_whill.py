@@ -47,7 +47,7 @@ def driven(start: Any, course: Path, *options: str) -> dict[str, Any]:
 
 def test_the_gate_dies_on_the_way_and_the_vehicle_drives_on(start, platform, course):
     """The vehicle stands while no command passes, and is engaged again."""
-    options = ("--run", "--timeout", str(LONG_S), "--duration", "20", "--fault")
+    options = ("--run", "--timeout", str(LONG_S), "--duration", "15", "--fault")
     figures = driven(start, course, *options, "vehicle_cmd_gate@3")
     assert figures["driven_m"] > 1.0
     assert figures["lateral_m_max"] < 1.0
@@ -61,8 +61,8 @@ def test_the_gate_dies_on_the_way_and_the_vehicle_drives_on(start, platform, cou
 @pytest.mark.parametrize(
     ("sensor", "duration_s", "said"),
     [
-        ("wheels", 15, "the standard deviation of the speed"),
         ("lidar", 15, "the standard deviation of the position"),
+        pytest.param("wheels", 15, "the standard deviation of the speed", marks=pytest.mark.stress),
     ],
 )
 def test_a_sensor_that_stops(start, platform, course, sensor, duration_s, said):
