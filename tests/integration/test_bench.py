@@ -206,6 +206,13 @@ def test_composed_nodes_are_measured_with_each_executor() -> None:
     assert all(row["median"] > 0 for row in rows)
 
 
+def test_nodes_of_two_processes_are_measured_with_each_executor() -> None:
+    rows = run_bench("scale", "--only", "to one of the other process: manycore")["results"]
+    assert {row["at"] for row in rows} == {2, 10}
+    assert len(rows) == 2 * 2 * 2
+    assert all(row["median"] > 0 for row in rows)
+
+
 def test_nodes_do_not_wake_each_other() -> None:
     def sleep_on() -> bool:
         report = run_bench("scale", "--only", "until each topic has its subscription: manycore")

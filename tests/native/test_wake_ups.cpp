@@ -4,6 +4,7 @@
 // compare epochs; test_waiter shows that a changed epoch does wake.
 #include <doctest/doctest.h>
 
+#include <csignal>
 #include <future>
 #include <list>
 #include <memory>
@@ -251,6 +252,54 @@ TEST_CASE("a publisher spares words of its own process, but not from events") {
     publish_sparing();  // the last one displaces the first: a loss
   }
   CHECK(wake_ups() == 1);
+}
+
+TEST_CASE("a notifier marks what the thread on the callback word has to look at") {
+  Fixture f(3);
+  CallbackMarks & marks = f.process->waiters().callback_marks();
+  const auto marked = [&] {
+    std::vector<uint32_t> found;
+    marks.take().for_each_mark([&](uint32_t mark) { found.push_back(mark); });
+    return found;
+  };
+  const auto mark_of = [&](uint32_t i) {
+    return CallbackMarks::of(static_cast<uint32_t>(endpoint_in(f.subscriptions[i]->gid())));
+  };
+  CHECK(marks.take().events);  // nothing was looked at yet
+  CHECK(marked().empty());
+  f.subscriptions[0]->watchers().add(callback_word);
+  f.subscriptions[1]->watchers().add(callback_word);
+  std::vector<std::unique_ptr<Publisher>> publishers;
+  for (uint32_t i = 0; i < 3; ++i) {
+    publishers.push_back(f.process->create_publisher(on_topic(Fixture::topic(i), keep_last(10))));
+  }
+
+  SUBCASE("from its cluster") {
+    publish(*publishers[1], 1);
+    CHECK(marked() == std::vector{mark_of(1)});
+    publish(*publishers[2], 1);  // no callback
+    CHECK(marked().empty());
+  }
+  SUBCASE("from another cluster") {
+    Node other(f.platform, 2);
+    other.tell("publisher " + Fixture::topic(0) + " 10");
+    other.tell("publish 1 1 8");
+    wait_until("the message is here", [&] { return f.subscriptions[0]->waiting() == 1; });
+    wait_until("it is marked", [&] { return marked() == std::vector{mark_of(0)}; });
+  }
+  SUBCASE("a loss is an event") {
+    f.process->waiters().event_watchers().add(callback_word);
+    for (uint64_t number = 1; number <= 10; ++number) {
+      publish(*publishers[2], number);
+    }
+    CHECK_FALSE(marks.take().events);
+    publish(*publishers[2], 11);
+    CHECK(marks.take().events);
+  }
+  SUBCASE("a new receive thread has the whole cluster look") {
+    kill(f.platform.receive_thread(1), SIGKILL);
+    wait_until("everything is marked", [&] { return marked().size() == CallbackMarks::count; });
+  }
 }
 
 TEST_CASE("threads share words when there are too few, and then nothing is forgotten") {

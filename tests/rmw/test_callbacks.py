@@ -8,6 +8,7 @@ import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
+from functools import partial
 from itertools import islice
 from pathlib import Path
 from typing import Any
@@ -68,6 +69,29 @@ def test_messages(node, executor, start_peer, peer_cluster):
     start_peer(count_to, 50, cluster=peer_cluster)
     run_until(executor, lambda: len(received) == 50)
     assert received == list(range(50))
+
+
+def tell_each(count: int) -> None:
+    """Publish one message on each of many topics, in another order than they were created in."""
+    with peer_node() as node:
+        publishers = [node.create_publisher(String, f"number_{n}", 1) for n in range(count)]
+        while not all(publisher.get_subscription_count() for publisher in publishers):
+            rclpy.spin_once(node, timeout_sec=0.05)
+        for n in sorted(range(count), key=lambda n: n * 7 % count):
+            publishers[n].publish(String(data=str(n)))
+        rclpy.spin(node)
+
+
+@pytest.mark.skipif(RMW != "rmw_manycore", reason="Fast DDS takes long to match so many")
+def test_each_of_many_subscriptions_hears_of_its_message(node, executor, start_peer, peer_cluster):
+    """There are more of them than marks that say which the thread has to look at."""
+    received = {}
+    for n in range(300):
+        hear = partial(received.__setitem__, n)
+        node.create_subscription(String, f"number_{n}", hear, 1)
+    start_peer(tell_each, 300, cluster=peer_cluster)
+    run_until(executor, lambda: len(received) == 300)
+    assert {n: message.data for n, message in received.items()} == {n: str(n) for n in range(300)}
 
 
 def test_messages_from_before_the_callback_was_set(node):

@@ -30,8 +30,10 @@ public:
     manycore::Watchers & watchers;         ///< notified when the count rises
     std::function<Arrivals()> arrivals;    ///< thread-safe
     std::function<uint64_t()> unread;      ///< how many of them are not taken yet
-    const MessageTopic * topic = nullptr;  ///< of messages
-    std::function<Known()> known = {};     ///< of messages; thread-safe
+    // Of messages, not of events:
+    const MessageTopic * topic = nullptr;
+    uint32_t endpoint = 0;              ///< slot of the subscription
+    std::function<Known()> known = {};  ///< thread-safe
   };
 
   Callback(CallbackThread & thread, Source source) : thread_(thread), source_(std::move(source)) {}
@@ -61,6 +63,7 @@ private:
   const Source source_;
   rmw_event_callback_t function_ = nullptr;
   const void * user_data_ = nullptr;
+  bool is_active_ = false;  ///< in the lists of the thread
   uint64_t reported_ = 0;
 };
 

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "platform/blocked_signals.hpp"
+#include "platform/clock.hpp"
 
 namespace rmw_manycore {
 namespace {
@@ -31,32 +32,45 @@ CallbackThread::~CallbackThread() {
 
 /// What may fail comes first.
 void CallbackThread::add(Callback & callback) {
-  if (std::find(active_.begin(), active_.end(), &callback) != active_.end()) {
+  if (callback.is_active_) {
     return;
   }
-  make_room(active_);
+  Callbacks & group = group_of(callback);
+  make_room(group);
   Bucket * const bucket = bucket_of(callback);
   if (bucket != nullptr) {
     make_room(bucket->callbacks);
   }
   start();
-  active_.push_back(&callback);
+  group.push_back(&callback);
   if (bucket != nullptr) {
     bucket->callbacks.push_back(&callback);
     bucket->count.store(bucket->callbacks.size(), std::memory_order_release);
   }
+  callback.is_active_ = true;
+  ++count_;
   ++changes_;
   wake_.notify_all();
   wake_sleep();  // a sleeping thread has neither this callback's watchers nor its due time
 }
 
 void CallbackThread::remove(Callback & callback) noexcept {
-  erase(active_, &callback);
+  if (!callback.is_active_) {
+    return;
+  }
+  erase(group_of(callback), &callback);
   if (Bucket * const bucket = bucket_of(callback)) {
     erase(bucket->callbacks, &callback);
     bucket->count.store(bucket->callbacks.size(), std::memory_order_release);
   }
+  callback.is_active_ = false;
+  --count_;
   ++changes_;
+}
+
+CallbackThread::Callbacks & CallbackThread::group_of(const Callback & callback) noexcept {
+  const Callback::Source & source = callback.source_;
+  return source.topic == nullptr ? events_ : by_mark_[manycore::CallbackMarks::of(source.endpoint)];
 }
 
 CallbackThread::Bucket * CallbackThread::bucket_of(const Callback & callback) noexcept {
@@ -76,6 +90,8 @@ manycore::WakeSet CallbackThread::spared(const MessageTopic & topic) const noexc
 void CallbackThread::report(const MessageTopic & topic) noexcept {
   const std::unique_lock lock(mutex_, std::try_to_lock);
   if (!lock || is_calling_ || !report_all_of(topic)) {
+    by_topic_[bucket_of(topic)].is_left = true;
+    is_any_left_ = true;
     waiters_.of_word(manycore::callback_word).notify();
   }
 }
@@ -120,16 +136,28 @@ void CallbackThread::run() noexcept {
   manycore::Waiter & waiter = waiters_.of_word(word);
   std::unique_lock lock(mutex_);
   sleeping_ = &waiter;
+  uint64_t watched = 0;
   while (!stopping_) {
-    if (active_.empty()) {
+    if (count_ == 0) {
       wake_.wait(lock);
       continue;
     }
-    // Register watchers and read the epoch before checking: anything that happens in between ends
-    // the wait at once.
-    watch_all(word);
+    // Register watchers and read the epoch, then take the marks, then look: anything that happens
+    // in between ends the wait at once. Only the callback word has marks.
+    const bool is_new = watched != changes_ || !has_callback_word_;
+    if (is_new) {
+      watched = changes_;
+      watch_all(word);
+    }
     const uint32_t epoch = waiter.epoch();
-    const int64_t due_ns = report_all();
+    manycore::CallbackMarks::Taken marks = manycore::CallbackMarks::everything();
+    if (!is_new) {
+      marks = waiters_.callback_marks().take();
+      marks.events = marks.events || manycore::monotonic_ns() >= due_ns_;
+    }
+    report_left();
+    report_marked(marks);
+    const int64_t due_ns = due_ns_;
     lock.unlock();
     waiter.wait(
       epoch, due_ns == manycore::infinite_ns ? std::nullopt : std::optional<int64_t>(due_ns));
@@ -145,21 +173,40 @@ void CallbackThread::wake_sleep() noexcept {
 }
 
 void CallbackThread::watch_all(uint32_t word) noexcept {
-  for (Callback * const callback : active_) {
-    callback->source_.watchers.add(word);
+  const auto watch = [word](const Callbacks & callbacks) {
+    for (Callback * const callback : callbacks) {
+      callback->source_.watchers.add(word);
+    }
+  };
+  watch(events_);
+  std::for_each(by_mark_.begin(), by_mark_.end(), watch);
+}
+
+void CallbackThread::report_marked(const manycore::CallbackMarks::Taken & marks) {
+  marks.for_each_mark([this](uint32_t mark) {
+    for_each(by_mark_[mark], [](Callback & callback) { callback.report(); });
+  });
+  if (marks.events) {
+    due_ns_ = manycore::infinite_ns;
+    for_each(
+      events_, [this](Callback & callback) { due_ns_ = std::min(due_ns_, callback.report()); });
   }
 }
 
-int64_t CallbackThread::report_all() {
-  int64_t soonest_ns = manycore::infinite_ns;
-  for_each(
-    active_, [&](Callback & callback) { soonest_ns = std::min(soonest_ns, callback.report()); });
-  return soonest_ns;
+void CallbackThread::report_left() {
+  if (!is_any_left_.exchange(false)) {
+    return;
+  }
+  for (Bucket & bucket : by_topic_) {
+    if (bucket.is_left.exchange(false)) {
+      for_each(bucket.callbacks, [](Callback & callback) { callback.report(); });
+    }
+  }
 }
 
 /// A child of fork() made by a callback goes no further: what has arrived is its parent's.
 template<typename Visit>
-void CallbackThread::for_each(const std::vector<Callback *> & callbacks, Visit visit) {
+void CallbackThread::for_each(const Callbacks & callbacks, Visit visit) {
   uint64_t seen;
   do {
     seen = changes_;

@@ -17,8 +17,8 @@
 namespace rmw_manycore {
 
 /// Calls the "on new message / request / response / event" callbacks of one context. Started when
-/// the first callback is set; sleeps on its own wake word. A thread of the context that publishes
-/// calls for its message itself. Thread-safe.
+/// the first callback is set; sleeps on its own wake word, and looks at what is marked when that is
+/// raised. A thread of the context that publishes calls for its message itself. Thread-safe.
 class CallbackThread {
 public:
   explicit CallbackThread(manycore::Waiters & waiters) noexcept : waiters_(waiters) {}
@@ -39,10 +39,12 @@ public:
 private:
   friend class Callback;
 
+  using Callbacks = std::vector<Callback *>;
   /// Callbacks for messages of topics with the same hash.
   struct Bucket {
-    std::vector<Callback *> callbacks;
+    Callbacks callbacks;
     std::atomic<size_t> count{0};
+    std::atomic<bool> is_left{false};  ///< to the thread, by report()
   };
   /// Marks that a callback runs. Requires the mutex.
   class Calling {
@@ -65,15 +67,18 @@ private:
   }
   /// nullptr for events.
   Bucket * bucket_of(const Callback & callback) noexcept;
+  /// Those that are looked at together with this one.
+  Callbacks & group_of(const Callback & callback) noexcept;
   void start();
   void run() noexcept;
-  /// Returns when the passage of time may raise a count next.
-  int64_t report_all();
+  /// Looks at what is marked, and at what report() has left.
+  void report_marked(const manycore::CallbackMarks::Taken & marks);
+  void report_left();
   /// False if more may have arrived, which to find out would wait for another thread.
   bool report_all_of(const MessageTopic & topic);
   /// Starts over when a callback sets or clears callbacks.
   template<typename Visit>
-  void for_each(const std::vector<Callback *> & callbacks, Visit visit);
+  void for_each(const Callbacks & callbacks, Visit visit);
   void wake_sleep() noexcept;
   void watch_all(uint32_t word) noexcept;
 
@@ -84,10 +89,16 @@ private:
   /// callback may set or clear callbacks.
   std::recursive_mutex mutex_;
   std::condition_variable_any wake_;
-  std::vector<Callback *> active_;
-  std::array<Bucket, 256> by_topic_;       ///< of `active_`
+  // Active callbacks:
+  Callbacks events_;
+  std::array<Callbacks, manycore::CallbackMarks::count> by_mark_;  ///< of messages
+  std::array<Bucket, 256> by_topic_;                               ///< the same again
+  size_t count_ = 0;
+  uint64_t changes_ = 0;  ///< of these lists
+  std::atomic<bool> is_any_left_{false};
+  /// When the passage of time may raise the count of an event.
+  int64_t due_ns_ = manycore::infinite_ns;
   manycore::Waiter * sleeping_ = nullptr;  ///< the waiter of the thread while it runs
-  uint64_t changes_ = 0;                   ///< of `active_`
   bool is_calling_ = false;
   bool stopping_ = false;
   /// One context of a process has it. Set before the first callback is in `by_topic_`.

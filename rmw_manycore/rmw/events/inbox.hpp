@@ -23,7 +23,9 @@ public:
     on_arrival_(
       thread,
       {watched_.watchers(), [this] { return Callback::Arrivals{subscription_->arrivals()}; },
-       [this] { return unread(); }, &topic_, [this] { return known(); }}) {
+       [this] { return unread(); }, &topic_,
+       static_cast<uint32_t>(manycore::endpoint_in(subscription_->gid())),
+       [this] { return known(); }}) {
     watched_.watchers().reset();  // waiting threads add their own words
   }
 

@@ -71,7 +71,7 @@ struct ProcessEntry {
   std::atomic<uint32_t> is_ending;
   WakeWords wake;
 };
-static_assert(sizeof(ProcessEntry) == 1216 && offsetof(ProcessEntry, trace) == 28);
+static_assert(sizeof(ProcessEntry) == 1280 && offsetof(ProcessEntry, trace) == 28);
 
 /// A ROS 2 node of a member process.
 struct NodeEntry {

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "platform/futex.hpp"
+#include "transport/layout/callback_marks.hpp"
 
 namespace manycore {
 
@@ -133,26 +134,45 @@ struct alignas(64) WakeWords {
   WakeWord words[wake_words_per_process];
   Watchers graph;            ///< of graph changes
   Watchers endpoint_events;  ///< of matches, incompatible QoS, losses and deadlines
+  CallbackMarks marks;       ///< for the thread on `callback_word`
 
+  /// Raises words that mark_arrival() and mark_events() have returned.
   void notify(const WakeSet & set) noexcept {
     set.for_each([this](uint32_t word) { words[word].notify(); });
   }
-  /// Words to wake for an arrival at a subscription of the process; `spared` are woken for events
-  /// only.
-  WakeSet set_of(
-    const Watchers & arrivals, bool changes_events, const WakeSet & spared = {}) const noexcept {
+  /// After an arrival at a subscription of the process: marks it, and returns the words to wake.
+  /// `spared` are woken for events only.
+  WakeSet mark_arrival(
+    const Watchers & arrivals, uint32_t endpoint, bool changes_events,
+    const WakeSet & spared = {}) noexcept {
     WakeSet set = arrivals.read().without(spared);
+    if (set.contains(callback_word)) {
+      marks.mark(endpoint);
+    }
     if (changes_events) {
-      set |= endpoint_events.read();
+      set |= mark_events();
     }
     return set;
   }
+  WakeSet mark_events() noexcept {
+    const WakeSet set = endpoint_events.read();
+    if (set.contains(callback_word)) {
+      marks.mark_events();
+    }
+    return set;
+  }
+  void notify_arrival(const Watchers & arrivals, uint32_t endpoint) noexcept {
+    notify(mark_arrival(arrivals, endpoint, false));
+  }
+  void notify_events() noexcept { notify(mark_events()); }
+  /// No callback is about the graph.
+  void notify_graph() noexcept { notify(graph.read()); }
   void notify_all() noexcept {
+    marks.mark_everything();
     for (WakeWord & word : words) {
       word.notify();
     }
   }
-  void notify(const Watchers & watchers) noexcept { notify(watchers.read()); }
 
   /// Call once after taking the slot, before the process is visible to others.
   void reset() noexcept {
@@ -161,8 +181,9 @@ struct alignas(64) WakeWords {
     }
     graph.reset();
     endpoint_events.reset();
+    marks.mark_everything();
   }
 };
-static_assert(sizeof(WakeWords) == 1088);
+static_assert(sizeof(WakeWords) == 1152);
 
 }  // namespace manycore

@@ -42,8 +42,8 @@ uint64_t push_to_own_cluster(
       pending->notify(std::exchange(words, {}));
     }
     pending = reader.wake;
-    words |= pending->set_of(
-      reader.subscription->watchers, changes_events,
+    words |= pending->mark_arrival(
+      reader.subscription->watchers, reader.endpoint, changes_events,
       pending == announcement.publishing ? announcement.spared : WakeSet{});
   }
   if (pending != nullptr) {

@@ -162,8 +162,9 @@ void ReceiveThread::push(SegmentRef ref, const Hint & hint, const EmcosMessage &
     header.notifications.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
   const uint32_t process = subscription->process.load(std::memory_order_relaxed);
   if (process < registry_.processes().high_water()) {
-    const WakeWords & wake = registry_.processes()[process].wake;
-    wakes_.add(process, wake.set_of(subscription->watchers, changes_events));
+    WakeWords & wake = registry_.processes()[process].wake;
+    const uint32_t endpoint = subscription->endpoint.load(std::memory_order_relaxed);
+    wakes_.add(process, wake.mark_arrival(subscription->watchers, endpoint, changes_events));
   }
 }
 

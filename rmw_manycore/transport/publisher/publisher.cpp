@@ -59,6 +59,9 @@ uint64_t Publisher::publish(
      targeted ? &correlation.client : nullptr, &impl.registry.processes()[impl.entry.process].wake,
      spared},
     impl.sender.get());
+  if (revived) {
+    impl.notify_readers_of_event();
+  }
   impl.registry.tracer().note(TraceKind::publish_end, impl.slot, number);
   EndpointCounters & counters = impl.entry.counters;
   counters.messages.store(sequence_number, std::memory_order_relaxed);
@@ -111,8 +114,12 @@ void Publisher::Impl::trace_write(size_t size_bytes, const Correlation & correla
 
 void Publisher::Impl::notify_event_watchers() {
   const Writing writing = write();
+  notify_readers_of_event();
+}
+
+void Publisher::Impl::notify_readers_of_event() noexcept {
   for (const Reader & reader : writer.readers().all()) {
-    reader.wake->notify(reader.wake->endpoint_events);
+    reader.wake->notify_events();
   }
 }
 

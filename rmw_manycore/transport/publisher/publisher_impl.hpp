@@ -36,6 +36,7 @@ struct Publisher::Impl {
   void trace_write(size_t size_bytes, const Correlation & correlation) noexcept;
   /// Wakes threads that wait for events of matched subscriptions.
   void notify_event_watchers();
+  void notify_readers_of_event() noexcept;  ///< the same, while a Writing exists
 
   Registry & registry;
   uint32_t slot;

@@ -25,14 +25,14 @@ uint64_t lost_so_far(const EndpointEntry & entry, const SubscriptionHeader & hea
 void notify_watchers(Registry & registry, const SubscriptionHeader & header) {
   const uint32_t process = header.process.load(std::memory_order_relaxed);
   if (registry.processes().is_live(process)) {
-    registry.processes()[process].wake.notify(header.watchers);
+    registry.processes()[process].wake.notify_arrival(
+      header.watchers, header.endpoint.load(std::memory_order_relaxed));
   }
 }
 
 void notify_event_watchers(Registry & registry, uint32_t process) {
   if (registry.processes().is_live(process)) {
-    WakeWords & wake = registry.processes()[process].wake;
-    wake.notify(wake.endpoint_events);
+    registry.processes()[process].wake.notify_events();
   }
 }
 

@@ -353,8 +353,7 @@ void Registry::graph_changed() noexcept {
   header().graph_generation.fetch_add(1, std::memory_order_seq_cst);
   header().graph_watchers.for_each([this](uint32_t slot) {
     if (processes_.is_live(slot)) {
-      WakeWords & wake = processes_[slot].wake;
-      wake.notify(wake.graph);
+      processes_[slot].wake.notify_graph();
     }
   });
 }

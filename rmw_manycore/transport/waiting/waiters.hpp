@@ -33,6 +33,8 @@ public:
   bool take_callback_word() noexcept { return !is_callback_word_taken_.exchange(true); }
   void give_back_callback_word() noexcept { is_callback_word_taken_ = false; }
   Waiter & of_word(uint32_t word) noexcept { return waiters_[word]; }
+  /// What the thread on `callback_word` has to look at.
+  CallbackMarks & callback_marks() noexcept { return words_.marks; }
 
   /// Wakes `word` at each change of the graph.
   void watch_graph(uint32_t word) noexcept;

@@ -1,9 +1,11 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Many nodes in one process: a single message circulates from node to node.
+"""Many nodes in a process: a single message circulates from node to node.
 
-Usage: ring EXECUTOR NODES WARM_UP LAPS
+Usage: ring EXECUTOR NODES WARM_UP LAPS [PROCESSES PROCESS]
 
-With the executor `each`, every node has a SingleThreadedExecutor in a thread of its own.
+With the executor `each`, every node has a SingleThreadedExecutor in a thread of its own. The nodes
+may be divided among processes, so that each message comes from another one. Process 0 measures; the
+others run until they are killed.
 """
 
 from __future__ import annotations
@@ -72,11 +74,12 @@ def _spin(executor: Any, done: threading.Event) -> None:
 
 
 def main() -> None:
-    """Measure the laps; print the time of one hop."""
+    """Measure the laps; print the time of one hop, and the CPU time of a message here."""
     kind, *numbers = sys.argv[1:]
-    count, warm_up, laps = map(int, numbers)
+    count, warm_up, laps, processes, process = (*map(int, numbers), 1, 0)[:5]
     rclpy.init()
-    links = [Link(number, count, warm_up + laps) for number in range(count)]
+    numbers_here = range(process, count, processes)
+    links = [Link(number, count, warm_up + laps) for number in numbers_here]
     while any(link.next.get_subscription_count() == 0 for link in links):
         time.sleep(LOOK_S)
     executors = _executors(kind, links)
@@ -85,7 +88,8 @@ def main() -> None:
     for spinner in spinners:
         spinner.start()
     before_ns = time.process_time_ns()
-    links[0].next.publish(UInt64())
+    if process == 0:
+        links[0].next.publish(UInt64())
     done.wait()
     used_ns = time.process_time_ns() - before_ns
     for spinner, executor in zip(spinners, executors, strict=True):
@@ -93,7 +97,7 @@ def main() -> None:
         executor.shutdown()
     ends_ns = links[0].lap_ends_ns
     hops = [(end - start) / count for start, end in itertools.pairwise(ends_ns)]
-    cpu_ns = used_ns / count / (warm_up + laps + 1)
+    cpu_ns = used_ns / len(links) / (warm_up + laps + 1)
     print(json.dumps({"samples_ns": hops[warm_up:], "cpu_ns": cpu_ns}))
     for link in links:
         link.destroy_node()
