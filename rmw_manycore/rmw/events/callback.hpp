@@ -27,9 +27,9 @@ public:
     bool is_all;
   };
   struct Source {
-    manycore::Watchers & watchers;         ///< notified when the count rises
-    std::function<Arrivals()> arrivals;    ///< thread-safe
-    std::function<uint64_t()> unread;      ///< how many of them are not taken yet
+    manycore::Watchers & watchers;       ///< notified when the count rises
+    std::function<Arrivals()> arrivals;  ///< thread-safe
+    std::function<uint64_t()> unread;    ///< how many of them are not taken yet
     // Of messages, not of events:
     const MessageTopic * topic = nullptr;
     uint32_t endpoint = 0;              ///< slot of the subscription
