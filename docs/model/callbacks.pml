@@ -5,9 +5,10 @@
  *
  * Follows Outbox::publish, WakeWords::mark_arrival, CallbackMarks, CallbackThread::spared, ::report
  * and ::run, and Callback::set, with two publishers, the thread, and one that sets the callback
- * meanwhile. A publisher with no callback in sight may as well be another process. What they share is guarded by
- * the mutex or changed by locked instructions, so store buffers are not modelled. A callback may
- * publish itself, and a subscription may need a look that would wait for another thread.
+ * meanwhile. A publisher with no callback in sight may as well be another process. What they share
+ * is guarded by the mutex or changed by locked instructions, so store buffers are not modelled. A
+ * callback may publish itself, and a subscription may need a look that would wait for another
+ * thread.
  *
  * RUN MESSAGES=1
  * RUN MESSAGES=2 (long)

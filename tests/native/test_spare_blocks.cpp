@@ -4,12 +4,15 @@
 // tables.
 #include <doctest/doctest.h>
 
+#include <sys/mount.h>
 #include <sys/stat.h>
+#include <sys/statvfs.h>
 
 #include <algorithm>
 #include <future>
 #include <vector>
 
+#include "private_shm.hpp"
 #include "stepped_child.hpp"
 #include "transfer_of_test.hpp"
 #include "transport/matching/closing.hpp"
@@ -145,6 +148,30 @@ TEST_CASE("a process that dies with a block of a table in hand leaves none of it
   CHECK(f.publishers.front()->matched().current == 0);
 }
 
+TEST_CASE("a full file system: no block of a table is used that has no memory behind it") {
+  if (!has_private_shm()) {
+    return;  // never fills the machine's /dev/shm
+  }
+  Crowd f;
+  const uint64_t used = f.inspection.used_bytes();
+  struct statvfs fs {};
+  REQUIRE(statvfs("/dev/shm", &fs) == 0);
+  // Enough for a subscription and the small blocks, 28 KiB, of its source table.
+  const uint64_t bytes = (fs.f_blocks - fs.f_bfree) * fs.f_frsize + (52 << 10);
+  const std::string size = "size=" + std::to_string(bytes);
+  REQUIRE(mount("tmpfs", "/dev/shm", "tmpfs", MS_REMOUNT, size.c_str()) == 0);
+  const auto subscribe = [&] {
+    return f.process->create_subscription(on_topic("/x", keep_last(1)));
+  };
+  const Refusal refusal = refusal_of(subscribe);
+  CHECK(refusal.code == ErrorCode::no_space);
+  CHECK_FALSE(is_any_made(f.inspection.registry()));
+  REQUIRE(mount("tmpfs", "/dev/shm", "tmpfs", MS_REMOUNT, "size=50%") == 0);
+  f.inspection.wait_until_swept();
+  CHECK(f.inspection.used_bytes() == used);
+  CHECK(subscribe()->matched().current == f.publishers.size());
+}
+
 TEST_CASE("a landing is freed in turns; a subscription that comes meanwhile gets another one") {
   FromAfar f;
   auto no_other_sweeper = std::make_optional<Standstill>(f.platform, 2);
@@ -185,6 +212,7 @@ TEST_CASE("room for one landing is enough for subscriptions that are created at 
   Registry & registry = f.inspection.registry();
   SteppedChild child("subscribes", {f.platform.name(), "2"});
   while (!is_any_made(registry)) {
+    REQUIRE_FALSE(child.finished());
     child.run_to_system_call();
   }
   const uint32_t before = f.inspection.live_endpoints();

@@ -7,13 +7,13 @@
 
 namespace manycore {
 
-/// What the thread that calls the callbacks of a process has to look at once it is woken, so that it
-/// looks at a few of hundreds of subscriptions. Part of the process's registry entry.
+/// What the thread that calls the callbacks of a process has to look at once it is woken, so that
+/// it looks at a few of hundreds of subscriptions. Part of the process's registry entry.
 ///
 /// No arrival is missed: a notifier marks after the arrival and before it raises the word that the
 /// thread sleeps on; the thread takes the marks after it has read that word and before it looks. So
-/// what it does not look at was marked later, and the word raised after that ends its sleep at once.
-/// All accesses are seq_cst. Model: docs/model/callbacks.pml.
+/// what it does not look at was marked later, and the word raised after that ends its sleep at
+/// once. All accesses are seq_cst. Model: docs/model/callbacks.pml.
 class CallbackMarks {
 public:
   static constexpr uint32_t words = 4;
@@ -49,10 +49,11 @@ public:
   void mark(uint32_t endpoint) noexcept {
     subscriptions_[of(endpoint) / 64].fetch_or(uint64_t{1} << of(endpoint) % 64);
   }
-  void mark_events() noexcept { events_.store(1); }
+  /// An exchange, as a store would keep the thread from seeing what came before an earlier mark.
+  void mark_events() noexcept { events_.exchange(1); }
   void mark_everything() noexcept {
     for (std::atomic<uint64_t> & word : subscriptions_) {
-      word.store(~uint64_t{0});
+      word.fetch_or(~uint64_t{0});
     }
     mark_events();
   }

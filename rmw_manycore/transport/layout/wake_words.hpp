@@ -134,9 +134,10 @@ struct alignas(64) WakeWords {
   WakeWord words[wake_words_per_process];
   Watchers graph;            ///< of graph changes
   Watchers endpoint_events;  ///< of matches, incompatible QoS, losses and deadlines
-  CallbackMarks marks;       ///< for the thread on `callback_word`
+  /// For the thread on `callback_word`. Not in the line that each notifier reads.
+  alignas(64) CallbackMarks marks;
 
-  /// Raises words that mark_arrival() and mark_events() have returned.
+  /// Raises words. For what callbacks are about, mark_arrival() and mark_events() return them.
   void notify(const WakeSet & set) noexcept {
     set.for_each([this](uint32_t word) { words[word].notify(); });
   }

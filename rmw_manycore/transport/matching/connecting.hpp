@@ -7,7 +7,7 @@
 namespace manycore::matching {
 
 /// Matches a new live endpoint of this process with all endpoints that are compatible. Takes the
-/// registry lock anew for each turn; landings are backed with memory between the turns. Throws
+/// registry lock anew for each turn; spare blocks are backed with memory between the turns. Throws
 /// Error{no_space}, and the errors of `membership`.
 void connect(Registry & registry, const Membership & membership, uint32_t endpoint);
 

@@ -60,10 +60,15 @@ void make(
     spare.kept_pieces.store(0);
     spare.ref.store(SegmentRef::make(needed.cluster, offset).word);
   }
-  if (needed.use == SpareUse::landing) {
-    cluster.require_file_system_room(needed.bytes);
+  try {
+    if (needed.use == SpareUse::landing) {
+      cluster.require_file_system_room(needed.bytes);
+    }
+    cluster.back(offset, needed.bytes);
+  } catch (...) {
+    free_all(registry, membership, spare);  // a match would take it as if it had memory behind it
+    throw;
   }
-  cluster.back(offset, needed.bytes);
   std::memset(cluster.find<uint8_t>(offset, needed.bytes), 0, needed.cleared_bytes);
 }
 

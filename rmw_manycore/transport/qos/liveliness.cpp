@@ -30,11 +30,14 @@ void add(const EndpointEntry & publisher, int64_t lease_ns, LivelinessCount & co
     ++count.alive;
     return;
   }
+  // Before the assertion is loaded: if that is out of date, and found to have run out, the clock of
+  // the publisher, which reads it after its store, says so too, and the publisher notifies.
+  const int64_t now_ns = monotonic_ns();
   const int64_t asserted_ns = publisher.asserted_ns.load(std::memory_order_seq_cst);
   if (asserted_ns <= ManualLiveliness::never) {
     return;
   }
-  if (monotonic_ns() - asserted_ns >= lease_ns) {
+  if (now_ns - asserted_ns >= lease_ns) {
     ++count.not_alive;
     return;
   }

@@ -12,11 +12,12 @@ bool ManualLiveliness::ran_out(int64_t asserted_ns) const noexcept {
 bool ManualLiveliness::assert_now() noexcept {
   const std::lock_guard<std::mutex> lock(mutex_);
   const int64_t before_ns = asserted_ns_.load(std::memory_order_relaxed);
-  const bool revived = ran_out(before_ns);
-  lost_ += revived ? 1 : 0;
+  lost_ += ran_out(before_ns) ? 1 : 0;
   // seq_cst, before the caller loads the watchers: a waiting thread registers before it loads this.
   asserted_ns_.store(monotonic_ns(), std::memory_order_seq_cst);
-  return revived || before_ns == never;
+  // The clock is read again: a thread that looked just before the store may have found that the
+  // lease had run out by then, and has to be told that it has not.
+  return before_ns == never || ran_out(before_ns);
 }
 
 TimedCount ManualLiveliness::lost() const noexcept {
