@@ -30,6 +30,8 @@
 namespace manycore {
 namespace {
 
+/// The JoinLock makes it one creator at a time; making the files takes too long for the registry
+/// lock.
 void ensure_cluster(Registry & registry, uint32_t id) {
   RegistryHeader & header = registry.header();
   const uint64_t bit = uint64_t{1} << (id - 1);
@@ -87,8 +89,8 @@ Process::Impl::Impl(const Placement & placement_, JoinOnly)
     try {
       registry = std::make_unique<Registry>(paths);
       placement.require_on(registry->header().profile);
-      const Registry::Lock lock(*registry);
       ensure_cluster(*registry, placement.cluster);
+      const Registry::Lock lock(*registry);
       slot = take_process_slot();
     } catch (...) {
       if (!is_alive(paths)) {

@@ -8,17 +8,20 @@
 namespace manycore::matching {
 namespace {
 
-constexpr uint64_t steps_of_growing = 200;  ///< adding a block takes system calls
-/// Each page of a new block takes time, so larger blocks are backed without the registry lock.
-constexpr uint64_t max_bytes_at_once = 16 << 10;
+/// Adding a block takes system calls, and each of its pages takes time.
+constexpr uint64_t steps_of_growing = 200;
+constexpr uint64_t steps_of_a_page = 50;
+constexpr uint64_t page_bytes = 4096;
+/// Larger blocks are backed without the registry lock.
+constexpr uint64_t max_bytes_at_once = 4 * page_bytes;
 
 }  // namespace
 
 /// Returns the first of the new entries, or nullptr if a block is needed.
 template<typename Entry>
 Entry * FreeEntries::grow(const EntryTable<Entry> & table, Cluster & cluster) {
-  turn_.spend(steps_of_growing);
   const uint64_t bytes = table.next_block_bytes();
+  turn_.spend(steps_of_growing + bytes / page_bytes * steps_of_a_page);
   if (bytes <= max_bytes_at_once) {
     return &table.grow(cluster.ref_of(&cluster.allocate_cleared<Entry>(bytes)).offset());
   }
