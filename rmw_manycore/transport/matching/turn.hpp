@@ -23,7 +23,7 @@ public:
   /// Charges what it takes to free so much SMEM and the memory behind it.
   void spend_on_freeing(uint64_t bytes) noexcept {
     constexpr uint64_t steps_of_a_system_call = 20;
-    constexpr uint64_t bytes_in_a_step = 256;
+    constexpr uint64_t bytes_in_a_step = 128;
     spend(steps_of_a_system_call + bytes / bytes_in_a_step);
   }
 
