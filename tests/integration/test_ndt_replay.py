@@ -275,8 +275,7 @@ def test_an_inward_bridge_that_stops_for_a_while(start, platform, tmp_path):
     inward = json.loads(run.wait_for(r'"started".*\(bridge inward\)').string)["pid"]
     run.wait_for('"started".*"ndt_scan_matcher"')
     poses = echo_of_poses(start, platform)
-    for _ in range(2):
-        start([sys.executable, "-c", "while True: pass"])
+    burners = [start([sys.executable, "-c", "while True: pass"]) for _ in range(2)]
     rows = tmp_path / "scans.csv"
     options = ("--csv", rows, "--motion", "reference", *PATIENTLY)
     replay = start(manycore_command("ndt", "replay", tmp_path / "drive.npz", *options))
@@ -290,6 +289,8 @@ def test_an_inward_bridge_that_stops_for_a_while(start, platform, tmp_path):
     while stamp_ns < continued_ns:  # until a later scan is answered
         seconds, nanoseconds = poses.wait_for("^([0-9]+),([0-9]+),").groups()
         stamp_ns = int(seconds) * 10**9 + int(nanoseconds)
+    for burner in burners:
+        burner.kill()
     replay.wait(LONG_S)
     with rows.open() as file:
         errors_m = [row["error_m"] for row in csv.DictReader(file)]
