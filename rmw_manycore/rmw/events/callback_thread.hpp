@@ -71,9 +71,8 @@ private:
   Callbacks & group_of(const Callback & callback) noexcept;
   void start();
   void run() noexcept;
-  /// Looks at what is marked, and at what report() has left.
   void report_marked(const manycore::CallbackMarks::Taken & marks);
-  void report_left();
+  void report_left();  ///< what report() has left
   /// False if more may have arrived, which to find out would wait for another thread.
   bool report_all_of(const MessageTopic & topic);
   /// Starts over when a callback sets or clears callbacks.
