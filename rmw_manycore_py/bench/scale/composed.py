@@ -76,21 +76,13 @@ def _curve(middleware: Middleware, executor: str) -> str:
 
 GOALS = tuple(
     Goal(
-        CPU,
+        question,
         at_count(_curve(INSIDE, executor), NODES[-1], "nodes"),
         "better",
         1.0,
         at_count(_curve(FAST_DDS, executor), NODES[-1], "nodes"),
     )
-    for executor in EXECUTORS
-) + tuple(
-    Goal(
-        CPU_ACROSS,
-        at_count(_curve(INSIDE, executor), NODES[-1], "nodes"),
-        "better",
-        1.0,
-        at_count(_curve(FAST_DDS, executor), NODES[-1], "nodes"),
-    )
-    for executor in ACROSS
+    for question, executors in ((CPU, EXECUTORS), (CPU_ACROSS, ACROSS))
+    for executor in executors
 )
 PLACEMENT = "composed: the process on the first, a second one on the second"
