@@ -13,6 +13,8 @@
  *
  * RUN DEPTH=1
  * RUN DEPTH=2
+ * RUN DEPTH=1 SLOTS=2
+ * RUN DEPTH=3 SLOTS=4
  * BUG 1: no lap in the word
  * BUG 2: laps modulo 2: a pusher that sleeps through two laps overwrites a later hint
  * BUG 3: tail advanced before the slot is filled
@@ -23,7 +25,9 @@
  */
 #define PUSHES 3
 #define KILLED_PUSHES 1
-#define SLOTS DEPTH
+#ifndef SLOTS
+#define SLOTS DEPTH       /* the next power of two */
+#endif
 #define PUSHERS 2
 #define LAST_PUSHER 2     /* starts when the others are done, to check that the queue still works */
 
