@@ -284,8 +284,10 @@ def test_the_follower_stands_where_the_pose_is_no_ground_to_drive_on(follower, w
 def test_a_dead_filter_is_named(node, start, follower):
     filter_ = start(forked_node("rmw_manycore_py.ndt.nodes.ekf_localizer", *ros_arguments(
         [], ["ekf_odom:=input/kinematics"])))  # fmt: skip
-    spin_until(node, lambda: node.count_publishers("input/kinematics"))
-    spin_until(node, lambda: follower.send("input/kinematics", at(follower)) or True)
+    spin_until(node, lambda: node.count_publishers("ekf_twist"))  # the one before that is matched
+    # The follower has heard of the filter once it has acted on a first message and a second one.
+    told_by(follower, lambda: at(follower), lambda one: one.longitudinal.velocity == 1.5)
+    told_by(follower, lambda: at(follower, y_m=9.0), lambda one: one.longitudinal.velocity == 0.0)
     filter_.kill()
     spin_until(node, lambda: "ekf_localizer is gone" in follower.program.output)
 
