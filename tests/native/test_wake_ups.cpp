@@ -288,6 +288,14 @@ TEST_CASE("a notifier marks what the thread on the callback word has to look at"
     wait_until("the message is here", [&] { return f.subscriptions[0]->waiting() == 1; });
     wait_until("it is marked", [&] { return marked() == std::vector{mark_of(0)}; });
   }
+  SUBCASE("from the reaper of a publisher, if something is left to take") {
+    Node other(f.platform, 1);
+    other.tell("publisher " + Fixture::topic(0) + " 10");
+    other.tell("publish 1 1 8");
+    CHECK(marked() == std::vector{mark_of(0)});
+    other.kill();
+    wait_until("it is marked", [&] { return marked() == std::vector{mark_of(0)}; });
+  }
   SUBCASE("a loss is an event") {
     f.process->waiters().event_watchers().add(callback_word);
     for (uint64_t number = 1; number <= 10; ++number) {

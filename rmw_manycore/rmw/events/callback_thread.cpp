@@ -49,6 +49,7 @@ void CallbackThread::add(Callback & callback) {
   }
   callback.is_active_ = true;
   ++count_;
+  is_any_new_ = true;
   ++changes_;
   wake_.notify_all();
   wake_sleep();  // a sleeping thread has neither this callback's watchers nor its due time
@@ -136,7 +137,6 @@ void CallbackThread::run() noexcept {
   manycore::Waiter & waiter = waiters_.of_word(word);
   std::unique_lock lock(mutex_);
   sleeping_ = &waiter;
-  uint64_t watched = 0;
   while (!stopping_) {
     if (count_ == 0) {
       wake_.wait(lock);
@@ -144,14 +144,13 @@ void CallbackThread::run() noexcept {
     }
     // Register watchers and read the epoch, then take the marks, then look: anything that happens
     // in between ends the wait at once. Only the callback word has marks.
-    const bool is_new = watched != changes_ || !has_callback_word_;
-    if (is_new) {
-      watched = changes_;
+    const bool looks_at_all = std::exchange(is_any_new_, false) || !has_callback_word_;
+    if (looks_at_all) {
       watch_all(word);
     }
     const uint32_t epoch = waiter.epoch();
     manycore::CallbackMarks::Taken marks = manycore::CallbackMarks::everything();
-    if (!is_new) {
+    if (!looks_at_all) {
       marks = waiters_.callback_marks().take();
       marks.events = marks.events || manycore::monotonic_ns() >= due_ns_;
     }

@@ -93,7 +93,8 @@ private:
   std::array<Callbacks, manycore::CallbackMarks::count> by_mark_;  ///< of messages
   std::array<Bucket, 256> by_topic_;                               ///< the same again
   size_t count_ = 0;
-  uint64_t changes_ = 0;  ///< of these lists
+  uint64_t changes_ = 0;     ///< of these lists
+  bool is_any_new_ = false;  ///< not yet seen by the thread
   std::atomic<bool> is_any_left_{false};
   /// When the passage of time may raise the count of an event.
   int64_t due_ns_ = manycore::infinite_ns;

@@ -8,10 +8,10 @@
 
 namespace manycore {
 
-/// What a match needs a block for, which also says how much of it is cleared.
+/// What a match needs a block for.
 enum class SpareUse : uint32_t {
-  landing,  ///< of a publisher: header and marks are cleared
-  entries,  ///< of a reader table or source table: all is cleared
+  landing,  ///< of a publisher: room for messages
+  entries,  ///< of a reader table or source table: control memory
 };
 
 /// SMEM that an endpoint has reserved for a match to come and backs without the registry lock,

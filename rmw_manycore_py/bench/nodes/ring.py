@@ -1,11 +1,11 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 """Many nodes in a process: a single message circulates from node to node.
 
-Usage: ring EXECUTOR NODES WARM_UP LAPS [PROCESSES PROCESS]
+Usage: ring EXECUTOR NODES WARM_UP LAPS PROCESSES PROCESS
 
 With the executor `each`, every node has a SingleThreadedExecutor in a thread of its own. The nodes
-may be divided among processes, so that each message comes from another one. Process 0 measures; the
-others run until they are killed.
+are divided among the processes, so that of two each message comes from the other one. Process 0
+measures; others run until they are killed.
 """
 
 from __future__ import annotations
@@ -76,7 +76,7 @@ def _spin(executor: Any, done: threading.Event) -> None:
 def main() -> None:
     """Measure the laps; print the time of one hop, and the CPU time of a message here."""
     kind, *numbers = sys.argv[1:]
-    count, warm_up, laps, processes, process = (*map(int, numbers), 1, 0)[:5]
+    count, warm_up, laps, processes, process = map(int, numbers)
     rclpy.init()
     numbers_here = range(process, count, processes)
     links = [Link(number, count, warm_up + laps) for number in numbers_here]
