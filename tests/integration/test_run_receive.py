@@ -24,7 +24,7 @@ publishers = [node.create_publisher(Int32, topic, 10) for topic in ("one", "two"
 node.create_timer(0.005, lambda: [publisher.publish(Int32()) for publisher in publishers])
 rclpy.spin(node)
 """
-# Each callback waits until that of the other topic runs as well.
+# Each callback waits until that of the other topic runs as well, which none does after SIGINT.
 MEETING = f"""
 import threading
 import rclpy
@@ -35,7 +35,10 @@ node = rclpy.create_node("listener")
 both = threading.Barrier(2, lambda: print("both", flush=True), timeout={TIMEOUT_S})
 for topic in ("one", "two"):
     node.create_subscription(Int32, topic, lambda _: both.wait(), 10)
-rclpy.spin(node)
+try:
+    rclpy.spin(node)
+finally:
+    both.abort()
 """
 # Its groups and its executor let callbacks overlap. SPEND_TIME is what each does: `compute`, or
 # `wait_for_another` to overlap with.
