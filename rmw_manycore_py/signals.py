@@ -39,18 +39,19 @@ def signal_inbox(signals: Iterable[signal.Signals] = STOP_SIGNALS) -> Iterator[S
     with reader, writer:
         reader.setblocking(False)
         writer.setblocking(False)
+        # First: a signal that is ignored before it can be collected would be lost.
+        descriptor_before = signal.set_wakeup_fd(writer.fileno(), warn_on_full_buffer=False)
         before = {
             number: signal.signal(number, _ignore)
             for number in signals
             if number != signal.SIGHUP or signal.getsignal(number) != signal.SIG_IGN
         }
-        descriptor_before = signal.set_wakeup_fd(writer.fileno(), warn_on_full_buffer=False)
         try:
             yield SignalInbox(reader)
         finally:
-            signal.set_wakeup_fd(descriptor_before)
             for number, handler in before.items():
                 signal.signal(number, handler)
+            signal.set_wakeup_fd(descriptor_before)
 
 
 def _ignore(_number: int, _frame: object) -> None:

@@ -22,6 +22,7 @@ import peer
 from forking import fork, preload
 
 LARGEST_MESSAGE_BYTES = 1 << 17
+INTERRUPT = [signal.SIGINT]
 
 
 class Request(NamedTuple):
@@ -93,17 +94,19 @@ class PeerServer:
 
 def become(request: Request) -> None:
     """Make this process equal to a new one started with the request."""
-    signal.signal(signal.SIGINT, signal.default_int_handler)
     os.environ.clear()
     os.environ.update(request.environment)
     for own, file in zip(((0,), (1, 2)), request.files, strict=True):
         for number in own:
             os.dup2(file, number)
         os.close(file)
+    signal.pthread_sigmask(signal.SIG_UNBLOCK, INTERRUPT)  # what came since the fork comes now
 
 
 if __name__ == "__main__":
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the process that started the peers
+    # Ctrl-C is for the process that started the peers. Not ignored: a peer that is interrupted at
+    # once would ignore that, too.
+    signal.pthread_sigmask(signal.SIG_BLOCK, INTERRUPT)
     preload()
     with socket.socket(fileno=int(sys.argv[1])) as listener:
         request = PeerServer(listener).run()

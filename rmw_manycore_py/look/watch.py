@@ -76,7 +76,13 @@ class Watch:
         if self._seen is None and not self._open():
             return None
         assert self._seen is not None
-        return self._look_at(self._seen)
+        try:
+            return self._look_at(self._seen)
+        except _transport.PlatformError:
+            if self._seen.platform.is_current():
+                raise
+        self._end(self._seen)  # removed during the look
+        return None
 
     def close(self) -> None:
         """Unmap the platform."""
@@ -90,6 +96,9 @@ class Watch:
                 return False
             platform = _transport.Platform(self._name)
         except _transport.PlatformError:  # being created or removed; retry at the next look
+            return False
+        if not platform.is_current():  # being removed: some of its files are still there
+            platform.close()
             return False
         self._seen = _Seen(platform, deaths_until_ns=time.monotonic_ns())
         return True

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import json
 import os
+import shutil
 import signal
 import sys
 import urllib.error
@@ -14,7 +15,7 @@ from contextlib import closing
 
 import pytest
 from forked import forked_example, forked_manycore
-from support import IS_MANYCORE, leftovers, wait_until
+from support import IS_MANYCORE, PLATFORMS, leftovers, wait_until
 
 from rmw_manycore_py.bench.idle import wait_until_quiet, wake_ups
 from rmw_manycore_py.look.watch import Watch
@@ -146,6 +147,18 @@ def test_a_death_is_told_from_a_leave(talking, platform, start) -> None:
         f"platform {platform} has ended",
     ]
     wait_until(lambda: not leftovers(platform), "nothing is left")
+
+
+def test_a_platform_that_is_half_removed_has_ended(start, platform) -> None:
+    start(forked_example("listener"))
+    with closing(Watch(platform)) as watch, closing(Watch(platform)) as late:
+        wait_until(watch.look, "it is there")
+        (PLATFORMS / platform / "cluster-1.pipe").unlink()
+        assert watch.look() is None
+        assert [one.text for one in watch.last_words] == [f"platform {platform} has ended"]
+        assert late.look() is None
+        assert late.last_words == ()
+    shutil.rmtree(PLATFORMS / platform)
 
 
 def test_a_worker_in_the_place_of_a_killed_one_is_seen(start, platform) -> None:
