@@ -1,10 +1,11 @@
 /* Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
  *
  * Question: does the subscriber queue keep each hint exactly once and in order, or count it as
- * dropped, whichever process dies at whatever step?
+ * displaced, whichever process dies at whatever step?
  *
- * Follows subscriber_queue::push and ::pop statement by statement. Each store in them is a
- * compare-and-swap, a full fence on x86, so store buffers are not modelled.
+ * Follows subscriber_queue::push, ::pop and, with COUNTED, ::displaced statement by statement. Each
+ * store of `head`, `tail` and slots is a compare-and-swap, a full fence on x86, and those of the
+ * pops are seen in order there, so store buffers are not modelled.
  *
  * The word of a slot is {lap mod LAPS, source}, without the record number, so two hints of one
  * source differ by their lap only. This is the worst case for a delayed compare-and-swap, which is
@@ -15,6 +16,7 @@
  * RUN DEPTH=2
  * RUN DEPTH=1 SLOTS=2
  * RUN DEPTH=3 SLOTS=4
+ * RUN DEPTH=1 COUNTED=1
  * BUG 1: no lap in the word
  * BUG 2: laps modulo 2: a pusher that sleeps through two laps overwrites a later hint
  * BUG 3: tail advanced before the slot is filled
@@ -22,9 +24,17 @@
  * BUG 5: oldest hint displaced without compare-and-swap
  * BUG 6 DEPTH=2: pop does not load head again after it loaded the slot
  * BUG 7: the push of a pusher that died before it advanced tail is never finished
+ * BUG 8 DEPTH=1 COUNTED=1: a pop counts as begun only once it has moved head
+ * BUG 9 DEPTH=1 COUNTED=1: the pops that have begun are loaded before head
+ * BUG 10 DEPTH=1 COUNTED=1: a pop that finds its hint displaced stays begun
  */
+#ifdef COUNTED
+#define PUSHES 0          /* one pusher and the popper move head */
+#define KILLED_PUSHES 3   /* may also displace a hint and fill no slot */
+#else
 #define PUSHES 3
 #define KILLED_PUSHES 1
+#endif
 #ifndef SLOTS
 #define SLOTS DEPTH       /* the next power of two */
 #endif
@@ -50,10 +60,13 @@
 byte slot[SLOTS];
 byte head = SLOTS;        /* positions start at lap 1; lap 0 is "never filled" */
 byte tail = SLOTS;
+byte pops_begun;
+byte pops_done;
 
 /* For the properties only; the protocol does not read these. */
 byte number[SLOTS];       /* record number of the hint in the slot */
-byte waiting;             /* hints pushed, neither popped nor counted as dropped */
+byte waiting;             /* hints pushed, neither popped nor displaced */
+byte displaced;
 byte last_popped[3];      /* record number, by source */
 bool was_empty;           /* at some moment during the current pop */
 bool overtaken[3];        /* some word changed during this pusher's current attempt */
@@ -75,6 +88,14 @@ inline remove_oldest() {
   waiting--;
   was_empty = was_empty || waiting == 0;
   word_changed()
+}
+
+inline count_displaced() {
+#ifdef COUNTED
+  displaced++
+#else
+  skip
+#endif
 }
 
 inline fill(position, source, record) {
@@ -144,9 +165,9 @@ help:
   goto failed;
 displace:
 #if BUG == 5
-  atomic { head = h; remove_oldest() };
+  atomic { head = h; remove_oldest(); count_displaced() };
 #else
-  atomic { if :: head == h -> remove_oldest() :: else fi };
+  atomic { if :: head == h -> remove_oldest(); count_displaced() :: else fi };
 #endif
 failed:
   atomic { assert(overtaken[source]); goto attempt };   /* lock-free: it was overtaken */
@@ -169,13 +190,21 @@ look:
   };
 #endif
   if
-  :: !filled(word, h) -> assert(was_empty); goto looked
+  :: !filled(word, h) ->
+     assert(was_empty);
+#if defined(COUNTED) && BUG != 10
+     pops_begun = pops_done;
+#endif
+     goto looked
   :: else
   fi;
   if
   :: HELP -> advance_tail(h)
   :: else
   fi;
+#if defined(COUNTED) && BUG != 8
+  pops_begun = pops_done + 1;
+#endif
   atomic {
     if
     :: head == h ->
@@ -189,6 +218,12 @@ look:
     :: else -> goto look
     fi
   };
+#if BUG == 8
+  pops_begun = pops_done + 1;
+#endif
+#ifdef COUNTED
+  pops_done++;
+#endif
 looked:
   skip
 }
@@ -234,11 +269,37 @@ proctype Popper() {
      fi
   od;
   assert(waiting == 0);
+#ifdef COUNTED
+  assert(pops_begun == pops_done && head - SLOTS - pops_done == displaced);
+#endif
   run LastPusher();
   ended == PUSHERS + 1;
   assert(tail == head + 1 && waiting == 1)
 }
 
+/* One attempt to count the displaced hints, at any moment. */
+proctype Counter() {
+  byte done, moves, begun, truth;
+#if BUG == 9
+  begun = pops_begun;
+#endif
+  done = pops_done;
+  d_step { moves = head - SLOTS; truth = displaced };
+#if BUG != 9
+  begun = pops_begun;
+#endif
+  atomic {
+    assert(begun != done || moves - begun == truth);
+    assert(moves < begun || moves - begun <= truth);
+    done = 0; moves = 0; begun = 0; truth = 0
+  }
+}
+
 init {
-  atomic { run Pusher(0, KILLED_PUSHES); run Pusher(1, PUSHES); run Killer(); run Popper() }
+  atomic {
+#ifdef COUNTED
+    run Counter();
+#endif
+    run Pusher(0, KILLED_PUSHES); run Pusher(1, PUSHES); run Killer(); run Popper()
+  }
 }

@@ -56,9 +56,9 @@ TEST_CASE("capacity is the depth, even if that is not a power of two") {
     CAPTURE(depth);
     BareQueue queue(depth, false);
     push_numbers(queue, 1, depth);
-    CHECK(queue.header().dropped == 0);
+    CHECK(queue.displaced() == 0);
     push_numbers(queue, depth + 1, depth + 4);
-    CHECK(queue.header().dropped == 4);
+    CHECK(queue.displaced() == 4);
     const std::vector<uint64_t> popped = pop_all(queue);
     REQUIRE(popped.size() == depth);
     CHECK(popped.front() == 5);
@@ -72,7 +72,7 @@ TEST_CASE("a full KEEP_ALL queue displaces nothing and asks for a resync") {
   CHECK(queue.header().resync == 0);
   push_numbers(queue, 5, 6);
   CHECK(queue.header().resync == 1);
-  CHECK(queue.header().dropped == 0);
+  CHECK(queue.displaced() == 0);
   CHECK(pop_all(queue) == std::vector<uint64_t>{1, 2, 3, 4});
 }
 
@@ -95,7 +95,7 @@ TEST_CASE("positions go through all laps of a slot's tag, and through zero") {
       wrong += pop_all(queue).size() == depth && queue.empty() ? 0 : 1;
     }
     CHECK(wrong == 0);
-    CHECK(queue.header().dropped == 0);
+    CHECK(queue.displaced() == 0);
   }
 }
 

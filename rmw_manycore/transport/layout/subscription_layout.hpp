@@ -44,11 +44,14 @@ struct SubscriptionHeader {
   uint8_t reserved[2];
   std::atomic<uint32_t> resync;             ///< hints may be missing: scan all sources
   std::atomic<uint64_t> source_generation;  ///< incremented whenever the source table changes
-  std::atomic<uint64_t> dropped;            ///< hints displaced by pushers
-  /// `lost` minus `dropped` at the last moment when both were known exactly; see lost_so_far().
-  std::atomic<uint64_t> lost_beside_dropped;
+  /// `lost` minus the displaced hints when both were last known exactly; see lost_so_far().
+  std::atomic<uint64_t> lost_beside_displaced;
 
   alignas(64) std::atomic<uint64_t> head;
+  /// Pops that have begun, and that have moved `head`; written by the popper. What else moved it
+  /// are displacements, which therefore need no counter of their own.
+  std::atomic<uint64_t> pops_begun;
+  std::atomic<uint64_t> pops_done;
   alignas(64) std::atomic<uint64_t> tail;
 
   /// Clock of the requested deadline, touched by each arrival; unused without a deadline.
@@ -74,7 +77,7 @@ struct SubscriptionHeader {
   }
 };
 static_assert(sizeof(SubscriptionHeader) == 384);
-static_assert(offsetof(SubscriptionHeader, lost_beside_dropped) == 48);
+static_assert(offsetof(SubscriptionHeader, lost_beside_displaced) == 40);
 
 /// Hints; when the queue overflows, the subscriber resyncs.
 constexpr uint32_t keep_all_capacity = 1024;

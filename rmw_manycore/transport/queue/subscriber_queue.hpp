@@ -1,6 +1,7 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 
@@ -64,6 +65,28 @@ inline void initialize(SubscriptionHeader & header) noexcept {
   }
   header.head.store(count, std::memory_order_relaxed);
   header.tail.store(count, std::memory_order_relaxed);
+  header.pops_begun.store(0, std::memory_order_relaxed);
+  header.pops_done.store(0, std::memory_order_relaxed);
+}
+
+/// Number of hints displaced by pushers: the moves of `head` that were no pops. Exact, unless pops
+/// overtake each attempt, or the popper died in one: then it may be too low by those that moved
+/// nothing before `head` was loaded, and never too high.
+inline uint64_t displaced(const SubscriptionHeader & header) noexcept {
+  constexpr int max_attempts = 100;
+  const uint64_t first = uint64_t{1} << (header.slot_count_log2 & 31);
+  uint64_t moves = 0;
+  uint64_t begun = 0;
+  for (int attempt = 0; attempt < max_attempts; ++attempt) {
+    // In this order: equal numbers of pops done before and begun after belong to this `head`.
+    const uint64_t done = header.pops_done.load(std::memory_order_acquire);
+    moves = header.head.load(std::memory_order_acquire) - first;
+    begun = header.pops_begun.load(std::memory_order_relaxed);
+    if (begun == done) {
+      break;
+    }
+  }
+  return moves - std::min(moves, begun);
 }
 
 /// Step 2 of ROS-lite2 Fig. 4 (step 1 inside a cluster): appends a hint and displaces the oldest
@@ -99,7 +122,6 @@ bool push(SubscriptionHeader & header, const Hint & hint, OnDisplaced on_displac
       }
       const uint64_t oldest = slots.at(head).load(std::memory_order_acquire);
       if (header.head.compare_exchange_strong(head, head + 1, std::memory_order_acq_rel)) {
-        header.dropped.fetch_add(1, std::memory_order_relaxed);
         on_displaced(decode(oldest));  // the exchange on `head` proves that the slot still held it
         changes_events = true;
       }
@@ -119,6 +141,7 @@ bool push(SubscriptionHeader & header, const Hint & hint, OnDisplaced on_displac
 /// Step 3: removes the oldest hint. One popper at a time; pushers may displace hints concurrently.
 inline std::optional<Hint> pop(SubscriptionHeader & header) noexcept {
   const Slots slots(header);
+  const uint64_t pops = header.pops_done.load(std::memory_order_relaxed);
   while (true) {
     uint64_t head = header.head.load(std::memory_order_acquire);
     const uint64_t word = slots.at(head).load(std::memory_order_acquire);
@@ -126,14 +149,18 @@ inline std::optional<Hint> pop(SubscriptionHeader & header) noexcept {
       continue;  // a pusher displaced it meanwhile
     }
     if (!slots.filled(word, head)) {
+      header.pops_begun.store(pops, std::memory_order_relaxed);
       return std::nullopt;
     }
     // The slot may be filled while `tail` still points at it: advance `tail` for a pusher that is
     // late or dead, so that head <= tail.
     uint64_t tail = head;
     header.tail.compare_exchange_strong(tail, head + 1, std::memory_order_acq_rel);
+    // Before the exchange, whose release makes it known to a reader of the moved `head`.
+    header.pops_begun.store(pops + 1, std::memory_order_relaxed);
     // Success means that position `head` was not displaced, so `word` is its content.
     if (header.head.compare_exchange_strong(head, head + 1, std::memory_order_acq_rel)) {
+      header.pops_done.store(pops + 1, std::memory_order_release);
       return decode(word);
     }
   }

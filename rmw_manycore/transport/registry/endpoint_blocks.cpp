@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "transport/queue/subscriber_queue.hpp"
+
 namespace manycore {
 
 MatchedCount matched_of(const EndpointEntry & entry) {
@@ -17,9 +19,9 @@ IncompatibleCount incompatible_of(const EndpointEntry & entry) {
 
 uint64_t lost_so_far(const EndpointEntry & entry, const SubscriptionHeader & header) {
   // The two words are independent, so their order does not matter; the sum may wrap.
-  const uint64_t by_drops = header.dropped.load(std::memory_order_relaxed) +
-                            header.lost_beside_dropped.load(std::memory_order_relaxed);
-  return std::max(entry.counters.lost.load(std::memory_order_relaxed), by_drops);
+  const uint64_t by_displacements = subscriber_queue::displaced(header) +
+                                    header.lost_beside_displaced.load(std::memory_order_relaxed);
+  return std::max(entry.counters.lost.load(std::memory_order_relaxed), by_displacements);
 }
 
 void notify_watchers(Registry & registry, const SubscriptionHeader & header) {

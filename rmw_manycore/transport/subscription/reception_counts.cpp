@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "transport/queue/subscriber_queue.hpp"
 #include "transport/registry/endpoint_blocks.hpp"
 
 namespace manycore {
@@ -39,19 +40,19 @@ void ReceptionCounts::count_lost_replies(uint64_t count) noexcept {
 /// Adds to both words whose maximum lost_so_far() returns.
 void ReceptionCounts::count_lost(uint64_t count) noexcept {
   entry_.counters.lost.fetch_add(count, std::memory_order_relaxed);
-  header_.lost_beside_dropped.fetch_add(count, std::memory_order_relaxed);
+  header_.lost_beside_displaced.fetch_add(count, std::memory_order_relaxed);
 }
 
 bool ReceptionCounts::needs_settling() const noexcept {
   return entry_.role != EndpointRole::reply &&
-         (unsettled_ || header_.dropped.load(std::memory_order_relaxed) != settled_dropped_);
+         (unsettled_ || subscriber_queue::displaced(header_) != settled_displaced_);
 }
 
-void ReceptionCounts::note_settled(uint64_t dropped) noexcept {
+void ReceptionCounts::note_settled(uint64_t displaced) noexcept {
   unsettled_ = false;
-  settled_dropped_ = dropped;
-  header_.lost_beside_dropped.store(
-    entry_.counters.lost.load(std::memory_order_relaxed) - dropped, std::memory_order_relaxed);
+  settled_displaced_ = displaced;
+  header_.lost_beside_displaced.store(
+    entry_.counters.lost.load(std::memory_order_relaxed) - displaced, std::memory_order_relaxed);
 }
 
 uint64_t ReceptionCounts::lost() const noexcept {

@@ -30,9 +30,9 @@ public:
   bool is_unsettled() const noexcept { return unsettled_; }
   /// The same, or hints were displaced, for which `lost` may be too high until all is settled.
   bool needs_settling() const noexcept;
-  /// Called when each message is accounted for, either as one of `dropped` displaced hints or as
+  /// Called when each message is accounted for, either as one of the `displaced` hints or as
   /// lost.
-  void note_settled(uint64_t dropped) noexcept;
+  void note_settled(uint64_t displaced) noexcept;
 
   /// Never decreases, although displaced hints may overestimate the losses.
   uint64_t lost() const noexcept;
@@ -45,7 +45,7 @@ private:
   SubscriptionHeader & header_;
   uint64_t received_ = 0;
   bool unsettled_ = false;
-  uint64_t settled_dropped_ = 0;  ///< value of the header's `dropped` when all was accounted for
+  uint64_t settled_displaced_ = 0;  ///< displaced hints when all was accounted for
   mutable std::atomic<uint64_t> reported_lost_{0};
 };
 

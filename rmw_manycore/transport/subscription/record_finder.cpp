@@ -160,7 +160,7 @@ void RecordFinder::settle() noexcept {
     return;
   }
   // Load before the sources are checked: later displacements count next time.
-  const uint64_t dropped = header_.dropped.load(std::memory_order_relaxed);
+  const uint64_t displaced = subscriber_queue::displaced(header_);
   bool all = true;
   bool some_finished = false;
   for (Source & source : sources_) {
@@ -169,7 +169,7 @@ void RecordFinder::settle() noexcept {
     some_finished = some_finished || settled == Source::Settled::finished;
   }
   if (all) {
-    counts_.note_settled(dropped);
+    counts_.note_settled(displaced);
   }
   if (some_finished) {
     cluster_.wake_reaper();  // to free topic DSMs
