@@ -3,9 +3,9 @@
  * Question: does the subscriber queue keep each hint exactly once and in order, or count it as
  * displaced, whichever process dies at whatever step?
  *
- * Follows subscriber_queue::push, ::pop and, with COUNTED, ::displaced statement by statement. Each
- * store of `head`, `tail` and slots is a compare-and-swap, a full fence on x86, and those of the
- * pops are seen in order there, so store buffers are not modelled.
+ * Follows subscriber_queue::push, ::pop and, with COUNTED, SubscriptionHeader::displaced statement
+ * by statement. Each store of `head`, `tail` and slots is a compare-and-swap, a full fence on x86,
+ * and those of the pops are seen in order there, so store buffers are not modelled.
  *
  * The word of a slot is {lap mod LAPS, source}, without the record number, so two hints of one
  * source differ by their lap only. This is the worst case for a delayed compare-and-swap, which is

@@ -15,6 +15,8 @@
 //   close_deep            a publisher whose last 1,000 messages N subscriptions have not taken
 //   close_server          a server with 1,000 replies to one of N clients
 //   free_large            a publisher whose topic DSM has grown to more than 16 MiB
+//   create_queue          a subscription of depth 65,535
+//   free_queue            closing it, and freeing its queue
 //   reap                  a killed process with `changes` endpoints of each kind, and such a
 //   publisher
 // A thread on CPU `cpu` watches the word that is odd while the lock is held, and reads the CPU
@@ -317,6 +319,17 @@ void run(const bench::Arguments & arguments) {
     holds.take_holds_ns();
     large.reset();
     report(holds.take_holds_ns(), "free_large", found);
+  }
+  EndpointSpec deepest = spec;
+  deepest.topic = "/deepest";
+  deepest.qos.depth = UINT16_MAX;
+  {
+    holds.take_holds_ns();
+    auto subscription = process->create_subscription(deepest);
+    report(holds.take_holds_ns(), "create_queue", found);
+    subscription.reset();
+    process->create_publisher(other);  // sweeps
+    report(holds.take_holds_ns(), "free_queue", found);
   }
   victim.join_platform();
   {

@@ -5,6 +5,9 @@
 #include <cstring>
 
 #include "transport/qos/manual_liveliness.hpp"
+#include "transport/subscription/subscription_block.hpp"
+#include "transport/topic_dsm/topic_dsm_writer.hpp"
+#include "transport/transfer/topic_transfer.hpp"
 
 namespace manycore {
 namespace {
@@ -21,8 +24,7 @@ Gid make_gid(const Registry & registry, uint32_t slot, uint32_t incarnation) {
 }  // namespace
 
 uint32_t new_endpoint(
-  Registry & registry, const EndpointSpec & spec, EndpointKind kind, uint32_t process,
-  uint32_t cluster) {
+  Registry & registry, const EndpointSpec & spec, EndpointKind kind, uint32_t process) {
   const uint32_t taken = registry.endpoints().take("endpoints");
   EndpointEntry & entry = registry.endpoints()[taken];
   try {
@@ -37,7 +39,7 @@ uint32_t new_endpoint(
   entry.ignore_local = spec.ignore_local ? 1 : 0;
   entry.process = process;
   entry.node = spec.node;
-  entry.cluster = cluster;
+  entry.cluster = registry.processes()[process].cluster;
   entry.topic_hash = hash_name(entry.topic);
   entry.block = SegmentRef{};
   entry.gid = make_gid(registry, taken, entry.slot.incarnation);
@@ -55,6 +57,31 @@ uint32_t new_endpoint(
   entry.asserted_ns.store(ManualLiveliness::never);
   entry.dead_publishers.store(0);
   entry.spare.ref.store(0);
+  return taken;
+}
+
+uint32_t enter_graph(
+  Registry & registry, const EndpointSpec & spec, EndpointKind kind, uint32_t process) {
+  const TopicEntry * const configured = registry.find_topic(spec.topic);  // entries never change
+  const Registry::Lock lock(registry);
+  const uint32_t taken = new_endpoint(registry, spec, kind, process);
+  EndpointEntry & entry = registry.endpoints()[taken];
+  entry.topic_dsm_size = configured == nullptr ? 0 : configured->topic_dsm_size;
+  entry.transfer = transfer_of(configured, spec, kind);
+  try {
+    SpareBlock & spare = registry.processes()[process].spare;
+    const void * const block =
+      kind == EndpointKind::publisher
+        ? static_cast<void *>(&TopicDsmWriter::create(registry, taken))
+        : static_cast<void *>(&subscription_block::create(registry, taken, spare));
+    entry.block = registry.clusters().at(entry.cluster).ref_of(block);
+  } catch (...) {
+    registry.endpoints().give_back(taken);
+    throw;
+  }
+  entry.order = ++registry.header().last_order;
+  registry.endpoints().publish(taken);
+  registry.link_endpoint(taken);
   return taken;
 }
 

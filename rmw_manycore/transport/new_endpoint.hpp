@@ -10,7 +10,12 @@ namespace manycore {
 /// and has no block. The caller holds the registry lock. Throws
 /// Error{no_space|invalid_argument|corrupt}.
 uint32_t new_endpoint(
-  Registry & registry, const EndpointSpec & spec, EndpointKind kind, uint32_t process,
-  uint32_t cluster);
+  Registry & registry, const EndpointSpec & spec, EndpointKind kind, uint32_t process);
+
+/// Creates an endpoint of a process with its block, live and unmatched: if the process dies before
+/// it is matched, or halfway, the reaper undoes its matches. A large queue has its block from the
+/// spare block of the process. Takes the registry lock. Throws as new_endpoint().
+uint32_t enter_graph(
+  Registry & registry, const EndpointSpec & spec, EndpointKind kind, uint32_t process);
 
 }  // namespace manycore

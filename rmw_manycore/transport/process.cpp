@@ -16,6 +16,7 @@
 #include "transport/matching/connecting.hpp"
 #include "transport/matching/leaving.hpp"
 #include "transport/matching/matching.hpp"
+#include "transport/matching/spare_blocks.hpp"
 #include "transport/matching/sweeping.hpp"
 #include "transport/new_endpoint.hpp"
 #include "transport/publisher/publisher_impl.hpp"
@@ -77,6 +78,7 @@ struct Process::Impl {
   std::unique_ptr<Waiters> waiters;
   std::unique_ptr<Graph> graph;
   std::unique_ptr<ReceiveThreadWatcher> watcher;
+  std::mutex spare_mutex;  ///< held while the process makes its spare block, and uses it
   std::mutex contexts_mutex;
   int live_contexts = 0;
 };
@@ -149,6 +151,7 @@ uint32_t Process::Impl::take_process_slot() {
   std::memset(entry.label, 0, sizeof entry.label);
   std::strncpy(entry.label, placement.label.c_str(), sizeof entry.label - 1);
   entry.wake.reset();
+  entry.spare.ref.store(0);
   registry->header().graph_watchers.remove(taken);
   attach(taken);
   processes.publish(taken);
@@ -196,7 +199,8 @@ void Process::Impl::leave() {
   for (bool are_removed = false; !are_removed;) {
     const Registry::Lock lock(*registry, registry->parting_wait_ns());
     Turn turn;
-    are_removed = nodes.remove_some(turn);
+    are_removed = nodes.remove_some(turn) &&
+                  spare_blocks::free_some(*registry, registry->processes()[slot].spare, turn);
   }
   registry->graph_changed();  // the lock may take a while
   const JoinLock join_lock(paths);
@@ -227,34 +231,27 @@ void Process::Impl::require_movers() {
   }
 }
 
-/// Makes the endpoint live before it is matched: if this process dies in between, the reaper undoes
-/// its matches.
+/// The block of a large queue is the spare block of the process until the endpoint has it, one at a
+/// time.
 uint32_t Process::Impl::publish_endpoint(const EndpointSpec & spec, EndpointKind kind) {
-  const TopicEntry * const configured = registry->find_topic(spec.topic);  // entries never change
-  const Transfer transfer = transfer_of(configured, spec, kind);
-  if (transfer != Transfer::dsm) {
+  if (transfer_of(registry->find_topic(spec.topic), spec, kind) != Transfer::dsm) {
     require_movers();
   }
-  const Registry::Lock lock(*registry);
-  const uint32_t taken = new_endpoint(*registry, spec, kind, slot, placement.cluster);
-  EndpointEntry & entry = registry->endpoints()[taken];
-  entry.topic_dsm_size = configured == nullptr ? 0 : configured->topic_dsm_size;
-  entry.transfer = transfer;
+  const uint64_t bytes =
+    kind == EndpointKind::subscription ? subscription_block::bytes_for(spec.qos) : 0;
+  if (bytes <= spare_blocks::max_bytes_at_once) {
+    return enter_graph(*registry, spec, kind, slot);
+  }
+  const std::lock_guard<std::mutex> guard(spare_mutex);
+  SpareBlock & spare = registry->processes()[slot].spare;
+  spare_blocks::make(
+    *registry, *membership, spare, {SpareUse::queue, placement.cluster, bytes, bytes});
   try {
-    Cluster & cluster = registry->clusters().at(entry.cluster);
-    const void * const block =
-      kind == EndpointKind::publisher
-        ? static_cast<void *>(&TopicDsmWriter::create(*registry, taken))
-        : static_cast<void *>(&subscription_block::create(*registry, taken));
-    entry.block = cluster.ref_of(block);
+    return enter_graph(*registry, spec, kind, slot);
   } catch (...) {
-    registry->endpoints().give_back(taken);
+    spare_blocks::free_all(*registry, *membership, spare);
     throw;
   }
-  entry.order = ++registry->header().last_order;
-  registry->endpoints().publish(taken);
-  registry->link_endpoint(taken);
-  return taken;
 }
 
 uint32_t Process::Impl::add_endpoint(const EndpointSpec & spec, EndpointKind kind) {

@@ -19,6 +19,7 @@ constexpr size_t large_bytes = 5'000;  // requires the topic DSM to grow
 constexpr const char * sized_topic = "/sized";
 constexpr const char * moved_topic = "/moved";
 constexpr uint32_t sized_bytes = 300'000;  // freed in several pieces
+constexpr uint32_t sized_depth = 10'000;   // a queue of 128 KiB, likewise
 
 inline std::shared_ptr<Process> join(const std::string & platform) {
   Placement placement;
@@ -60,11 +61,13 @@ inline const Role moves("moves", [](Lines &, const Arguments & arguments) {
   finish_steps();
 });
 
-/// A topic DSM that is backed without the registry lock, and given back piece by piece.
+/// A topic DSM and a queue that are backed without the registry lock, and given back piece by
+/// piece.
 inline const Role sizes("sizes", [](Lines &, const Arguments & arguments) {
   const auto process = join(arguments.at(0));
   begin_steps();
   process->create_publisher(on_topic(sized_topic, keep_last(1)));
+  process->create_subscription(on_topic(sized_topic, keep_last(sized_depth)));
   finish_steps();
 });
 

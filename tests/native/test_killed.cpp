@@ -30,7 +30,8 @@ TEST_CASE("killed at any instruction while it creates and closes endpoints") {
   check_kills("creates");
 }
 
-TEST_CASE("killed at any instruction while it backs a large topic DSM, and gives it back") {
+TEST_CASE(
+  "killed at any instruction while it backs a large topic DSM and queue, and gives them back") {
   check_kills("sizes");
 }
 

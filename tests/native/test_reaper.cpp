@@ -317,7 +317,7 @@ TEST_CASE("a process taken for dead while it joined: what it created before its 
     wait_until(
       "the reaper waits for the lock", [&] { return registry.header().mutex.is_waited_for(); });
     endpoint =
-      new_endpoint(registry, on_topic("/x", keep_last(1)), EndpointKind::publisher, process, 1);
+      new_endpoint(registry, on_topic("/x", keep_last(1)), EndpointKind::publisher, process);
     registry.endpoints().publish(endpoint);
     registry.link_endpoint(endpoint);
   }

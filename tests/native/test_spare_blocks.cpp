@@ -1,7 +1,7 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 //
-// SMEM that an endpoint makes for a match to come: landings, and large blocks of reader and source
-// tables.
+// SMEM that is backed without the registry lock before it is used: landings, large blocks of reader
+// and source tables, and large queues.
 #include <doctest/doctest.h>
 
 #include <sys/mount.h>
@@ -24,14 +24,25 @@ using transfer_of_test::dsm_bytes;
 
 namespace {
 
-const Role subscribes("subscribes", [](Lines &, const Arguments & arguments) {
+void subscribe_by_steps(const Arguments & arguments, uint32_t depth) {
   Placement placement;
   placement.platform = arguments.at(0);
   placement.cluster = static_cast<uint32_t>(std::stoul(arguments.at(1)));
   const auto process = Process::join(placement);
   begin_steps();
-  const auto subscription = process->create_subscription(on_topic("/x", keep_last(1)));
+  const auto subscription = process->create_subscription(on_topic("/x", keep_last(depth)));
   finish_steps();
+}
+
+const Role subscribes("subscribes", [](Lines &, const Arguments & arguments) {
+  subscribe_by_steps(arguments, 1);
+});
+
+constexpr uint32_t deep = 65'535;
+constexpr uint64_t deep_bytes = 512 << 10;  ///< of its queue
+
+const Role subscribes_deep("subscribes_deep", [](Lines &, const Arguments & arguments) {
+  subscribe_by_steps(arguments, deep);
 });
 
 uint64_t file_bytes(const std::string & path) {
@@ -41,6 +52,11 @@ uint64_t file_bytes(const std::string & path) {
 }
 
 bool is_any_made(Registry & registry) {
+  for (uint32_t slot = 0; slot < registry.processes().high_water(); ++slot) {
+    if (registry.processes()[slot].spare.ref.load() != 0) {
+      return true;
+    }
+  }
   for (uint32_t slot = 0; slot < registry.endpoints().high_water(); ++slot) {
     if (registry.endpoints()[slot].spare.ref.load() != 0) {
       return true;
@@ -133,6 +149,55 @@ TEST_CASE("a large block of a table is backed with memory without the registry l
   CHECK(f.inspection.used_bytes() >= used + 2 * large_block_bytes - 4096);  // with the smaller ones
   CHECK(backed.without_lock >= large_block_bytes);
   CHECK(backed.in_longest_hold < large_block_bytes);
+}
+
+TEST_CASE("a large queue is backed with memory without the registry lock, and freed in turns") {
+  TestPlatform platform;
+  const auto process = platform.join();
+  Inspection inspection(platform);
+  const uint64_t used = inspection.used_bytes();
+  {
+    SteppedChild child("subscribes_deep", {platform.name(), "1"});
+    const Backed backed = run_to_end(child, platform.paths().cluster(1), inspection.registry());
+    CHECK(backed.without_lock >= deep_bytes);
+    CHECK(backed.in_longest_hold < deep_bytes / 8);
+    CHECK_FALSE(is_any_made(inspection.registry()));
+    child.kill();
+  }
+  wait_until("it is reaped", [&] { return inspection.used_bytes() == used; });
+  const Standstill no_other_sweeper(platform, 1);
+  auto subscription = process->create_subscription(on_topic("/x", keep_last(deep)));
+  Registry & registry = inspection.registry();
+  const auto slot = static_cast<uint32_t>(endpoint_in(subscription->gid()));
+  {
+    const Registry::Lock lock(registry);
+    Turn turn;
+    REQUIRE(closing::close_some(registry, slot, false, turn));
+  }
+  uint32_t turns = 0;
+  for (bool is_freed = false; !is_freed; ++turns) {
+    const Registry::Lock lock(registry);
+    is_freed = sweeping::Round(registry).sweep_some_of(slot);
+  }
+  CHECK(turns >= 4);
+  CHECK(inspection.used_bytes() == used);
+}
+
+TEST_CASE("a process that dies with a queue in hand leaves none of it") {
+  TestPlatform platform;
+  const auto process = platform.join();
+  Inspection inspection(platform);
+  const uint64_t used = inspection.used_bytes();
+  SteppedChild child("subscribes_deep", {platform.name(), "1"});
+  while (!is_any_made(inspection.registry())) {
+    REQUIRE_FALSE(child.finished());
+    child.run_to_system_call();
+  }
+  inspection.registry().header().needs_repair = 1;  // the block stays in the map
+  process->add_node("node", "/", "/");
+  CHECK(inspection.used_bytes() >= used + deep_bytes);
+  child.kill();
+  wait_until("it is reaped", [&] { return inspection.used_bytes() == used; });
 }
 
 TEST_CASE("a process that dies with a block of a table in hand leaves none of it") {

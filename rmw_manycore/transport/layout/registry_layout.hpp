@@ -70,8 +70,9 @@ struct ProcessEntry {
   /// Its contexts have ended, or its death is recorded: its end is not recorded as a death.
   std::atomic<uint32_t> is_ending;
   WakeWords wake;
+  SpareBlock spare;  ///< for an endpoint to come
 };
-static_assert(sizeof(ProcessEntry) == 1280 && offsetof(ProcessEntry, trace) == 28);
+static_assert(sizeof(ProcessEntry) == 1344 && offsetof(ProcessEntry, trace) == 28);
 
 /// A ROS 2 node of a member process.
 struct NodeEntry {

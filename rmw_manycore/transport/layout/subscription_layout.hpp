@@ -1,6 +1,8 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
+
 #include "transport/layout/deadline_clock.hpp"
 #include "transport/layout/entry_blocks.hpp"
 #include "transport/layout/segment_layout.hpp"
@@ -67,6 +69,26 @@ struct SubscriptionHeader {
     return has_deadline != 0 && deadline.touch(deadline_ns);
   }
 
+  /// Number of hints displaced by pushers: the moves of `head` that were no pops. Exact, unless
+  /// pops overtake each attempt, or the popper died in one: then it may be too low by those that
+  /// moved nothing before `head` was loaded, and never too high.
+  uint64_t displaced() const noexcept {
+    constexpr int max_attempts = 100;
+    const uint64_t first = uint64_t{1} << (slot_count_log2 & 31);
+    uint64_t moves = 0;
+    uint64_t begun = 0;
+    for (int attempt = 0; attempt < max_attempts; ++attempt) {
+      // In this order: equal numbers of pops done before and begun after belong to this `head`.
+      const uint64_t done = pops_done.load(std::memory_order_acquire);
+      moves = head.load(std::memory_order_acquire) - first;
+      begun = pops_begun.load(std::memory_order_relaxed);
+      if (begun == done) {
+        break;
+      }
+    }
+    return moves - std::min(moves, begun);
+  }
+
   alignas(64) EntryBlocks sources;
   /// Sweeping: the publishers of sources below this index follow no reference to the subscription
   /// any more; under the registry lock.
@@ -78,6 +100,14 @@ struct SubscriptionHeader {
 };
 static_assert(sizeof(SubscriptionHeader) == 384);
 static_assert(offsetof(SubscriptionHeader, lost_beside_displaced) == 40);
+
+/// Size of a subscription's head with a queue of so many slots.
+constexpr uint64_t subscription_block_bytes(uint32_t slot_count_log2) noexcept {
+  return sizeof(SubscriptionHeader) + (uint64_t{8} << (slot_count_log2 & 31));
+}
+inline uint64_t block_bytes(const SubscriptionHeader & header) noexcept {
+  return subscription_block_bytes(header.slot_count_log2);
+}
 
 /// Hints; when the queue overflows, the subscriber resyncs.
 constexpr uint32_t keep_all_capacity = 1024;

@@ -16,6 +16,7 @@
 #include "platform/os_process.hpp"
 #include "platform/user_directory.hpp"
 #include "transport/matching/closing.hpp"
+#include "transport/matching/spare_blocks.hpp"
 #include "transport/registry/smem_charge.hpp"
 
 namespace manycore {
@@ -151,7 +152,9 @@ bool reap(Registry & registry, uint32_t process) {
       continue;
     }
     endpoints.require_all_closed();
-    if (nodes.remove_some(turn)) {
+    if (
+      nodes.remove_some(turn) &&
+      spare_blocks::free_some(registry, registry.processes()[process].spare, turn)) {
       note_death(registry, process);
       leave_registry(registry, process);
       return true;

@@ -78,7 +78,7 @@ private:
   std::vector<uint32_t> left_;  ///< slots not visited yet
 };
 
-/// Frees the slot of a process whose endpoints are closed and whose nodes are removed. The caller
+/// Frees the slot of a process without endpoints, nodes and a spare block. The caller
 /// holds the registry lock.
 void leave_registry(Registry & registry, uint32_t process);
 

@@ -12,8 +12,6 @@ namespace {
 constexpr uint64_t steps_of_growing = 200;
 constexpr uint64_t steps_of_a_page = 50;
 constexpr uint64_t page_bytes = 4096;
-/// Larger blocks are backed without the registry lock.
-constexpr uint64_t max_bytes_at_once = 4 * page_bytes;
 
 }  // namespace
 
@@ -22,7 +20,7 @@ template<typename Entry>
 Entry * FreeEntries::grow(const EntryTable<Entry> & table, Cluster & cluster) {
   const uint64_t bytes = table.next_block_bytes();
   turn_.spend(steps_of_growing + bytes / page_bytes * steps_of_a_page);
-  if (bytes <= max_bytes_at_once) {
+  if (bytes <= spare_blocks::max_bytes_at_once) {
     return &table.grow(cluster.ref_of(&cluster.allocate_cleared<Entry>(bytes)).offset());
   }
   if (!spare_.fits(SpareUse::entries, cluster.id(), bytes)) {

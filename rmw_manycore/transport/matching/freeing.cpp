@@ -156,14 +156,17 @@ Progress revoke_some(
 }
 
 /// Frees blocks of a table, last block first, as the turn allows. Returns true when none is left.
+/// Each block is freed as the spare block of the endpoint.
 template<typename Entry>
-bool free_some_of_table(Cluster & cluster, const EntryTable<Entry> & table, Turn & turn) {
-  while (!turn.is_over()) {
-    const uint64_t bytes = table.free_last(cluster);
-    if (bytes == 0) {
+bool free_some_of_table(
+  Registry & registry, EndpointEntry & entry, const EntryTable<Entry> & table, Turn & turn) {
+  while (spare_blocks::free_some(registry, entry.spare, turn)) {
+    const auto last = table.take_last();
+    if (!last) {
       return true;
     }
-    turn.spend_on_freeing(bytes);
+    entry.spare.put(
+      SpareUse::none, SegmentRef::make(entry.block.cluster(), last->offset), last->bytes);
   }
   return false;
 }
@@ -206,11 +209,13 @@ bool free_some_landings(
   return true;
 }
 
-/// Frees the head of an endpoint that holds no other memory. Clears the reference in the entry
-/// first: if this process dies in between, no repairer follows a reference to freed memory.
-void free_head(Cluster & cluster, EndpointEntry & entry, uint64_t bytes, Turn & turn) {
-  turn.spend_on_freeing(bytes);
-  cluster.free(std::exchange(entry.block, SegmentRef{}).offset(), bytes);
+/// Frees pieces of the head of an endpoint that holds no other memory. Clears the reference in the
+/// entry first: if this process dies in between, no repairer follows a reference to freed memory.
+Progress free_some_of_head(
+  Registry & registry, EndpointEntry & entry, uint64_t bytes, Turn & turn) {
+  entry.spare.put(SpareUse::none, std::exchange(entry.block, SegmentRef{}), bytes);
+  return spare_blocks::free_some(registry, entry.spare, turn) ? Progress::freed
+                                                              : Progress::freed_some;
 }
 
 /// True if the publisher of `source` holds no references into the subscription. Its reader entry
@@ -272,6 +277,9 @@ Progress see_publishers_out(
 Progress sweep_publisher(
   Registry & registry, WantedSources & wanted, ReaderPass & pass, uint32_t endpoint, Turn & turn) {
   EndpointEntry & entry = registry.endpoints()[endpoint];
+  if (!spare_blocks::free_some(registry, entry.spare, turn)) {
+    return Progress::freed_some;
+  }
   Cluster * const cluster = registry.map_cluster(entry.block.cluster());
   auto * const dsm = registry.map<TopicDsmHeader>(entry.block);
   if (cluster == nullptr || dsm == nullptr) {
@@ -290,17 +298,18 @@ Progress sweep_publisher(
     entry.slot.state.store(SlotState::unreachable);
   }
   if (
-    !spare_blocks::free_some(registry, entry.spare, turn) ||
     !free_some_landings(registry, *cluster, *dsm, turn) ||
     !free_some_generations(*cluster, *dsm, turn) ||
-    !free_some_of_table(*cluster, further_readers(*cluster, *dsm), turn)) {
+    !free_some_of_table(registry, entry, further_readers(*cluster, *dsm), turn)) {
     return Progress::freed_some;
   }
-  free_head(*cluster, entry, header_bytes(*dsm), turn);
-  return Progress::freed;
+  return free_some_of_head(registry, entry, header_bytes(*dsm), turn);
 }
 
 Progress sweep_subscription(Registry & registry, EndpointEntry & entry, Turn & turn) {
+  if (!spare_blocks::free_some(registry, entry.spare, turn)) {
+    return Progress::freed_some;
+  }
   Cluster * const cluster = registry.map_cluster(entry.block.cluster());
   auto * const header = registry.map<SubscriptionHeader>(entry.block);
   if (cluster == nullptr || header == nullptr) {
@@ -316,15 +325,10 @@ Progress sweep_subscription(Registry & registry, EndpointEntry & entry, Turn & t
     header->magic.store(0);
     entry.slot.state.store(SlotState::unreachable);
   }
-  if (
-    !spare_blocks::free_some(registry, entry.spare, turn) ||
-    !free_some_of_table(*cluster, source_table(*cluster, *header), turn)) {
+  if (!free_some_of_table(registry, entry, source_table(*cluster, *header), turn)) {
     return Progress::freed_some;
   }
-  free_head(
-    *cluster, entry, sizeof(SubscriptionHeader) + (uint64_t{8} << (header->slot_count_log2 & 31)),
-    turn);
-  return Progress::freed;
+  return free_some_of_head(registry, entry, block_bytes(*header), turn);
 }
 
 }  // namespace manycore::sweeping

@@ -46,9 +46,7 @@ void Registry::mark_blocks_of(EndpointEntry & entry) noexcept {
     if (subscription == nullptr) {
       return;
     }
-    mark(
-      entry.block.offset(),
-      sizeof(SubscriptionHeader) + (uint64_t{8} << (subscription->slot_count_log2 & 31)));
+    mark(entry.block.offset(), block_bytes(*subscription));
     source_table(*cluster, *subscription).visit_memory(mark);
     subscription->free_source_from = 0;
   }
@@ -77,6 +75,7 @@ void Registry::repair() {
     if (!processes_.is_live(slot)) {
       continue;
     }
+    spare_blocks::mark(clusters_, processes_[slot].spare);
     Cluster * const cluster = clusters_.find(processes_[slot].cluster);
     if (cluster != nullptr) {
       cluster->mark_charged(processes_[slot].charged_bytes);

@@ -41,8 +41,7 @@ bool await_another(Registry & registry, const SpareBlock & own, const Needed & n
   return was_made;
 }
 
-/// Stores `ref` last: a spare block with a reference counts as allocated. Entries are control
-/// blocks, which may use the reserve of the SMEM.
+/// Entries and queues are control blocks, which may use the reserve of the SMEM.
 void make(
   Registry & registry, const Membership & membership, SpareBlock & spare, const Needed & needed) {
   free_all(registry, membership, spare);
@@ -55,10 +54,7 @@ void make(
       cluster.require_message_room(needed.bytes);
     }
     offset = cluster.reserve(needed.bytes);
-    spare.use.store(needed.use);
-    spare.bytes.store(needed.bytes);
-    spare.kept_pieces.store(0);
-    spare.ref.store(SegmentRef::make(needed.cluster, offset).word);
+    spare.put(needed.use, SegmentRef::make(needed.cluster, offset), needed.bytes);
   }
   try {
     if (needed.use == SpareUse::landing) {

@@ -6,12 +6,15 @@
 #include "transport/registry/membership.hpp"
 #include "transport/registry/registry.hpp"
 
-/// The block that an endpoint makes for a match to come: its SMEM is reserved under the registry
-/// lock and backed with memory without it. The endpoint's entry leads to it, so it is freed with
-/// the endpoint if the process dies.
+/// A block for an endpoint or a match to come: its SMEM is reserved under the registry lock and
+/// backed with memory without it. The entry of the process or of the endpoint leads to it, so it is
+/// freed with these if the process dies.
 namespace manycore::spare_blocks {
 
-/// The block that a match needs.
+/// Larger blocks are backed, and freed, in more than one hold of the registry lock.
+constexpr uint64_t max_bytes_at_once = 16 << 10;
+
+/// The block that an endpoint or a match needs.
 struct Needed {
   SpareUse use;
   uint32_t cluster;
@@ -23,12 +26,12 @@ struct Needed {
 /// one that needs it. False if there is none, or it takes longer than five seconds.
 bool await_another(Registry & registry, const SpareBlock & own, const Needed & needed);
 
-/// Replaces the spare block of a live endpoint of this process. Takes the registry lock. Throws
-/// Error{no_space}, and the errors of `membership`.
+/// Replaces the spare block of this process, or of a live endpoint of it. Takes the registry lock.
+/// Throws Error{no_space}, and the errors of `membership`.
 void make(
   Registry & registry, const Membership & membership, SpareBlock & spare, const Needed & needed);
 
-/// Frees a spare block that no match has needed. Takes the registry lock.
+/// Frees a spare block that was not needed. Takes the registry lock.
 void free_all(Registry & registry, const Membership & membership, SpareBlock & spare);
 
 /// Frees pieces as the turn allows. True when none is left. The caller holds the registry lock.

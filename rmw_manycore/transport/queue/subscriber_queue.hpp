@@ -1,7 +1,6 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
 #include <optional>
 
@@ -56,37 +55,12 @@ private:
   uint32_t log2_;
 };
 
-/// Called once, before the subscription is visible to others. Lap 0 means "never filled", so
-/// positions start at lap 1.
+/// Called once, in cleared memory, before the subscription is visible to others. Lap 0 means "never
+/// filled", so positions start at lap 1.
 inline void initialize(SubscriptionHeader & header) noexcept {
   const uint64_t count = uint64_t{1} << header.slot_count_log2;
-  for (uint64_t i = 0; i < count; ++i) {
-    header.slots()[i].store(0, std::memory_order_relaxed);
-  }
   header.head.store(count, std::memory_order_relaxed);
   header.tail.store(count, std::memory_order_relaxed);
-  header.pops_begun.store(0, std::memory_order_relaxed);
-  header.pops_done.store(0, std::memory_order_relaxed);
-}
-
-/// Number of hints displaced by pushers: the moves of `head` that were no pops. Exact, unless pops
-/// overtake each attempt, or the popper died in one: then it may be too low by those that moved
-/// nothing before `head` was loaded, and never too high.
-inline uint64_t displaced(const SubscriptionHeader & header) noexcept {
-  constexpr int max_attempts = 100;
-  const uint64_t first = uint64_t{1} << (header.slot_count_log2 & 31);
-  uint64_t moves = 0;
-  uint64_t begun = 0;
-  for (int attempt = 0; attempt < max_attempts; ++attempt) {
-    // In this order: equal numbers of pops done before and begun after belong to this `head`.
-    const uint64_t done = header.pops_done.load(std::memory_order_acquire);
-    moves = header.head.load(std::memory_order_acquire) - first;
-    begun = header.pops_begun.load(std::memory_order_relaxed);
-    if (begun == done) {
-      break;
-    }
-  }
-  return moves - std::min(moves, begun);
 }
 
 /// Step 2 of ROS-lite2 Fig. 4 (step 1 inside a cluster): appends a hint and displaces the oldest

@@ -3,8 +3,6 @@
 
 #include <algorithm>
 
-#include "transport/queue/subscriber_queue.hpp"
-
 namespace manycore {
 
 MatchedCount matched_of(const EndpointEntry & entry) {
@@ -19,8 +17,8 @@ IncompatibleCount incompatible_of(const EndpointEntry & entry) {
 
 uint64_t lost_so_far(const EndpointEntry & entry, const SubscriptionHeader & header) {
   // The two words are independent, so their order does not matter; the sum may wrap.
-  const uint64_t by_displacements = subscriber_queue::displaced(header) +
-                                    header.lost_beside_displaced.load(std::memory_order_relaxed);
+  const uint64_t by_displacements =
+    header.displaced() + header.lost_beside_displaced.load(std::memory_order_relaxed);
   return std::max(entry.counters.lost.load(std::memory_order_relaxed), by_displacements);
 }
 

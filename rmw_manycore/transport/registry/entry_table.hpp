@@ -56,20 +56,20 @@ public:
     return std::nullopt;
   }
 
-  /// Frees the last block and returns its size, 0 if there is none. The caller holds the registry
-  /// lock.
-  uint64_t free_last(Cluster & cluster) const noexcept {
+  struct Block {
+    uint64_t offset;
+    uint64_t bytes;
+  };
+  /// Takes the last block off the table. The caller holds the registry lock.
+  std::optional<Block> take_last() const noexcept {
     uint32_t count = 0;
     while (count < max_entry_blocks && entries_of(count) != nullptr) {
       ++count;
     }
     if (count == 0) {
-      return 0;
+      return std::nullopt;
     }
-    std::atomic<uint64_t> & last = blocks_.offsets[count - 1];
-    cluster.free(last.load(), bytes_of(count - 1));
-    last.store(0, std::memory_order_release);
-    return bytes_of(count - 1);
+    return Block{blocks_.offsets[count - 1].exchange(0), bytes_of(count - 1)};
   }
 
   /// Calls `visit(offset, bytes)` for each block.

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 
-#include "transport/queue/subscriber_queue.hpp"
 #include "transport/registry/endpoint_blocks.hpp"
 
 namespace manycore {
@@ -45,7 +44,7 @@ void ReceptionCounts::count_lost(uint64_t count) noexcept {
 
 bool ReceptionCounts::needs_settling() const noexcept {
   return entry_.role != EndpointRole::reply &&
-         (unsettled_ || subscriber_queue::displaced(header_) != settled_displaced_);
+         (unsettled_ || header_.displaced() != settled_displaced_);
 }
 
 void ReceptionCounts::note_settled(uint64_t displaced) noexcept {

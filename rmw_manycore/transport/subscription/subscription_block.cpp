@@ -1,6 +1,7 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #include "transport/subscription/subscription_block.hpp"
 
+#include "platform/error.hpp"
 #include "transport/queue/subscriber_queue.hpp"
 
 namespace manycore::subscription_block {
@@ -14,22 +15,40 @@ uint32_t log2_at_least(uint32_t x) {
   return log2;
 }
 
+uint32_t depth_of(const Qos & qos) noexcept {
+  return qos.history == History::keep_all ? keep_all_capacity : qos.depth;
+}
+
+SubscriptionHeader & cleared_block(Cluster & cluster, uint64_t bytes, SpareBlock & spare) {
+  if (!spare.fits(SpareUse::queue, cluster.id(), bytes)) {
+    return cluster.allocate_cleared<SubscriptionHeader>(bytes);
+  }
+  auto * const made = cluster.find<SubscriptionHeader>(spare.take().offset(), bytes);
+  if (made == nullptr) {
+    throw Error(
+      ErrorCode::corrupt, "the registry is damaged; stop the nodes, run 'manycore clean'");
+  }
+  return *made;
+}
+
 }  // namespace
 
-SubscriptionHeader & create(Registry & registry, uint32_t endpoint_slot) {
+uint64_t bytes_for(const Qos & qos) noexcept {
+  return subscription_block_bytes(log2_at_least(depth_of(qos)));
+}
+
+SubscriptionHeader & create(Registry & registry, uint32_t endpoint_slot, SpareBlock & spare) {
   EndpointEntry & entry = registry.endpoints()[endpoint_slot];
   Cluster & cluster = registry.clusters().at(entry.cluster);
-  const bool keeps_all = entry.qos.history == History::keep_all;
-  const uint32_t depth = keeps_all ? keep_all_capacity : entry.qos.depth;
+  const uint32_t depth = depth_of(entry.qos);
   const uint32_t log2 = log2_at_least(depth);
-  auto & header = cluster.allocate_cleared<SubscriptionHeader>(
-    sizeof(SubscriptionHeader) + (uint64_t{8} << log2));
+  SubscriptionHeader & header = cleared_block(cluster, bytes_for(entry.qos), spare);
   header.endpoint.store(endpoint_slot);
   header.incarnation.store(entry.slot.incarnation);
   header.process.store(entry.process);
   header.depth = depth;
   header.slot_count_log2 = log2;
-  header.keep_all = keeps_all ? 1 : 0;
+  header.keep_all = entry.qos.history == History::keep_all ? 1 : 0;
   header.has_deadline = entry.qos.deadline_ns == infinite_ns ? 0 : 1;
   header.deadline_ns = entry.qos.deadline_ns;
   header.deadline.reset();

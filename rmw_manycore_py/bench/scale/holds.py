@@ -21,6 +21,8 @@ OPERATIONS = {
     "close_deep": "closing a publisher with 1,000 untaken messages",
     "close_server": "closing a server with 1,000 untaken replies",
     "free_large": "freeing a topic DSM of 16 MiB",
+    "create_queue": "creating a subscription of depth 65,535",
+    "free_queue": "freeing a subscription of depth 65,535",
     "reap": "reaping a killed process",
 }
 REPAIR = {"repair": "repairing after the owner of the lock was killed"}
