@@ -277,60 +277,81 @@ void reap(const PlatformPaths & paths) {
   sweeping::sweep_all(registry);
 }
 
+/// What the operations on one process's endpoints are measured with.
+struct Measurement {
+  void report(const std::string & operation) { ::report(holds.take_holds_ns(), operation, found); }
+  Process & process;
+  const EndpointSpec spec;
+  HoldWatch & holds;
+  bench::Counts & found;
+};
+
+/// Creates a topic of many endpoints, and closes some of them.
+void measure_changes(Measurement & on, Endpoints & endpoints, size_t count, size_t changes) {
+  Registry registry(PlatformPaths::of(on.process.placement().platform));
+  for (size_t i = 0; i < count; ++i) {
+    endpoints.add_one(on.process, on.spec);
+  }
+  on.report("create");
+  registry.header().needs_repair = 1;  // as if the owner of the lock had been killed
+  { const Registry::Lock lock(registry); }
+  on.process.add_node("next", "/", "/");  // once its hold is seen, that of the repair is noted
+  on.report("repair");
+  endpoints.publish_all();
+  endpoints.subscriptions.resize(endpoints.subscriptions.size() - changes);
+  on.report("close_subscription");
+  endpoints.publishers.resize(endpoints.publishers.size() - changes);
+  on.report("close_publisher");
+  endpoints.publish_all();
+  EndpointSpec other = on.spec;
+  other.topic = "/other";
+  for (size_t i = 0; i < changes; ++i) {
+    on.process.create_publisher(other);
+  }
+  on.report("sweep");
+}
+
+void measure_deep_histories(Measurement & on, size_t readers) {
+  for (const EndpointRole role : {EndpointRole::topic, EndpointRole::reply}) {
+    DeepHistory history(on.process, on.spec, role, readers);
+    on.holds.take_holds_ns();
+    history.publisher.reset();
+    on.report(role == EndpointRole::reply ? "close_server" : "close_deep");
+  }
+}
+
+/// Much memory at once: a grown topic DSM, and the queue of a subscription.
+void measure_memory(Measurement & on) {
+  auto large = large_publisher(on.process, on.spec);
+  on.holds.take_holds_ns();
+  large.reset();
+  on.report("free_large");
+  EndpointSpec deepest = on.spec;
+  deepest.topic = "/deepest";
+  deepest.qos.depth = UINT16_MAX;
+  auto subscription = on.process.create_subscription(deepest);
+  on.report("create_queue");
+  subscription.reset();
+  deepest.qos.depth = 1;
+  on.process.create_publisher(deepest);  // sweeps
+  on.report("free_queue");
+}
+
 void run(const bench::Arguments & arguments) {
   const size_t changes = arguments.number("changes");
+  const size_t count = arguments.number("endpoints");
   Victim victim(changes);
   const auto process = Process::join(Placement::from_environment(0));
   const EndpointSpec spec = spec_of(*process);
   Registry registry(PlatformPaths::of(process->placement().platform));
   HoldWatch holds(registry.header(), arguments.number("cpu"));
   bench::Counts found;
+  Measurement on{*process, spec, holds, found};
   report_control(found);
   Endpoints endpoints;
-  for (size_t i = 0; i < arguments.number("endpoints"); ++i) {
-    endpoints.add_one(*process, spec);
-  }
-  report(holds.take_holds_ns(), "create", found);
-  registry.header().needs_repair = 1;  // as if the owner of the lock had been killed
-  { const Registry::Lock lock(registry); }
-  process->add_node("next", "/", "/");  // once its hold is seen, that of the repair is noted
-  report(holds.take_holds_ns(), "repair", found);
-  endpoints.publish_all();
-  endpoints.subscriptions.resize(endpoints.subscriptions.size() - changes);
-  report(holds.take_holds_ns(), "close_subscription", found);
-  endpoints.publishers.resize(endpoints.publishers.size() - changes);
-  report(holds.take_holds_ns(), "close_publisher", found);
-  endpoints.publish_all();
-  EndpointSpec other = spec;
-  other.topic = "/other";
-  for (size_t i = 0; i < changes; ++i) {
-    process->create_publisher(other);
-  }
-  report(holds.take_holds_ns(), "sweep", found);
-  for (const EndpointRole role : {EndpointRole::topic, EndpointRole::reply}) {
-    DeepHistory history(*process, spec, role, arguments.number("endpoints"));
-    holds.take_holds_ns();
-    history.publisher.reset();
-    report(
-      holds.take_holds_ns(), role == EndpointRole::reply ? "close_server" : "close_deep", found);
-  }
-  {
-    auto large = large_publisher(*process, spec);
-    holds.take_holds_ns();
-    large.reset();
-    report(holds.take_holds_ns(), "free_large", found);
-  }
-  EndpointSpec deepest = spec;
-  deepest.topic = "/deepest";
-  deepest.qos.depth = UINT16_MAX;
-  {
-    holds.take_holds_ns();
-    auto subscription = process->create_subscription(deepest);
-    report(holds.take_holds_ns(), "create_queue", found);
-    subscription.reset();
-    process->create_publisher(other);  // sweeps
-    report(holds.take_holds_ns(), "free_queue", found);
-  }
+  measure_changes(on, endpoints, count, changes);
+  measure_deep_histories(on, count);
+  measure_memory(on);
   victim.join_platform();
   {
     const Standstill receive_thread(registry);
@@ -338,7 +359,7 @@ void run(const bench::Arguments & arguments) {
     victim.kill();
     reap(registry.paths());
   }
-  report(holds.take_holds_ns(), "reap", found);
+  on.report("reap");
   bench::print_samples({}, found);
   std::fflush(stdout);
   _exit(EXIT_SUCCESS);  // closing all endpoints is not part of the measurement
