@@ -34,9 +34,29 @@ def receive_threads_of(platform: str) -> list[int]:
 
 
 def has_receive_threads(platform: str) -> bool:
-    """Return whether every cluster that a process has joined has its receive thread."""
-    clusters = entries(PLATFORMS / platform, "cluster-*.pipe")
-    return not clusters or len(receive_threads_of(platform)) >= len(clusters)
+    """Return whether every cluster that a process has joined has its receive thread.
+
+    Nothing replaces one that was killed after the last process of its cluster.
+    """
+    clusters = len(entries(PLATFORMS / platform, "cluster-*.pipe"))
+    missing = clusters - len(receive_threads_of(platform))
+    return missing <= 0 or missing <= _deserted_clusters(platform)
+
+
+def _deserted_clusters(platform: str) -> int:
+    """Return how many clusters without a process have lost their receive thread."""
+    from rmw_manycore_py._transport import Platform, PlatformError
+
+    try:
+        with Platform(platform) as view:
+            clusters = view.clusters()
+            inhabited = {process.cluster for process in view.processes() if process.alive}
+    except PlatformError:  # just made, or already removed
+        return 0
+    return sum(
+        cluster.receive_thread_pid != 0 and not cluster.alive and cluster.id not in inhabited
+        for cluster in clusters
+    )
 
 
 def kill(pid: int) -> None:
