@@ -100,6 +100,7 @@ install_extra() {
 
 missing_for_tests() {
   command -v spin >/dev/null || echo spin
+  command -v tcc >/dev/null || echo tcc
   command -v ip >/dev/null || echo iproute2
   command -v zsh >/dev/null || echo zsh
   command -v fish >/dev/null || echo fish
