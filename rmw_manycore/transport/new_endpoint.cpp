@@ -61,9 +61,11 @@ uint32_t new_endpoint(
 }
 
 uint32_t enter_graph(
-  Registry & registry, const EndpointSpec & spec, EndpointKind kind, uint32_t process) {
+  Registry & registry, const Membership & membership, const EndpointSpec & spec, EndpointKind kind,
+  uint32_t process) {
   const TopicEntry * const configured = registry.find_topic(spec.topic);  // entries never change
   const Registry::Lock lock(registry);
+  membership.require();  // else the spare block may be that of the next process with this slot
   const uint32_t taken = new_endpoint(registry, spec, kind, process);
   EndpointEntry & entry = registry.endpoints()[taken];
   entry.topic_dsm_size = configured == nullptr ? 0 : configured->topic_dsm_size;

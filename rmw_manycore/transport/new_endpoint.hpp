@@ -2,6 +2,7 @@
 #pragma once
 
 #include "transport/layout/endpoint.hpp"
+#include "transport/registry/membership.hpp"
 #include "transport/registry/registry.hpp"
 
 namespace manycore {
@@ -14,8 +15,10 @@ uint32_t new_endpoint(
 
 /// Creates an endpoint of a process with its block, live and unmatched: if the process dies before
 /// it is matched, or halfway, the reaper undoes its matches. A large queue has its block from the
-/// spare block of the process. Takes the registry lock. Throws as new_endpoint().
+/// spare block of the process. Takes the registry lock. Throws as new_endpoint(), and
+/// Error{system} if the process is no member any more.
 uint32_t enter_graph(
-  Registry & registry, const EndpointSpec & spec, EndpointKind kind, uint32_t process);
+  Registry & registry, const Membership & membership, const EndpointSpec & spec, EndpointKind kind,
+  uint32_t process);
 
 }  // namespace manycore

@@ -240,14 +240,14 @@ uint32_t Process::Impl::publish_endpoint(const EndpointSpec & spec, EndpointKind
   const uint64_t bytes =
     kind == EndpointKind::subscription ? subscription_block::bytes_for(spec.qos) : 0;
   if (bytes <= spare_blocks::max_bytes_at_once) {
-    return enter_graph(*registry, spec, kind, slot);
+    return enter_graph(*registry, *membership, spec, kind, slot);
   }
   const std::lock_guard<std::mutex> guard(spare_mutex);
   SpareBlock & spare = registry->processes()[slot].spare;
   spare_blocks::make(
     *registry, *membership, spare, {SpareUse::queue, placement.cluster, bytes, bytes});
   try {
-    return enter_graph(*registry, spec, kind, slot);
+    return enter_graph(*registry, *membership, spec, kind, slot);
   } catch (...) {
     spare_blocks::free_all(*registry, *membership, spare);
     throw;

@@ -34,6 +34,12 @@ void subscribe_by_steps(const Arguments & arguments, uint32_t depth) {
   finish_steps();
 }
 
+uint64_t resident_bytes(const TestPlatform & platform) {
+  struct stat status {};
+  REQUIRE(stat(platform.paths().cluster(1).c_str(), &status) == 0);
+  return static_cast<uint64_t>(status.st_blocks) * 512;
+}
+
 const Role subscribes("subscribes", [](Lines &, const Arguments & arguments) {
   subscribe_by_steps(arguments, 1);
 });
@@ -181,6 +187,27 @@ TEST_CASE("a large queue is backed with memory without the registry lock, and fr
   }
   CHECK(turns >= 4);
   CHECK(inspection.used_bytes() == used);
+}
+
+TEST_CASE("a large block goes back to the system whole, wherever its pieces end") {
+  constexpr uint64_t page = 4096;
+  constexpr uint64_t bytes = 5 * page;
+  const TestPlatform platform;
+  const auto process = platform.join(1);
+  Inspection inspection(platform);
+  const Registry::Lock lock(inspection.registry());
+  Cluster & cluster = inspection.registry().clusters().at(1);
+  for (uint64_t shift = 0; shift < freed_piece_bytes; shift += page) {
+    CAPTURE(shift);
+    cluster.allocate(page);
+    const uint64_t before = resident_bytes(platform);
+    const uint64_t offset = cluster.allocate(bytes);
+    CHECK(resident_bytes(platform) == before + bytes);
+    for (uint32_t kept = cluster.free_last_piece(offset, bytes, 0); kept != 0;) {
+      kept = cluster.free_last_piece(offset, bytes, kept);
+    }
+    CHECK(resident_bytes(platform) == before);
+  }
 }
 
 TEST_CASE("a process that dies with a queue in hand leaves none of it") {

@@ -25,8 +25,8 @@ struct alignas(64) RecordDescriptor {
 };
 static_assert(sizeof(RecordDescriptor) == 64);
 
-/// The SMEM of a generation is freed in pieces that begin at multiples of this size. Freeing a
-/// piece takes about 30 us.
+/// The SMEM of generations, landings and spare blocks is freed in pieces that begin at multiples of
+/// this size. Freeing a piece takes about 30 us.
 constexpr uint64_t freed_piece_bytes = 64 << 10;
 /// Offset at which the last piece of [begin, begin + bytes) begins.
 constexpr uint64_t last_piece_of(uint64_t begin, uint64_t bytes) {

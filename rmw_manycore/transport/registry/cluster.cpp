@@ -264,7 +264,9 @@ void Cluster::back(uint64_t offset, uint64_t length) const {
   memory_.reserve_and_populate(offset, granules_of(length) * granule_bytes_);
 }
 
-void Cluster::free(uint64_t offset, uint64_t length) noexcept {
+void Cluster::free(uint64_t offset, uint64_t length) noexcept { free_part(offset, length, length); }
+
+void Cluster::free_part(uint64_t offset, uint64_t length, uint64_t block_bytes) noexcept {
   ClusterHeader & head = header();
   const uint64_t count = granules_of(length);
   if (!contains(offset, count * granule_bytes_)) {
@@ -272,7 +274,7 @@ void Cluster::free(uint64_t offset, uint64_t length) noexcept {
   }
   note_freed(offset / granule_bytes_, count);
   head.used_bytes.fetch_sub(count * granule_bytes_, std::memory_order_relaxed);
-  if (count * granule_bytes_ >= min_hole_bytes) {
+  if (granules_of(block_bytes) * granule_bytes_ >= min_hole_bytes) {
     memory_.release(offset, count * granule_bytes_);
   }
 }
@@ -287,7 +289,7 @@ Cluster::LastPiece Cluster::last_piece(
 
 uint32_t Cluster::free_last_piece(uint64_t offset, uint64_t length, uint32_t kept_pieces) noexcept {
   const LastPiece piece = last_piece(offset, length, kept_pieces);
-  free(piece.offset, piece.length);
+  free_part(piece.offset, piece.length, length);
   return piece.kept_pieces;
 }
 

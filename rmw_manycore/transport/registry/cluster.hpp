@@ -132,6 +132,8 @@ public:
 private:
   uint64_t * granule_map() const noexcept { return &memory_.at<uint64_t>(granule_map_offset); }
   bool granule_used(uint64_t index) const noexcept;
+  /// Frees a part of a block; see free().
+  void free_part(uint64_t offset, uint64_t length, uint64_t block_bytes) noexcept;
   void set_granules(uint64_t first, uint64_t count, bool used) const noexcept;
   uint64_t find_granule(uint64_t from, bool used) const noexcept;
   uint64_t used_before() const noexcept;
