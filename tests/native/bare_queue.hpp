@@ -33,7 +33,7 @@ public:
     manycore::subscriber_queue::push(*header_, hint, [](const manycore::Hint &) {});
   }
   std::optional<manycore::Hint> pop() noexcept { return manycore::subscriber_queue::pop(*header_); }
-  uint64_t displaced() const noexcept { return header_->displaced(); }
+  uint64_t displaced() const noexcept { return header_->displaced().hints; }
   bool empty() noexcept { return manycore::subscriber_queue::empty(*header_); }
 
 private:

@@ -33,6 +33,12 @@ struct alignas(64) SourceEntry {
 };
 static_assert(sizeof(SourceEntry) == 64);
 
+/// Number of hints that pushers displaced from a queue.
+struct DisplacedCount {
+  uint64_t hints;
+  bool is_exact;  ///< else it may be too low
+};
+
 /// Head of a subscription. The slots of its queue follow.
 struct SubscriptionHeader {
   std::atomic<uint32_t> magic;
@@ -69,10 +75,10 @@ struct SubscriptionHeader {
     return has_deadline != 0 && deadline.touch(deadline_ns);
   }
 
-  /// Number of hints displaced by pushers: the moves of `head` that were no pops. Exact, unless
-  /// pops overtake each attempt, or the popper died in one: then it may be too low by those that
-  /// moved nothing before `head` was loaded, and never too high.
-  uint64_t displaced() const noexcept {
+  /// The moves of `head` that were no pops. Not exact if pops overtake each attempt, or if the
+  /// popper stands in one, or died there: then those are missing that moved nothing before `head`
+  /// was loaded.
+  DisplacedCount displaced() const noexcept {
     constexpr int max_attempts = 100;
     const uint64_t first = uint64_t{1} << (slot_count_log2 & 31);
     uint64_t moves = 0;
@@ -83,10 +89,10 @@ struct SubscriptionHeader {
       moves = head.load(std::memory_order_acquire) - first;
       begun = pops_begun.load(std::memory_order_relaxed);
       if (begun == done) {
-        break;
+        return {moves - std::min(moves, begun), true};
       }
     }
-    return moves - std::min(moves, begun);
+    return {moves - std::min(moves, begun), false};
   }
 
   alignas(64) EntryBlocks sources;

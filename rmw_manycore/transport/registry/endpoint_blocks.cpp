@@ -15,11 +15,14 @@ IncompatibleCount incompatible_of(const EndpointEntry & entry) {
     entry.incompatible_total.load(), static_cast<QosPolicy>(entry.incompatible_policy.load())};
 }
 
-uint64_t lost_so_far(const EndpointEntry & entry, const SubscriptionHeader & header) {
-  // The two words are independent, so their order does not matter; the sum may wrap.
-  const uint64_t by_displacements =
-    header.displaced() + header.lost_beside_displaced.load(std::memory_order_relaxed);
-  return std::max(entry.counters.lost.load(std::memory_order_relaxed), by_displacements);
+uint64_t lost_so_far(
+  const EndpointEntry & entry, const SubscriptionHeader & header, uint64_t displaced) {
+  const uint64_t lost = entry.counters.lost.load(std::memory_order_relaxed);
+  const uint64_t beside = header.lost_beside_displaced.load(std::memory_order_relaxed);
+  // Negative after a displaced double, and while `displaced` is older than the other two or not
+  // exact. Both sums wrap.
+  const auto more = static_cast<int64_t>(displaced + beside - lost);
+  return lost + static_cast<uint64_t>(std::max<int64_t>(more, 0));
 }
 
 void notify_watchers(Registry & registry, const SubscriptionHeader & header) {

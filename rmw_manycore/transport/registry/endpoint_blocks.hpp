@@ -16,7 +16,9 @@ IncompatibleCount incompatible_of(const EndpointEntry & entry);
 
 /// Messages that a subscription has lost as far as is known: those found missing by publication
 /// sequence number, or the hints displaced since the subscriber last checked, whichever is more.
-uint64_t lost_so_far(const EndpointEntry & entry, const SubscriptionHeader & header);
+/// `displaced`: SubscriptionHeader::displaced() of now.
+uint64_t lost_so_far(
+  const EndpointEntry & entry, const SubscriptionHeader & header, uint64_t displaced);
 
 /// Wakes threads that wait for messages of the subscription, or for events of the process.
 void notify_watchers(Registry & registry, const SubscriptionHeader & header);

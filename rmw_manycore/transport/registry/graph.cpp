@@ -17,7 +17,8 @@ CounterValues read_counters(Registry & registry, const EndpointEntry & entry) {
                        counters.dropped.load()};
   if (entry.kind == EndpointKind::subscription) {
     const auto * const header = registry.clusters().find<SubscriptionHeader>(entry.block);
-    values.lost = header == nullptr ? values.lost : lost_so_far(entry, *header);
+    values.lost =
+      header == nullptr ? values.lost : lost_so_far(entry, *header, header->displaced().hints);
   }
   return values;
 }

@@ -2,6 +2,8 @@
 #include "transport/subscription/reception_counts.hpp"
 
 #include <algorithm>
+#include <chrono>
+#include <thread>
 
 #include "transport/registry/endpoint_blocks.hpp"
 
@@ -44,7 +46,7 @@ void ReceptionCounts::count_lost(uint64_t count) noexcept {
 
 bool ReceptionCounts::needs_settling() const noexcept {
   return entry_.role != EndpointRole::reply &&
-         (unsettled_ || header_.displaced() != settled_displaced_);
+         (unsettled_ || header_.displaced().hints != settled_displaced_);
 }
 
 void ReceptionCounts::note_settled(uint64_t displaced) noexcept {
@@ -55,7 +57,15 @@ void ReceptionCounts::note_settled(uint64_t displaced) noexcept {
 }
 
 uint64_t ReceptionCounts::lost() const noexcept {
-  const uint64_t now = lost_so_far(entry_, header_);
+  // A thread that was woken for a displaced hint has to find it: nothing wakes it again. A popper
+  // of this process waits in a pop for nothing but a CPU; only a damaged queue needs more looks.
+  constexpr int max_looks = 20'000;
+  DisplacedCount displaced = header_.displaced();
+  for (int look = 0; !displaced.is_exact && look < max_looks; ++look) {
+    std::this_thread::sleep_for(std::chrono::microseconds(50));
+    displaced = header_.displaced();
+  }
+  const uint64_t now = lost_so_far(entry_, header_, displaced.hints);
   uint64_t reported = reported_lost_.load(std::memory_order_relaxed);
   while (reported < now && !reported_lost_.compare_exchange_weak(reported, now)) {
   }

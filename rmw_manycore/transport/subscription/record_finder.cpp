@@ -160,7 +160,7 @@ void RecordFinder::settle() noexcept {
     return;
   }
   // Load before the sources are checked: later displacements count next time.
-  const uint64_t displaced = header_.displaced();
+  const uint64_t displaced = header_.displaced().hints;
   bool all = true;
   bool some_finished = false;
   for (Source & source : sources_) {
