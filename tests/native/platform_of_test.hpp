@@ -107,7 +107,7 @@ struct Refusal {
 };
 
 template<typename Act>
-Refusal refusal_of(Act act) {
+Refusal refusal_of(const Act & act) {
   try {
     act();
   } catch (const manycore::Error & error) {
