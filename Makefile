@@ -6,14 +6,14 @@ VENV := .venv/bin
 INSTALLED := build/install
 JOBS ?= $(shell nproc)
 # Tests in parallel: most wait most of the time, but each needs memory and a few ROS domains.
-TEST_JOBS ?= $(shell n=$$((2 * $$(nproc))); echo $$((n < 8 ? n : 8)))
+TEST_JOBS ?= $(shell n=$$((2 * $$(nproc) + 1)); echo $$((n < 8 ? n : 8)))
 # These tests cover platform, transport and scan matcher, so they need no ROS.
 TESTS_ALONE := -DMANYCORE_BUILD_RMW=OFF -DMANYCORE_BUILD_PYTHON=OFF -DMANYCORE_BUILD_FUZZ=OFF
 NATIVE_SOURCES := $(shell find CMakeLists.txt cmake startup rmw_manycore \
 	-type f -not -name '*.md')
 
-.PHONY: help setup demo demo-whill wheel test test-native stress soak sanitize fuzz bench lint \
-	tidy docs pictures clean
+.PHONY: help setup demo demo-whill wheel test test-native test-long stress soak sanitize fuzz \
+	bench lint tidy docs pictures clean
 
 help:  ## print this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -39,7 +39,10 @@ demo-whill: setup .venv/bench  ## drive the wheelchair of ROS-lite2 40 m, locali
 test: test-native  ## all tests except the long ones
 	$(VENV)/pytest -n $(TEST_JOBS)
 
-stress: setup .venv/tests  ## the long tests: random kills, many nodes
+test-long: setup .venv/tests  ## what takes ten seconds and more: drives, benches, tutorials
+	$(VENV)/pytest -n $(TEST_JOBS) -m "long and not stress"
+
+stress: test-long  ## what takes longer still: random kills, many nodes
 	$(VENV)/pytest -m stress
 
 HOURS ?= 1

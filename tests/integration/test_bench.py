@@ -1,7 +1,7 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 """Every bench runs in its shortest form; no figure is compared with a limit.
 
-What still takes half a minute of CPU time is left to `make stress`.
+What still takes half a minute of CPU time is marked `stress`, and what takes ten seconds `long`.
 """
 
 from __future__ import annotations
@@ -74,7 +74,7 @@ def test_a_contender_that_does_not_exist_is_an_error() -> None:
         ("rclpy", *RCLPY),
         ("startup", *STARTUP),
         ("memory", *OWN),
-        ("ros-lite", *SPLIT),
+        pytest.param(("ros-lite", *SPLIT), marks=pytest.mark.long),
         pytest.param(("ros-lite", *PIPELINE), marks=pytest.mark.stress),
     ],
     ids=[
@@ -174,6 +174,7 @@ def test_simulated_time_crosses_the_bridge() -> None:
     assert all(row["median"] > 0 for row in rows)
 
 
+@pytest.mark.long
 def test_simulated_time_moves_the_clocks_of_rclpy_nodes() -> None:
     rows = run_bench("scale", "--only", "node with use_sim_time per time it gets")["results"]
     assert {row["at"] for row in rows} == {5}
@@ -199,6 +200,7 @@ def test_publishing_beside_a_deep_history_is_measured() -> None:
     assert all(row["median"] > 0 for row in rows)
 
 
+@pytest.mark.long
 def test_composed_nodes_are_measured_with_each_executor() -> None:
     rows = run_bench("scale", "--only", "next in its process: manycore")["results"]
     assert len(rows) == 2 * 4 * 2
@@ -213,6 +215,7 @@ def test_nodes_of_two_processes_are_measured_with_each_executor() -> None:
     assert all(row["median"] > 0 for row in rows)
 
 
+@pytest.mark.long
 def test_nodes_do_not_wake_each_other() -> None:
     def sleep_on() -> bool:
         report = run_bench("scale", "--only", "until each topic has its subscription: manycore")
@@ -228,6 +231,7 @@ def test_nodes_do_not_wake_each_other() -> None:
     assert comes_once(sleep_on)
 
 
+@pytest.mark.long
 def test_scan_matching_is_measured_alone_and_split() -> None:
     report = run_bench("ndt", "--only", "rmw_manycore")
     units = {result["unit"] for result in report["results"]}
@@ -259,6 +263,7 @@ def test_a_plot_needs_a_place() -> None:
     assert "--output" in result.stderr
 
 
+@pytest.mark.long
 def test_bridge() -> None:
     report = run_bench("bridge", *BRIDGE)
     assert {result["contender"] for result in report["results"]} >= {"bridged", FAST_DDS_AND_OURS}
@@ -271,6 +276,7 @@ def test_images_that_reach_another_host_are_counted() -> None:
     assert all(0 < row["median"] <= 100 for row in rows)
 
 
+@pytest.mark.long
 def test_the_reference_system_is_measured_and_loses_nothing_where_all_is_kept() -> None:
     parts = only("checked: manycore", "untouched, cycles 0: manycore")
     rows = {row["question"]: row for row in run_bench("reference", *parts)["results"]}

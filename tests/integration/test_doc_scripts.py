@@ -49,14 +49,15 @@ SHOWN = {
     "how-to/troubleshooting.md": (),
     "how-to/where_does_the_time_go.md": (r"communication /camera/image_inverted",),
 }
-LONG = {
-    "how-to/where_does_the_time_go.md",
-    "tutorials/offload_ndt.md",
-    "tutorials/own_stack.md",
+MARKS = {
+    "how-to/ros2_launch.md": pytest.mark.long,
+    "how-to/where_does_the_time_go.md": pytest.mark.stress,
+    "tutorials/first_mapfile.md": pytest.mark.long,
+    "tutorials/laptop_to_chip.md": pytest.mark.long,
+    "tutorials/offload_ndt.md": pytest.mark.stress,
+    "tutorials/own_stack.md": pytest.mark.stress,
 }
-PAGES = [
-    pytest.param(page, marks=pytest.mark.stress if page in LONG else ()) for page in sorted(SHOWN)
-]
+PAGES = [pytest.param(page, marks=MARKS.get(page, ())) for page in sorted(SHOWN)]
 
 
 @pytest.fixture

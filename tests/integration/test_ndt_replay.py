@@ -186,6 +186,7 @@ def check_closed_loop(rows: Path, figures: dict[str, Any]) -> None:
     assert figures["within_share"] * figures["scans"] >= 0.99 * figures["answered"]
 
 
+@pytest.mark.long
 def test_a_whole_stack_on_the_platform(start, platform, street, tmp_path):
     """Voxel filter, pose initializer, matcher and EKF form a closed loop."""
     stack = start(manycore_command("run", MAPFILES / "ndt_stack.yaml"))
@@ -203,6 +204,7 @@ def test_motion_of_the_reference(start, offload, street):
     assert "REFERENCE's motion with 5% error" in figures["guesses"]
 
 
+@pytest.mark.long
 def test_a_drive_with_motion_distortion_at_twice_its_rate(start, platform, tmp_path):
     """The LiDAR turns faster, as the vehicle drives faster: deskewing still fits.
 
@@ -224,6 +226,7 @@ def test_a_drive_with_motion_distortion_at_twice_its_rate(start, platform, tmp_p
     assert figures["error_m_max"] < 0.1
 
 
+@pytest.mark.long
 def test_no_scan_is_lost_while_maps_are_swapped(start, platform, tmp_path):
     """The matcher reads the map tiles around the vehicle while it drives."""
     drive, tiles = tmp_path / "drive.npz", tmp_path / "tiles"
@@ -263,6 +266,7 @@ def echo_of_poses(start: Any, platform: str) -> Program:
     return echo
 
 
+@pytest.mark.long
 def test_an_inward_bridge_that_stops_for_a_while(start, platform, tmp_path):
     """At 15 m/s beside other load, poses are right or missing, and the loop recovers.
 
@@ -298,6 +302,7 @@ def test_an_inward_bridge_that_stops_for_a_while(start, platform, tmp_path):
     assert all(float(error) < 0.5 for error in errors_m if error), errors_m
 
 
+@pytest.mark.long
 def test_a_killed_matcher_is_started_again_and_finds_itself(start, platform, tmp_path):
     """By the mapfile, without a first pose; at 10 Hz at most 10 scans get no pose.
 
@@ -348,6 +353,7 @@ def scans_of_a_new_matcher(scans: list[dict[str, str]]) -> float:
 
 
 @needs_data
+@pytest.mark.long
 def test_a_recorded_drive_in_closed_loop(start, offload):
     """Hand-held, turning by up to 50 degrees between scans; half of the scans made the map.
 
@@ -361,6 +367,7 @@ def test_a_recorded_drive_in_closed_loop(start, offload):
 
 
 @needs_data
+@pytest.mark.long
 def test_a_recorded_drive_with_the_whole_stack(start, platform, tmp_path):
     """The same recording; the sensor also moves sideways, which the speed does not contain.
 

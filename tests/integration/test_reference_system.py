@@ -101,6 +101,7 @@ def has_heard_all_for_long(run: Program) -> bool:
     )
 
 
+@pytest.mark.long
 def test_24_nodes_run_for_ten_seconds_and_lose_nothing(
     start: Callable[..., Program], mapfile: Path, platform: str
 ) -> None:

@@ -95,6 +95,7 @@ def edges_on(platform: str) -> set[tuple[str, str, str, str]]:
     ],
     ids=["after", "two derivatives, two searches and a merge", "before"],
 )
+@pytest.mark.long
 def test_a_vehicle_is_driven(
     start: Start, platform: str, map_path: Path, tmp_path: Path, variant: dict[str, Any]
 ) -> None:

@@ -45,6 +45,7 @@ def driven(start: Any, course: Path, *options: str) -> dict[str, Any]:
     return {**json.loads("{" + figures), "said": head}
 
 
+@pytest.mark.long
 def test_the_gate_dies_on_the_way_and_the_vehicle_drives_on(start, platform, course):
     """The vehicle stands while no command passes, and is engaged again."""
     options = ("--run", "--timeout", str(LONG_S), "--duration", "15", "--fault")
@@ -65,6 +66,7 @@ def test_the_gate_dies_on_the_way_and_the_vehicle_drives_on(start, platform, cou
         pytest.param("wheels", 15, "the standard deviation of the speed", marks=pytest.mark.stress),
     ],
 )
+@pytest.mark.long
 def test_a_sensor_that_stops(start, platform, course, sensor, duration_s, said):
     """Without wheels there is no twist, without LiDAR no pose: the vehicle stops on its way."""
     options = ("--run", "--timeout", str(LONG_S), "--duration", str(duration_s))
@@ -73,6 +75,7 @@ def test_a_sensor_that_stops(start, platform, course, sensor, duration_s, said):
     assert figures["stands"] >= 1
 
 
+@pytest.mark.long
 def test_without_a_first_pose_the_vehicle_stands(start, platform, course, tmp_path):
     """Only the nodes that drive run on the platform, none that estimates a pose."""
     mapfile = yaml.safe_load((course / "whill.yaml").read_text())
