@@ -152,7 +152,7 @@ def test_a_death_is_told_from_a_leave(talking, platform, start) -> None:
 def test_a_platform_that_is_half_removed_has_ended(start, platform) -> None:
     start(forked_example("listener"))
     with closing(Watch(platform)) as watch, closing(Watch(platform)) as late:
-        wait_until(watch.look, "it is there")
+        wait_until(lambda: (look := watch.look()) and look.graph.endpoints, "the node is there")
         (PLATFORMS / platform / "cluster-1.pipe").unlink()
         assert watch.look() is None
         assert [one.text for one in watch.last_words] == [f"platform {platform} has ended"]
