@@ -39,7 +39,7 @@ demo-whill: setup .venv/bench  ## drive the wheelchair of ROS-lite2 40 m, locali
 test: test-native  ## all tests except the long ones
 	$(VENV)/pytest -n $(TEST_JOBS)
 
-test-long: setup .venv/tests  ## what takes ten seconds and more: drives, benches, tutorials
+test-long: setup .venv/tests  ## what takes ten seconds and more: drives, benches, tutorials, wheel
 	$(VENV)/pytest -n $(TEST_JOBS) -m "long and not stress"
 
 stress: test-long  ## what takes longer still: random kills, many nodes

@@ -27,4 +27,5 @@ case "$*" in
   *SANITIZE*) skipped='^(test_killed.*|test_damaged_running|test_unmappable_cluster)$' ;;
   *) skipped='^$' ;;
 esac
-ctest --test-dir "$build" --output-on-failure --no-tests=error -E "$skipped" -j "$jobs"
+# One more than CPUs: those that step through processes wait for each step.
+ctest --test-dir "$build" --output-on-failure --no-tests=error -E "$skipped" -j $((jobs + 1))

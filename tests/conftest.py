@@ -21,7 +21,7 @@ from fork_server import ForkServer, is_inside
 from isolation import Isolation
 from peers import PeerServers
 from processes import has_receive_threads
-from scheduling import make_scheduler
+from scheduling import begin_with_longest, make_scheduler
 from support import (
     IS_MANYCORE,
     TESTS,
@@ -63,6 +63,10 @@ def pytest_runtest_setup(item: pytest.Item) -> None:
     needed = {name for mark in item.iter_markers("needs") for name in mark.args}
     if missing := [name for name in sorted(needed) if not is_installed(name)]:
         pytest.fail(f"missing: {', '.join(missing)}; run scripts/setup.sh tests", pytrace=False)
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    begin_with_longest(items)
 
 
 @pytest.hookimpl(optionalhook=True)

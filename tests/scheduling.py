@@ -9,6 +9,13 @@ import pytest
 
 # One worker runs all tests of files with these prefixes: they share an expensive fixture.
 TOGETHER = ("tests/integration/test_install", "tests/integration/test_interface_build.py")
+# Begun first: one that takes a minute and begins last keeps the other workers waiting.
+FIRST = ("tests/integration/test_doc_scripts.py", *TOGETHER)
+
+
+def begin_with_longest(items: list[pytest.Item]) -> None:
+    """Sort tests as they are handed out."""
+    items.sort(key=lambda item: not item.nodeid.startswith(FIRST))
 
 
 def make_scheduler(config: pytest.Config, log: Any) -> Any:

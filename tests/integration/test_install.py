@@ -19,7 +19,7 @@ import pytest
 from installing import Installation, build_wheel, run
 from support import MAPFILES, REPOSITORY, environment, unique_platform
 
-pytestmark = pytest.mark.integration
+pytestmark = [pytest.mark.integration, pytest.mark.long]
 
 BUILT_MESSAGES = {path.name for path in (REPOSITORY / "interfaces").iterdir()}
 STAND_INS = {"librmw_fastrtps_cpp.so", "librmw_fastrtps_shared_cpp.so", "libfastrtps.so.2.14"}

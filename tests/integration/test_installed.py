@@ -14,7 +14,7 @@ import pytest
 from installing import Installation, run
 from support import REPOSITORY, Program, environment, wait_until
 
-pytestmark = pytest.mark.integration
+pytestmark = [pytest.mark.integration, pytest.mark.long]
 
 HOSTILE = (
     *("random", "yaml", "logging", "rclpy", "types", "numpy", "signal", "selectors", "json"),

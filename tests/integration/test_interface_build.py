@@ -19,6 +19,7 @@ from rmw_manycore_py.routes import arranged
 
 pytestmark = [
     pytest.mark.integration,
+    pytest.mark.long,
     pytest.mark.skipif(not IS_MANYCORE, reason="manycore is about rmw_manycore"),
 ]
 

@@ -11,7 +11,7 @@ from rmw_manycore_py.bench.ndt.trust_helpers import Here
 from rmw_manycore_py.bench.summary import Result
 from rmw_manycore_py.ndt.trust.judge import PoseJudge, Verdict
 
-pytestmark = pytest.mark.unit
+pytestmark = [pytest.mark.unit, pytest.mark.long]
 
 
 @pytest.fixture(scope="module")
