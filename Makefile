@@ -7,6 +7,8 @@ INSTALLED := build/install
 JOBS ?= $(shell nproc)
 # Tests in parallel: most wait most of the time, but each needs memory and a few ROS domains.
 TEST_JOBS ?= $(shell n=$$((2 * $$(nproc) + 1)); echo $$((n < 8 ? n : 8)))
+# Long tests work most of the time, and some drive in real time.
+LONG_TEST_JOBS ?= $(shell echo $$(($$(nproc) + 1)))
 # These tests cover platform, transport and scan matcher, so they need no ROS.
 TESTS_ALONE := -DMANYCORE_BUILD_RMW=OFF -DMANYCORE_BUILD_PYTHON=OFF -DMANYCORE_BUILD_FUZZ=OFF
 NATIVE_SOURCES := $(shell find CMakeLists.txt cmake startup rmw_manycore \
@@ -40,7 +42,7 @@ test: test-native  ## all tests except the long ones
 	$(VENV)/pytest -n $(TEST_JOBS)
 
 test-long: setup .venv/tests  ## what takes ten seconds and more: drives, benches, tutorials, wheel
-	$(VENV)/pytest -n $(TEST_JOBS) -m "long and not stress"
+	$(VENV)/pytest -n $(LONG_TEST_JOBS) -m "long and not stress"
 
 stress: test-long  ## what takes longer still: random kills, many nodes
 	$(VENV)/pytest -m stress

@@ -175,13 +175,17 @@ def check_closed_loop(rows: Path, figures: dict[str, Any]) -> None:
     """Check that each pose is right, and that scans without one are refused for a reason.
 
     The loop runs at a rate of its own: on a machine that stands still for a moment, scans are
-    skipped for a newer one, or the newest guess is too old for them.
+    skipped for a newer one, or the newest guess is too old for them. Where it misleads the matcher,
+    that lets no pose out.
     """
     assert figures["diverged"] == 0
     with rows.open() as file:
         scans = list(csv.DictReader(file))
     lost = [row["reason"] for row in scans if row["state"] == "lost"]
-    assert all(reason.startswith(("skipped", "Couldn't interpolate pose")) for reason in lost), lost
+    misled = [reason for reason in lost if reason.startswith("the pose is implausible")]
+    assert len(misled) <= 0.02 * len(scans), misled
+    late = ("skipped", "Couldn't interpolate pose")
+    assert all(reason.startswith(late) for reason in lost if reason not in misled), lost
     assert figures["answered"] > 0
     assert figures["within_share"] * figures["scans"] >= 0.99 * figures["answered"]
 
