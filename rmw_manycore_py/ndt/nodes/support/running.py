@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import sys
+import time
 from collections.abc import Callable
 from contextlib import suppress
 
@@ -12,6 +13,8 @@ from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
 
 from rmw_manycore_py.errors import ManycoreError
+
+_SHUTDOWN_S = 1.0  # far more than rclpy takes from a signal until its context is shut down
 
 
 def run_node(make: Callable[[], Node]) -> None:
@@ -27,8 +30,16 @@ def run_node(make: Callable[[], Node]) -> None:
         try:
             rclpy.spin(node)
         except RuntimeError:
-            if rclpy.ok():
-                raise
             # Interrupted while rclpy converted a message, which it reports as an error of its own.
+            if not _is_shut_down():
+                raise
     node.destroy_node()
     rclpy.try_shutdown()
+
+
+def _is_shut_down() -> bool:
+    """Return whether rclpy is interrupted: another thread shuts down, soon after the signal."""
+    until_s = time.monotonic() + _SHUTDOWN_S
+    while rclpy.ok() and time.monotonic() < until_s:
+        time.sleep(0.01)
+    return not rclpy.ok()
