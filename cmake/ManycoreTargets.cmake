@@ -55,8 +55,8 @@ function(manycore_library name kind directory)
   endforeach()
   add_library(${name} ${kind} ${sources})
   target_link_libraries(${name} PUBLIC manycore_options)
-  # Half of the time of compiling goes to these. clang-tidy, which precompiles nothing, finds files
-  # that do not include what they use.
+  # Precompiled, these save g++ a fifth of its time, and clang more. clang-tidy, which precompiles
+  # nothing, finds files that do not include what they use.
   target_precompile_headers(${name} PRIVATE
     <algorithm> <atomic> <functional> <memory> <mutex> <optional> <string> <thread> <vector>)
 endfunction()

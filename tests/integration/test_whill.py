@@ -62,11 +62,10 @@ def test_the_gate_dies_on_the_way_and_the_vehicle_drives_on(start, platform, cou
 @pytest.mark.parametrize(
     ("sensor", "duration_s", "said"),
     [
-        ("lidar", 15, "the standard deviation of the position"),
+        pytest.param("lidar", 15, "the standard deviation of the position", marks=pytest.mark.long),
         pytest.param("wheels", 15, "the standard deviation of the speed", marks=pytest.mark.stress),
     ],
 )
-@pytest.mark.long
 def test_a_sensor_that_stops(start, platform, course, sensor, duration_s, said):
     """Without wheels there is no twist, without LiDAR no pose: the vehicle stops on its way."""
     options = ("--run", "--timeout", str(LONG_S), "--duration", str(duration_s))

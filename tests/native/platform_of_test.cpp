@@ -3,6 +3,7 @@
 
 #include <dirent.h>
 #include <doctest/doctest.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -76,6 +77,10 @@ bool is_starting(pid_t pid) {
 }
 
 }  // namespace
+
+bool is_asleep(pid_t thread) {
+  return status_of("/proc/self/task/" + std::to_string(thread)).state == 'S';
+}
 
 bool is_running(pid_t pid) {
   // A killed process holds its locks until its last thread has ended.
@@ -183,6 +188,12 @@ Standstill::Standstill(const TestPlatform & platform, uint32_t cluster)
 : pid_(platform.stop_receive_thread(cluster)) {}
 
 Standstill::~Standstill() { kill(pid_, SIGCONT); }
+
+uint64_t Inspection::resident_bytes(uint32_t cluster) const {
+  struct stat status {};
+  REQUIRE(stat(registry_.paths().cluster(cluster).c_str(), &status) == 0);
+  return static_cast<uint64_t>(status.st_blocks) * 512;
+}
 
 uint64_t Inspection::used_bytes(uint32_t cluster) {
   return registry_.clusters().at(cluster).header().used_bytes.load();

@@ -56,6 +56,8 @@ public:
 
   manycore::Registry & registry() noexcept { return registry_; }
   uint64_t used_bytes(uint32_t cluster = 1);
+  /// Memory that backs a cluster's segment.
+  uint64_t resident_bytes(uint32_t cluster = 1) const;
   uint32_t live_endpoints();
   uint32_t live_processes();
   /// Slot of the live endpoint with this gid.
@@ -77,6 +79,9 @@ private:
 
 /// True if a process runs; false for a zombie.
 bool is_running(pid_t pid);
+
+/// True while a thread of this process sleeps.
+bool is_asleep(pid_t thread);
 
 /// True while a process has a descriptor of this file.
 bool has_open(pid_t pid, const std::string & file);

@@ -5,8 +5,6 @@
 #include <doctest/doctest.h>
 
 #include <atomic>
-#include <fstream>
-#include <string>
 #include <thread>
 
 #include "bare_queue.hpp"
@@ -22,14 +20,6 @@ namespace {
 void stand_in_a_pop(SubscriptionHeader & header) { header.pops_begun = header.pops_done + 1; }
 
 void leave_the_pop(SubscriptionHeader & header) { header.pops_begun = header.pops_done.load(); }
-
-bool is_asleep(pid_t thread) {
-  std::ifstream file("/proc/self/task/" + std::to_string(thread) + "/stat");
-  std::string skipped;
-  char state = 0;
-  file >> skipped >> skipped >> state;
-  return state == 'S';
-}
 
 }  // namespace
 

@@ -7,7 +7,6 @@
 
 #include <fcntl.h>
 #include <sys/mount.h>
-#include <sys/stat.h>
 #include <sys/statvfs.h>
 #include <unistd.h>
 
@@ -71,12 +70,7 @@ const Role reserver("reserver", [](Lines & test, const Arguments & arguments) {
 
 struct Fixture {
   uint64_t used_bytes() { return inspection.used_bytes(); }
-  /// Memory that backs the cluster's segment.
-  uint64_t resident_bytes() const {
-    struct stat status {};
-    stat(platform.paths().cluster(1).c_str(), &status);
-    return static_cast<uint64_t>(status.st_blocks) * 512;
-  }
+  uint64_t resident_bytes() const { return inspection.resident_bytes(); }
   /// A process stopped in the middle of backing a large message.
   Child stopped_while_it_backs() {
     while (true) {

@@ -4,8 +4,6 @@
 // the system once a smaller ring has sufficed for long, and no reference leads into it any more.
 #include <doctest/doctest.h>
 
-#include <sys/stat.h>
-
 #include "messages.hpp"
 #include "platform_of_test.hpp"
 #include "transport/layout/topic_dsm_layout.hpp"
@@ -47,11 +45,7 @@ struct Fixture {
     }
     return newest;
   }
-  uint64_t resident_bytes() const {
-    struct stat status {};
-    stat(platform.paths().cluster(1).c_str(), &status);
-    return static_cast<uint64_t>(status.st_blocks) * 512;
-  }
+  uint64_t resident_bytes() const { return inspection.resident_bytes(); }
   uint64_t used_bytes() { return inspection.used_bytes(); }
 
   TestPlatform platform;

@@ -5,7 +5,6 @@
 #include <doctest/doctest.h>
 
 #include <sys/mount.h>
-#include <sys/stat.h>
 #include <sys/statvfs.h>
 
 #include <algorithm>
@@ -34,12 +33,6 @@ void subscribe_by_steps(const Arguments & arguments, uint32_t depth) {
   finish_steps();
 }
 
-uint64_t resident_bytes(const TestPlatform & platform) {
-  struct stat status {};
-  REQUIRE(stat(platform.paths().cluster(1).c_str(), &status) == 0);
-  return static_cast<uint64_t>(status.st_blocks) * 512;
-}
-
 const Role subscribes("subscribes", [](Lines &, const Arguments & arguments) {
   subscribe_by_steps(arguments, 1);
 });
@@ -50,12 +43,6 @@ constexpr uint64_t deep_bytes = 512 << 10;  ///< of its queue
 const Role subscribes_deep("subscribes_deep", [](Lines &, const Arguments & arguments) {
   subscribe_by_steps(arguments, deep);
 });
-
-uint64_t file_bytes(const std::string & path) {
-  struct stat status {};
-  REQUIRE(stat(path.c_str(), &status) == 0);
-  return static_cast<uint64_t>(status.st_blocks) * 512;
-}
 
 bool is_any_made(Registry & registry) {
   for (uint32_t slot = 0; slot < registry.processes().high_water(); ++slot) {
@@ -77,24 +64,26 @@ Profile profile_of(uint64_t smem_bytes) {
   return profile;
 }
 
-/// Memory that the file of a cluster gets while a child creates an endpoint.
+/// Memory that the segment of a cluster gets while a child creates an endpoint.
 struct Backed {
   uint64_t without_lock = 0;
   uint64_t in_longest_hold = 0;  ///< in one hold of the registry lock, the largest
 };
 
-Backed run_to_end(SteppedChild & child, const std::string & file, Registry & registry) {
+Backed run_to_end(SteppedChild & child, Inspection & inspection, uint32_t cluster) {
+  const RegistryHeader & header = inspection.registry().header();
   Backed backed;
   uint64_t in_hold = 0;
   uint64_t hold = 0;
-  for (uint64_t before = file_bytes(file); !child.finished();) {
-    const uint64_t changes = registry.header().changes.load();
+  for (uint64_t before = inspection.resident_bytes(cluster); !child.finished();) {
+    const uint64_t changes = header.changes.load();
     in_hold = changes == hold ? in_hold : 0;
     hold = changes;
     child.run_to_system_call();
-    const uint64_t more = file_bytes(file) - std::min(file_bytes(file), before);
-    before = file_bytes(file);
-    const bool was_locked = changes % 2 != 0 && registry.header().changes.load() == changes;
+    const uint64_t now = inspection.resident_bytes(cluster);
+    const uint64_t more = now - std::min(now, before);
+    before = now;
+    const bool was_locked = changes % 2 != 0 && header.changes.load() == changes;
     in_hold += was_locked ? more : 0;
     backed.without_lock += was_locked ? 0 : more;
     backed.in_longest_hold = std::max(backed.in_longest_hold, in_hold);
@@ -141,7 +130,7 @@ struct FromAfar {
 TEST_CASE("a landing is backed with memory without the registry lock") {
   FromAfar f;
   SteppedChild child("subscribes", {f.platform.name(), "2"});
-  const Backed backed = run_to_end(child, f.platform.paths().cluster(2), f.inspection.registry());
+  const Backed backed = run_to_end(child, f.inspection, 2);
   CHECK(backed.without_lock >= dsm_bytes);
   CHECK(backed.in_longest_hold < dsm_bytes / 8);
 }
@@ -150,7 +139,7 @@ TEST_CASE("a large block of a table is backed with memory without the registry l
   Crowd f;
   const uint64_t used = f.inspection.used_bytes();
   SteppedChild child("subscribes", {f.platform.name(), "1"});
-  const Backed backed = run_to_end(child, f.platform.paths().cluster(1), f.inspection.registry());
+  const Backed backed = run_to_end(child, f.inspection, 1);
   CHECK(f.publishers.back()->matched().current == 1);
   CHECK(f.inspection.used_bytes() >= used + 2 * large_block_bytes - 4096);  // with the smaller ones
   CHECK(backed.without_lock >= large_block_bytes);
@@ -164,7 +153,7 @@ TEST_CASE("a large queue is backed with memory without the registry lock, and fr
   const uint64_t used = inspection.used_bytes();
   {
     SteppedChild child("subscribes_deep", {platform.name(), "1"});
-    const Backed backed = run_to_end(child, platform.paths().cluster(1), inspection.registry());
+    const Backed backed = run_to_end(child, inspection, 1);
     CHECK(backed.without_lock >= deep_bytes);
     CHECK(backed.in_longest_hold < deep_bytes / 8);
     CHECK_FALSE(is_any_made(inspection.registry()));
@@ -200,13 +189,13 @@ TEST_CASE("a large block goes back to the system whole, wherever its pieces end"
   for (uint64_t shift = 0; shift < freed_piece_bytes; shift += page) {
     CAPTURE(shift);
     cluster.allocate(page);
-    const uint64_t before = resident_bytes(platform);
+    const uint64_t before = inspection.resident_bytes();
     const uint64_t offset = cluster.allocate(bytes);
-    CHECK(resident_bytes(platform) == before + bytes);
+    CHECK(inspection.resident_bytes() == before + bytes);
     for (uint32_t kept = cluster.free_last_piece(offset, bytes, 0); kept != 0;) {
       kept = cluster.free_last_piece(offset, bytes, kept);
     }
-    CHECK(resident_bytes(platform) == before);
+    CHECK(inspection.resident_bytes() == before);
   }
 }
 
