@@ -42,7 +42,7 @@ test: test-native  ## all tests except the long ones
 	$(VENV)/pytest -n $(TEST_JOBS)
 
 test-long: setup .venv/tests  ## what takes ten seconds and more: drives, benches, tutorials, wheel
-	$(VENV)/pytest -n $(LONG_TEST_JOBS) -m long
+	$(VENV)/pytest -n $(LONG_TEST_JOBS) -m "long and not stress"
 
 stress: test-long  ## what takes longer still: random kills, many nodes
 	$(VENV)/pytest -m stress

@@ -9,35 +9,47 @@ import pytest
 
 pytestmark = pytest.mark.rmw
 
-# As pybind11 does with an interrupt that arrives while it converts a message. The thread of rclpy
-# that shuts down gets no CPU before this one waits, where the user may arrange that.
 NODE = """
-import contextlib, os, signal
+import signal, time
+import rclpy
 from rclpy.node import Node
+from std_msgs.msg import String
 from rmw_manycore_py.ndt.nodes.support.running import run_node
 
-class Converting(Node):
+def interrupt():
+    signal.raise_signal(signal.SIGINT)
+    while rclpy.ok():
+        time.sleep(0.01)
+    print("went on")
+
+class Interrupted(Node):
     def __init__(self):
-        super().__init__("converting")
-        self.create_timer(0.01, self.convert)
+        super().__init__("interrupted")
+        if {where!r} == "creating":
+            interrupt()
+        self.publisher = self.create_publisher(String, "/name", 1)
+        self.create_timer(0.01, self.work)
 
-    def convert(self):
-        with contextlib.suppress(PermissionError):
-            os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(1))
-        try:
-            if {interrupted}:
-                signal.raise_signal(signal.SIGINT)
-        finally:
-            raise RuntimeError("Unable to convert call argument '0' to Python object")
+    def work(self):
+        if {where!r} == "in a callback":
+            interrupt()
+            self.publisher.publish(String())
+        raise RuntimeError("an error of its own")
 
-os.sched_setaffinity(0, list(os.sched_getaffinity(0))[:1])
-run_node(Converting)
+run_node(Interrupted)
 """
 
 
-@pytest.mark.parametrize(("interrupted", "status"), [(True, 0), (False, 1)])
-def test_an_interrupt_that_became_an_error(start, interrupted, status) -> None:
-    """The error arrives before rclpy has shut down, which another thread of it does."""
-    node = start([sys.executable, "-c", NODE.format(interrupted=interrupted)])
-    assert node.wait() == status, node
-    assert ("Unable to convert" in node.output) == (status == 1), node
+@pytest.mark.parametrize("where", ["creating", "in a callback"])
+def test_an_interrupt_ends_the_node_at_its_next_call(start, where) -> None:
+    """It raises nothing where it arrives, as rclpy does not expect it everywhere."""
+    node = start([sys.executable, "-c", NODE.format(where=where)])
+    assert node.wait() == 0, node
+    assert "went on" in node.output, node
+    assert "Traceback" not in node.output, node
+
+
+def test_an_error_of_the_node_is_reported(start) -> None:
+    node = start([sys.executable, "-c", NODE.format(where="nowhere")])
+    assert node.wait() == 1, node
+    assert "an error of its own" in node.output, node

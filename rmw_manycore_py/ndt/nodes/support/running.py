@@ -3,10 +3,10 @@
 
 from __future__ import annotations
 
+import signal
 import sys
-import time
-from collections.abc import Callable
-from contextlib import suppress
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 
 import rclpy
 from rclpy.executors import ExternalShutdownException
@@ -14,32 +14,33 @@ from rclpy.node import Node
 
 from rmw_manycore_py.errors import ManycoreError
 
-_SHUTDOWN_S = 1.0  # far more than rclpy takes from a signal until its context is shut down
-
 
 def run_node(make: Callable[[], Node]) -> None:
     """Create a node and spin it; its `destroy_node` releases its resources."""
+    # rclpy's own handler ends spinning. A KeyboardInterrupt inside of rclpy may become another
+    # error, or one that Python prints and ignores.
+    signal.signal(signal.SIGINT, lambda _number, _frame: None)
     rclpy.init()
-    try:
-        node = make()
-    except ManycoreError as error:
-        print(error, file=sys.stderr)
-        rclpy.try_shutdown()
-        sys.exit(error.exit_status)
-    with suppress(KeyboardInterrupt, ExternalShutdownException):
+    with _until_interrupted():
         try:
+            node = make()
+        except ManycoreError as error:
+            print(error, file=sys.stderr)
+            rclpy.try_shutdown()
+            sys.exit(error.exit_status)
+        with _until_interrupted():
             rclpy.spin(node)
-        except RuntimeError:
-            # Interrupted while rclpy converted a message, which it reports as an error of its own.
-            if not _is_shut_down():
-                raise
-    node.destroy_node()
+        node.destroy_node()
     rclpy.try_shutdown()
 
 
-def _is_shut_down() -> bool:
-    """Return whether rclpy is interrupted: another thread shuts down, soon after the signal."""
-    until_s = time.monotonic() + _SHUTDOWN_S
-    while rclpy.ok() and time.monotonic() < until_s:
-        time.sleep(0.01)
-    return not rclpy.ok()
+@contextmanager
+def _until_interrupted() -> Iterator[None]:
+    """End the block where the interrupt invalidated the context that a call needs."""
+    try:
+        yield
+    except ExternalShutdownException:
+        pass
+    except RuntimeError:  # of rcl
+        if rclpy.ok():
+            raise
