@@ -7,6 +7,8 @@ import json
 import os
 import shutil
 import socket
+import sys
+from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
@@ -23,13 +25,18 @@ SECTIONS = [
     *("platforms", "bridges", "mapfiles", "log"),
 ]
 
-WITHOUT_PACKAGES = """
+# A Python that runs a script without these packages, and so do the programs that it starts.
+WITHOUT_PACKAGES = f"""#!{sys.executable}
+import runpy
 import sys
 class Missing:
     def find_spec(self, name, path=None, target=None):
         if name in ("rmw_manycore_bridge", "pydantic", "rclpy"):
-            raise ModuleNotFoundError(f"No module named {name!r}", name=name)
+            raise ModuleNotFoundError(f"No module named {{name!r}}", name=name)
 sys.meta_path.insert(0, Missing())
+sys.executable = __file__
+del sys.argv[0]
+runpy.run_path(sys.argv[0], run_name="__main__")
 """
 
 
@@ -37,9 +44,10 @@ sys.meta_path.insert(0, Missing())
 def report(start, tmp_path):
     """Return a function that makes a report in JSON and returns its text and its sections."""
 
-    def make(*words: str | Path, **variables: str) -> tuple[str, dict]:
+    def make(*words: str | Path, python: Sequence[Path] = (), **variables: str) -> tuple[str, dict]:
         file = tmp_path / "report.json"
-        program = start(manycore_command("doctor", "--report", file, *words), **variables)
+        command = manycore_command("doctor", "--report", file, *words)
+        program = start([*python, *command], **variables)
         assert program.wait() == 0, program
         text = file.read_text()
         sections = json.loads(text)
@@ -108,8 +116,10 @@ def test_a_damaged_platform_hides_no_other(start, platform, report):
 
 
 def test_with_packages_missing_each_section_says_so(report, tmp_path):
-    (tmp_path / "sitecustomize.py").write_text(WITHOUT_PACKAGES)
-    _, sections = report("--mapfile", "talker_listener", PYTHONPATH=str(tmp_path))
+    python = tmp_path / "python"
+    python.write_text(WITHOUT_PACKAGES)
+    python.chmod(0o755)
+    _, sections = report("--mapfile", "talker_listener", python=[python])
     assert "No module named 'pydantic'" in sections["mapfiles"]
     assert "No module named 'rmw_manycore_bridge'" in sections["bridges"]
     checks = {row["subject"]: row for row in sections["checks"]}
