@@ -1,8 +1,9 @@
 #!/bin/sh
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #
-# Builds and runs the native tests: scripts/native_tests.sh BUILD_DIR [CMAKE_OPTION..]
-# An existing build directory keeps its options, and only the tests are compiled.
+# Compiles and runs the native tests: scripts/native_tests.sh BUILD_DIR [CMAKE_OPTION..]
+# An existing build directory keeps its options, and only the tests are compiled. With COMPILE_ONLY
+# set, none runs.
 set -eu
 cd "$(dirname "$0")/.."
 build=$1
@@ -16,6 +17,7 @@ cmake -S . -B "$build" -G Ninja -DMANYCORE_BUILD_TESTS=ON "$@" >"$build.log" 2>&
 }
 python scripts/progress.py "$build.log" "compiling native tests in $build" \
   cmake --build "$build" -j "$jobs"
+[ -z "${COMPILE_ONLY:-}" ] || exit 0
 # Tests skipped under sanitizers:
 # - test_killed and test_killed_crowd single-step instructions, which would take minutes.
 # - test_damaged_running crashes on damaged memory, on which a sanitizer's report may hang.
