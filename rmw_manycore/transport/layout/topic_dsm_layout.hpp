@@ -25,12 +25,14 @@ struct alignas(64) RecordDescriptor {
 };
 static_assert(sizeof(RecordDescriptor) == 64);
 
-/// The SMEM of generations, landings and spare blocks is freed in pieces that begin at multiples of
-/// this size. Freeing a piece takes about 30 us.
+/// The memory behind a block of at least this size goes back to the system: a hole in the SMEM.
+constexpr uint64_t min_hole_bytes = 16 << 10;
+/// The SMEM of generations, landings and spare blocks is freed in pieces of at most this size, which
+/// begin at multiples of it or with the block.
 constexpr uint64_t freed_piece_bytes = 64 << 10;
 /// Offset at which the last piece of [begin, begin + bytes) begins.
 constexpr uint64_t last_piece_of(uint64_t begin, uint64_t bytes) {
-  const uint64_t piece = bytes == 0 ? 0 : (begin + bytes - 1) / freed_piece_bytes;
+  const uint64_t piece = bytes <= freed_piece_bytes ? 0 : (begin + bytes - 1) / freed_piece_bytes;
   return piece * freed_piece_bytes > begin ? piece * freed_piece_bytes : begin;
 }
 /// Bytes that are left of [begin, begin + bytes) by `kept_pieces`; see GenerationEntry.

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "platform/clock.hpp"
+#include "transport/layout/topic_dsm_layout.hpp"
 
 namespace manycore {
 
@@ -19,12 +20,14 @@ public:
 
   bool is_over() const noexcept { return left_ == 0 || is_late_; }
   uint32_t spent() const noexcept { return steps - left_; }
+  /// True in the first half, as a hole in the SMEM may take as long as a turn.
+  bool may_free() const noexcept { return !is_over() && left_ >= steps / 2; }
 
-  /// Charges what it takes to free so much SMEM and the memory behind it.
-  void spend_on_freeing(uint64_t bytes) noexcept {
-    constexpr uint64_t steps_of_a_system_call = 20;
+  /// Charges what it takes to free so much of a block. A hole takes 30 to 60 us whatever its size,
+  /// because other CPUs are interrupted; so there is at most one in a turn.
+  void spend_on_freeing(uint64_t bytes, uint64_t block_bytes) noexcept {
     constexpr uint64_t bytes_in_a_step = 128;
-    spend(steps_of_a_system_call + bytes / bytes_in_a_step);
+    spend((block_bytes < min_hole_bytes ? 0 : steps / 2) + 1 + bytes / bytes_in_a_step);
   }
 
   void spend(uint64_t cost) noexcept {

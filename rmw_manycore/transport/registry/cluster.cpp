@@ -13,8 +13,6 @@ namespace manycore {
 namespace {
 
 constexpr uint32_t page_bytes = 4096;
-/// A hole costs time for each process that maps the cluster, about 0.2 us, whatever its size.
-constexpr uint64_t min_hole_bytes = 16 << 10;
 
 /// 1 KiB for small SMEMs, one page for large ones.
 uint32_t granule_size(uint64_t smem_bytes) { return smem_bytes <= (64u << 20) ? 1024 : page_bytes; }
