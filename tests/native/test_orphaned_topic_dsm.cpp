@@ -279,6 +279,41 @@ TEST_CASE("a server with a deep history is closed in turns, also within the look
   CHECK(resync_of(*bystanders.front()) == 0);
 }
 
+TEST_CASE("a deep history is swept in turns, also within the look at one publisher") {
+  Fixture f;
+  const Standstill no_other_sweeper(f.platform, 1);
+  constexpr uint32_t depth = 20'000;
+  constexpr size_t records_in_a_turn = Turn::steps * Turn::records_in_a_step;
+  const auto subscription = f.subscription(keep_last(depth));
+  auto former = f.publisher(keep_last(depth));
+  const auto newer = f.publisher(keep_last(depth));
+  for (uint32_t number = 1; number <= depth; ++number) {
+    former->publish(former->draft(8), 8, number);
+  }
+  const auto slot = static_cast<uint32_t>(endpoint_in(former->gid()));
+  Registry & registry = f.inspection.registry();
+  const auto turns_of_a_round = [&] {
+    sweeping::Round round(registry);
+    size_t turns = 1;
+    for (; !round.sweep_some_of(slot); ++turns) {
+    }
+    return turns;
+  };
+  for (uint32_t number = 1; number < depth; ++number) {
+    newer->publish(newer->draft(8), 8, depth + number);
+  }
+  former.reset();
+  {
+    const Registry::Lock lock(registry);
+    CHECK(turns_of_a_round() > 3 * depth / records_in_a_turn);
+    CHECK(f.inspection.closing_endpoints() == 1);
+  }
+  newer->publish(newer->draft(8), 8, 2 * depth);
+  const Registry::Lock lock(registry);
+  CHECK(turns_of_a_round() > 3 * depth / records_in_a_turn);
+  CHECK(f.inspection.closing_endpoints() == 0);
+}
+
 TEST_CASE("a subscription with many publishers is freed in turns") {
   Fixture f;
   const Standstill no_other_sweeper(f.platform, 1);

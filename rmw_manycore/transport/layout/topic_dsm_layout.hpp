@@ -27,8 +27,8 @@ static_assert(sizeof(RecordDescriptor) == 64);
 
 /// The memory behind a block of at least this size goes back to the system: a hole in the SMEM.
 constexpr uint64_t min_hole_bytes = 16 << 10;
-/// The SMEM of generations, landings and spare blocks is freed in pieces of at most this size, which
-/// begin at multiples of it or with the block.
+/// The SMEM of generations, landings and spare blocks is freed in pieces of at most this size,
+/// which begin at multiples of it or with the block.
 constexpr uint64_t freed_piece_bytes = 64 << 10;
 /// Offset at which the last piece of [begin, begin + bytes) begins.
 constexpr uint64_t last_piece_of(uint64_t begin, uint64_t bytes) {
@@ -84,6 +84,12 @@ struct ReaderEntry {
 };
 static_assert(sizeof(ReaderEntry) == 32);
 
+/// A descriptor of a topic DSM.
+struct DescriptorPlace {
+  uint32_t generation;  ///< index in `generations`
+  uint32_t descriptor;  ///< index in this generation
+};
+
 constexpr uint32_t readers_in_header = 14;
 
 /// Head of a topic DSM: one writer, many readers.
@@ -101,9 +107,9 @@ struct TopicDsmHeader {
   uint32_t process;           ///< slot of the publisher's process
   uint32_t free_reader_from;  ///< no reader below this index is free; under the registry lock
   Gid gid;
-  /// Closing: descriptors below this index hold no reply to reader `closed_before`; under the
+  /// Closing: descriptors before this one hold no reply to reader `closed_before`; under the
   /// registry lock.
-  uint32_t looked_before;
+  DescriptorPlace looked_before;
 
   /// Written by the publisher for each message, read by all readers.
   alignas(64) std::atomic<uint64_t> last;  ///< highest record number published

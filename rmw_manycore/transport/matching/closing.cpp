@@ -125,7 +125,7 @@ bool close_some_of_publisher(Registry & registry, EndpointEntry & entry, bool di
       turn.spend(steps_of_an_entry);
       stopped = !notify_entry_of_end(registry, entry, *cluster, *dsm, reader_entry, died, turn);
       if (!stopped) {
-        dsm->looked_before = 0;  // first: the search for the next reader starts anew
+        dsm->looked_before = {};  // first: the search for the next reader starts anew
         dsm->closed_before = index + 1;
       }
       return stopped;

@@ -52,20 +52,6 @@ bool receive_threads_are_out(Registry & registry) {
   return true;
 }
 
-/// True if nothing that the reader has not taken will come. What a dead mover left without a hint,
-/// the reader is asked to look for.
-bool gets_no_more(Registry & registry, const OrphanReader & reader, Turn & turn) {
-  if (!closing::is_abandoned(registry, reader, turn)) {
-    return false;
-  }
-  if (!closing::has_arrived(registry, reader)) {
-    return true;
-  }
-  reader.subscription.resync.store(1, std::memory_order_seq_cst);
-  notify_watchers(registry, reader.subscription);
-  return false;
-}
-
 /// Revokes the source of a reader that has taken all of the topic DSM that it can, or that wants
 /// newer messages of other publishers instead.
 Progress revoke(
@@ -77,7 +63,7 @@ Progress revoke(
     if (!is_wanted) {
       return Progress::turn_over;
     }
-    if (*is_wanted && !gets_no_more(registry, reader, turn)) {
+    if (*is_wanted) {
       return Progress::kept;
     }
     // Dekker with the claim: the reader stores `reading` before it loads the state.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <tuple>
+#include <utility>
 
 #include "transport/queue/source_table.hpp"
 #include "transport/registry/endpoint_blocks.hpp"
@@ -14,49 +15,64 @@ namespace {
 
 constexpr uint32_t processes_in_a_step = 16;
 
-/// Calls `visit(RecordDescriptor &, index)` for each descriptor of open generations from index
-/// `from` on, until it returns true. Indices continue from one generation to the next.
+/// Calls `visit(RecordDescriptor &)` for each descriptor of open generations from `place` on, until
+/// it returns true. False if the turn ended before: `place` is where the next turn goes on. It is a
+/// slot of the generations, so what a publisher adds or frees between two turns may be missed, but
+/// nothing is visited twice.
 template<typename Visit>
-void visit_descriptors(const Cluster & cluster, TopicDsmHeader & dsm, uint32_t from, Visit visit) {
-  uint32_t begin = 0;
-  for (GenerationEntry & generation : dsm.generations) {
+bool visit_descriptors(
+  const Cluster & cluster, TopicDsmHeader & dsm, DescriptorPlace & place, Turn & turn,
+  Visit visit) {
+  for (DescriptorPlace at = std::exchange(place, {}); at.generation < max_generations;
+       at = {at.generation + 1, 0}) {
+    const GenerationEntry & generation = dsm.generations[at.generation];
     const uint32_t count = generation.descriptor_count.load();
     auto * const descriptors = cluster.find<RecordDescriptor>(
       generation.offset.load(), uint64_t{count} * sizeof(RecordDescriptor));
     if (generation.first.load() == 0 || descriptors == nullptr) {
       continue;
     }
-    for (uint32_t i = from > begin ? from - begin : 0; i < count; ++i) {
-      if (visit(descriptors[i], begin + i)) {
-        return;
+    for (; at.descriptor < count; ++at.descriptor) {
+      if (at.descriptor % Turn::records_in_a_step == 0) {
+        if (turn.is_over()) {
+          place = at;
+          return false;
+        }
+        turn.spend(1);
+      }
+      if (visit(descriptors[at.descriptor])) {
+        return true;
       }
     }
-    begin += count;
   }
+  return true;
 }
 
-/// Calls `visit(RecordDescriptor &, number)` for each record above `taken`, until it returns true.
+/// As visit_descriptors(): calls `visit(RecordDescriptor &, number)` for each record that `source`
+/// has not taken, in no particular order.
 template<typename Visit>
-void visit_records_above(
-  uint64_t taken, const Cluster & cluster, TopicDsmHeader & dsm, Visit visit) {
+bool visit_untaken(
+  const Cluster & cluster, TopicDsmHeader & dsm, const SourceEntry & source,
+  DescriptorPlace & place, Turn & turn, Visit visit) {
+  const uint64_t taken = source.taken.load(std::memory_order_acquire);
   const uint64_t last = dsm.last.load(std::memory_order_acquire);
   if (taken >= last) {
-    return;
+    place = {};
+    return true;
   }
-  visit_descriptors(cluster, dsm, 0, [&](RecordDescriptor & record, uint32_t) {
+  return visit_descriptors(cluster, dsm, place, turn, [&](RecordDescriptor & record) {
     const uint64_t number = record.number.load(std::memory_order_acquire);
     return number > taken && number <= last && visit(record, number);
   });
 }
 
-/// Calls `visit(number, source_timestamp_ns)` for each record that a source has not taken, in no
-/// particular order.
+/// As visit_untaken(): calls `visit(number, source_timestamp_ns)` for all of these records.
 template<typename Visit>
-void visit_undelivered(
-  const Cluster & cluster, TopicDsmHeader & dsm, const SourceEntry & source, Visit visit) {
-  visit_records_above(
-    source.taken.load(std::memory_order_acquire), cluster, dsm,
-    [&](RecordDescriptor & record, uint64_t number) {
+bool visit_timestamps(
+  const Cluster & cluster, TopicDsmHeader & dsm, const SourceEntry & source,
+  DescriptorPlace & place, Turn & turn, Visit visit) {
+  return visit_untaken(
+    cluster, dsm, source, place, turn, [&](const RecordDescriptor & record, uint64_t number) {
       const int64_t timestamp_ns = record.source_timestamp_ns.load(std::memory_order_acquire);
       // Unchanged: a live publisher may recycle it concurrently.
       if (record.number.load(std::memory_order_relaxed) == number) {
@@ -114,86 +130,65 @@ std::optional<OrphanReader> orphan_reader(
     cluster, dsm, *header, *source, registry.endpoints()[slot], slot, entry.source_index.load()};
 }
 
-uint64_t records_to_look_at(TopicDsmHeader & dsm, const SourceEntry & source) {
-  if (source.taken.load(std::memory_order_acquire) >= dsm.last.load(std::memory_order_acquire)) {
-    return 0;
-  }
-  uint64_t count = 0;
-  for (const GenerationEntry & generation : dsm.generations) {
-    count += generation.first.load() == 0 ? 0 : generation.descriptor_count.load();
-  }
-  return count;
-}
-
-std::optional<Undelivered> newest_undelivered(
-  const Cluster & cluster, TopicDsmHeader & dsm, const SourceEntry & source, uint32_t index) {
-  std::optional<Undelivered> newest;
-  visit_undelivered(cluster, dsm, source, [&](uint64_t number, int64_t timestamp_ns) {
-    if (!newest) {
-      newest = Undelivered{number, timestamp_ns, index};
-    }
-    newest->number = std::max(newest->number, number);
-    newest->source_timestamp_ns = std::max(newest->source_timestamp_ns, timestamp_ns);
-  });
-  return newest;
+bool add_undelivered(
+  std::optional<Undelivered> & newest, const OrphanReader & reader, DescriptorPlace & place,
+  Turn & turn) {
+  return visit_timestamps(
+    reader.cluster, reader.dsm, reader.source, place, turn,
+    [&](uint64_t number, int64_t timestamp_ns) {
+      if (!newest) {
+        newest = Undelivered{number, timestamp_ns, reader.source_index};
+      }
+      newest->number = std::max(newest->number, number);
+      newest->source_timestamp_ns = std::max(newest->source_timestamp_ns, timestamp_ns);
+    });
 }
 
 /// Counts from the first record whose own timestamp is newer: later records never count as older
 /// (see Undelivered).
-uint32_t count_newer_than(
+std::optional<uint32_t> NewerCount::go_on(
   const Undelivered & record, const Cluster & cluster, TopicDsmHeader & dsm,
-  const SourceEntry & source, uint32_t index) {
-  constexpr uint64_t none = UINT64_MAX;
-  uint64_t first_newer = none;
-  visit_undelivered(cluster, dsm, source, [&](uint64_t number, int64_t timestamp_ns) {
-    if (std::tie(timestamp_ns, index) > std::tie(record.source_timestamp_ns, record.source)) {
-      first_newer = std::min(first_newer, number);
-    }
-  });
-  uint32_t count = 0;
-  if (first_newer != none) {
-    visit_undelivered(cluster, dsm, source, [&](uint64_t number, int64_t) {
-      count += number >= first_newer ? 1 : 0;
-    });
+  const SourceEntry & source, uint32_t index, Turn & turn) {
+  const uint32_t incarnation = source.incarnation.load(std::memory_order_relaxed);
+  if (index != source_ || incarnation != incarnation_) {
+    *this = NewerCount(index, incarnation);
   }
-  return count;
+  if (!knows_first_) {
+    const auto find_first = [&](uint64_t number, int64_t timestamp_ns) {
+      if (std::tie(timestamp_ns, index) > std::tie(record.source_timestamp_ns, record.source)) {
+        first_ = std::min(first_, number);
+      }
+    };
+    knows_first_ = visit_timestamps(cluster, dsm, source, place_, turn, find_first);
+  }
+  const bool is_complete =
+    knows_first_ &&
+    (first_ == none || visit_timestamps(
+                         cluster, dsm, source, place_, turn,
+                         [&](uint64_t number, int64_t) { count_ += number >= first_ ? 1 : 0; }));
+  return is_complete ? std::optional(std::exchange(*this, {}).count_) : std::nullopt;
 }
 
-bool has_undelivered(const OrphanReader & reader) {
+std::optional<bool> has_undelivered(
+  const OrphanReader & reader, DescriptorPlace & place, Turn & turn) {
   bool found = false;
-  visit_records_above(
-    reader.source.taken.load(std::memory_order_acquire), reader.cluster, reader.dsm,
+  const bool is_complete = visit_untaken(
+    reader.cluster, reader.dsm, reader.source, place, turn,
     [&](const RecordDescriptor & record, uint64_t number) {
       return found = is_for(reader, record, number);
     });
-  return found;
+  return is_complete ? std::optional(found) : std::nullopt;
 }
 
 /// Other records than replies are for all readers, so the newest one is not taken if `taken` is
 /// less than `last`. A server may have answered any of its clients last, and has one reader for
-/// each: the search for replies goes on in the next turn.
+/// each.
 std::optional<bool> may_have_undelivered(const OrphanReader & reader, Turn & turn) {
-  const uint64_t taken = reader.source.taken.load(std::memory_order_acquire);
-  const bool is_behind = taken < reader.dsm.last.load(std::memory_order_acquire);
-  if (!is_behind || !is_of_replies(reader.dsm)) {
-    return is_behind;
+  if (is_of_replies(reader.dsm)) {
+    return has_undelivered(reader, reader.dsm.looked_before, turn);
   }
-  std::optional<bool> found = false;
-  const auto visit = [&](const RecordDescriptor & record, uint32_t index) {
-    if (index % Turn::records_in_a_step == 0) {
-      if (turn.is_over()) {
-        reader.dsm.looked_before = index;
-        found.reset();
-        return true;
-      }
-      turn.spend(1);
-    }
-    const uint64_t number = record.number.load(std::memory_order_acquire);
-    found = number > taken && is_for(reader, record, number);
-    return *found;
-  };
-  visit_descriptors(reader.cluster, reader.dsm, reader.dsm.looked_before, visit);
-  return found;
+  return reader.source.taken.load(std::memory_order_acquire) <
+         reader.dsm.last.load(std::memory_order_acquire);
 }
 
 bool is_abandoned(Registry & registry, const OrphanReader & reader, Turn & turn) {
@@ -206,17 +201,19 @@ bool is_abandoned(Registry & registry, const OrphanReader & reader, Turn & turn)
   return !has_movers(registry, reader.cluster.id());
 }
 
-bool has_arrived(Registry & registry, const OrphanReader & reader) {
+std::optional<bool> has_arrived(
+  Registry & registry, const OrphanReader & reader, DescriptorPlace & place, Turn & turn) {
   const Landing landing = landing_of(registry, reader);
-  bool found = false;
-  if (landing) {
-    visit_records_above(
-      reader.source.taken.load(std::memory_order_acquire), reader.cluster, reader.dsm,
-      [&](RecordDescriptor &, uint64_t number) {
-        return found = number <= landing.arrived() && landing.has(number);
-      });
+  if (!landing) {
+    return false;
   }
-  return found;
+  bool found = false;
+  const bool is_complete = visit_untaken(
+    reader.cluster, reader.dsm, reader.source, place, turn,
+    [&](const RecordDescriptor &, uint64_t number) {
+      return found = number <= landing.arrived() && landing.has(number);
+    });
+  return is_complete ? std::optional(found) : std::nullopt;
 }
 
 /// Replies are excluded: a client counts those itself as it misses them.

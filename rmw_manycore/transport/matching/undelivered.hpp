@@ -35,33 +35,55 @@ struct Undelivered {
   uint32_t source;  ///< index in the source table
 };
 
-/// Nothing if all records are taken.
-std::optional<Undelivered> newest_undelivered(
-  const Cluster & cluster, TopicDsmHeader & dsm, const SourceEntry & source, uint32_t index);
+/// The searches below take as many turns as needed: one whose turn is over leaves in `place` where
+/// the next turn goes on, for the same reader. A new search starts at {}.
 
-/// Number of records of another source that are not taken and newer than `record`.
-uint32_t count_newer_than(
-  const Undelivered & record, const Cluster & cluster, TopicDsmHeader & dsm,
-  const SourceEntry & source, uint32_t index);
+/// Adds what a reader has not taken to `newest`, which stays empty if that is nothing. False if the
+/// turn ended before.
+bool add_undelivered(
+  std::optional<Undelivered> & newest, const OrphanReader & reader, DescriptorPlace & place,
+  Turn & turn);
 
-/// Number of descriptors that one search for undelivered records visits.
-uint64_t records_to_look_at(TopicDsmHeader & dsm, const SourceEntry & source);
+/// Counts the records of another source that are not taken and newer than a record.
+class NewerCount {
+public:
+  /// The count, or nothing if the turn ended before. Starts anew for another source.
+  std::optional<uint32_t> go_on(
+    const Undelivered & record, const Cluster & cluster, TopicDsmHeader & dsm,
+    const SourceEntry & source, uint32_t index, Turn & turn);
+
+  NewerCount() = default;
+
+private:
+  static constexpr uint64_t none = UINT64_MAX;
+
+  NewerCount(uint32_t source, uint32_t incarnation) : source_(source), incarnation_(incarnation) {}
+
+  uint32_t source_ = nothing;
+  uint32_t incarnation_ = 0;
+  DescriptorPlace place_{};
+  uint64_t first_ = none;  ///< number of the first newer record
+  bool knows_first_ = false;
+  uint32_t count_ = 0;
+};
 
 /// True if the reader has not taken some record, in any generation. Of replies, only the client's
-/// own count, unless their hint was displaced.
-bool has_undelivered(const OrphanReader & reader);
+/// own count, unless their hint was displaced. Nothing if the turn ended before.
+std::optional<bool> has_undelivered(
+  const OrphanReader & reader, DescriptorPlace & place, Turn & turn);
 
 /// As has_undelivered(), without a search if the topic DSM holds no replies: then also true if the
-/// records have expired. Nothing if the turn ended before the answer was found: ask for the same
-/// reader in the next turn, which continues at `looked_before`.
+/// records have expired. The place is kept in the topic DSM.
 std::optional<bool> may_have_undelivered(const OrphanReader & reader, Turn & turn);
 
 /// True if the reader's session has no mover any more, nor a process that starts one: the last
 /// process of the publisher's cluster has gone.
 bool is_abandoned(Registry & registry, const OrphanReader & reader, Turn & turn);
 
-/// True if a record that the reader has not taken is in its cluster, announced or not.
-bool has_arrived(Registry & registry, const OrphanReader & reader);
+/// True if a record that the reader has not taken is in its cluster, announced or not. Nothing if
+/// the turn ended before.
+std::optional<bool> has_arrived(
+  Registry & registry, const OrphanReader & reader, DescriptorPlace & place, Turn & turn);
 
 /// Counts what the reader has not taken as lost. Requires that nothing of the topic DSM can be
 /// claimed any more.

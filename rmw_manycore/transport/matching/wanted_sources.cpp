@@ -8,10 +8,8 @@ namespace manycore::sweeping {
 namespace {
 
 using closing::OrphanReader;
-using closing::Undelivered;
 
 constexpr uint64_t steps_of_a_source = 3;
-constexpr uint64_t looks_at_other = 2;  ///< count_newer_than() visits each record twice
 
 /// Messages that the subscription itself removed: taken or expired.
 uint64_t taken_by(const EndpointEntry & subscription) {
@@ -25,67 +23,96 @@ bool is_cut_by_depth(const OrphanReader & reader) {
          static_cast<EndpointRole>(reader.dsm.role) != EndpointRole::reply;
 }
 
-void spend_on(TopicDsmHeader & dsm, const SourceEntry & source, uint64_t looks, Turn & turn) {
-  turn.spend(looks * closing::records_to_look_at(dsm, source) / Turn::records_in_a_step);
-}
-
 }  // namespace
 
-WantedSources::Look WantedSources::look_at(
-  const OrphanReader & reader, const Undelivered & newest) const {
-  const uint32_t incarnation = reader.endpoint.slot.incarnation.load();
-  const bool is_same = last_ && last_->endpoint == reader.endpoint_slot &&
-                       last_->incarnation == incarnation && last_->record.source == newest.source &&
-                       last_->record.number == newest.number;
-  return is_same ? *last_
-                 : Look{reader.endpoint_slot, incarnation, taken_by(reader.endpoint), newest, 0, 0};
+bool WantedSources::Look::is_at(const OrphanReader & reader) const noexcept {
+  return endpoint == reader.endpoint_slot &&
+         incarnation == reader.endpoint.slot.incarnation.load() && source == reader.source_index &&
+         source_incarnation == reader.source.incarnation.load();
+}
+
+WantedSources::Look WantedSources::Look::at(const OrphanReader & reader) noexcept {
+  return {
+    reader.endpoint_slot, reader.endpoint.slot.incarnation.load(), reader.source_index,
+    reader.source.incarnation.load(), taken_by(reader.endpoint)};
 }
 
 bool WantedSources::count_newer(Look & look, const OrphanReader & reader, Turn & turn) const {
-  const uint32_t first = look.next;
   bool is_over = false;
   const auto visit = [&](SourceEntry & source, uint32_t index) {
-    // Each turn makes progress, whatever it spent before.
-    is_over = turn.is_over() && index != first;
+    is_over = turn.is_over();
     if (is_over || look.newer >= reader.subscription.depth) {
       return true;
     }
-    look.next = index + 1;
     turn.spend(steps_of_a_source);
     TopicDsmHeader * const dsm =
       source.state.load() == SourceState::active ? topic_dsm_of(registry_, source) : nullptr;
     if (dsm != nullptr) {
-      spend_on(*dsm, source, looks_at_other, turn);
       const uint32_t cluster = SegmentRef{source.topic_dsm.load()}.cluster();
-      look.newer += closing::count_newer_than(
-        look.record, registry_.clusters().at(cluster), *dsm, source, index);
+      const std::optional<uint32_t> newer = look.in_next.go_on(
+        *look.newest, registry_.clusters().at(cluster), *dsm, source, index, turn);
+      is_over = !newer;
+      look.newer += newer.value_or(0);
     }
-    return false;
+    look.next = is_over ? index : index + 1;
+    return is_over;
   };
   source_table(registry_.clusters().at(reader.endpoint.cluster), reader.subscription)
-    .visit(first, visit);
+    .visit(look.next, visit);
   return !is_over;
 }
 
 /// A subscription that took a message since the check began may want more than the check found. It
 /// takes what it wants itself, so the topic DSM stays for now.
-std::optional<bool> WantedSources::contain(const OrphanReader & reader, Turn & turn) {
-  spend_on(reader.dsm, reader.source, 1, turn);
+std::optional<bool> WantedSources::is_wanted(
+  Look & look, const OrphanReader & reader, Turn & turn) const {
   if (!is_cut_by_depth(reader)) {
-    return closing::has_undelivered(reader);
+    return closing::has_undelivered(reader, look.place, turn);
   }
-  const std::optional<Undelivered> newest =
-    closing::newest_undelivered(reader.cluster, reader.dsm, reader.source, reader.source_index);
-  if (!newest) {
+  if (!look.knows_newest) {
+    look.knows_newest = closing::add_undelivered(look.newest, reader, look.place, turn);
+  }
+  if (!look.knows_newest) {
+    return std::nullopt;
+  }
+  if (!look.newest) {
     return false;
   }
-  Look look = look_at(reader, *newest);
-  last_.reset();
   if (!count_newer(look, reader, turn)) {
-    last_ = look;
     return std::nullopt;
   }
   return look.taken != taken_by(reader.endpoint) || look.newer < reader.subscription.depth;
+}
+
+/// What a dead mover left without a hint, the reader is asked to look for.
+std::optional<bool> WantedSources::is_to_be_had(
+  Look & look, const OrphanReader & reader, Turn & turn) const {
+  if (!closing::is_abandoned(registry_, reader, turn)) {
+    return true;
+  }
+  const std::optional<bool> is_there = closing::has_arrived(registry_, reader, look.place, turn);
+  if (is_there.value_or(false)) {
+    reader.subscription.resync.store(1, std::memory_order_seq_cst);
+    notify_watchers(registry_, reader.subscription);
+  }
+  return is_there;
+}
+
+std::optional<bool> WantedSources::contain(const OrphanReader & reader, Turn & turn) {
+  if (!look_ || !look_->is_at(reader)) {
+    look_ = Look::at(reader);
+  }
+  if (!look_->is_wanted) {
+    look_->is_wanted = is_wanted(*look_, reader, turn);
+  }
+  std::optional<bool> found = look_->is_wanted;
+  if (found.value_or(false)) {
+    found = is_to_be_had(*look_, reader, turn);
+  }
+  if (found) {
+    look_.reset();
+  }
+  return found;
 }
 
 }  // namespace manycore::sweeping

@@ -8,11 +8,11 @@
 
 namespace manycore::sweeping {
 
-/// Decides whether a subscription still wants messages of a publisher that is gone. A KEEP_LAST
-/// subscription does if the newest of them is among its newest `depth` records over all its
-/// sources, as a resync would cut them. Visits other sources until `depth` newer records are found,
-/// in as many turns as needed. The caller holds the registry lock in each turn, so no publisher
-/// frees a generation meanwhile.
+/// Decides whether a subscription still wants messages of a publisher that is gone, and can get
+/// them. A KEEP_LAST subscription wants them if the newest of them is among its newest `depth`
+/// records over all its sources, as a resync would cut them. Visits other sources until `depth`
+/// newer records are found, in as many turns as needed. The caller holds the registry lock in each
+/// turn, so no publisher frees a generation during a turn.
 class WantedSources {
 public:
   explicit WantedSources(Registry & registry) noexcept : registry_(registry) {}
@@ -22,23 +22,35 @@ public:
   std::optional<bool> contain(const closing::OrphanReader & reader, Turn & turn);
 
 private:
-  /// Progress of the check for one subscription.
+  /// Progress of the check for one reader.
   struct Look {
     uint32_t endpoint;  ///< slot of the subscription
     uint32_t incarnation;
-    uint64_t taken;  ///< messages taken or expired when the check began
-    closing::Undelivered record;
-    uint32_t next;   ///< index of the first source not visited yet
-    uint32_t newer;  ///< newer records found so far
+    uint32_t source;  ///< index of the reader's own source
+    uint32_t source_incarnation;
+    uint64_t taken;           ///< messages taken or expired when the check began
+    DescriptorPlace place{};  ///< of the search in progress
+    bool knows_newest = false;
+    std::optional<closing::Undelivered> newest{};  ///< of the reader's own records
+    uint32_t next = 0;                             ///< index of the first source not visited yet
+    closing::NewerCount in_next{};                 ///< what is found in that source
+    uint32_t newer = 0;                            ///< newer records found in earlier ones
+    std::optional<bool> is_wanted{};
+
+    bool is_at(const closing::OrphanReader & reader) const noexcept;
+    static Look at(const closing::OrphanReader & reader) noexcept;
   };
 
-  /// Continues the last check if it is for this reader.
-  Look look_at(const closing::OrphanReader & reader, const closing::Undelivered & newest) const;
+  std::optional<bool> is_wanted(
+    Look & look, const closing::OrphanReader & reader, Turn & turn) const;
   /// False if the turn ended before the last source.
   bool count_newer(Look & look, const closing::OrphanReader & reader, Turn & turn) const;
+  /// True if what the reader has not taken is there or will come.
+  std::optional<bool> is_to_be_had(
+    Look & look, const closing::OrphanReader & reader, Turn & turn) const;
 
   Registry & registry_;
-  std::optional<Look> last_;  ///< check that is not complete
+  std::optional<Look> look_;  ///< check that is not complete
 };
 
 }  // namespace manycore::sweeping
