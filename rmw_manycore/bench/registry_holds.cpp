@@ -17,6 +17,8 @@
 //   free_large            a publisher whose topic DSM has grown to more than 16 MiB
 //   create_queue          a subscription of depth 65,535
 //   free_queue            closing it, and freeing its queue
+//   sweep_deepest         looking at 65,535 messages of a closed publisher that nobody has taken,
+//                         and at as many newer ones of another publisher
 //   reap                  a killed process with `changes` endpoints of each kind, and such a
 //   publisher
 // A thread on CPU `cpu` watches the word that is odd while the lock is held, and reads the CPU
@@ -337,6 +339,24 @@ void measure_memory(Measurement & on) {
   on.report("free_queue");
 }
 
+/// The deepest history of a closed publisher, and another as deep that displaces it at last.
+void measure_deepest_history(Measurement & on) {
+  EndpointSpec spec = on.spec;
+  spec.topic = "/history";
+  spec.qos.depth = UINT16_MAX;
+  const auto subscription = on.process.create_subscription(spec);
+  auto former = on.process.create_publisher(spec);
+  const auto newer = on.process.create_publisher(spec);
+  for (Publisher * const publisher : {former.get(), newer.get()}) {
+    for (uint32_t i = 0; i < UINT16_MAX; ++i) {
+      publish(*publisher);
+    }
+  }
+  on.holds.take_holds_ns();
+  former.reset();
+  on.report("sweep_deepest");
+}
+
 void run(const bench::Arguments & arguments) {
   const size_t changes = arguments.number("changes");
   const size_t count = arguments.number("endpoints");
@@ -352,6 +372,7 @@ void run(const bench::Arguments & arguments) {
   measure_changes(on, endpoints, count, changes);
   measure_deep_histories(on, count);
   measure_memory(on);
+  measure_deepest_history(on);
   victim.join_platform();
   {
     const Standstill receive_thread(registry);

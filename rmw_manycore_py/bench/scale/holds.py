@@ -23,6 +23,7 @@ OPERATIONS = {
     "free_large": "freeing a topic DSM of 16 MiB",
     "create_queue": "creating a subscription of depth 65,535",
     "free_queue": "freeing a subscription of depth 65,535",
+    "sweep_deepest": "sweeping a publisher with 65,535 untaken messages",
     "reap": "reaping a killed process",
 }
 REPAIR = {"repair": "repairing after the owner of the lock was killed"}
