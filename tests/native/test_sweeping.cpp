@@ -1,0 +1,221 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+//
+// Closing and sweeping endpoints in turns, each of which goes on where the last one ended.
+#include <doctest/doctest.h>
+
+#include <memory>
+#include <vector>
+
+#include "drivers_of_test.hpp"
+#include "transport/matching/closing.hpp"
+#include "transport/matching/sweeping.hpp"
+#include "waiting.hpp"
+
+using namespace drivers_of_test;
+
+TEST_CASE("many readers are revoked in turns; the next sweep continues one that ended early") {
+  Fixture f;
+  const Standstill no_other_sweeper(f.platform, 1);
+  constexpr size_t many = 300;
+  std::vector<std::unique_ptr<Subscription>> stuck;
+  for (size_t i = 0; i < many; ++i) {
+    stuck.push_back(f.subscription(keep_last(1)));
+  }
+  const auto successor = f.publisher();
+  f.drive(1);
+  CHECK(f.inspection.closing_endpoints() == 1);
+  publish(*successor, ++f.published);
+  Registry & registry = f.inspection.registry();
+  const auto sweep_once = [&] {
+    sweeping::Round round(registry);
+    const Registry::Lock lock(registry);
+    return round.sweep_some();
+  };
+  CHECK_FALSE(sweep_once());
+  CHECK(f.inspection.closing_endpoints() == 1);
+  size_t turns = 1;
+  for (; f.inspection.closing_endpoints() != 0 && turns < many; ++turns) {
+    sweep_once();  // as another process would, without knowledge of earlier turns
+  }
+  CHECK(f.inspection.closing_endpoints() == 0);
+  CHECK(turns >= 4);
+  for (const auto & each : stuck) {
+    CHECK(take_all(*each) == numbers(2, 2));
+    CHECK(each->lost() == 1);
+  }
+}
+
+TEST_CASE("a server with a deep history is closed in turns, also within the look for one client") {
+  Fixture f;
+  const Standstill no_other_sweeper(f.platform, 1);
+  constexpr int64_t many = 20'000;
+  constexpr size_t bystander_count = 3;
+  const auto client = [&](uint32_t depth) {
+    EndpointSpec spec = on_topic("/service", keep_last(depth));
+    spec.role = EndpointRole::reply;
+    return f.process->create_subscription(spec);
+  };
+  std::vector<std::unique_ptr<Subscription>> bystanders;
+  for (size_t i = 0; i < bystander_count; ++i) {
+    bystanders.push_back(client(1));
+  }
+  const auto deep = client(many);
+  const auto late = client(1);
+  EndpointSpec spec = on_topic("/service", keep_last(1));
+  spec.role = EndpointRole::reply;
+  const auto server = f.process->create_publisher(spec);
+  for (int64_t number = 1; number <= many; ++number) {
+    server->publish(server->draft(8), 8, number, {deep->gid(), number});
+  }
+  server->publish(server->draft(8), 8, many + 1, {late->gid(), 1});
+  const auto resync_of = [&](const Subscription & subscription) -> std::atomic<uint32_t> & {
+    return f.inspection.header_of(subscription).resync;
+  };
+  for (const auto * each : {deep.get(), late.get(), bystanders.front().get()}) {
+    resync_of(*each).store(0);
+  }
+  Registry & registry = f.inspection.registry();
+  const Registry::Lock lock(registry);
+  size_t turns = 0;
+  for (bool closed = false; !closed; ++turns) {
+    Turn turn;
+    const auto slot = static_cast<uint32_t>(endpoint_in(server->gid()));
+    closed = closing::close_some(registry, slot, false, turn);
+  }
+  constexpr size_t records_in_a_turn = Turn::steps * Turn::records_in_a_step;
+  CHECK(turns > bystander_count * (many / records_in_a_turn));
+  CHECK(resync_of(*deep) == 1);
+  CHECK(resync_of(*late) == 1);
+  CHECK(resync_of(*bystanders.front()) == 0);
+}
+
+TEST_CASE("a deep history is swept in turns, also within the look at one publisher") {
+  Fixture f;
+  const Standstill no_other_sweeper(f.platform, 1);
+  constexpr uint32_t depth = 20'000;
+  constexpr size_t records_in_a_turn = Turn::steps * Turn::records_in_a_step;
+  const auto subscription = f.subscription(keep_last(depth));
+  auto former = f.publisher(keep_last(depth));
+  const auto newer = f.publisher(keep_last(depth));
+  for (uint32_t number = 1; number <= depth; ++number) {
+    former->publish(former->draft(8), 8, number);
+  }
+  const auto slot = static_cast<uint32_t>(endpoint_in(former->gid()));
+  Registry & registry = f.inspection.registry();
+  const auto turns_of_a_round = [&] {
+    sweeping::Round round(registry);
+    size_t turns = 1;
+    for (; !round.sweep_some_of(slot); ++turns) {
+    }
+    return turns;
+  };
+  for (uint32_t number = 1; number < depth; ++number) {
+    newer->publish(newer->draft(8), 8, depth + number);
+  }
+  former.reset();
+  {
+    const Registry::Lock lock(registry);
+    CHECK(turns_of_a_round() > 3 * depth / records_in_a_turn);
+    CHECK(f.inspection.closing_endpoints() == 1);
+  }
+  newer->publish(newer->draft(8), 8, 2 * depth);
+  const Registry::Lock lock(registry);
+  CHECK(turns_of_a_round() > 3 * depth / records_in_a_turn);
+  CHECK(f.inspection.closing_endpoints() == 0);
+}
+
+TEST_CASE("a subscription with many publishers is freed in turns") {
+  Fixture f;
+  const Standstill no_other_sweeper(f.platform, 1);
+  constexpr size_t many = 300;
+  const auto publishers = f.publishers(many);
+  const auto subscription = f.subscription(keep_last(1));
+  Registry & registry = f.inspection.registry();
+  const auto slot = static_cast<uint32_t>(endpoint_in(subscription->gid()));
+  const Registry::Lock lock(registry);
+  for (bool closed = false; !closed;) {
+    Turn turn;
+    closed = closing::close_some(registry, slot, false, turn);
+  }
+  CHECK_FALSE(sweeping::Round(registry).sweep_some_of(slot));
+  CHECK(f.inspection.closing_endpoints() == 1);
+  for (size_t turns = 1; turns < many && !sweeping::Round(registry).sweep_some_of(slot); ++turns) {
+  }  // each round continues what an earlier one began
+  CHECK(f.inspection.closing_endpoints() == 0);
+}
+
+TEST_CASE("a large topic DSM is freed in turns, each of which gives some of it back") {
+  Fixture f;
+  const Standstill no_other_sweeper(f.platform, 1);
+  const uint64_t used = f.inspection.used_bytes();
+  const auto publisher = f.publisher();
+  publish(*publisher, 1, mebibyte);
+  Registry & registry = f.inspection.registry();
+  const auto slot = static_cast<uint32_t>(endpoint_in(publisher->gid()));
+  const Registry::Lock lock(registry);
+  Turn turn;
+  REQUIRE(closing::close_some(registry, slot, false, turn));
+  int turns = 0;
+  uint64_t left = f.inspection.used_bytes();
+  while (!sweeping::Round(registry).sweep_some_of(slot)) {
+    REQUIRE(f.inspection.used_bytes() < left);
+    left = f.inspection.used_bytes();
+    ++turns;
+  }
+  CHECK(turns > 4);
+  CHECK(f.inspection.closing_endpoints() == 0);
+  CHECK(f.inspection.used_bytes() == used);
+}
+
+TEST_CASE("a sweep closes completely what a live process left closing") {
+  Fixture f;
+  const Standstill no_other_sweeper(f.platform, 1);
+  constexpr size_t many = 300;
+  const auto publishers = f.publishers(many);
+  const auto subscription = f.subscription(keep_last(1));
+  Registry & registry = f.inspection.registry();
+  {
+    const Registry::Lock lock(registry);
+    Turn turn;
+    CHECK_FALSE(closing::close_some(
+      registry, static_cast<uint32_t>(endpoint_in(subscription->gid())), false, turn));
+  }
+  CHECK(f.inspection.closing_endpoints() == 1);
+  sweeping::sweep_all(registry);
+  CHECK(f.inspection.closing_endpoints() == 0);
+  CHECK(publishers.front()->matched().current == 0);
+}
+
+TEST_CASE("readers that finished since a sweep ended early among them are checked again") {
+  Fixture f;
+  const Standstill no_other_sweeper(f.platform, 1);
+  constexpr size_t many = 150;
+  std::vector<std::unique_ptr<Subscription>> stuck;
+  for (size_t i = 0; i < many; ++i) {
+    stuck.push_back(f.subscription(keep_last(1)));
+  }
+  const auto successor = f.publisher();
+  f.drive(1);
+  Registry & registry = f.inspection.registry();
+  {
+    const Registry::Lock lock(registry);
+    REQUIRE_FALSE(sweeping::Round(registry).sweep_some());
+  }
+  publish(*successor, ++f.published);
+  sweeping::sweep_all(registry);
+  CHECK(f.inspection.closing_endpoints() == 0);
+}
+
+TEST_CASE("the reaper is woken for what the last reader could not free, with the registry locked") {
+  Fixture f;
+  const auto reader = f.subscription(keep_last(1));
+  f.drive(1);
+  const ClusterHeader & cluster = f.inspection.registry().clusters().at(1).header();
+  wait_until("the message that this process joined", [&] { return cluster.messages.load() == 1; });
+  {
+    const Registry::Lock lock(f.inspection.registry());
+    CHECK(take_all(*reader) == numbers(1, 1));
+  }
+  wait_until("the wake-up of the reaper", [&] { return cluster.messages.load() == 2; });
+  wait_until("the topic DSM is freed", [&] { return f.inspection.closing_endpoints() == 0; });
+}
