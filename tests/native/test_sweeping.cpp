@@ -13,6 +13,21 @@
 
 using namespace drivers_of_test;
 
+namespace {
+
+uint32_t slot_of(const Publisher & publisher) {
+  return static_cast<uint32_t>(endpoint_in(publisher.gid()));
+}
+
+void close(Registry & registry, const Publisher & publisher) {
+  for (bool closed = false; !closed;) {
+    Turn turn;
+    closed = closing::close_some(registry, slot_of(publisher), false, turn);
+  }
+}
+
+}  // namespace
+
 TEST_CASE("many readers are revoked in turns; the next sweep continues one that ended early") {
   Fixture f;
   const Standstill no_other_sweeper(f.platform, 1);
@@ -79,7 +94,7 @@ TEST_CASE("a server with a deep history is closed in turns, also within the look
   size_t turns = 0;
   for (bool closed = false; !closed; ++turns) {
     Turn turn;
-    const auto slot = static_cast<uint32_t>(endpoint_in(server->gid()));
+    const auto slot = slot_of(*server);
     closed = closing::close_some(registry, slot, false, turn);
   }
   constexpr size_t records_in_a_turn = Turn::steps * Turn::records_in_a_step;
@@ -100,7 +115,7 @@ TEST_CASE("a deep history is swept in turns, also within the look at one publish
   for (uint32_t number = 1; number <= depth; ++number) {
     former->publish(former->draft(8), 8, number);
   }
-  const auto slot = static_cast<uint32_t>(endpoint_in(former->gid()));
+  const auto slot = slot_of(*former);
   Registry & registry = f.inspection.registry();
   const auto turns_of_a_round = [&] {
     sweeping::Round round(registry);
@@ -121,6 +136,51 @@ TEST_CASE("a deep history is swept in turns, also within the look at one publish
   newer->publish(newer->draft(8), 8, 2 * depth);
   const Registry::Lock lock(registry);
   CHECK(turns_of_a_round() > 3 * depth / records_in_a_turn);
+  CHECK(f.inspection.closing_endpoints() == 0);
+}
+
+TEST_CASE("a process that creates an endpoint sweeps what is behind a deep history") {
+  Fixture f;
+  const Standstill no_other_sweeper(f.platform, 1);
+  constexpr uint32_t depth = UINT16_MAX;  // takes more turns than the process has
+  const auto stuck = f.subscription(keep_last(depth));
+  auto former = f.publisher(keep_last(depth));
+  for (uint32_t number = 1; number <= depth; ++number) {
+    former->publish(former->draft(8), 8, number);
+  }
+  const auto slot = slot_of(*former);
+  former.reset();
+  const auto behind = f.process->create_publisher(on_topic("/behind", keep_last(1)));
+  Registry & registry = f.inspection.registry();
+  {
+    const Registry::Lock lock(registry);
+    close(registry, *behind);
+    registry.header().sweep_from = slot;
+  }
+  CHECK(f.inspection.closing_endpoints() == 2);
+  f.sweep();
+  CHECK(f.inspection.closing_endpoints() == 1);
+}
+
+TEST_CASE("a turn punches one hole at most, also where a block is rounded up to pages") {
+  Fixture f;
+  const Standstill no_other_sweeper(f.platform, 1);
+  constexpr size_t size_bytes = 12 << 10;  // with 16 descriptors: less than 16 KiB, but four pages
+  const std::vector<std::unique_ptr<Publisher>> publishers = f.publishers(3);
+  for (const auto & publisher : publishers) {
+    publish(*publisher, 1, size_bytes);
+  }
+  Registry & registry = f.inspection.registry();
+  const Registry::Lock lock(registry);
+  for (const auto & publisher : publishers) {
+    close(registry, *publisher);
+  }
+  registry.header().sweep_from = 0;
+  sweeping::Round round(registry);
+  size_t turns = 1;
+  for (; !round.sweep_some(); ++turns) {
+  }
+  CHECK(turns >= publishers.size());
   CHECK(f.inspection.closing_endpoints() == 0);
 }
 
@@ -151,7 +211,7 @@ TEST_CASE("a large topic DSM is freed in turns, each of which gives some of it b
   const auto publisher = f.publisher();
   publish(*publisher, 1, mebibyte);
   Registry & registry = f.inspection.registry();
-  const auto slot = static_cast<uint32_t>(endpoint_in(publisher->gid()));
+  const auto slot = slot_of(*publisher);
   const Registry::Lock lock(registry);
   Turn turn;
   REQUIRE(closing::close_some(registry, slot, false, turn));

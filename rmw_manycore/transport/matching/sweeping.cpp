@@ -43,8 +43,13 @@ Progress sweep_endpoint(
 }  // namespace
 
 bool Round::try_to_sweep(uint32_t slot, Turn & turn) {
+  const bool is_fresh = turn.spent() < Turn::steps / 8;
   try {
     const Progress progress = sweep_endpoint(registry_, wanted_, pass_, slot, turn);
+    if (progress == Progress::turn_over && leaves_long_looks_ && is_fresh && wanted_.is_looking()) {
+      needs_reaper_ = true;
+      return true;
+    }
     has_freed_ = has_freed_ || progress == Progress::freed || progress == Progress::freed_some;
     needs_reaper_ = needs_reaper_ || progress == Progress::in_use;
     return progress != Progress::freed_some && progress != Progress::turn_over;
@@ -93,8 +98,11 @@ void sweep_all(Registry & registry) {
   }
 }
 
+/// What a look has found is forgotten with its round, so that looks of more turns than it has would
+/// never end, and nothing behind them be freed.
 void sweep_a_little(Registry & registry, uint32_t cluster, long wait_ns) {
   Round round(registry);
+  round.leave_long_looks();
   bool over = false;
   while (!over && round.idle_steps() < max_idle_steps) {
     const Registry::Lock lock(registry, wait_ns);

@@ -17,13 +17,15 @@ namespace manycore::sweeping {
 class Round {
 public:
   explicit Round(Registry & registry) noexcept : registry_(registry), wanted_(registry) {}
+  /// From now on passes over an endpoint whose records take more than a turn to look at.
+  void leave_long_looks() noexcept { leaves_long_looks_ = true; }
 
   /// One turn. True when all endpoints were checked. The caller holds the registry lock.
   bool sweep_some();
   /// One turn for one endpoint. True when its check is complete. The caller holds the lock.
   bool sweep_some_of(uint32_t endpoint);
   /// True if an endpoint is left that no process is sure to sweep by itself: this one could not map
-  /// a cluster, or another one was accessing the memory.
+  /// a cluster or left a long look, or another one was accessing the memory.
   bool needs_reaper() const noexcept { return needs_reaper_; }
   /// Steps since this round last freed memory.
   uint64_t idle_steps() const noexcept { return idle_steps_; }
@@ -41,14 +43,15 @@ private:
   bool has_freed_ = false;  ///< in this turn
   uint64_t idle_steps_ = 0;
   bool needs_reaper_ = false;
+  bool leaves_long_looks_ = false;
 };
 
 /// A complete round. Takes the registry lock anew for each turn.
 void sweep_all(Registry & registry);
 
 /// Sweeps one round for a process of `cluster` that creates or closes an endpoint. Ends early after
-/// about 0.5 ms without progress. Wakes the cluster's reaper for endpoints that are then left (see
-/// Round::needs_reaper()).
+/// about 0.5 ms without progress, and leaves long looks. Wakes the cluster's reaper for endpoints
+/// that are then left (see Round::needs_reaper()).
 void sweep_a_little(
   Registry & registry, uint32_t cluster, long wait_ns = Registry::Lock::usual_wait_ns);
 

@@ -23,11 +23,16 @@ public:
   /// True in the first half, as a hole in the SMEM may take as long as a turn.
   bool may_free() const noexcept { return !is_over() && left_ >= steps / 2; }
 
+  void end() noexcept { left_ = 0; }
+
   /// Charges what it takes to free so much of a block. A hole takes 30 to 60 us whatever its size,
-  /// because other CPUs are interrupted; so there is at most one in a turn.
+  /// because other CPUs are interrupted; so there is at most one in a turn. A block may take up to
+  /// a page more than its bytes.
   void spend_on_freeing(uint64_t bytes, uint64_t block_bytes) noexcept {
     constexpr uint64_t bytes_in_a_step = 128;
-    spend((block_bytes < min_hole_bytes ? 0 : steps / 2) + 1 + bytes / bytes_in_a_step);
+    constexpr uint64_t page_bytes = 4096;
+    const bool makes_hole = block_bytes + page_bytes > min_hole_bytes;
+    spend((makes_hole ? steps / 2 : 0) + 1 + bytes / bytes_in_a_step);
   }
 
   void spend(uint64_t cost) noexcept {

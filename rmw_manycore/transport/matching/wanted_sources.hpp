@@ -20,6 +20,8 @@ public:
   /// Nothing if the turn ended before the answer was found: ask for the same reader in the next
   /// turn.
   std::optional<bool> contain(const closing::OrphanReader & reader, Turn & turn);
+  /// True if the last check is not complete.
+  bool is_looking() const noexcept { return look_.has_value(); }
 
 private:
   /// Progress of the check for one reader.

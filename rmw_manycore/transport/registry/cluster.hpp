@@ -92,6 +92,8 @@ public:
   /// Frees SMEM, and returns the memory of larger blocks to the system. The caller holds the
   /// registry lock. The range must not be accessed until it is allocated again.
   void free(uint64_t offset, uint64_t length) noexcept;
+  /// As free(), for a part of a block, large or not.
+  void free_part(uint64_t offset, uint64_t length, uint64_t block_bytes) noexcept;
   /// A piece to free, and what `kept_pieces` of its block is without it: 0 when no piece is left.
   struct LastPiece {
     uint64_t offset;
@@ -132,8 +134,6 @@ public:
 private:
   uint64_t * granule_map() const noexcept { return &memory_.at<uint64_t>(granule_map_offset); }
   bool granule_used(uint64_t index) const noexcept;
-  /// Frees a part of a block; see free().
-  void free_part(uint64_t offset, uint64_t length, uint64_t block_bytes) noexcept;
   void set_granules(uint64_t first, uint64_t count, bool used) const noexcept;
   uint64_t find_granule(uint64_t from, bool used) const noexcept;
   uint64_t used_before() const noexcept;

@@ -136,7 +136,7 @@ bool free_piece_of_retired(
   } else {
     kept_pieces.store(piece.kept_pieces);
   }
-  receiver.free(piece.offset, piece.length);
+  receiver.free_part(piece.offset, piece.length, landing_bytes(dsm));
   return is_last;
 }
 
