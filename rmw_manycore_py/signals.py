@@ -1,5 +1,5 @@
 # Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
-"""Signals as a file descriptor for selectors, instead of interrupts."""
+"""Signals as a file descriptor for selectors, instead of interrupts, and deferred ones."""
 
 from __future__ import annotations
 
@@ -52,6 +52,28 @@ def signal_inbox(signals: Iterable[signal.Signals] = STOP_SIGNALS) -> Iterator[S
             for number, handler in before.items():
                 signal.signal(number, handler)
             signal.set_wakeup_fd(descriptor_before)
+
+
+@contextmanager
+def interrupts_held(signals: Iterable[signal.Signals] = (signal.SIGINT,)) -> Iterator[None]:
+    """Defer the handlers of these signals to the end of the block; main thread only.
+
+    For calls of rclpy: in the middle of one, a KeyboardInterrupt may become another error, or one
+    that Python prints and ignores.
+    """
+    noted: list[int] = []
+    before = {
+        number: signal.signal(number, lambda late, _frame: noted.append(late)) for number in signals
+    }
+    try:
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+    for late in noted:
+        handler = before[signal.Signals(late)]
+        if callable(handler):
+            handler(late, None)
 
 
 def _ignore(_number: int, _frame: object) -> None:

@@ -97,6 +97,11 @@ def cpu_time_s(pid: int) -> float:
     return (int(fields[11]) + int(fields[12])) / TICKS_PER_S
 
 
+def times_run(pid: int) -> int:
+    """Return how often the main thread of a process was given a CPU."""
+    return int(Path(f"/proc/{pid}/schedstat").read_text().split()[2])
+
+
 def is_stopped(pid: int) -> bool:
     """Return whether all threads of a process are stopped by a signal; False if it has ended."""
     return _states_of(pid) == {"T"}

@@ -8,10 +8,11 @@ import os
 import threading
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from typing import Any
 
 import rclpy
+from rclpy._rclpy_pybind11 import RCLError
 from rclpy.executors import Executor, ExternalShutdownException
 from rclpy.node import Node
 from rclpy.signals import uninstall_signal_handlers
@@ -61,8 +62,13 @@ def peer_node(name: str = "peer", **options: Any) -> Iterator[Node]:
     """Give a peer process its node; it ends quietly on SIGINT."""
     rclpy.init()
     node = rclpy.create_node(name, **options)
-    with suppress(KeyboardInterrupt, ExternalShutdownException):
+    try:
         yield node
+    except (KeyboardInterrupt, ExternalShutdownException):
+        pass
+    except RCLError:  # rclpy looks at the context before it makes the wait set
+        if rclpy.ok():
+            raise
     # Waits until rclpy's signal thread has triggered the guard conditions that are destroyed next.
     uninstall_signal_handlers()
     node.destroy_node()

@@ -117,6 +117,9 @@ def test_nothing_comes_back(bridge) -> None:
         side(say, "/chat", {"depth": 1000}, 0.05)
     bridge.inside(hear, "/outside", {}).wait_for(AGAIN)
     bridge.outside(hear, "/inside", {}).wait_for(AGAIN)
+    for direction, topic in (("outward", "/inside"), ("inward", "/outside")):
+        both = {topic, "/chat"}
+        wait_until(lambda d=direction, b=both: crossed(bridge, d) >= b, f"{both} go {direction}")
     for hearer in hearers:
         for _ in range(40):
             hearer.wait_for(AGAIN)

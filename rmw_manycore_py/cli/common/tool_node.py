@@ -7,13 +7,13 @@ Imports rclpy late: other commands do not need it, and rmw_manycore has to be lo
 from __future__ import annotations
 
 import os
-import signal
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from typing import Any
 
 from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.launch.processes.environment import enter_middleware
+from rmw_manycore_py.signals import interrupts_held
 
 # Timeout for the answer of a node that exists.
 ANSWER_TIMEOUT_S = 5.0
@@ -65,21 +65,8 @@ def spin_once(node: Any, timeout_s: float = _LOOK_PERIOD_S) -> None:
     """Handle one pending callback, waiting up to the timeout; then raise a pending interrupt."""
     import rclpy
 
-    with _interrupts_held():
+    with interrupts_held():  # between taking and handling a message, so that none is lost
         rclpy.spin_once(node, timeout_sec=min(timeout_s, _LOOK_PERIOD_S))
-
-
-@contextmanager
-def _interrupts_held() -> Iterator[None]:
-    """Defer interrupts between taking and handling a message, so that none is lost."""
-    noted: list[int] = []
-    handler = signal.signal(signal.SIGINT, lambda number, _frame: noted.append(number))
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGINT, handler)
-    if noted and callable(handler):
-        handler(noted[0], None)
 
 
 def result_of(node: Any, future: Any, whose: str) -> Any:

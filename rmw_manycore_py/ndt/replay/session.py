@@ -6,6 +6,7 @@ from __future__ import annotations
 import gc
 
 import rclpy
+from rclpy.signals import SignalHandlerOptions
 
 from rmw_manycore_py.ndt.geometry.arrays import Points
 from rmw_manycore_py.ndt.recordings.recording import Recording
@@ -30,7 +31,8 @@ def run(
 
     :param pid: process whose CPU time is measured; None uses the matcher's diagnostics.
     """
-    rclpy.init()
+    # rclpy's own signal handlers would shut down the context while the node is spinning.
+    rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
     player = Player(drive, source, tally, voxel_m, pid)
     try:
         if map_points is not None:

@@ -1,0 +1,38 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Deferred signals."""
+
+from __future__ import annotations
+
+import signal
+
+import pytest
+
+from rmw_manycore_py.signals import interrupts_held
+
+pytestmark = pytest.mark.unit
+
+
+def test_an_interrupt_is_raised_at_the_end_of_the_block():
+    done = []
+
+    def interrupted() -> None:
+        with interrupts_held():
+            signal.raise_signal(signal.SIGINT)
+            done.append(True)
+
+    with pytest.raises(KeyboardInterrupt):
+        interrupted()
+    assert done
+    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+
+
+def test_each_signal_goes_to_the_handler_that_it_had():
+    heard = []
+    before = signal.signal(signal.SIGTERM, lambda number, _frame: heard.append(number))
+    try:
+        with interrupts_held((signal.SIGINT, signal.SIGTERM)):
+            signal.raise_signal(signal.SIGTERM)
+            assert not heard
+    finally:
+        signal.signal(signal.SIGTERM, before)
+    assert heard == [signal.SIGTERM]
