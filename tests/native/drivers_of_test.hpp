@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "messages.hpp"
+#include "platform_of_test.hpp"
 #include "transport/lifecycle/configurator.hpp"
 
 namespace drivers_of_test {

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "drivers_of_test.hpp"
+#include "node_role.hpp"
 #include "transport/registry/odd_phase.hpp"
 #include "waiting.hpp"
 

@@ -15,15 +15,19 @@ using namespace drivers_of_test;
 
 namespace {
 
-uint32_t slot_of(const Publisher & publisher) {
-  return static_cast<uint32_t>(endpoint_in(publisher.gid()));
+template<typename Endpoint>
+uint32_t slot_of(const Endpoint & endpoint) {
+  return static_cast<uint32_t>(endpoint_in(endpoint.gid()));
 }
 
-void close(Registry & registry, const Publisher & publisher) {
-  for (bool closed = false; !closed;) {
+/// Returns the number of turns that it took.
+size_t close(Registry & registry, uint32_t slot) {
+  size_t turns = 0;
+  for (bool closed = false; !closed; ++turns) {
     Turn turn;
-    closed = closing::close_some(registry, slot_of(publisher), false, turn);
+    closed = closing::close_some(registry, slot, false, turn);
   }
+  return turns;
 }
 
 }  // namespace
@@ -91,12 +95,7 @@ TEST_CASE("a server with a deep history is closed in turns, also within the look
   }
   Registry & registry = f.inspection.registry();
   const Registry::Lock lock(registry);
-  size_t turns = 0;
-  for (bool closed = false; !closed; ++turns) {
-    Turn turn;
-    const auto slot = slot_of(*server);
-    closed = closing::close_some(registry, slot, false, turn);
-  }
+  const size_t turns = close(registry, slot_of(*server));
   constexpr size_t records_in_a_turn = Turn::steps * Turn::records_in_a_step;
   CHECK(turns > bystander_count * (many / records_in_a_turn));
   CHECK(resync_of(*deep) == 1);
@@ -154,7 +153,7 @@ TEST_CASE("a process that creates an endpoint sweeps what is behind a deep histo
   Registry & registry = f.inspection.registry();
   {
     const Registry::Lock lock(registry);
-    close(registry, *behind);
+    close(registry, slot_of(*behind));
     registry.header().sweep_from = slot;
   }
   CHECK(f.inspection.closing_endpoints() == 2);
@@ -173,7 +172,7 @@ TEST_CASE("a turn punches one hole at most, also where a block is rounded up to 
   Registry & registry = f.inspection.registry();
   const Registry::Lock lock(registry);
   for (const auto & publisher : publishers) {
-    close(registry, *publisher);
+    close(registry, slot_of(*publisher));
   }
   registry.header().sweep_from = 0;
   sweeping::Round round(registry);
@@ -191,12 +190,9 @@ TEST_CASE("a subscription with many publishers is freed in turns") {
   const auto publishers = f.publishers(many);
   const auto subscription = f.subscription(keep_last(1));
   Registry & registry = f.inspection.registry();
-  const auto slot = static_cast<uint32_t>(endpoint_in(subscription->gid()));
+  const auto slot = slot_of(*subscription);
   const Registry::Lock lock(registry);
-  for (bool closed = false; !closed;) {
-    Turn turn;
-    closed = closing::close_some(registry, slot, false, turn);
-  }
+  close(registry, slot);
   CHECK_FALSE(sweeping::Round(registry).sweep_some_of(slot));
   CHECK(f.inspection.closing_endpoints() == 1);
   for (size_t turns = 1; turns < many && !sweeping::Round(registry).sweep_some_of(slot); ++turns) {
@@ -237,8 +233,7 @@ TEST_CASE("a sweep closes completely what a live process left closing") {
   {
     const Registry::Lock lock(registry);
     Turn turn;
-    CHECK_FALSE(closing::close_some(
-      registry, static_cast<uint32_t>(endpoint_in(subscription->gid())), false, turn));
+    CHECK_FALSE(closing::close_some(registry, slot_of(*subscription), false, turn));
   }
   CHECK(f.inspection.closing_endpoints() == 1);
   sweeping::sweep_all(registry);
