@@ -17,7 +17,7 @@
 //   free_large            a publisher whose topic DSM has grown to more than 16 MiB
 //   create_queue          a subscription of depth 65,535
 //   free_queue            closing it, and freeing its queue
-//   sweep_deepest         looking at 65,535 messages of a closed publisher that nobody has taken,
+//   sweep_deepest         looking at 65,535 untaken messages of a closed publisher,
 //                         and at as many newer ones of another publisher
 //   reap                  a killed process with `changes` endpoints of each kind, and such a
 //   publisher
