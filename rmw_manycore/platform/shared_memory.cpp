@@ -16,11 +16,10 @@
 namespace manycore {
 namespace {
 
-constexpr uint64_t page = 4096;
 constexpr uint64_t step_bytes = 4 << 20;  ///< takes about 3 ms to back
 
-uint64_t page_floor(uint64_t x) { return x & ~(page - 1); }
-uint64_t page_ceil(uint64_t x) { return page_floor(x + page - 1); }
+uint64_t page_floor(uint64_t x) { return x & ~(page_bytes - 1); }
+uint64_t page_ceil(uint64_t x) { return page_floor(x + page_bytes - 1); }
 
 }  // namespace
 

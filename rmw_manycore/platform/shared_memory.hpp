@@ -9,6 +9,8 @@
 
 namespace manycore {
 
+constexpr uint64_t page_bytes = 4096;
+
 /// Room of a file system for unprivileged users.
 struct FileSystemRoom {
   uint64_t free_bytes = 0;

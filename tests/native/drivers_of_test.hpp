@@ -35,6 +35,13 @@ struct Fixture {
   std::unique_ptr<Subscription> subscription(const Qos & qos) {
     return process->create_subscription(on_topic("/driver", qos));
   }
+  std::vector<std::unique_ptr<Subscription>> subscriptions(size_t count, const Qos & qos) {
+    std::vector<std::unique_ptr<Subscription>> created;
+    for (size_t i = 0; i < count; ++i) {
+      created.push_back(subscription(qos));
+    }
+    return created;
+  }
   /// Publishes `count` messages with the next numbers, and leaves.
   void drive(uint64_t count, size_t size_bytes = 1000) {
     const auto driver = publisher();

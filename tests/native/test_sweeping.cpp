@@ -36,10 +36,7 @@ TEST_CASE("many readers are revoked in turns; the next sweep continues one that 
   Fixture f;
   const Standstill no_other_sweeper(f.platform, 1);
   constexpr size_t many = 300;
-  std::vector<std::unique_ptr<Subscription>> stuck;
-  for (size_t i = 0; i < many; ++i) {
-    stuck.push_back(f.subscription(keep_last(1)));
-  }
+  const auto stuck = f.subscriptions(many, keep_last(1));
   const auto successor = f.publisher();
   f.drive(1);
   CHECK(f.inspection.closing_endpoints() == 1);
@@ -245,10 +242,7 @@ TEST_CASE("readers that finished since a sweep ended early among them are checke
   Fixture f;
   const Standstill no_other_sweeper(f.platform, 1);
   constexpr size_t many = 150;
-  std::vector<std::unique_ptr<Subscription>> stuck;
-  for (size_t i = 0; i < many; ++i) {
-    stuck.push_back(f.subscription(keep_last(1)));
-  }
+  const auto stuck = f.subscriptions(many, keep_last(1));
   const auto successor = f.publisher();
   f.drive(1);
   Registry & registry = f.inspection.registry();

@@ -25,7 +25,8 @@ struct alignas(64) RecordDescriptor {
 };
 static_assert(sizeof(RecordDescriptor) == 64);
 
-/// The memory behind a block of at least this size goes back to the system: a hole in the SMEM.
+/// The memory behind a block of at least this size goes back to the system: a hole in the SMEM,
+/// which takes time in each process that maps it.
 constexpr uint64_t min_hole_bytes = 16 << 10;
 /// The SMEM of generations, landings and spare blocks is freed in pieces of at most this size,
 /// which begin at multiples of it or with the block.

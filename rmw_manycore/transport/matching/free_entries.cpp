@@ -11,7 +11,6 @@ namespace {
 /// Adding a block takes system calls, and each of its pages takes time.
 constexpr uint64_t steps_of_growing = 200;
 constexpr uint64_t steps_of_a_page = 50;
-constexpr uint64_t page_bytes = 4096;
 
 }  // namespace
 

@@ -161,11 +161,9 @@ bool free_some_of_table(
 bool free_some_generations(Cluster & cluster, TopicDsmHeader & dsm, Turn & turn) {
   for (GenerationEntry & generation : dsm.generations) {
     while (generation.offset.load() != 0) {
-      if (!turn.may_free()) {
+      if (!turn.begin_freeing(generation.whole_bytes())) {
         return false;
       }
-      turn.spend_on_freeing(
-        std::min(generation.extent_bytes(), freed_piece_bytes), generation.whole_bytes());
       Generation::free_some(cluster, generation);
     }
   }
@@ -176,10 +174,9 @@ bool free_some_generations(Cluster & cluster, TopicDsmHeader & dsm, Turn & turn)
 bool free_some_of_retired(
   const Cluster & cluster, TopicDsmHeader & dsm, Cluster & receiver, Turn & turn) {
   for (bool is_free = false; !is_free;) {
-    if (!turn.may_free()) {
+    if (!turn.begin_freeing(landing_bytes(dsm))) {
       return false;
     }
-    turn.spend_on_freeing(std::min(landing_bytes(dsm), freed_piece_bytes), landing_bytes(dsm));
     is_free = landings::free_piece_of_retired(cluster, dsm, receiver);
   }
   return true;

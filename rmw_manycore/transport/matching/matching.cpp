@@ -71,12 +71,11 @@ Considered find_place(
     return {
       false, spare_blocks::Needed{SpareUse::landing, receiver.id(), bytes, bytes - data_bytes}};
   }
-  if (!turn.may_free()) {
+  if (turn.begin_freeing(bytes)) {
+    landings::free_piece_of_retired(registry.clusters().at(pair.publisher.cluster), dsm, receiver);
+  } else {
     turn.end();
-    return {false};
   }
-  turn.spend_on_freeing(std::min(bytes, freed_piece_bytes), bytes);
-  landings::free_piece_of_retired(registry.clusters().at(pair.publisher.cluster), dsm, receiver);
   return {false};
 }
 

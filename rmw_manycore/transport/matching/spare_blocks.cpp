@@ -84,11 +84,10 @@ bool free_some(Registry & registry, SpareBlock & spare, Turn & turn) {
   const SegmentRef ref{spare.ref.load()};
   Cluster * const cluster = ref ? registry.map_cluster(ref.cluster()) : nullptr;
   while (cluster != nullptr) {
-    if (!turn.may_free()) {
+    const uint64_t bytes = spare.bytes.load();
+    if (!turn.begin_freeing(bytes)) {
       return false;
     }
-    const uint64_t bytes = spare.bytes.load();
-    turn.spend_on_freeing(std::min(bytes, freed_piece_bytes), bytes);
     const uint32_t kept = cluster->free_last_piece(ref.offset(), bytes, spare.kept_pieces.load());
     if (kept == 0) {
       break;

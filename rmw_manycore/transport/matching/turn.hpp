@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "platform/clock.hpp"
+#include "platform/shared_memory.hpp"
 #include "transport/layout/topic_dsm_layout.hpp"
 
 namespace manycore {
@@ -20,19 +21,20 @@ public:
 
   bool is_over() const noexcept { return left_ == 0 || is_late_; }
   uint32_t spent() const noexcept { return steps - left_; }
-  /// True in the first half, as a hole in the SMEM may take as long as a turn.
-  bool may_free() const noexcept { return !is_over() && left_ >= steps / 2; }
-
   void end() noexcept { left_ = 0; }
 
-  /// Charges what it takes to free so much of a block. A hole takes 30 to 60 us whatever its size,
-  /// because other CPUs are interrupted; so there is at most one in a turn. A block may take up to
-  /// a page more than its bytes.
-  void spend_on_freeing(uint64_t bytes, uint64_t block_bytes) noexcept {
+  /// Charges what it takes to free a piece of a block. A hole may take as long as a turn whatever
+  /// its size, because other CPUs are interrupted: there is at most one in a turn, and only in its
+  /// first half. False, without a charge, if it has to wait for the next turn.
+  [[nodiscard]] bool begin_freeing(uint64_t block_bytes) noexcept {
     constexpr uint64_t bytes_in_a_step = 128;
-    constexpr uint64_t page_bytes = 4096;
-    const bool makes_hole = block_bytes + page_bytes > min_hole_bytes;
+    if (is_over() || left_ < steps / 2) {
+      return false;
+    }
+    const bool makes_hole = block_bytes + page_bytes > min_hole_bytes;  // it may end with a page
+    const uint64_t bytes = std::min(block_bytes, freed_piece_bytes);
     spend((makes_hole ? steps / 2 : 0) + 1 + bytes / bytes_in_a_step);
+    return true;
   }
 
   void spend(uint64_t cost) noexcept {

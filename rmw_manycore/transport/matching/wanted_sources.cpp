@@ -64,7 +64,7 @@ bool WantedSources::count_newer(Look & look, const OrphanReader & reader, Turn &
 
 /// A subscription that took a message since the check began may want more than the check found. It
 /// takes what it wants itself, so the topic DSM stays for now.
-std::optional<bool> WantedSources::is_wanted(
+std::optional<bool> WantedSources::is_among_newest(
   Look & look, const OrphanReader & reader, Turn & turn) const {
   if (!is_cut_by_depth(reader)) {
     return closing::has_undelivered(reader, look.place, turn);
@@ -103,7 +103,7 @@ std::optional<bool> WantedSources::contain(const OrphanReader & reader, Turn & t
     look_ = Look::at(reader);
   }
   if (!look_->is_wanted) {
-    look_->is_wanted = is_wanted(*look_, reader, turn);
+    look_->is_wanted = is_among_newest(*look_, reader, turn);
   }
   std::optional<bool> found = look_->is_wanted;
   if (found.value_or(false)) {

@@ -43,7 +43,7 @@ private:
     static Look at(const closing::OrphanReader & reader) noexcept;
   };
 
-  std::optional<bool> is_wanted(
+  std::optional<bool> is_among_newest(
     Look & look, const closing::OrphanReader & reader, Turn & turn) const;
   /// False if the turn ended before the last source.
   bool count_newer(Look & look, const closing::OrphanReader & reader, Turn & turn) const;

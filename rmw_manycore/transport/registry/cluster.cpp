@@ -12,8 +12,6 @@
 namespace manycore {
 namespace {
 
-constexpr uint32_t page_bytes = 4096;
-
 /// 1 KiB for small SMEMs, one page for large ones.
 uint32_t granule_size(uint64_t smem_bytes) { return smem_bytes <= (64u << 20) ? 1024 : page_bytes; }
 

@@ -13,12 +13,10 @@ from typing import Any
 
 from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.launch.processes.environment import enter_middleware
-from rmw_manycore_py.signals import interrupts_held
+from rmw_manycore_py.spinning import spin_once
 
 # Timeout for the answer of a node that exists.
 ANSWER_TIMEOUT_S = 5.0
-# Period at which a spinning tool checks for an interrupt.
-_LOOK_PERIOD_S = 0.1
 
 
 @contextmanager
@@ -59,14 +57,6 @@ def _errors_of_rcl() -> Iterator[None]:
         yield
     except (RCLError, NameValidationException) as error:
         raise ManycoreError(str(error).partition(", at ")[0]) from error
-
-
-def spin_once(node: Any, timeout_s: float = _LOOK_PERIOD_S) -> None:
-    """Handle one pending callback, waiting up to the timeout; then raise a pending interrupt."""
-    import rclpy
-
-    with interrupts_held():  # between taking and handling a message, so that none is lost
-        rclpy.spin_once(node, timeout_sec=min(timeout_s, _LOOK_PERIOD_S))
 
 
 def result_of(node: Any, future: Any, whose: str) -> Any:

@@ -16,8 +16,9 @@ from rmw_manycore_py.cli.common.names import row_of
 from rmw_manycore_py.cli.common.options import examples, platform_option
 from rmw_manycore_py.cli.common.printing import print_notices
 from rmw_manycore_py.cli.common.shown_options import shown_options
-from rmw_manycore_py.cli.common.tool_node import spin_once, tool_node
+from rmw_manycore_py.cli.common.tool_node import tool_node
 from rmw_manycore_py.ros.names import expand
+from rmw_manycore_py.spinning import spin_once
 
 # Index = value in service_msgs/msg/ServiceEventInfo.
 EVENTS = ("REQUEST_SENT", "REQUEST_RECEIVED", "RESPONSE_SENT", "RESPONSE_RECEIVED")

@@ -14,11 +14,12 @@ from rmw_manycore_py.cli.common import view
 from rmw_manycore_py.cli.common.interface_types import load_type
 from rmw_manycore_py.cli.common.printing import print_notices
 from rmw_manycore_py.cli.common.suggestions import did_you_mean
-from rmw_manycore_py.cli.common.tool_node import spin_once, tool_node
+from rmw_manycore_py.cli.common.tool_node import tool_node
 from rmw_manycore_py.cli.topic.qos_options import QosOptions
 from rmw_manycore_py.errors import ManycoreError
 from rmw_manycore_py.qos import all_reliable, all_transient_local
 from rmw_manycore_py.ros.names import expand
+from rmw_manycore_py.spinning import spin_once
 
 ANY_QOS = QosOptions()
 

@@ -16,10 +16,11 @@ from rmw_manycore_py.cli.common.completion import complete_topics, complete_type
 from rmw_manycore_py.cli.common.interface_types import load_type
 from rmw_manycore_py.cli.common.message_values import message_of, parse_values, read_values
 from rmw_manycore_py.cli.common.options import examples, platform_option, talking_options
-from rmw_manycore_py.cli.common.tool_node import spin_once, tool_node
+from rmw_manycore_py.cli.common.tool_node import tool_node
 from rmw_manycore_py.cli.common.values_argument import DEFAULTS, exclude, values_argument
 from rmw_manycore_py.cli.topic.qos_options import QosOptions, qos_options
 from rmw_manycore_py.cli.topic.subscribers import wait_for_subscriptions
+from rmw_manycore_py.spinning import spin_once
 
 # Lifetime of the node after its last message, so that slow subscribers can take it.
 KEEP_ALIVE_S = 0.1

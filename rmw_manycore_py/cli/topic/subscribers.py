@@ -8,8 +8,8 @@ from typing import Any
 
 import click
 
-from rmw_manycore_py.cli.common.tool_node import spin_once
 from rmw_manycore_py.errors import ManycoreError
+from rmw_manycore_py.spinning import spin_once
 
 # Period of the waiting message.
 TOLD_PERIOD_S = 1.0

@@ -8,7 +8,6 @@ from collections.abc import Callable, Collection
 from typing import Any
 
 import numpy as np
-import rclpy
 from builtin_interfaces.msg import Time
 from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import PoseStamped, PoseWithCovarianceStamped
@@ -25,7 +24,7 @@ from rmw_manycore_py.ndt.messages.point_cloud import encode
 from rmw_manycore_py.ndt.recordings.recording import Recording
 from rmw_manycore_py.ndt.replay.guess_source import MAP_FRAME, GuessSource
 from rmw_manycore_py.ndt.replay.tally import Played, Tally
-from rmw_manycore_py.signals import interrupts_held
+from rmw_manycore_py.spinning import spin_once
 
 BASE_FRAME = "base_link"
 WARM_UP_PERIOD_S = 0.25
@@ -35,7 +34,6 @@ LEAD_S = 1.1
 # Topics may overtake each other; a filter's prediction precedes the scan, which a LiDAR takes 0.1 s
 # to record.
 GUESS_LEAD_S = 0.005
-LOOK_S = 0.1  # period at which an interrupt is looked for
 FOLLOW_UP_S = 1.0  # minimum wait for answers after the last scan
 
 
@@ -179,8 +177,7 @@ class Player(Node):
     def _spin_until(self, deadline: float, done: Callable[[], bool] = lambda: False) -> None:
         """Handle messages until a deadline or a condition."""
         while not done() and (left_s := deadline - time.monotonic()) > 0.0:
-            with interrupts_held():
-                rclpy.spin_once(self, timeout_sec=min(left_s, LOOK_S))
+            spin_once(self, left_s)
 
     def _why_cold(self, timeout_s: float) -> str:
         if self._scans.get_subscription_count() == 0:

@@ -17,7 +17,7 @@ from rclpy.signals import SignalHandlerOptions
 
 from rmw_manycore_py.cpu_time import tree_cpu_s
 from rmw_manycore_py.errors import ManycoreError
-from rmw_manycore_py.signals import interrupts_held
+from rmw_manycore_py.spinning import spin_once
 from rmw_manycore_py.whill.course.directory import Course
 from rmw_manycore_py.whill.laptop import topics
 from rmw_manycore_py.whill.laptop.drive_log import (
@@ -101,8 +101,7 @@ class Drive:
     ) -> None:
         start_s = turn_s = time.monotonic()
         while not done() and time.monotonic() - start_s < timeout_s:
-            with interrupts_held((signal.SIGINT, signal.SIGTERM)):
-                rclpy.spin_once(self._node, timeout_sec=TURN_S)
+            spin_once(self._node, TURN_S, (signal.SIGINT, signal.SIGTERM))
             if time.monotonic() >= turn_s:
                 turn_s += TURN_S
                 self._turn()
