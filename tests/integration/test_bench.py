@@ -101,8 +101,8 @@ def all_reached(report: dict[str, Any]) -> bool:
 def comes_once(attempt: Callable[[], bool]) -> bool:
     """Return whether one of three attempts succeeds.
 
-    For figures of exactly 0 in a window: a process that was preempted on its way to sleep
-    finishes that in the window.
+    For figures of a short window. Exactly 0: a process that was preempted on its way to sleep
+    finishes that in the window. More than 0: beside a load, a process may get no CPU in it.
     """
     return any(attempt() for _ in range(3))
 
@@ -169,9 +169,12 @@ def test_simulated_time_reaches_all_nodes() -> None:
 
 
 def test_simulated_time_crosses_the_bridge() -> None:
-    rows = run_bench("scale", "--only", "gets, at 1 kHz: Fast DDS, bridge")["results"]
-    assert {row["samples"] for row in rows if row["unit"] == "count"} == {10, 25}
-    assert all(row["median"] > 0 for row in rows)
+    def is_received() -> bool:
+        rows = run_bench("scale", "--only", "gets, at 1 kHz: Fast DDS, bridge")["results"]
+        assert {row["samples"] for row in rows if row["unit"] == "count"} == {10, 25}
+        return all(row["median"] > 0 for row in rows)
+
+    assert comes_once(is_received)
 
 
 @pytest.mark.long

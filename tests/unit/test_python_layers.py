@@ -24,7 +24,7 @@ LAYERS = [
     (".trace.files",),
     (".cpu_time", ".figures", ".parent_death", ".progress", ".ros", ".readiness"),
     (".look", ".own_place", ".platform_status", ".runs", ".scheduling", ".signals", ".topology"),
-    (".picture", ".transport"),
+    (".picture", ".spinning", ".transport"),
     (".emcos", ".view"),
     (".autoware_overlay", ".helper_process", ".routes"),
     (".bridge_plan", ".interfaces"),
