@@ -239,6 +239,7 @@ uint32_t Process::Impl::publish_endpoint(const EndpointSpec & spec, EndpointKind
   }
   const uint64_t bytes =
     kind == EndpointKind::subscription ? subscription_block::bytes_for(spec.qos) : 0;
+  registry->clusters().at(placement.cluster).back_ahead();
   if (bytes <= spare_blocks::max_bytes_at_once) {
     return enter_graph(*registry, *membership, spec, kind, slot);
   }

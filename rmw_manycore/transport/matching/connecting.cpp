@@ -2,6 +2,7 @@
 #include "transport/matching/connecting.hpp"
 
 #include <optional>
+#include <set>
 #include <vector>
 
 #include "platform/error.hpp"
@@ -27,15 +28,28 @@ bool make_block(
   }
 }
 
+/// Both ends of a match may need another block of their tables.
+std::set<uint32_t> clusters_of(const EndpointEntry & own, const std::vector<Candidate> & others) {
+  std::set<uint32_t> clusters{own.cluster};
+  for (const Candidate & other : others) {
+    clusters.insert(other.cluster);
+  }
+  return clusters;
+}
+
 }  // namespace
 
 /// Another endpoint's block may have been attached since the match was tried, so a lack of room
 /// is an error only the second time.
 void connect(Registry & registry, const Membership & membership, uint32_t endpoint) {
-  SpareBlock & spare = registry.endpoints()[endpoint].spare;
+  EndpointEntry & own = registry.endpoints()[endpoint];
   std::vector<Candidate> candidates = candidates_of(registry, endpoint);
+  const std::set<uint32_t> clusters = clusters_of(own, candidates);
   bool lacks_room = false;
   while (!candidates.empty()) {
+    for (const uint32_t cluster : clusters) {
+      registry.clusters().at(cluster).back_ahead();
+    }
     std::optional<spare_blocks::Needed> needed;
     {
       const Registry::Lock lock(registry);
@@ -43,11 +57,11 @@ void connect(Registry & registry, const Membership & membership, uint32_t endpoi
       needed = connect_some(registry, endpoint, candidates);
     }
     if (needed && lacks_room) {
-      spare_blocks::make(registry, membership, spare, *needed);
+      spare_blocks::make(registry, membership, own.spare, *needed);
     }
-    lacks_room = needed && !lacks_room && !make_block(registry, membership, spare, *needed);
+    lacks_room = needed && !lacks_room && !make_block(registry, membership, own.spare, *needed);
   }
-  spare_blocks::free_all(registry, membership, spare);
+  spare_blocks::free_all(registry, membership, own.spare);
 }
 
 }  // namespace manycore::matching

@@ -224,6 +224,15 @@ void Cluster::require_file_system_room(uint64_t length) const {
   }
 }
 
+/// Populates only: a fallocate() that fails would take back pages that others allocate meanwhile.
+/// Another process may do that with all of the range; then allocate() backs what it needs itself.
+void Cluster::back_ahead() const noexcept {
+  const uint64_t from = header().free_from.load(std::memory_order_relaxed) * granule_bytes_;
+  if (contains(from, backed_ahead_bytes)) {
+    memory_.populate(from, backed_ahead_bytes);
+  }
+}
+
 uint64_t Cluster::allocate(uint64_t length) {
   const uint64_t offset = reserve(length);
   try {

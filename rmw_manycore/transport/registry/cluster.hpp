@@ -39,6 +39,9 @@ struct PlatformPaths {
   std::string session_pipe(uint32_t id) const { return cluster(id) + ".sessions"; }
 };
 
+/// More than the small blocks that a few turns allocate.
+constexpr uint64_t backed_ahead_bytes = 64 << 10;
+
 /// A cluster's SMEM and pipe, mapped into this process.
 class Cluster {
 public:
@@ -70,6 +73,9 @@ public:
   void require_message_room(uint64_t length) const;
   /// The same for the file system; call before memory is backed.
   void require_file_system_room(uint64_t length) const;
+  /// Backs, as far as there is room, the `backed_ahead_bytes` from which small blocks are allocated
+  /// next, so that allocate() under the registry lock finds them backed. Needs no lock.
+  void back_ahead() const noexcept;
   /// Allocates SMEM, backed but not cleared; returns its offset. The caller holds the registry
   /// lock. Throws Error{no_space|corrupt}.
   uint64_t allocate(uint64_t length);
