@@ -226,10 +226,13 @@ void Cluster::require_file_system_room(uint64_t length) const {
 
 /// Populates only: a fallocate() that fails would take back pages that others allocate meanwhile.
 /// Another process may do that with all of the range; then allocate() backs what it needs itself.
-void Cluster::back_ahead() const noexcept {
+void Cluster::back_ahead() noexcept {
   const uint64_t from = header().free_from.load(std::memory_order_relaxed) * granule_bytes_;
-  if (contains(from, backed_ahead_bytes)) {
+  const uint64_t before = backed_ahead_from_.load(std::memory_order_relaxed);
+  const bool is_enough_left = from >= before && from - before <= backed_ahead_bytes / 2;
+  if (!is_enough_left && contains(from, backed_ahead_bytes)) {
     memory_.populate(from, backed_ahead_bytes);
+    backed_ahead_from_.store(from, std::memory_order_relaxed);
   }
 }
 

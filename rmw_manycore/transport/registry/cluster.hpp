@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cstring>
 #include <memory>
 #include <mutex>
@@ -75,7 +76,7 @@ public:
   void require_file_system_room(uint64_t length) const;
   /// Backs, as far as there is room, the `backed_ahead_bytes` from which small blocks are allocated
   /// next, so that allocate() under the registry lock finds them backed. Needs no lock.
-  void back_ahead() const noexcept;
+  void back_ahead() noexcept;
   /// Allocates SMEM, backed but not cleared; returns its offset. The caller holds the registry
   /// lock. Throws Error{no_space|corrupt}.
   uint64_t allocate(uint64_t length);
@@ -157,6 +158,7 @@ private:
   // Copies of the header's fields, which may be damaged later.
   uint64_t granule_bytes_;
   uint64_t granule_count_;
+  std::atomic<uint64_t> backed_ahead_from_{UINT64_MAX};  ///< by this process, last
 };
 
 /// The clusters mapped by this process, each on first use. Thread-safe; lock-free for mapped
