@@ -47,8 +47,10 @@ void connect(Registry & registry, const Membership & membership, uint32_t endpoi
   const std::set<uint32_t> clusters = clusters_of(own, candidates);
   bool lacks_room = false;
   while (!candidates.empty()) {
-    for (const uint32_t cluster : clusters) {
-      registry.clusters().at(cluster).back_ahead();
+    for (const uint32_t id : clusters) {
+      if (Cluster * const cluster = registry.clusters().find(id); cluster != nullptr) {
+        cluster->back_ahead();
+      }
     }
     std::optional<spare_blocks::Needed> needed;
     {

@@ -284,6 +284,7 @@ void Cluster::free_part(uint64_t offset, uint64_t length, uint64_t block_bytes) 
   head.used_bytes.fetch_sub(count * granule_bytes_, std::memory_order_relaxed);
   if (granules_of(block_bytes) * granule_bytes_ >= min_hole_bytes) {
     memory_.release(offset, count * granule_bytes_);
+    backed_ahead_from_.store(UINT64_MAX, std::memory_order_relaxed);  // may be a hole now
   }
 }
 
