@@ -88,16 +88,18 @@ private:
       return;
     }
     const int64_t start_ns = clock_ns(clock_);
-    const bool counts = header_.mutex.owner() == thread_id_;
+    const auto is_held = [&] {  // `changes` is odd without an owner before a repair
+      return header_.changes.load() == seen && header_.mutex.owner() == thread_id_ && !done_;
+    };
+    if (!is_held()) {
+      return;
+    }
     int64_t end_ns = start_ns;
-    for (int64_t ran_ns = start_ns; header_.changes.load() == seen && !done_;
-         ran_ns = clock_ns(clock_)) {
+    for (int64_t ran_ns = start_ns; is_held(); ran_ns = clock_ns(clock_)) {
       end_ns = ran_ns;
     }
-    if (counts) {
-      const std::lock_guard<std::mutex> guard(mutex_);
-      holds_ns_.push_back(static_cast<uint64_t>(end_ns - start_ns));
-    }
+    const std::lock_guard<std::mutex> guard(mutex_);
+    holds_ns_.push_back(static_cast<uint64_t>(end_ns - start_ns));
   }
 
   const RegistryHeader & header_;

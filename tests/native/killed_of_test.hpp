@@ -11,6 +11,8 @@
 #include "platform_of_test.hpp"
 #include "stepped_child.hpp"
 #include "transport/lifecycle/configurator.hpp"
+#include "transport/queue/source_table.hpp"
+#include "transport/transfer/landing.hpp"
 #include "waiting.hpp"
 
 /// Kills a process at any instruction of what it does. The test single-steps the process, kills it
@@ -54,6 +56,11 @@ struct Fixture {
     subscriptions.push_back(process->create_subscription(on_topic(moved_topic, keep_last(1))));
   }
 
+  void subscribe_resident() {
+    resident->tell(std::string("subscription ") + moved_topic + " 1");
+    ++resident_endpoints;
+  }
+
   uint64_t used_bytes() {
     return inspection.used_bytes(1) + (resident ? inspection.used_bytes(2) : 0);
   }
@@ -94,10 +101,50 @@ struct Fixture {
       REQUIRE(found);
       CHECK(found->number == number);
     }
-    CHECK(inspection.live_endpoints() == 3 + publishers.size() + subscriptions.size());
+    CHECK(
+      inspection.live_endpoints() ==
+      3 + publishers.size() + subscriptions.size() + resident_endpoints);
     CHECK(inspection.readers_of(*publisher) == 2);
     CHECK(publisher->matched().current == 2);
     CHECK(subscription->matched().current == 1);
+  }
+
+  /// A sum that changes with each store to what these endpoints have of their matches.
+  uint64_t matches() {
+    uint64_t sum = readers_of_landing();
+    const auto add_publisher = [&](const Publisher & each) {
+      sum += inspection.readers_of(each) + each.matched().current;
+    };
+    const auto add_subscription = [&](const Subscription & each) {
+      SubscriptionHeader & header = inspection.header_of(each);
+      visit_source_table(
+        inspection.registry().clusters().at(1), header, [&](const SourceEntry & source, uint32_t) {
+          sum += static_cast<uint64_t>(source.state.load()) << 32;
+          return false;
+        });
+      sum += each.matched().current;
+    };
+    add_publisher(*publisher);
+    add_subscription(*subscription);
+    add_subscription(*other);
+    for (const auto & each : publishers) {
+      add_publisher(*each);
+    }
+    for (const auto & each : subscriptions) {
+      add_subscription(*each);
+    }
+    return sum;
+  }
+
+  /// Subscriptions in cluster 2 of the publisher that is transferred.
+  uint64_t readers_of_landing() {
+    if (!resident) {
+      return 0;
+    }
+    const uint32_t slot = inspection.slot_of(publishers.front()->gid());
+    const SegmentRef block = inspection.registry().endpoints()[slot].block;
+    Clusters & clusters = inspection.registry().clusters();
+    return landing_table(clusters.at(1), *clusters.find<TopicDsmHeader>(block))->readers[1];
   }
 
   void check_crowd() {
@@ -126,13 +173,16 @@ struct Fixture {
   std::vector<std::unique_ptr<Subscription>> subscriptions;
   std::optional<Node> resident;
   Inspection inspection{platform};
+  size_t resident_endpoints = 0;
   uint64_t number = 0;
 };
 
-inline uint64_t tries() {
+inline std::optional<uint64_t> asked_tries() {
   const char * const asked = std::getenv("MANYCORE_TEST_STEPS");
-  return asked == nullptr ? 4 : std::stoull(asked);
+  return asked == nullptr ? std::nullopt : std::optional(std::stoull(asked));
 }
+
+inline uint64_t tries() { return asked_tries().value_or(4); }
 
 /// Kills a process in `role` after this many instructions; returns how many it executed.
 inline uint64_t kill_after(Fixture & f, const std::string & role, uint64_t instructions) {

@@ -49,6 +49,17 @@ inline const Role creates("creates", [](Lines &, const Arguments & arguments) {
   finish_steps();
 });
 
+/// Endpoints that are matched with others and each other.
+inline const Role matches("matches", [](Lines &, const Arguments & arguments) {
+  const auto process = join(arguments.at(0));
+  begin_steps();
+  auto publisher = process->create_publisher(on_topic(topic, transient_local(10)));
+  auto subscription = process->create_subscription(on_topic(topic, transient_local(10)));
+  publisher.reset();
+  subscription.reset();
+  finish_steps();
+});
+
 /// A subscription and a publisher of a transferred topic, each of which makes a landing.
 inline const Role moves("moves", [](Lines &, const Arguments & arguments) {
   Placement placement;

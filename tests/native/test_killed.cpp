@@ -22,6 +22,38 @@ size_t files_in(const std::string & directory) {
   return static_cast<size_t>(std::distance(begin(all), end(all)));
 }
 
+/// Steps a process in `role` until it has made this many changes to matches with the fixture's
+/// endpoints, and kills it. False if it makes fewer.
+bool kill_after_change(Fixture & f, const std::string & role, size_t changes) {
+  SteppedChild child(role, {f.platform.name()});
+  for (uint64_t before = f.matches(); changes != 0;) {
+    if (child.step(1) == 0) {
+      return false;
+    }
+    const uint64_t now = f.matches();
+    changes -= now == before ? 0 : 1;
+    before = now;
+  }
+  child.kill();
+  return true;
+}
+
+/// Kills it after a sample of these changes: when it has begun to make a match, and counted one end
+/// of one that it undoes. After each one if MANYCORE_TEST_STEPS is set.
+void check_kills_after_changes(Fixture & f, const std::string & role, size_t all_changes) {
+  f.platform.receive_thread(1);
+  f.check_that_it_goes_on();
+  const uint64_t readers_of_landing = f.readers_of_landing();
+  const size_t stride = killed_of_test::asked_tries() ? 1 : 7;
+  for (size_t changes = 2; changes <= all_changes; changes += stride) {
+    CAPTURE(changes);
+    REQUIRE(kill_after_change(f, role, changes));
+    f.wait_until_alone();
+    f.check_that_it_goes_on();
+    CHECK(f.readers_of_landing() == readers_of_landing);
+  }
+}
+
 }  // namespace
 
 TEST_CASE("killed at any instruction while it joins") { check_kills("joins"); }
@@ -37,6 +69,19 @@ TEST_CASE(
 
 TEST_CASE("killed at any instruction while it makes landings, and gives them back") {
   check_kills("moves");
+}
+
+TEST_CASE("killed after any store of a match that it makes or undoes: both ends agree again") {
+  Fixture f;
+  check_kills_after_changes(f, "matches", 16);
+}
+
+TEST_CASE(
+  "killed after any store of a match whose messages are transferred: both ends agree again") {
+  Fixture f;
+  f.move_topic();
+  f.subscribe_resident();
+  check_kills_after_changes(f, "moves", 12);
 }
 
 TEST_CASE("killed at any instruction while it publishes") { check_kills("publishes"); }

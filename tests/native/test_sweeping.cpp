@@ -158,6 +158,36 @@ TEST_CASE("a process that creates an endpoint sweeps what is behind a deep histo
   CHECK(f.inspection.closing_endpoints() == 1);
 }
 
+TEST_CASE("a long look goes on although another process passes over it between its turns") {
+  Fixture f;
+  const Standstill no_other_sweeper(f.platform, 1);
+  constexpr uint32_t depth = 20'000;  // takes several turns
+  const auto subscription = f.subscription(keep_last(depth));
+  auto former = f.publisher(keep_last(depth));
+  const auto newer = f.publisher(keep_last(depth));
+  for (uint32_t number = 1; number <= depth; ++number) {
+    former->publish(former->draft(8), 8, number);
+  }
+  for (uint32_t number = 1; number < depth; ++number) {
+    newer->publish(newer->draft(8), 8, depth + number);
+  }
+  const auto slot = slot_of(*former);
+  former.reset();
+  REQUIRE(f.inspection.closing_endpoints() == 1);
+  newer->publish(newer->draft(8), 8, 2 * depth);
+  Registry & registry = f.inspection.registry();
+  registry.header().sweep_from = slot;
+  sweeping::Round round(registry);
+  int turns = 0;
+  for (bool over = false; !over; ++turns) {
+    const Registry::Lock lock(registry);
+    over = round.sweep_some();
+    registry.header().sweep_from = slot + 1;  // as left by that process in the middle of its round
+  }
+  CHECK(turns > 4);
+  CHECK(f.inspection.closing_endpoints() == 0);
+}
+
 TEST_CASE("a turn punches one hole at most, also where a block is rounded up to pages") {
   Fixture f;
   const Standstill no_other_sweeper(f.platform, 1);

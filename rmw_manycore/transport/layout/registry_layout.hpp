@@ -178,6 +178,13 @@ struct Profile {
   int32_t host_cpu_of_receive_thread[max_clusters];  ///< index cluster - 1; -1 = not pinned
 };
 
+/// Ends of the match that the owner of the registry lock is changing, or that was changed last:
+/// endpoint slots, or `nothing`. When an owner dies, all other matches are whole.
+struct MatchInHand {
+  std::atomic<uint32_t> publisher;
+  std::atomic<uint32_t> subscription;
+};
+
 using GraphWatchers = SlotSet<process_capacity>;
 static_assert(sizeof(GraphWatchers) == 128);
 
@@ -199,6 +206,7 @@ struct RegistryHeader {
   uint32_t needs_repair;  ///< an owner of the mutex died and its changes are not repaired yet
   uint32_t sweep_from;    ///< endpoint slot at which the next sweep starts
   uint32_t last_order;    ///< EndpointEntry::order of the youngest endpoint
+  MatchInHand match_in_hand;
   TraceControl trace;
   /// Processes of which a thread has ever watched the graph. A thread adds its process before it
   /// adds its wake word to WakeWords::graph; the slot is removed when it is given back and when it

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "transport/matching/detaching.hpp"
+#include "transport/matching/match_in_hand.hpp"
 #include "transport/matching/undelivered.hpp"
 #include "transport/qos/liveliness.hpp"
 #include "transport/queue/source_table.hpp"
@@ -25,22 +26,25 @@ void count_unmatched(Registry & registry, EndpointEntry & entry) {
   notify_event_watchers(registry, entry.process);
 }
 
-void undo_match(Registry & registry, SourceEntry & source, uint32_t receiver) {
+/// `subscription`: slot of that of the source.
+void undo_match(Registry & registry, SourceEntry & source, uint32_t subscription) {
   const SourceState state = source.state.load();
   const uint32_t publisher = source.topic_dsm_endpoint.load();
+  match_in_hand::note(registry.header(), publisher, subscription);
   if (
     state == SourceState::active && topic_dsm_of(registry, source) != nullptr &&
     registry.endpoints().is_live(publisher)) {
     count_unmatched(registry, registry.endpoints()[publisher]);
   }
   source.state.store(SourceState::revoked, std::memory_order_seq_cst);
-  detach_reader(registry, source, receiver);
+  detach_reader(registry, source, registry.endpoints()[subscription].cluster);
 }
 
 /// Undoes matches until the turn is over; true when none is left. `closed_before` advances after
 /// each match, so if this process dies, at most one is undone twice: its source is then `revoked`,
 /// and its reader may still be in the reader table.
-bool close_some_of_subscription(Registry & registry, EndpointEntry & entry, Turn & turn) {
+bool close_some_of_subscription(Registry & registry, uint32_t endpoint, Turn & turn) {
+  const EndpointEntry & entry = registry.endpoints()[endpoint];
   Cluster * const cluster = registry.map_cluster(entry.block.cluster());
   auto * const header = registry.map<SubscriptionHeader>(entry.block);
   if (cluster == nullptr || header == nullptr) {
@@ -55,7 +59,7 @@ bool close_some_of_subscription(Registry & registry, EndpointEntry & entry, Turn
       }
       turn.spend(steps_of_an_entry);
       if (source.state.load() != SourceState::free) {
-        undo_match(registry, source, entry.cluster);
+        undo_match(registry, source, endpoint);
         turn.spend(steps_of_a_match);
       }
       header->closed_before = index + 1;
@@ -68,15 +72,15 @@ bool close_some_of_subscription(Registry & registry, EndpointEntry & entry, Turn
 /// with undelivered records is set to resync, so that the topic DSM does not wait for it forever.
 /// False if the turn ended before the reader was notified.
 bool notify_of_end(
-  Registry & registry, const EndpointEntry & publisher, const OrphanReader & reader, bool died,
-  Turn & turn) {
+  Registry & registry, uint32_t publisher, const OrphanReader & reader, bool died, Turn & turn) {
   const std::optional<bool> has_some = may_have_undelivered(reader, turn);
   if (!has_some) {
     return false;
   }
+  match_in_hand::note(registry.header(), publisher, reader.endpoint_slot);
   EndpointEntry & subscription = registry.endpoints()[reader.endpoint_slot];
   if (died) {
-    note_death(publisher, subscription);
+    note_death(registry.endpoints()[publisher], subscription);
   }
   count_unmatched(registry, subscription);
   if (*has_some) {
@@ -89,8 +93,8 @@ bool notify_of_end(
 
 /// Notifies the reader of an entry, if there is one. False if the turn ended before that.
 bool notify_entry_of_end(
-  Registry & registry, const EndpointEntry & publisher, const Cluster & cluster,
-  TopicDsmHeader & dsm, const ReaderEntry & entry, bool died, Turn & turn) {
+  Registry & registry, uint32_t publisher, const Cluster & cluster, TopicDsmHeader & dsm,
+  const ReaderEntry & entry, bool died, Turn & turn) {
   if (entry.active.load(std::memory_order_acquire) == 0) {
     return true;
   }
@@ -101,7 +105,8 @@ bool notify_entry_of_end(
 
 /// Notifies readers until the turn is over; true when all are notified. `closed_before` advances
 /// after each reader, because a reader's match count must not be decremented twice.
-bool close_some_of_publisher(Registry & registry, EndpointEntry & entry, bool died, Turn & turn) {
+bool close_some_of_publisher(Registry & registry, uint32_t endpoint, bool died, Turn & turn) {
+  const EndpointEntry & entry = registry.endpoints()[endpoint];
   Cluster * const cluster = registry.map_cluster(entry.block.cluster());
   auto * const dsm = registry.map<TopicDsmHeader>(entry.block);
   if (cluster == nullptr || dsm == nullptr) {
@@ -123,7 +128,7 @@ bool close_some_of_publisher(Registry & registry, EndpointEntry & entry, bool di
         return true;
       }
       turn.spend(steps_of_an_entry);
-      stopped = !notify_entry_of_end(registry, entry, *cluster, *dsm, reader_entry, died, turn);
+      stopped = !notify_entry_of_end(registry, endpoint, *cluster, *dsm, reader_entry, died, turn);
       if (!stopped) {
         dsm->looked_before = {};  // first: the search for the next reader starts anew
         dsm->closed_before = index + 1;
@@ -155,8 +160,8 @@ bool close_some(Registry & registry, uint32_t endpoint, bool died, Turn & turn) 
     ++registry.header().closing_count;
   }
   const bool done = entry.kind == EndpointKind::publisher
-                      ? close_some_of_publisher(registry, entry, died, turn)
-                      : close_some_of_subscription(registry, entry, turn);
+                      ? close_some_of_publisher(registry, endpoint, died, turn)
+                      : close_some_of_subscription(registry, endpoint, turn);
   if (done && entry.slot.state.load() == SlotState::closing) {
     entry.slot.state.store(SlotState::closed);
   }

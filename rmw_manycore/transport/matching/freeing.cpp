@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "transport/matching/detaching.hpp"
+#include "transport/matching/match_in_hand.hpp"
 #include "transport/matching/spare_blocks.hpp"
 #include "transport/queue/source_table.hpp"
 #include "transport/registry/endpoint_blocks.hpp"
@@ -55,8 +56,8 @@ bool receive_threads_are_out(Registry & registry) {
 /// Revokes the source of a reader that has taken all of the topic DSM that it can, or that wants
 /// newer messages of other publishers instead.
 Progress revoke(
-  Registry & registry, WantedSources & wanted, const OrphanReader & reader, ReaderEntry & entry,
-  Turn & turn) {
+  Registry & registry, WantedSources & wanted, uint32_t publisher, const OrphanReader & reader,
+  ReaderEntry & entry, Turn & turn) {
   SourceEntry & source = reader.source;
   if (source.state.load() == SourceState::active) {
     const std::optional<bool> is_wanted = wanted.contain(reader, turn);
@@ -73,6 +74,7 @@ Progress revoke(
     return Progress::in_use;
   }
   closing::count_undelivered(registry, reader);
+  match_in_hand::note(registry.header(), publisher, reader.endpoint_slot);
   // Remove the reader before the source entry can be reused: if this process dies in between, the
   // next sweep must not mistake a new match for this one.
   remove_reader(reader.cluster, reader.dsm, entry);
@@ -95,7 +97,7 @@ bool revoke_up_to_last(
       const std::optional<OrphanReader> reader =
         closing::orphan_reader(registry, cluster, dsm, entry);
       const Progress progress =
-        reader ? revoke(registry, wanted, *reader, entry, turn) : Progress::kept;
+        reader ? revoke(registry, wanted, pass.endpoint, *reader, entry, turn) : Progress::kept;
       stopped = progress == Progress::turn_over;
       pass.is_any_in_use = pass.is_any_in_use || progress == Progress::in_use;
     } else if (index % free_readers_in_a_step == 0) {

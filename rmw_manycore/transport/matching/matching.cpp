@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "platform/error.hpp"
-#include "transport/matching/detaching.hpp"
 #include "transport/matching/free_entries.hpp"
+#include "transport/matching/match_in_hand.hpp"
 #include "transport/matching/turn.hpp"
 #include "transport/qos/liveliness.hpp"
 #include "transport/qos/qos_compatibility.hpp"
@@ -117,6 +117,7 @@ Considered join(Registry & registry, const Pair & pair, Turn & turn) {
       !found.is_done) {
     return found;
   }
+  match_in_hand::note(registry.header(), pair.publisher_slot, pair.subscription_slot);
   const uint64_t taken = begin_source(pair, *dsm, source);
   source.reader.store(publisher_cluster.ref_of(&reader).word, std::memory_order_relaxed);
   source.state.store(SourceState::joining, std::memory_order_release);
@@ -184,55 +185,6 @@ Considered consider(Registry & registry, const Pair & pair, Turn & turn) {
   return join(registry, pair, turn);
 }
 
-void undo_half_matches_of(Registry & registry, EndpointEntry & entry) {
-  Cluster * const cluster = registry.clusters().find(entry.block.cluster());
-  auto * const header = registry.clusters().find<SubscriptionHeader>(entry.block);
-  if (cluster == nullptr || header == nullptr) {
-    return;
-  }
-  visit_source_table(*cluster, *header, [&](SourceEntry & source, uint32_t) {
-    if (source.state.load() == SourceState::joining) {
-      detach_reader(registry, source, entry.cluster);
-      // Not `free`: the publisher may have seen the reader, so its phase must be checked through
-      // this entry when the subscription is freed.
-      source.state.store(SourceState::revoked, std::memory_order_seq_cst);
-    }
-    return false;
-  });
-}
-
-/// A closing publisher decrements reader by reader.
-bool counts_down(Registry & registry, TopicDsmHeader & dsm, const SourceEntry & source) {
-  const SegmentRef ref{source.reader.load()};
-  const Cluster * const cluster = registry.clusters().find(ref.cluster());
-  const auto * const reader = registry.clusters().find<ReaderEntry>(ref);
-  const auto index = cluster == nullptr || reader == nullptr
-                       ? std::nullopt
-                       : index_of_reader(*cluster, dsm, *reader);
-  return index && *index < dsm.closed_before;
-}
-
-/// Counts matches of closing endpoints as well, until they are undone: only then the counts are
-/// decremented.
-void count_matches_of(Registry & registry, uint32_t slot, std::vector<uint64_t> & counts) {
-  const EndpointEntry & entry = registry.endpoints()[slot];
-  Cluster * const cluster = registry.clusters().find(entry.block.cluster());
-  auto * const header = registry.clusters().find<SubscriptionHeader>(entry.block);
-  if (cluster == nullptr || header == nullptr) {
-    return;
-  }
-  visit_source_table(*cluster, *header, [&](SourceEntry & source, uint32_t) {
-    TopicDsmHeader * const dsm = topic_dsm_of(registry, source);
-    if (
-      source.state.load() == SourceState::active && dsm != nullptr && dsm->orphan.load() == 0 &&
-      !counts_down(registry, *dsm, source)) {
-      ++counts[slot];
-      ++counts[source.topic_dsm_endpoint.load()];
-    }
-    return false;
-  });
-}
-
 bool is_other_end(const EndpointEntry & entry, const char * topic, EndpointKind kind) {
   return entry.kind != kind && std::strncmp(entry.topic, topic, name_bytes) == 0;
 }
@@ -284,30 +236,6 @@ std::optional<spare_blocks::Needed> connect_some(
     }
   }
   return std::nullopt;
-}
-
-void undo_half_matches(Registry & registry) {
-  for (uint32_t slot = 0; slot < registry.endpoints().high_water(); ++slot) {
-    EndpointEntry & entry = registry.endpoints()[slot];
-    if (registry.endpoints().is_live(slot) && entry.kind == EndpointKind::subscription) {
-      undo_half_matches_of(registry, entry);
-    }
-  }
-}
-
-void recount(Registry & registry) {
-  std::vector<uint64_t> counts(registry.endpoints().high_water());
-  for (uint32_t slot = 0; slot < counts.size(); ++slot) {
-    const EndpointEntry & entry = registry.endpoints()[slot];
-    if (
-      entry.slot.state.load(std::memory_order_acquire) != SlotState::free &&
-      entry.kind == EndpointKind::subscription) {
-      count_matches_of(registry, slot, counts);
-    }
-  }
-  for (uint32_t slot = 0; slot < counts.size(); ++slot) {
-    registry.endpoints()[slot].matched_current.store(counts[slot]);
-  }
 }
 
 }  // namespace manycore::matching

@@ -33,10 +33,4 @@ std::vector<Candidate> candidates_of(Registry & registry, uint32_t endpoint);
 std::optional<spare_blocks::Needed> connect_some(
   Registry & registry, uint32_t endpoint, std::vector<Candidate> & candidates);
 
-/// Undoes the match that an owner of the registry lock left incomplete when it died.
-void undo_half_matches(Registry & registry);
-
-/// Recomputes all match counts after an owner of the registry lock died.
-void recount(Registry & registry);
-
 }  // namespace manycore::matching

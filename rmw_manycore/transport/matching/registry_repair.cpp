@@ -4,10 +4,11 @@
 #include <algorithm>
 #include <vector>
 
-#include "transport/matching/matching.hpp"
+#include "transport/matching/match_in_hand.hpp"
 #include "transport/matching/spare_blocks.hpp"
 #include "transport/queue/source_table.hpp"
 #include "transport/registry/registry.hpp"
+#include "transport/registry/snapshot.hpp"
 #include "transport/topic_dsm/reader_table.hpp"
 #include "transport/transfer/landing.hpp"
 #include "transport/transfer/landings.hpp"
@@ -30,10 +31,6 @@ void Registry::mark_blocks_of(EndpointEntry & entry) noexcept {
     }
     mark(entry.block.offset(), header_bytes(*dsm));
     landings::mark_all(clusters_, *cluster, *dsm);
-    landings::forget_readers(*cluster, *dsm);
-    for_each_reader(*cluster, *dsm, [&](const ReaderEntry & reader) {
-      landings::count_reader(*cluster, *dsm, SegmentRef{reader.subscription.load()}.cluster());
-    });
     for (GenerationEntry & generation : dsm->generations) {
       if (generation.offset.load() != 0) {
         mark(generation.offset.load(), generation.extent_bytes());
@@ -50,6 +47,28 @@ void Registry::mark_blocks_of(EndpointEntry & entry) noexcept {
     source_table(*cluster, *subscription).visit_memory(mark);
     subscription->free_source_from = 0;
   }
+}
+
+/// Others may change all of this meanwhile. Populating, unlike reading, reports what was freed as
+/// an error, also where the file system is full.
+void Registry::prepare_repair() {
+  constexpr uint64_t head_bytes = std::max(sizeof(TopicDsmHeader), sizeof(SubscriptionHeader));
+  memory_.populate(0, sizeof(RegistryHeader));
+  processes_.populate();
+  nodes_.populate();
+  endpoints_.populate();
+  for (uint32_t id = 1; id <= max_clusters; ++id) {
+    if (const Cluster * const cluster = map_cluster(id)) {
+      cluster->populate_map();
+    }
+  }
+  for (uint32_t slot = 0; slot < endpoints_.high_water(); ++slot) {
+    const SegmentRef block = (*EntryCopy<EndpointEntry>(endpoints_, slot)).block;
+    if (const Cluster * const cluster = clusters_.find(block.cluster())) {
+      cluster->populate(block.offset(), head_bytes);
+    }
+  }
+  match_in_hand::prepare_repair(*this);
 }
 
 /// The last owner of the lock died at some instruction of a change. The slots' states are primary,
@@ -103,8 +122,7 @@ void Registry::repair() {
   for (const uint32_t slot : live) {
     link_endpoint(slot);
   }
-  matching::undo_half_matches(*this);
-  matching::recount(*this);
+  match_in_hand::repair(*this);
 }
 
 }  // namespace manycore

@@ -59,7 +59,6 @@ bool Round::try_to_sweep(uint32_t slot, Turn & turn) {
   }
 }
 
-/// Continues where the last round of any process ended.
 bool Round::sweep_some() {
   Turn turn;
   has_freed_ = false;
@@ -68,6 +67,8 @@ bool Round::sweep_some() {
   return looked_at_all;
 }
 
+/// Continues with the endpoint that the last turn left unfinished: what a look has found is known
+/// to this round only. Then goes on where the last round of any process ended.
 bool Round::sweep_until(Turn & turn) {
   RegistryHeader & header = registry_.header();
   const uint32_t end = registry_.endpoints().high_water();
@@ -76,11 +77,14 @@ bool Round::sweep_until(Turn & turn) {
       return false;
     }
     turn.spend(steps_of_a_slot);
-    const uint32_t slot = header.sweep_from < end ? header.sweep_from : 0;
+    const uint32_t next = header.sweep_from < end ? header.sweep_from : 0;
+    const uint32_t slot = unfinished_.value_or(next);
     if (!try_to_sweep(slot, turn)) {
+      unfinished_ = slot;
       return false;
     }
-    header.sweep_from = slot + 1;
+    unfinished_.reset();
+    header.sweep_from = slot == next ? slot + 1 : next;  // another process may have gone on
   }
   return true;
 }

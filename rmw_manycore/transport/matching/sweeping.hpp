@@ -1,6 +1,8 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
+
 #include "transport/matching/freeing.hpp"
 #include "transport/matching/turn.hpp"
 #include "transport/matching/wanted_sources.hpp"
@@ -39,8 +41,9 @@ private:
   Registry & registry_;
   WantedSources wanted_;
   ReaderPass pass_;
-  uint32_t looked_at_ = 0;  ///< slots checked so far
-  bool has_freed_ = false;  ///< in this turn
+  uint32_t looked_at_ = 0;                ///< slots checked so far
+  std::optional<uint32_t> unfinished_{};  ///< slot with which the next turn begins
+  bool has_freed_ = false;                ///< in this turn
   uint64_t idle_steps_ = 0;
   bool needs_reaper_ = false;
   bool leaves_long_looks_ = false;

@@ -224,6 +224,16 @@ void Cluster::require_file_system_room(uint64_t length) const {
   }
 }
 
+void Cluster::populate(uint64_t offset, uint64_t length) const noexcept {
+  if (contains(offset, length)) {
+    memory_.populate(offset, length);
+  }
+}
+
+void Cluster::populate_map() const noexcept {
+  populate(0, granule_map_offset + map_bytes(granule_count_));
+}
+
 /// Populates only: a fallocate() that fails would take back pages that others allocate meanwhile.
 /// Another process may do that with all of the range; then allocate() backs what it needs itself.
 void Cluster::back_ahead() noexcept {

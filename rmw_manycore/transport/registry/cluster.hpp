@@ -74,6 +74,10 @@ public:
   void require_message_room(uint64_t length) const;
   /// The same for the file system; call before memory is backed.
   void require_file_system_room(uint64_t length) const;
+  /// Maps a range, or the map of granules, into this process, so that the first access does not
+  /// fault.
+  void populate(uint64_t offset, uint64_t length) const noexcept;
+  void populate_map() const noexcept;
   /// Backs, as far as there is room, the `backed_ahead_bytes` from which small blocks are allocated
   /// next, so that allocate() under the registry lock finds them backed. Needs no lock.
   void back_ahead() noexcept;

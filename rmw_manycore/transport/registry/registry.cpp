@@ -90,6 +90,8 @@ void Registry::create(
   header.segment.platform_nonce = random_nonce();
   header.profile = profile;
   header.mutex.initialize();
+  header.match_in_hand.publisher.store(nothing);
+  header.match_in_hand.subscription.store(nothing);
   header.topic_count = static_cast<uint32_t>(topics.size());
   for (std::atomic<uint32_t> & bucket : header.topic_buckets) {
     bucket.store(nothing, std::memory_order_relaxed);
@@ -146,32 +148,44 @@ Cluster * Registry::map_cluster(uint32_t cluster) {
   }
 }
 
-Registry::Lock::Lock(Registry & registry, long wait_ns)
-: Lock(registry, registry.lock_within(wait_ns)) {}
+Registry::Lock::Lock(Registry & registry, long wait_ns) : registry_(registry) {
+  registry.lock_whole([&] { return registry.lock_within(wait_ns); });
+}
 
-Registry::Lock::Lock(Registry & registry, WhileOwnersRun)
-: Lock(registry, registry.lock_while_owners_run()) {}
+Registry::Lock::Lock(Registry & registry, WhileOwnersRun) : registry_(registry) {
+  registry.lock_whole([&] { return registry.lock_while_owners_run(); });
+}
 
-Registry::Lock::Lock(Registry & registry, RobustMutex::Outcome outcome) : registry_(registry) {
-  RegistryHeader & header = registry.header();
-  header.changes.store(header.changes.load(std::memory_order_relaxed) | 1);
+void Registry::lock_whole(const std::function<RobustMutex::Outcome()> & lock) {
+  RobustMutex & mutex = header().mutex;
+  if (!begin_changes(lock())) {
+    return;
+  }
+  // Until a process has repaired, `changes` stays odd, so graph reads follow no chains.
+  mutex.unlock();
+  prepare_repair();
+  if (begin_changes(lock())) {
+    try {
+      repair();
+    } catch (...) {
+      mutex.unlock();
+      throw;
+    }
+    header().needs_repair = 0;
+  }
+}
+
+bool Registry::begin_changes(RobustMutex::Outcome outcome) noexcept {
+  RegistryHeader & head = header();
+  head.changes.store(head.changes.load(std::memory_order_relaxed) | 1);
   // Release fence: a reader that sees any of the following changes also sees `changes` odd.
   std::atomic_thread_fence(std::memory_order_release);
   if (outcome == RobustMutex::Outcome::owner_died) {
     // Before mark_consistent(): after it the mutex no longer reports the death
-    header.needs_repair = 1;
-    header.mutex.mark_consistent();
+    head.needs_repair = 1;
+    head.mutex.mark_consistent();
   }
-  if (header.needs_repair != 0) {
-    try {
-      registry.repair();
-    } catch (...) {
-      // The next owner repairs. Until then `changes` stays odd, so graph reads follow no chains.
-      header.mutex.unlock();
-      throw;
-    }
-    header.needs_repair = 0;
-  }
+  return head.needs_repair != 0;
 }
 
 /// A woken thread needs about 50 us to run. Without this wait, a thread that creates many endpoints

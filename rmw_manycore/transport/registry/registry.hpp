@@ -48,6 +48,8 @@ public:
     entry.next_free = head_.first_free;
     head_.first_free = slot + 1;
   }
+  /// Maps its used part into this process, so that the first access does not fault.
+  void populate() const noexcept { memory_.populate(offset_, high_water() * sizeof(Entry)); }
   void rebuild_free_list() const noexcept {
     head_.first_free = 0;
     for (uint32_t slot = 0; slot < high_water(); ++slot) {
@@ -117,8 +119,6 @@ public:
     Lock & operator=(const Lock &) = delete;
 
   private:
-    Lock(Registry & registry, RobustMutex::Outcome outcome);
-
     Registry & registry_;
   };
 
@@ -178,6 +178,13 @@ private:
   RobustMutex::Outcome lock_within(long wait_ns);
   RobustMutex::Outcome lock_while_owners_run();
   void let_others_go_first() const noexcept;
+  /// Locks by `lock`, and repairs what a former owner left incomplete.
+  void lock_whole(const std::function<RobustMutex::Outcome()> & lock);
+  /// True if a former owner left something incomplete.
+  bool begin_changes(RobustMutex::Outcome outcome) noexcept;
+  /// Maps what repair() works on: page faults would take longer than all else that it does. Takes
+  /// no lock. Throws ClusterUnmappable.
+  void prepare_repair();
   /// Throws ClusterUnmappable before anything is changed.
   void repair();
   void mark_blocks_of(EndpointEntry & entry) noexcept;
