@@ -12,6 +12,7 @@
 #include "stepped_child.hpp"
 #include "transport/lifecycle/configurator.hpp"
 #include "transport/queue/source_table.hpp"
+#include "transport/topic_dsm/reader_table.hpp"
 #include "transport/transfer/landing.hpp"
 #include "waiting.hpp"
 
@@ -138,13 +139,32 @@ struct Fixture {
 
   /// Subscriptions in cluster 2 of the publisher that is transferred.
   uint64_t readers_of_landing() {
-    if (!resident) {
-      return 0;
-    }
-    const uint32_t slot = inspection.slot_of(publishers.front()->gid());
-    const SegmentRef block = inspection.registry().endpoints()[slot].block;
+    const LandingTable * const table = landings();
+    return table == nullptr ? 0 : table->readers[1].load();
+  }
+  bool has_landing() {
+    const LandingTable * const table = landings();
+    return table != nullptr && table->landings[1].load() != 0;
+  }
+  const LandingTable * landings() {
     Clusters & clusters = inspection.registry().clusters();
-    return landing_table(clusters.at(1), *clusters.find<TopicDsmHeader>(block))->readers[1];
+    return resident ? landing_table(clusters.at(1), dsm_of(*publishers.front())) : nullptr;
+  }
+  TopicDsmHeader & dsm_of(const Publisher & each) {
+    Registry & registry = inspection.registry();
+    const SegmentRef block = registry.endpoints()[inspection.slot_of(each.gid())].block;
+    return *registry.clusters().find<TopicDsmHeader>(block);
+  }
+
+  /// True while a match of the publisher is undone by half.
+  bool has_revoked_reader() {
+    Clusters & clusters = inspection.registry().clusters();
+    bool found = false;
+    for_each_reader(clusters.at(1), dsm_of(*publisher), [&](const ReaderEntry & reader) {
+      const auto * const source = clusters.find<SourceEntry>(SegmentRef{reader.source.load()});
+      found = found || source->state.load() == SourceState::revoked;
+    });
+    return found;
   }
 
   void check_crowd() {

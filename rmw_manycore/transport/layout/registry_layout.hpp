@@ -193,7 +193,8 @@ struct RegistryHeader {
   SegmentHeader segment;
   Profile profile;
   RobustMutex mutex;
-  /// Incremented when the mutex is taken and when it is released: odd while it is held.
+  /// Incremented when the mutex is taken and when it is released: odd while it is held, and from an
+  /// owner's death to the end of the repair.
   std::atomic<uint64_t> changes;
   std::atomic<uint64_t> graph_generation;
   TableHead processes;

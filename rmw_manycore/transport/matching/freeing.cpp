@@ -59,6 +59,7 @@ Progress revoke(
   Registry & registry, WantedSources & wanted, uint32_t publisher, const OrphanReader & reader,
   ReaderEntry & entry, Turn & turn) {
   SourceEntry & source = reader.source;
+  match_in_hand::note(registry.header(), publisher, reader.endpoint_slot);
   if (source.state.load() == SourceState::active) {
     const std::optional<bool> is_wanted = wanted.contain(reader, turn);
     if (!is_wanted) {
@@ -74,7 +75,6 @@ Progress revoke(
     return Progress::in_use;
   }
   closing::count_undelivered(registry, reader);
-  match_in_hand::note(registry.header(), publisher, reader.endpoint_slot);
   // Remove the reader before the source entry can be reused: if this process dies in between, the
   // next sweep must not mistake a new match for this one.
   remove_reader(reader.cluster, reader.dsm, entry);

@@ -8,7 +8,6 @@
 #include "transport/matching/detaching.hpp"
 #include "transport/queue/source_table.hpp"
 #include "transport/registry/endpoint_blocks.hpp"
-#include "transport/registry/snapshot.hpp"
 #include "transport/topic_dsm/reader_table.hpp"
 #include "transport/transfer/landings.hpp"
 
@@ -43,10 +42,30 @@ std::optional<End<Header>> find_end(Registry & registry, uint32_t slot, Endpoint
 using PublisherEnd = End<TopicDsmHeader>;
 using SubscriptionEnd = End<SubscriptionHeader>;
 
-void undo_half_match(Registry & registry, const SubscriptionEnd & subscription) {
+/// Before the half match is undone: the last reader in a cluster retires the landing there.
+void count_readers_of_landings(const PublisherEnd & publisher) {
+  landings::forget_readers(publisher.cluster, publisher.header);
+  for_each_reader(publisher.cluster, publisher.header, [&](const ReaderEntry & reader) {
+    const SegmentRef subscription{reader.subscription.load()};
+    landings::count_reader(publisher.cluster, publisher.header, subscription.cluster());
+  });
+}
+
+/// True for a match that is made, or undone, by half. The reader of an orphan's revoked source
+/// stays while its record is read, and is the sweeper's.
+bool is_half(const SourceEntry & source, const PublisherEnd & publisher) {
+  const SourceState state = source.state.load();
+  return source.topic_dsm.load() == publisher.entry.block.word &&
+         source.topic_dsm_incarnation.load() == publisher.entry.slot.incarnation.load() &&
+         (state == SourceState::joining ||
+          (state == SourceState::revoked && publisher.header.orphan.load() == 0));
+}
+
+void undo_half_match(
+  Registry & registry, const PublisherEnd & publisher, const SubscriptionEnd & subscription) {
   visit_source_table(
     subscription.cluster, subscription.header, [&](SourceEntry & source, uint32_t) {
-      if (source.state.load() == SourceState::joining) {
+      if (is_half(source, publisher)) {
         detach_reader(registry, source, subscription.entry.cluster);
         // Not `free`: the publisher may have seen the reader, so its phase must be checked through
         // this entry when the subscription is freed.
@@ -87,54 +106,15 @@ void count_sources(Registry & registry, const SubscriptionEnd & subscription) {
   subscription.entry.matched_current.store(count);
 }
 
-/// A match is made by its reader first and undone by its source first, so a reader in the table may
-/// have no active source. That can only be the one in hand.
-bool has_source(Registry & registry, const PublisherEnd & publisher, const ReaderEntry & reader) {
-  if (reader.endpoint.load() != registry.header().match_in_hand.subscription.load()) {
-    return true;
-  }
-  const auto * const source = registry.clusters().find<SourceEntry>(SegmentRef{reader.source});
-  return source != nullptr && source->state.load() == SourceState::active &&
-         source->reader.load() == publisher.cluster.ref_of(&reader).word &&
-         source->topic_dsm.load() == publisher.entry.block.word;
-}
-
-/// Counts those of closing subscriptions as well, as count_sources() does.
-void count_readers(Registry & registry, const PublisherEnd & publisher) {
+/// Once no half match is left, each reader in the table has its source. Counts those of closing
+/// subscriptions as well, as count_sources() does.
+void count_readers(const PublisherEnd & publisher) {
   uint64_t count = 0;
-  landings::forget_readers(publisher.cluster, publisher.header);
-  for_each_reader(publisher.cluster, publisher.header, [&](const ReaderEntry & reader) {
-    const SegmentRef subscription{reader.subscription.load()};
-    landings::count_reader(publisher.cluster, publisher.header, subscription.cluster());
-    count += has_source(registry, publisher, reader) ? 1 : 0;
-  });
+  for_each_reader(publisher.cluster, publisher.header, [&](const ReaderEntry &) { ++count; });
   publisher.entry.matched_current.store(count);
 }
 
-void populate_table_of(Registry & registry, uint32_t slot) noexcept {
-  const EntryCopy<EndpointEntry> entry(registry.endpoints(), slot);
-  const SegmentRef block = (*entry).block;
-  const Cluster * const cluster = registry.clusters().find(block.cluster());
-  auto * const dsm = registry.clusters().find<TopicDsmHeader>(block);
-  auto * const subscription = registry.clusters().find<SubscriptionHeader>(block);
-  const auto populate = [&](uint64_t offset, uint64_t bytes) { cluster->populate(offset, bytes); };
-  if ((*entry).kind == EndpointKind::publisher && dsm != nullptr) {
-    further_readers(*cluster, *dsm).visit_memory(populate);
-  } else if (subscription != nullptr) {
-    source_table(*cluster, *subscription).visit_memory(populate);
-  }
-}
-
 }  // namespace
-
-void prepare_repair(Registry & registry) noexcept {
-  const MatchInHand & in_hand = registry.header().match_in_hand;
-  for (const uint32_t slot : {in_hand.publisher.load(), in_hand.subscription.load()}) {
-    if (slot < registry.endpoints().high_water()) {
-      populate_table_of(registry, slot);
-    }
-  }
-}
 
 void repair(Registry & registry) {
   const MatchInHand & in_hand = registry.header().match_in_hand;
@@ -142,12 +122,17 @@ void repair(Registry & registry) {
     find_end<TopicDsmHeader>(registry, in_hand.publisher.load(), EndpointKind::publisher);
   const auto subscription =
     find_end<SubscriptionHeader>(registry, in_hand.subscription.load(), EndpointKind::subscription);
-  if (subscription) {
-    undo_half_match(registry, *subscription);
-    count_sources(registry, *subscription);
+  if (publisher) {
+    count_readers_of_landings(*publisher);
+  }
+  if (publisher && subscription) {
+    undo_half_match(registry, *publisher, *subscription);
   }
   if (publisher) {
-    count_readers(registry, *publisher);
+    count_readers(*publisher);
+  }
+  if (subscription) {
+    count_sources(registry, *subscription);
   }
 }
 

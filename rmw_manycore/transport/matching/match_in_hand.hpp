@@ -21,11 +21,9 @@ inline void note(RegistryHeader & header, uint32_t publisher, uint32_t subscript
   std::atomic_signal_fence(std::memory_order_seq_cst);
 }
 
-/// Maps the tables that repair() goes through. Needs no lock.
-void prepare_repair(Registry & registry) noexcept;
-
-/// Undoes the match if it is half made, and counts the matches of its ends and the readers of its
-/// publisher anew. May be repeated after a caller died midway. All clusters are mapped.
+/// Undoes the match if it is made or undone by half, and counts the matches of its ends and the
+/// readers of its publisher anew. May be repeated after a caller died midway. All clusters are
+/// mapped.
 void repair(Registry & registry);
 
 }  // namespace manycore::match_in_hand

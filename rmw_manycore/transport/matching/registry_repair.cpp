@@ -49,8 +49,8 @@ void Registry::mark_blocks_of(EndpointEntry & entry) noexcept {
   }
 }
 
-/// Others may change all of this meanwhile. Populating, unlike reading, reports what was freed as
-/// an error, also where the file system is full.
+/// Nothing of an endpoint's memory is read here: others may repair and free it meanwhile. What was
+/// freed may then be backed again, until it is allocated.
 void Registry::prepare_repair() {
   constexpr uint64_t head_bytes = std::max(sizeof(TopicDsmHeader), sizeof(SubscriptionHeader));
   memory_.populate(0, sizeof(RegistryHeader));
@@ -64,11 +64,10 @@ void Registry::prepare_repair() {
   }
   for (uint32_t slot = 0; slot < endpoints_.high_water(); ++slot) {
     const SegmentRef block = (*EntryCopy<EndpointEntry>(endpoints_, slot)).block;
-    if (const Cluster * const cluster = clusters_.find(block.cluster())) {
+    if (const Cluster * const cluster = block ? clusters_.find(block.cluster()) : nullptr) {
       cluster->populate(block.offset(), head_bytes);
     }
   }
-  match_in_hand::prepare_repair(*this);
 }
 
 /// The last owner of the lock died at some instruction of a change. The slots' states are primary,
