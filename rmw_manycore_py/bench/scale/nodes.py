@@ -43,7 +43,7 @@ RECLAIM = "until nothing is left of those killed at once"
 READ = ", its graph read over and over"
 LISTED = ", manycore node list over and over"
 FEW = 2
-BESIDE_FEW = f", {FEW} nodes instead"
+BESIDE_FEW = f", with {FEW} nodes instead"
 
 # Beyond 500, several of them share a process.
 NODES = (30, 60, 250, 500, 1000)
