@@ -6,9 +6,9 @@
 #include "transport/registry/registry.hpp"
 
 /// The one match that the owner of the registry lock is changing. A match is a source, a reader,
-/// and four counts of them; an owner that is killed midway leaves them in disagreement. As it has
-/// noted the match before, its successor looks at that one, and not at all matches of the platform.
-/// The caller holds the lock.
+/// and what its ends and a landing count; an owner that is killed midway leaves them in
+/// disagreement. As it has noted the match before, its successor looks at that one, and not at all
+/// matches of the platform. The caller holds the lock.
 namespace manycore::match_in_hand {
 
 /// Before anything of a match is changed. The changes of the match in hand until then are complete.
