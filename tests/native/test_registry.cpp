@@ -12,7 +12,6 @@
 #include "messages.hpp"
 #include "node_role.hpp"
 #include "platform_of_test.hpp"
-#include "stepped_child.hpp"
 #include "transport/lifecycle/configurator.hpp"
 #include "transport/registry/smem_charge.hpp"
 #include "waiting.hpp"
@@ -43,14 +42,6 @@ const Role busy_owner("busy_owner", [](Lines & test, const Arguments & arguments
   const Registry::Lock lock(registry);
   test.say("holding");
   test.expect("end");
-});
-
-/// Repairs the registry of a platform.
-const Role repairer("repairer", [](Lines &, const Arguments & arguments) {
-  Registry registry(PlatformPaths::of(arguments.at(0)));
-  begin_steps();
-  { const Registry::Lock repairs(registry); }
-  finish_steps();
 });
 
 struct Fixture {
@@ -196,25 +187,26 @@ TEST_CASE("killed while it holds the lock: the next owner repairs incomplete cha
   CHECK(take_all(*late) == numbers(1, 1));
 }
 
-TEST_CASE("a repair looks at each endpoint and at the last match, not at all matches") {
+TEST_CASE("a repair looks at the match that was changed last, not at all matches") {
   Fixture f;
-  std::vector<std::unique_ptr<Publisher>> publishers;
-  std::vector<std::unique_ptr<Subscription>> subscriptions;
-  const auto steps_with = [&](size_t endpoints) {
-    while (publishers.size() < endpoints) {
-      publishers.push_back(f.process->create_publisher(on_topic("/repair", keep_last(1))));
-      subscriptions.push_back(f.process->create_subscription(on_topic("/repair", keep_last(1))));
-    }
-    const Standstill no_other_repairer(f.platform, 1);
+  const auto publisher = f.process->create_publisher(on_topic("/x", keep_last(1)));
+  const auto subscription = f.process->create_subscription(on_topic("/x", keep_last(1)));
+  std::atomic<uint64_t> & of_publisher = f.registry.endpoints()[0].matched_current;
+  std::atomic<uint64_t> & of_subscription = f.registry.endpoints()[1].matched_current;
+  const auto repair_wrong_counts = [&] {
+    of_publisher.store(5);
+    of_subscription.store(5);
     f.registry.header().needs_repair = 1;
-    SteppedChild child("repairer", {f.platform.name()});
-    const uint64_t steps = child.step(UINT64_MAX);
-    CHECK(f.registry.header().needs_repair == 0);
-    return steps;
+    const Registry::Lock repairs(f.registry);
   };
-  const uint64_t with_none = steps_with(0);
-  const uint64_t with_some = steps_with(40) - with_none;
-  CHECK(steps_with(160) - with_none < 6 * with_some);  // 16 times the matches
+  repair_wrong_counts();
+  CHECK(of_publisher == 1);
+  CHECK(of_subscription == 1);
+  const auto later = f.process->create_publisher(on_topic("/y", keep_last(1)));
+  const auto its_match = f.process->create_subscription(on_topic("/y", keep_last(1)));
+  repair_wrong_counts();
+  CHECK(of_publisher == 5);
+  CHECK(of_subscription == 5);
 }
 
 TEST_CASE("killed while it holds the lock: a process that can map no cluster leaves the repair") {
