@@ -148,22 +148,19 @@ struct Fixture {
   }
   const LandingTable * landings() {
     Clusters & clusters = inspection.registry().clusters();
-    return resident ? landing_table(clusters.at(1), dsm_of(*publishers.front())) : nullptr;
-  }
-  TopicDsmHeader & dsm_of(const Publisher & each) {
-    Registry & registry = inspection.registry();
-    const SegmentRef block = registry.endpoints()[inspection.slot_of(each.gid())].block;
-    return *registry.clusters().find<TopicDsmHeader>(block);
+    return resident ? landing_table(clusters.at(1), inspection.header_of(*publishers.front()))
+                    : nullptr;
   }
 
   /// True while a match of the publisher is undone by half.
   bool has_revoked_reader() {
     Clusters & clusters = inspection.registry().clusters();
     bool found = false;
-    for_each_reader(clusters.at(1), dsm_of(*publisher), [&](const ReaderEntry & reader) {
-      const auto * const source = clusters.find<SourceEntry>(SegmentRef{reader.source.load()});
-      found = found || source->state.load() == SourceState::revoked;
-    });
+    for_each_reader(
+      clusters.at(1), inspection.header_of(*publisher), [&](const ReaderEntry & reader) {
+        const auto * const source = clusters.find<SourceEntry>(SegmentRef{reader.source.load()});
+        found = found || source->state.load() == SourceState::revoked;
+      });
     return found;
   }
 

@@ -225,10 +225,8 @@ uint32_t Inspection::slot_of(const Gid & gid) {
 }
 
 uint32_t Inspection::generations_of(const Publisher & publisher) {
-  auto * const dsm = registry_.clusters().find<TopicDsmHeader>(
-    registry_.endpoints()[slot_of(publisher.gid())].block);
   uint32_t count = 0;
-  for (const GenerationEntry & generation : dsm->generations) {
+  for (const GenerationEntry & generation : header_of(publisher).generations) {
     count += generation.first.load() != 0 ? 1 : 0;
   }
   return count;
@@ -238,9 +236,14 @@ uint32_t Inspection::readers_of(const Publisher & publisher) {
   const SegmentRef block = registry_.endpoints()[slot_of(publisher.gid())].block;
   uint32_t count = 0;
   for_each_reader(
-    registry_.clusters().at(block.cluster()), *registry_.clusters().find<TopicDsmHeader>(block),
+    registry_.clusters().at(block.cluster()), header_of(publisher),
     [&](ReaderEntry &) { ++count; });
   return count;
+}
+
+TopicDsmHeader & Inspection::header_of(const Publisher & publisher) {
+  return *registry_.clusters().find<TopicDsmHeader>(
+    registry_.endpoints()[slot_of(publisher.gid())].block);
 }
 
 SubscriptionHeader & Inspection::header_of(const Subscription & subscription) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "transport/layout/subscription_layout.hpp"
+#include "transport/layout/topic_dsm_layout.hpp"
 #include "transport/process.hpp"
 #include "transport/registry/registry.hpp"
 
@@ -66,6 +67,7 @@ public:
   uint32_t generations_of(const manycore::Publisher & publisher);
   /// Number of entries in use in a publisher's reader table.
   uint32_t readers_of(const manycore::Publisher & publisher);
+  manycore::TopicDsmHeader & header_of(const manycore::Publisher & publisher);
   manycore::SubscriptionHeader & header_of(const manycore::Subscription & subscription);
   /// Endpoints that are closed, but whose memory is not freed yet.
   uint32_t closing_endpoints() { return registry_.header().closing_count; }

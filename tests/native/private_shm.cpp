@@ -3,6 +3,9 @@
 
 #include <sched.h>
 #include <sys/mount.h>
+#include <sys/statvfs.h>
+
+#include "waiting.hpp"
 
 namespace {
 
@@ -17,3 +20,10 @@ void enter_private_shm() {
 }
 
 bool has_private_shm() noexcept { return is_private; }
+
+void wait_until_private_shm_is_free() {
+  wait_until("the memory of former platforms is free", [] {
+    struct statvfs fs {};
+    return statvfs("/dev/shm", &fs) == 0 && fs.f_bfree == fs.f_blocks;
+  });
+}

@@ -7,3 +7,7 @@ void enter_private_shm();
 
 /// True if enter_private_shm() succeeded.
 bool has_private_shm() noexcept;
+
+/// Waits until its file system has no memory in use: the kernel frees a platform's files shortly
+/// after its last process has ended.
+void wait_until_private_shm_is_free();

@@ -4,7 +4,6 @@
 #include <doctest/doctest.h>
 
 #include <sys/mount.h>
-#include <sys/statvfs.h>
 
 #include "messages.hpp"
 #include "node_role.hpp"
@@ -117,11 +116,7 @@ TEST_CASE("a cluster on a full file system accepts nodes as well") {
   if (!has_private_shm()) {
     return;  // never fills the machine's /dev/shm
   }
-  // The kernel frees a platform's files shortly after its last process has ended.
-  wait_until("earlier platforms are out of memory", [] {
-    struct statvfs fs {};
-    return statvfs("/dev/shm", &fs) == 0 && fs.f_bfree == fs.f_blocks;
-  });
+  wait_until_private_shm_is_free();
   REQUIRE(mount("tmpfs", "/dev/shm", "tmpfs", MS_REMOUNT, "size=16m") == 0);
   {
     FullCluster full(64 * mebibyte, {});

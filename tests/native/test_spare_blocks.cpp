@@ -233,19 +233,15 @@ TEST_CASE("a full file system: no block of a table is used that has no memory be
   if (!has_private_shm()) {
     return;  // never fills the machine's /dev/shm
   }
-  struct statvfs fs {};
-  const auto measure = [&] { REQUIRE(statvfs("/dev/shm", &fs) == 0); };
-  wait_until("the memory of former platforms is free", [&] {
-    measure();
-    return fs.f_bfree == fs.f_blocks;
-  });
+  wait_until_private_shm_is_free();
   Crowd f;
   {
     const Registry::Lock lock(f.inspection.registry());
     f.inspection.registry().clusters().at(1).allocate(backed_ahead_bytes);
   }
   const uint64_t used = f.inspection.used_bytes();
-  measure();
+  struct statvfs fs {};
+  REQUIRE(statvfs("/dev/shm", &fs) == 0);
   // Enough for a subscription and the small blocks, 28 KiB, of its source table.
   const uint64_t bytes = (fs.f_blocks - fs.f_bfree) * fs.f_frsize + (52 << 10);
   const std::string size = "size=" + std::to_string(bytes);

@@ -53,10 +53,9 @@ void count_readers_of_landings(const PublisherEnd & publisher) {
 
 /// True for a match that is made, or undone, by half. The reader of an orphan's revoked source
 /// stays while its record is read, and is the sweeper's.
-bool is_half(const SourceEntry & source, const PublisherEnd & publisher) {
+bool is_half(Registry & registry, const SourceEntry & source, const PublisherEnd & publisher) {
   const SourceState state = source.state.load();
-  return source.topic_dsm.load() == publisher.entry.block.word &&
-         source.topic_dsm_incarnation.load() == publisher.entry.slot.incarnation.load() &&
+  return topic_dsm_of(registry, source) == &publisher.header &&
          (state == SourceState::joining ||
           (state == SourceState::revoked && publisher.header.orphan.load() == 0));
 }
@@ -65,7 +64,7 @@ void undo_half_match(
   Registry & registry, const PublisherEnd & publisher, const SubscriptionEnd & subscription) {
   visit_source_table(
     subscription.cluster, subscription.header, [&](SourceEntry & source, uint32_t) {
-      if (is_half(source, publisher)) {
+      if (is_half(registry, source, publisher)) {
         detach_reader(registry, source, subscription.entry.cluster);
         // Not `free`: the publisher may have seen the reader, so its phase must be checked through
         // this entry when the subscription is freed.

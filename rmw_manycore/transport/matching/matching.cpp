@@ -1,7 +1,6 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #include "transport/matching/matching.hpp"
 
-#include <algorithm>
 #include <vector>
 
 #include "platform/error.hpp"
@@ -10,11 +9,9 @@
 #include "transport/matching/turn.hpp"
 #include "transport/qos/liveliness.hpp"
 #include "transport/qos/qos_compatibility.hpp"
-#include "transport/queue/source_table.hpp"
 #include "transport/registry/endpoint_blocks.hpp"
 #include "transport/registry/snapshot.hpp"
 #include "transport/topic_dsm/last_published.hpp"
-#include "transport/topic_dsm/reader_table.hpp"
 #include "transport/transfer/landing.hpp"
 #include "transport/transfer/landings.hpp"
 

@@ -109,8 +109,8 @@ public:
 
     /// Throws Error{timeout} if the lock is not available within `wait_ns`. If a former owner died,
     /// waits twice, to find that and to repair, and throws ClusterUnmappable if this process cannot
-    /// map all clusters. A thread
-    /// that retakes the lock at once first lets waiting threads run, unless `wait_ns` is short.
+    /// map all clusters. A thread that retakes the lock at once first lets waiting threads run,
+    /// unless `wait_ns` is short.
     explicit Lock(Registry & registry, long wait_ns = usual_wait_ns);
     /// Waits `usual_wait_ns` while owners run or wait for a CPU, but only `short_wait_ns` for an
     /// owner that is stopped or not visible in this PID namespace.
