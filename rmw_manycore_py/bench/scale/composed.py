@@ -3,9 +3,11 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import partial
+from typing import Any
 
 from rmw_manycore_py.bench.contenders import FAST_DDS, INSIDE, Middleware
 from rmw_manycore_py.bench.question import Run
@@ -21,7 +23,8 @@ EXECUTORS = {
     "each": "one executor each",
 }
 NODES = (2, 10, 25, 50)
-WARM_UP, LAPS = 2, 20
+WARM_UP, LAPS = 2, 10
+TURNS = 3
 
 
 @dataclass(frozen=True)
@@ -55,32 +58,47 @@ RINGS = (
 
 def measure(run: Run) -> list[Result]:
     """Return the time of a hop with each executor, over the nodes of a process."""
-    results: list[Result] = []
-    for middleware in (INSIDE, FAST_DDS):
-        for ring in RINGS:
-            places = followed(middleware, ring.nodes, NODES[-1])
-            for executor in ring.executors:
-                contender = f"{ring.hop}: {_curve(middleware, executor)}"
-                measured = partial(_go_round, run, ring, middleware, executor)
-                results += along(run, contender, places, "nodes", measured)
-    return results
+    return [
+        result
+        for ring in RINGS
+        for executor in ring.executors
+        for result in along(
+            run,
+            f"{ring.hop}: {EXECUTORS[executor]}",
+            ring.nodes,
+            "nodes",
+            partial(_compare, run, ring, executor),
+        )
+    ]
+
+
+def _compare(run: Run, ring: Ring, executor: str, nodes: int) -> list[Result]:
+    """Measure the middlewares that follow to so many nodes, in turns."""
+    follow = [each for each in (INSIDE, FAST_DDS) if followed(each, [nodes], NODES[-1])]
+    hops: dict[str, list[float]] = defaultdict(list)
+    cpu: dict[str, list[float]] = defaultdict(list)
+    for _ in range(TURNS):
+        for middleware in follow:
+            found = _go_round(run, ring, middleware, executor, nodes)
+            hops[middleware.name] += in_us(found["samples_ns"])
+            cpu[middleware.name] += in_us([found["cpu_ns"]])
+    return [
+        on_curve(question, _curve(middleware, executor), nodes, "nodes", "us", of[middleware.name])
+        for question, of in ((ring.hop, hops), (ring.cpu, cpu))
+        for middleware in follow
+    ]
 
 
 def _go_round(
     run: Run, ring: Ring, middleware: Middleware, executor: str, nodes: int
-) -> list[Result]:
+) -> dict[str, Any]:
     laps, count = run.iterations(LAPS), ring.processes * nodes
     with Session(middleware, run.cpus) as session:
         first, *_ = (
             session.python("ring", i, executor, count, WARM_UP, laps, ring.processes, i)
             for i in range(ring.processes)
         )
-        found = first.finish()
-    curve = _curve(middleware, executor)
-    return [
-        on_curve(ring.hop, curve, nodes, "nodes", "us", in_us(found["samples_ns"])),
-        on_curve(ring.cpu, curve, nodes, "nodes", "us", in_us([found["cpu_ns"]])),
-    ]
+        return first.finish()
 
 
 def _curve(middleware: Middleware, executor: str) -> str:

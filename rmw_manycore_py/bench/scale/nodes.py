@@ -7,7 +7,8 @@ import os
 import signal
 import time
 from collections import defaultdict
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import nullcontext
 from functools import partial
 
 from rmw_manycore_py._transport import Platform
@@ -52,11 +53,11 @@ PROMISED = 500
 MOST_NODES_OF_FAST_DDS = 60
 KILLED = 0.4  # fraction of the processes
 JOINS = 5
-CREATED = 15
 READS = 20
 LISTS = 5
-# Messages of a minute may take half as long again as those of the next.
+# What a minute shows may take half as long again as in the next.
 TURNS = 5
+CREATED = 4
 ROUND_TRIPS = 400
 PUBLISHED = 100
 WINDOW_S = 5.0
@@ -81,7 +82,11 @@ def _watch(run: Run, middleware: Middleware, count: int) -> list[Result]:
             return [
                 _found(middleware, count, UP, "s", [up_s]),
                 *_beside(run, session, nodes),
-                *(_read(run, session, nodes) if middleware.is_manycore else ()),
+                *(
+                    _read(run, session, nodes)
+                    if middleware.is_manycore
+                    else _creations(run, session, nodes, {})
+                ),
             ]
 
 
@@ -102,7 +107,6 @@ def _beside(run: Run, session: Session, nodes: Fleet) -> list[Result]:
     wait_until_quiet(nodes.pids)
     joins = [_join(session, nodes) for _ in range(JOINS)]
     results = [
-        found(CREATE, "ms", _creations_ms(run, session, nodes)),
         found(WOKEN, "count", [woken for woken, _ in joins]),
         found(IDLE, "ms/s", [_idle_ms(session, nodes, WINDOW_S * max(run.share, 0.2))]),
         *_messages(run, session, nodes),
@@ -115,20 +119,15 @@ def _beside(run: Run, session: Session, nodes: Fleet) -> list[Result]:
 def _read(run: Run, session: Session, nodes: Fleet) -> list[Result]:
     """Return what reading the graph costs, itself and to others, and what kills leave."""
     found = partial(_found, session.middleware, nodes.count)
-    results: list[Result] = []
     with Platform(session.platform) as platform:
         read = partial(graph.read, platform)
         list_all = partial(graph.list_nodes, session, nodes.count)
-        for action, beside in ((read, READ), (list_all, LISTED)):
-            with graph.over_and_over(action, run.cpus[1]):
-                created_ms = _creations_ms(run, session, nodes)
-            results.append(found(CREATE, "ms", created_ms, beside))
-        results += [
+        return [
+            *_creations(run, session, nodes, {READ: read, LISTED: list_all}),
             found(GRAPH, "ms", graph.times_ms(read, READS, run.cpus)),
             found(LIST, "ms", graph.times_ms(list_all, LISTS, run.cpus)),
             found(RECLAIM, "ms", [_reclaim_ms(platform, nodes)]),
         ]
-    return results
 
 
 def _create(session: Session, number: int) -> float:
@@ -137,6 +136,21 @@ def _create(session: Session, number: int) -> float:
     node.wait_until_ready()
     node.release()
     return float(node.finish()["samples_ns"][0]) / 1e6
+
+
+def _creations(
+    run: Run, session: Session, nodes: Fleet, others: Mapping[str, Callable[[], None]]
+) -> list[Result]:
+    """Create a node with nothing beside, and beside each of the others over and over, in turns."""
+    found: dict[str, list[float]] = defaultdict(list)
+    for _ in range(TURNS):
+        for beside, action in {"": None, **others}.items():
+            with graph.over_and_over(action, run.cpus[1]) if action else nullcontext():
+                found[beside] += _creations_ms(run, session, nodes)
+    return [
+        _found(session.middleware, nodes.count, CREATE, "ms", samples, beside)
+        for beside, samples in found.items()
+    ]
 
 
 def _creations_ms(run: Run, session: Session, nodes: Fleet) -> list[float]:
