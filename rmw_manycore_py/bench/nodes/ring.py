@@ -35,12 +35,13 @@ EXECUTORS = {
 
 
 class Link(Node):  # type: ignore[misc]
-    """Forwards each message; the first link counts laps, and keeps the last message."""
+    """Forwards each message; the first link times the laps, and keeps the last message."""
 
     def __init__(self, number: int, of: int, laps: int) -> None:
         super().__init__(f"link_{number}")
         self._is_first, self._laps = number == 0, laps
         self.lap_ends_ns: list[int] = []
+        self.lap_cpu_ns: list[int] = []
         self.done = threading.Event()
         self.next = self.create_publisher(UInt64, f"/ring_{(number + 1) % of}", 1)
         self._previous = self.create_subscription(UInt64, f"/ring_{number}", self._hear, 1)
@@ -48,6 +49,7 @@ class Link(Node):  # type: ignore[misc]
     def _hear(self, message: UInt64) -> None:
         if self._is_first:
             self.lap_ends_ns.append(time.monotonic_ns())
+            self.lap_cpu_ns.append(time.process_time_ns())
             if len(self.lap_ends_ns) > self._laps:
                 self.done.set()
                 return
@@ -87,18 +89,20 @@ def main() -> None:
     spinners = [threading.Thread(target=_spin, args=(each, done)) for each in executors]
     for spinner in spinners:
         spinner.start()
-    before_ns = time.process_time_ns()
     if process == 0:
         links[0].next.publish(UInt64())
     done.wait()
-    used_ns = time.process_time_ns() - before_ns
     for spinner, executor in zip(spinners, executors, strict=True):
         spinner.join()
         executor.shutdown()
-    ends_ns = links[0].lap_ends_ns
-    hops = [(end - start) / count for start, end in itertools.pairwise(ends_ns)]
-    cpu_ns = used_ns / len(links) / (warm_up + laps + 1)
-    print(json.dumps({"samples_ns": hops[warm_up:], "cpu_ns": cpu_ns}))
+    hops, cpu = (
+        [(end - start) / nodes for start, end in itertools.pairwise(times_ns[warm_up:])]
+        for times_ns, nodes in (
+            (links[0].lap_ends_ns, count),
+            (links[0].lap_cpu_ns, len(links)),
+        )
+    )
+    print(json.dumps({"samples_ns": hops, "cpu_ns": cpu}))
     for link in links:
         link.destroy_node()
     rclpy.shutdown()

@@ -81,7 +81,7 @@ def _compare(run: Run, ring: Ring, executor: str, nodes: int) -> list[Result]:
         for middleware in follow:
             found = _go_round(run, ring, middleware, executor, nodes)
             hops[middleware.name] += in_us(found["samples_ns"])
-            cpu[middleware.name] += in_us([found["cpu_ns"]])
+            cpu[middleware.name] += in_us(found["cpu_ns"])
     return [
         on_curve(question, _curve(middleware, executor), nodes, "nodes", "us", of[middleware.name])
         for question, of in ((ring.hop, hops), (ring.cpu, cpu))
