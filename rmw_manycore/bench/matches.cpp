@@ -1,11 +1,12 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 // How much do many publishers and subscriptions of one topic slow each other down?
 //
-//   matches endpoints=N iterations=N measure=create|close|beside|publish depth=N
+//   matches endpoints=N iterations=N measure=create|close|depart|beside|publish depth=N
 //
 // With `endpoints` endpoints of each kind, one process prints how long it takes
 //   create   to create one more subscription,
 //   close    to close one subscription,
+//   depart   to close one more publisher, whose message is not taken,
 //   beside   to create a publisher of another topic, from a second thread, while the first creates
 //            and closes all of them,
 //   publish  to publish; nothing is taken, so with a small depth each queue is full.
@@ -61,6 +62,29 @@ std::vector<int64_t> one_more(Node & node, const Arguments & arguments, Half hal
   return samples_ns;
 }
 
+void publish_from_each(const Endpoints & endpoints, const Message & message) {
+  for (const auto & publisher : endpoints.publishers) {
+    publisher->publish(message);
+  }
+}
+
+std::vector<int64_t> depart(Node & node, const Arguments & arguments) {
+  const size_t count = arguments.number("endpoints");
+  const rmw_qos_profile_t qos = reliable_qos(arguments.number("depth"));
+  const Endpoints endpoints(node, count, arguments.number("depth"));
+  Message message;
+  message.data.resize(64);
+  publish_from_each(endpoints, message);
+  std::vector<int64_t> samples_ns;
+  for (size_t i = 0; i < arguments.number("iterations"); ++i) {
+    auto publisher = std::make_unique<Publisher>(node, topic, qos);
+    wait_until_matched(*publisher, count);
+    publisher->publish(message);
+    samples_ns.push_back(duration_ns([&] { publisher.reset(); }));
+  }
+  return samples_ns;
+}
+
 std::vector<int64_t> beside(Node & node, const Arguments & arguments) {
   std::vector<int64_t> samples_ns;
   std::atomic<bool> done{false};
@@ -83,9 +107,7 @@ std::vector<int64_t> publish(Node & node, const Arguments & arguments) {
   Message message;
   message.data.resize(64);
   Publisher & last = *endpoints.publishers.back();
-  for (const auto & publisher : endpoints.publishers) {
-    publisher->publish(message);  // with a depth of 1, the first message fills each queue
-  }
+  publish_from_each(endpoints, message);  // with a depth of 1, the first one fills each queue
   std::vector<int64_t> samples_ns;
   for (size_t i = 0; i < arguments.number("iterations"); ++i) {
     samples_ns.push_back(duration_ns([&] { last.publish(message); }));
@@ -102,6 +124,7 @@ int main(int argc, char ** argv) {
     print_samples(
       measure == "create"   ? one_more(node, arguments, Half::create)
       : measure == "close"  ? one_more(node, arguments, Half::close)
+      : measure == "depart" ? depart(node, arguments)
       : measure == "beside" ? beside(node, arguments)
                             : publish(node, arguments));
   });

@@ -51,6 +51,23 @@ TEST_CASE("numbers and incarnations beyond their bits are cut, and touch nothing
   CHECK(hint.number == 3);
 }
 
+TEST_CASE("the newest hints are seen without being popped, newest first") {
+  BareQueue queue(5, false);
+  const auto newest = [&queue](uint64_t most) {
+    std::vector<uint64_t> seen;
+    subscriber_queue::visit_newest(
+      queue.header(), most, [&seen](const Hint & hint) { seen.push_back(hint.number); });
+    return seen;
+  };
+  CHECK(newest(8).empty());
+  push_numbers(queue, 1, 22);  // beyond several laps of its eight slots
+  CHECK(newest(8) == std::vector<uint64_t>{22, 21, 20, 19, 18});
+  CHECK(newest(2) == std::vector<uint64_t>{22, 21});
+  queue.pop();
+  CHECK(newest(8) == std::vector<uint64_t>{22, 21, 20, 19});
+  CHECK(pop_all(queue) == std::vector<uint64_t>{19, 20, 21, 22});
+}
+
 TEST_CASE("capacity is the depth, even if that is not a power of two") {
   for (const uint32_t depth : {1u, 2u, 3u, 5u, 8u, 10u}) {
     CAPTURE(depth);

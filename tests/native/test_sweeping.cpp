@@ -188,6 +188,35 @@ TEST_CASE("a long look goes on although another process passes over it between i
   CHECK(f.inspection.closing_endpoints() == 0);
 }
 
+TEST_CASE("what queues hold is found by their hints, whatever the number of publishers") {
+  Fixture f;
+  const Standstill no_other_sweeper(f.platform, 1);
+  constexpr size_t many = 200;
+  const auto stuck = f.subscriptions(20, keep_last(1));
+  const auto publishers = f.publishers(many);
+  for (const auto & publisher : publishers) {
+    publish(*publisher, ++f.published);
+  }
+  Registry & registry = f.inspection.registry();
+  const auto turns_of = [&](const Publisher & publisher) {
+    const auto slot = slot_of(publisher);
+    const Registry::Lock lock(registry);
+    close(registry, slot);
+    sweeping::Round round(registry);
+    int turns = 1;
+    for (; !round.sweep_some_of(slot); ++turns) {
+    }
+    return turns;
+  };
+  CHECK(turns_of(*publishers[many - 1]) <= 2);
+  CHECK(f.inspection.closing_endpoints() == 1);
+  CHECK(turns_of(*publishers[many - 2]) <= 6);  // newer than all but one, which displaced it
+  CHECK(f.inspection.closing_endpoints() == 1);
+  for (const auto & each : stuck) {
+    CHECK(take_all(*each) == numbers(many, many));
+  }
+}
+
 TEST_CASE("a turn punches one hole at most, also where a block is rounded up to pages") {
   Fixture f;
   const Standstill no_other_sweeper(f.platform, 1);

@@ -1,6 +1,10 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
 #include <optional>
 
 #include "transport/matching/turn.hpp"
@@ -8,11 +12,28 @@
 
 namespace manycore::sweeping {
 
+constexpr size_t most_announced = 64;
+
+/// What the newest hints of a subscription's queue tell about a reader.
+struct Announced {
+  bool is_own = false;  ///< one is of a record that the reader has not taken
+  std::array<uint32_t, most_announced> others{};  ///< indices of the other sources, each once
+  size_t other_count = 0;
+
+  void add_other(uint32_t source) noexcept {
+    const auto end = others.begin() + other_count;
+    if (std::find(others.begin(), end, source) == end) {
+      others[other_count++] = source;
+    }
+  }
+};
+
 /// Decides whether a subscription still wants messages of a publisher that is gone, and can get
 /// them. A KEEP_LAST subscription wants them if the newest of them is among its newest `depth`
-/// records over all its sources, as a resync would cut them. Visits other sources until `depth`
-/// newer records are found, in as many turns as needed. The caller holds the registry lock in each
-/// turn, so no publisher frees a generation during a turn.
+/// records over all its sources, as a resync would cut them, or if its queue has a hint of one.
+/// Visits other sources until `depth` newer records are found, in as many turns as needed: first
+/// those of which the queue has hints, as most looks need no more. The caller holds the registry
+/// lock in each turn, so no publisher frees a generation during a turn.
 class WantedSources {
 public:
   explicit WantedSources(Registry & registry) noexcept : registry_(registry) {}
@@ -34,9 +55,10 @@ private:
     DescriptorPlace place{};  ///< of the search in progress
     bool knows_newest = false;
     std::optional<closing::Undelivered> newest{};  ///< of the reader's own records
-    uint32_t next = 0;                             ///< index of the first source not visited yet
-    closing::NewerCount in_next{};                 ///< what is found in that source
-    uint32_t newer = 0;                            ///< newer records found in earlier ones
+    bool has_seen_hints = false;
+    uint32_t next = 0;              ///< index of the first source not visited yet
+    closing::NewerCount in_next{};  ///< what is found in that source
+    uint32_t newer = 0;             ///< newer records found in earlier ones
     std::optional<bool> is_wanted{};
 
     bool is_at(const closing::OrphanReader & reader) const noexcept;
@@ -45,6 +67,13 @@ private:
 
   std::optional<bool> is_among_newest(
     Look & look, const closing::OrphanReader & reader, Turn & turn) const;
+  /// Records of a source that are newer; nothing if the turn ended before.
+  std::optional<uint32_t> newer_in(
+    Look & look, SourceEntry & source, uint32_t index, Turn & turn) const;
+  /// As many as found within this turn.
+  uint32_t newer_in_announced(
+    Look & look, const closing::OrphanReader & reader, const Announced & announced,
+    Turn & turn) const;
   /// False if the turn ended before the last source.
   bool count_newer(Look & look, const closing::OrphanReader & reader, Turn & turn) const;
   /// True if what the reader has not taken is there or will come.

@@ -1,6 +1,7 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 
@@ -144,6 +145,21 @@ inline std::optional<Hint> pop(SubscriptionHeader & header) noexcept {
 inline uint64_t size(SubscriptionHeader & header) noexcept {
   const uint64_t head = header.head.load(std::memory_order_acquire);
   return header.tail.load(std::memory_order_acquire) - head;
+}
+
+/// Calls `visit(Hint)` for the newest hints in the queue, `most` at most. Some of them may have
+/// been removed meanwhile.
+template<typename Visit>
+void visit_newest(SubscriptionHeader & header, uint64_t most, Visit visit) noexcept {
+  const Slots slots(header);
+  const uint64_t tail = header.tail.load(std::memory_order_acquire);
+  const uint64_t held = tail - header.head.load(std::memory_order_acquire);
+  for (uint64_t back = 1; back <= std::min({held, uint64_t{header.depth}, most}); ++back) {
+    const uint64_t word = slots.at(tail - back).load(std::memory_order_acquire);
+    if (slots.filled(word, tail - back)) {
+      visit(decode(word));
+    }
+  }
 }
 
 /// seq_cst: a thread adds itself to the watchers, and sleeps if it finds the queue empty (see

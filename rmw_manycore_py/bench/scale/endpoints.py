@@ -13,6 +13,7 @@ from rmw_manycore_py.bench.summary import Goal, Result
 
 CREATE = "creating a subscription"
 CLOSE = "closing a subscription"
+DEPART = "closing a publisher whose message is not taken"
 BESIDE = "creating a publisher of another topic meanwhile"
 PUBLISH = "publishing to a topic with as many publishers"
 ENDPOINTS = (25, 50, 100, 200, 400, 800)
@@ -52,6 +53,7 @@ def _match(run: Run, middleware: Middleware, count: int) -> list[Result]:
     return [
         on_curve(CREATE, name, count, "endpoints", "us", samples_us("create", 1)),
         on_curve(CLOSE, name, count, "endpoints", "us", samples_us("close", 1)),
+        on_curve(DEPART, name, count, "endpoints", "us", samples_us("depart", 1)),
         *([on_curve(BESIDE, name, count, "endpoints", "us", beside)] if beside else []),
         *(
             on_curve(
@@ -62,14 +64,23 @@ def _match(run: Run, middleware: Middleware, count: int) -> list[Result]:
     ]
 
 
-GOALS = tuple(
-    Goal(
-        PUBLISH,
-        at_count(f"{INSIDE.name}, {FULL}", count, "endpoints"),
+GOALS = (
+    *(
+        Goal(
+            PUBLISH,
+            at_count(f"{INSIDE.name}, {FULL}", count, "endpoints"),
+            "within",
+            2,
+            at_count(f"{INSIDE.name}, {ROOM}", count, "endpoints"),
+        )
+        for count in ENDPOINTS
+    ),
+    Goal(  # eight times as many matches
+        DEPART,
+        at_count(INSIDE.name, 800, "endpoints"),
         "within",
-        2,
-        at_count(f"{INSIDE.name}, {ROOM}", count, "endpoints"),
-    )
-    for count in ENDPOINTS
+        16,
+        at_count(INSIDE.name, 100, "endpoints"),
+    ),
 )
 PLACEMENT = "endpoints: all in one process on the first"
