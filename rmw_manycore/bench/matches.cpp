@@ -6,7 +6,8 @@
 // With `endpoints` endpoints of each kind, one process prints how long it takes
 //   create   to create one more subscription,
 //   close    to close one subscription,
-//   depart   to close one more publisher, whose message is not taken,
+//   depart   to close one more publisher, whose message is not taken; closing it also sweeps the
+//            publisher before, whose message it displaced,
 //   beside   to create a publisher of another topic, from a second thread, while the first creates
 //            and closes all of them,
 //   publish  to publish; nothing is taken, so with a small depth each queue is full.

@@ -8,6 +8,7 @@
 
 #include "drivers_of_test.hpp"
 #include "node_role.hpp"
+#include "transport/matching/closing.hpp"
 #include "transport/registry/odd_phase.hpp"
 #include "waiting.hpp"
 
@@ -154,4 +155,23 @@ TEST_CASE("backlogged messages that are displaced later are counted once") {
   f.drive(4);
   CHECK(take_all(*slow) == numbers(7, 10));
   CHECK(slow->lost() == 4);
+}
+
+TEST_CASE("what a resync drops of a gone publisher is freed at once") {
+  Fixture f;
+  const auto subscription = f.subscription(keep_last(1));
+  const auto gone = f.publisher();
+  const auto newer = f.publisher();
+  {
+    const Standstill no_sweeper(f.platform, 1);
+    publish(*gone, 1);
+    publish(*newer, 2);
+    const Registry::Lock lock(f.inspection.registry());
+    Turn turn;
+    REQUIRE(closing::close_some(
+      f.inspection.registry(), static_cast<uint32_t>(endpoint_in(gone->gid())), false, turn));
+  }
+  CHECK(f.inspection.closing_endpoints() == 1);
+  CHECK(take_all(*subscription) == numbers(2, 2));
+  wait_until("its topic DSM is freed", [&] { return f.inspection.closing_endpoints() == 0; });
 }

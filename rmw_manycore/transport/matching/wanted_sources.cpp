@@ -1,9 +1,7 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #include "transport/matching/wanted_sources.hpp"
 
-#include <algorithm>
-#include <utility>
-
+#include "transport/matching/hinted_sources.hpp"
 #include "transport/queue/source_table.hpp"
 #include "transport/registry/endpoint_blocks.hpp"
 
@@ -13,7 +11,6 @@ namespace {
 using closing::OrphanReader;
 
 constexpr uint64_t steps_of_a_source = 3;
-constexpr uint64_t hints_in_a_step = 16;
 
 /// Messages that the subscription itself removed: taken or expired.
 uint64_t taken_by(const EndpointEntry & subscription) {
@@ -25,23 +22,6 @@ uint64_t taken_by(const EndpointEntry & subscription) {
 bool is_cut_by_depth(const OrphanReader & reader) {
   return reader.subscription.keep_all == 0 &&
          static_cast<EndpointRole>(reader.dsm.role) != EndpointRole::reply;
-}
-
-Announced announced_by_hints(const OrphanReader & reader, Turn & turn) {
-  Announced found;
-  turn.spend(1 + std::min<uint64_t>(reader.subscription.depth, most_announced) / hints_in_a_step);
-  const uint64_t taken = reader.source.taken.load(std::memory_order_acquire);
-  const uint64_t last = reader.dsm.last.load(std::memory_order_acquire);
-  const uint32_t incarnation = reader.source.incarnation.load(std::memory_order_relaxed);
-  subscriber_queue::visit_newest(reader.subscription, most_announced, [&](const Hint & hint) {
-    if (hint.source != reader.source_index) {
-      found.add_other(hint.source);
-    } else if (hint.source_incarnation == (incarnation & Hint::incarnation_mask)) {
-      const uint64_t ahead = (hint.number - taken) & Hint::number_mask;
-      found.is_own = found.is_own || (ahead != 0 && ahead <= last - std::min(taken, last));
-    }
-  });
-  return found;
 }
 
 }  // namespace
@@ -70,19 +50,33 @@ std::optional<uint32_t> WantedSources::newer_in(
   return look.in_next.go_on(*look.newest, cluster, *dsm, source, index, turn);
 }
 
-uint32_t WantedSources::newer_in_announced(
-  Look & look, const OrphanReader & reader, const Announced & announced, Turn & turn) const {
+uint32_t WantedSources::newer_in_hinted(
+  Look & look, const OrphanReader & reader, const HintedSources & hinted, Turn & turn) const {
   const auto sources =
     source_table(registry_.clusters().at(reader.endpoint.cluster), reader.subscription);
   uint32_t newer = 0;
-  for (size_t i = 0; i < announced.other_count && newer < reader.subscription.depth; ++i) {
-    SourceEntry * const source = sources.find(announced.others[i]);
+  for (size_t i = 0; i < hinted.other_count && newer < reader.subscription.depth; ++i) {
+    SourceEntry * const source = sources.find(hinted.others[i]);
     if (turn.is_over() || source == nullptr) {
       break;
     }
-    newer += newer_in(look, *source, announced.others[i], turn).value_or(0);
+    newer += newer_in(look, *source, hinted.others[i], turn).value_or(0);
   }
   return newer;
+}
+
+bool WantedSources::see_hints(Look & look, const OrphanReader & reader, Turn & turn) const {
+  const HintedSources hinted = hinted_sources(registry_, reader, turn);
+  look.is_hinted = hinted.is_own;
+  if (hinted.is_own) {
+    return true;
+  }
+  const uint32_t newer = newer_in_hinted(look, reader, hinted, turn);
+  if (newer >= reader.subscription.depth) {
+    look.newer = newer;
+    return true;
+  }
+  return !turn.is_over();  // fewer are counted again, with those of all sources
 }
 
 bool WantedSources::count_newer(Look & look, const OrphanReader & reader, Turn & turn) const {
@@ -119,13 +113,14 @@ std::optional<bool> WantedSources::is_among_newest(
   if (!look.newest) {
     return false;
   }
-  if (!std::exchange(look.has_seen_hints, true)) {
-    const Announced announced = announced_by_hints(reader, turn);
-    if (announced.is_own) {
-      return true;
+  if (look.hint_turns_left > 0) {
+    look.hint_turns_left = see_hints(look, reader, turn) ? 0 : look.hint_turns_left - 1;
+    if (look.hint_turns_left > 0) {
+      return std::nullopt;
     }
-    const uint32_t newer = newer_in_announced(look, reader, announced, turn);
-    look.newer = newer < reader.subscription.depth ? 0 : newer;  // else counted with all others
+  }
+  if (look.is_hinted) {
+    return true;
   }
   if (!count_newer(look, reader, turn)) {
     return std::nullopt;

@@ -1,9 +1,6 @@
 // Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <algorithm>
-#include <array>
-#include <cstddef>
 #include <cstdint>
 #include <optional>
 
@@ -12,21 +9,7 @@
 
 namespace manycore::sweeping {
 
-constexpr size_t most_announced = 64;
-
-/// What the newest hints of a subscription's queue tell about a reader.
-struct Announced {
-  bool is_own = false;  ///< one is of a record that the reader has not taken
-  std::array<uint32_t, most_announced> others{};  ///< indices of the other sources, each once
-  size_t other_count = 0;
-
-  void add_other(uint32_t source) noexcept {
-    const auto end = others.begin() + other_count;
-    if (std::find(others.begin(), end, source) == end) {
-      others[other_count++] = source;
-    }
-  }
-};
+struct HintedSources;
 
 /// Decides whether a subscription still wants messages of a publisher that is gone, and can get
 /// them. A KEEP_LAST subscription wants them if the newest of them is among its newest `depth`
@@ -55,10 +38,11 @@ private:
     DescriptorPlace place{};  ///< of the search in progress
     bool knows_newest = false;
     std::optional<closing::Undelivered> newest{};  ///< of the reader's own records
-    bool has_seen_hints = false;
+    uint32_t hint_turns_left = 2;   ///< to see the hints; 0 once that is done, or given up
+    bool is_hinted = false;         ///< a hint is of the reader's own records
     uint32_t next = 0;              ///< index of the first source not visited yet
     closing::NewerCount in_next{};  ///< what is found in that source
-    uint32_t newer = 0;             ///< newer records found in earlier ones
+    uint32_t newer = 0;             ///< newer records found in earlier ones, or by hints
     std::optional<bool> is_wanted{};
 
     bool is_at(const closing::OrphanReader & reader) const noexcept;
@@ -70,9 +54,12 @@ private:
   /// Records of a source that are newer; nothing if the turn ended before.
   std::optional<uint32_t> newer_in(
     Look & look, SourceEntry & source, uint32_t index, Turn & turn) const;
+  /// Sets `is_hinted`, or `newer` where the hints lead to enough. False if the turn ended before
+  /// the last hint.
+  bool see_hints(Look & look, const closing::OrphanReader & reader, Turn & turn) const;
   /// As many as found within this turn.
-  uint32_t newer_in_announced(
-    Look & look, const closing::OrphanReader & reader, const Announced & announced,
+  uint32_t newer_in_hinted(
+    Look & look, const closing::OrphanReader & reader, const HintedSources & hinted,
     Turn & turn) const;
   /// False if the turn ended before the last source.
   bool count_newer(Look & look, const closing::OrphanReader & reader, Turn & turn) const;

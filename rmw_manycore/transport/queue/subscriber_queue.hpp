@@ -152,9 +152,10 @@ inline uint64_t size(SubscriptionHeader & header) noexcept {
 template<typename Visit>
 void visit_newest(SubscriptionHeader & header, uint64_t most, Visit visit) noexcept {
   const Slots slots(header);
+  const uint64_t head = header.head.load(std::memory_order_acquire);  // first, so head <= tail
   const uint64_t tail = header.tail.load(std::memory_order_acquire);
-  const uint64_t held = tail - header.head.load(std::memory_order_acquire);
-  for (uint64_t back = 1; back <= std::min({held, uint64_t{header.depth}, most}); ++back) {
+  const uint64_t held = std::min<uint64_t>(tail - head, header.depth);
+  for (uint64_t back = 1; back <= std::min(held, most); ++back) {
     const uint64_t word = slots.at(tail - back).load(std::memory_order_acquire);
     if (slots.filled(word, tail - back)) {
       visit(decode(word));

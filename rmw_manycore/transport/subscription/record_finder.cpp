@@ -146,12 +146,16 @@ uint64_t RecordFinder::count_announced(const std::vector<Source::Waiting> & foun
 }
 
 void RecordFinder::drop_beyond_depth() {
+  bool some_finished = false;
   while (header_.keep_all == 0 && backlog_.size() > header_.depth) {
     const Source::Waiting oldest = backlog_.pop_oldest();
     if (Source * const source = sources_.find(oldest.source, oldest.incarnation)) {
-      source->skip(oldest.number);
+      some_finished = source->skip(oldest.number) || some_finished;
     }
     counts_.count_lost_replies(1);
+  }
+  if (some_finished) {
+    cluster_.wake_reaper();  // to free topic DSMs
   }
 }
 

@@ -178,12 +178,11 @@ bool Source::release(uint64_t number) noexcept {
   return finished || entry_->state.load(std::memory_order_seq_cst) == SourceState::revoked;
 }
 
-void Source::skip(uint64_t number) noexcept {
+bool Source::skip(uint64_t number) noexcept {
   entry_->reading.store(every_record, std::memory_order_seq_cst);
-  if (may_look()) {
-    release(number);
-  }
+  const bool is_over = may_look() && release(number);
   entry_->reading.store(no_record, std::memory_order_release);
+  return is_over;
 }
 
 uint64_t Source::last() const noexcept {

@@ -51,7 +51,7 @@ public:
   /// gone and its topic DSM may have been waiting for this reader only.
   bool release(uint64_t number) noexcept;
   /// Like release(), without a claim.
-  void skip(uint64_t number) noexcept;
+  bool skip(uint64_t number) noexcept;
   uint64_t taken() const noexcept { return entry_->taken.load(std::memory_order_relaxed); }
 
   struct Waiting {

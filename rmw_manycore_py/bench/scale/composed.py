@@ -15,6 +15,7 @@ from rmw_manycore_py.bench.round_trip import in_us
 from rmw_manycore_py.bench.scale.common import along, at_count, followed, on_curve
 from rmw_manycore_py.bench.session import Session
 from rmw_manycore_py.bench.summary import Goal, Result
+from rmw_manycore_py.errors import ManycoreError
 
 EXECUTORS = {
     "single": "SingleThreadedExecutor",
@@ -58,34 +59,38 @@ RINGS = (
 
 def measure(run: Run) -> list[Result]:
     """Return the time of a hop with each executor, over the nodes of a process."""
-    return [
-        result
-        for ring in RINGS
-        for executor in ring.executors
-        for result in along(
-            run,
-            f"{ring.hop}: {EXECUTORS[executor]}",
-            ring.nodes,
-            "nodes",
-            partial(_compare, run, ring, executor),
-        )
-    ]
+    results: list[Result] = []
+    for ring in RINGS:
+        for executor in ring.executors:
+            contender = f"{ring.hop}: {EXECUTORS[executor]}"
+            measured = partial(_compare, run, ring, executor, [INSIDE, FAST_DDS])
+            results += along(run, contender, ring.nodes, "nodes", measured)
+    return results
 
 
-def _compare(run: Run, ring: Ring, executor: str, nodes: int) -> list[Result]:
-    """Measure the middlewares that follow to so many nodes, in turns."""
-    follow = [each for each in (INSIDE, FAST_DDS) if followed(each, [nodes], NODES[-1])]
+def _compare(
+    run: Run, ring: Ring, executor: str, middlewares: list[Middleware], nodes: int
+) -> list[Result]:
+    """Measure the middlewares in turns; drop one that fails."""
     hops: dict[str, list[float]] = defaultdict(list)
     cpu: dict[str, list[float]] = defaultdict(list)
     for _ in range(TURNS):
-        for middleware in follow:
-            found = _go_round(run, ring, middleware, executor, nodes)
-            hops[middleware.name] += in_us(found["samples_ns"])
-            cpu[middleware.name] += in_us(found["cpu_ns"])
+        for middleware in tuple(middlewares):
+            curve = _curve(middleware, executor)
+            if not followed(middleware, [nodes], NODES[-1]):
+                continue
+            try:
+                found = _go_round(run, ring, middleware, executor, nodes)
+            except ManycoreError as error:
+                run.failures.append(f"{ring.hop}: {at_count(curve, nodes, 'nodes')}: {error}")
+                middlewares.remove(middleware)
+            else:
+                hops[curve] += in_us(found["samples_ns"])
+                cpu[curve] += in_us(found["cpu_ns"])
     return [
-        on_curve(question, _curve(middleware, executor), nodes, "nodes", "us", of[middleware.name])
+        on_curve(question, curve, nodes, "nodes", "us", samples)
         for question, of in ((ring.hop, hops), (ring.cpu, cpu))
-        for middleware in follow
+        for curve, samples in of.items()
     ]
 
 

@@ -30,7 +30,7 @@ REPAIR = {"repair": "repairing after the owner of the lock was killed"}
 CONTROL = {"control": "none, but arithmetic for 50 us, 10,000 times"}
 FIGURES = {HOLD: ("_p99", OPERATIONS), LONGEST: ("", OPERATIONS | REPAIR | CONTROL)}
 ENDPOINTS = (100, 200, 400, 800)
-CHANGES = 100
+CHANGES = 50
 MOST_US = 100
 
 
