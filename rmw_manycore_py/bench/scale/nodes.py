@@ -14,6 +14,7 @@ from functools import partial
 from rmw_manycore_py._transport import Platform
 from rmw_manycore_py.bench.contenders import FAST_DDS, Middleware
 from rmw_manycore_py.bench.idle import cpu_ns, wait_until_quiet, wake_ups
+from rmw_manycore_py.bench.load import awake
 from rmw_manycore_py.bench.question import Run
 from rmw_manycore_py.bench.round_trip import WARM_UP, in_us
 from rmw_manycore_py.bench.scale import fleet, graph
@@ -43,7 +44,7 @@ LIST = "`manycore node list`, from the start of the command to its end"
 RECLAIM = "until nothing is left of those killed at once"
 READ = ", its graph read over and over"
 LISTED = ", manycore node list over and over"
-FEW = 2
+FEW = 10  # its last node has the CPU and the cluster of that of hundreds
 BESIDE_FEW = f", with {FEW} nodes instead"
 
 # Beyond 500, several of them share a process.
@@ -181,7 +182,7 @@ def _idle_ms(session: Session, nodes: Fleet, window_s: float) -> float:
 def _messages(run: Run, session: Session, nodes: Fleet) -> list[Result]:
     """Measure messages beside the nodes, and beside a few on another platform, in turns."""
     found: dict[tuple[str, str], list[float]] = defaultdict(list)
-    with Session(session.middleware, run.cpus) as other:
+    with Session(session.middleware, run.cpus) as other, awake(run.cpus, TIMEOUT_S):
         platforms = (("", session, nodes), (BESIDE_FEW, other, fleet.start(other, FEW)))
         for _ in range(TURNS):
             for beside, each, its_nodes in platforms:
