@@ -62,9 +62,15 @@ def measure(run: Run) -> list[Result]:
     results: list[Result] = []
     for ring in RINGS:
         for executor in ring.executors:
-            contender = f"{ring.hop}: {EXECUTORS[executor]}"
-            measured = partial(_compare, run, ring, executor, [INSIDE, FAST_DDS])
-            results += along(run, contender, ring.nodes, "nodes", measured)
+            contenders = {
+                f"{ring.hop}: {_curve(middleware, executor)}": middleware
+                for middleware in (INSIDE, FAST_DDS)
+            }
+            wanted = [name for name in contenders if run.wants(name)]
+            if wanted:
+                compared = [contenders[name] for name in wanted]
+                measured = partial(_compare, run, ring, executor, compared)
+                results += along(run, wanted[0], ring.nodes, "nodes", measured)
     return results
 
 
