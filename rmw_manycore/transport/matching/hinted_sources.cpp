@@ -26,9 +26,9 @@ HintedSources hinted_sources(
   subscriber_queue::visit_newest(subscription, HintedSources::most, [&](const Hint & hint) {
     if (hint.source != reader.source_index) {
       found.add_other(hint.source);
-    } else if (hint.source_incarnation == (incarnation & Hint::incarnation_mask)) {
-      const uint64_t ahead = (hint.number - taken) & Hint::number_mask;
-      found.is_own = found.is_own || (ahead != 0 && ahead <= last - std::min(taken, last));
+    } else if (hint.is_of(incarnation)) {
+      const uint64_t number = Hint::full_number(hint.number, last);
+      found.is_own = found.is_own || (number > taken && number <= last);
     }
   });
   return found;

@@ -62,21 +62,7 @@ uint32_t WantedSources::newer_in_hinted(
     }
     newer += newer_in(look, *source, hinted.others[i], turn).value_or(0);
   }
-  return newer;
-}
-
-bool WantedSources::see_hints(Look & look, const OrphanReader & reader, Turn & turn) const {
-  const HintedSources hinted = hinted_sources(registry_, reader, turn);
-  look.is_hinted = hinted.is_own;
-  if (hinted.is_own) {
-    return true;
-  }
-  const uint32_t newer = newer_in_hinted(look, reader, hinted, turn);
-  if (newer >= reader.subscription.depth) {
-    look.newer = newer;
-    return true;
-  }
-  return !turn.is_over();  // fewer are counted again, with those of all sources
+  return newer < reader.subscription.depth ? 0 : newer;
 }
 
 bool WantedSources::count_newer(Look & look, const OrphanReader & reader, Turn & turn) const {
@@ -114,13 +100,16 @@ std::optional<bool> WantedSources::is_among_newest(
     return false;
   }
   if (look.hint_turns_left > 0) {
-    look.hint_turns_left = see_hints(look, reader, turn) ? 0 : look.hint_turns_left - 1;
-    if (look.hint_turns_left > 0) {
+    --look.hint_turns_left;
+    const HintedSources hinted = hinted_sources(registry_, reader, turn);
+    if (hinted.is_own) {
+      return true;
+    }
+    look.newer = newer_in_hinted(look, reader, hinted, turn);
+    if (look.newer == 0 && turn.is_over() && look.hint_turns_left > 0) {
       return std::nullopt;
     }
-  }
-  if (look.is_hinted) {
-    return true;
+    look.hint_turns_left = 0;
   }
   if (!count_newer(look, reader, turn)) {
     return std::nullopt;

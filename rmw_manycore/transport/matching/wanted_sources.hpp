@@ -38,8 +38,7 @@ private:
     DescriptorPlace place{};  ///< of the search in progress
     bool knows_newest = false;
     std::optional<closing::Undelivered> newest{};  ///< of the reader's own records
-    uint32_t hint_turns_left = 2;   ///< to see the hints; 0 once that is done, or given up
-    bool is_hinted = false;         ///< a hint is of the reader's own records
+    uint32_t hint_turns_left = 2;   ///< to look at the hints; 0 once that is done, or given up
     uint32_t next = 0;              ///< index of the first source not visited yet
     closing::NewerCount in_next{};  ///< what is found in that source
     uint32_t newer = 0;             ///< newer records found in earlier ones, or by hints
@@ -54,10 +53,7 @@ private:
   /// Records of a source that are newer; nothing if the turn ended before.
   std::optional<uint32_t> newer_in(
     Look & look, SourceEntry & source, uint32_t index, Turn & turn) const;
-  /// Sets `is_hinted`, or `newer` where the hints lead to enough. False if the turn ended before
-  /// the last hint.
-  bool see_hints(Look & look, const closing::OrphanReader & reader, Turn & turn) const;
-  /// As many as found within this turn.
+  /// 0 if those found within this turn are fewer than `depth`: to be counted with all others.
   uint32_t newer_in_hinted(
     Look & look, const closing::OrphanReader & reader, const HintedSources & hinted,
     Turn & turn) const;

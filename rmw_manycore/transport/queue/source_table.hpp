@@ -23,8 +23,7 @@ void visit_source_table(const Cluster & cluster, SubscriptionHeader & subscripti
 /// Records in the source's entry that a hint was displaced, so that the subscriber does not wait
 /// for it.
 inline void note_displaced(SourceEntry & source, const Hint & hint) noexcept {
-  const uint32_t incarnation = source.incarnation.load(std::memory_order_relaxed);
-  if ((incarnation & Hint::incarnation_mask) == hint.source_incarnation) {
+  if (hint.is_of(source.incarnation.load(std::memory_order_relaxed))) {
     Displaced::raise(source.displaced, hint);
   }
 }

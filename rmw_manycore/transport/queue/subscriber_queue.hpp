@@ -19,6 +19,16 @@ struct Hint {
   static constexpr uint32_t source_limit = 1u << 14;
   static constexpr uint32_t incarnation_mask = (1u << 6) - 1;
   static constexpr uint64_t number_mask = (uint64_t{1} << 28) - 1;
+
+  bool is_of(uint32_t incarnation) const noexcept {
+    return source_incarnation == (incarnation & incarnation_mask);
+  }
+  /// The newest published number with these low bits. A queued hint is less than one period (2^28)
+  /// old, however long nothing was taken. If no number with these bits was published, the result
+  /// wraps and is greater than `latest`.
+  static uint64_t full_number(uint64_t low_bits, uint64_t latest) noexcept {
+    return latest - ((latest - low_bits) & number_mask);
+  }
 };
 
 namespace subscriber_queue {

@@ -43,20 +43,12 @@ bool Source::is_given_up(uint64_t number) const noexcept {
          Displaced::covers(entry_->displaced, incarnation_, number);
 }
 
-/// The newest published number with these low bits. A queued hint is less than one period (2^28)
-/// old, however long nothing was taken. If no number with these bits was published, the result
-/// wraps and is greater than `latest`.
-uint64_t Source::full_number(uint64_t low_bits, uint64_t latest) noexcept {
-  constexpr uint64_t period = uint64_t{1} << 28;
-  return latest - ((latest - low_bits) & (period - 1));
-}
-
 std::optional<uint64_t> Source::published_number(uint64_t low_bits) noexcept {
   std::optional<uint64_t> number;
   entry_->reading.store(every_record, std::memory_order_seq_cst);
   if (may_look()) {
     const uint64_t latest = last();  // load once: it increases concurrently
-    number = full_number(low_bits, latest);
+    number = Hint::full_number(low_bits, latest);
     if (*number > latest) {
       number.reset();
     }
@@ -278,7 +270,8 @@ Source::Settled Source::settle() noexcept {
   if (may_look()) {
     const LastPublished published = last_published(*dsm_);
     const std::optional<uint64_t> displaced = Displaced::read(entry_->displaced, incarnation_);
-    const uint64_t known = displaced ? std::max(noted_, full_number(*displaced, last())) : noted_;
+    const uint64_t known =
+      displaced ? std::max(noted_, Hint::full_number(*displaced, last())) : noted_;
     if (published.exact && is_known(published.number, known)) {
       count_missing(published.sequence);
       const bool was_finished = is_finished();

@@ -86,7 +86,6 @@ private:
     uint64_t count = 0;
   };
 
-  static uint64_t full_number(uint64_t low_bits, uint64_t latest) noexcept;
   /// True if records reach this subscription in a landing. Requires a claim, as does landing().
   bool is_transferred() const noexcept {
     return dsm_->transfer != static_cast<uint8_t>(Transfer::dsm) && cluster_ != own_cluster_;

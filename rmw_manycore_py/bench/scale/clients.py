@@ -92,7 +92,10 @@ def _apart(middleware: Middleware) -> Middleware:
 
 @dataclass
 class Attended:
-    """A server with clients that wait, and what the calls of a further client took so far."""
+    """A server with clients that wait, and what the calls of further ones took so far.
+
+    What the waiting clients spend includes the start and the end of those that call.
+    """
 
     session: Session
     served: Served
