@@ -81,6 +81,11 @@ public:
   }
 
 private:
+  bool is_owned_by_the_thread() const {
+    const std::optional<uint32_t> seat = header_.mutex.owner();
+    return seat && *seat < lock_seat_count && header_.seats[*seat].occupied.owner() == thread_id_;
+  }
+
   /// Measures until the last load that found the lock held.
   void watch_one_hold() {
     const uint64_t seen = header_.changes.load();
@@ -89,7 +94,7 @@ private:
     }
     const int64_t start_ns = clock_ns(clock_);
     const auto is_held = [&] {  // `changes` is odd without an owner before a repair
-      return header_.changes.load() == seen && header_.mutex.owner() == thread_id_ && !done_;
+      return header_.changes.load() == seen && is_owned_by_the_thread() && !done_;
     };
     if (!is_held()) {
       return;

@@ -8,13 +8,17 @@
 
 namespace manycore {
 
-/// Exclusive lock of a whole file (flock), held during its lifetime. The holder may unlink the
-/// file: acquire() checks that the locked file is still the one at `path`.
+/// Exclusive lock of a whole file (flock), held during its lifetime. The kernel releases it after
+/// the last thread of a killed holder has ended. The holder may unlink the file: the lock is that
+/// of the file which is at `path` by then.
 class FileLock {
 public:
-  /// Waits at most `timeout_ms`; throws Error{timeout} naming the file and its owner. Empty if the
-  /// directory of the file is missing, because its last user has just removed it.
+  /// Creates the file if it is missing. Waits at most `timeout_ms`, in which this process can run;
+  /// throws Error{timeout} naming the file and its owner. Empty if the directory of the file is
+  /// missing, because its last user has just removed it.
   static std::optional<FileLock> acquire(const std::string & path, int timeout_ms);
+  /// As acquire(), but empty if the file itself is missing.
+  static std::optional<FileLock> acquire_existing(const std::string & path, int timeout_ms);
   FileLock(FileLock &&) = default;
   FileLock & operator=(FileLock &&) = default;
   /// Unlocks before closing: a child of fork() may share the open file, which holds the lock.
@@ -22,6 +26,7 @@ public:
 
 private:
   explicit FileLock(FileDescriptor fd) : fd_(std::move(fd)) {}
+  static std::optional<FileLock> acquire(const std::string & path, int flags, int timeout_ms);
   FileDescriptor fd_;
 };
 

@@ -33,6 +33,10 @@ inline bool futex_wait(
   return result != 0 && errno == EINTR;
 }
 
+inline void futex_wake_one(FutexWord & word) noexcept {
+  syscall(SYS_futex, &word, FUTEX_WAKE, 1, nullptr, nullptr, 0);
+}
+
 inline void futex_wake_all(FutexWord & word) noexcept {
   syscall(SYS_futex, &word, FUTEX_WAKE, INT_MAX, nullptr, nullptr, 0);
 }

@@ -12,6 +12,7 @@
 #include "platform/blocked_signals.hpp"
 #include "platform/clock.hpp"
 #include "platform/error.hpp"
+#include "platform/file_lock.hpp"
 #include "platform/fork_side.hpp"
 
 namespace manycore {
@@ -19,19 +20,19 @@ namespace {
 
 constexpr uint64_t lifelines_magic = 0x4d43'4c49'4645'4c4e;  // "MCLIFELN"
 constexpr long no_wait_ns = 0;
+constexpr int hold_timeout_ms = 10'000;
 
-/// False if another thread holds it.
-bool try_lock(RobustMutex & mutex) {
-  try {
-    if (mutex.lock(no_wait_ns) == RobustMutex::Outcome::owner_died) {
+/// Locks the mutex of a line that is not held. The caller excludes others that try to hold it, as
+/// RobustMutex requires.
+void lock(RobustMutex & mutex) {
+  switch (mutex.lock(no_wait_ns)) {
+    case RobustMutex::Outcome::locked:
+      return;
+    case RobustMutex::Outcome::owner_died:
       mutex.mark_consistent();
-    }
-    return true;
-  } catch (const Error & error) {
-    if (error.code() == ErrorCode::timeout) {
-      return false;
-    }
-    throw;
+      return;
+    case RobustMutex::Outcome::timed_out:
+      throw Error(ErrorCode::corrupt, "a lifeline is damaged");
   }
 }
 
@@ -83,12 +84,14 @@ struct HeldLifeline::Holder {
 void HeldLifeline::Holder::hold() {
   pthread_setname_np(pthread_self(), "manycore_life");
   try {
-    const bool held = try_lock(line.mutex);
+    const bool held = !line.mutex.is_locked();
     if (held) {
+      // Before it is held: a line that is held names its holder.
       const ProcessIdentity own = ProcessIdentity::own();
       line.start_time = own.start_time;
       line.pid_namespace = own.pid_namespace;
       line.pid = own.pid;
+      lock(line.mutex);
     }
     is_held.set_value(held);
     if (!held) {
@@ -151,12 +154,12 @@ void Lifelines::create(const std::string & path, uint32_t count) {
   }
 }
 
-Lifelines::Lifelines(SharedMemory memory)
-: memory_(std::make_shared<SharedMemory>(std::move(memory))) {}
+Lifelines::Lifelines(const std::string & path, SharedMemory memory)
+: path_(path), memory_(std::make_shared<SharedMemory>(std::move(memory))) {}
 
 Lifelines Lifelines::open(const std::string & path) {
   static_assert(sizeof(Header) == sizeof(Lifeline));
-  Lifelines lifelines(SharedMemory::open(path, sizeof(Header)));
+  Lifelines lifelines(path, SharedMemory::open(path, sizeof(Header)));
   const Header & header = lifelines.memory_->at<Header>(0);
   if (
     header.magic.load(std::memory_order_acquire) != lifelines_magic ||
@@ -170,6 +173,12 @@ Lifelines Lifelines::open(const std::string & path) {
 }
 
 std::optional<HeldLifeline> Lifelines::try_hold(uint32_t line) const {
+  // One process at a time tries; the kernel opens the file to the next one only after the last
+  // thread of a killed one has ended.
+  const std::optional<FileLock> others = FileLock::acquire_existing(path_, hold_timeout_ms);
+  if (!others) {
+    throw Error(ErrorCode::system, path_ + " was removed; try again");
+  }
   auto holder = std::make_unique<HeldLifeline::Holder>(memory_, at(line));
   {
     const BlockedSignals blocked;
@@ -200,8 +209,19 @@ bool Lifelines::is_held(uint32_t line) const {
   return false;
 }
 
+void Lifelines::release_if_abandoned(uint32_t line) const {
+  const pid_t thread = at(line).mutex.owner();
+  const ProcessIdentity last = holder(line);
+  if (
+    thread != 0 && last.pid > 0 && last.is_of_this_pid_namespace() &&
+    !(ProcessIdentity::of(last.pid) == last) && holder(line) == last) {
+    at(line).mutex.mark_owner_died(thread);
+  }
+}
+
 bool Lifelines::is_any_held() const {
   for (uint32_t line = 0; line < count(); ++line) {
+    release_if_abandoned(line);
     if (is_held(line)) {
       return true;
     }

@@ -46,8 +46,8 @@ public:
   /// Throws Error{corrupt} if the file is not a lifeline file.
   static Lifelines open(const std::string & path);
 
-  /// Empty if the line is already held. Throws Error{corrupt} if the line is damaged, and
-  /// std::system_error if no thread can be created.
+  /// Empty if the line is already held. Throws Error{corrupt} if the line is damaged, Error{system}
+  /// if the file was removed, and std::system_error if no thread can be created.
   std::optional<HeldLifeline> try_hold(uint32_t line) const;
   /// False once the holder has ended. For a holder in another PID namespace, its last threads may
   /// still be running for a moment after the one that held the line.
@@ -55,7 +55,12 @@ public:
   /// As is_held(), but without a system call: a single load. For a holder in any PID namespace, its
   /// last threads may still be running for a moment after this returns false.
   bool is_locked(uint32_t line) const;
+  /// Takes abandoned lines into account.
   bool is_any_held() const;
+  /// Releases a line whose holder does not exist any more, though the kernel has not released it:
+  /// kernels before 5.18 may fail to for a process that is killed as memory runs out. Without
+  /// effect for a holder of another PID namespace.
+  void release_if_abandoned(uint32_t line) const;
   /// See SharedMemory::is_file().
   bool is_file(const std::string & path) const noexcept { return memory_->is_file(path); }
   /// The current or last holder of the line.
@@ -63,10 +68,11 @@ public:
 
 private:
   struct Header;
-  explicit Lifelines(SharedMemory memory);
+  Lifelines(const std::string & path, SharedMemory memory);
   Lifeline & at(uint32_t line) const;
   uint32_t count() const noexcept;
 
+  std::string path_;
   std::shared_ptr<SharedMemory> memory_;
 };
 

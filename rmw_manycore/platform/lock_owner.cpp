@@ -5,9 +5,12 @@
 #include <sys/sysmacros.h>
 
 #include <cstdio>
+#include <cstdlib>
 #include <fstream>
 #include <optional>
 #include <sstream>
+
+#include "platform/process_identity.hpp"
 
 namespace manycore {
 namespace {
@@ -15,7 +18,8 @@ namespace {
 struct ThreadStatus {
   std::string process;  ///< process id
   std::string name;
-  char state = '?';  ///< as in proc(5): R, S, D, T, t, Z, X
+  char state = '?';     ///< as in proc(5): R, S, D, T, t, Z, X
+  uint64_t sleeps = 0;  ///< how often it has given up its CPU to wait
 };
 
 /// Empty if there is no such thread.
@@ -32,6 +36,8 @@ std::optional<ThreadStatus> status_of(pid_t thread) {
       status.state = value[0];
     } else if (key == "Tgid") {
       status.process = value;
+    } else if (key == "voluntary_ctxt_switches") {
+      status.sleeps = std::strtoull(value.c_str(), nullptr, 10);
     }
   }
   return status.process.empty() ? std::nullopt : std::optional<ThreadStatus>(status);
@@ -62,39 +68,55 @@ std::optional<pid_t> flock_owner_of(const std::string & file) {
 
 }  // namespace
 
-std::string describe_lock_owner(pid_t thread) {
-  if (thread == 0) {
-    return "its owner has just released it; try again";
-  }
-  const std::optional<ThreadStatus> owner = status_of(thread);
-  if (!owner) {
-    return "its owner, thread " + std::to_string(thread) +
-           ", does not exist here: it runs in another container, or the lock is damaged; stop the "
+std::string describe_lock_owner(const LockOwner & owner) {
+  if (owner.thread == 0) {
+    return "its owner has just released it; try again; if that does not help, it is damaged: stop "
+           "the "
            "platform's nodes and run 'manycore clean'";
   }
-  const std::string holds = "process " + owner->process + " (" + owner->name + ") holds it and is ";
-  if (owner->state == 'T') {
-    return holds + "stopped; continue it (kill -CONT " + owner->process + ") or end it";
+  const std::string thread = std::to_string(owner.thread);
+  if (owner.pid_namespace != own_pid_namespace()) {
+    return "its owner runs in another container, as thread " + thread +
+           "; continue or end it there";
   }
-  if (owner->state == 't') {
+  const std::optional<ThreadStatus> status = status_of(owner.thread);
+  if (!status) {
+    return "its owner, thread " + thread + ", has just ended; try again";
+  }
+  const std::string holds =
+    "process " + status->process + " (" + status->name + ") holds it and is ";
+  if (status->state == 'T') {
+    return holds + "stopped; continue it (kill -CONT " + status->process + ") or end it";
+  }
+  if (status->state == 't') {
     return holds + "stopped by a debugger; continue it or end it";
   }
-  return holds + "not stopped (state " + owner->state + "); try again, or end it if it hangs";
+  return holds + "not stopped (state " + status->state +
+         "); try again, or end it if it hangs or its cgroup is frozen";
 }
 
-bool may_unlock(pid_t thread) {
-  if (thread == 0) {
+bool LockOwnerWatch::may_unlock(const LockOwner & owner) {
+  if (owner.thread == 0) {
     return true;
   }
-  const std::optional<ThreadStatus> owner = status_of(thread);
-  return owner && owner->state != 'T' && owner->state != 't';
+  const auto status = owner.pid_namespace == own_pid_namespace() ? status_of(owner.thread)
+                                                                 : std::optional<ThreadStatus>();
+  if (!status || status->state == 'T' || status->state == 't') {
+    return false;
+  }
+  // A frozen thread sleeps, too. Owners of a lock sleep briefly at most.
+  const bool has_slept_on =
+    status->state == 'S' && thread_ == owner.thread && sleeps_ == status->sleeps;
+  thread_ = owner.thread;
+  sleeps_ = status->sleeps;
+  return !has_slept_on;
 }
 
 std::string describe_flock_owner(int fd) {
   struct stat file {};
   const bool is_open = fstat(fd, &file) == 0;
   const auto owner = is_open ? flock_owner_of(name_in_locks(file)) : std::nullopt;
-  return owner ? describe_lock_owner(*owner)
+  return owner ? describe_lock_owner({*owner, own_pid_namespace()})
                : "its owner is not visible here: it has just released it, or runs in another "
                  "container; try again";
 }

@@ -35,15 +35,17 @@ uint64_t start_time_of(pid_t pid) {
   return start_time;
 }
 
+}  // namespace
+
 uint64_t own_pid_namespace() {
   struct stat status {};
   return stat("/proc/self/ns/pid", &status) == 0 ? status.st_ino : 0;
 }
 
-}  // namespace
+ProcessIdentity ProcessIdentity::own() { return of(getpid()); }
 
-ProcessIdentity ProcessIdentity::own() {
-  return {getpid(), start_time_of(getpid()), own_pid_namespace()};
+ProcessIdentity ProcessIdentity::of(pid_t pid) {
+  return {pid, start_time_of(pid), own_pid_namespace()};
 }
 
 bool ProcessIdentity::is_of_this_pid_namespace() const {

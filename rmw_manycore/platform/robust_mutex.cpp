@@ -9,7 +9,6 @@
 
 #include "platform/clock.hpp"
 #include "platform/error.hpp"
-#include "platform/lock_owner.hpp"
 
 #if defined(__has_feature)
 #define MANYCORE_THREAD_SANITIZER __has_feature(thread_sanitizer)
@@ -68,14 +67,10 @@ RobustMutex::Outcome RobustMutex::lock(long timeout_ns) {
     case EOWNERDEAD:
       return Outcome::owner_died;
     case ETIMEDOUT:
-      // A caller that does not wait retries by itself, so the owner is not described.
-      throw Error(
-        ErrorCode::timeout,
-        timeout_ns == 0 ? "the platform's registry is locked"
-                        : "the platform's registry stayed locked: " + describe_lock_owner(owner()));
+      return Outcome::timed_out;
     default:
       throw Error(
-        ErrorCode::corrupt, std::string("the registry's lock is damaged: ") + std::strerror(error));
+        ErrorCode::corrupt, std::string("a robust mutex is damaged: ") + std::strerror(error));
   }
 }
 
@@ -88,6 +83,15 @@ bool RobustMutex::is_waited_for() const noexcept {
 }
 
 void RobustMutex::unlock() noexcept { pthread_mutex_unlock(&mutex_); }
+
+void RobustMutex::mark_owner_died(pid_t thread) noexcept {
+  int seen = mutex_.__data.__lock;
+  if ((static_cast<uint32_t>(seen) & FUTEX_TID_MASK) == static_cast<uint32_t>(thread)) {
+    __atomic_compare_exchange_n(
+      &mutex_.__data.__lock, &seen, static_cast<int>(FUTEX_OWNER_DIED), false, __ATOMIC_ACQ_REL,
+      __ATOMIC_RELAXED);
+  }
+}
 
 void RobustMutex::mark_consistent() noexcept { pthread_mutex_consistent(&mutex_); }
 

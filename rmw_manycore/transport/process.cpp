@@ -3,6 +3,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <map>
 #include <mutex>
@@ -58,6 +59,7 @@ struct Process::Impl {
   /// First half of the other constructor: joins the platform.
   Impl(const Placement & placement_, JoinOnly);
 
+  uint32_t take_slot_and_line();
   uint32_t take_process_slot();
   void require_movers();
   uint32_t publish_endpoint(const EndpointSpec & spec, EndpointKind kind);
@@ -94,6 +96,7 @@ Process::Impl::Impl(const Placement & placement_, JoinOnly)
       ensure_cluster(*registry, placement.cluster);
       const Registry::Lock lock(*registry);
       slot = take_process_slot();
+      registry->sit(slot);
     } catch (...) {
       if (!is_alive(paths)) {
         remove_platform(paths);
@@ -126,21 +129,36 @@ void Process::Impl::attach(uint32_t taken) {
   }
 }
 
-uint32_t Process::Impl::take_process_slot() {
+/// Takes a free slot and its line. Passes over lines that are held, by processes that have just
+/// given back their slots, or damaged.
+uint32_t Process::Impl::take_slot_and_line() {
   Table<ProcessEntry> & processes = registry->processes();
-  const uint32_t taken = processes.take("processes");
-  ProcessEntry & entry = processes[taken];
+  std::vector<uint32_t> passed_over;
+  const auto give_back = [&] {
+    std::for_each(
+      passed_over.rbegin(), passed_over.rend(), [&](uint32_t slot) { processes.give_back(slot); });
+  };
   try {
-    lifeline = registry->lifelines().try_hold(taken);
-  } catch (const Error &) {
-    throw;  // the line is damaged: keep the slot taken, so that the next process takes another one
+    while (true) {
+      const uint32_t taken = processes.take("processes");
+      passed_over.push_back(taken);
+      lifeline = registry->lifelines().try_hold(taken);
+      if (lifeline) {
+        passed_over.pop_back();
+        give_back();
+        return taken;
+      }
+    }
   } catch (...) {
-    processes.give_back(taken);
+    give_back();
     throw;
   }
-  if (!lifeline) {
-    throw Error(ErrorCode::corrupt, "process slot is in use; run 'manycore clean'");
-  }
+}
+
+uint32_t Process::Impl::take_process_slot() {
+  Table<ProcessEntry> & processes = registry->processes();
+  const uint32_t taken = take_slot_and_line();
+  ProcessEntry & entry = processes[taken];
   entry.pid = getpid();
   entry.cluster = placement.cluster;
   entry.core = placement.core ? static_cast<int32_t>(*placement.core) : -1;
@@ -181,8 +199,8 @@ void Process::Impl::sweep_at_parting() noexcept {
   }
 }
 
-/// The JoinLock is the user's, not the platform's: it is taken last, so that no join waits for the
-/// endpoints of this process. The registry lock's owner may be stopped.
+/// The JoinLock is the user's, not the platform's: it is taken last, and by the last process only,
+/// so that no join waits for this one. The registry lock's owner may be stopped.
 void Process::Impl::leave() {
   // Close endpoints whose destructors could not get the lock.
   closing::EndpointsOfProcess endpoints(*registry, slot, false);
@@ -203,7 +221,6 @@ void Process::Impl::leave() {
                   spare_blocks::free_some(*registry, registry->processes()[slot].spare, turn);
   }
   registry->graph_changed();  // the lock may take a while
-  const JoinLock join_lock(paths);
   {
     const Registry::Lock lock(*registry, registry->parting_wait_ns());
     registry->tracer().note(TraceKind::leave);
@@ -211,8 +228,12 @@ void Process::Impl::leave() {
     leave_registry(*registry, slot);
   }
   registry->graph_changed();
+  // Of processes that leave at the same time, the one whose line is released last finds no other.
   lifeline.reset();
-  remove_if_unused(*registry);
+  if (!is_in_use(*registry)) {
+    const JoinLock join_lock(paths);
+    remove_if_unused(*registry);
+  }
 }
 
 void Process::Impl::count_contexts(int change) noexcept {
@@ -225,11 +246,7 @@ void Process::Impl::count_contexts(int change) noexcept {
 
 /// Returns once the movers of this cluster have their pipes open. A publisher may then end at once
 /// after it has handed over its records.
-void Process::Impl::require_movers() {
-  if (!registry->lifelines().is_held(receive_thread_line + placement.cluster)) {
-    ensure_receive_thread(paths, placement.cluster);
-  }
-}
+void Process::Impl::require_movers() { ensure_receive_thread(*registry, placement.cluster); }
 
 /// The block of a large queue is the spare block of the process until the endpoint has it, one at a
 /// time.

@@ -54,10 +54,10 @@ TEST_CASE("a process that is killed once all its contexts are shut down does not
 TEST_CASE("memory that a killed process had charged is given back") {
   Survivor f;
   const ClusterHeader & cluster = f.inspection.registry().clusters().at(1).header();
-  charge_smem(f.inspection.registry(), getpid(), 300);
+  charge_smem(f.inspection.registry(), ProcessIdentity::own(), 300);
   {
     Node node(f.platform, 1);
-    charge_smem(f.inspection.registry(), node.pid(), 4000);
+    charge_smem(f.inspection.registry(), ProcessIdentity::of(node.pid()), 4000);
     CHECK(cluster.charged_bytes.load() == 4300);
   }
   f.wait_until_alone();

@@ -298,7 +298,7 @@ TEST_CASE("a receive thread that is started after all nodes died removes the pla
     registry.processes()[slot].cluster = 1;
     registry.processes().publish(slot);
   }
-  ensure_receive_thread(paths, 1);  // ~TestPlatform waits for this
+  ensure_receive_thread(Registry(paths), 1);  // ~TestPlatform waits for this
 }
 
 /// Its endpoint appears between the reaper's first look, without the lock, and its work.

@@ -100,7 +100,7 @@ private:
 
 void charge(const std::string & platform, uint64_t size_bytes) {
   Registry registry(PlatformPaths::of(platform));
-  charge_smem(registry, getpid(), size_bytes);
+  charge_smem(registry, ProcessIdentity::own(), size_bytes);
 }
 
 }  // namespace

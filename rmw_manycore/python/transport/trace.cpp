@@ -70,7 +70,7 @@ private:
 class OwnTracer {
 public:
   explicit OwnTracer(const std::string & platform)
-  : registry_(PlatformPaths::of(platform)), slot_(process_of(registry_, getpid())) {
+  : registry_(PlatformPaths::of(platform)), slot_(process_of(registry_, ProcessIdentity::own())) {
     const ProcessEntry & entry = registry_.processes()[slot_];
     registry_.tracer().follow(
       entry.trace, identity_of(registry_, slot_), registry_.clusters().at(entry.cluster).header());

@@ -3,7 +3,7 @@
 
 #include <sys/types.h>
 
-#include "platform/robust_mutex.hpp"
+#include "platform/recoverable_mutex.hpp"
 #include "transport/layout/endpoint.hpp"
 #include "transport/layout/segment_layout.hpp"
 #include "transport/layout/slot_set.hpp"
@@ -56,6 +56,11 @@ struct Slot {
 constexpr uint32_t receive_thread_line = process_capacity;  ///< + cluster number, from 1
 constexpr uint32_t configurator_line = receive_thread_line + max_clusters + 1;
 constexpr uint32_t lifeline_count = configurator_line + 1;
+
+/// Seats from which the registry lock is taken: one of the holder of each line, then those of
+/// guests, which hold no line: processes that are joining, and tools.
+constexpr uint32_t first_guest_seat = lifeline_count;
+constexpr uint32_t lock_seat_count = first_guest_seat + 16;
 
 /// A member process of the platform.
 struct ProcessEntry {
@@ -192,7 +197,7 @@ static_assert(sizeof(GraphWatchers) == 128);
 struct RegistryHeader {
   SegmentHeader segment;
   Profile profile;
-  RobustMutex mutex;
+  RecoverableMutex mutex;
   /// Incremented when the mutex is taken and when it is released: odd while it is held, and from an
   /// owner's death to the end of the repair.
   std::atomic<uint64_t> changes;
@@ -216,6 +221,7 @@ struct RegistryHeader {
   std::atomic<uint64_t> death_count;  ///< incremented after the entry in `deaths` is written
   Death deaths[kept_deaths];  ///< ring; the next death goes to index death_count mod kept_deaths
   std::atomic<uint32_t> topic_buckets[topic_bucket_count];
+  LockSeat seats[lock_seat_count];
 };
 
 constexpr uint64_t align_up(uint64_t x, uint64_t alignment) {

@@ -88,23 +88,11 @@ std::string receive_thread_program() {
     "manycore_receive_thread was not found near " + directory + "; reinstall rmw-manycore");
 }
 
-/// True if a process of the platform or its configurator lives. The caller holds the JoinLock.
-bool is_in_use(Registry & registry) {
-  const Lifelines & alive = registry.lifelines();
-  if (alive.is_held(configurator_line)) {
-    return true;
-  }
-  for (uint32_t slot = 0; slot < registry.processes().high_water(); ++slot) {
-    if (registry.processes().is_live(slot) && alive.is_held(slot)) {
-      return true;
-    }
-  }
-  return false;
-}
-
-/// Without the registry lock, a process that is joining may be mistaken for dead.
+/// Without the registry lock, a process that is joining may be mistaken for dead. A thread of a
+/// dead one may still be in a system call under the registry lock.
 bool is_dead(Registry & registry, uint32_t process) {
-  return registry.processes().is_live(process) && !registry.lifelines().is_held(process);
+  return registry.processes().is_live(process) && !registry.lifelines().is_locked(process) &&
+         !registry.header().seats[process].occupied.is_locked();
 }
 
 /// Records a death once, even if a reaper dies midway and another reaper repeats its work; a reaper
@@ -123,10 +111,7 @@ void note_death(Registry & registry, uint32_t process) {
 bool reap(Registry & registry, uint32_t process) {
   const std::atomic<uint32_t> & incarnation = registry.processes()[process].slot.incarnation;
   const uint32_t first = incarnation.load();
-  const auto is_to_reap = [&] {
-    return incarnation.load() == first && registry.processes().is_live(process) &&
-           !registry.lifelines().is_locked(process);
-  };
+  const auto is_to_reap = [&] { return incarnation.load() == first && is_dead(registry, process); };
   {
     // A process that appeared dead without the lock may still join and create endpoints. A process
     // found dead under the lock adds no endpoints or nodes: none of its threads holds the lock.
@@ -255,6 +240,19 @@ std::vector<std::string> remove_platform(const PlatformPaths & paths) {
   return removed;
 }
 
+bool is_in_use(Registry & registry) {
+  const Lifelines & alive = registry.lifelines();
+  if (alive.is_held(configurator_line)) {
+    return true;
+  }
+  for (uint32_t slot = 0; slot < registry.processes().high_water(); ++slot) {
+    if (registry.processes().is_live(slot) && alive.is_held(slot)) {
+      return true;
+    }
+  }
+  return false;
+}
+
 bool remove_if_unused(Registry & registry) {
   const PlatformPaths & paths = registry.paths();
   const bool is_other = exists(paths.alive()) && !registry.lifelines().is_file(paths.alive());
@@ -297,8 +295,6 @@ uint32_t reap_dead(Registry & registry, uint32_t cluster) {
   uint32_t dead = 0;
   for (const bool own : {true, false}) {
     for (uint32_t slot = 0; slot < registry.processes().high_water(); ++slot) {
-      // Check without the lock first: the check waits until the last thread of the dead process has
-      // ended.
       if (
         (registry.processes()[slot].cluster == cluster) == own && is_dead(registry, slot) &&
         reap(registry, slot)) {
@@ -320,11 +316,14 @@ void notify_other_reapers(Registry & registry, uint32_t own) {
   }
 }
 
-void ensure_receive_thread(const PlatformPaths & paths, uint32_t cluster) {
+void ensure_receive_thread(const Registry & registry, uint32_t cluster) {
+  const uint32_t line = receive_thread_line + cluster;
+  if (registry.lifelines().is_held(line)) {
+    return;
+  }
+  const PlatformPaths & paths = registry.paths();
   const JoinLock lock(paths);  // one starter at a time
-  if (
-    !exists(paths.alive()) ||
-    Lifelines::open(paths.alive()).is_held(receive_thread_line + cluster)) {
+  if (!registry.is_current() || registry.lifelines().is_held(line)) {
     return;
   }
   const std::string program = receive_thread_program();

@@ -43,6 +43,9 @@ void ensure_platform(
 /// True if any process of the platform lives, receive threads included.
 bool is_alive(const PlatformPaths & paths);
 
+/// True if a process of the platform or its configurator lives.
+bool is_in_use(Registry & registry);
+
 /// Removes all files of a platform without processes, including those that a killed process left,
 /// but not those of a later platform of the same name. False if the platform is in use. The caller
 /// holds the JoinLock.
@@ -85,8 +88,8 @@ void leave_registry(Registry & registry, uint32_t process);
 /// Makes the reapers of all clusters except `own` check which processes to watch.
 void notify_other_reapers(Registry & registry, uint32_t own);
 
-/// Starts the cluster's receive thread unless it is running. Throws Error{system} if it cannot be
-/// started.
-void ensure_receive_thread(const PlatformPaths & paths, uint32_t cluster);
+/// Starts the cluster's receive thread unless it is running, or the platform's files are removed.
+/// Throws Error{system} if it cannot be started.
+void ensure_receive_thread(const Registry & registry, uint32_t cluster);
 
 }  // namespace manycore

@@ -109,17 +109,36 @@ void Reaper::rescan(uint32_t process) noexcept {
   eventfd_write(event_.get(), 1);
 }
 
-void Reaper::watch(uint32_t line) {
+/// False for a holder of another PID namespace, whose pid may belong to a different process here.
+bool Reaper::watch(uint32_t line) {
   const ProcessIdentity holder = registry_.lifelines().holder(line);
-  if (holder.pid <= 0) {
-    return;
-  }
-  // A pid of another PID namespace may belong to a different process here.
-  const bool is_watched =
-    holder.is_of_this_pid_namespace() &&
-    (holder.pid == getpid() || watched_.count(holder.pid) != 0 || watch_end_of(holder.pid));
-  if (!is_watched) {
-    some_unwatched_ = some_unwatched_ || registry_.lifelines().is_held(line);
+  return holder.pid <= 0 ||
+         (holder.is_of_this_pid_namespace() &&
+          (holder.pid == getpid() || watched_.count(holder.pid) != 0 || watch_end_of(holder.pid)));
+}
+
+void Reaper::watch_line(uint32_t line) {
+  some_unwatched_ = (!watch(line) && registry_.lifelines().is_held(line)) || some_unwatched_;
+}
+
+/// One that is not watched is looked at again, until it is reaped.
+void Reaper::watch_process(uint32_t process) {
+  some_unwatched_ = !watch(process) || some_unwatched_;
+}
+
+/// No thread of the process with this pid runs any more; see Lifelines::release_if_abandoned().
+void Reaper::release_abandoned(pid_t pid) {
+  const Lifelines & lifelines = registry_.lifelines();
+  for (uint32_t line = 0; line < lifeline_count; ++line) {
+    const ProcessIdentity holder = lifelines.holder(line);
+    if (holder.pid == pid && holder.is_of_this_pid_namespace()) {
+      lifelines.release_if_abandoned(line);
+      RobustMutex & occupied = registry_.header().seats[line].occupied;
+      const pid_t thread = occupied.owner();
+      if (thread != 0 && !lifelines.is_locked(line)) {
+        occupied.mark_owner_died(thread);
+      }
+    }
   }
 }
 
@@ -156,17 +175,17 @@ void Reaper::watch_members() {
   const uint64_t present = registry_.header().clusters_present.load();
   for (uint32_t id = 1; id <= max_clusters; ++id) {
     if ((present >> (id - 1) & 1) != 0 && id != cluster_) {
-      watch(receive_thread_line + id);
+      watch_line(receive_thread_line + id);
     }
   }
   for (uint32_t slot = 0; slot < registry_.processes().high_water(); ++slot) {
     if (registry_.processes().is_live(slot) && is_ours(registry_.processes()[slot].cluster)) {
-      watch(slot);
+      watch_process(slot);
     }
   }
   // The configurator keeps the platform without any process, and may be killed last.
   if (registry_.lifelines().is_held(configurator_line)) {
-    watch(configurator_line);
+    watch_line(configurator_line);
   }
 }
 
@@ -197,7 +216,7 @@ bool Reaper::watch_joined() noexcept {
 
 /// Returns false if the process is dead.
 bool Reaper::watch_one(uint32_t process) {
-  watch(process);
+  watch_process(process);
   return !registry_.processes().is_live(process) || registry_.lifelines().is_held(process);
 }
 
@@ -246,7 +265,9 @@ bool Reaper::wait_for_end(int timeout_ms) {
       drain(files_);
       some_ended = true;  // the platform is gone with its files
     } else {
-      watched_.erase(static_cast<pid_t>(events[i].data.u64));
+      const auto pid = static_cast<pid_t>(events[i].data.u64);
+      watched_.erase(pid);
+      release_abandoned(pid);
       some_ended = true;
     }
   }

@@ -40,8 +40,11 @@ private:
   /// Returns false if all processes must be checked.
   bool watch_joined() noexcept;
   bool is_ours(uint32_t cluster) const;
-  void watch(uint32_t line);
+  bool watch(uint32_t line);
   /// False if no file descriptor is left.
+  void watch_line(uint32_t line);
+  void watch_process(uint32_t process);
+  void release_abandoned(pid_t pid);
   bool watch_end_of(pid_t pid);
   int timeout_ms() const noexcept;
   /// True if a watched process ended or files were removed; false on other events and on timeout.

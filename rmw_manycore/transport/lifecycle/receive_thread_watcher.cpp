@@ -61,7 +61,7 @@ bool ReceiveThreadWatcher::watch_once() {
   if (is_cut_off()) {
     return false;
   }
-  ensure_receive_thread(registry_.paths(), cluster_);
+  ensure_receive_thread(registry_, cluster_);
   const Lifelines & lifelines = registry_.lifelines();
   const uint32_t line = receive_thread_line + cluster_;
   const ProcessIdentity receive_thread = lifelines.holder(line);

@@ -51,9 +51,12 @@ void remove_unfinished_traces(const Registry & registry) {
   const std::string & directory = registry.paths().directory;
   visit_names(directory, [&](const char * name) {
     const std::optional<UnfinishedTrace> trace = UnfinishedTrace::of(name);
-    if (
-      trace && (!registry.lifelines().is_held(trace->line) ||
-                registry.lifelines().holder(trace->line).pid != trace->pid)) {
+    if (!trace) {
+      return;
+    }
+    const ProcessIdentity holder = registry.lifelines().holder(trace->line);
+    const bool is_writer = holder.pid == trace->pid && holder.start_time == trace->start_time;
+    if (!is_writer || !registry.lifelines().is_held(trace->line)) {
       unlink((directory + "/" + name).c_str());
     }
   });
@@ -102,11 +105,10 @@ TraceSaver::TraceSaver(Registry & registry) : registry_(registry) {
 bool TraceSaver::is_writer_alive(const TraceFileHeader & header) const {
   const Lifelines & alive = registry_.lifelines();
   if (header.process == nothing) {
-    const uint32_t id = header.segment.cluster;
-    Cluster * const cluster =
-      id == 0 || id > max_clusters ? nullptr : registry_.clusters().find(id);
-    return cluster != nullptr && alive.is_held(receive_thread_line + id) &&
-           cluster->header().receive_thread_pid.load() == header.pid;
+    const uint32_t line = receive_thread_line + header.segment.cluster;
+    return line < configurator_line && alive.is_held(line) &&
+           alive.holder(line).pid == header.pid &&
+           receive_thread_incarnation(alive.holder(line)) == header.incarnation;
   }
   return registry_.processes().is_live(header.process) &&
          registry_.processes()[header.process].slot.incarnation.load() == header.incarnation &&

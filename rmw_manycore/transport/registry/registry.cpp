@@ -9,14 +9,11 @@
 
 #include "platform/clock.hpp"
 #include "platform/error.hpp"
-#include "platform/lock_owner.hpp"
 #include "transport/layout/subscription_layout.hpp"
 #include "transport/layout/topic_dsm_layout.hpp"
 
 namespace manycore {
 namespace {
-
-constexpr int64_t others_first_ns = 100'000;
 
 uint64_t random_nonce() {
   std::random_device random;
@@ -89,7 +86,9 @@ void Registry::create(
   header.segment.size_bytes = registry_bytes;
   header.segment.platform_nonce = random_nonce();
   header.profile = profile;
-  header.mutex.initialize();
+  for (LockSeat & seat : header.seats) {
+    seat.occupied.initialize();
+  }
   header.match_in_hand.publisher.store(nothing);
   header.match_in_hand.subscription.store(nothing);
   header.topic_count = static_cast<uint32_t>(topics.size());
@@ -118,7 +117,8 @@ Registry::Registry(const PlatformPaths & paths)
   nodes_(memory_, header().nodes, node_table_offset, node_capacity),
   endpoints_(memory_, header().endpoints, endpoint_table_offset, endpoint_capacity),
   clusters_(paths, nonce()),
-  tracer_(memory_, paths.directory) {}
+  tracer_(memory_, paths.directory),
+  mutex_(header(), lifelines_, paths.registry()) {}
 
 bool Registry::is_current() const noexcept {
   const uint64_t present = header().clusters_present.load();
@@ -148,100 +148,52 @@ Cluster * Registry::map_cluster(uint32_t cluster) {
   }
 }
 
-Registry::Lock::Lock(Registry & registry, long wait_ns) : registry_(registry) {
-  registry.lock_whole([&] { return registry.lock_within(wait_ns); });
-}
+Registry::Lock::Lock(Registry & registry, long wait_ns)
+: registry_(registry), seat_(registry.lock_whole([&] { return registry.mutex_.take(wait_ns); })) {}
 
-Registry::Lock::Lock(Registry & registry, WhileOwnersRun) : registry_(registry) {
-  registry.lock_whole([&] { return registry.lock_while_owners_run(); });
-}
+Registry::Lock::Lock(Registry & registry, WhileOwnersRun)
+: registry_(registry),
+  seat_(registry.lock_whole([&] { return registry.mutex_.take_while_owners_run(); })) {}
 
-void Registry::lock_whole(const std::function<RobustMutex::Outcome()> & lock) {
-  RobustMutex & mutex = header().mutex;
-  if (!begin_changes(lock())) {
-    return;
+uint32_t Registry::lock_whole(const std::function<RegistryMutex::Taken()> & take) {
+  const RegistryMutex::Taken found = take();
+  if (!begin_changes(found.owner_died)) {
+    return found.seat;
   }
   // Until a process has repaired, `changes` stays odd, so graph reads follow no chains.
-  mutex.unlock();
+  mutex_.give_back(found.seat);
   prepare_repair();
-  if (begin_changes(lock())) {
+  const RegistryMutex::Taken taken = take();
+  if (begin_changes(taken.owner_died)) {
     try {
       repair();
     } catch (...) {
-      mutex.unlock();
+      mutex_.give_back(taken.seat);
       throw;
     }
     header().needs_repair = 0;
   }
+  return taken.seat;
 }
 
-bool Registry::begin_changes(RobustMutex::Outcome outcome) noexcept {
+/// The death is noted at once: only the first thread that takes the lock after it learns of it.
+/// Killed before, this thread is the next dead owner.
+bool Registry::begin_changes(bool owner_died) noexcept {
   RegistryHeader & head = header();
   head.changes.store(head.changes.load(std::memory_order_relaxed) | 1);
   // Release fence: a reader that sees any of the following changes also sees `changes` odd.
   std::atomic_thread_fence(std::memory_order_release);
-  if (outcome == RobustMutex::Outcome::owner_died) {
-    // Before mark_consistent(): after it the mutex no longer reports the death
+  if (owner_died) {
     head.needs_repair = 1;
-    head.mutex.mark_consistent();
   }
   return head.needs_repair != 0;
-}
-
-/// A woken thread needs about 50 us to run. Without this wait, a thread that creates many endpoints
-/// in a row would retake the lock each time before a waiting thread runs.
-void Registry::let_others_go_first() const noexcept {
-  const int64_t until_ns = others_first_until_ns_.load(std::memory_order_relaxed);
-  if (monotonic_ns() < until_ns) {
-    const timespec until = to_timespec(until_ns);
-    clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr);
-  }
-}
-
-RobustMutex::Outcome Registry::lock_within(long wait_ns) {
-  if (wait_ns >= Lock::usual_wait_ns) {
-    let_others_go_first();
-  }
-  try {
-    const RobustMutex::Outcome outcome = header().mutex.lock(wait_ns);
-    stayed_locked_ = false;
-    return outcome;
-  } catch (const Error &) {
-    stayed_locked_ = stayed_locked_ || wait_ns >= Lock::usual_wait_ns;
-    throw;
-  }
-}
-
-RobustMutex::Outcome Registry::lock_while_owners_run() {
-  const int64_t until_ns = monotonic_ns() + Lock::usual_wait_ns;
-  while (true) {
-    const uint64_t changes = header().changes.load();
-    try {
-      return lock_within(Lock::short_wait_ns);
-    } catch (const Error & error) {
-      const bool has_moved = header().changes.load() != changes;
-      if (
-        error.code() != ErrorCode::timeout || monotonic_ns() >= until_ns ||
-        !(has_moved || may_unlock(header().mutex.owner()))) {
-        throw;
-      }
-    }
-  }
-}
-
-long Registry::parting_wait_ns() const noexcept {
-  return stayed_locked_ ? Lock::short_wait_ns : Lock::usual_wait_ns;
 }
 
 Registry::Lock::~Lock() {
   RegistryHeader & header = registry_.header();
   header.changes.store(
     (header.changes.load(std::memory_order_relaxed) | 1) + 1, std::memory_order_release);
-  if (header.mutex.is_waited_for()) {
-    registry_.others_first_until_ns_.store(
-      monotonic_ns() + others_first_ns, std::memory_order_relaxed);
-  }
-  header.mutex.unlock();
+  registry_.mutex_.give_back(seat_);
 }
 
 const TopicEntry * Registry::find_topic(const std::string & name) const noexcept {

@@ -12,6 +12,7 @@
 #include "platform/shared_memory.hpp"
 #include "transport/layout/registry_layout.hpp"
 #include "transport/registry/cluster.hpp"
+#include "transport/registry/registry_mutex.hpp"
 #include "transport/trace/tracer.hpp"
 
 namespace manycore {
@@ -102,30 +103,34 @@ public:
   /// Holds the registry lock during its lifetime.
   class Lock {
   public:
-    static constexpr long usual_wait_ns = 5'000'000'000;
-    static constexpr long short_wait_ns = 100'000'000;  ///< from inside a publish
-    static constexpr long no_wait_ns = 0;
+    static constexpr long usual_wait_ns = RegistryMutex::usual_wait_ns;
+    static constexpr long short_wait_ns = RegistryMutex::short_wait_ns;
+    static constexpr long no_wait_ns = RegistryMutex::no_wait_ns;
     struct WhileOwnersRun {};
 
     /// Throws Error{timeout} if the lock is not available within `wait_ns`. If a former owner died,
     /// waits twice, to find that and to repair, and throws ClusterUnmappable if this process cannot
-    /// map all clusters. A thread that retakes the lock at once first lets waiting threads run,
-    /// unless `wait_ns` is short.
+    /// map all clusters. See RegistryMutex::take().
     explicit Lock(Registry & registry, long wait_ns = usual_wait_ns);
-    /// Waits `usual_wait_ns` while owners run or wait for a CPU, but only `short_wait_ns` for an
-    /// owner that is stopped or not visible in this PID namespace.
+    /// See RegistryMutex::take_while_owners_run().
     Lock(Registry & registry, WhileOwnersRun wait);
     ~Lock();
     Lock(const Lock &) = delete;
     Lock & operator=(const Lock &) = delete;
 
+    /// True if a thread may be waiting until this one gives the lock back.
+    bool is_waited_for() const noexcept { return registry_.mutex_.is_waited_for(seat_); }
+
   private:
     Registry & registry_;
+    const uint32_t seat_;
   };
 
+  /// Takes the lock as the holder of a line; see RegistryMutex::sit().
+  void sit(uint32_t line) noexcept { mutex_.sit(line); }
   /// Time to wait for the lock when a process removes its many objects at its end: short once the
   /// lock timed out, until it was acquired again.
-  long parting_wait_ns() const noexcept;
+  long parting_wait_ns() const noexcept { return mutex_.parting_wait_ns(); }
 
   RegistryHeader & header() const noexcept { return memory_.at<RegistryHeader>(0); }
   Table<ProcessEntry> & processes() noexcept { return processes_; }
@@ -176,13 +181,10 @@ private:
   std::atomic<uint32_t> & bucket_of(uint64_t topic_hash) const noexcept;
   std::atomic<uint32_t> * link_to(uint32_t slot) noexcept;
   std::optional<uint32_t> next_of(uint32_t slot, uint32_t incarnation) const noexcept;
-  RobustMutex::Outcome lock_within(long wait_ns);
-  RobustMutex::Outcome lock_while_owners_run();
-  void let_others_go_first() const noexcept;
-  /// Locks by `lock`, and repairs what a former owner left incomplete.
-  void lock_whole(const std::function<RobustMutex::Outcome()> & lock);
+  /// Takes the lock by `take`, and repairs what a former owner left incomplete. Returns the seat.
+  uint32_t lock_whole(const std::function<RegistryMutex::Taken()> & take);
   /// True if a former owner left something incomplete.
-  bool begin_changes(RobustMutex::Outcome outcome) noexcept;
+  bool begin_changes(bool owner_died) noexcept;
   /// Maps what repair() works on: page faults would take longer than all else that it does. Takes
   /// no lock. Throws ClusterUnmappable.
   void prepare_repair();
@@ -198,8 +200,7 @@ private:
   Table<EndpointEntry> endpoints_;
   Clusters clusters_;
   Tracer tracer_;
-  std::atomic<bool> stayed_locked_{false};
-  std::atomic<int64_t> others_first_until_ns_{0};  ///< CLOCK_MONOTONIC
+  RegistryMutex mutex_;
 };
 
 /// FNV-1a; equal for equal names in all processes.

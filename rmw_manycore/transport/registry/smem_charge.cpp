@@ -7,21 +7,22 @@
 
 namespace manycore {
 
-uint32_t process_of(Registry & registry, pid_t pid) {
+uint32_t process_of(Registry & registry, const ProcessIdentity & identity) {
   for (uint32_t slot = 0; slot < registry.processes().high_water(); ++slot) {
-    if (registry.processes().is_live(slot) && registry.processes()[slot].pid == pid) {
+    if (registry.processes().is_live(slot) && registry.lifelines().holder(slot) == identity) {
       return slot;
     }
   }
   throw Error(
-    ErrorCode::invalid_argument, "process " + std::to_string(pid) + " is not on the platform");
+    ErrorCode::invalid_argument,
+    "process " + std::to_string(identity.pid) + " is not on the platform");
 }
 
 // If this process dies between the two updates, the next owner of the lock sums up the entries
 // anew.
-void charge_smem(Registry & registry, pid_t pid, uint64_t size_bytes) {
+void charge_smem(Registry & registry, const ProcessIdentity & identity, uint64_t size_bytes) {
+  ProcessEntry & entry = registry.processes()[process_of(registry, identity)];
   const Registry::Lock lock(registry);
-  ProcessEntry & entry = registry.processes()[process_of(registry, pid)];
   registry.clusters().at(entry.cluster).charge(entry.charged_bytes, size_bytes);
   entry.charged_bytes = size_bytes;
 }

@@ -84,7 +84,7 @@ bool TopicDsmWriter::free_some_of(GenerationEntry & entry) {
   for (int piece = 0; piece < pieces_per_message && !is_free && !is_waited_for; ++piece) {
     const Registry::Lock lock(registry_, Registry::Lock::no_wait_ns);
     is_free = Generation::free_some(cluster_, entry);
-    is_waited_for = registry_.header().mutex.is_waited_for();
+    is_waited_for = lock.is_waited_for();
   }
   return is_free;
 }

@@ -5,10 +5,12 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cinttypes>
 #include <cstdio>
 #include <cstring>
 
 #include "platform/error.hpp"
+#include "platform/process_identity.hpp"
 #include "transport/layout/registry_layout.hpp"
 
 namespace manycore {
@@ -28,15 +30,17 @@ uint32_t line_of(const TraceIdentity & identity) {
 
 std::string UnfinishedTrace::path_of(const std::string & path, const TraceIdentity & identity) {
   const size_t name = path.rfind('/') + 1;
+  const ProcessIdentity own = ProcessIdentity::own();
   return path.substr(0, name) + "." + path.substr(name) + "." + std::to_string(line_of(identity)) +
-         "." + std::to_string(getpid());
+         "." + std::to_string(own.pid) + "." + std::to_string(own.start_time);
 }
 
 std::optional<UnfinishedTrace> UnfinishedTrace::of(const std::string & name) {
   UnfinishedTrace found{};
   char rest = 0;
-  const bool is_one =
-    std::sscanf(name.c_str(), ".trace-%*u.%u.%d%c", &found.line, &found.pid, &rest) == 2;
+  const bool is_one = std::sscanf(
+                        name.c_str(), ".trace-%*u.%u.%d.%" SCNu64 "%c", &found.line, &found.pid,
+                        &found.start_time, &rest) == 3;
   return is_one && found.line < lifeline_count ? std::optional(found) : std::nullopt;
 }
 

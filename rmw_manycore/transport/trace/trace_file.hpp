@@ -7,6 +7,7 @@
 #include <string>
 
 #include "platform/fork_side.hpp"
+#include "platform/process_identity.hpp"
 #include "platform/shared_memory.hpp"
 #include "transport/trace/trace_ring.hpp"
 
@@ -17,17 +18,23 @@ struct TraceIdentity {
   uint64_t platform_nonce = 0;
   uint32_t cluster = 0;
   uint32_t process = UINT32_MAX;  ///< slot; UINT32_MAX = a receive thread
-  uint32_t incarnation = 0;
+  uint32_t incarnation = 0;       ///< of the slot; see receive_thread_incarnation()
   int32_t core = -1;
   int32_t host_cpu = -1;
   std::string label;
 };
 
+/// Tells a receive thread from the one that it replaced, which may have had its pid.
+inline uint32_t receive_thread_incarnation(const ProcessIdentity & holder) {
+  return static_cast<uint32_t>(holder.start_time);
+}
+
 /// A trace file under construction, recognized by its name. Savers ignore it; if its process has
 /// ended, it can be removed.
 struct UnfinishedTrace {
-  uint32_t line;  ///< lifeline of its process
-  pid_t pid;      ///< in the PID namespace of its process
+  uint32_t line;        ///< lifeline of its process
+  pid_t pid;            ///< in the PID namespace of its process
+  uint64_t start_time;  ///< of its process, as in ProcessIdentity
 
   /// Name of the file until it is renamed to `path`.
   static std::string path_of(const std::string & path, const TraceIdentity & identity);

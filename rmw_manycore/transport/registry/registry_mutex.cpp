@@ -1,0 +1,152 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#include "transport/registry/registry_mutex.hpp"
+
+#include <algorithm>
+
+#include "platform/clock.hpp"
+#include "platform/error.hpp"
+#include "platform/file_lock.hpp"
+
+namespace manycore {
+namespace {
+
+constexpr int64_t others_first_ns = 100'000;
+
+}  // namespace
+
+/// The thread has ended when the kernel has marked what it occupied. The line tells more: while it
+/// is held, its seat's owner lives, though another mark may mislead the kernel (see RobustMutex).
+/// A seat that does not exist is a damaged ticket, which no thread will give back.
+bool RegistryMutex::has_ended(uint32_t seat) const {
+  if (seat >= lock_seat_count) {
+    return true;
+  }
+  const bool is_line_held = seat < lifeline_count && lifelines_.is_locked(seat);
+  return !is_line_held && !header_.seats[seat].occupied.is_locked();
+}
+
+/// False after `wait_ns`.
+bool RegistryMutex::occupy(uint32_t seat, long wait_ns) {
+  LockSeat & own = header_.seats[seat];
+  const RobustMutex::Outcome outcome = own.occupied.lock(wait_ns);
+  if (outcome == RobustMutex::Outcome::timed_out) {
+    return false;
+  }
+  if (outcome == RobustMutex::Outcome::owner_died) {
+    own.occupied.mark_consistent();
+  }
+  own.pid_namespace = pid_namespace_;
+  return true;
+}
+
+/// Processes choose one at a time, and the kernel opens the file to the next one only after the
+/// last thread of a killed one has ended: so a seat that is free stays free, as RobustMutex
+/// requires.
+std::optional<uint32_t> RegistryMutex::occupy_guest_seat(long wait_ns) {
+  const int wait_ms = static_cast<int>(wait_ns / (ns_per_s / 1000));
+  const std::optional<FileLock> others = FileLock::acquire_existing(file_, wait_ms);
+  if (!others) {
+    throw Error(ErrorCode::system, file_ + " was removed; try again");
+  }
+  for (uint32_t seat = first_guest_seat; seat < lock_seat_count; ++seat) {
+    if (!header_.seats[seat].occupied.is_locked() && occupy(seat, no_wait_ns)) {
+      return seat;
+    }
+  }
+  return std::nullopt;
+}
+
+std::optional<RegistryMutex::Taken> RegistryMutex::try_take(long wait_ns) {
+  const int64_t deadline_ns = monotonic_ns() + wait_ns;
+  const std::optional<uint32_t> seat =
+    line_ == nothing ? occupy_guest_seat(wait_ns)
+                     : (occupy(line_, wait_ns) ? std::optional(line_) : std::nullopt);
+  if (!seat) {
+    return std::nullopt;
+  }
+  LockSeat & own = header_.seats[*seat];
+  try {
+    const long left_ns = std::max<long>(deadline_ns - monotonic_ns(), 0);
+    const auto outcome = header_.mutex.lock(*seat, own, *this, left_ns);
+    if (outcome != RecoverableMutex::Outcome::timed_out) {
+      return Taken{*seat, outcome == RecoverableMutex::Outcome::owner_died};
+    }
+  } catch (...) {
+    own.occupied.unlock();
+    throw;
+  }
+  own.occupied.unlock();
+  return std::nullopt;
+}
+
+/// A caller that does not wait retries by itself, so the owner is not described.
+void RegistryMutex::refuse(long wait_ns) const {
+  throw Error(
+    ErrorCode::timeout, wait_ns == no_wait_ns ? "the platform's registry is locked"
+                                              : "the platform's registry stayed locked: " +
+                                                  describe_lock_owner(owner()));
+}
+
+RegistryMutex::Taken RegistryMutex::take(long wait_ns) {
+  if (wait_ns >= usual_wait_ns) {
+    let_others_go_first();
+  }
+  if (const std::optional<Taken> taken = try_take(wait_ns)) {
+    stayed_locked_ = false;
+    return *taken;
+  }
+  stayed_locked_ = stayed_locked_ || wait_ns >= usual_wait_ns;
+  refuse(wait_ns);
+}
+
+RegistryMutex::Taken RegistryMutex::take_while_owners_run() {
+  const int64_t until_ns = monotonic_ns() + usual_wait_ns;
+  LockOwnerWatch watch;
+  while (true) {
+    const uint64_t changes = header_.changes.load();
+    if (const std::optional<Taken> taken = try_take(short_wait_ns)) {
+      return *taken;
+    }
+    const bool has_moved = header_.changes.load() != changes;
+    if (monotonic_ns() >= until_ns || !(has_moved || watch.may_unlock(owner()))) {
+      refuse(short_wait_ns);
+    }
+  }
+}
+
+void RegistryMutex::give_back(uint32_t seat) noexcept {
+  if (is_waited_for(seat)) {
+    others_first_until_ns_.store(monotonic_ns() + others_first_ns, std::memory_order_relaxed);
+  }
+  header_.mutex.unlock(seat);
+  header_.seats[seat].occupied.unlock();
+}
+
+/// A woken thread needs about 50 us to run. Without this wait, a thread that creates many endpoints
+/// in a row would retake the lock each time before a waiting thread runs.
+void RegistryMutex::let_others_go_first() const noexcept {
+  const int64_t until_ns = others_first_until_ns_.load(std::memory_order_relaxed);
+  if (monotonic_ns() < until_ns) {
+    const timespec until = to_timespec(until_ns);
+    clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr);
+  }
+}
+
+bool RegistryMutex::is_waited_for(uint32_t seat) const noexcept {
+  return header_.mutex.is_waited_for() || header_.seats[seat].occupied.is_waited_for();
+}
+
+long RegistryMutex::parting_wait_ns() const noexcept {
+  return stayed_locked_ ? short_wait_ns : usual_wait_ns;
+}
+
+LockOwner RegistryMutex::owner() const noexcept {
+  const std::optional<uint32_t> seat = header_.mutex.owner();
+  if (!seat || *seat >= lock_seat_count) {
+    return {};
+  }
+  const LockSeat & taken = header_.seats[*seat];
+  return {taken.occupied.owner(), taken.pid_namespace};
+}
+
+}  // namespace manycore

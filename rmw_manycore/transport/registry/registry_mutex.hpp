@@ -1,0 +1,66 @@
+// Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <optional>
+#include <string>
+
+#include "platform/lifeline.hpp"
+#include "platform/lock_owner.hpp"
+#include "transport/layout/registry_layout.hpp"
+
+namespace manycore {
+
+/// The registry lock as this process takes it: from the seat of the line that it holds, or from a
+/// guest seat. See docs/design/registry_lock.md.
+class RegistryMutex : private SeatedOwners {
+public:
+  static constexpr long usual_wait_ns = 5'000'000'000;
+  static constexpr long short_wait_ns = 100'000'000;  ///< from inside a publish
+  static constexpr long no_wait_ns = 0;
+
+  struct Taken {
+    uint32_t seat;
+    bool owner_died;
+  };
+
+  RegistryMutex(RegistryHeader & header, const Lifelines & lifelines, const std::string & file)
+  : header_(header), lifelines_(lifelines), file_(file) {}
+
+  /// From now on takes the lock from the seat of a line that this process holds, until it has left
+  /// the platform. Called before other threads use this object.
+  void sit(uint32_t line) noexcept { line_ = line; }
+
+  /// Throws Error{timeout} after `wait_ns`. A thread that retakes the lock at once first lets
+  /// waiting threads run, unless `wait_ns` is short.
+  Taken take(long wait_ns);
+  /// Waits `usual_wait_ns` while owners run or wait for a CPU, but only `short_wait_ns` for an
+  /// owner that is stopped or not visible in this PID namespace.
+  Taken take_while_owners_run();
+  void give_back(uint32_t seat) noexcept;
+
+  /// True if a thread may be waiting for the caller, the owner.
+  bool is_waited_for(uint32_t seat) const noexcept;
+  /// See Registry::parting_wait_ns().
+  long parting_wait_ns() const noexcept;
+  /// The thread that owns the lock at this moment.
+  LockOwner owner() const noexcept;
+
+private:
+  bool has_ended(uint32_t seat) const override;
+  bool occupy(uint32_t seat, long wait_ns);
+  std::optional<uint32_t> occupy_guest_seat(long wait_ns);
+  std::optional<Taken> try_take(long wait_ns);
+  [[noreturn]] void refuse(long wait_ns) const;
+  void let_others_go_first() const noexcept;
+
+  RegistryHeader & header_;
+  const Lifelines & lifelines_;
+  const std::string file_;
+  const uint64_t pid_namespace_ = own_pid_namespace();
+  uint32_t line_ = nothing;
+  std::atomic<bool> stayed_locked_{false};
+  std::atomic<int64_t> others_first_until_ns_{0};  ///< CLOCK_MONOTONIC
+};
+
+}  // namespace manycore
