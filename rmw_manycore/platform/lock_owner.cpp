@@ -104,9 +104,9 @@ bool LockOwnerWatch::may_unlock(const LockOwner & owner) {
   if (!status || status->state == 'T' || status->state == 't') {
     return false;
   }
-  // A frozen thread sleeps, too. Owners of a lock sleep briefly at most.
+  // A frozen thread sleeps (S), or waits for a disk (D). Owners of a lock do so briefly at most.
   const bool has_slept_on =
-    status->state == 'S' && thread_ == owner.thread && sleeps_ == status->sleeps;
+    status->state != 'R' && thread_ == owner.thread && sleeps_ == status->sleeps;
   thread_ = owner.thread;
   sleeps_ = status->sleeps;
   return !has_slept_on;

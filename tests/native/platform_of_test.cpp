@@ -15,6 +15,7 @@
 
 #include "transport/layout/topic_dsm_layout.hpp"
 #include "transport/lifecycle/lifecycle.hpp"
+#include "transport/registry/smem_charge.hpp"
 #include "transport/topic_dsm/reader_table.hpp"
 #include "waiting.hpp"
 
@@ -188,6 +189,14 @@ Standstill::Standstill(const TestPlatform & platform, uint32_t cluster)
 : pid_(platform.stop_receive_thread(cluster)) {}
 
 Standstill::~Standstill() { kill(pid_, SIGCONT); }
+
+Inspection::Inspection(const TestPlatform & platform) : registry_(platform.paths()) {
+  try {
+    registry_.sit(process_of(registry_, ProcessIdentity::own()));
+  } catch (const Error &) {
+    // not a member
+  }
+}
 
 uint64_t Inspection::resident_bytes(uint32_t cluster) const {
   struct stat status {};

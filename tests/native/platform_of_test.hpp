@@ -53,7 +53,9 @@ private:
 /// The registry seen from outside, to inspect what the interface does not show.
 class Inspection {
 public:
-  explicit Inspection(const TestPlatform & platform) : registry_(platform.paths()) {}
+  /// Takes the registry lock from the seat of this process, if it has joined, and otherwise as a
+  /// guest.
+  explicit Inspection(const TestPlatform & platform);
 
   manycore::Registry & registry() noexcept { return registry_; }
   uint64_t used_bytes(uint32_t cluster = 1);

@@ -310,10 +310,11 @@ TEST_CASE("a process taken for dead while it joined: what it created before its 
   const Standstill no_other_reaper(f.platform, 1);
   node.kill();
   std::thread reaper;
+  Registry seen_by_reaper(f.platform.paths());
   uint32_t endpoint = nothing;
   {
     const Registry::Lock lock(registry);
-    reaper = std::thread([&] { reap_dead(registry, 1); });
+    reaper = std::thread([&] { reap_dead(seen_by_reaper, 1); });
     wait_until(
       "the reaper waits for the lock", [&] { return registry.header().mutex.is_waited_for(); });
     endpoint =

@@ -322,12 +322,13 @@ TEST_CASE("a damaged lock that names no seat is taken over, and the registry is 
 TEST_CASE("a damaged lock that names a living process is not taken over; the error says so") {
   Fixture f;
   const Standstill receive_thread(f.platform, 1);  // it would wait for the lock as well
+  Registry guest(f.platform.paths());
   constexpr uint64_t of_slot_0 = 1 << 12 | 1 << 1;
   constexpr uint64_t unlocked = 0;
   std::memcpy(static_cast<void *>(&f.registry.header().mutex), &of_slot_0, sizeof of_slot_0);
   REQUIRE(f.registry.header().mutex.owner() == 0);
   const Refusal refusal =
-    refusal_of([&] { const Registry::Lock lock(f.registry, Registry::Lock::short_wait_ns); });
+    refusal_of([&] { const Registry::Lock lock(guest, Registry::Lock::short_wait_ns); });
   std::memcpy(static_cast<void *>(&f.registry.header().mutex), &unlocked, sizeof unlocked);
   CHECK(refusal.code == ErrorCode::timeout);
   CHECK_MESSAGE(refusal.says("registry stayed locked"), refusal.text);

@@ -57,10 +57,10 @@ constexpr uint32_t receive_thread_line = process_capacity;  ///< + cluster numbe
 constexpr uint32_t configurator_line = receive_thread_line + max_clusters + 1;
 constexpr uint32_t lifeline_count = configurator_line + 1;
 
-/// Seats from which the registry lock is taken: one of the holder of each line, then those of
-/// guests, which hold no line: processes that are joining, and tools.
-constexpr uint32_t first_guest_seat = lifeline_count;
-constexpr uint32_t lock_seat_count = first_guest_seat + 16;
+/// Seats from which the registry lock is taken: one for the holder of each line, and one for
+/// guests, one at a time: processes that are joining, and tools.
+constexpr uint32_t guest_seat = lifeline_count;
+constexpr uint32_t lock_seat_count = guest_seat + 1;
 
 /// A member process of the platform.
 struct ProcessEntry {

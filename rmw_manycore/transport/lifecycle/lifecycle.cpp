@@ -88,11 +88,9 @@ std::string receive_thread_program() {
     "manycore_receive_thread was not found near " + directory + "; reinstall rmw-manycore");
 }
 
-/// Without the registry lock, a process that is joining may be mistaken for dead. A thread of a
-/// dead one may still be in a system call under the registry lock.
+/// Without the registry lock, a process that is joining may be mistaken for dead.
 bool is_dead(Registry & registry, uint32_t process) {
-  return registry.processes().is_live(process) && !registry.lifelines().is_locked(process) &&
-         !registry.header().seats[process].occupied.is_locked();
+  return registry.processes().is_live(process) && !registry.lifelines().is_held(process);
 }
 
 /// Records a death once, even if a reaper dies midway and another reaper repeats its work; a reaper
@@ -111,7 +109,10 @@ void note_death(Registry & registry, uint32_t process) {
 bool reap(Registry & registry, uint32_t process) {
   const std::atomic<uint32_t> & incarnation = registry.processes()[process].slot.incarnation;
   const uint32_t first = incarnation.load();
-  const auto is_to_reap = [&] { return incarnation.load() == first && is_dead(registry, process); };
+  const auto is_to_reap = [&] {
+    return incarnation.load() == first && registry.processes().is_live(process) &&
+           !registry.lifelines().is_locked(process);
+  };
   {
     // A process that appeared dead without the lock may still join and create endpoints. A process
     // found dead under the lock adds no endpoints or nodes: none of its threads holds the lock.
@@ -295,6 +296,8 @@ uint32_t reap_dead(Registry & registry, uint32_t cluster) {
   uint32_t dead = 0;
   for (const bool own : {true, false}) {
     for (uint32_t slot = 0; slot < registry.processes().high_water(); ++slot) {
+      // Check without the lock first: the check waits until the last thread of the dead process has
+      // ended.
       if (
         (registry.processes()[slot].cluster == cluster) == own && is_dead(registry, slot) &&
         reap(registry, slot)) {

@@ -109,21 +109,18 @@ void Reaper::rescan(uint32_t process) noexcept {
   eventfd_write(event_.get(), 1);
 }
 
-/// False for a holder of another PID namespace, whose pid may belong to a different process here.
-bool Reaper::watch(uint32_t line) {
+void Reaper::watch(uint32_t line) {
   const ProcessIdentity holder = registry_.lifelines().holder(line);
-  return holder.pid <= 0 ||
-         (holder.is_of_this_pid_namespace() &&
-          (holder.pid == getpid() || watched_.count(holder.pid) != 0 || watch_end_of(holder.pid)));
-}
-
-void Reaper::watch_line(uint32_t line) {
-  some_unwatched_ = (!watch(line) && registry_.lifelines().is_held(line)) || some_unwatched_;
-}
-
-/// One that is not watched is looked at again, until it is reaped.
-void Reaper::watch_process(uint32_t process) {
-  some_unwatched_ = !watch(process) || some_unwatched_;
+  if (holder.pid <= 0) {
+    return;
+  }
+  // A pid of another PID namespace may belong to a different process here.
+  const bool is_watched =
+    holder.is_of_this_pid_namespace() &&
+    (holder.pid == getpid() || watched_.count(holder.pid) != 0 || watch_end_of(holder.pid));
+  if (!is_watched) {
+    some_unwatched_ = some_unwatched_ || registry_.lifelines().is_held(line);
+  }
 }
 
 /// No thread of the process with this pid runs any more; see Lifelines::release_if_abandoned().
@@ -175,17 +172,17 @@ void Reaper::watch_members() {
   const uint64_t present = registry_.header().clusters_present.load();
   for (uint32_t id = 1; id <= max_clusters; ++id) {
     if ((present >> (id - 1) & 1) != 0 && id != cluster_) {
-      watch_line(receive_thread_line + id);
+      watch(receive_thread_line + id);
     }
   }
   for (uint32_t slot = 0; slot < registry_.processes().high_water(); ++slot) {
     if (registry_.processes().is_live(slot) && is_ours(registry_.processes()[slot].cluster)) {
-      watch_process(slot);
+      watch(slot);
     }
   }
   // The configurator keeps the platform without any process, and may be killed last.
   if (registry_.lifelines().is_held(configurator_line)) {
-    watch_line(configurator_line);
+    watch(configurator_line);
   }
 }
 
@@ -216,7 +213,7 @@ bool Reaper::watch_joined() noexcept {
 
 /// Returns false if the process is dead.
 bool Reaper::watch_one(uint32_t process) {
-  watch_process(process);
+  watch(process);
   return !registry_.processes().is_live(process) || registry_.lifelines().is_held(process);
 }
 

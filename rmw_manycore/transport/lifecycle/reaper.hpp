@@ -40,12 +40,10 @@ private:
   /// Returns false if all processes must be checked.
   bool watch_joined() noexcept;
   bool is_ours(uint32_t cluster) const;
-  bool watch(uint32_t line);
+  void watch(uint32_t line);
   /// False if no file descriptor is left.
-  void watch_line(uint32_t line);
-  void watch_process(uint32_t process);
-  void release_abandoned(pid_t pid);
   bool watch_end_of(pid_t pid);
+  void release_abandoned(pid_t pid);
   int timeout_ms() const noexcept;
   /// True if a watched process ended or files were removed; false on other events and on timeout.
   bool wait_for_end(int timeout_ms);

@@ -149,31 +149,31 @@ Cluster * Registry::map_cluster(uint32_t cluster) {
 }
 
 Registry::Lock::Lock(Registry & registry, long wait_ns)
-: registry_(registry), seat_(registry.lock_whole([&] { return registry.mutex_.take(wait_ns); })) {}
+: registry_(registry), taken_(registry.lock_whole([&] { return registry.mutex_.take(wait_ns); })) {}
 
 Registry::Lock::Lock(Registry & registry, WhileOwnersRun)
 : registry_(registry),
-  seat_(registry.lock_whole([&] { return registry.mutex_.take_while_owners_run(); })) {}
+  taken_(registry.lock_whole([&] { return registry.mutex_.take_while_owners_run(); })) {}
 
-uint32_t Registry::lock_whole(const std::function<RegistryMutex::Taken()> & take) {
-  const RegistryMutex::Taken found = take();
-  if (!begin_changes(found.owner_died)) {
-    return found.seat;
+RegistryMutex::Taken Registry::lock_whole(const std::function<RegistryMutex::Taken()> & take) {
+  RegistryMutex::Taken taken = take();
+  if (!begin_changes(taken.owner_died)) {
+    return taken;
   }
   // Until a process has repaired, `changes` stays odd, so graph reads follow no chains.
-  mutex_.give_back(found.seat);
+  mutex_.give_back(taken);
   prepare_repair();
-  const RegistryMutex::Taken taken = take();
+  taken = take();
   if (begin_changes(taken.owner_died)) {
     try {
       repair();
     } catch (...) {
-      mutex_.give_back(taken.seat);
+      mutex_.give_back(taken);
       throw;
     }
     header().needs_repair = 0;
   }
-  return taken.seat;
+  return taken;
 }
 
 /// The death is noted at once: only the first thread that takes the lock after it learns of it.
@@ -193,7 +193,7 @@ Registry::Lock::~Lock() {
   RegistryHeader & header = registry_.header();
   header.changes.store(
     (header.changes.load(std::memory_order_relaxed) | 1) + 1, std::memory_order_release);
-  registry_.mutex_.give_back(seat_);
+  registry_.mutex_.give_back(taken_);
 }
 
 const TopicEntry * Registry::find_topic(const std::string & name) const noexcept {

@@ -119,11 +119,11 @@ public:
     Lock & operator=(const Lock &) = delete;
 
     /// True if a thread may be waiting until this one gives the lock back.
-    bool is_waited_for() const noexcept { return registry_.mutex_.is_waited_for(seat_); }
+    bool is_waited_for() const noexcept { return registry_.mutex_.is_waited_for(taken_.seat); }
 
   private:
     Registry & registry_;
-    const uint32_t seat_;
+    RegistryMutex::Taken taken_;
   };
 
   /// Takes the lock as the holder of a line; see RegistryMutex::sit().
@@ -181,8 +181,8 @@ private:
   std::atomic<uint32_t> & bucket_of(uint64_t topic_hash) const noexcept;
   std::atomic<uint32_t> * link_to(uint32_t slot) noexcept;
   std::optional<uint32_t> next_of(uint32_t slot, uint32_t incarnation) const noexcept;
-  /// Takes the lock by `take`, and repairs what a former owner left incomplete. Returns the seat.
-  uint32_t lock_whole(const std::function<RegistryMutex::Taken()> & take);
+  /// Takes the lock by `take`, and repairs what a former owner left incomplete.
+  RegistryMutex::Taken lock_whole(const std::function<RegistryMutex::Taken()> & take);
   /// True if a former owner left something incomplete.
   bool begin_changes(bool owner_died) noexcept;
   /// Maps what repair() works on: page faults would take longer than all else that it does. Takes

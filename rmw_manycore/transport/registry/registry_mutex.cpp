@@ -2,10 +2,10 @@
 #include "transport/registry/registry_mutex.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "platform/clock.hpp"
 #include "platform/error.hpp"
-#include "platform/file_lock.hpp"
 
 namespace manycore {
 namespace {
@@ -39,37 +39,38 @@ bool RegistryMutex::occupy(uint32_t seat, long wait_ns) {
   return true;
 }
 
-/// Processes choose one at a time, and the kernel opens the file to the next one only after the
-/// last thread of a killed one has ended: so a seat that is free stays free, as RobustMutex
-/// requires.
-std::optional<uint32_t> RegistryMutex::occupy_guest_seat(long wait_ns) {
+/// False after `wait_ns`. The file stays locked until the seat is vacated, and the kernel opens it to the next guest only
+/// after the last thread of a killed one has ended, as RobustMutex requires.
+bool RegistryMutex::occupy_guest_seat(Taken & taken, long wait_ns) {
   const int wait_ms = static_cast<int>(wait_ns / (ns_per_s / 1000));
-  const std::optional<FileLock> others = FileLock::acquire_existing(file_, wait_ms);
-  if (!others) {
+  try {
+    taken.other_guests = FileLock::acquire_existing(file_, wait_ms);
+  } catch (const Error & error) {
+    if (error.code() == ErrorCode::timeout) {
+      return false;
+    }
+    throw;
+  }
+  if (!taken.other_guests) {
     throw Error(ErrorCode::system, file_ + " was removed; try again");
   }
-  for (uint32_t seat = first_guest_seat; seat < lock_seat_count; ++seat) {
-    if (!header_.seats[seat].occupied.is_locked() && occupy(seat, no_wait_ns)) {
-      return seat;
-    }
-  }
-  return std::nullopt;
+  return occupy(guest_seat, wait_ns);
 }
 
 std::optional<RegistryMutex::Taken> RegistryMutex::try_take(long wait_ns) {
   const int64_t deadline_ns = monotonic_ns() + wait_ns;
-  const std::optional<uint32_t> seat =
-    line_ == nothing ? occupy_guest_seat(wait_ns)
-                     : (occupy(line_, wait_ns) ? std::optional(line_) : std::nullopt);
-  if (!seat) {
+  const bool is_guest = line_ == nothing;
+  Taken taken{is_guest ? guest_seat : line_, false, {}};
+  if (!(is_guest ? occupy_guest_seat(taken, wait_ns) : occupy(line_, wait_ns))) {
     return std::nullopt;
   }
-  LockSeat & own = header_.seats[*seat];
+  LockSeat & own = header_.seats[taken.seat];
   try {
     const long left_ns = std::max<long>(deadline_ns - monotonic_ns(), 0);
-    const auto outcome = header_.mutex.lock(*seat, own, *this, left_ns);
+    const auto outcome = header_.mutex.lock(taken.seat, own, *this, left_ns);
     if (outcome != RecoverableMutex::Outcome::timed_out) {
-      return Taken{*seat, outcome == RecoverableMutex::Outcome::owner_died};
+      taken.owner_died = outcome == RecoverableMutex::Outcome::owner_died;
+      return taken;
     }
   } catch (...) {
     own.occupied.unlock();
@@ -91,9 +92,9 @@ RegistryMutex::Taken RegistryMutex::take(long wait_ns) {
   if (wait_ns >= usual_wait_ns) {
     let_others_go_first();
   }
-  if (const std::optional<Taken> taken = try_take(wait_ns)) {
+  if (std::optional<Taken> taken = try_take(wait_ns)) {
     stayed_locked_ = false;
-    return *taken;
+    return std::move(*taken);
   }
   stayed_locked_ = stayed_locked_ || wait_ns >= usual_wait_ns;
   refuse(wait_ns);
@@ -104,8 +105,8 @@ RegistryMutex::Taken RegistryMutex::take_while_owners_run() {
   LockOwnerWatch watch;
   while (true) {
     const uint64_t changes = header_.changes.load();
-    if (const std::optional<Taken> taken = try_take(short_wait_ns)) {
-      return *taken;
+    if (std::optional<Taken> taken = try_take(short_wait_ns)) {
+      return std::move(*taken);
     }
     const bool has_moved = header_.changes.load() != changes;
     if (monotonic_ns() >= until_ns || !(has_moved || watch.may_unlock(owner()))) {
@@ -114,12 +115,13 @@ RegistryMutex::Taken RegistryMutex::take_while_owners_run() {
   }
 }
 
-void RegistryMutex::give_back(uint32_t seat) noexcept {
-  if (is_waited_for(seat)) {
+void RegistryMutex::give_back(Taken & taken) noexcept {
+  if (is_waited_for(taken.seat)) {
     others_first_until_ns_.store(monotonic_ns() + others_first_ns, std::memory_order_relaxed);
   }
-  header_.mutex.unlock(seat);
-  header_.seats[seat].occupied.unlock();
+  header_.mutex.unlock(taken.seat);
+  header_.seats[taken.seat].occupied.unlock();
+  taken.other_guests.reset();
 }
 
 /// A woken thread needs about 50 us to run. Without this wait, a thread that creates many endpoints

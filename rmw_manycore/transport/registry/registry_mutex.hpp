@@ -5,13 +5,14 @@
 #include <optional>
 #include <string>
 
+#include "platform/file_lock.hpp"
 #include "platform/lifeline.hpp"
 #include "platform/lock_owner.hpp"
 #include "transport/layout/registry_layout.hpp"
 
 namespace manycore {
 
-/// The registry lock as this process takes it: from the seat of the line that it holds, or from a
+/// The registry lock as this process takes it: from the seat of the line that it holds, or from the
 /// guest seat. See docs/design/registry_lock.md.
 class RegistryMutex : private SeatedOwners {
 public:
@@ -19,9 +20,11 @@ public:
   static constexpr long short_wait_ns = 100'000'000;  ///< from inside a publish
   static constexpr long no_wait_ns = 0;
 
+  /// The lock, taken.
   struct Taken {
     uint32_t seat;
     bool owner_died;
+    std::optional<FileLock> other_guests;  ///< kept out
   };
 
   RegistryMutex(RegistryHeader & header, const Lifelines & lifelines, const std::string & file)
@@ -37,7 +40,7 @@ public:
   /// Waits `usual_wait_ns` while owners run or wait for a CPU, but only `short_wait_ns` for an
   /// owner that is stopped or not visible in this PID namespace.
   Taken take_while_owners_run();
-  void give_back(uint32_t seat) noexcept;
+  void give_back(Taken & taken) noexcept;
 
   /// True if a thread may be waiting for the caller, the owner.
   bool is_waited_for(uint32_t seat) const noexcept;
@@ -49,7 +52,7 @@ public:
 private:
   bool has_ended(uint32_t seat) const override;
   bool occupy(uint32_t seat, long wait_ns);
-  std::optional<uint32_t> occupy_guest_seat(long wait_ns);
+  bool occupy_guest_seat(Taken & taken, long wait_ns);
   std::optional<Taken> try_take(long wait_ns);
   [[noreturn]] void refuse(long wait_ns) const;
   void let_others_go_first() const noexcept;
