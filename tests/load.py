@@ -158,6 +158,27 @@ def crowd(size: int) -> None:
     sys.stdin.read()
 
 
+def join_at_once(size: int, endpoints: int) -> None:
+    """Fork `size` nodes that wait for each other, then join and create `endpoints` each."""
+    signal.signal(signal.SIGCHLD, signal.SIG_IGN)
+    start, until_start = os.pipe()
+    for number in range(size):
+        fork(lambda: _join_at(start, until_start, endpoints), str(1 + number % 5))
+    sys.stdin.readline()
+    os.close(until_start)
+    sys.stdin.read()
+
+
+def _join_at(start: int, until_start: int, endpoints: int) -> None:
+    os.close(until_start)
+    os.read(start, 1)
+    with peer_node(f"node_{os.getpid()}") as node:
+        for number in range(endpoints):
+            node.create_publisher(UInt8MultiArray, f"topic_{number}", 10)
+        announce("has joined")
+        rclpy.spin(node)
+
+
 def be_one_of(size: int, number: int) -> None:
     with peer_node(f"node_{number}") as node:
         heard: set[int] = set()

@@ -7,7 +7,7 @@ import os
 import time
 
 import pytest
-from load import crowd
+from load import crowd, join_at_once
 from processes import (
     cpu_time_s,
     has_receive_threads,
@@ -40,6 +40,17 @@ def test_a_crowd_is_matched_and_then_idle(start):
         wait_until(lambda: cpu_used_by(pids) <= IDLE_CPU_S, "the crowd idles")
     for pid in pids:
         kill(pid)
+
+
+@pytest.mark.parametrize(("size", "endpoints"), [(500, 0), (200, 5)])
+def test_a_crowd_joins_at_one_moment(start, size, endpoints):
+    """None waits until it gives up; how long it takes is measured by `manycore bench scale`."""
+    program = start(peer_command(join_at_once, size, endpoints))
+    for _ in range(size):
+        program.wait_for(r"born \d+")
+    program.say("go")
+    for _ in range(size):
+        program.wait_for("has joined")
 
 
 def cpu_used_by(pids: set[int]) -> float:

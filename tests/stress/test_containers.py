@@ -1,0 +1,39 @@
+# Copyright 2026 The rmw_manycore developers. SPDX-License-Identifier: Apache-2.0
+"""Containers that come up on one platform while others are killed, all threads with equal numbers.
+
+docs/model/registry_lock.pml covers each order of steps; here the real kernel and glibc take part.
+"""
+
+from __future__ import annotations
+
+import os
+import random
+
+import pytest
+from containers import bring_up
+from support import IS_MANYCORE, KILLS, TIMEOUT_S, example_command, peer_command, wait_until
+
+SEED = int(os.environ.get("MANYCORE_TEST_SEED", str(random.randrange(1 << 32))))
+CONTAINERS = 6
+
+pytestmark = pytest.mark.skipif(not IS_MANYCORE, reason="Fast DDS has no registry")
+
+
+def endpoints_of(platform: str) -> int:
+    from rmw_manycore_py._transport import Platform
+
+    with Platform(platform) as seen:
+        return len(seen.endpoints())
+
+
+def test_containers_come_up_while_others_are_killed(start, platform):
+    print(f"MANYCORE_TEST_SEED={SEED}")
+    outside = start(example_command("talker"))
+    outside.wait_for("Publishing")
+    before = endpoints_of(platform)
+    storm = start(peer_command(bring_up, KILLS, CONTAINERS, SEED))
+    result = storm.wait_for(r"\d+ rounds, \d+ failures", timeout_s=TIMEOUT_S + KILLS)
+    assert result.group(0) == f"{KILLS} rounds, 0 failures", storm
+    wait_until(lambda: endpoints_of(platform) == before, "all containers are reaped")
+    assert "failed" not in storm.output, storm
+    assert outside.stop_node(), outside
